@@ -1,0 +1,64 @@
+"""The base of everything that a line of a scene file describes.
+
+A subclass is a frozen dataclass whose attributes are declared with `minirt.fields.declare`, in the order of the
+file's format; `code` is the identifier that the line begins with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields, replace
+from functools import cache
+from typing import Any, ClassVar, Self, TypeVar, cast
+
+from minirt.fields import Field, FieldError
+
+Answer = TypeVar("Answer")
+
+
+def once_per_kind(ask: Callable[[type[Element]], Answer]) -> Callable[[type[Element]], Answer]:
+    """A function of a kind of element that works its answer out once."""
+    return cast("Callable[[type[Element]], Answer]", cache(ask))
+
+
+@once_per_kind
+def fields_of(element: type[Element]) -> tuple[Field, ...]:
+    """The table of an element's fields, in the order of the format."""
+    return tuple(
+        replace(attribute.metadata["field"], name=attribute.name)
+        for attribute in fields(element)
+        if "field" in attribute.metadata
+    )
+
+
+@once_per_kind
+def pattern(element: type[Element]) -> str:
+    """How a line of the element is written: `C x,y,z dx,dy,dz fov [roll:degree]`."""
+    places = [each.notation if each.default is None else f"[{each.notation}]" for each in fields_of(element)]
+    return " ".join((element.code, *places))
+
+
+@dataclass(frozen=True)
+class Element:
+    """One element of a scene; ValueError where a field is out of range."""
+
+    code: ClassVar[str]
+    title: ClassVar[str]  # what people call it
+    plural: ClassVar[str]
+    once: ClassVar[bool] = False  # at most one in a scene
+    required: ClassVar[bool] = False  # at least one in a file
+    source: str = field(default="", kw_only=True, compare=False, repr=False)  # its line as it stood in the file
+
+    def __post_init__(self) -> None:
+        for each in fields_of(type(self)):
+            value = getattr(self, each.name)
+            try:
+                checked = each.check(value)
+            except FieldError as error:
+                raise ValueError(f"{self.title} {each.name} {error}") from None
+            if checked is not value:
+                object.__setattr__(self, each.name, checked)
+
+    def replace(self, **changes: Any) -> Self:
+        """The same element with some fields changed."""
+        return replace(self, **changes)

@@ -1,0 +1,31 @@
+"""What the elements of a scene are made of: each field is declared once, and the parser, the writer, the editor and
+the documentation are made from the declaration.
+"""
+
+from minirt.errors import FieldError
+from minirt.fields.field import Field, Repair, declare
+from minirt.fields.numerals import number, spelled, whole
+from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Length, Real, Whole, clamp
+from minirt.fields.triples import Colour, Direction, Point, Three, Triple, unit
+
+__all__ = [
+    "FARTHEST",
+    "LEAST_LENGTH",
+    "Colour",
+    "Direction",
+    "Field",
+    "FieldError",
+    "Length",
+    "Point",
+    "Real",
+    "Repair",
+    "Three",
+    "Triple",
+    "Whole",
+    "clamp",
+    "declare",
+    "number",
+    "spelled",
+    "unit",
+    "whole",
+]

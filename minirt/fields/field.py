@@ -1,0 +1,72 @@
+"""A field, and how an element declares one.
+
+A field knows how its value is spelled in a scene file (`parse`, `format`), what it may be (`check`), what a lenient
+reader makes of a wrong spelling (`repair`) and how a key press changes it (`nudge`). Errors are `FieldError`s that say
+what was expected, without the name of the field.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+
+class Repair(NamedTuple):
+    """Another spelling of a field that a lenient reader takes, and what that does: "rounds it to 1,2,3"."""
+
+    text: str
+    deed: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Field:
+    """One field of an element; `name` and `default` are those of the dataclass attribute that declares it."""
+
+    doc: str
+    unit: str = ""
+    step: float = 1.0  # what one key press changes, in `unit`, or as a factor for a length
+    keyed: bool = False  # written as `name:value` behind the other fields, and left out at its default
+    name: str = ""
+    default: Any = None  # None: the field must be given
+
+    def parse(self, text: str) -> Any:
+        """The value spelled by `text`, not yet checked."""
+        raise NotImplementedError
+
+    def format(self, value: Any) -> str:
+        """The spelling of `value` in a scene file."""
+        return str(value)
+
+    def check(self, value: Any) -> Any:
+        """`value` in its normal form (a direction has unit length); FieldError where it is out of range."""
+        return value
+
+    def remark(self, value: Any) -> str:
+        """What the reader of a file should be told of a value that is in range, or nothing."""
+        return ""
+
+    def repair(self, text: str) -> Repair | None:
+        """What a lenient reader takes for the wrong spelling `text`, if anything."""
+        return None
+
+    def nudge(self, value: Any, steps: float) -> Any:
+        """`value` after `steps` key presses, kept within its range."""
+        return value
+
+    @property
+    def notation(self) -> str:
+        """The field's place in the pattern of its line."""
+        return f"{self.name}:{self.unit or 'value'}" if self.keyed else self.name
+
+    @property
+    def range(self) -> str:
+        """The range in words, for messages and documentation."""
+        return ""
+
+
+def declare(kind: Callable[..., Field], doc: str, **how: Any) -> Any:
+    """A dataclass attribute that is a field of a scene element: `diameter: float = declare(Length, "...")`."""
+    default = how.get("default")
+    metadata = {"field": kind(doc=doc, **how)}
+    return field(metadata=metadata) if default is None else field(default=default, metadata=metadata)

@@ -1,0 +1,48 @@
+"""How numbers are spelled in a scene file: decimal, in ASCII, and exact to the last bit of a float64."""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+
+from minirt.errors import FieldError, quoted
+
+NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+WHOLE = re.compile(r"[+-]?[0-9]+")
+LONGEST = 400  # characters; more than any float64 needs to be exact in fixed notation
+
+
+def number(text: str) -> float:
+    """A finite number; what `float` accepts beyond the format (nan, 1_000, digits of other scripts) is refused."""
+    if len(text) > LONGEST or not NUMBER.fullmatch(text):
+        raise FieldError("must be a number, " + found(text))
+    value = float(text)
+    if not math.isfinite(value):
+        raise FieldError(f"must be a number that a float64 can hold, got {quoted(text)}")
+    return value + 0.0  # -0 becomes 0
+
+
+def whole(text: str) -> int:
+    """A whole number."""
+    if len(text) > LONGEST or not WHOLE.fullmatch(text):
+        raise FieldError("must be a whole number, " + found(text))
+    return int(text)
+
+
+def found(text: str) -> str:
+    """What stands where a number should be, with the reason where the eye would not see it."""
+    if len(text) > LONGEST:
+        return f"got {len(text)} characters: {quoted(text)}"
+    foreign = next((character for character in text if not character.isascii()), "")
+    return f"got {quoted(text)}" + (f": {named(foreign)} is not ASCII" if foreign else "")
+
+
+def named(character: str) -> str:
+    """A character by its code point and name."""
+    return f"U+{ord(character):04X} {unicodedata.name(character, '')}".rstrip()
+
+
+def spelled(value: float) -> str:
+    """The shortest decimal that reads back as the same float64, without a trailing `.0`."""
+    return repr(float(value) + 0.0).removesuffix(".0")

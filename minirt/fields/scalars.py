@@ -1,0 +1,97 @@
+"""Fields of one number: ratios, angles, lengths, sizes in pixels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from minirt.errors import FieldError
+from minirt.fields.field import Field
+from minirt.fields.numerals import number, spelled, whole
+
+FARTHEST = 1e15  # scene units; beyond it neighbouring float64 are an eighth of a unit apart
+LEAST_LENGTH = 1e-9  # scene units; editing never makes a length smaller
+
+
+def clamp(value: float, low: float, high: float) -> float:
+    """`value`, moved to the nearest end of [low, high] where it lies outside."""
+    return min(max(value, low), high)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Real(Field):
+    """A number in [low, high]."""
+
+    low: float = -FARTHEST
+    high: float = FARTHEST
+    ends: str = ""  # what becomes of `low` and `high` themselves, where that is worth a word
+
+    def parse(self, text: str) -> float:
+        return number(text)
+
+    def format(self, value: float) -> str:
+        return spelled(value)
+
+    def check(self, value: float) -> float:
+        if not self.low <= value <= self.high:
+            raise FieldError(f"must be in {self.range}, got {spelled(value)}")
+        return float(value)
+
+    def remark(self, value: float) -> str:
+        return f"{spelled(value)} {self.ends}" if self.ends and value in (self.low, self.high) else ""
+
+    def nudge(self, value: float, steps: float) -> float:
+        return clamp(value + steps * self.step, self.low, self.high)
+
+    @property
+    def range(self) -> str:
+        return f"[{spelled(self.low)}, {spelled(self.high)}]"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Length(Field):
+    """A size greater than 0; a key press multiplies it by `step`."""
+
+    unit: str = "scene unit"
+    step: float = 1.05
+
+    def parse(self, text: str) -> float:
+        return number(text)
+
+    def format(self, value: float) -> str:
+        return spelled(value)
+
+    def check(self, value: float) -> float:
+        if not value > 0:
+            raise FieldError(f"must be > 0, got {spelled(value)}")
+        if not value <= FARTHEST:
+            raise FieldError(f"must be at most {FARTHEST:g}, got {spelled(value)}")
+        return float(value)
+
+    def nudge(self, value: float, steps: float) -> float:
+        least = min(value, LEAST_LENGTH)
+        factor = self.step ** clamp(steps, -10_000, 10_000)
+        return clamp(value * factor, least, FARTHEST)
+
+    @property
+    def range(self) -> str:
+        return "> 0"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Whole(Field):
+    """A whole number in [low, high]."""
+
+    low: int
+    high: int
+
+    def parse(self, text: str) -> int:
+        return whole(text)
+
+    def check(self, value: int) -> int:
+        if not (self.low <= value <= self.high and value == int(value)):
+            raise FieldError(f"must be a whole number in {self.range}, got {value}")
+        return int(value)
+
+    @property
+    def range(self) -> str:
+        return f"[{self.low}, {self.high}]"

@@ -1,0 +1,178 @@
+"""Fields of three numbers: points, directions, colours."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from minirt.errors import FieldError, quoted
+from minirt.fields.field import Field, Repair
+from minirt.fields.numerals import number, spelled, whole
+from minirt.fields.scalars import FARTHEST, clamp
+
+Triple = tuple[float, float, float]
+
+SLACK = 1e-3  # how far a direction may be off unit length without a word
+
+
+@dataclass(frozen=True, kw_only=True)
+class Three(Field):
+    """Three components with commas between them; `names` are what they are called in messages."""
+
+    names: str = "x,y,z"
+
+    def component(self, text: str) -> float:
+        return number(text)
+
+    def parse(self, text: str) -> Triple:
+        parts = text.split(",")
+        if len(parts) != 3:
+            extra = 3 if len(parts) > 3 else None
+            raise FieldError(f"must be {self.names}, three numbers with commas between them, got {quoted(text)}", extra)
+        part = 0
+        try:
+            x = self.component(parts[0])
+            part = 1
+            y = self.component(parts[1])
+            part = 2
+            return x, y, self.component(parts[2])
+        except FieldError as error:
+            raise FieldError(f"{self.names[2 * part]} {error}", part) from None
+
+    def format(self, value: Triple) -> str:
+        return ",".join(map(spelled, value))
+
+    def within(self, value: Triple, low: float, high: float) -> None:
+        """FieldError where `value` is not three numbers in [low, high]."""
+        try:
+            x, y, z = value
+            if low <= x <= high and low <= y <= high and low <= z <= high:
+                return
+        except (TypeError, ValueError):
+            raise FieldError(f"must be {self.names}, three numbers, got {value!r}") from None
+        part = next(part for part, component in enumerate(value) if not low <= component <= high)
+        raise FieldError(f"{self.names[2 * part]} must be in {self.range}, got {spelled(value[part])}", part)
+
+    def repair(self, text: str) -> Repair | None:
+        head, _, tail = text.rpartition(",")
+        if text.count(",") != 3 or not reads(number, tail):
+            return None
+        return Repair(head, "drops the fourth component")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Point(Three):
+    """A place in the scene."""
+
+    unit: str = "scene unit"
+
+    def check(self, value: Triple) -> Triple:
+        self.within(value, -FARTHEST, FARTHEST)
+        x, y, z = value
+        return float(x), float(y), float(z)
+
+    @property
+    def notation(self) -> str:
+        return "x,y,z"
+
+    @property
+    def range(self) -> str:
+        return f"[-{FARTHEST:g}, {FARTHEST:g}]"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Direction(Three):
+    """A direction with components in [-1, 1]; kept at unit length."""
+
+    instead: Triple = (0.0, 1.0, 0.0)  # what a lenient reader takes for 0,0,0
+
+    def check(self, value: Triple) -> Triple:
+        self.within(value, -1.0, 1.0)
+        if not any(value):
+            raise FieldError("must not be 0,0,0: it points nowhere")
+        return unit(value)
+
+    def remark(self, value: Triple) -> str:
+        length = math.hypot(*value)
+        return f"has length {length:.4g}, and is scaled to 1" if abs(length - 1) > SLACK else ""
+
+    def repair(self, text: str) -> Repair | None:
+        if reads(self.parse, text):
+            instead = self.format(self.instead)
+            return None if any(self.parse(text)) else Repair(instead, f"takes {instead}")
+        return super().repair(text)
+
+    @property
+    def notation(self) -> str:
+        return ",".join(self.name[:1] + axis for axis in "xyz")
+
+    @property
+    def range(self) -> str:
+        return "[-1, 1]"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Colour(Three):
+    """Red, green and blue, whole numbers from 0 to 255; a key press changes all three."""
+
+    names: str = "R,G,B"
+    step: float = 8.0
+
+    def component(self, text: str) -> int:
+        return whole(text)
+
+    def format(self, value: Triple) -> str:
+        return ",".join(str(int(component)) for component in value)
+
+    def check(self, value: Triple) -> tuple[int, int, int]:
+        self.within(value, 0, 255)
+        for part, component in enumerate(value):
+            if component != int(component):
+                raise FieldError(f"{'RGB'[part]} must be a whole number, got {component}", part)
+        red, green, blue = value
+        return int(red), int(green), int(blue)
+
+    def repair(self, text: str) -> Repair | None:
+        parts = text.split(",")
+        if len(parts) != 3 or not all(reads(number, part) for part in parts):
+            return None
+        rounded = ",".join(str(math.floor(number(part) + 0.5)) for part in parts)
+        return None if rounded == text else Repair(rounded, f"rounds it to {rounded}")
+
+    def nudge(self, value: Triple, steps: float) -> tuple[int, int, int]:
+        red, green, blue = (int(clamp(round(component + steps * self.step), 0, 255)) for component in value)
+        return red, green, blue
+
+    @property
+    def notation(self) -> str:
+        return self.names
+
+    @property
+    def range(self) -> str:
+        return "[0, 255]"
+
+
+def reads(parse: Callable[[str], Any], text: str) -> bool:
+    """Whether `parse` accepts `text`."""
+    try:
+        parse(text)
+    except FieldError:
+        return False
+    return True
+
+
+def unit(vector: Triple) -> Triple:
+    """`vector` at length 1, also where its squares would underflow or overflow.
+
+    A vector that has length 1 within rounding is returned as it is, so that saving and loading change nothing. The
+    quotient below is off by at most 2u in length and `hypot` by 2u more (u = 2^-53): one step is enough for that.
+    """
+    x, y, z = vector
+    if abs(math.hypot(x, y, z) - 1.0) <= 4 * 2.0**-53:
+        return float(x), float(y), float(z)
+    largest = max(abs(x), abs(y), abs(z))
+    x, y, z = x / largest, y / largest, z / largest
+    length = math.hypot(x, y, z)
+    return x / length, y / length, z / length

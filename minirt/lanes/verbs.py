@@ -1,0 +1,74 @@
+"""The verbs of the formulas, interpreted: on numpy float64 and on arrays of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from minirt.lanes.vec import Number, Vec
+
+WIDTH = 8  # rays that a kernel traces at once: one AVX-512 register of float64, two of AVX2
+Mask = Any  # a numpy bool, an array of them, or a mask of the processor
+
+
+def where(mask: Mask, a: Any, b: Any) -> Any:
+    """For each ray `a` where the mask is true and `b` where it is not; of two Vecs, each component so."""
+    if isinstance(a, Vec):
+        return Vec(where(mask, a.x, b.x), where(mask, a.y, b.y), where(mask, a.z, b.z))
+    return np.where(mask, a, b)[()]
+
+
+def any(mask: Mask) -> bool:
+    """True if the mask is true for at least one ray."""
+    return bool(np.any(mask))
+
+
+def sqrt(x: Number) -> Number:
+    """The square root, NaN below 0."""
+    return np.sqrt(x)
+
+
+def fabs(x: Number) -> Number:
+    """The absolute value."""
+    return np.fabs(x)
+
+
+def floor(x: Number) -> Number:
+    """The greatest whole number not above x."""
+    return np.floor(x)
+
+
+def copysign(x: Number, sign: Number) -> Number:
+    """The absolute value of x with the sign of `sign`."""
+    return np.copysign(x, sign)
+
+
+def minimum(a: Number, b: Number) -> Number:
+    """The lesser; b where one of the two is NaN."""
+    return where(a < b, a, b)
+
+
+def maximum(a: Number, b: Number) -> Number:
+    """The greater; b where one of the two is NaN."""
+    return where(a > b, a, b)
+
+
+def splat(x: float) -> Number:
+    """The same number for each of `WIDTH` rays."""
+    return np.full(WIDTH, x)
+
+
+def load(values: Any, start: int) -> Number:
+    """`WIDTH` numbers of an array from index `start` on."""
+    return values[start : start + WIDTH].copy()
+
+
+def lane(x: Number, ray: int) -> float:
+    """The number of one ray."""
+    return float(x[ray])
+
+
+def first(mask: Mask) -> int:
+    """The index of the first ray for which the mask is true; there must be one."""
+    return int(np.argmax(mask))

@@ -1,0 +1,221 @@
+"""MiniLibX's calls, under their own names, with the arguments and results of its official Python wrapper.
+
+    m = Mlx()
+    mlx = m.mlx_init()
+    win = m.mlx_new_window(mlx, 640, 480, "hello")
+    m.mlx_string_put(mlx, win, 10, 10, 0xFFFFFF, "press a key")
+    m.mlx_key_hook(win, lambda key, _: m.mlx_loop_exit(mlx), None)
+    m.mlx_loop(mlx)
+
+Where the wrapper has numbers for handles, these are objects: `Display`, `Window`, `Image`. Failures raise MlxError.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from minirt.errors import MlxError
+from minirt.mlx.display import Display
+from minirt.mlx.events import Event
+from minirt.mlx.extensions import Extensions
+from minirt.mlx.handles import Image, Window
+from minirt.mlx.text import draw_text
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from minirt.mlx.backend import Backend
+    from minirt.mlx.handles import Hook
+
+
+class Mlx(Extensions):
+    """Calls return 0 where MiniLibX has nothing to say. Colours are 0xAARRGGBB; x goes right, y down.
+
+    backend: where windows open; None is the screen, `minirt.mlx.memory.Memory()` needs none.
+    """
+
+    SYNC_IMAGE_WRITABLE = 1
+    SYNC_WIN_FLUSH = 2
+    SYNC_WIN_COMPLETED = 3
+
+    def __init__(self, backend: Backend | None = None) -> None:
+        self._backend = backend
+
+    # --- opening and closing ---
+
+    def mlx_init(self) -> Display:
+        """Open the display. Raises MlxError with the reason where there is none."""
+        backend = self._backend or _screen()
+        display = Display(backend)
+        backend.open(display)
+        return display
+
+    def mlx_release(self, mlx: Display) -> int:
+        """Close all windows and the display."""
+        mlx.close()
+        return 0
+
+    mlx_destroy_display = mlx_release
+
+    def mlx_new_window(self, mlx: Display, width: int, height: int, title: str, *, resizable: bool = False) -> Window:
+        """Several windows may be open. The size of a resizable one may come out differently: read it back."""
+        if width < 1 or height < 1:
+            raise MlxError(f"a window of {width}x{height} pixels cannot be opened")
+        window = Window(mlx, width, height, title, resizable)
+        mlx.backend.open_window(window)
+        mlx.windows.append(window)
+        mlx.show(window)
+        return window
+
+    def mlx_destroy_window(self, mlx: Display, win: Window) -> int:
+        """May be called inside any hook, and again."""
+        mlx.destroy(win)
+        return 0
+
+    # --- drawing on a window; it is shown at the end of the loop's turn ---
+
+    def mlx_clear_window(self, mlx: Display, win: Window) -> int:
+        win.canvas.clear()
+        return 0
+
+    def mlx_pixel_put(self, mlx: Display, win: Window, x: int, y: int, color: int) -> int:
+        win.canvas.point(x, y, color)
+        return 0
+
+    def mlx_string_put(self, mlx: Display, win: Window, x: int, y: int, color: int, string: str) -> int:  # noqa: PLR0917 - MiniLibX has six
+        """x, y is the top left corner of the text."""
+        canvas = win.canvas
+        width, height = draw_text(canvas.pixels, x, y, string, color)
+        canvas.touch(x, y, x + width, y + height)
+        return 0
+
+    def mlx_put_image_to_window(self, mlx: Display, win: Window, img: Image, x: int, y: int) -> int:
+        """Copies the picture as it is now, without regard to alpha."""
+        win.canvas.put(img.pixels, x, y)
+        return 0
+
+    # --- images ---
+
+    def mlx_new_image(self, mlx: Display, width: int, height: int) -> Image:
+        return Image(np.zeros((height, width, 4), np.uint8))
+
+    def mlx_get_data_addr(self, img: Image) -> tuple[memoryview, int, int, int]:
+        """(bytes, bits per pixel, bytes per row, 0): blue, green, red and alpha follow one another."""
+        return img.pixels.reshape(-1).data, 32, 4 * img.width, 0
+
+    def mlx_destroy_image(self, mlx: Display, img: Image) -> int:
+        """Nothing to do: an image goes when nobody holds it."""
+        return 0
+
+    def mlx_png_file_to_image(self, mlx: Display, filename: str | PathLike[str]) -> tuple[Image, int, int]:
+        """(image, width, height). Raises MlxError."""
+        from PIL import Image as Pillow  # noqa: PLC0415 - a program that loads no picture loads no Pillow
+
+        try:
+            with Pillow.open(filename) as picture:
+                rgba = np.asarray(picture.convert("RGBA"))
+        except (OSError, ValueError, SyntaxError) as error:
+            raise MlxError(f"{filename} cannot be read as a picture: {error}") from error
+        image = Image(np.ascontiguousarray(rgba[..., [2, 1, 0, 3]]))
+        return image, image.width, image.height
+
+    mlx_xpm_file_to_image = mlx_png_file_to_image
+
+    # --- hooks and the loop ---
+
+    def mlx_hook(self, win: Window, x_event: int, x_mask: int, f: Hook | None, param: object) -> int:
+        """One hook for each event and window; None removes it. See `Event` for what it receives before `param`."""
+        if f is None:
+            win.hooks.pop(x_event, None)
+        else:
+            win.hooks[x_event] = (f, param)
+        return 0
+
+    def mlx_key_hook(self, win: Window, f: Hook | None, param: object) -> int:
+        """f(keycode, param), when a key is released."""
+        return self.mlx_hook(win, Event.KEY_RELEASE, 0, f, param)
+
+    def mlx_mouse_hook(self, win: Window, f: Hook | None, param: object) -> int:
+        """f(button, x, y, param), when a button is pressed or the wheel turned."""
+        return self.mlx_hook(win, Event.BUTTON_PRESS, 0, f, param)
+
+    def mlx_expose_hook(self, win: Window, f: Hook | None, param: object) -> int:
+        """f(param), when the window has to be drawn; what was drawn before is still there."""
+        return self.mlx_hook(win, Event.EXPOSE, 0, f, param)
+
+    def mlx_loop_hook(self, mlx: Display, f: Hook | None, param: object) -> int:
+        """f(param), about 60 times a second; with None the loop sleeps until something happens."""
+        mlx.loop_hook = None if f is None else (f, param)
+        return 0
+
+    def mlx_loop(self, mlx: Display) -> int:
+        """Runs until `mlx_loop_exit` or until no window is left. Raises what a hook raised."""
+        mlx.loop()
+        return 0
+
+    def mlx_loop_exit(self, mlx: Display) -> int:
+        """No hook is called after this."""
+        mlx.ending = True
+        return 0
+
+    mlx_loop_end = mlx_loop_exit
+
+    def mlx_do_sync(self, mlx: Display) -> int:
+        """Show what was drawn, now."""
+        for window in mlx.windows:
+            mlx.show(window)
+        return 0
+
+    def mlx_sync(self, mlx: Display, cmd: int, img_or_win: Image | Window) -> int:
+        """`cmd` is one of SYNC_…; images can always be written to."""
+        if isinstance(img_or_win, Window) and img_or_win.is_open:
+            mlx.show(img_or_win)
+        return 0
+
+    # --- mouse, keyboard, screen ---
+
+    def mlx_mouse_get_pos(self, win: Window) -> tuple[int, int, int]:
+        """(0, x, y), as of the last event."""
+        return 0, *win.pointer
+
+    def mlx_mouse_move(self, win: Window, x: int, y: int) -> int:
+        win.display.backend.move_pointer(win, x, y)
+        return 0
+
+    def mlx_mouse_hide(self, mlx: Display) -> int:
+        for window in mlx.windows:
+            mlx.backend.show_pointer(window, False)
+        return 0
+
+    def mlx_mouse_show(self, mlx: Display) -> int:
+        for window in mlx.windows:
+            mlx.backend.show_pointer(window, True)
+        return 0
+
+    def mlx_do_key_autorepeaton(self, mlx: Display) -> int:
+        """A held key is released and pressed again and again; off at first, and in this program only."""
+        mlx.autorepeat = True
+        return 0
+
+    def mlx_do_key_autorepeatoff(self, mlx: Display) -> int:
+        mlx.autorepeat = False
+        return 0
+
+    def mlx_get_screen_size(self, mlx: Display) -> tuple[int, int, int]:
+        """(0, width, height)."""
+        return 0, *mlx.backend.screen_size()
+
+
+def _screen() -> Backend:
+    """The back end on a real screen, imported only now because its import opens the display."""
+    from minirt.mlx.on_pyglet.interrupt import handlers_kept  # noqa: PLC0415
+
+    try:
+        with handlers_kept():
+            from minirt.mlx.on_pyglet.loop import PygletBackend  # noqa: PLC0415
+    except Exception as error:  # whatever the window system says here, there is no window
+        reason = str(error) or type(error).__name__
+        raise MlxError(f"no window can be opened ({reason}); -o FILE renders without one") from error
+    return PygletBackend()

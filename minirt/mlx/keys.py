@@ -1,0 +1,132 @@
+"""Key codes: the numbers of X11's keysyms, as MiniLibX gives them to hooks."""
+
+import sys
+from enum import IntEnum, IntFlag
+
+
+class Key(IntEnum):
+    """The keys that a program is likely to name; a hook receives plain integers and may see others.
+
+    Letters are lower case whatever Shift says; a printable symbol is its own character code.
+    """
+
+    SPACE = 0x20
+    EXCLAMATION = 0x21
+    HASH = 0x23
+    APOSTROPHE = 0x27
+    ASTERISK = 0x2A
+    PLUS = 0x2B
+    COMMA = 0x2C
+    MINUS = 0x2D
+    PERIOD = 0x2E
+    SLASH = 0x2F
+    DIGIT_0 = 0x30
+    DIGIT_1 = 0x31
+    DIGIT_2 = 0x32
+    DIGIT_3 = 0x33
+    DIGIT_4 = 0x34
+    DIGIT_5 = 0x35
+    DIGIT_6 = 0x36
+    DIGIT_7 = 0x37
+    DIGIT_8 = 0x38
+    DIGIT_9 = 0x39
+    COLON = 0x3A
+    SEMICOLON = 0x3B
+    LESS = 0x3C
+    EQUAL = 0x3D
+    GREATER = 0x3E
+    QUESTION = 0x3F
+    BRACKET_LEFT = 0x5B
+    BACKSLASH = 0x5C
+    BRACKET_RIGHT = 0x5D
+    UNDERSCORE = 0x5F
+    GRAVE = 0x60
+    A = 0x61
+    B = 0x62
+    C = 0x63
+    D = 0x64
+    E = 0x65
+    F = 0x66
+    G = 0x67
+    H = 0x68
+    I = 0x69  # noqa: E741
+    J = 0x6A
+    K = 0x6B
+    L = 0x6C
+    M = 0x6D
+    N = 0x6E
+    O = 0x6F  # noqa: E741
+    P = 0x70
+    Q = 0x71
+    R = 0x72
+    S = 0x73
+    T = 0x74
+    U = 0x75
+    V = 0x76
+    W = 0x77
+    X = 0x78
+    Y = 0x79
+    Z = 0x7A
+    BACKSPACE = 0xFF08
+    TAB = 0xFF09
+    RETURN = 0xFF0D
+    PAUSE = 0xFF13
+    ESCAPE = 0xFF1B
+    HOME = 0xFF50
+    LEFT = 0xFF51
+    UP = 0xFF52
+    RIGHT = 0xFF53
+    DOWN = 0xFF54
+    PAGE_UP = 0xFF55
+    PAGE_DOWN = 0xFF56
+    END = 0xFF57
+    INSERT = 0xFF63
+    KEYPAD_ENTER = 0xFF8D
+    KEYPAD_ADD = 0xFFAB
+    KEYPAD_SUBTRACT = 0xFFAD
+    F1 = 0xFFBE
+    F2 = 0xFFBF
+    F3 = 0xFFC0
+    F4 = 0xFFC1
+    F5 = 0xFFC2
+    F6 = 0xFFC3
+    F7 = 0xFFC4
+    F8 = 0xFFC5
+    F9 = 0xFFC6
+    F10 = 0xFFC7
+    F11 = 0xFFC8
+    F12 = 0xFFC9
+    SHIFT_L = 0xFFE1
+    SHIFT_R = 0xFFE2
+    CONTROL_L = 0xFFE3
+    CONTROL_R = 0xFFE4
+    ALT_L = 0xFFE9
+    ALT_R = 0xFFEA
+    SUPER_L = 0xFFEB  # the Windows key
+    SUPER_R = 0xFFEC
+    COMMAND_L = 0xFFED  # macOS
+    COMMAND_R = 0xFFEE
+    DELETE = 0xFFFF
+
+
+class Modifier(IntFlag):
+    """What is held while something else is pressed, see `Mlx.mlx_get_modifiers`."""
+
+    NONE = 0
+    SHIFT = 1
+    CTRL = 2
+    ALT = 4
+    COMMAND = 8  # macOS
+    ACCEL = COMMAND if sys.platform == "darwin" else CTRL  # what this platform makes its shortcuts with
+
+
+MODIFIER_KEYS: dict[int, Modifier] = {
+    Key.SHIFT_L: Modifier.SHIFT,
+    Key.SHIFT_R: Modifier.SHIFT,
+    Key.CONTROL_L: Modifier.CTRL,
+    Key.CONTROL_R: Modifier.CTRL,
+    Key.ALT_L: Modifier.ALT,
+    Key.ALT_R: Modifier.ALT,
+    Key.COMMAND_L: Modifier.COMMAND,
+    Key.COMMAND_R: Modifier.COMMAND,
+}

@@ -1,0 +1,239 @@
+"""The back end without a screen: pictures are read back, events come from a script, time is simulated.
+
+    memory = Memory()
+    m = Mlx(backend=memory)
+    mlx = m.mlx_init()
+    ...                                   # windows, hooks
+    memory.press(Key.W)                   # each call adds to the script
+    memory.wait(0.5)
+    memory.release(Key.W)
+    memory.play()                         # or m.mlx_loop(mlx), which plays the script and goes on
+    picture = memory.screenshot()
+
+What the user does becomes a list of steps. Between two of them the program's loop takes a turn.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections import deque
+from typing import TYPE_CHECKING
+
+from minirt.errors import MlxError
+from minirt.mlx.backend import Backend
+from minirt.mlx.canvas import stretch
+from minirt.mlx.events import Button, Event
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from minirt.mlx.display import Display
+    from minirt.mlx.handles import Window
+
+TICK = 1 / 60  # simulated seconds between two turns of a busy loop
+
+
+class Memory(Backend):
+    """`patience`: real seconds after the end of the script in which the program has to end, or MlxError is raised.
+
+    The methods of the script take the window that they are meant for; None is the first that is open by then.
+    """
+
+    def __init__(self, screen: tuple[int, int] = (2560, 1600), patience: float = 30.0) -> None:
+        self.screen = screen
+        self.patience = patience
+        self.clipboard_text = ""
+        self.pointer_shown = True
+        self._script: deque[Callable[[], object]] = deque()
+        self._display: Display | None = None
+        self._stir = threading.Event()
+        self._now = 0.0
+        self._screens: dict[Window, NDArray[np.uint8]] = {}
+        self._sizes: dict[Window, tuple[int, int]] = {}  # of the framebuffers
+        self._windowed: dict[Window, tuple[int, int]] = {}  # what the full-screen ones had before
+
+    # --- the script: what the user does, in this order ---
+
+    def press(self, key: int, window: Window | None = None) -> None:
+        """Hold a key down; a modifier is a key like any other."""
+        self.do(lambda: self.display.press(self._at(window), key))
+
+    def release(self, key: int, window: Window | None = None) -> None:
+        self.do(lambda: self._at(window).keyboard.release(key))
+
+    def tap(self, *keys: int, window: Window | None = None) -> None:
+        """Press the keys in this order and release them in the opposite one: tap(Key.CONTROL_L, Key.Z)."""
+        for key in keys:
+            self.press(key, window)
+        for key in reversed(keys):
+            self.release(key, window)
+
+    def text(self, text: str, window: Window | None = None) -> None:
+        """Type text; what comes as text alone, without presses of keys."""
+        self.do(lambda: self.display.text(self._at(window), text))
+
+    def button_press(self, button: int, x: int, y: int, window: Window | None = None) -> None:
+        self.do(lambda: self.display.button(self._at(window), Event.BUTTON_PRESS, button, x, y))
+
+    def button_release(self, button: int, x: int, y: int, window: Window | None = None) -> None:
+        self.do(lambda: self.display.button(self._at(window), Event.BUTTON_RELEASE, button, x, y))
+
+    def click(self, x: int, y: int, button: int = Button.LEFT, window: Window | None = None) -> None:
+        self.button_press(button, x, y, window)
+        self.button_release(button, x, y, window)
+
+    def motion(self, x: int, y: int, window: Window | None = None) -> None:
+        self.do(lambda: self.display.motion(self._at(window), x, y))
+
+    def scroll(self, up: int, x: int, y: int, window: Window | None = None, right: int = 0) -> None:
+        """Turn the wheel by so many steps; negative ones go down and left."""
+        self.do(lambda: self.display.scroll(self._at(window), right, up, x, y))
+
+    def enter(self, inside: bool, window: Window | None = None) -> None:
+        """The pointer comes into the window, or leaves it."""
+        self.do(lambda: self._at(window).deliver(Event.ENTER_NOTIFY if inside else Event.LEAVE_NOTIFY))
+
+    def focus(self, focused: bool, window: Window | None = None) -> None:
+        self.do(lambda: self.display.focus(self._at(window), focused))
+
+    def resize(self, width: int, height: int, window: Window | None = None) -> None:
+        self.do(lambda: self._resize(self._at(window), width, height))
+
+    def minimise(self, hidden: bool, window: Window | None = None) -> None:
+        """Hide the window, or bring it back."""
+        self.do(lambda: self.display.set_visible(self._at(window), not hidden))
+
+    def expose(self, window: Window | None = None) -> None:
+        self.do(lambda: self.display.expose(self._at(window)))
+
+    def close_button(self, window: Window | None = None) -> None:
+        self.do(lambda: self.display.close_button(self._at(window)))
+
+    def wait(self, seconds: float) -> None:
+        """Let simulated time go by, in turns of at most TICK."""
+        self.do(lambda: self._pass(seconds))
+
+    def await_wake(self) -> None:
+        """Stop, in real time, until `mlx_wake` is called."""
+        self.do(self._await_wake)
+
+    def do(self, action: Callable[[], object]) -> None:
+        """Any other step of the script, for example to look at a picture half way. From any thread."""
+        self._script.append(action)
+        self._stir.set()
+
+    # --- playing it ---
+
+    def play(self) -> None:
+        """Play the script to its end, without `mlx_loop`; raises what a hook raises."""
+        self.display.turn(tick=False)
+        while self._script and not self.display.over:
+            self._script.popleft()()
+            self.display.turn(tick=False)
+        self.display.raise_failure()
+
+    def run(self) -> None:
+        deadline = time.monotonic() + self.patience
+        self.display.turn(tick=False)
+        while not self.display.over:
+            if self._script:
+                self._script.popleft()()
+                self.display.turn(tick=False)
+                deadline = time.monotonic() + self.patience
+            elif time.monotonic() > deadline:
+                raise MlxError(f"the script is over and the program did not end within {self.patience} s")
+            elif self.display.busy:
+                self._pass(TICK)
+            elif self._stir.wait(max(0.0, deadline - time.monotonic())):
+                self._stir.clear()
+                self.display.turn(tick=False)
+        self._script.clear()  # what the user does later meets nobody
+
+    def screenshot(self, window: Window | None = None) -> NDArray[np.uint8]:
+        """What the window shows now: (h, w, 4) uint8, BGRA."""
+        return self._screens[self._at(window)].copy()
+
+    @property
+    def display(self) -> Display:
+        assert self._display is not None, "mlx_init was not called"
+        return self._display
+
+    @property
+    def windows(self) -> list[Window]:
+        """The open windows, in the order of their opening."""
+        return list(self.display.windows)
+
+    def _at(self, window: Window | None) -> Window:
+        return self.display.windows[0] if window is None else window
+
+    def _pass(self, seconds: float) -> None:
+        ticks = max(1, math.ceil(seconds / TICK - 1e-9))
+        for _ in range(ticks):
+            if not self.display.over:
+                self._now += seconds / ticks
+                self.display.turn(tick=True)
+
+    def _await_wake(self) -> None:
+        deadline = time.monotonic() + self.patience
+        while not self.display.woken:
+            if not self._stir.wait(max(0.0, deadline - time.monotonic())):
+                raise MlxError(f"mlx_wake was not called within {self.patience} s")
+            self._stir.clear()
+
+    def _resize(self, window: Window, width: int, height: int) -> None:
+        self._sizes[window] = width, height
+        self.display.resize(window, width, height)
+
+    # --- the rest of the contract ---
+
+    def open(self, display: Display) -> None:
+        self._display = display
+
+    def close(self) -> None:
+        self._screens.clear()
+
+    def open_window(self, window: Window) -> None:
+        self._sizes[window] = window.width, window.height
+
+    def close_window(self, window: Window) -> None:
+        self._screens.pop(window, None)
+
+    def show(self, window: Window) -> None:
+        window.shown.take_changes()
+        self._screens[window] = stretch(window.shown.pixels, *self._sizes[window])
+
+    def wake(self) -> None:
+        self._stir.set()
+
+    def time(self) -> float:
+        return self._now
+
+    def screen_size(self) -> tuple[int, int]:
+        return self.screen
+
+    def set_title(self, window: Window) -> None:
+        """Nothing to do: there is no title bar."""
+
+    def set_fullscreen(self, window: Window, on: bool) -> None:
+        if on:
+            self._windowed.setdefault(window, self._sizes[window])
+            self._resize(window, *self.screen)
+        elif window in self._windowed:
+            self._resize(window, *self._windowed.pop(window))
+
+    def move_pointer(self, window: Window, x: int, y: int) -> None:
+        self.motion(x, y, window)
+
+    def show_pointer(self, window: Window, on: bool) -> None:
+        self.pointer_shown = on
+
+    def clipboard(self, window: Window) -> str:
+        return self.clipboard_text
+
+    def set_clipboard(self, window: Window, text: str) -> None:
+        self.clipboard_text = text

@@ -1,0 +1,94 @@
+"""Text drawn into BGRA pixels, with the font that comes inside Pillow: the same pixels on every platform.
+
+    draw_text(pixels, 10, 10, "hello", 0xFFFFFF, size=16, background=0x80000000)
+
+A line that was drawn before, at whatever place and in whatever colour, is not rendered again.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from minirt.mlx.canvas import bgra
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from PIL.ImageFont import FreeTypeFont
+
+SIZE = 16  # pixels
+
+
+def draw_text(
+    pixels: NDArray[np.uint8],
+    x: int,
+    y: int,
+    text: str,
+    color: int,
+    *,
+    size: int = SIZE,
+    background: int | None = None,
+    padding: int = 0,
+) -> tuple[int, int]:
+    """Draw `text` (0xRRGGBB, opaque) with its top left corner at x, y. Returns its width and height.
+
+    text: newlines start lines.
+    pixels: (h, w, 4) uint8, BGRA, written in place; what falls outside is not drawn.
+    background: 0xAARRGGBB, blended by its alpha below the text and `padding` pixels around it.
+    """
+    width, height = measure(text, size)
+    if background is not None:
+        opacity = np.full((height + 2 * padding, width + 2 * padding), background >> 24 & 0xFF, np.uint8)
+        _blend(pixels, x - padding, y - padding, opacity, background)
+    for number, line in enumerate(text.split("\n")):
+        _blend(pixels, x, y + number * _line_height(size), _coverage(line, size), color)
+    return width, height
+
+
+def measure(text: str, size: int = SIZE) -> tuple[int, int]:
+    """Width and height in pixels that `draw_text` would take."""
+    lines = text.split("\n")
+    return max(_coverage(line, size).shape[1] for line in lines), len(lines) * _line_height(size)
+
+
+def _blend(pixels: NDArray[np.uint8], x: int, y: int, coverage: NDArray[np.uint8], color: int) -> None:
+    height, width = pixels.shape[:2]
+    left, top = max(0, -x), max(0, -y)
+    ink = coverage[top : max(0, height - y), left : max(0, width - x)].astype(np.uint16)
+    below = pixels[y + top : y + top + ink.shape[0], x + left : x + left + ink.shape[1]]
+    paper = 255 - ink
+    for channel, value in enumerate(bgra(color)[:3]):  # one after the other: 9 times as fast as all three at once
+        mixed = below[..., channel] * paper + ink * np.uint16(value) + np.uint16(128)
+        below[..., channel] = (mixed + (mixed >> 8)) >> 8  # division by 255, rounded
+
+
+@lru_cache(maxsize=1024)
+def _coverage(line: str, size: int) -> NDArray[np.uint8]:
+    """How much of each pixel the ink of one line covers, 0 to 255; kept, since a drawn line seldom changes."""
+    from PIL import Image, ImageDraw  # noqa: PLC0415 - a program that draws no text loads no Pillow
+
+    font = _font(size)
+    width = int(np.ceil(font.getlength(line)))
+    if width == 0:
+        return np.zeros((_line_height(size), 0), np.uint8)
+    image = Image.new("L", (width, _line_height(size)))
+    ImageDraw.Draw(image).text((0, 0), line, fill=255, font=font)
+    coverage = np.asarray(image).copy()
+    coverage.flags.writeable = False
+    return coverage
+
+
+@lru_cache(maxsize=64)
+def _line_height(size: int) -> int:
+    return sum(_font(size).getmetrics())
+
+
+@lru_cache(maxsize=64)
+def _font(size: int) -> FreeTypeFont:
+    from PIL import ImageFont  # noqa: PLC0415
+
+    font = ImageFont.load_default(size)
+    assert isinstance(font, ImageFont.FreeTypeFont), "this Pillow was built without FreeType"
+    return font

@@ -1,0 +1,45 @@
+"""Writing a file as a whole or not at all."""
+
+from __future__ import annotations
+
+import errno
+import os
+import secrets
+import stat
+from contextlib import suppress
+from pathlib import Path
+
+
+def write(path: str | os.PathLike[str], data: bytes) -> None:
+    """Puts `data` in the place of the file's contents in one step; OSError, and no trace, where that fails.
+
+    The file behind a symbolic link is the one that is replaced, and an existing file keeps its permissions.
+    """
+    target = Path(os.path.realpath(path))
+    mode = existing_mode(target)
+    temporary = target.with_name(f".minirt-{secrets.token_hex(8)}.tmp")
+    try:
+        with temporary.open("xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        if mode is not None:
+            temporary.chmod(mode)
+        temporary.replace(target)
+    except BaseException:
+        with suppress(OSError):
+            temporary.unlink()
+        raise
+
+
+def existing_mode(target: Path) -> int | None:
+    """The permissions of the file that is to be replaced, None where there is none; OSError where it must not be."""
+    try:
+        mode = target.stat().st_mode
+    except FileNotFoundError:
+        return None
+    if not stat.S_ISREG(mode):
+        raise OSError(errno.EINVAL, "not a regular file")
+    if not os.access(target, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+    return stat.S_IMODE(mode)

@@ -1,0 +1,90 @@
+"""The bytes and the characters of a scene file, and why there may be none."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+from minirt.errors import Problem, SceneError
+
+SUFFIX = ".rt"
+LARGEST = 64 * 2**20  # bytes
+
+UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks
+
+
+def refused(path: str | os.PathLike[str], message: str) -> SceneError:
+    """The error that the whole file is of no use."""
+    return SceneError((Problem(os.fspath(path), 0, 0, "", message),))
+
+
+def reason(error: OSError | ValueError) -> str:
+    """Why the system does not do something with a file; a ValueError is about a path that no file can have."""
+    return str(error.strerror).lower() if isinstance(error, OSError) else "no file can have this name"
+
+
+def check_name(path: str | os.PathLike[str]) -> None:
+    """SceneError where `path` does not end in `.rt`, or in nothing else."""
+    name = Path(path).name
+    if not name.endswith(SUFFIX) or name == SUFFIX:
+        raise refused(path, f"the name of a scene file ends in '{SUFFIX}'")
+
+
+def check_size(path: str | os.PathLike[str], size: int) -> None:
+    """SceneError where a file has more bytes than a scene may have."""
+    if size > LARGEST:
+        raise refused(path, f"larger than {LARGEST // 2**20} MiB")
+
+
+def read(path: str | os.PathLike[str]) -> bytes:
+    """The bytes of a scene file.
+
+    What is not a regular file is refused before it is opened, and opening does not wait, so that a FIFO or a device
+    that takes the file's place in between cannot hang the program.
+    """
+    check_name(path)
+    try:
+        check_kind(path, Path(path).stat())
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+        with os.fdopen(descriptor, "rb") as file:
+            check_kind(path, os.fstat(descriptor))
+            data = file.read(LARGEST + 1)
+    except (OSError, ValueError) as error:
+        raise refused(path, f"cannot be read: {reason(error)}") from None
+    check_size(path, len(data))
+    return data
+
+
+def check_kind(path: str | os.PathLike[str], status: os.stat_result) -> None:
+    """SceneError where a file is something else than a regular file of at most the largest size."""
+    if stat.S_ISDIR(status.st_mode):
+        raise refused(path, "is a folder")
+    if not stat.S_ISREG(status.st_mode):
+        raise refused(path, "is not a regular file")
+    check_size(path, status.st_size)
+
+
+def decode(data: bytes, file: str) -> str:
+    """The text of a scene file; SceneError where it is not UTF-8 text."""
+    if not data:
+        raise refused(file, "is empty")
+    if data.startswith(UTF16):
+        raise bad_byte(data, 0, file, "must be UTF-8, got UTF-16")
+    nul = data.find(b"\0")
+    if nul >= 0:
+        raise bad_byte(data, nul, file, "must be text, got a NUL byte")
+    try:
+        return data.decode()
+    except UnicodeDecodeError as error:
+        raise bad_byte(data, error.start, file, f"must be UTF-8, got the byte 0x{data[error.start]:02x}") from None
+
+
+def bad_byte(data: bytes, at: int, file: str, message: str) -> SceneError:
+    """The error about the byte at index `at`."""
+    begin = data.rfind(b"\n", 0, at) + 1
+    end = data.find(b"\n", at)
+    line = data[begin : end if end >= 0 else len(data)]
+    column = len(data[begin:at].decode("utf-8-sig" if begin == 0 else "utf-8", "replace")) + 1
+    text = line.decode("utf-8-sig" if begin == 0 else "utf-8", "replace")
+    return SceneError((Problem(file, data.count(b"\n", 0, at) + 1, column, text, message),))

@@ -1,0 +1,98 @@
+"""Reads scene files: text -> Scene. All errors of a file are found in one run."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+from minirt.element import Element, pattern
+from minirt.errors import Problem, SceneError
+from minirt.scene import files
+from minirt.scene.elements import Ambient, FurtherLight, Light
+from minirt.scene.lines import Line, Word, line_from
+from minirt.scene.log import Log
+from minirt.scene.reading import assign, cut, fill, identify
+from minirt.scene.registry import ELEMENTS
+from minirt.scene.scene import Item, Scene
+from minirt.scene.spelling import nearest_element
+
+
+class Reading(NamedTuple):
+    """A scene, and what its reader should be told of the file."""
+
+    scene: Scene
+    notices: tuple[Problem, ...]
+
+
+def load(path: str | os.PathLike[str], lenient: bool = False) -> Reading:
+    """Reads a scene file; SceneError with all that is wrong in it."""
+    return parse(files.read(path), path, lenient)
+
+
+def parse(text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = False) -> Reading:
+    """Reads the text of a scene; `file` is what errors call it. SceneError with all that is wrong in it.
+
+    With `lenient`, what older scenes have (several `L`, blanks around commas and the like) gives notices.
+    """
+    name = os.fspath(file) or "scene"
+    if isinstance(text, str):
+        text = text.encode("utf-8", "surrogatepass")  # a lone surrogate is found as a byte that is not UTF-8
+    log = Log(name, lenient)
+    items = read_lines(files.decode(text, name).split("\n"), log)
+    if log.errors:
+        raise SceneError(tuple(sorted(log.errors, key=lambda error: (error.line, error.column))))
+    return Reading(Scene(items, Path(file) if file else None), tuple(log.notices))
+
+
+def read_lines(sources: list[str], log: Log) -> list[Item]:
+    """The elements of a file between its comments and blank lines."""
+    items: list[Item] = []
+    seen: dict[str, int] = {}  # identifier: the first line that has it, or seems to mean it
+    for number, source in enumerate(sources, 1):
+        line = line_from(number, source)
+        words = cut(line, log)
+        if words == []:
+            items.append(source)
+            continue
+        code = identify(words[0], line, log) if words else None
+        if words is None or code is None:
+            seen.setdefault(nearest_element((line.text.split() or [""])[0]), number)
+        else:
+            element = read_element(code, words, seen.setdefault(code, number), line, log)
+            if element:
+                items.append(element)
+        if log.full:
+            log.error(line, 1, "too many errors: the rest of the file is not read")
+            return items
+    last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
+    look_for_missing(seen, line_from(last, sources[last - 1]), log)
+    return items
+
+
+def read_element(code: str, words: list[Word], first: int, line: Line, log: Log) -> Element | None:
+    """The element of a line, None where there are errors in it; `first` is the first line with its identifier."""
+    kind = ELEMENTS[code]
+    errors = len(log.errors)
+    if kind.once and first != line.number:
+        message = f"a second {kind.title}: the first is in line {first}, and there may be one"
+        if kind is not Light:
+            log.error(line, words[0].column, message, len(code))
+        elif log.tolerate(line, words[0].column, message, f"reads it as '{FurtherLight.code}'", len(code)):
+            kind = FurtherLight
+    slots = assign(kind, words[1:], line, log)
+    values = fill(kind, slots, line, log) if slots else None
+    return kind(**values, source=line.source) if values and len(log.errors) == errors else None
+
+
+def look_for_missing(seen: dict[str, int], line: Line, log: Log) -> None:
+    """Finds out, at the last line of a file, what it does not have."""
+    if not seen:
+        raise files.refused(log.file, "holds only blanks and comments")
+    for kind in ELEMENTS.values():
+        if kind.required and kind.code not in seen:
+            message = f"no {kind.title}: a scene needs one line '{pattern(kind)}'"
+            if kind is Ambient:
+                log.tolerate(line, 1, message, "renders without")
+            else:
+                log.error(line, 1, message)

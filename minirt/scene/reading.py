@@ -1,0 +1,183 @@
+"""From a line of a scene file to an element, in four steps: cut it into words, identify the element, assign the words
+to its fields, fill the fields with values.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any, NamedTuple
+
+from minirt.element import Element, fields_of, once_per_kind, pattern
+from minirt.errors import FieldError, quoted
+from minirt.fields import Colour, Field
+from minirt.fields.numerals import named
+from minirt.scene.lines import Line, Word, joined, words
+from minirt.scene.log import Log
+from minirt.scene.registry import ELEMENTS
+from minirt.scene.spelling import GLUED, NUMERIC, hint, nearest, nearest_element
+
+SLASHES = re.compile(r"(?<![^ \t])//")
+COMMA_AND_BLANK = re.compile(r"[ \t],|,[ \t]")
+KEY = re.compile(r"([A-Za-z_]+):")
+HEX_COLOUR = re.compile(r"#(?:[0-9A-Fa-f]{6}|[0-9A-Fa-f]{3})(?![^ \t])")
+
+
+class Slot(NamedTuple):
+    """A word that is the value of a field."""
+
+    field: Field
+    word: Word
+    start: int = 0  # index of the value in the word: behind `name:`
+
+
+@once_per_kind
+def table(kind: type[Element]) -> tuple[tuple[Field, ...], dict[str, Field], int]:
+    """The fields that are known by their place and by their key, and how many of the former must be given."""
+    placed = tuple(field for field in fields_of(kind) if not field.keyed)
+    keyed = {field.name: field for field in fields_of(kind) if field.keyed}
+    return placed, keyed, sum(field.default is None for field in placed)
+
+
+def cut(line: Line, log: Log) -> list[Word] | None:
+    """The words of a line, none for a comment or a blank line; None where it cannot be cut into words."""
+    body = line.text[: line.end]
+    if "\r" in line.text or not body.replace("\t", " ").isprintable():
+        column, odd = next(
+            (column, character)
+            for column, character in enumerate(line.text, 1)
+            if character == "\r" or (column <= len(body) and character != "\t" and not character.isprintable())
+        )
+        lone = "a carriage return ends a line only together with a line feed"
+        log.error(line, column, lone if odd == "\r" else f"only spaces and tabs separate fields, got {named(odd)}")
+        return None
+    slashes = SLASHES.search(body) if "//" in body else None
+    if slashes:
+        if not log.tolerate(line, slashes.start() + 1, "a comment begins with '#', got '//'", "takes '//', too", 2):
+            return None
+        body = body[: slashes.start()]
+    apart = words(body)
+    blank = COMMA_AND_BLANK.search(body, apart[1].column - 1) if len(apart) > 1 else None
+    if blank:
+        together = joined(apart, body)
+        message = "no blanks may stand around a comma"
+        if len(together) < len(apart) and not log.tolerate(line, blank.start() + 1, message, "leaves them out", 2):
+            return None
+        return together
+    return apart
+
+
+def identify(word: Word, line: Line, log: Log) -> str | None:
+    """The identifier that `word` is. None where it is none; `log` then says what it may mean."""
+    code = word.raw
+    if code in ELEMENTS:
+        return code
+    glued = GLUED.match(code)
+    if glued and glued[1] in ELEMENTS:
+        log.error(line, word.column + len(glued[1]), f"a blank is missing after '{glued[1]}'")
+    elif NUMERIC.match(code):
+        known = ", ".join(ELEMENTS)
+        log.error(line, word.column, f"a line begins with one of {known}, got {quoted(code)}", len(code))
+    else:
+        guess = nearest_element(code)
+        log.error(line, word.column, f"unknown element {quoted(code)}{hint(guess)}", len(code))
+    return None
+
+
+def assign(kind: type[Element], given: list[Word], line: Line, log: Log) -> list[Slot] | None:
+    """Which of the words behind the identifier is the value of which field; None where the count is wrong."""
+    placed, _, needed = table(kind)
+    keys: list[Word] = []
+    if ":" in line.text:
+        first = next((index for index, word in enumerate(given) if KEY.match(word.raw)), len(given))
+        given, keys = given[:first], given[first:]
+    colour = HEX_COLOUR.match(line.text, line.end) if len(given) < len(placed) else None
+    if colour and isinstance(placed[len(given)], Colour):
+        message = f"{kind.title} {placed[len(given)].name} must be R,G,B, got {quoted(colour[0])}: '#' begins a comment"
+        log.error(line, line.end + 1, message, len(colour[0]))
+        return None
+    if len(given) < needed:
+        missing = [field.name for field in placed[len(given) : needed]]
+        verb = "is" if len(missing) == 1 else "are"
+        column = given[-1].end if given else line.text.index(kind.code) + len(kind.code) + 1
+        log.error(line, column, f"{kind.title} {' and '.join(missing)} {verb} missing: expected '{pattern(kind)}'")
+        return None
+    slots = [Slot(field, word) for field, word in zip(placed, given, strict=False)]
+    if len(given) > len(placed):
+        extra = given[len(placed)]
+        before = len(log.errors)
+        fill(kind, slots, line, log)
+        del log.errors[before + 1 :]  # behind the first all fields may be off by one
+        if len(log.errors) == before:
+            why = " (one element a line)" if extra.raw in ELEMENTS else f": expected '{pattern(kind)}'"
+            log.error(line, extra.column, f"{kind.title} has no further field {quoted(extra.raw)}{why}", len(extra.raw))
+        return None
+    return slots + attributes(kind, keys, line, log) if keys else slots
+
+
+def attributes(kind: type[Element], keys: list[Word], line: Line, log: Log) -> list[Slot]:
+    """The words `name:value` behind the other fields, those left out that are wrong."""
+    _, keyed, _ = table(kind)
+    slots: dict[str, Slot] = {}
+    for word in keys:
+        key = KEY.match(word.raw)
+        name = key[1] if key else ""
+        if key is None:
+            log.error(line, word.column, f"only attributes 'name:value' follow an attribute, got {quoted(word.raw)}")
+        elif name in slots:
+            log.error(line, word.column, f"{kind.title} has '{name}' twice", len(name))
+        elif name in keyed:
+            slots[name] = Slot(keyed[name], word, key.end())
+        else:
+            log.error(line, word.column, unknown_key(kind, name), len(name))
+    return list(slots.values())
+
+
+def unknown_key(kind: type[Element], name: str) -> str:
+    """What is wrong with an attribute that the element does not have."""
+    owners = [other.title for other in ELEMENTS.values() if name in table(other)[1]]
+    if owners:
+        return f"{kind.title} has no attribute '{name}': it belongs to {', '.join(owners)}"
+    known = [key for other in ELEMENTS.values() for key in table(other)[1]]
+    return f"unknown attribute {quoted(name)}{hint(nearest(name, known))}"
+
+
+def fill(kind: type[Element], slots: list[Slot], line: Line, log: Log) -> dict[str, Any] | None:
+    """The values of the fields by name; None where one is wrong."""
+    values = {slot.field.name: value_of(slot, kind, line, log) for slot in slots}
+    return None if None in values.values() else values
+
+
+def value_of(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
+    """The value of one field, None where it is wrong."""
+    field, word, start = slot
+    text = word.text[start:]
+    try:
+        value = field.parse(text)
+        checked = field.check(value)
+        remark = field.remark(value)
+    except FieldError as error:
+        column, length = word.place(error.part, start)
+        message = f"{kind.title} {field.name} {error}"
+        # Of four components with blanks between them the last may as well be the next field.
+        repaired = repair(field, text) if word.raw == word.text or text.count(",") == 2 else None
+        if repaired is None:
+            log.error(line, column, message, length)
+            return None
+        checked, deeds = repaired
+        return checked if log.tolerate(line, column, message, deeds, length) else None
+    if remark:
+        log.notice(line, word.column + start, f"{kind.title} {field.name} {remark}", len(word.raw) - start)
+    return checked
+
+
+def repair(field: Field, text: str) -> tuple[Any, str] | None:
+    """What a lenient reader takes for a wrong spelling, and how; None where there is nothing to take."""
+    deeds = []
+    while repaired := field.repair(text):
+        text, deed = repaired
+        deeds.append(deed)
+        try:
+            return field.check(field.parse(text)), " and ".join(deeds)
+        except FieldError:
+            continue
+    return None

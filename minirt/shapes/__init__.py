@@ -1,0 +1,12 @@
+"""The shapes. `KINDS` is the one list of them: a new shape is a file beside these and a line here."""
+
+from minirt.shapes import cylinder, plane, sphere
+from minirt.shapes.shape import Box, Kind, Shape
+
+KINDS = (
+    Kind(sphere.Sphere, sphere.PackedSphere, sphere.intersect, sphere.surface),
+    Kind(plane.Plane, plane.PackedPlane, plane.intersect, plane.surface),
+    Kind(cylinder.Cylinder, cylinder.PackedCylinder, cylinder.intersect, cylinder.surface),
+)
+
+__all__ = ["KINDS", "Box", "Kind", "Shape"]

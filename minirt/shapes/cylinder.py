@@ -1,0 +1,94 @@
+"""Cylinder: `cy x,y,z ax,ay,az diameter height R,G,B`.
+
+A solid tube with both caps about the axis `ax,ay,az`; `x,y,z` is its centre, half-way up.
+
+    cy 0,0,20  0,1,0  2  5  255,200,0    an upright column, from y = -2.5 to y = 2.5
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt as root
+from typing import NamedTuple
+
+from minirt.fields import Colour, Direction, Length, Point, Triple, declare
+from minirt.lanes import Vec, any, copysign, dot, fabs, maximum, minimum, sqrt, where
+from minirt.lanes.verbs import Mask
+from minirt.lanes.vec import Number
+from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.quadric import below_zero
+from minirt.shapes.shape import Box, Shape
+
+
+@dataclass(frozen=True)
+class Cylinder(Shape):
+    """A line `cy` of a scene file."""
+
+    code, title, plural = "cy", "cylinder", "cylinders"
+    centre: Triple = declare(Point, "centre, half-way up")
+    axis: Triple = declare(Direction, "axis")
+    diameter: float = declare(Length, "diameter")
+    height: float = declare(Length, "height")
+    colour: Triple = declare(Colour, "colour")
+
+    def pack(self) -> PackedCylinder:
+        u, v, w = basis(self.axis)
+        return PackedCylinder(Vec(*self.centre), u, v, w, self.diameter / 2, self.height / 2)
+
+    def bounds(self) -> Box:
+        # A disc of radius r reaches r * sqrt(1 - w_i^2) along axis i.
+        reach = [
+            self.height / 2 * abs(w) + self.diameter / 2 * root(max(0.0, 1 - w * w)) for w in self.axis
+        ]
+        (x, y, z), (i, j, k) = self.centre, reach
+        return (x - i, y - j, z - k), (x + i, y + j, z + k)
+
+
+class PackedCylinder(NamedTuple):
+    """What the kernel keeps of a cylinder: a frame of its own in which it stands upright at the origin."""
+
+    centre: Vec
+    u: Vec
+    v: Vec
+    w: Vec  # the axis
+    radius: float
+    half: float  # of the height
+
+
+def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the cylinder.
+
+    The ray is inside the endless tube for one interval of t and between the planes of the caps for another: it is
+    inside the cylinder where these overlap. There is no crack between cap and side, whatever the rounding.
+    """
+    f = origin - cylinder.centre
+    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
+    p = to_basis(cylinder.u, cylinder.v, cylinder.w, f + approach * direction)
+    d = to_basis(cylinder.u, cylinder.v, cylinder.w, direction)
+    hit, enter, leave = below_zero(
+        d.x * d.x + d.y * d.y, p.x * d.x + p.y * d.y, p.x * p.x + p.y * p.y - cylinder.radius * cylinder.radius
+    )
+    t = approach
+    if any(hit):
+        bottom = (-cylinder.half - p.z) / d.z
+        top = (cylinder.half - p.z) / d.z
+        enter = maximum(enter, minimum(bottom, top))
+        leave = minimum(leave, maximum(bottom, top))
+        near = approach + enter
+        t = where(near > 0.0, near, approach + leave)
+        hit = hit & (enter <= leave) & (t > 0.0)
+    return hit, t
+
+
+def surface(cylinder: PackedCylinder, point: Vec) -> tuple[Vec, Vec]:
+    """`point` moved onto the side or the cap, whichever it is nearer to, and the outward normal there."""
+    p = to_basis(cylinder.u, cylinder.v, cylinder.w, point - cylinder.centre)
+    rho = sqrt(p.x * p.x + p.y * p.y)
+    up = copysign(1.0, p.z)
+    side = rho - cylinder.radius >= fabs(p.z) - cylinder.half
+    out = where(side, Vec(p.x / rho, p.y / rho, 0.0 * rho), Vec(0.0 * rho, 0.0 * rho, up))
+    on = where(side, Vec(out.x * cylinder.radius, out.y * cylinder.radius, p.z), Vec(p.x, p.y, up * cylinder.half))
+    return (
+        cylinder.centre + from_basis(cylinder.u, cylinder.v, cylinder.w, on),
+        from_basis(cylinder.u, cylinder.v, cylinder.w, out),
+    )

@@ -1,0 +1,55 @@
+"""Plane: `pl x,y,z nx,ny,nz R,G,B`.
+
+All points p for which `p - (x,y,z)` is perpendicular to the normal `nx,ny,nz`. It has no end and two sides alike.
+
+    pl 0,-1,0  0,1,0  200,200,200    a floor one unit below the origin
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from minirt.fields import Colour, Direction, Point, Triple, declare
+from minirt.lanes import Vec, dot, fabs
+from minirt.lanes.verbs import Mask
+from minirt.lanes.vec import Number
+from minirt.shapes.shape import Shape
+
+PARALLEL = 4 * 2.0**-53  # rounding of the scalar product of two unit vectors
+
+
+@dataclass(frozen=True)
+class Plane(Shape):
+    """A line `pl` of a scene file."""
+
+    code, title, plural = "pl", "plane", "planes"
+    point: Triple = declare(Point, "a point of the plane")
+    normal: Triple = declare(Direction, "normal")
+    colour: Triple = declare(Colour, "colour")
+
+    def pack(self) -> PackedPlane:
+        return PackedPlane(Vec(*self.point), Vec(*self.normal))
+
+    def bounds(self) -> None:
+        return None
+
+
+class PackedPlane(NamedTuple):
+    """What the kernel keeps of a plane."""
+
+    point: Vec
+    normal: Vec
+
+
+def intersect(plane: PackedPlane, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the plane; a ray along it, within rounding, does not."""
+    slope = dot(plane.normal, direction)
+    t = dot(plane.normal, plane.point - origin) / slope
+    return (fabs(slope) > PARALLEL) & (t > 0.0), t
+
+
+def surface(plane: PackedPlane, point: Vec) -> tuple[Vec, Vec]:
+    """The point of the plane nearest to `point`, and the normal."""
+    height = dot(plane.normal, point - plane.point)
+    return point - height * plane.normal, plane.normal

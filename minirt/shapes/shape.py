@@ -1,0 +1,44 @@
+"""What every shape's file provides, and what its formulas mean.
+
+A file of a shape holds its manual page, its line in a scene file (a frozen dataclass), what the kernel keeps of it
+(a NamedTuple of numbers and Vecs, made by `pack`) and two formulas:
+
+    intersect(shape, origin, direction)   the distance t along the unit `direction` at which the ray enters or, from
+                                          inside, leaves the shape: the least t > 0, or infinity
+    surface(shape, point)                 a point within rounding of the surface: that point put onto the surface, and
+                                          the unit normal there, outward where there is an outside
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from minirt.element import Element
+from minirt.fields import Triple
+
+Box = tuple[Triple, Triple]  # least and greatest corner
+
+
+@dataclass(frozen=True)
+class Shape(Element):
+    """A surface that rays can hit."""
+
+    @abstractmethod
+    def pack(self) -> Any:
+        """What the kernel keeps of the shape: the NamedTuple of its `Kind`."""
+
+    @abstractmethod
+    def bounds(self) -> Box | None:
+        """The axis-aligned box around the shape, or None where it has no end."""
+
+
+class Kind(NamedTuple):
+    """One entry of the registry of shapes."""
+
+    element: type[Shape]
+    packed: type[Any]
+    intersect: Callable[..., Any]
+    surface: Callable[..., Any]

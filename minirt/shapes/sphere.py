@@ -1,0 +1,69 @@
+"""Sphere: `sp x,y,z diameter R,G,B`.
+
+All points at the distance of half the `diameter` from the centre `x,y,z`.
+
+    sp 0,0,20  12.6  10,0,255       a blue ball 20 units along z from the origin
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from minirt.fields import Colour, Length, Point, Triple, declare
+from minirt.lanes import Vec, any, dot, sqrt, where
+from minirt.lanes.verbs import Mask
+from minirt.lanes.vec import Number
+from minirt.shapes.shape import Box, Shape
+
+
+@dataclass(frozen=True)
+class Sphere(Shape):
+    """A line `sp` of a scene file."""
+
+    code, title, plural = "sp", "sphere", "spheres"
+    centre: Triple = declare(Point, "centre")
+    diameter: float = declare(Length, "diameter")
+    colour: Triple = declare(Colour, "colour")
+
+    def pack(self) -> PackedSphere:
+        return PackedSphere(Vec(*self.centre), self.diameter / 2)
+
+    def bounds(self) -> Box:
+        x, y, z = self.centre
+        r = self.diameter / 2
+        return (x - r, y - r, z - r), (x + r, y + r, z + r)
+
+
+class PackedSphere(NamedTuple):
+    """What the kernel keeps of a sphere."""
+
+    centre: Vec
+    radius: float
+
+
+def intersect(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the sphere.
+
+    From the ray's closest approach to the centre both hits are equally far: half a chord, by Pythagoras. Starting
+    there instead of at the origin keeps full precision for small spheres that are far away.
+    """
+    f = origin - sphere.centre
+    approach = -dot(f, direction)
+    g = f + approach * direction  # from the centre to the closest approach
+    chord = sphere.radius * sphere.radius - dot(g, g)  # the square of half of it
+    hit = chord >= 0.0
+    t = approach
+    if any(hit):
+        half = sqrt(chord)
+        near = approach - half
+        t = where(near > 0.0, near, approach + half)
+        hit = hit & (t > 0.0)
+    return hit, t
+
+
+def surface(sphere: PackedSphere, point: Vec) -> tuple[Vec, Vec]:
+    """The point of the sphere nearest to `point`, and the outward normal."""
+    f = point - sphere.centre
+    normal = f / sqrt(dot(f, f))
+    return sphere.centre + sphere.radius * normal, normal

@@ -1,0 +1,91 @@
+"""The back end without a screen, beyond the contract: simulated time, steps by hand, and programs that do not end."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+
+from minirt.mlx import Event, Key, Mlx, MlxError, Modifier
+from minirt.mlx.memory import TICK, Memory
+
+
+def test_time_is_simulated() -> None:
+    memory = Memory()
+    m = Mlx(memory)
+    mlx = m.mlx_init()
+    m.mlx_new_window(mlx, 10, 10, "clock")
+    times: list[float] = []
+    m.mlx_loop_hook(mlx, lambda _: times.append(m.mlx_time(mlx)), None)
+    memory.wait(0.5)
+    memory.play()
+    assert times == pytest.approx([TICK * (i + 1) for i in range(30)])
+    memory.wait(0.001)
+    memory.play()
+    assert times[30:] == pytest.approx([0.501])
+
+
+def test_play_steps_without_a_loop_and_raises() -> None:
+    memory = Memory()
+    m = Mlx(memory)
+    win = m.mlx_new_window(m.mlx_init(), 10, 10, "steps")
+    seen: list[object] = []
+    m.mlx_hook(win, Event.KEY_PRESS, 0, lambda key, _: seen.append((key, m.mlx_get_modifiers(win))), None)
+    memory.tap(Key.CONTROL_L, Key.Z)
+    memory.play()
+    assert seen == [(Key.CONTROL_L, Modifier.CTRL), (Key.Z, Modifier.CTRL)]
+    assert m.mlx_get_modifiers(win) == Modifier.NONE
+    m.mlx_hook(win, Event.KEY_PRESS, 0, lambda *_: 1 / 0, None)
+    memory.press(Key.A)
+    with pytest.raises(ZeroDivisionError):
+        memory.play()
+
+
+def test_a_program_that_does_not_end_is_an_error() -> None:
+    for hook in (None, lambda _: None):
+        m = Mlx(Memory(patience=0.1))
+        mlx = m.mlx_init()
+        m.mlx_new_window(mlx, 10, 10, "for ever")
+        m.mlx_loop_hook(mlx, hook, None)
+        with pytest.raises(MlxError, match=r"did not end within 0\.1 s"):
+            m.mlx_loop(mlx)
+
+
+def test_the_script_can_wait_for_another_thread() -> None:
+    memory = Memory()
+    m = Mlx(memory)
+    mlx = m.mlx_init()
+    m.mlx_new_window(mlx, 10, 10, "wake")
+    seen: list[str] = []
+    m.mlx_wake_hook(mlx, seen.append, "woken")
+    memory.await_wake()
+    memory.do(lambda: seen.append("after"))
+    timer = threading.Timer(0.05, m.mlx_wake, (mlx,))
+    timer.start()
+    memory.play()
+    timer.join()
+    assert seen == ["woken", "after"]
+
+
+def test_waiting_in_vain_is_an_error() -> None:
+    memory = Memory(patience=0.05)
+    m = Mlx(memory)
+    m.mlx_new_window(m.mlx_init(), 10, 10, "wake")
+    memory.await_wake()
+    with pytest.raises(MlxError, match="mlx_wake"):
+        memory.play()
+
+
+def test_a_window_of_fixed_size_keeps_it() -> None:
+    """If it is shown larger, its picture is stretched."""
+    memory = Memory()
+    m = Mlx(memory)
+    mlx = m.mlx_init()
+    win = m.mlx_new_window(mlx, 2, 1, "fixed")
+    m.mlx_resize_hook(win, lambda *_: pytest.fail("it has not changed"))
+    memory.resize(4, 2)
+    memory.play()
+    m.mlx_pixel_put(mlx, win, 1, 0, 0xFF0000FF)
+    memory.play()
+    assert m.mlx_get_window_size(win) == (0, 2, 1)
+    assert memory.screenshot()[..., 0].tolist() == [[0, 0, 255, 255]] * 2

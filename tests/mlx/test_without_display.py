@@ -1,0 +1,44 @@
+"""What works, and what is said, where there is no screen."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+from tests.windows import ROOT
+
+NO_SCREEN = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+
+
+def run(program: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", program],
+        env=NO_SCREEN | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=30,
+        check=False,
+    )
+    assert done.stderr == ""
+    return done.stdout
+
+
+def test_the_import_loads_no_window_library() -> None:
+    program = (
+        "import sys, minirt.mlx, minirt.mlx.memory; print([n for n in ('pyglet', 'PIL', 'numba') if n in sys.modules])"
+    )
+    assert run(program) == "[]\n"
+
+
+def test_no_display_is_an_error_with_advice_each_time() -> None:
+    program = """
+from minirt.mlx import Mlx, MlxError
+for _ in range(2):
+    try:
+        Mlx().mlx_init()
+    except MlxError as error:
+        print("-o FILE" in str(error), "None" in str(error))
+"""
+    if sys.platform == "linux":
+        assert run(program) == "True True\n" * 2

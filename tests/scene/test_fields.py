@@ -1,0 +1,127 @@
+"""Fields: what they take, what they refuse, what a key press makes of them."""
+
+from __future__ import annotations
+
+import math
+import random
+import sys
+from typing import Any
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from minirt.element import fields_of
+from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, Real, Whole, number, spelled, unit, whole
+from minirt.scene import Camera, Light
+from minirt.shapes.sphere import Sphere
+
+U = 2.0**-53
+RATIO = Real(doc="a ratio", low=0.0, high=1.0, step=0.05)
+SIZE = Length(doc="a size")
+PIXELS = Whole(doc="pixels", low=1, high=100)
+PLACE = Point(doc="a place")
+WAY = Direction(doc="a way")
+PAINT = Colour(doc="a paint")
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+@example(-0.0)
+@example(5e-324)
+@example(sys.float_info.max)
+def test_a_spelled_number_reads_back_to_the_last_bit(value: float) -> None:
+    assert number(spelled(value)) == value
+    assert math.copysign(1, number(spelled(value))) == (math.copysign(1, value) if value else 1)
+
+
+@given(st.text("0123456789+-.eE_ xnaif", max_size=8))
+def test_no_number_is_read_that_float_does_not_read_alike(text: str) -> None:
+    try:
+        value = number(text)
+    except FieldError:
+        return
+    assert value == float(text)
+    assert "_" not in text + " "
+
+
+@pytest.mark.parametrize("text", ["1.5", "1.", "1e2", "", "+", "\uff11", "1_0", " 1", "0x1", "9" * 401])
+def test_no_whole_number(text: str) -> None:
+    with pytest.raises(FieldError, match="must be a whole number"):
+        whole(text)
+
+
+@given(st.tuples(*[st.floats(-1e15, 1e15)] * 3).filter(any))
+@example((5e-324, 5e-324, 0.0))
+@example((1e-200, -1e-200, 1e-200))
+@example((1e200, 1e200, 1e200))
+@example((1.0, 1e-300, 0.0))
+def test_a_unit_vector_has_length_1_and_its_own_direction(vector: tuple[float, float, float]) -> None:
+    x, y, z = unit(vector)
+    assert abs(math.hypot(x, y, z) - 1) <= 4 * U
+    largest = max(map(abs, vector))
+    length = math.hypot(*(each / largest for each in vector))
+    assert (x, y, z) == pytest.approx([each / largest / length for each in vector], abs=8 * U)
+
+
+def test_normalising_again_changes_no_bit() -> None:
+    rng = random.Random(1)
+    for _ in range(200_000):
+        once = unit((rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)))
+        assert unit(once) == once
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        *((RATIO, value) for value in (-0.1, 1.1, math.nan, math.inf)),
+        *((SIZE, value) for value in (0, -1, math.nan, math.inf, 1.1e15)),
+        *((PIXELS, value) for value in (0, 101, 1.5, math.nan, math.inf)),
+        *((PLACE, value) for value in ((0, 0), (0, 0, 0, 0), 5, (0, math.nan, 0), (0, 0, 1.1e15), ("a", 0, 0))),
+        *((WAY, value) for value in ((0, 0, 0), (0, 1.1, 0), (math.nan, 0, 1), (1, 0))),
+        *((PAINT, value) for value in ((256, 0, 0), (0, -1, 0), (0, 0, 0.5), (0, math.nan, 0), (0, 0), None)),
+    ],
+)
+def test_what_a_field_does_not_take(field: Field, value: Any) -> None:
+    with pytest.raises(FieldError):
+        field.check(value)
+
+
+def test_an_element_names_itself_and_the_field_it_does_not_take() -> None:
+    with pytest.raises(ValueError, match=r"^sphere diameter must be > 0, got -3$"):
+        Sphere((0, 0, 0), -3, (0, 0, 0))
+    with pytest.raises(ValueError, match=r"^camera direction y must be in \[-1, 1\], got 2$"):
+        Camera((0, 0, 0), (0, 2, 0), 70)
+
+
+def test_an_element_has_its_values_in_their_normal_form() -> None:
+    camera = Camera((1, 2, 3), (0, 0, -0.5), 70)
+    assert camera.direction == (0.0, 0.0, -1.0)
+    assert all(type(each) is float for each in (*camera.position, *camera.direction, camera.fov))
+    assert camera.replace(fov=60).direction == camera.direction
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "steps", "after"),
+    [
+        (RATIO, 0.5, 2, 0.6),
+        (RATIO, 0.5, 1000, 1.0),
+        (RATIO, 0.5, -1000, 0.0),
+        (SIZE, 2.0, 1, 2.1),
+        (SIZE, 2.1, -1, 2.0),
+        (SIZE, 2.0, -1e9, 1e-9),
+        (SIZE, 1e-12, -1, 1e-12),
+        (SIZE, 2.0, 1e9, 1e15),
+        (PAINT, (0, 100, 255), 1, (8, 108, 255)),
+        (PAINT, (0, 100, 255), -1, (0, 92, 247)),
+        (PLACE, (1.0, 2.0, 3.0), 5, (1.0, 2.0, 3.0)),
+    ],
+)
+def test_a_key_press(field: Field, value: Any, steps: float, after: Any) -> None:
+    assert field.nudge(value, steps) == pytest.approx(after)
+    assert field.check(field.nudge(value, steps)) == field.nudge(value, steps)
+
+
+def test_the_table_of_an_element_has_names_and_defaults() -> None:
+    assert [field.name for field in fields_of(Camera)] == ["position", "direction", "fov", "roll"]
+    assert [field.keyed for field in fields_of(Camera)] == [False, False, False, True]
+    assert [field.default for field in fields_of(Light)] == [None, None, (255, 255, 255)]

@@ -1,0 +1,192 @@
+"""The file itself: what is refused before a line of it is read, and that nothing hangs."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from minirt.errors import Problem, SceneError
+from minirt.scene import load, parse
+from tests.scene.examples import AMBIENT, CAMERA, SPHERE, WHOLE, problems, scene_with
+
+
+def refusal(path: Path | str) -> Problem:
+    """The one problem of a file that is not read, or not beyond the first that is wrong."""
+    with pytest.raises(SceneError) as caught:
+        load(path)
+    (problem,) = caught.value.problems
+    assert problem.file == str(path)
+    return problem
+
+
+def test_a_scene_knows_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "a scene.rt"
+    path.write_text(WHOLE)
+    assert load(path).scene == parse(WHOLE, path).scene
+    assert load(str(path)).scene.file == path
+    assert parse(WHOLE).scene.file is None
+
+
+@pytest.mark.parametrize(
+    "name", [".rt", "scene", "scene.RT", "scene.rt.txt", "scene.rtx", "scenert", "rt", "scene.rt "]
+)
+def test_the_name_must_end_in_rt(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name
+    path.write_text(WHOLE)
+    assert str(refusal(path)) == f"{path}: the name of a scene file ends in '.rt'"
+
+
+@pytest.mark.parametrize("name", ["a.b.rt", "-.rt", "..rt", "größe 球.rt", "x" * 200 + ".rt"])
+def test_any_other_name_will_do(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text(WHOLE)
+    assert load(tmp_path / name).scene.spheres
+
+
+def test_a_path_that_leads_nowhere(tmp_path: Path) -> None:
+    assert "cannot be read: no such file or directory" in refusal(tmp_path / "missing.rt").message
+    (tmp_path / "loop.rt").symlink_to("loop.rt")
+    (tmp_path / "dangling.rt").symlink_to("missing.rt")
+    assert "symbolic links" in refusal(tmp_path / "loop.rt").message
+    assert "no such file" in refusal(tmp_path / "dangling.rt").message
+    assert "too long" in refusal(tmp_path / ("x" * 300 + ".rt")).message
+    assert "no file can have this name" in refusal("a\0b.rt").message
+    assert "no file can have this name" in refusal("\ud800.rt").message
+    assert "ends in '.rt'" in refusal("").message
+
+
+def test_a_folder(tmp_path: Path) -> None:
+    (tmp_path / "folder.rt").mkdir()
+    assert refusal(tmp_path / "folder.rt").message == "is a folder"
+
+
+def test_a_fifo_or_a_device_does_not_hang(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "fifo.rt")
+    (tmp_path / "device.rt").symlink_to("/dev/zero")
+    begin = time.monotonic()
+    assert refusal(tmp_path / "fifo.rt").message == "is not a regular file"
+    assert refusal(tmp_path / "device.rt").message == "is not a regular file"
+    assert time.monotonic() - begin < 5
+
+
+def test_a_fifo_that_takes_the_place_of_the_file_does_not_hang(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    regular, fifo = tmp_path / "regular.rt", tmp_path / "fifo.rt"
+    regular.write_text(WHOLE)
+    os.mkfifo(fifo)
+    status = regular.stat()
+    monkeypatch.setattr(Path, "stat", lambda *_, **__: status)
+    assert refusal(fifo).message == "is not a regular file"
+
+
+def test_a_file_that_must_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "secret.rt"
+    path.write_text(WHOLE)
+
+    def denied(*_: object) -> int:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(os, "open", denied)  # the owner of all files may read also what has no permissions
+    assert refusal(path).message == "cannot be read: permission denied"
+
+
+def test_a_file_larger_than_64_mib_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "large.rt"
+    with path.open("wb") as file:
+        file.truncate(64 * 2**20 + 1)
+    opened: list[object] = []
+    monkeypatch.setattr(os, "open", lambda *arguments: opened.append(arguments))
+    assert refusal(path).message == "larger than 64 MiB"
+    assert opened == []
+
+
+def test_a_file_of_64_mib_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "large.rt"
+    with path.open("wb") as file:
+        file.write(WHOLE.encode())
+        file.truncate(64 * 2**20)
+    problem = refusal(path)
+    assert (problem.line, problem.column) == (WHOLE.count("\n") + 1, 1)
+    assert problem.message == "must be text, got a NUL byte"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "is empty"),
+        ("\n", "holds only blanks and comments"),
+        (" \t\r\n\n", "holds only blanks and comments"),
+        ("# a comment\n# another", "holds only blanks and comments"),
+        ("\ufeff", "holds only blanks and comments"),
+    ],
+)
+def test_a_file_without_a_scene(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "empty.rt"
+    path.write_text(text, newline="")
+    problem = refusal(path)
+    assert problem.message == message
+    assert str(problem) == f"{path}: {message}"
+
+
+@pytest.mark.parametrize(
+    ("data", "line", "column", "message"),
+    [
+        (b"A 0.2 1,2,3\n\0", 2, 1, "must be text, got a NUL byte"),
+        (b"# a\0comment", 1, 4, "must be text, got a NUL byte"),
+        (b"A 0.2 1,2,3\n# caf\xe9\n", 2, 6, "must be UTF-8, got the byte 0xe9"),
+        ("# é\n# éé".encode() + b"\xff\n", 2, 5, "must be UTF-8, got the byte 0xff"),
+        (b"\xef\xbb\xbf# \x80", 1, 3, "must be UTF-8, got the byte 0x80"),
+        (b"A \xc0\xb0.2 1,2,3", 1, 3, "must be UTF-8, got the byte 0xc0"),  # an overlong 0
+        (b"# \xed\xa0\x80", 1, 3, "must be UTF-8, got the byte 0xed"),  # a surrogate
+        (b"# \xe2\x82", 1, 3, "must be UTF-8, got the byte 0xe2"),  # cut off
+        (WHOLE.encode("utf-16"), 1, 1, "must be UTF-8, got UTF-16"),
+        (WHOLE.encode("utf-16-le"), 1, 2, "must be text, got a NUL byte"),
+        (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 3, 1, "must be text, got a NUL byte"),
+        (b"\x7fELF\x02\x01\x01\0\0", 1, 8, "must be text, got a NUL byte"),
+        (b"\xff\xd8\xff\xe0JFIF", 1, 1, "must be UTF-8, got the byte 0xff"),
+    ],
+)
+def test_what_is_not_text(data: bytes, line: int, column: int, message: str) -> None:
+    (problem,) = problems(data)
+    assert (problem.line, problem.column, problem.message) == (line, column, message)
+
+
+def test_a_lone_surrogate_is_not_text() -> None:
+    (problem,) = problems("# é\ud800\n")
+    assert (problem.line, problem.column) == (1, 4)
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "message"),
+    [
+        ("sp 0,0,20 " + "9" * 2**20 + " 1,2,3", 11, "sphere diameter must be a number, got 1048576 characters: '999"),
+        ("sp 0,0," + "0" * 2**20 + ".5 5 1,2,3", 8, "sphere centre z must be a number, got 1048578 characters: '000"),
+        ("sp 0,0,20 5 1,2," + "3" * 2**20, 17, "sphere colour B must be a whole number, got 1048576 characters"),
+        ("sp 0,0,20 5 1" + "," * 2**20, 17, "sphere colour must be R,G,B"),
+        ("sp 0,0,20 5 1,2,3" + " 1" * 2**19, 19, "sphere has no further field '1'"),
+        ("s" * 2**20 + " 0,0,20", 1, "unknown element 'sss"),
+        ("sp 0,0,20 " + "x" * 2**20 + ":5 5", 10, "sphere diameter and colour are missing"),
+        ("sp 0,0,20 5 1,2,3 " + "x" * 2**20 + ":5", 19, "unknown attribute 'xxx"),
+        ("sp 0,0,20 5" + " " * 2**20 + "1,2,x", 2**20 + 16, "sphere colour B must be a whole number, got 'x'"),
+        ("5" * 2**20, 1, "a line begins with one of"),
+        ("/" * 2**20, 1, "a comment begins with '#'"),
+        ("sp 0,0,20 5 1,2,3" + "\v" * 2**20, 18, "got U+000B"),
+    ],
+    ids=range(12),
+)
+def test_a_line_of_a_megabyte_is_refused_at_once_and_in_few_words(line: str, column: int, message: str) -> None:
+    begin = time.monotonic()
+    (problem,) = problems(scene_with(line))
+    assert time.monotonic() - begin < 5
+    assert (problem.line, problem.column) == (3, column)
+    assert message in problem.message
+    assert len(str(problem)) < 600
+
+
+def test_messages_cannot_act_on_a_terminal() -> None:
+    text = f"{AMBIENT}\n{CAMERA}\nsp 0,0,20 \x1b[2J\x07 5\n\x1b]0;title\x07 {SPHERE}\n"
+    with pytest.raises(SceneError) as caught:
+        parse(text, "evil\x1b[31m\n.rt")
+    assert all(line.isprintable() for line in str(caught.value).split("\n"))
+    assert str(caught.value).startswith("evil [31m .rt:3:11: ")

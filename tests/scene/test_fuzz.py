@@ -1,0 +1,113 @@
+"""Damaged files give a scene or a SceneError, soon, and nothing else."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from minirt.errors import SceneError
+from minirt.scene import dump, parse
+from tests.scene.examples import CYLINDER, SUBJECT, WHOLE
+from tests.scene.strategies import texts
+
+ODD = [
+    "\r",
+    "\n",
+    "\v",
+    "\f",
+    "\x85",
+    "\u2028",
+    "\xa0",
+    "\ufeff",
+    "\ud800",
+    "\0",
+    "\u2212",
+    "٣",
+    ",",
+    " ",
+    "#",
+    "//",
+    ":",
+    ".",
+]
+ODD += [
+    "nan",
+    "1e999",
+    "1_0",
+    "0x1",
+    "--",
+    "sp",
+    "L ",
+    "roll:",
+    "roll:1",
+    "\t,",
+    "e",
+    "9" * 500,
+    "255,255,255",
+    "C 0,0,0 0,0,1 7",
+]
+SOON = timedelta(seconds=5)  # a hundred times what the slowest takes
+
+
+@st.composite
+def damaged(draw: st.DrawFn) -> str:
+    """A scene file with characters deleted, doubled, swapped or put in."""
+    text = draw(st.one_of(st.sampled_from([WHOLE, SUBJECT]), texts()))
+    for _ in range(draw(st.integers(1, 4))):
+        at = draw(st.integers(0, len(text)))
+        end = draw(st.integers(at, min(len(text), at + 5)))
+        insertion = draw(st.one_of(st.sampled_from(ODD), st.text(max_size=3), st.just(text[at:end] * 2)))
+        text = text[:at] + insertion + text[end:]
+    return text
+
+
+def survives(text: str | bytes) -> None:
+    """A text is read as one scene or refused with places in it, also when lenient, and lenient takes no less."""
+    accepted = []
+    for lenient in (False, True):
+        try:
+            scene = parse(text, "test.rt", lenient).scene
+        except SceneError as error:
+            refused = error
+        else:
+            accepted.append(lenient)
+            assert dump(scene) == (text if isinstance(text, str) else text.decode())
+            continue
+        assert str(refused).startswith("test.rt:")
+        assert all(problem.column <= len(problem.text) + 1 for problem in refused.problems)
+    assert accepted in ([], [True], [False, True])
+
+
+@given(damaged())
+@settings(max_examples=400, deadline=SOON)
+def test_a_damaged_file(text: str) -> None:
+    survives(text)
+
+
+@given(st.text())
+@settings(max_examples=200, deadline=SOON)
+@example("sp 0,0,0 1 1,1,1,\n,")
+@example("\r")
+@example(" ,")
+def test_any_text(text: str) -> None:
+    survives(text)
+
+
+@given(st.binary())
+@settings(max_examples=200, deadline=SOON)
+def test_any_bytes(data: bytes) -> None:
+    survives(data)
+
+
+def test_every_character_of_a_line_left_out_doubled_or_replaced() -> None:
+    frame = "A 0.2 1,2,3\nC 0,0,0 0,0,1 70\n"
+    for at in range(len(CYLINDER)):
+        for insertion in ["", CYLINDER[at] * 2, *ODD]:
+            survives(frame + CYLINDER[:at] + insertion + CYLINDER[at + 1 :])
+
+
+def test_every_beginning_of_a_file() -> None:
+    for end in range(len(WHOLE)):
+        survives(WHOLE[:end])

@@ -1,0 +1,118 @@
+"""What only a lenient reader takes: an error without the flag, and a notice at the same place with it."""
+
+from __future__ import annotations
+
+import pytest
+
+from minirt.scene import FurtherLight, Light, dump, parse
+from tests.scene.examples import AMBIENT, CAMERA, LIGHT, PLANE, SPHERE, SUBJECT, problems, read, scene_with
+
+CASES = [
+    ("sp 0, 0, 20 12.6 10,0,255", SPHERE, 5, "no blanks may stand around a comma (--lenient leaves them out)"),
+    ("sp 0 ,0\t,\t20 12.6 10 , 0 , 255", SPHERE, 5, "(--lenient leaves them out)"),
+    ("sp 0,0,20 12.6 10.4,-0.3,254.5", SPHERE, 16, "a whole number, got '10.4' (--lenient rounds it to 10,0,255)"),
+    ("sp 0,0,20 12.6 10,0,254.5e0", SPHERE, 21, "(--lenient rounds it to 10,0,255)"),
+    ("sp 0,0,20,1 12.6 10,0,255", SPHERE, 11, "got '0,0,20,1' (--lenient drops the fourth component)"),
+    ("pl 0,-1,0 0,1,0,0 200,200,200", PLANE, 17, "(--lenient drops the fourth component)"),
+    ("pl 0,-1,0 0,0,0 200,200,200", PLANE, 11, "it points nowhere (--lenient takes 0,1,0)"),
+    ("pl 0,-1,0 0,0,0,0 200,200,200", PLANE, 17, "(--lenient drops the fourth component and takes 0,1,0)"),
+    ("cy 0,0,0 0,0,0 1 1 1,1,1", "cy 0,0,0 0,1,0 1 1 1,1,1", 10, "(--lenient takes 0,1,0)"),
+    ("sp 0,0,20 12.6 10,0,255 // red", SPHERE, 25, "a comment begins with '#', got '//' (--lenient takes '//', too)"),
+    ("sp 0,0,20 12.6 10,0,255 //# red", SPHERE, 25, "(--lenient takes '//', too)"),
+]
+
+
+@pytest.mark.parametrize(("line", "meant", "column", "message"), CASES)
+def test_a_line_is_an_error_or_a_notice(line: str, meant: str, column: int, message: str) -> None:
+    (error,) = problems(scene_with(line))
+    scene, (notice,) = parse(scene_with(line), "test.rt", lenient=True)
+    assert notice == error
+    assert (notice.line, notice.column) == (3, column)
+    assert message in notice.message
+    assert scene.elements == read(meant).elements
+    assert dump(scene) == scene_with(line)
+
+
+def test_one_line_may_need_it_twice() -> None:
+    line = "pl 0, -1, 0 0,0,0 199.6,200,200 // floor"
+    scene, notices = parse(scene_with(line), lenient=True)
+    assert scene.elements == read(PLANE).elements
+    assert len(notices) == 4
+
+
+def test_the_camera_looks_along_z() -> None:
+    text = f"{AMBIENT}\nC 0,0,0 0,0,0 70\n"
+    assert "(--lenient takes 0,0,1)" in problems(text)[0].message
+    assert parse(text, lenient=True).scene.camera.direction == (0, 0, 1)
+
+
+def test_later_lights_become_further_lights() -> None:
+    lines = (LIGHT, "L 0,0,0 0.5", "l 1,1,1 0.1 1,2,3", "  L 0,0,1 0.5 1,2,3")
+    first, second = problems(scene_with(*lines))
+    assert (first.line, first.column, second.line, second.column) == (4, 1, 6, 3)
+    assert first.message == "a second light: the first is in line 3, and there may be one (--lenient reads it as 'l')"
+    scene, notices = parse(scene_with(*lines), "test.rt", lenient=True)
+    assert notices == (first, second)
+    assert [type(light) for light in scene.lights] == [Light, FurtherLight, FurtherLight, FurtherLight]
+    assert dump(scene) == scene_with(*lines)
+    moved = scene.replace(scene.lights[1], brightness=0.25)
+    assert dump(moved) == scene_with(*lines).replace("L 0,0,0 0.5", "l 0,0,0 0.25")
+
+
+def test_a_scene_without_ambient_light() -> None:
+    text = f"{CAMERA}\n{SPHERE}\n"
+    (error,) = problems(text)
+    scene, (notice,) = parse(text, "test.rt", lenient=True)
+    assert notice == error
+    assert (notice.line, notice.message.endswith("(--lenient renders without)")) == (2, True)
+    assert scene.ambient is None
+
+
+def test_a_comment_line_of_two_slashes_is_kept() -> None:
+    text = scene_with("// shapes", "  //", SPHERE)
+    assert len(problems(text)) == 2
+    scene, notices = parse(text, lenient=True)
+    assert len(notices) == 2
+    assert scene.items[2:4] == ("// shapes", "  //")
+    assert dump(scene) == text
+
+
+def test_the_example_of_the_subject() -> None:
+    assert [(each.line, each.column) for each in problems(SUBJECT)] == [(2, 12), (4, 16)]
+    scene, notices = parse(SUBJECT, lenient=True)
+    assert len(notices) == 2
+    assert scene.camera.direction == (0, 0, 1)
+    assert scene.planes[0].normal == (0, 1, 0)
+    assert dump(scene) == SUBJECT
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "message"),
+    [
+        ("sp 0,0,20, 5 7 255,0,0", 12, "sphere centre must be x,y,z"),  # not a fourth component
+        ("sp 0,0,20, 5 255,0,0", 21, "sphere colour is missing"),
+        ("L 0,0,20, 0.5", 14, "light brightness is missing"),
+        ("sp 0,0,20 5, 255,0,0", 21, "sphere colour is missing"),
+        ("sp 0,0,20 5 255,0,0 ,", 22, "sphere colour must be R,G,B"),
+        ("sp 0, , 20 5 255,0,0", 7, "sphere centre y must be a number, got ''"),
+        ("sp 0,0,20,1,1 5 255,0,0", 11, "sphere centre must be x,y,z"),
+        ("sp 0,0,20,a 5 255,0,0", 11, "sphere centre must be x,y,z"),
+        ("sp 0,0,20 5 255,0,0,0", 21, "sphere colour must be R,G,B"),
+        ("sp 0,0,20 5 255.5,0,0", 13, "sphere colour R must be a whole number, got '255.5'"),
+        ("sp 0,0,20 5 -0.6,0,0", 13, "sphere colour R must be a whole number"),
+        ("sp 0,0,20 5 1e300,0,0", 13, "sphere colour R must be a whole number"),
+        ("sp 0,0,20 5 256,0,0.5", 19, "sphere colour B must be a whole number"),
+        ("pl 0,0,0 0,2,0,0 1,2,3", 16, "plane normal must be x,y,z"),
+        ("sp 0,0,20 5//2 255,0,0", 11, "sphere diameter must be a number, got '5//2'"),
+        ("R 640, 480", 11, "resolution height is missing"),
+    ],
+)
+def test_lenient_does_not_guess(line: str, column: int, message: str) -> None:
+    (error,) = problems(scene_with(line), lenient=True)
+    assert (error.line, error.column) == (3, column)
+    assert message in error.message
+
+
+def test_only_one_camera_and_one_ambient_light_also_when_lenient() -> None:
+    assert [each.line for each in problems(scene_with(CAMERA, AMBIENT), lenient=True)] == [3, 4]
+    assert "no camera" in problems(f"{AMBIENT}\n{SPHERE}\n", lenient=True)[0].message

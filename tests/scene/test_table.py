@@ -1,0 +1,33 @@
+"""The documentation of the format is made from the fields."""
+
+from __future__ import annotations
+
+from minirt.element import fields_of, pattern
+from minirt.scene import format_table
+from minirt.scene.registry import ELEMENTS
+from tests.scene.examples import CAMERA, CYLINDER
+
+
+def test_the_pattern_of_a_line_is_that_of_the_format() -> None:
+    assert pattern(ELEMENTS["C"]) == "C x,y,z dx,dy,dz fov [roll:degree]"
+    assert pattern(ELEMENTS["cy"]) == "cy x,y,z ax,ay,az diameter height R,G,B"
+    assert pattern(ELEMENTS["pl"]) == "pl x,y,z nx,ny,nz R,G,B"
+    assert pattern(ELEMENTS["L"]) == "L x,y,z brightness [R,G,B]"
+    assert len(pattern(ELEMENTS["C"]).split()) == len(CAMERA.split()) + 1
+    assert len(pattern(ELEMENTS["cy"]).split()) == len(CYLINDER.split())
+
+
+def test_the_table_has_a_row_for_every_element_and_every_field_in_it() -> None:
+    head, rule, *rows = format_table().splitlines()
+    assert (head, rule) == ("| line | element | fields |", "|---|---|---|")
+    for kind, row in zip(ELEMENTS.values(), rows, strict=True):
+        assert row.startswith(f"| `{pattern(kind)}` | {kind.title}")
+        assert row.count("`") == 2 + 2 * len(fields_of(kind))
+        assert row.replace("\\|", "").count("|") == 4
+
+
+def test_the_row_of_the_camera() -> None:
+    row = next(row for row in format_table().splitlines() if row.startswith("| `C "))
+    assert "| camera (exactly one) |" in row
+    assert "`fov` horizontal field of view, in [0, 180], unit: degree<br>" in row
+    assert "`roll:degree` turn about the direction, clockwise, in [-360, 360], unit: degree, 0 when left out |" in row

@@ -1,0 +1,131 @@
+"""What is written: the file as it was, but for what changed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from minirt.element import Element
+from minirt.fields import unit
+from minirt.scene import Camera, FurtherLight, Light, Scene, describe, dump, parse
+from minirt.shapes.sphere import Sphere
+from tests.scene.examples import AMBIENT, CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, WHOLE, read, scene_with
+
+BALL = Sphere((0.0, 0.0, 20.0), 12.6, (10, 0, 255))
+
+
+@pytest.mark.parametrize(
+    ("before", "changes", "after"),
+    [
+        (SPHERE, {"diameter": 3.0}, "sp 0,0,20 3 10,0,255"),
+        (SPHERE, {"centre": (1.5, -2.0, 1e-9)}, "sp 1.5,-2,1e-09 12.6 10,0,255"),
+        (SPHERE, {"colour": (0, 255, 7)}, "sp 0,0,20 12.6 0,255,7"),
+        (SPHERE, {"diameter": 0.1 + 0.2}, "sp 0,0,20 0.30000000000000004 10,0,255"),
+        ("\tsp\t0,0,2e1\t12.60\t10,0,255", {"diameter": 1.0}, "\tsp\t0,0,2e1\t1\t10,0,255"),
+        ("  sp 0,0,20 12.6 10,0,255  # red \r", {"diameter": 1.0}, "  sp 0,0,20 1 10,0,255  # red \r"),
+        ("sp 0,0,20   12.6   10,0,255 # a", {"diameter": 1.0}, "sp 0,0,20   1      10,0,255 # a"),
+        ("sp 0,0,20   12.6   10,0,255 # a", {"centre": (0.25, 0.5, 20.0)}, "sp 0.25,0.5,20 12.6   10,0,255 # a"),
+        ("sp 0,0,20 12.6 10,0,255   # a", {"colour": (0, 0, 255)}, "sp 0,0,20 12.6 0,0,255    # a"),
+        ("sp 0,0,20 12.6 10,0,255   ", {"colour": (0, 0, 255)}, "sp 0,0,20 12.6 0,0,255   "),
+        ("sp 0,0,20 12.6 10,0,255#glued", {"colour": (0, 0, 0)}, "sp 0,0,20 12.6 0,0,0#glued"),
+        ("sp 0,0,20 0020.0 1,2,3", {"centre": (20.0, 0.0, 0.0)}, "sp 20,0,0 0020.0 1,2,3"),
+        ("sp 0,0,20 20 20,20,20", {"diameter": 5.0, "colour": (1, 1, 1)}, "sp 0,0,20 5 1,1,1"),
+        ("pl 0,0,0 0,0.5,0 1,2,3", {"point": (1.0, 0.0, 0.0)}, "pl 1,0,0 0,0.5,0 1,2,3"),
+        ("l 0,0,0 0.5", {"brightness": 0.75}, "l 0,0,0 0.75"),
+        ("l 0,0,0 0.5 # warm", {"colour": (255, 200, 0)}, "l 0,0,0 0.5 255,200,0 # warm"),
+        ("l 0,0,0 0.5 255,255,255", {"brightness": 1.0}, "l 0,0,0 1 255,255,255"),
+        ("l 0,0,0 0.5 1,2,3", {"colour": (255, 255, 255)}, "l 0,0,0 0.5 255,255,255"),
+        ("R 640 480", {"height": 360}, "R 640 360"),
+    ],
+)
+def test_only_the_changed_field_of_a_line_changes(before: str, changes: dict[str, Any], after: str) -> None:
+    scene = read("# one", before, "# two")
+    changed = scene.replace(scene.elements[2], **changes)
+    assert dump(changed) == scene_with("# one", after, "# two")
+    assert parse(dump(changed)).scene.items == changed.items
+
+
+@pytest.mark.parametrize(
+    ("before", "changes", "after"),
+    [
+        ("C 0,0,0 0,0,1 70", {"roll": 5.0}, "C 0,0,0 0,0,1 70 roll:5"),
+        ("C 0,0,0 0,0,1 70 # eye", {"roll": 5.0, "fov": 60.0}, "C 0,0,0 0,0,1 60 roll:5 # eye"),
+        ("C 0,0,0 0,0,1 70 roll:5.50  # eye", {"roll": -1.0}, "C 0,0,0 0,0,1 70 roll:-1    # eye"),
+        ("C 0,0,0 0,0,1 70 roll:5", {"roll": 0.0}, "C 0,0,0 0,0,1 70 roll:0"),
+        ("C 0,0,0 0,0,1 70 roll:0", {"fov": 7.5}, "C 0,0,0 0,0,1 7.5 roll:0"),
+        ("C 0,0,0 0,0,1 70", {"direction": (0.0, 1.0, 0.0)}, "C 0,0,0 0,1,0 70"),
+    ],
+)
+def test_a_keyed_field_is_changed_or_added(before: str, changes: dict[str, Any], after: str) -> None:
+    scene = parse(f"{AMBIENT}\n{before}\n").scene
+    changed = scene.replace(scene.camera, **changes)
+    assert dump(changed) == f"{AMBIENT}\n{after}\n"
+    assert parse(dump(changed)).scene.items == changed.items
+
+
+def test_changing_back_restores_the_file() -> None:
+    text = WHOLE.replace("12.6", "012.60")
+    scene = parse(text).scene
+    there = scene.replace(scene.spheres[0], diameter=1.0)
+    assert dump(there) != text
+    assert dump(there.replace(there.spheres[0], diameter=12.6)) == text
+
+
+def test_a_byte_order_mark_stays_where_it_is() -> None:
+    text = f"\ufeff  {AMBIENT} # a\r\n{CAMERA}\r\n"
+    scene = parse(text).scene
+    assert scene.ambient is not None
+    assert dump(scene) == text
+    assert dump(scene.replace(scene.ambient, brightness=0.5)) == text.replace("0.2", "0.5")
+
+
+def test_a_copy_of_the_first_line_has_no_byte_order_mark() -> None:
+    text = f"\ufeff{SPHERE}\n{AMBIENT}\n{CAMERA}"
+    scene = parse(text).scene
+    copied = Scene((*scene.items, scene.spheres[0]))
+    assert dump(copied) == f"{text}\n{SPHERE}"
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        *("", "# a comment", "nonsense", PLANE, CYLINDER, "sp 0,0,20 12.6", "sp 0,0,20 nan 10,0,255", "l 0,0,0 1"),
+        *(
+            SPHERE + "\n" + SPHERE,
+            SPHERE + " # \0",
+            SPHERE + "\rx",
+            SPHERE + " 7",
+            SPHERE + " roll:1",
+            "\ufeff\ufeff" + SPHERE,
+        ),
+    ],
+)
+def test_an_element_with_another_or_no_source_is_written_afresh(source: str) -> None:
+    scene = Scene([*read().items[:2], Sphere(BALL.centre, BALL.diameter, BALL.colour, source=source)])
+    assert dump(scene) == f"{AMBIENT}\n{CAMERA}\n{SPHERE}"
+
+
+@pytest.mark.parametrize(
+    ("element", "line"),
+    [
+        (BALL, SPHERE),
+        (Camera((0, 0, -5), (0, 0, 1), 70), CAMERA),
+        (Camera((0, 0, -5), (0, 0, 1), 70, roll=1 / 3), CAMERA + " roll:0.3333333333333333"),
+        (Light((-40, 0, 30), 0.7), LIGHT),
+        (FurtherLight((0, 0, 0), 1, (1, 2, 3)), "l 0,0,0 1 1,2,3"),
+        (Sphere((1e15, -1e-300, 1e22 / 1e22), 5e-324, (0, 0, 0)), "sp 1000000000000000,-1e-300,1 5e-324 0,0,0"),
+        (Sphere((-0.0, 0, 0), 1, (0, 0, 0), source="  sp 0,0,0  1  0,0,0 # kept out"), "sp 0,0,0 1 0,0,0"),
+    ],
+)
+def test_an_element_is_described_by_its_line(element: Element, line: str) -> None:
+    assert describe(element) == line
+
+
+def test_a_direction_is_written_so_that_it_stays_the_same() -> None:
+    normal = unit((0.1, 0.2, 0.3))
+    scene = read(PLANE)
+    changed = scene.replace(scene.planes[0], normal=normal)
+    again = parse(dump(changed)).scene
+    assert again.planes[0].normal == changed.planes[0].normal == normal
+    assert dump(again) == dump(changed)
