@@ -1,0 +1,87 @@
+"""miniRT: ray-traced pictures of `.rt` scenes, in a window, in a file or in memory.
+
+import minirt
+scene = minirt.load("scenes/demo.rt")
+minirt.render(scene, 640, 480, samples=4).save("demo.png")
+"""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from minirt.errors import MiniRTError, MlxError, RenderError, ReplayError, SceneError
+from minirt.image import Image
+from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+from minirt.scene import load as read
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+
+if TYPE_CHECKING:
+    from minirt.rendering import Renderer
+
+__version__ = "0.1.0"
+DEFAULT_SIZE = (1280, 720)  # pixels; of a scene that does not name a size
+
+__all__ = [
+    "Ambient",
+    "Camera",
+    "Cylinder",
+    "FurtherLight",
+    "Image",
+    "Light",
+    "MiniRTError",
+    "MlxError",
+    "Plane",
+    "RenderError",
+    "ReplayError",
+    "Scene",
+    "SceneError",
+    "Sphere",
+    "load",
+    "render",
+    "size_of",
+]
+
+
+def load(path: str | os.PathLike[str], lenient: bool = False) -> Scene:
+    """Read a scene file. SceneError, with all of its problems, where the file is not a scene.
+
+    `lenient` reads what older files have: several `L`, blanks around commas, colours with decimals and the like.
+    """
+    return read(path, lenient).scene
+
+
+def size_of(scene: Scene) -> tuple[int, int]:
+    """Width and height that a scene asks for, in pixels, or the default."""
+    return (scene.resolution.width, scene.resolution.height) if scene.resolution else DEFAULT_SIZE
+
+
+def render(
+    scene: Scene, width: int | None = None, height: int | None = None, *, samples: int = 1, threads: int | None = None
+) -> Image:
+    """Make the picture of a scene, `width` by `height` pixels with the mean of `samples` rays in each.
+
+    Without a size the scene's own is used. Safe to call from several threads; the first call for a combination of
+    shapes compiles for some seconds, later ones and later programs do not. RenderError for a size or a number of
+    samples below 1.
+    """
+    width, height = width or size_of(scene)[0], height or size_of(scene)[1]
+    if width < 1 or height < 1:
+        raise RenderError(f"a picture has at least 1x1 pixels, got {width}x{height}")
+    pixels = np.empty((height, width, 4), np.uint8)
+    linear = np.zeros((height, width, 3))
+    renderer(threads).render(scene, pixels, samples, linear)
+    return Image.from_bgra(pixels, linear)
+
+
+@cache
+def renderer(threads: int | None) -> Renderer:
+    """The renderer with that many threads, kept for the next picture."""
+    from minirt.rendering import Renderer
+
+    return Renderer(threads)

@@ -10,7 +10,7 @@ from minirt.errors import FieldError, quoted
 
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 WHOLE = re.compile(r"[+-]?[0-9]+")
-LONGEST = 400  # characters; more than any float64 needs to be exact in fixed notation
+LONGEST = 300  # characters; many more than `repr` writes, and few enough for a whole number to fit into a float64
 
 
 def number(text: str) -> float:

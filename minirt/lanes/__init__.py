@@ -17,7 +17,7 @@ This package is the interpreted half and imports no compiler; `minirt.lanes.comp
 from minirt.lanes.vec import Vec, cross, dot
 from minirt.lanes.verbs import (
     WIDTH,
-    any,  # noqa: A004  (a verb of the formulas: true if any ray's truth is)
+    any,
     copysign,
     fabs,
     first,

@@ -84,7 +84,7 @@ class Mlx(Extensions):
         win.canvas.point(x, y, color)
         return 0
 
-    def mlx_string_put(self, mlx: Display, win: Window, x: int, y: int, color: int, string: str) -> int:  # noqa: PLR0917 - MiniLibX has six
+    def mlx_string_put(self, mlx: Display, win: Window, x: int, y: int, color: int, string: str) -> int:
         """x, y is the top left corner of the text."""
         canvas = win.canvas
         width, height = draw_text(canvas.pixels, x, y, string, color)
@@ -111,7 +111,7 @@ class Mlx(Extensions):
 
     def mlx_png_file_to_image(self, mlx: Display, filename: str | PathLike[str]) -> tuple[Image, int, int]:
         """(image, width, height). Raises MlxError."""
-        from PIL import Image as Pillow  # noqa: PLC0415 - a program that loads no picture loads no Pillow
+        from PIL import Image as Pillow
 
         try:
             with Pillow.open(filename) as picture:
@@ -210,11 +210,11 @@ class Mlx(Extensions):
 
 def _screen() -> Backend:
     """The back end on a real screen, imported only now because its import opens the display."""
-    from minirt.mlx.on_pyglet.interrupt import handlers_kept  # noqa: PLC0415
+    from minirt.mlx.on_pyglet.interrupt import handlers_kept
 
     try:
         with handlers_kept():
-            from minirt.mlx.on_pyglet.loop import PygletBackend  # noqa: PLC0415
+            from minirt.mlx.on_pyglet.loop import PygletBackend
     except Exception as error:  # whatever the window system says here, there is no window
         reason = str(error) or type(error).__name__
         raise MlxError(f"no window can be opened ({reason}); -o FILE renders without one") from error

@@ -67,7 +67,7 @@ def _blend(pixels: NDArray[np.uint8], x: int, y: int, coverage: NDArray[np.uint8
 @lru_cache(maxsize=1024)
 def _coverage(line: str, size: int) -> NDArray[np.uint8]:
     """How much of each pixel the ink of one line covers, 0 to 255; kept, since a drawn line seldom changes."""
-    from PIL import Image, ImageDraw  # noqa: PLC0415 - a program that draws no text loads no Pillow
+    from PIL import Image, ImageDraw
 
     font = _font(size)
     width = int(np.ceil(font.getlength(line)))
@@ -87,7 +87,7 @@ def _line_height(size: int) -> int:
 
 @lru_cache(maxsize=64)
 def _font(size: int) -> FreeTypeFont:
-    from PIL import ImageFont  # noqa: PLC0415
+    from PIL import ImageFont
 
     font = ImageFont.load_default(size)
     assert isinstance(font, ImageFont.FreeTypeFont), "this Pillow was built without FreeType"

@@ -11,6 +11,8 @@ from minirt.errors import Problem, SceneError
 SUFFIX = ".rt"
 LARGEST = 64 * 2**20  # bytes
 
+NOTHING = "holds only blanks and comments"
+
 UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks
 
 
@@ -67,8 +69,8 @@ def check_kind(path: str | os.PathLike[str], status: os.stat_result) -> None:
 
 def decode(data: bytes, file: str) -> str:
     """The text of a scene file; SceneError where it is not UTF-8 text."""
-    if not data:
-        raise refused(file, "is empty")
+    if not data.strip():
+        raise refused(file, NOTHING if data else "is empty")
     if data.startswith(UTF16):
         raise bad_byte(data, 0, file, "must be UTF-8, got UTF-16")
     nul = data.find(b"\0")

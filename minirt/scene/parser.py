@@ -80,7 +80,7 @@ def read_element(code: str, words: list[Word], first: int, line: Line, log: Log)
             log.error(line, words[0].column, message, len(code))
         elif log.tolerate(line, words[0].column, message, f"reads it as '{FurtherLight.code}'", len(code)):
             kind = FurtherLight
-    slots = assign(kind, words[1:], line, log)
+    slots = assign(kind, words, line, log)
     values = fill(kind, slots, line, log) if slots else None
     return kind(**values, source=line.source) if values and len(log.errors) == errors else None
 
@@ -88,7 +88,7 @@ def read_element(code: str, words: list[Word], first: int, line: Line, log: Log)
 def look_for_missing(seen: dict[str, int], line: Line, log: Log) -> None:
     """Finds out, at the last line of a file, what it does not have."""
     if not seen:
-        raise files.refused(log.file, "holds only blanks and comments")
+        raise files.refused(log.file, files.NOTHING)
     for kind in ELEMENTS.values():
         if kind.required and kind.code not in seen:
             message = f"no {kind.title}: a scene needs one line '{pattern(kind)}'"

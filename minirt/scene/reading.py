@@ -83,35 +83,40 @@ def identify(word: Word, line: Line, log: Log) -> str | None:
     return None
 
 
-def assign(kind: type[Element], given: list[Word], line: Line, log: Log) -> list[Slot] | None:
-    """Which of the words behind the identifier is the value of which field; None where the count is wrong."""
+def assign(kind: type[Element], line_words: list[Word], line: Line, log: Log) -> list[Slot] | None:
+    """Which of the words is the value of which field; None where there are too few or too many."""
     placed, _, needed = table(kind)
-    keys: list[Word] = []
+    given, keys = line_words[1:], []
     if ":" in line.text:
         first = next((index for index, word in enumerate(given) if KEY.match(word.raw)), len(given))
         given, keys = given[:first], given[first:]
-    colour = HEX_COLOUR.match(line.text, line.end) if len(given) < len(placed) else None
-    if colour and isinstance(placed[len(given)], Colour):
-        message = f"{kind.title} {placed[len(given)].name} must be R,G,B, got {quoted(colour[0])}: '#' begins a comment"
-        log.error(line, line.end + 1, message, len(colour[0]))
+    hex_colour = HEX_COLOUR.match(line.text, line.end)
+    if len(given) < len(placed) and isinstance(placed[len(given)], Colour) and hex_colour:
+        name = f"{kind.title} {placed[len(given)].name}"
+        message = f"{name} must be R,G,B, got {quoted(hex_colour[0])}: '#' begins a comment"
+        log.error(line, line.end + 1, message, len(hex_colour[0]))
         return None
     if len(given) < needed:
-        missing = [field.name for field in placed[len(given) : needed]]
-        verb = "is" if len(missing) == 1 else "are"
-        column = given[-1].end if given else line.text.index(kind.code) + len(kind.code) + 1
-        log.error(line, column, f"{kind.title} {' and '.join(missing)} {verb} missing: expected '{pattern(kind)}'")
+        missing = " and ".join(field.name for field in placed[len(given) : needed])
+        verb = "is" if needed - len(given) == 1 else "are"
+        column = line_words[len(given)].end
+        log.error(line, column, f"{kind.title} {missing} {verb} missing: expected '{pattern(kind)}'")
         return None
     slots = [Slot(field, word) for field, word in zip(placed, given, strict=False)]
     if len(given) > len(placed):
-        extra = given[len(placed)]
-        before = len(log.errors)
-        fill(kind, slots, line, log)
-        del log.errors[before + 1 :]  # behind the first all fields may be off by one
-        if len(log.errors) == before:
-            why = " (one element a line)" if extra.raw in ELEMENTS else f": expected '{pattern(kind)}'"
-            log.error(line, extra.column, f"{kind.title} has no further field {quoted(extra.raw)}{why}", len(extra.raw))
+        blame(kind, slots, given[len(placed)], line, log)
         return None
     return slots + attributes(kind, keys, line, log) if keys else slots
+
+
+def blame(kind: type[Element], slots: list[Slot], extra: Word, line: Line, log: Log) -> None:
+    """Says what is wrong with a line that has the word `extra` too many: the first wrong field, or else that word."""
+    before = len(log.errors)
+    fill(kind, slots, line, log)
+    del log.errors[before + 1 :]  # behind the first all fields may be off by one
+    if len(log.errors) == before:
+        why = " (one element a line)" if extra.raw in ELEMENTS else f": expected '{pattern(kind)}'"
+        log.error(line, extra.column, f"{kind.title} has no further field {quoted(extra.raw)}{why}", len(extra.raw))
 
 
 def attributes(kind: type[Element], keys: list[Word], line: Line, log: Log) -> list[Slot]:

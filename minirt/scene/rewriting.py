@@ -33,7 +33,7 @@ def line_of(element: Element) -> str:
     words = cut(line, log) if not {"\n", "\0"} & set(line.source) else None
     code = identify(words[0], line, log) if words else None
     # A further light may come from a second `L`, and is a kind of it.
-    slots = assign(kind, words[1:], line, log) if words and code and isinstance(element, ELEMENTS[code]) else None
+    slots = assign(kind, words, line, log) if words and code and isinstance(element, ELEMENTS[code]) else None
     values = fill(kind, slots, line, log) if slots else None
     if not words or not slots or not values or log.errors:
         return describe(element)

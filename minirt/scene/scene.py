@@ -33,7 +33,9 @@ class Scene:
         for kind in ELEMENTS.values():
             count = sum(type(item) is kind for item in self.items) if kind.once else 1
             if count > 1 or (kind is Camera and count == 0):
-                raise ValueError(f"a scene has {'exactly' if kind is Camera else 'at most'} one {kind.title}, got {count}")
+                raise ValueError(
+                    f"a scene has {'exactly' if kind is Camera else 'at most'} one {kind.title}, got {count}"
+                )
 
     @cached_property
     def elements(self) -> tuple[Element, ...]:

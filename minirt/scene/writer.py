@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 
-from minirt.scene import atomic, files
+from minirt import atomic
+from minirt.scene import files
 from minirt.scene.lines import BOM
 from minirt.scene.rewriting import line_of
 from minirt.scene.scene import Scene

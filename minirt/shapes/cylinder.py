@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, copysign, dot, fabs, maximum, minimum, sqrt, where
-from minirt.lanes.verbs import Mask
 from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.quadric import below_zero
 from minirt.shapes.shape import Box, Shape
@@ -37,9 +37,7 @@ class Cylinder(Shape):
 
     def bounds(self) -> Box:
         # A disc of radius r reaches r * sqrt(1 - w_i^2) along axis i.
-        reach = [
-            self.height / 2 * abs(w) + self.diameter / 2 * root(max(0.0, 1 - w * w)) for w in self.axis
-        ]
+        reach = [self.height / 2 * abs(w) + self.diameter / 2 * root(max(0.0, 1 - w * w)) for w in self.axis]
         (x, y, z), (i, j, k) = self.centre, reach
         return (x - i, y - j, z - k), (x + i, y + j, z + k)
 

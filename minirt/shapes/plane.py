@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs
-from minirt.lanes.verbs import Mask
 from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
 from minirt.shapes.shape import Shape
 
 PARALLEL = 4 * 2.0**-53  # rounding of the scalar product of two unit vectors

@@ -14,7 +14,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from minirt.element import Element
 from minirt.fields import Triple
@@ -24,7 +24,10 @@ Box = tuple[Triple, Triple]  # least and greatest corner
 
 @dataclass(frozen=True)
 class Shape(Element):
-    """A surface that rays can hit."""
+    """A surface that rays can hit; the last field of every shape is its colour."""
+
+    if TYPE_CHECKING:
+        colour: Triple
 
     @abstractmethod
     def pack(self) -> Any:

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, dot, sqrt, where
-from minirt.lanes.verbs import Mask
 from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
 from minirt.shapes.shape import Box, Shape
 
 

@@ -21,6 +21,7 @@ def keys(stage: Stage) -> None:
 @scenario(["press", 97], ["release", 97], ["press", 65307], ["release", 65307])
 def a_key_is_pressed_and_released(stage: Stage) -> None:
     keys(stage)
+    stage.hook(Event.DESTROY_NOTIFY, "Escape is not the close button")
     stage.play(lambda user: user.keys("+a -a +escape -escape"))
 
 
@@ -55,10 +56,10 @@ def a_symbol_whose_release_is_lost_is_released_with_shift(stage: Stage) -> None:
     stage.play(lambda user: user.keys(2 * "+shift +equal -shift -equal "))
 
 
-@scenario(["press", 65505], ["press", 119], ["release", 65505], ["release", 119])
+@scenario(["press", 65505], ["press", 119], ["release", 65505], ["press", 122], ["release", 122], ["release", 119])
 def a_letter_stays_held_when_shift_is_let_go(stage: Stage) -> None:
     keys(stage)
-    stage.play(lambda user: user.keys("+shift +w -shift -w"))
+    stage.play(lambda user: user.keys("+shift +w -shift +z -z -w"))
 
 
 @scenario(["text", "a"], ["text", "+"], ["text", "?"])

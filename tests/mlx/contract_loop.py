@@ -104,19 +104,18 @@ def several_windows_have_their_own_hooks(stage: Stage) -> None:
     stage.play(acts)
 
 
-@scenario(["key", 97], ["raised", "no such key"], ["again", 98])
+@scenario(["wheel", 4], ["raised", "no wheel"], ["again", 98])
 def what_a_hook_raises_comes_out_of_the_loop(stage: Stage) -> None:
-    def key(code: int, _: object) -> None:
-        stage.note("key", code)
-        raise KeyError("no such key")
+    def turned(button: int, _x: int, _y: int, _: object) -> None:
+        stage.note("wheel", button)
+        raise KeyError("no wheel")
 
-    stage.m.mlx_hook(stage.win, Event.KEY_PRESS, 0, key, None)
-    stage.hook(Event.KEY_RELEASE, "not after the error")
+    stage.m.mlx_mouse_hook(stage.win, turned, None)
+    stage.hook(Event.BUTTON_RELEASE, "not after the error")  # comes with the press
     try:
-        stage.play(lambda user: user.keys("+a -a"))
+        stage.play(lambda user: user.click(5, 5, 4))
     except KeyError as error:
         stage.note("raised", error.args[0])
-    stage.m.mlx_hook(stage.win, Event.KEY_RELEASE, 0, None, None)
     stage.hook(Event.KEY_PRESS, "again")
     stage.play(lambda user: user.keys("+b -b"))
 
@@ -133,18 +132,18 @@ def sys_exit_in_a_hook_comes_out_of_the_loop(stage: Stage) -> None:
         stage.note("exit", exit_.code)
 
 
-@scenario(["key", 97], ["returned", 0], ["key", 98])
+@scenario(["wheel", 4], ["returned", 0], ["again", 98])
 def no_hook_is_called_after_loop_exit(stage: Stage) -> None:
-    def key(code: int, _: object) -> None:
-        stage.note("key", code)
+    def turned(button: int, _x: int, _y: int, _: object) -> None:
+        stage.note("wheel", button)
         stage.m.mlx_loop_exit(stage.mlx)
 
-    stage.m.mlx_hook(stage.win, Event.KEY_PRESS, 0, key, None)
-    stage.hook(Event.KEY_RELEASE, "not after the end")
-    stage.play(lambda user: user.keys("+a -a"))
-    stage.m.mlx_hook(stage.win, Event.KEY_RELEASE, 0, None, None)
+    stage.m.mlx_mouse_hook(stage.win, turned, None)
+    stage.hook(Event.BUTTON_RELEASE, "not after the end")  # comes with the press
+    stage.play(lambda user: user.click(5, 5, 4))
     stage.m.mlx_loop_exit(stage.mlx)
     stage.note("returned", stage.m.mlx_loop(stage.mlx))
+    stage.hook(Event.KEY_PRESS, "again")
     stage.play(lambda user: user.keys("+b -b"))
 
 

@@ -181,7 +181,8 @@ def full_screen_and_back(stage: Stage) -> None:
 @scenario(["title", "another"])
 def the_title_changes(stage: Stage) -> None:
     def acts(user: User) -> None:
-        user.then(lambda: stage.m.mlx_set_window_title(stage.win, "another"))
+        user.keys("+a -a")
         user.read_title()
 
+    stage.m.mlx_key_hook(stage.win, lambda *_: stage.m.mlx_set_window_title(stage.win, "another"), None)
     stage.play(acts)

@@ -109,4 +109,5 @@ class ScreenUser(User):
         self._stage.note(name, see(self._desktop.screenshot(self._id)))
 
     def read_title(self) -> None:
+        time.sleep(0.15)
         self._stage.note("title", self._desktop.run("xdotool", "getwindowname", str(self._id)).decode().strip())

@@ -25,6 +25,7 @@ GRADIENT = str(Path(__file__).with_name("gradient.py"))
 
 SLEEPER = """
 import signal, sys, threading
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
 from minirt.mlx import Mlx
 m = Mlx()
 mlx = m.mlx_init()

@@ -66,7 +66,7 @@ class User(ABC):
 
     @abstractmethod
     def then(self, action: Callable[[], object]) -> None:
-        """Do something in the program's place, after what came before."""
+        """Note or prepare something at this moment; calls of MiniLibX belong into hooks."""
 
     @abstractmethod
     def until(self, condition: Callable[[], bool]) -> None:

@@ -44,7 +44,7 @@ def test_no_number_is_read_that_float_does_not_read_alike(text: str) -> None:
     assert "_" not in text + " "
 
 
-@pytest.mark.parametrize("text", ["1.5", "1.", "1e2", "", "+", "\uff11", "1_0", " 1", "0x1", "9" * 401])
+@pytest.mark.parametrize("text", ["1.5", "1.", "1e2", "", "+", "\uff11", "1_0", " 1", "0x1", "9" * 301])
 def test_no_whole_number(text: str) -> None:
     with pytest.raises(FieldError, match="must be a whole number"):
         whole(text)

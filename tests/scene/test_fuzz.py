@@ -44,17 +44,20 @@ ODD += [
     "roll:1",
     "\t,",
     "e",
-    "9" * 500,
+    "9" * 299,
+    "9" * 309,
+    "1e309",
     "255,255,255",
     "C 0,0,0 0,0,1 7",
 ]
+LIGHTS = "C 0,0,0 0,0,0 7 roll:3\nL 0,0,0 1\nL 0, 0, 0 1 2.5,0,0 // a\nL 0,0,0,0 .5 1,2,3\nl 0,0,0 1\n"  # lenient only
 SOON = timedelta(seconds=5)  # a hundred times what the slowest takes
 
 
 @st.composite
 def damaged(draw: st.DrawFn) -> str:
     """A scene file with characters deleted, doubled, swapped or put in."""
-    text = draw(st.one_of(st.sampled_from([WHOLE, SUBJECT]), texts()))
+    text = draw(st.one_of(st.sampled_from([WHOLE, SUBJECT, LIGHTS]), texts()))
     for _ in range(draw(st.integers(1, 4))):
         at = draw(st.integers(0, len(text)))
         end = draw(st.integers(at, min(len(text), at + 5)))

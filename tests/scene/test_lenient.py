@@ -34,7 +34,7 @@ def test_a_line_is_an_error_or_a_notice(line: str, meant: str, column: int, mess
 
 
 def test_one_line_may_need_it_twice() -> None:
-    line = "pl 0, -1, 0 0,0,0 199.6,200,200 // floor"
+    line = "pl 0, -1, 0 0, 0, 0 199.6, 200 , 200 // floor"
     scene, notices = parse(scene_with(line), lenient=True)
     assert scene.elements == read(PLANE).elements
     assert len(notices) == 4
@@ -86,6 +86,12 @@ def test_the_example_of_the_subject() -> None:
     assert dump(scene) == SUBJECT
 
 
+def test_a_later_light_with_an_error() -> None:
+    for line, column in (("L", 2), ("L 0,0,0", 8), ("L 0,0,0 2", 9), ("  L 0,0,0 1 1,2,3 4", 19)):
+        (error,) = problems(scene_with(LIGHT, line), lenient=True)
+        assert (error.line, error.column) == (4, column)
+
+
 @pytest.mark.parametrize(
     ("line", "column", "message"),
     [
@@ -94,6 +100,7 @@ def test_the_example_of_the_subject() -> None:
         ("L 0,0,20, 0.5", 14, "light brightness is missing"),
         ("sp 0,0,20 5, 255,0,0", 21, "sphere colour is missing"),
         ("sp 0,0,20 5 255,0,0 ,", 22, "sphere colour must be R,G,B"),
+        ("sp ,0 ,20 5 255,0,0", 4, "sphere centre x must be a number, got ''"),
         ("sp 0, , 20 5 255,0,0", 7, "sphere centre y must be a number, got ''"),
         ("sp 0,0,20,1,1 5 255,0,0", 11, "sphere centre must be x,y,z"),
         ("sp 0,0,20,a 5 255,0,0", 11, "sphere centre must be x,y,z"),

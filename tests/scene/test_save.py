@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from minirt.errors import SceneError
-from minirt.scene import atomic, load, parse, save
+from minirt import atomic
+from minirt.scene import load, parse, save
 from tests.scene.examples import WHOLE
 
 SCENE = parse(WHOLE).scene

@@ -6,7 +6,11 @@ import math
 
 import pytest
 
+from minirt.fields import Real
 from minirt.scene import Camera, Light, parse
+from minirt.scene.lines import Line, Word
+from minirt.scene.log import Log
+from minirt.scene.reading import Slot, value_of
 from minirt.shapes.sphere import Sphere
 from tests.scene.examples import AMBIENT, CAMERA, LIGHT, SPHERE, WHOLE, notices, read, scene_with
 
@@ -36,14 +40,14 @@ BALL = Sphere((0.0, 0.0, 20.0), 12.6, (10, 0, 255))
         "sp 0e0,0E9,200E-1 126e-1 10,0,255",
         "sp 000,00.0,0020.00 0012.600 010,000,0255",
         "sp 1e-400,-1e-400,20 12.6 10,0,255",
-        f"sp 0,0,20 12.6{'0' * 300} 10,0,255",
+        f"sp 0,0,20 12.6{'0' * 296} 10,0,255",
     ],
 )
 def test_a_line_means_the_same_however_it_is_spelled(line: str) -> None:
     reading = parse(scene_with(line))
     assert reading.scene.spheres == (BALL,)
     assert reading.scene.spheres[0].source == line
-    assert math.copysign(1, reading.scene.spheres[0].centre[0]) == 1
+    assert all(math.copysign(1, each) == 1 for each in reading.scene.spheres[0].centre)
     assert reading.notices == ()
 
 
@@ -107,6 +111,13 @@ def test_the_field_of_view_of_0_and_180_is_read_with_a_notice() -> None:
         assert (notice.line, notice.column) == (2, 15)
         assert notice.message == f"camera fov {float(fov):g} renders as the nearest angle that can be drawn"
     assert parse(f"{AMBIENT}\nC 0,0,0 0,0,1 1e-300").notices == ()
+
+
+def test_a_notice_about_a_keyed_field_stands_under_its_value() -> None:
+    log, field = Log("test.rt", lenient=False), Real(doc="", low=0, high=1, ends="is an end", name="share", keyed=True)
+    assert value_of(Slot(field, Word(4, "share:1"), 6), Sphere, Line(1, "", "sp share:1"), log) == 1
+    (notice,) = log.notices
+    assert (notice.column, notice.length, notice.message) == (10, 1, "sphere share 1 is an end")
 
 
 @pytest.mark.parametrize(

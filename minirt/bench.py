@@ -1,0 +1,49 @@
+"""How long a frame takes."""
+
+from __future__ import annotations
+
+import json
+from statistics import median
+from time import perf_counter
+
+import numpy as np
+
+import minirt
+from minirt.rendering import Renderer
+from minirt.scene import Scene, load
+
+LEAST_FRAMES, LEAST_SECONDS = 9, 1.0
+
+
+def bench(path: str, scene: Scene, size: tuple[int, int] | None, threads: int | None, as_json: bool) -> str:
+    """Time of reading and of frames, as a JSON object or as a line of text.
+
+    `compile_s` is the time until the kernel is ready: of compiling it, or of loading it where it was compiled before.
+    """
+    start = perf_counter()
+    load(path, lenient=True)
+    load_s = perf_counter() - start
+    width, height = size or minirt.size_of(scene)
+    renderer = Renderer(threads)
+    start = perf_counter()
+    renderer.prepare(scene)
+    compile_s = perf_counter() - start
+    pixels = np.empty((height, width, 4), np.uint8)
+    renderer.render(scene, pixels)
+    times: list[float] = []
+    while len(times) < LEAST_FRAMES or sum(times) < LEAST_SECONDS:
+        start = perf_counter()
+        renderer.render(scene, pixels)
+        times.append(perf_counter() - start)
+    measured = {
+        "scene": path,
+        "size": f"{width}x{height}",
+        "threads": renderer.threads,
+        "precision": "double",
+        "frames": len(times),
+        "ms_min": round(min(times) * 1e3, 3),
+        "ms_median": round(median(times) * 1e3, 3),
+        "compile_s": round(compile_s, 3),
+        "load_s": round(load_s, 4),
+    }
+    return json.dumps(measured) if as_json else ", ".join(f"{name} {value}" for name, value in measured.items())

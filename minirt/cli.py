@@ -1,0 +1,196 @@
+"""The program: arguments in, exit status out. The only place that prints errors.
+
+0  all went well        1  an error in a scene or in rendering
+2  wrong arguments      130  interrupted by Ctrl+C
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NoReturn
+
+from minirt.errors import MiniRTError, MlxError, RenderError
+
+if TYPE_CHECKING:
+    from minirt.image import Image
+    from minirt.scene import Scene
+
+OK, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
+LARGEST = 16384  # pixels, of a side
+
+
+class Arguments(argparse.ArgumentParser):
+    """argparse, with `Error` as the first line of what it complains about."""
+
+    def error(self, message: str) -> NoReturn:
+        self.fail(message, USAGE)
+
+    def fail(self, message: str, status: int) -> NoReturn:
+        self.exit(status, f"Error\n{message}\n{self.format_usage()}")
+
+
+def size(text: str) -> tuple[int, int]:
+    """A size in pixels, written 640x480."""
+    width, _, height = text.partition("x")
+    if not (width.isascii() and width.isdigit() and height.isascii() and height.isdigit()):
+        raise argparse.ArgumentTypeError(f"must be WIDTHxHEIGHT, like 640x480, got '{text}'")
+    return whole(width, 1, LARGEST), whole(height, 1, LARGEST)
+
+
+def whole(text: str, low: int, high: int) -> int:
+    """A whole number in [low, high]."""
+    if not (text.isascii() and text.isdigit() and len(text) < 10 and low <= int(text) <= high):
+        raise argparse.ArgumentTypeError(f"must be a whole number from {low} to {high}, got '{text[:40]}'")
+    return int(text)
+
+
+def arguments() -> Arguments:
+    """What the program understands."""
+    parser = Arguments(prog="miniRT", description="Show a .rt scene in a window, or render it to a file.")
+    parser.add_argument("scene", nargs="*", metavar="SCENE.rt", help="the scene file")
+    add = parser.add_argument_group("output").add_argument
+    add(
+        "-o", "--output", metavar="FILE", help="render to a picture file instead of a window; - is standard output, PNG"
+    )
+    add("--size", type=size, metavar="WxH", help="size of the picture in pixels")
+    add(
+        "--samples", type=lambda text: whole(text, 1, 65536), default=1, metavar="N", help="rays for each pixel with -o"
+    )
+    add("--fallback", metavar="FILE", help="render to FILE where no window can be opened")
+    add = parser.add_argument_group("window").add_argument
+    add("--keys", choices=("auto", "qwerty", "azerty", "qwertz"), default="auto", help="the layout of the keyboard")
+    add("--replay", metavar="KEYS.txt", help="play recorded keys without a window; -o takes the last frame")
+    add = parser.add_argument_group("inspect").add_argument
+    add("--check", action="store_true", help="read the scene, report what is wrong with it, make no picture")
+    add("--lenient", action="store_true", help="read what older scenes have: several L, blanks around commas, ...")
+    add("--bench", action="store_true", help="measure the time of a frame")
+    add("--json", action="store_true", help="with --bench: as JSON")
+    add("--list-keys", action="store_true", help="list the keys of the window")
+    add("--threads", type=lambda text: whole(text, 1, 1024), metavar="N", help="threads that render")
+    add("-v", "--verbose", action="store_true", help="say what is done, and how long it takes")
+    add("--version", action="store_true", help="print the version")
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the program and return its exit status."""
+    try:
+        return run(arguments(), argv)
+    except MiniRTError as error:
+        print("Error", error, sep="\n", file=sys.stderr)
+        return FAILED
+    except BrokenPipeError:  # whoever read our output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except KeyboardInterrupt:
+        return INTERRUPTED
+
+
+def run(parser: Arguments, argv: Sequence[str] | None) -> int:
+    """Do what the arguments ask for."""
+    asked = parser.parse_args(argv)
+    if asked.version:
+        from minirt import __version__
+
+        print(f"miniRT {__version__}")
+        return OK
+    if asked.list_keys:
+        from minirt.viewer.bindings import keys_text
+
+        print(keys_text())
+        return OK
+    if len(asked.scene) != 1:
+        parser.fail(f"expected one scene file, got {len(asked.scene)}: {' '.join(asked.scene)}".rstrip(": "), FAILED)
+    if asked.output and asked.output != "-":
+        from minirt.image import format_of
+
+        format_of(asked.output)  # before the work, not after it
+    scene = read(asked.scene[0], asked.lenient)
+    if asked.check:
+        print(f"{asked.scene[0]}: no errors, {len(scene.shapes)} shapes, {len(scene.lights)} lights")
+        return OK
+    if asked.bench:
+        from minirt.bench import bench
+
+        print(bench(asked.scene[0], scene, asked.size, asked.threads, asked.json))
+        return OK
+    if asked.replay:
+        return replay(scene, asked)
+    if asked.output:
+        write(picture(scene, asked), asked.output, asked.verbose)
+        return OK
+    return window(scene, asked)
+
+
+def read(path: str, lenient: bool) -> Scene:
+    """The scene in a file; what was tolerated goes to standard error."""
+    from minirt.scene import load
+
+    scene, notices = load(path, lenient)
+    for notice in notices:
+        print(f"notice: {notice}", file=sys.stderr)
+    return scene
+
+
+def picture(scene: Scene, asked: argparse.Namespace) -> Image:
+    """The picture that the arguments ask for."""
+    import minirt
+
+    width, height = asked.size or minirt.size_of(scene)
+    return minirt.render(scene, width, height, samples=asked.samples, threads=asked.threads)
+
+
+def write(image: Image, output: str, verbose: bool = False) -> None:
+    """Put a picture into a file or onto standard output."""
+    if output == "-":
+        sys.stdout.buffer.write(image.encode())
+        sys.stdout.buffer.flush()
+        return
+    image.save(output)
+    if verbose:
+        height, width, _ = image.array.shape
+        print(f"{output}: {width}x{height}", file=sys.stderr)
+
+
+def replay(scene: Scene, asked: argparse.Namespace) -> int:
+    """Play recorded keys; the last frame goes to the output, if there is one."""
+    import minirt
+    from minirt.viewer.replay import replay as play
+
+    try:
+        with open(asked.replay, encoding="utf-8") as file:  # noqa: PTH123
+            lines = file.read().split("\n")
+    except (OSError, UnicodeDecodeError) as error:
+        raise RenderError(f"{asked.replay}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    pixels = play(
+        scene,
+        lines,
+        file=asked.replay,
+        renderer=minirt.renderer(asked.threads),
+        size=asked.size or minirt.size_of(scene),
+        path=asked.scene[0],
+        lenient=asked.lenient,
+    )
+    if asked.output:
+        write(minirt.Image.from_bgra(pixels), asked.output)
+    return OK
+
+
+def window(scene: Scene, asked: argparse.Namespace) -> int:
+    """Show the scene in a window until it is closed."""
+    from minirt import viewer
+
+    try:
+        return viewer.run(
+            scene, path=asked.scene[0], size=asked.size, threads=asked.threads, keys=asked.keys, lenient=asked.lenient
+        )
+    except MlxError as error:
+        if not asked.fallback:
+            raise
+        print(f"{error}\nNo window: rendering to {asked.fallback} instead.")
+        write(picture(scene, asked), asked.fallback)
+        print(f"The picture is in {os.path.abspath(asked.fallback)}")  # noqa: PTH100
+        return OK

@@ -1,0 +1,80 @@
+"""Where compiled kernels are kept from one run to the next.
+
+numba finds a kernel again by the file of the function that it was asked to compile, and by nothing else that went into
+it: after a change of a shape's formula the old machine code would be used. So the folder's name is a hash of all the
+sources that a kernel is made of, and of the versions of the compiler.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import llvmlite
+import numba
+from numba.core import config
+
+PACKAGE = Path(__file__).parent.parent
+SOURCES = ("kernel", "lanes", "shapes")  # all that a kernel is made of
+KEPT = 8  # folders of other versions that stay, so that two of them can be used in turn
+
+
+def user_folder() -> Path:
+    """Where the system keeps files of this user that may be deleted at any time."""
+    if os.environ.get("XDG_CACHE_HOME"):
+        return Path(os.environ["XDG_CACHE_HOME"])
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches"
+    if sys.platform == "win32" and os.environ.get("LOCALAPPDATA"):
+        return Path(os.environ["LOCALAPPDATA"])
+    return Path.home() / ".cache"
+
+
+def fingerprint() -> str:
+    """A hash of the sources and of the compiler's versions."""
+    digest = hashlib.sha256(f"{sys.version} {numba.__version__} {llvmlite.__version__}".encode())
+    for folder in SOURCES:
+        for source in sorted((PACKAGE / folder).rglob("*.py")):
+            digest.update(source.relative_to(PACKAGE).as_posix().encode() + b"\0" + source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def folder() -> Path | None:
+    """The folder of the kernels of these sources, made where it does not exist; None where that is not possible."""
+    try:
+        place = user_folder() / "minirt" / f"kernels-{fingerprint()}"
+        place.mkdir(parents=True, exist_ok=True)
+        os.utime(place)
+        probe = place / f"probe-{os.getpid()}"
+        probe.touch()
+        probe.unlink()
+    except (OSError, RuntimeError):  # RuntimeError: the user has no home
+        return None
+    with suppress(OSError):
+        forget(place)
+    return place
+
+
+def forget(place: Path) -> None:
+    """Delete the folders of other sources, but for those used last."""
+    others = sorted(
+        (each for each in place.parent.glob("kernels-*") if each != place), key=lambda each: each.stat().st_mtime
+    )
+    for each in others[: max(0, len(others) - KEPT)]:
+        shutil.rmtree(each, ignore_errors=True)
+
+
+@contextmanager
+def numba_cache(place: Path | None) -> Iterator[None]:
+    """Functions that are decorated inside keep their machine code in `place`; numba's own setting is put back."""
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(place or before)
+    try:
+        yield
+    finally:
+        config.CACHE_DIR = before

@@ -1,0 +1,108 @@
+"""Where the compiler is attached: everything else in this package is plain Python.
+
+Functions call each other as they stand; numba finds the compiled form of each through `register_jitable` and chooses
+formulas by the types of shapes, so what is compiled holds just the kinds of shapes that a scene has.
+"""
+
+from __future__ import annotations
+
+import sys
+from types import FunctionType, ModuleType
+from typing import Any
+
+from llvmlite import ir
+from numba import njit, types
+from numba.extending import overload, register_jitable
+
+import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
+from minirt.kernel import cache, frame, rows, shade, trace
+from minirt.lanes.compiled import teach
+from minirt.lanes.vector import VecType, vec_of
+from minirt.shapes import KINDS, basis, quadric
+
+# error_model: x / 0 is infinite or NaN, as in IEEE 754. fastmath: a * b + c may round once, and nothing else. _nrt: the
+# kernel allocates nothing, and without reference counting it was seen to run twice as fast.
+FLAGS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True, "_nrt": False}
+INNER: dict[str, Any] = {
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+}  # never called from outside: 20 % less to compile
+
+
+def own_functions(module: ModuleType) -> list[FunctionType]:
+    """The functions that a module defines."""
+    return [
+        each for each in vars(module).values() if isinstance(each, FunctionType) and each.__module__ == module.__name__
+    ]
+
+
+# Each of these has a compiled form of its own, chosen by the types of its arguments. Parameters have no annotations:
+# numba compares them with those of the implementation.
+
+
+@overload(trace.over_kinds, jit_options=INNER)
+def _over_kinds(step, groups, state, given):  # type: ignore[no-untyped-def]
+    if len(groups) == 0:
+        return lambda step, groups, state, given: state
+    over_kinds = trace.over_kinds
+    return lambda step, groups, state, given: over_kinds(step, groups[1:], step(groups[0], state, given), given)
+
+
+@overload(rows.intersect, jit_options=INNER)
+def _intersect(shape, origin, direction):  # type: ignore[no-untyped-def]
+    formula = rows.kind_of_packed(shape.instance_class).intersect
+    return lambda shape, origin, direction: formula(shape, origin, direction)  # noqa: PLW0108  (numba compares names)
+
+
+@overload(rows.surface, jit_options=INNER)
+def _surface(shape, point):  # type: ignore[no-untyped-def]
+    formula = rows.kind_of_packed(shape.instance_class).surface
+    return lambda shape, point: formula(shape, point)  # noqa: PLW0108
+
+
+def first_number(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    """The address of the first number of a row, as that of a float64."""
+    array = context.make_array(sig.args[0])(context, builder, value=args[0])
+    place = builder.gep(array.data, [context.cast(builder, args[1], sig.args[1], types.intp)])
+    return builder.bitcast(place, ir.DoubleType().as_pointer())
+
+
+def packed_type(array: Any, i: Any) -> Any:
+    """The type of a packed shape: the kind's NamedTuple of float64s and Vecs."""
+    _, *fields = array.dtype.fields.values()
+    numbers = [VecType(types.float64) if isinstance(each.type, types.NestedArray) else types.float64 for each in fields]
+    return types.NamedTuple(numbers, rows.kind_of(array.dtype.fields).packed)
+
+
+@teach(rows.read, packed_type, [(types.Array, types.Integer)])
+def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    address = first_number(context, builder, sig, args)
+    numbers = (builder.load(builder.gep(address, [ir.Constant(ir.IntType(64), at)])) for at in range(1, sys.maxsize))
+    parts = [
+        vec_of(context, builder, kind, [next(numbers) for _ in "xyz"]) if isinstance(kind, VecType) else next(numbers)
+        for kind in sig.return_type.types
+    ]
+    return context.make_tuple(builder, sig.return_type, parts)
+
+
+@teach(rows.index_of, lambda array, i: types.float64, [(types.Array, types.Integer)])
+def _index_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.load(first_number(context, builder, sig, args))
+
+
+@teach(frame.fetch_add, lambda counter, amount: types.int64, [(types.Array, types.Integer)])
+def _fetch_add(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    counter = context.make_array(sig.args[0])(context, builder, value=args[0])
+    amount = context.cast(builder, args[1], sig.args[1], types.int64)
+    return builder.atomic_rmw("add", counter.data, amount, "monotonic")
+
+
+OWN_FORM = (trace.over_kinds, frame.fetch_add, frame.frame)
+for _module in (basis, quadric, trace, shade, frame, *(sys.modules[kind.intersect.__module__] for kind in KINDS)):
+    for _function in own_functions(_module):
+        if _function not in OWN_FORM:
+            register_jitable(**INNER)(_function)
+
+CACHE = cache.folder()
+with cache.numba_cache(CACHE):
+    render_bands = njit(cache=CACHE is not None, **FLAGS)(frame.frame)

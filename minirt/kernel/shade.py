@@ -1,0 +1,64 @@
+"""What light leaves a surface towards the eye."""
+
+from __future__ import annotations
+
+from math import inf
+
+from minirt.kernel.trace import ROUNDING, largest, nearest, occluded, surfaces
+from minirt.kernel.traced import Traced
+from minirt.lanes import Vec, any, dot, first, lane, splat, sqrt, where
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+
+
+def radiance(scene: Traced, origin: Vec, direction: Vec) -> Vec:
+    """The light that arrives at `origin` against `direction`, nothing where a ray hits no shape."""
+    t, owner = nearest(scene, origin, direction)
+    hit = t < inf
+    light = Vec(splat(0.0), splat(0.0), splat(0.0))
+    if any(hit):
+        point, normal = surfaces(scene, owner, origin + t * direction, hit)
+        normal = where(dot(normal, direction) > 0.0, -normal, normal)  # the side that is seen
+        albedo, extent = looks(scene, owner, hit)
+        light = times(albedo, irradiance(scene, point, normal, extent, hit))
+    return light
+
+
+def looks(scene: Traced, owner: Number, hit: Mask) -> tuple[Vec, Number]:
+    """The colour and the extent of the shape that each ray hits; 0 where it hits none."""
+    colour = Vec(splat(0.0), splat(0.0), splat(0.0))
+    extent = splat(0.0)
+    left = hit
+    while any(left):
+        index = int(lane(owner, first(left)))
+        mine = left & (owner == index)
+        red, green, blue = scene.colours[index, 0], scene.colours[index, 1], scene.colours[index, 2]
+        colour = where(mine, Vec(red, green, blue), colour)
+        extent = where(mine, scene.extents[index], extent)
+        left = left & ~mine
+    return colour, extent
+
+
+def irradiance(scene: Traced, point: Vec, normal: Vec, extent: Number, hit: Mask) -> Vec:
+    """The light that falls onto a surface from the side of its normal: ambient light and, by Lambert's cosine law, the
+    light of every lamp that no shape hides."""
+    start = point + ROUNDING * (largest(point) + extent) * normal  # outside, whatever the rounding of the point
+    total = Vec(splat(scene.ambient[0]), splat(scene.ambient[1]), splat(scene.ambient[2]))
+    for i in range(scene.lights.shape[0]):
+        lamp = Vec(scene.lights[i, 0], scene.lights[i, 1], scene.lights[i, 2])
+        light = Vec(scene.lights[i, 3], scene.lights[i, 4], scene.lights[i, 5])
+        way = lamp - start
+        distance = sqrt(dot(way, way))
+        towards = way / distance
+        cosine = dot(normal, towards)
+        lit = hit & (cosine > 0.0)
+        if any(lit):
+            reach = distance - 4.0 * ROUNDING * (largest(lamp) + largest(start))  # a surface hides no lamp on it
+            lit = lit & ~occluded(scene, start, towards, reach, lit)
+            total = total + where(lit, cosine, 0.0) * light
+    return total
+
+
+def times(a: Vec, b: Vec) -> Vec:
+    """Light of one colour on a surface of another."""
+    return Vec(a.x * b.x, a.y * b.y, a.z * b.z)

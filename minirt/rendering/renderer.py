@@ -1,0 +1,100 @@
+"""Renders scenes on all processors."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor, wait
+from functools import cached_property
+from importlib import import_module
+from threading import Lock
+from typing import Any
+
+import numpy as np
+
+from minirt.errors import RenderError
+from minirt.rendering.cores import usable_cores
+from minirt.scene import Scene
+
+NO_LINEAR = np.zeros((0, 0, 3))
+END = 2**40  # a row that no picture has
+GOLDEN = (5**0.5 - 1) / 2
+
+
+def sample_places(samples: int) -> np.ndarray:
+    """Where in a pixel its samples lie, (samples, 2) in [0, 1): a Fibonacci lattice; one sample lies in the centre."""
+    each = np.arange(samples)
+    return np.stack([(each + 0.5) / samples, (each * GOLDEN + 0.5) % 1.0], axis=1)
+
+
+class Renderer:
+    """Keeps threads and packed shapes from picture to picture. Any thread may call it; pictures are made one by one."""
+
+    def __init__(self, threads: int | None = None) -> None:
+        self.threads = threads or usable_cores()
+        self.next_row = np.zeros(1, np.int64)
+        self.known: set[frozenset[type]] = set()  # kinds of shapes that there is a kernel for
+        self.busy = Lock()
+
+    @cached_property
+    def workers(self) -> ThreadPoolExecutor:
+        """The threads that render."""
+        return ThreadPoolExecutor(self.threads, "minirt-render")
+
+    @cached_property
+    def packing(self) -> Any:
+        """The arrays of the last scene."""
+        return import_module("minirt.rendering.packing").Packing()
+
+    @cached_property
+    def kernel(self) -> Any:
+        """The compiled code, and the compiler where it is not there yet."""
+        return import_module("minirt.kernel.jit")
+
+    def is_ready(self, scene: Scene) -> bool:
+        """Whether the kernel for the kinds of shapes of this scene is there."""
+        return kinds_of(scene) in self.known
+
+    def prepare(self, scene: Scene) -> None:
+        """Load the kernel for the kinds of shapes of this scene, or compile it, which takes seconds."""
+        self.render(scene, np.zeros((1, 1, 4), np.uint8))
+
+    def render(self, scene: Scene, pixels: np.ndarray, samples: int = 1, linear: np.ndarray | None = None) -> bool:
+        """Render into `pixels`, C-contiguous uint8 (h, w, 4) in the order blue, green, red, alpha, and where it is
+        given the light as it is into `linear`, float64 (h, w, 3). False where `cancel` ended it early.
+        """
+        if samples < 1:
+            raise RenderError(f"a pixel needs at least 1 sample, got {samples}")
+        height, width, _ = pixels.shape
+        with self.busy:
+            if not scene.shapes or not pixels.size:
+                pixels[...] = (0, 0, 0, 255)
+                return True
+            self.next_row = counter = np.zeros(1, np.int64)
+            words = pixels.view(np.uint32)[..., 0]
+            traced = self.packing.pack(scene, width, height)
+            offsets = self.kernel.frame.PACKET
+            self.run(counter, words, NO_LINEAR if linear is None else linear, sample_places(samples), offsets, traced)
+            self.known.add(kinds_of(scene))
+            return bool(counter[0] < END)
+
+    def run(self, *arguments: Any) -> None:
+        """The same frame on all threads, which share its rows; the first error of any thread is raised.
+
+        The caller's thread only waits, so that Ctrl+C reaches it.
+        """
+        jobs = [self.workers.submit(self.kernel.render_bands, *arguments) for _ in range(self.threads)]
+        try:
+            for job in jobs:
+                job.result()
+        except BaseException:
+            self.cancel()
+            wait(jobs)
+            raise
+
+    def cancel(self) -> None:
+        """From any thread: the picture that is being made ends soon, half-made."""
+        self.next_row[0] = END
+
+
+def kinds_of(scene: Scene) -> frozenset[type]:
+    """The kinds of shapes in a scene: for each set of them there is a kernel of its own."""
+    return frozenset(map(type, scene.shapes))

@@ -1,0 +1,37 @@
+"""How large things are: what a step of a movement is a share of."""
+
+from __future__ import annotations
+
+from math import dist
+from statistics import median
+
+from minirt.element import Element, fields_of
+from minirt.fields import FARTHEST, LEAST_LENGTH, Point, Triple, clamp
+from minirt.scene import Camera, Scene
+from minirt.shapes import Shape
+
+Ball = tuple[Triple, float]  # centre and radius
+
+
+def ball(element: Element) -> Ball | None:
+    """A ball around an element: around the box of a shape that has one, or a radius of 0 at its point."""
+    box = element.bounds() if isinstance(element, Shape) else None
+    if box is not None:
+        (a, b, c), (x, y, z) = box
+        return ((a + x) / 2, (b + y) / 2, (c + z) / 2), dist(*box) / 2
+    points = [getattr(element, each.name) for each in fields_of(type(element)) if isinstance(each, Point)]
+    return (points[0], 0.0) if points else None
+
+
+def size_of(scene: Scene) -> float:
+    """The distance from the camera that is usual for the things in a scene.
+
+    The median, since one far or huge thing (a sky, a sun) says nothing of the others. Shapes with an end count; where
+    there are none, everything that has a place.
+    """
+    things = [each for each in scene.elements if not isinstance(each, Camera)]
+    bounded = [each for each in things if isinstance(each, Shape) and each.bounds() is not None]
+    balls = filter(None, map(ball, bounded or things))
+    reaches = [max(dist(scene.camera.position, centre), radius) for centre, radius in balls]
+    usual = median(reach for reach in reaches if reach > 0) if any(reaches) else 1.0
+    return clamp(usual, LEAST_LENGTH, FARTHEST)

@@ -1,0 +1,64 @@
+"""Moving and turning: vectors, cameras, and anything that has points and directions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import atan2, cos, fmod, hypot, pi, radians, sin
+
+from minirt.element import Element
+from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit
+from minirt.scene import Camera
+from minirt.scene.view import mix, view
+from minirt.viewer.state import named
+
+
+def translated(element: Element, axis: Triple, distance: float) -> tuple[Element, bool]:
+    """All points moved along `axis`, at most to the end of the range, and whether that end was met."""
+    changes = {}
+    met = False
+    for name in named(type(element), Point):
+        moved = mix(1.0, getattr(element, name), distance, axis)
+        kept = limited(moved)
+        met |= kept != moved
+        changes[name] = kept
+    return element.replace(**changes), met
+
+
+def limited(point: Triple) -> Triple:
+    """The nearest point whose coordinates are in the range of the format."""
+    x, y, z = (clamp(coordinate, -FARTHEST, FARTHEST) for coordinate in point)
+    return x, y, z
+
+
+def rotated(element: Element, axis: Triple, degrees: float) -> Element:
+    """All directions turned about the unit vector `axis`, right-handed."""
+    names = named(type(element), Direction)
+    return element.replace(**{name: turned(getattr(element, name), axis, degrees) for name in names})
+
+
+def turned(vector: Triple, axis: Triple, degrees: float) -> Triple:
+    """A unit vector turned about the unit vector `axis` (Rodrigues), at unit length again."""
+    c, s = cos(radians(degrees)), sin(radians(degrees))
+    (x, y, z), (a, b, d) = vector, axis
+    cross = b * z - d * y, d * x - a * z, a * y - b * x
+    along = (x * a + y * b + z * d) * (1 - c)
+    return unit(mix(1.0, mix(c, vector, s, cross), along, axis))
+
+
+def looked(camera: Camera, right: float, up: float) -> Camera:
+    """The camera turned by degrees: to the right about the world's y axis, and up as far as straight up.
+
+    There the horizontal part of the direction is some 1e-16: too little for any picture, and enough to keep the
+    heading, so that the way back is the way that led there.
+    """
+    x, y, z = camera.direction
+    (a, _, b), _, _ = view(replace(camera, roll=0.0))
+    heading = atan2(-a, b) + radians(right)
+    height = clamp(atan2(y, hypot(x, z)) + radians(up), -pi / 2, pi / 2)
+    direction = cos(height) * cos(heading), sin(height), cos(height) * sin(heading)
+    return camera.replace(direction=unit(direction))
+
+
+def rolled(camera: Camera, degrees: float) -> Camera:
+    """The camera turned about its direction, clockwise."""
+    return camera.replace(roll=fmod(camera.roll + degrees, 360.0))

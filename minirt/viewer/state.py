@@ -1,0 +1,104 @@
+"""What the editor knows: a scene, what is selected in it, and the way back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from typing import Any
+
+from minirt.element import Element, fields_of
+from minirt.fields import Direction, Field, Point
+from minirt.scene import Camera, Scene
+from minirt.viewer.measure import size_of
+
+MERGE = 0.5  # seconds; changes of the same kind that follow each other faster are undone together
+
+
+class Frame(Enum):
+    """The axes along and about which objects move; the value is what the user sees."""
+
+    VIEW = "view"
+    X = "X axis"
+    Y = "Y axis"
+    Z = "Z axis"
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What undo goes back to."""
+
+    scene: Scene
+    selected: int
+
+
+@dataclass(frozen=True)
+class State:
+    """Immutable; every action of the editor makes a new one."""
+
+    scene: Scene
+    selected: int  # index into scene.elements
+    home: Camera  # the camera of the file
+    size: float  # how large the scene is, in scene units: movements are shares of it
+    value: int = 0  # index into `values` of the selected element
+    frame: Frame = Frame.VIEW
+    message: str = ""
+    past: tuple[Moment, ...] = field(default=(), repr=False)  # oldest first
+    future: tuple[Moment, ...] = field(default=(), repr=False)  # furthest first
+    recent: tuple[str, float] | None = None  # kind and time of the last change, while more may be merged with it
+
+    @property
+    def element(self) -> Element:
+        """The selected one."""
+        return self.scene.elements[self.selected]
+
+    @property
+    def active(self) -> Field | None:
+        """The field that grows and shrinks, if the selected element has any."""
+        known = values(type(self.element))
+        return known[self.value % len(known)] if known else None
+
+    def say(self, message: str) -> State:
+        """The same with a message to the user."""
+        return replace(self, message=message)
+
+    def select(self, index: int) -> State:
+        """Select another element; what follows is undone by itself."""
+        return replace(self, selected=index, value=0, recent=None)
+
+    def change(self, scene: Scene, kind: str, now: float, selected: int | None = None) -> State:
+        """Another scene; `kind` tells which changes may be undone together. With none that is so for no other."""
+        same = bool(kind) and self.recent is not None and self.recent[0] == kind and now - self.recent[1] <= MERGE
+        past = self.past if same else (*self.past, Moment(self.scene, self.selected))
+        chosen = self.selected if selected is None else selected
+        return replace(self, scene=scene, selected=chosen, past=past, future=(), recent=(kind, now))
+
+    def put(self, element: Element, kind: str, now: float) -> State:
+        """`element` in the place of the selected one."""
+        if element == self.element:
+            return self
+        return self.change(self.scene.replace(self.element, element), kind, now)
+
+
+def opened(scene: Scene) -> State:
+    """The state in which a scene is first seen."""
+    return State(scene, index_of(scene, scene.camera), scene.camera, size_of(scene))
+
+
+def index_of(scene: Scene, element: Element) -> int:
+    """The index of that very element in `scene.elements`."""
+    return next(index for index, each in enumerate(scene.elements) if each is element)
+
+
+def values(kind: type[Element]) -> tuple[Field, ...]:
+    """The fields that can grow and shrink."""
+    return tuple(each for each in fields_of(kind) if type(each).nudge is not Field.nudge)
+
+
+def named(kind: type[Element], sort: type[Any]) -> tuple[str, ...]:
+    """The names of the fields of one sort: of the points, of the directions."""
+    return tuple(each.name for each in fields_of(kind) if isinstance(each, sort))
+
+
+def can_edit(kind: type[Element]) -> bool:
+    """Whether any key does anything to it."""
+    return bool(values(kind) or named(kind, Point) or named(kind, Direction))

@@ -1,0 +1,3 @@
+"""One virtual screen for all tests that open windows."""
+
+from tests.windows import desktop  # noqa: F401
