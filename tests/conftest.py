@@ -1,3 +1,5 @@
 """One virtual screen for all tests that open windows."""
 
-from tests.windows import desktop  # noqa: F401
+from tests.windows import desktop
+
+__all__ = ["desktop"]
