@@ -6,7 +6,14 @@ Shift, save for typed characters: many a keyboard needs Shift to type them.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import groupby
+
+from minirt.viewer.chords import shown
+from minirt.viewer.layouts import detect
+
+Group = tuple[str, list[tuple[str, str]]]  # title, rows of keys and help
 
 
 @dataclass(frozen=True)
@@ -20,6 +27,10 @@ class Binding:
     azerty: str = ""  # in the place of the first key, on such a keyboard
     held: bool = False
     fine: bool = False
+
+    def spellings(self, layout: str) -> tuple[str, ...]:
+        """Its keys on a keyboard of that layout."""
+        return (self.azerty, *self.keys[1:]) if layout == "azerty" and self.azerty else self.keys
 
 
 def row(group: str, action: str, help: str, *keys: str) -> Binding:
@@ -79,3 +90,30 @@ BINDINGS = (
 )
 
 FINE = ("Shift", "hold it for a tenth of the step")  # not an action: the note below each list of keys
+
+
+def groups(layout: str) -> Iterator[Group]:
+    """The rows of the table with the keys of a layout."""
+    for title, rows in groupby(BINDINGS, key=lambda binding: binding.group):
+        yield title, [("  ".join(map(shown, binding.spellings(layout))), binding.help) for binding in rows]
+
+
+def keys_text(layout: str = "auto") -> str:
+    """What `--list-keys` prints."""
+    listed = [*groups(detect(layout)), ("", [FINE])]
+    width = max(len(keys) for _, rows in listed for keys, _ in rows)
+    lines = []
+    for title, rows in listed:
+        lines += ["", title] if title else [""]
+        lines += [f"  {keys:{width}}  {help}" for keys, help in rows]
+    return "\n".join(lines[1:])
+
+
+def keys_markdown() -> str:
+    """The README's table."""
+    lines = ["| action | keys | AZERTY |", "|---|---|---|"]
+    for binding in BINDINGS:
+        azerty = f"`{binding.azerty}`" if binding.azerty else ""
+        lines.append(f"| {binding.help} | {' '.join(f'`{key}`' for key in binding.keys)} | {azerty} |")
+    lines.append(f"| {FINE[1]} | `{FINE[0]}` | |")
+    return "\n".join(lines) + "\n"

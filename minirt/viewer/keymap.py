@@ -2,35 +2,17 @@
 
 from __future__ import annotations
 
-import locale
-from typing import Final
-
 from minirt.mlx import Key, Modifier
 from minirt.viewer.bindings import BINDINGS, Binding
 from minirt.viewer.chords import Chord, chord
+from minirt.viewer.layouts import detect
 
-LAYOUTS: Final = ("auto", "qwerty", "azerty", "qwertz")
-FRENCH = ("fr_FR", "fr_BE", "French_France", "French_Belgium")  # where AZERTY is usual
 CONSIDERED = Modifier.ACCEL | Modifier.SHIFT
-
-
-def detect(layout: str) -> str:
-    """The layout that `auto` means here."""
-    if layout != "auto":
-        return layout
-    return "azerty" if locale.getlocale()[0] in FRENCH else "qwerty"
-
-
-def spellings(binding: Binding, layout: str) -> tuple[str, ...]:
-    """The keys of a row on a keyboard of that layout; QWERTZ has the same letters as QWERTY where they matter."""
-    if layout == "azerty" and binding.azerty:
-        return (binding.azerty, *binding.keys[1:])
-    return binding.keys
 
 
 def chords(binding: Binding, layout: str) -> list[Chord]:
     """All that the handler answers to with this row."""
-    plain = [chord(spelling) for spelling in spellings(binding, layout)]
+    plain = [chord(spelling) for spelling in binding.spellings(layout)]
     shifted = [Chord(each.code, each.modifiers | Modifier.SHIFT) for each in plain if not isinstance(each.code, str)]
     return plain + shifted if binding.fine else plain
 

@@ -1,0 +1,77 @@
+"""The viewer as a program: it opens the window, runs the loop and leaves."""
+
+from __future__ import annotations
+
+import os
+import sys
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import minirt
+from minirt.mlx import Mlx
+from minirt.rendering import pick
+from minirt.scene import Scene
+from minirt.viewer.background import BackgroundPainter
+from minirt.viewer.files import differ, recover
+from minirt.viewer.painter import Renderer
+from minirt.viewer.session import Session
+
+if TYPE_CHECKING:
+    from minirt.mlx.display import Display
+
+OK, INTERRUPTED = 0, 130
+PATIENCE = 0.3  # seconds that a picture under way has to notice that it is cancelled
+
+
+def run(
+    scene: Scene,
+    *,
+    path: str | os.PathLike[str],
+    size: tuple[int, int] | None = None,
+    threads: int | None = None,
+    keys: str = "auto",
+    lenient: bool = False,
+    renderer: Renderer | None = None,
+    mlx: Mlx | None = None,
+) -> int:
+    """Show a scene until the user has seen enough; returns the exit status: 0, or 130 after Ctrl+C.
+
+    `path` is the scene's file. Changes that were not saved are kept in a file that standard output names. MlxError
+    where no window can be opened, RenderError where the pictures cannot be made.
+
+    Where the renderer cannot be stopped (inside the compiler) the process ends here and now.
+    """
+    m = mlx or Mlx()
+    display = m.mlx_init()
+    maker = renderer or minirt.renderer(threads)
+    status = OK
+    try:
+        session = Session(
+            m, display, scene, path=Path(path), size=fitting(m, display, size or minirt.size_of(scene)),
+            painter=partial(BackgroundPainter, maker), pick=pick, keys=keys, lenient=lenient,
+        )  # fmt: skip
+        try:
+            m.mlx_loop(display)
+        except KeyboardInterrupt:
+            status = INTERRUPTED
+    finally:
+        m.mlx_release(display)
+    if differ(session.state.scene, session.saved):
+        print(f"The changes that were not saved are in {recover(session.state.scene, session.path)}")
+    if not session.painter.close(PATIENCE):
+        leave(status)
+    return status
+
+
+def fitting(m: Mlx, display: Display, size: tuple[int, int]) -> tuple[int, int]:
+    """The size of a window that is no larger than the screen."""
+    _, width, height = m.mlx_get_screen_size(display)
+    return min(size[0], width), min(size[1], height)
+
+
+def leave(status: int) -> NoReturn:
+    """End the process without waiting for its threads."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)

@@ -1,0 +1,65 @@
+"""Plays recorded keys on the viewer without a window: what the user would see, with simulated time."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from functools import partial
+from pathlib import Path
+
+from minirt.mlx import Mlx
+from minirt.mlx.memory import Memory
+from minirt.rendering import pick
+from minirt.scene import Scene
+from minirt.viewer.painter import Painter, Pixels, Renderer
+from minirt.viewer.script import record
+from minirt.viewer.session import Session
+
+
+def replay(
+    scene: Scene,
+    lines: Iterable[str],
+    *,
+    renderer: Renderer,
+    size: tuple[int, int],
+    path: str | os.PathLike[str],
+    file: str = "replay",
+    keys: str = "qwerty",
+    lenient: bool = False,
+    hud: bool = True,
+) -> Pixels:
+    """Play `lines` (see `minirt.viewer.script`) and return the last frame, (h, w, 4) BGRA; without `hud` its picture
+    alone. The same lines give the same frame.
+
+    `path` is the scene's file, which keys may save and reload; `file` is what errors call the lines. ReplayError where
+    they cannot be played, before anything is done.
+    """
+    session = play(scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient)
+    return session.screen.frame if hud else session.screen.bare()
+
+
+def play(
+    scene: Scene,
+    lines: Iterable[str],
+    *,
+    renderer: Renderer,
+    size: tuple[int, int],
+    path: str | os.PathLike[str],
+    file: str = "replay",
+    keys: str = "qwerty",
+    lenient: bool = False,
+) -> Session:
+    """Like `replay`; returns the session as it is at the end."""
+    memory = Memory()
+    record(lines, file, memory)
+    m = Mlx(memory)
+    display = m.mlx_init()
+    session = Session(
+        m, display, scene, path=Path(path), size=size, painter=partial(Painter, renderer), pick=pick, keys=keys,
+        lenient=lenient,
+    )  # fmt: skip
+    try:
+        memory.play()
+    finally:
+        m.mlx_release(display)
+    return session

@@ -1,0 +1,50 @@
+"""The picture and what is written over it, brought to the window."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from minirt.mlx import Image, Mlx, Window
+from minirt.mlx.canvas import stretch
+from minirt.viewer.overlay import COMPILING, draw_help, draw_hud, draw_message
+from minirt.viewer.painter import Outcome, Pixels
+from minirt.viewer.state import State
+
+
+class Screen:
+    """Keeps the last picture, to be drawn again with other words on it or at another size."""
+
+    def __init__(self, m: Mlx, win: Window, layout: str) -> None:
+        self.m = m
+        self.win = win
+        self.layout = layout
+        self.picture: Outcome | None = None
+        self.hud = True
+        self.help = False
+        self.image = m.mlx_new_image(win.display, 1, 1)
+
+    @property
+    def frame(self) -> Pixels:
+        """The pixels that were last brought to the window."""
+        return self.image.pixels
+
+    def draw(self, state: State, compiling: bool) -> None:
+        """Draw all of it."""
+        self.image = Image(self.bare())
+        if self.help:
+            draw_help(self.frame, self.layout)
+        elif self.hud:
+            draw_hud(self.frame, state, self.picture)
+        draw_message(self.frame, COMPILING if compiling else state.message)
+        self.m.mlx_put_image_to_window(self.win.display, self.win, self.image, 0, 0)
+
+    def bare(self) -> Pixels:
+        """A copy of the picture alone, at the size of the window; black where there is none yet."""
+        width, height = self.win.width, self.win.height
+        if self.picture is None or self.picture.pixels is None:
+            return np.full((height, width, 4), (0, 0, 0, 255), np.uint8)
+        pixels = self.picture.pixels
+        if pixels.shape[:2] == (height, width):
+            return pixels.copy()
+        words = stretch(pixels.view(np.uint32)[..., 0], width, height)  # type: ignore[arg-type]  # a word a pixel: faster
+        return np.ascontiguousarray(words).view(np.uint8).reshape(height, width, 4)

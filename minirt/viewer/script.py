@@ -1,0 +1,88 @@
+"""Files of recorded keys: one command a line, `#` begins a comment.
+
+press KEY              Tab, a, F5, +, Ctrl+Shift+S       click x,y [right]
+hold KEY seconds       down KEY, up KEY                  move x,y
+text CHARACTERS        wait seconds                      wheel up|down [count]
+resize WxH             hide, show                        close
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from minirt.mlx import Button
+from minirt.mlx.memory import Memory
+from minirt.viewer.script_line import HANDS, Line
+
+
+def record(lines: Iterable[str], file: str, memory: Memory) -> None:
+    """Add the commands to the script of a back end without a screen. ReplayError for the first that is wrong."""
+    for number, text in enumerate(lines, 1):
+        line = Line(file, number, text)
+        if line.words:
+            do, usage, least, most = COMMANDS[line.choice(0, COMMANDS, "command")]
+            given = len(line.words) - 1
+            if not least <= given <= most:
+                line.fail(min(given, most + 1), f"expected '{usage}'")
+            do(line, memory)
+
+
+def press(line: Line, memory: Memory) -> None:
+    """Press and release, or type."""
+    code, modifiers = line.chord()
+    if isinstance(code, str):
+        memory.text(code)
+    else:
+        memory.tap(*(HANDS[modifier] for modifier in modifiers), code)
+
+
+def hold(line: Line, memory: Memory) -> None:
+    """Press, wait, release."""
+    down(line, memory)
+    memory.wait(line.seconds(2))
+    up(line, memory)
+
+
+def down(line: Line, memory: Memory) -> None:
+    for key in line.held():
+        memory.press(key)
+
+
+def up(line: Line, memory: Memory) -> None:
+    for key in reversed(line.held()):
+        memory.release(key)
+
+
+def typed(line: Line, memory: Memory) -> None:
+    """Each character by itself."""
+    for character in "".join(line.words[1:]):
+        memory.text(character)
+
+
+def click(line: Line, memory: Memory) -> None:
+    right = len(line.words) > 2 and line.choice(2, ["right"], "button")
+    memory.click(*line.place(), Button.RIGHT if right else Button.LEFT)
+
+
+def wheel(line: Line, memory: Memory) -> None:
+    sign = 1 if line.choice(1, ["up", "down"], "way") == "up" else -1
+    memory.scroll(sign * line.count(2), 0, 0)
+
+
+Command = tuple[Callable[[Line, Memory], None], str, int, int]  # with its usage, and how many words follow it
+
+COMMANDS: dict[str, Command] = {
+    "press": (press, "press KEY", 1, 1),
+    "hold": (hold, "hold KEY seconds", 2, 2),
+    "down": (down, "down KEY", 1, 1),
+    "up": (up, "up KEY", 1, 1),
+    "text": (typed, "text CHARACTERS", 1, 100),
+    "wait": (lambda line, memory: memory.wait(line.seconds(1)), "wait seconds", 1, 1),
+    "click": (click, "click x,y [right]", 1, 2),
+    "move": (lambda line, memory: memory.motion(*line.place()), "move x,y", 1, 1),
+    "wheel": (wheel, "wheel up|down [count]", 1, 2),
+    "resize": (lambda line, memory: memory.resize(*line.size()), "resize WxH", 1, 1),
+    "hide": (lambda _, memory: memory.minimise(True), "hide", 0, 0),
+    "show": (lambda _, memory: memory.minimise(False), "show", 0, 0),
+    "close": (lambda _, memory: memory.close_button(), "close", 0, 0),
+}

@@ -1,0 +1,212 @@
+"""The viewer on a window of the contract, whichever back end is behind it: events in, edits and pictures out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from minirt.errors import MiniRTError, RenderError
+from minirt.mlx import Event, Mlx, Modifier
+from minirt.scene import Scene
+from minirt.shapes import Shape
+from minirt.viewer import selection
+from minirt.viewer.bindings import Binding
+from minirt.viewer.commands import COMMANDS
+from minirt.viewer.editor import EDITS, apply
+from minirt.viewer.files import save_picture, summary
+from minirt.viewer.held import Held
+from minirt.viewer.keymap import Keymap
+from minirt.viewer.pace import Pace
+from minirt.viewer.painter import Job, Outcome, Painter
+from minirt.viewer.screen import Screen
+from minirt.viewer.state import State, opened
+
+if TYPE_CHECKING:
+    from minirt.mlx.display import Display
+
+Pick = Callable[[Scene, int, int, int, int], Shape | None]  # (scene, width, height, x, y)
+
+FINE = 0.1
+
+
+class Session:
+    """One window with one scene. It renders only when the scene or the size of the window changed."""
+
+    def __init__(
+        self,
+        m: Mlx,
+        mlx: Display,
+        scene: Scene,
+        *,
+        path: Path,
+        size: tuple[int, int],
+        painter: Callable[[Callable[[], object]], Painter],
+        pick: Pick,
+        keys: str = "auto",
+        lenient: bool = False,
+    ) -> None:
+        self.m = m
+        self.mlx = mlx
+        self.path = path
+        self.lenient = lenient
+        self.pick = pick
+        self.state = opened(scene)
+        self.saved = scene  # what the file holds
+        self.keymap = Keymap(keys)
+        self.held = Held()
+        self.pace = Pace()
+        self.painter = painter(lambda: m.mlx_wake(mlx))
+        self.requested: Job | None = None
+        self.wants_screenshot = False
+        self.full_screen = False
+        self.win = m.mlx_new_window(mlx, *size, f"miniRT - {path.name}", resizable=True)
+        self.screen = Screen(m, self.win, self.keymap.layout)
+        hooks: dict[Event, Callable[..., None]] = {
+            Event.EXPOSE: self.update,
+            Event.KEY_PRESS: self.on_press,
+            Event.KEY_RELEASE: self.on_release,
+            Event.BUTTON_PRESS: self.on_button,
+            Event.DESTROY_NOTIFY: self.quit,
+        }
+        for event, hook in hooks.items():
+            m.mlx_hook(self.win, event, 0, without_parameter(hook), None)
+        m.mlx_text_hook(self.win, without_parameter(self.on_press))
+        m.mlx_resize_hook(self.win, without_parameter(lambda _width, _height: self.update()))
+        m.mlx_wake_hook(mlx, without_parameter(self.on_wake))
+
+    # --- events ---
+
+    def on_press(self, code: int | str) -> None:
+        """A key goes down, or a character was typed."""
+        binding = self.keymap.find(code, self.modifiers if isinstance(code, int) else Modifier.NONE)
+        if binding:
+            self.act(binding)
+            if binding.held and isinstance(code, int):
+                self.held.press(code, binding.action, self.now)
+                self.tick_while_held()
+
+    def on_release(self, code: int) -> None:
+        self.go_on(self.held.release(code, self.now))
+        self.tick_while_held()
+        self.update()
+
+    def on_button(self, button: int, x: int, y: int) -> None:
+        binding = self.keymap.find(button, self.modifiers)
+        if binding and binding.action == "select at pointer":
+            self.show(selection.picked(self.state, self.pick(self.state.scene, self.win.width, self.win.height, x, y)))
+        elif binding:
+            self.act(binding)
+
+    def on_tick(self) -> None:
+        """A sixtieth of a second with a key held."""
+        self.go_on(self.held.advance(self.now))
+
+    def on_wake(self) -> None:
+        """The painter has something to tell."""
+        for outcome in self.painter.take():
+            self.receive(outcome)
+        self.update()
+        self.draw()
+
+    # --- what they lead to ---
+
+    def act(self, binding: Binding) -> None:
+        """Do what a row of the table says."""
+        if binding.action in EDITS:
+            self.show(apply(self.state, binding.action, FINE if binding.fine and self.shift else 1.0, self.now))
+            return
+        self.state = self.state.say("")
+        try:
+            COMMANDS[binding.action](self)
+        except MiniRTError as error:
+            self.complain(error)
+        self.show(self.state)
+
+    def go_on(self, advances: list[tuple[str, float]]) -> None:
+        """Held keys do more of what they do."""
+        state = self.state
+        for action, amount in advances:
+            if amount:
+                state = apply(state, action, amount * (FINE if self.shift else 1.0), self.now)
+        if state is not self.state:
+            self.show(state)
+
+    def show(self, state: State) -> None:
+        """Another state. Where its scene is another, the words on the picture wait for the picture."""
+        same = state.scene is self.state.scene
+        self.state = state
+        self.update()
+        if same:
+            self.draw()
+
+    def update(self) -> None:
+        """Ask for the picture of the scene as it is now, a coarse one where it has to be quick, then a fine one."""
+        now = Job(self.state.scene, self.win.width, self.win.height)
+        last = self.requested
+        if last is None:
+            self.request(now)
+        elif not last.shows(now.scene, now.width, now.height):
+            self.request(replace(now, divisor=self.pace.divisor(now.width, now.height), urgent=True))
+        elif last.divisor > 1 and not self.held and not self.painter.busy:
+            self.request(now)
+
+    def request(self, job: Job) -> None:
+        self.requested = job
+        self.painter.request(job)
+
+    def receive(self, outcome: Outcome) -> None:
+        """A picture came, or did not."""
+        if outcome.error:
+            self.complain(outcome.error)
+            return
+        self.pace.learn(outcome)
+        if outcome.pixels is not None:
+            self.screen.picture = outcome
+            try:
+                self.take_screenshot()
+            except MiniRTError as error:
+                self.complain(error)
+        elif outcome.job is self.requested:
+            self.requested = None  # cancelled, and there is no other
+
+    def complain(self, error: Exception) -> None:
+        """Show an error over the picture that is there; RenderError where it is none that miniRT knows."""
+        if not isinstance(error, MiniRTError):
+            raise RenderError(f"the picture cannot be made: {type(error).__name__}: {error}") from error
+        self.state = self.state.say(summary(error))
+
+    def take_screenshot(self) -> None:
+        """Save the picture when it is wanted and complete."""
+        picture = self.screen.picture
+        if self.wants_screenshot and picture and picture.job is self.requested and picture.job.divisor == 1:
+            self.wants_screenshot = False
+            self.state = self.state.say(f"picture: {save_picture(self.screen.bare(), self.path)}")
+
+    def quit(self) -> None:
+        self.m.mlx_loop_exit(self.mlx)
+
+    def draw(self) -> None:
+        self.screen.draw(self.state, self.painter.compiling)
+
+    def tick_while_held(self) -> None:
+        """Without a held key the loop sleeps until the next event."""
+        self.m.mlx_loop_hook(self.mlx, without_parameter(self.on_tick) if self.held else None, None)
+
+    @property
+    def now(self) -> float:
+        return self.m.mlx_time(self.mlx)
+
+    @property
+    def modifiers(self) -> Modifier:
+        return self.m.mlx_get_modifiers(self.win)
+
+    @property
+    def shift(self) -> bool:
+        return Modifier.SHIFT in self.modifiers
+
+
+def without_parameter(hook: Callable[..., object]) -> Callable[..., object]:
+    """A hook of the contract, which gets its parameter last, from a method that needs none."""
+    return lambda *arguments: hook(*arguments[:-1])

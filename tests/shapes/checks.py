@@ -1,0 +1,82 @@
+"""What must hold for the answers of a formula, against the oracle's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tests import oracle
+from tests.shapes.regimes import Rays
+from tests.shapes.ways import Intersect
+
+Array = NDArray[np.float64]
+U = 2.0**-53
+
+
+class Answers(NamedTuple):
+    """t for each ray, infinity where it misses: for the shape, and for one `slack` thicker and one thinner."""
+
+    t: Array
+    thicker: Array
+    thinner: Array
+
+
+@cache
+def posed(make: Callable[..., Rays], *how: object, **more: object) -> tuple[Rays, Answers]:
+    """The rays of a regime and the right answers."""
+    rays = make(*how, **more)
+    return rays, answers(rays)
+
+
+def answers(rays: Rays) -> Answers:
+    table = np.full((3, *rays.origins.shape[:2]), np.inf)
+    for i, shape in enumerate(rays.shapes):
+        point = next(value for value in vars(shape).values() if isinstance(value, tuple))
+        lengths = [getattr(shape, name) for name in ("diameter", "height") if hasattr(shape, name)]
+        for j, (origin, direction) in enumerate(zip(rays.origins[i], rays.directions[i], strict=True)):
+            t = oracle.nearest(shape, origin, direction)
+            slack = 64 * U * (float(t or 0) + float(np.linalg.norm(origin - point)) + sum(lengths))
+            for row, swell in enumerate((0.0, slack, -slack)):
+                at = oracle.nearest(shape, origin, direction, swell)
+                table[row, i, j] = np.inf if at is None else float(at)
+    return Answers(*table)
+
+
+def relative_errors(t: Array, right: Answers) -> Array:
+    """|t - exact| / exact of the rays that hit both the thicker and the thinner shape."""
+    sure = np.isfinite(right.thicker) & np.isfinite(right.thinner) & np.isfinite(t)
+    return np.abs(t[sure] - right.t[sure]) / right.t[sure]
+
+
+def assert_verdicts(t: Array, right: Answers) -> None:
+    """No false miss or hit, but where a shape thicker or thinner by the slack would say so."""
+    missed, hit = np.isinf(t), np.isfinite(t)
+    assert not (missed & np.isfinite(right.thinner) & np.isfinite(right.thicker)).any(), "false miss"
+    assert not (hit & np.isinf(right.thicker) & np.isinf(right.thinner)).any(), "false hit"
+
+
+def assert_near(t: Array, right: Answers, tolerance: float) -> None:
+    """The verdicts are right and t is exact within the relative `tolerance`."""
+    assert_verdicts(t, right)
+    errors = relative_errors(t, right)
+    assert errors.size > 50, "too few of these rays hit"
+    assert errors.max() <= tolerance
+
+
+def assert_between(t: Array, right: Answers, tolerance: float) -> None:
+    """The verdicts are right and t lies between those for a shape thicker and one thinner by the slack, but for the
+    relative `tolerance`."""
+    assert_verdicts(t, right)
+    sure = np.isfinite(t) & np.isfinite(right.thicker) & np.isfinite(right.thinner)
+    assert sure.sum() > 50, "too few of these rays hit"
+    low = np.minimum(right.thicker, right.thinner)[sure] * (1 - tolerance)
+    high = np.maximum(right.thicker, right.thinner)[sure] * (1 + tolerance)
+    assert ((low <= t[sure]) & (t[sure] <= high)).all()
+
+
+def errors_of(intersect: Intersect, rays: Rays, right: Answers) -> Array:
+    return relative_errors(intersect(*rays), right)

@@ -1,0 +1,162 @@
+"""Rays and shapes, at random, that are hard in one way each. Lengths are in units of the shape unless said otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.lanes import WIDTH
+from minirt.shapes import Shape
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.sphere import Sphere
+
+Array = NDArray[np.float64]
+Random = np.random.Generator
+GREY = (128, 128, 128)
+
+
+class Rays(NamedTuple):
+    """m shapes, and n rays for each of them."""
+
+    shapes: list[Shape]
+    origins: Array  # (m, n, 3)
+    directions: Array  # (m, n, 3), unit
+
+
+def unit(v: Array) -> Array:
+    v = v / np.abs(v).max(axis=-1, keepdims=True)
+    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+
+
+def ways(random: Random, *shape: int) -> Array:
+    """Random directions."""
+    return unit(random.normal(size=(*shape, 3)))
+
+
+def across(random: Random, axis: Array, *shape: int) -> Array:
+    """Random directions perpendicular to `axis`."""
+    v = np.cross(ways(random, *shape), axis)
+    return unit(v)
+
+
+def log(random: Random, low: float, high: float, *shape: int) -> Array:
+    """Random numbers whose logarithms are uniform."""
+    return np.exp(random.uniform(np.log(low), np.log(high), shape))
+
+
+def sphere(random: Random, size: float, offset: float) -> Sphere:
+    centre = offset * ways(random) + size * random.normal(size=3)
+    return Sphere(tuple(centre), size * random.uniform(0.5, 2), GREY)
+
+
+def cylinder(random: Random, size: float, offset: float) -> Cylinder:
+    centre = offset * ways(random) + size * random.normal(size=3)
+    axis = tuple(ways(random).clip(-1, 1))
+    return Cylinder(tuple(centre), axis, size * random.uniform(0.5, 2), size * random.uniform(0.5, 3), GREY)
+
+
+Make = Callable[[Random, float, float], Shape]
+
+
+def centre_of(shape: Shape) -> Array:
+    return np.array(shape.centre)
+
+
+def aimed(
+    make: Make, seed: int, size: float = 1.0, far: tuple[float, float] = (3.0, 20.0), offset: float = 0.0, count: int = 50
+) -> Rays:
+    """From `far` sizes away at places in and around the shape: some hit and some miss, few near the edge."""
+    random = np.random.default_rng(seed)
+    shapes = [make(random, size, offset) for _ in range(count)]
+    centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
+    origins = centres + size * log(random, *far, count, WIDTH, 1) * ways(random, count, WIDTH)
+    targets = centres + size * random.uniform(-0.6, 0.6, (count, WIDTH, 3))
+    return Rays(shapes, origins, unit(targets - origins))
+
+
+def inside(make: Make, seed: int, size: float = 1.0, offset: float = 0.0, count: int = 50) -> Rays:
+    """From inside of the shape, in all directions."""
+    random = np.random.default_rng(seed)
+    shapes = [make(random, size, offset) for _ in range(count)]
+    centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
+    origins = centres + size * random.uniform(-0.14, 0.14, (count, WIDTH, 3))
+    return Rays(shapes, origins, ways(random, count, WIDTH))
+
+
+def tangent(seed: int, count: int = 50) -> Rays:
+    """Past the edge of a sphere, from 1e-16 to 1e-4 of its radius inside and outside."""
+    random = np.random.default_rng(seed)
+    shapes = [sphere(random, 1.0, 0.0) for _ in range(count)]
+    aside, sign = ways(random, count, WIDTH), random.choice([-1.0, 1.0], (count, WIDTH, 1))
+    centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
+    radii = np.array([shape.diameter / 2 for shape in shapes])[:, None, None]
+    touch = centres + radii * (1 + sign * log(random, 1e-16, 1e-4, count, WIDTH, 1)) * aside
+    directions = across(random, aside, count, WIDTH)
+    return Rays(shapes, touch - random.uniform(3, 20, (count, WIDTH, 1)) * directions, directions)
+
+
+def tangent_to_side(seed: int, count: int = 50) -> Rays:
+    """Past the side of a cylinder, from 1e-16 to 1e-4 inside and outside."""
+    random = np.random.default_rng(seed)
+    shapes = [cylinder(random, 1.0, 0.0) for _ in range(count)]
+    origins, directions = np.empty((2, count, WIDTH, 3))
+    for i, shape in enumerate(shapes):
+        axis = np.array(shape.axis)
+        aside = across(random, axis, WIDTH)
+        sign = random.choice([-1.0, 1.0], (WIDTH, 1))
+        touch = centre_of(shape) + shape.height * random.uniform(-0.4, 0.4, (WIDTH, 1)) * axis
+        touch = touch + shape.diameter / 2 * (1 + sign * log(random, 1e-16, 1e-4, WIDTH, 1)) * aside
+        directions[i] = unit(np.cross(aside, axis) + random.uniform(-1, 1, (WIDTH, 1)) * axis)
+        origins[i] = touch - random.uniform(3, 20, (WIDTH, 1)) * directions[i]
+    return Rays(shapes, origins, directions)
+
+
+def rim(seed: int, count: int = 50) -> Rays:
+    """At the edge between cap and side, from 1e-16 to 1e-6 beside it, from everywhere."""
+    random = np.random.default_rng(seed)
+    shapes = [cylinder(random, 1.0, 0.0) for _ in range(count)]
+    origins, directions = np.empty((2, count, WIDTH, 3))
+    for i, shape in enumerate(shapes):
+        axis = np.array(shape.axis)
+        edge = centre_of(shape) + shape.height / 2 * axis + shape.diameter / 2 * across(random, axis, WIDTH)
+        edge = edge + log(random, 1e-16, 1e-6, WIDTH, 1) * ways(random, WIDTH)
+        directions[i] = ways(random, WIDTH)
+        origins[i] = edge - random.uniform(3, 20, (WIDTH, 1)) * directions[i]
+    return Rays(shapes, origins, directions)
+
+
+def along_axis(seed: int, off: tuple[float, float] | None, offset: float = 0.0, count: int = 50) -> Rays:
+    """Along the axis of a cylinder, or off it by an angle (radians) in `off`, at its cap and beside it."""
+    random = np.random.default_rng(seed)
+    shapes = [cylinder(random, 1.0, offset) for _ in range(count)]
+    origins, directions = np.empty((2, count, WIDTH, 3))
+    for i, shape in enumerate(shapes):
+        axis = np.array(shape.axis)
+        angle = log(random, *off, WIDTH, 1) if off else np.zeros((WIDTH, 1))
+        start = shape.diameter / 2 * random.choice([0.0, 0.5, 0.9, 1.1], (WIDTH, 1))
+        directions[i] = axis if off is None else unit(axis + angle * across(random, axis, WIDTH))
+        origins[i] = centre_of(shape) - 5 * axis + start * across(random, axis, WIDTH)
+    return Rays(shapes, origins, directions)
+
+
+def inside_tube(seed: int, height: float = 1e9, count: int = 50) -> Rays:
+    """In the middle of a very long tube, looking 1e-8 to 1e-2 off its axis."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, count, WIDTH, 3))
+    for i in range(count):
+        shape = cylinder(random, 1.0, 0.0).replace(height=height)
+        axis = np.array(shape.axis)
+        start = 0.4 * shape.diameter * random.uniform(-1, 1, (WIDTH, 1)) * across(random, axis, WIDTH)
+        origins[i] = centre_of(shape) + start
+        directions[i] = unit(axis + log(random, 1e-8, 1e-2, WIDTH, 1) * across(random, axis, WIDTH))
+        shapes.append(shape)
+    return Rays(shapes, origins, directions)
+
+
+def disc(seed: int, height: float = 1e-9, count: int = 50) -> Rays:
+    """At a cylinder that is next to flat."""
+    rays = aimed(cylinder, seed, count=count)
+    return rays._replace(shapes=[shape.replace(height=height) for shape in rays.shapes])

@@ -1,0 +1,105 @@
+"""The three ways in which a shape's formulas run: on single numbers, on arrays and compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from minirt.kernel import jit, rows
+from minirt.lanes import WIDTH, Vec, lane, load, where
+from minirt.shapes import KINDS, Kind, Shape
+
+Array = NDArray[np.float64]
+Intersect = Callable[[list[Shape], Array, Array], Array]
+
+
+def kind_of(shape: Shape) -> Kind:
+    return next(kind for kind in KINDS if kind.element is type(shape))
+
+
+def vec(points: Array) -> Vec:
+    """The vectors in the last axis of an array; a single one has numpy numbers, which divide as IEEE 754 says."""
+    return Vec(points[..., 0], points[..., 1], points[..., 2])
+
+
+def array(v: Vec, like: Array) -> Array:
+    return np.stack([np.broadcast_to(part, like.shape[:-1]) for part in (v.x, v.y, v.z)], axis=-1)
+
+
+def wide(packed: Any) -> Any:
+    """A packed shape whose single numbers are numpy's."""
+    parts = (Vec(*map(np.float64, (p.x, p.y, p.z))) if isinstance(p, Vec) else np.float64(p) for p in packed)
+    return type(packed)(*parts)
+
+
+def on_numbers(shapes: list[Shape], origins: Array, directions: Array, formula: Any = None) -> Array:
+    """t of rays (m, n, 3) against m shapes, infinity where they miss."""
+    t = np.full(origins.shape[:2], np.inf)
+    for i, shape in enumerate(shapes):
+        packed = wide(shape.pack())
+        for j in range(origins.shape[1]):
+            with np.errstate(all="ignore"):
+                hit, at = (formula or kind_of(shape).intersect)(packed, vec(origins[i, j]), vec(directions[i, j]))
+            t[i, j] = at if hit else np.inf
+    return t
+
+
+def on_arrays(shapes: list[Shape], origins: Array, directions: Array, formula: Any = None) -> Array:
+    """The same, all rays of a shape at once."""
+    t = np.full(origins.shape[:2], np.inf)
+    for i, shape in enumerate(shapes):
+        with np.errstate(all="ignore"):
+            hit, at = (formula or kind_of(shape).intersect)(wide(shape.pack()), vec(origins[i]), vec(directions[i]))
+        t[i] = np.where(hit, at, np.inf)
+    return t
+
+
+def table(shapes: list[Shape]) -> Any:
+    """The rows of shapes of one kind."""
+    return np.array([rows.row(i, shape.pack()) for i, shape in enumerate(shapes)], rows.row_type(kind_of(shapes[0])))
+
+
+def packets(points: Array) -> Array:
+    """Vectors (m, n, 3) as the kernel loads them: one array for each component."""
+    return np.ascontiguousarray(points.reshape(-1, 3).T)
+
+
+@cache
+def kernel() -> Any:
+    """`intersect`, compiled with the flags of the renderer."""
+
+    def run(table: Any, each: Any, o: Any, d: Any, t: Any) -> None:
+        for i in range(0, t.size, WIDTH):
+            origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
+            direction = Vec(load(d[0], i), load(d[1], i), load(d[2], i))
+            hit, at = rows.intersect(rows.read(table, i // each), origin, direction)
+            at = where(hit, at, np.inf)
+            for ray in range(WIDTH):
+                t[i + ray] = lane(at, ray)
+
+    return njit(**jit.FLAGS)(run)
+
+
+def compiled(shapes: list[Shape], origins: Array, directions: Array) -> Array:
+    """The same, compiled; the number of rays of a shape is a multiple of WIDTH."""
+    t = np.empty(origins.shape[:2])
+    kernel()(table(shapes), origins.shape[1], packets(origins), packets(directions), t.reshape(-1))
+    return t
+
+
+def surfaces(shapes: list[Shape], points: Array) -> tuple[Array, Array]:
+    """`surface` for points (m, n, 3), interpreted: the points on the surface and the normals."""
+    on, out = np.empty_like(points), np.empty_like(points)
+    for i, shape in enumerate(shapes):
+        with np.errstate(all="ignore"):
+            point, normal = kind_of(shape).surface(wide(shape.pack()), vec(points[i]))
+        on[i], out[i] = array(point, points[i]), array(normal, points[i])
+    return on, out
+
+
+WAYS: dict[str, Intersect] = {"numbers": on_numbers, "arrays": on_arrays, "compiled": compiled}
