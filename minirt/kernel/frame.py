@@ -12,7 +12,7 @@ from minirt.lanes import WIDTH, Vec, dot, floor, lane, load, maximum, minimum, s
 from minirt.lanes.vec import Number
 
 ACROSS, DOWN = 4, WIDTH // 4  # pixels of a packet: the rays that are traced at once
-BAND = 4 * DOWN  # rows that a thread takes at a time
+TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles at a time
 PACKET = np.array([*(i % ACROSS for i in range(WIDTH)), *(i // ACROSS for i in range(WIDTH))], np.float64)
 
 
@@ -28,14 +28,14 @@ def camera_ray(camera: Any, width: int, height: int, x: Number, y: Number) -> tu
     return Vec(camera[0], camera[1], camera[2]), direction / sqrt(dot(direction, direction))
 
 
-def packet(scene: Traced, width: int, height: int, samples: Any, pixels: Any, x: int, y: int) -> Vec:
+def packet(scene: Traced, tile: int, width: int, height: int, samples: Any, pixels: Any, x: int, y: int) -> Vec:
     """The light of the pixels of a packet whose upper left one is x, y: the mean of their samples."""
     across = load(pixels, 0) + x
     down = load(pixels, WIDTH) + y
     total = Vec(splat(0.0), splat(0.0), splat(0.0))
     for i in range(samples.shape[0]):
         origin, direction = camera_ray(scene.camera, width, height, across + samples[i, 0], down + samples[i, 1])
-        total = total + radiance(scene, origin, direction)
+        total = total + radiance(scene, tile, origin, direction)
     return total / samples.shape[0]
 
 
@@ -45,7 +45,7 @@ def level(light: Number) -> Number:
 
 
 def frame(next_row: Any, pixels: Any, linear: Any, samples: Any, offsets: Any, scene: Traced) -> None:
-    """Render bands of rows, taking the next one from the counter `next_row` until none is left.
+    """Render rows of tiles, taking the next one from the counter `next_row` until none is left.
 
     Any number of threads may do so at the same time. `pixels` (h, w) takes 0xAARRGGBB; `linear` (h, w, 3), or one
     without rows where it is not wanted, takes the light as it is. `samples` (k, 2) are places in a pixel, `offsets` is
@@ -53,12 +53,19 @@ def frame(next_row: Any, pixels: Any, linear: Any, samples: Any, offsets: Any, s
     """
     height, width = pixels.shape
     while True:
-        top = fetch_add(next_row, BAND)
+        top = fetch_add(next_row, TILE)
         if top >= height:
             return
-        for y in range(top, min(top + BAND, height), DOWN):
+        first_tile = top // TILE * tiles(width)
+        for y in range(top, min(top + TILE, height), DOWN):
             for x in range(0, width, ACROSS):
-                store(pixels, linear, x, y, packet(scene, width, height, samples, offsets, x, y))
+                tile = first_tile + x // TILE
+                store(pixels, linear, x, y, packet(scene, tile, width, height, samples, offsets, x, y))
+
+
+def tiles(pixels: int) -> int:
+    """Tiles that it takes to cover so many pixels."""
+    return (pixels + TILE - 1) // TILE
 
 
 def store(pixels: Any, linear: Any, x: int, y: int, light: Vec) -> None:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from math import inf
 
-from minirt.kernel.trace import ROUNDING, largest, nearest, occluded, surfaces
+from minirt.kernel.trace import ROUNDING, largest, nearest, surfaces, unhidden
 from minirt.kernel.traced import Traced
 from minirt.lanes import Vec, any, dot, first, lane, splat, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
 
-def radiance(scene: Traced, origin: Vec, direction: Vec) -> Vec:
+def radiance(scene: Traced, tile: int, origin: Vec, direction: Vec) -> Vec:
     """The light that arrives at `origin` against `direction`, nothing where a ray hits no shape."""
-    t, owner = nearest(scene, origin, direction)
+    t, owner = nearest(scene, tile, origin, direction)
     hit = t < inf
     light = Vec(splat(0.0), splat(0.0), splat(0.0))
     if any(hit):
@@ -54,7 +54,7 @@ def irradiance(scene: Traced, point: Vec, normal: Vec, extent: Number, hit: Mask
         lit = hit & (cosine > 0.0)
         if any(lit):
             reach = distance - 4.0 * ROUNDING * (largest(lamp) + largest(start))  # a surface hides no lamp on it
-            lit = lit & ~occluded(scene, start, towards, reach, lit)
+            lit = unhidden(scene, i, start, towards, reach, lit)
             total = total + where(lit, cosine, 0.0) * light
     return total
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.rows import Rows, index_of, intersect, read, surface
-from minirt.kernel.traced import Traced
-from minirt.lanes import Vec, any, dot, fabs, first, lane, maximum, splat, where
+from minirt.kernel.rows import intersect, read, surface
+from minirt.kernel.traced import Group, Traced
+from minirt.lanes import Vec, any, dot, fabs, first, floor, lane, maximum, minimum, splat, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
@@ -16,13 +16,13 @@ ROUNDING = 16 * 2.0**-53  # of a point on a surface, relative to its largest coo
 NEARBY = 1e-5  # two hits so close to each other, relative to their distance, may be one place
 
 
-def over_kinds(step: Callable[..., Any], groups: tuple[Rows, ...], state: Any, given: Any) -> Any:
-    """The state after `state = step(rows, state, given)` for the rows of each kind in turn.
+def over_kinds(step: Callable[..., Any], groups: tuple[Group, ...], state: Any, given: Any) -> Any:
+    """The state after `state = step(group, state, given)` for the shapes of each kind in turn.
 
     Compiled, it is the same steps one after the other, each with the formulas of its kind in it.
     """
-    for rows in groups:
-        state = step(rows, state, given)
+    for group in groups:
+        state = step(group, state, given)
     return state
 
 
@@ -31,53 +31,93 @@ def largest(v: Vec) -> Number:
     return maximum(maximum(fabs(v.x), fabs(v.y)), fabs(v.z))
 
 
-def nearest(scene: Traced, origin: Vec, direction: Vec) -> tuple[Number, Number]:
+def nearest(scene: Traced, tile: int, origin: Vec, direction: Vec) -> tuple[Number, Number]:
     """The distance to the first hit of each ray and the index of the shape that is hit; infinity and -1 where none is.
 
-    Where two surfaces coincide within rounding the shape with the lower index is hit, on the whole of the overlap.
+    The rays come from the eye and lie in a tile of the picture. Where two surfaces coincide within rounding the shape
+    with the lower index is hit, on the whole of the overlap.
     """
     nothing = splat(inf), splat(-1.0)
-    best, owner = over_kinds(nearest_of_kind, scene.groups, nothing, (scene.extents, origin, direction))
+    best, owner = over_kinds(nearest_of_kind, scene.groups, nothing, (scene, tile, origin, direction))
     return best, owner
 
 
-def nearest_of_kind(rows: Rows, state: tuple[Number, Number], given: tuple[Any, Vec, Vec]) -> tuple[Number, Number]:
+def nearest_of_kind(
+    group: Group, state: tuple[Number, Number], given: tuple[Traced, int, Vec, Vec]
+) -> tuple[Number, Number]:
     """`nearest` over the shapes of one kind, where others gave `state`."""
     best, owner = state
-    extents, origin, direction = given
-    for i in range(rows.shape[0]):
-        shape = read(rows, i)
+    scene, tile, origin, direction = given
+    for i in range(group.starts[tile], group.starts[tile + 1]):
+        index = scene.seen[i]
+        if not any(best > scene.near[index]):
+            break
+        shape = read(group.rows, scene.places[index, 1])
         hit, t = intersect(shape, origin, direction)
         closer = hit & (t < best)
         contested = hit & (fabs(t - best) <= NEARBY * t)
         if any(contested):
-            index = index_of(rows, i)
             point = origin + t * direction
             _, normal = surface(shape, point)
             gap = fabs(t - best) * fabs(dot(normal, direction))  # between the surfaces
-            rounding = ROUNDING * (largest(point) + largest(origin) + extents[int(index)])
+            rounding = ROUNDING * (largest(point) + largest(origin) + scene.extents[index])
             same = contested & (gap <= 4.0 * rounding)
             closer = (closer & ~same) | (same & (index < owner))
         if any(closer):
             best = where(closer, t, best)
-            owner = where(closer, index_of(rows, i), owner)
+            owner = where(closer, index, owner)
     return best, owner
 
 
-def occluded(scene: Traced, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
-    """Of the rays that are `asked` for, those that hit anything nearer than `distance`."""
-    return asked & ~over_kinds(free_of_kind, scene.groups, asked, (origin, direction, distance))
+def unhidden(scene: Traced, lamp: int, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
+    """Of the rays towards a lamp that are `asked` for, those that hit nothing nearer than `distance`.
 
-
-def free_of_kind(rows: Rows, free: Mask, given: tuple[Vec, Vec, Number]) -> Mask:
-    """Of the rays that were free so far, those that the shapes of one kind do not stop either."""
-    origin, direction, distance = given
-    for i in range(rows.shape[0]):
-        if not any(free):
-            break
-        hit, t = intersect(read(rows, i), origin, direction)
-        free = free & ~(hit & (t < distance))
+    Only shapes that the lamp sees in the direction of a ray are tried. The rays of a packet lie in few different cells
+    of the cube around the lamp; each cell is done once, for all of its rays.
+    """
+    if scene.grid == 1:  # a single cell holds all shapes
+        return over_kinds(unhidden_by_kind, scene.groups, asked, (scene, lamp, 0, asked, origin, direction, distance))
+    cells = cell(-direction, scene.grid)
+    free = asked
+    left = asked
+    while any(left):
+        at = lane(cells, first(left))
+        mine = left & (cells == at)
+        given = (scene, lamp, int(at), mine, origin, direction, distance)
+        free = over_kinds(unhidden_by_kind, scene.groups, free, given)
+        left = left & ~mine
     return free
+
+
+def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Mask, Vec, Vec, Number]) -> Mask:
+    """Of the rays that are free so far, those that the shapes of one kind do not stop; only `mine` are tried."""
+    scene, lamp, at, mine, origin, direction, distance = given
+    for i in range(group.lamp_starts[lamp, at], group.lamp_starts[lamp, at + 1]):
+        index = scene.lit[i]
+        if not any(free & mine & (distance > scene.lamp_near[lamp, index])):
+            break
+        hit, t = intersect(read(group.rows, scene.places[index, 1]), origin, direction)
+        free = free & ~(mine & hit & (t < distance))
+    return free
+
+
+def cell(direction: Vec, grid: int) -> Number:
+    """The cell of a cube around a lamp that a direction from it goes through: (face * grid + row) * grid + column.
+
+    Faces 0 to 5 are +x, -x, +y, -y, +z, -z; on each, columns go along the next axis in the cycle x, y, z, rows along
+    the one after it, both from -1 to 1.
+    """
+    ax, ay, az = fabs(direction.x), fabs(direction.y), fabs(direction.z)
+    along_x = (ax >= ay) & (ax >= az)
+    along_y = ~along_x & (ay >= az)
+    major = where(along_x, direction.x, where(along_y, direction.y, direction.z))
+    across = where(along_x, direction.y, where(along_y, direction.z, direction.x))
+    down = where(along_x, direction.z, where(along_y, direction.x, direction.y))
+    face = where(along_x, 0.0, where(along_y, 2.0, 4.0)) + where(major > 0.0, 0.0, 1.0)
+    half = 0.5 * grid
+    column = minimum(floor((across / fabs(major) + 1.0) * half), grid - 1.0)
+    row = minimum(floor((down / fabs(major) + 1.0) * half), grid - 1.0)
+    return (face * grid + row) * grid + column
 
 
 def surfaces(scene: Traced, owner: Number, point: Vec, hit: Mask) -> tuple[Vec, Vec]:
@@ -96,12 +136,14 @@ def surfaces(scene: Traced, owner: Number, point: Vec, hit: Mask) -> tuple[Vec, 
     return on, normal
 
 
-def surface_of_kind(rows: Rows, state: tuple[Vec, Vec, int], given: tuple[int, int, Vec, Mask]) -> tuple[Vec, Vec, int]:
+def surface_of_kind(
+    group: Group, state: tuple[Vec, Vec, int], given: tuple[int, int, Vec, Mask]
+) -> tuple[Vec, Vec, int]:
     """`surfaces` for the rays `mine`, if they hit row i of this kind; the last of the state counts the kinds."""
-    on, normal, group = state
+    on, normal, number = state
     wanted, i, point, mine = given
-    if group == wanted:
-        moved, out = surface(read(rows, i), point)
+    if number == wanted:
+        moved, out = surface(read(group.rows, i), point)
         on = where(mine, moved, on)
         normal = where(mine, out, normal)
-    return on, normal, group + 1
+    return on, normal, number + 1

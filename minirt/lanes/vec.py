@@ -28,7 +28,8 @@ class Vec:
     __rmul__ = __mul__
 
     def __truediv__(self, divisor: Number) -> Vec:
-        return Vec(self.x / divisor, self.y / divisor, self.z / divisor)
+        """Times the inverse: one division instead of three, at the price of a second rounding."""
+        return self * (1.0 / divisor)
 
     def __neg__(self) -> Vec:
         return Vec(-self.x, -self.y, -self.z)

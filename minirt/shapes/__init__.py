@@ -1,7 +1,7 @@
 """The shapes. `KINDS` is the one list of them: a new shape is a file beside these and a line here."""
 
 from minirt.shapes import cylinder, plane, sphere
-from minirt.shapes.shape import Box, Kind, Shape
+from minirt.shapes.shape import Ball, Box, Kind, Shape
 
 KINDS = (
     Kind(sphere.Sphere, sphere.PackedSphere, sphere.intersect, sphere.surface),
@@ -9,4 +9,4 @@ KINDS = (
     Kind(cylinder.Cylinder, cylinder.PackedCylinder, cylinder.intersect, cylinder.surface),
 )
 
-__all__ = ["KINDS", "Box", "Kind", "Shape"]
+__all__ = ["KINDS", "Ball", "Box", "Kind", "Shape"]

@@ -17,7 +17,7 @@ from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.quadric import below_zero
-from minirt.shapes.shape import Box, Shape
+from minirt.shapes.shape import Ball, Box, Shape
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,11 @@ class Cylinder(Shape):
     def pack(self) -> PackedCylinder:
         u, v, w = basis(self.axis)
         return PackedCylinder(Vec(*self.centre), u, v, w, self.diameter / 2, self.height / 2)
+
+    def balls(self) -> tuple[Ball, ...]:
+        (x, y, z), (u, v, w), half = self.centre, self.axis, self.height / 2
+        ends = ((x + side * u, y + side * v, z + side * w) for side in (half, -half))
+        return tuple((end, self.diameter / 2) for end in ends)
 
     def bounds(self) -> Box:
         # A disc of radius r reaches r * sqrt(1 - w_i^2) along axis i.

@@ -14,7 +14,7 @@ from minirt.fields import Colour, Direction, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
-from minirt.shapes.shape import Shape
+from minirt.shapes.shape import Ball, Shape
 
 PARALLEL = 4 * 2.0**-53  # rounding of the scalar product of two unit vectors
 
@@ -30,6 +30,9 @@ class Plane(Shape):
 
     def pack(self) -> PackedPlane:
         return PackedPlane(Vec(*self.point), Vec(*self.normal))
+
+    def balls(self) -> tuple[Ball, ...]:
+        return ()
 
     def bounds(self) -> None:
         return None

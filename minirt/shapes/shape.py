@@ -20,6 +20,7 @@ from minirt.element import Element
 from minirt.fields import Triple
 
 Box = tuple[Triple, Triple]  # least and greatest corner
+Ball = tuple[Triple, float]  # centre and radius
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,11 @@ class Shape(Element):
     @abstractmethod
     def pack(self) -> Any:
         """What the kernel keeps of the shape: the NamedTuple of its `Kind`."""
+
+    @abstractmethod
+    def balls(self) -> tuple[Ball, ...]:
+        """Balls around whose convex hull nothing of the shape sticks out, as many for each shape of a kind; none where
+        the shape has no end."""
 
     @abstractmethod
     def bounds(self) -> Box | None:

@@ -14,7 +14,7 @@ from minirt.fields import Colour, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, dot, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
-from minirt.shapes.shape import Box, Shape
+from minirt.shapes.shape import Ball, Box, Shape
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,9 @@ class Sphere(Shape):
 
     def pack(self) -> PackedSphere:
         return PackedSphere(Vec(*self.centre), self.diameter / 2)
+
+    def balls(self) -> tuple[Ball, ...]:
+        return ((self.centre, self.diameter / 2),)
 
     def bounds(self) -> Box:
         x, y, z = self.centre

@@ -95,7 +95,7 @@ FINE = ("Shift", "hold it for a tenth of the step")  # not an action: the note b
 def groups(layout: str) -> Iterator[Group]:
     """The rows of the table with the keys of a layout."""
     for title, rows in groupby(BINDINGS, key=lambda binding: binding.group):
-        yield title, [("  ".join(map(shown, binding.spellings(layout))), binding.help) for binding in rows]
+        yield title, [(" / ".join(map(shown, binding.spellings(layout))), binding.help) for binding in rows]
 
 
 def keys_text(layout: str = "auto") -> str:

@@ -44,22 +44,36 @@ def run(
     """
     m = mlx or Mlx()
     display = m.mlx_init()
-    maker = renderer or minirt.renderer(threads)
-    status = OK
     try:
         session = Session(
-            m, display, scene, path=Path(path), size=fitting(m, display, size or minirt.size_of(scene)),
-            painter=partial(BackgroundPainter, maker), pick=pick, keys=keys, lenient=lenient,
-        )  # fmt: skip
-        try:
-            m.mlx_loop(display)
-        except KeyboardInterrupt:
-            status = INTERRUPTED
+            m,
+            display,
+            scene,
+            path=Path(path),
+            size=fitting(m, display, size or minirt.size_of(scene)),
+            painter=partial(BackgroundPainter, renderer or minirt.renderer(threads)),
+            pick=pick,
+            keys=keys,
+            lenient=lenient,
+        )
+        return show(session)
     finally:
         m.mlx_release(display)
+
+
+def show(session: Session) -> int:
+    """Run the loop until it ends, and leave nothing behind; returns the exit status."""
+    status = OK
+    try:
+        session.m.mlx_loop(session.mlx)
+    except KeyboardInterrupt:
+        status = INTERRUPTED
+    finally:
+        session.m.mlx_release(session.mlx)
+        stopped = session.painter.close(PATIENCE)
     if differ(session.state.scene, session.saved):
         print(f"The changes that were not saved are in {recover(session.state.scene, session.path)}")
-    if not session.painter.close(PATIENCE):
+    if not stopped:
         leave(status)
     return status
 

@@ -1,9 +1,11 @@
 """Files of recorded keys: one command a line, `#` begins a comment.
 
-press KEY              Tab, a, F5, +, Ctrl+Shift+S       click x,y [right]
-hold KEY seconds       down KEY, up KEY                  move x,y
-text CHARACTERS        wait seconds                      wheel up|down [count]
-resize WxH             hide, show                        close
+Places and sizes are in pixels.
+
+    press KEY              Tab, a, F5, +, Ctrl+Shift+S       click x,y [right]
+    hold KEY seconds       down KEY, up KEY                  move x,y
+    text CHARACTERS        wait seconds                      wheel up|down [count]
+    resize WxH             hide, show                        close
 """
 
 from __future__ import annotations

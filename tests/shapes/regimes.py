@@ -66,7 +66,12 @@ def centre_of(shape: Shape) -> Array:
 
 
 def aimed(
-    make: Make, seed: int, size: float = 1.0, far: tuple[float, float] = (3.0, 20.0), offset: float = 0.0, count: int = 50
+    make: Make,
+    seed: int,
+    size: float = 1.0,
+    far: tuple[float, float] = (3.0, 20.0),
+    offset: float = 0.0,
+    count: int = 50,
 ) -> Rays:
     """From `far` sizes away at places in and around the shape: some hit and some miss, few near the edge."""
     random = np.random.default_rng(seed)

@@ -66,7 +66,7 @@ def table(shapes: list[Shape]) -> Any:
 
 def packets(points: Array) -> Array:
     """Vectors (m, n, 3) as the kernel loads them: one array for each component."""
-    return np.ascontiguousarray(points.reshape(-1, 3).T)
+    return np.ascontiguousarray(points.reshape(-1, 3).T, np.float64)
 
 
 @cache

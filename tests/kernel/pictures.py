@@ -1,0 +1,59 @@
+"""Pictures of small scenes, compiled and interpreted."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.kernel import frame
+from minirt.kernel.frame import PACKET
+from minirt.rendering import Renderer
+from minirt.rendering.packing import Packing
+from minirt.rendering.renderer import sample_places
+from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+
+Array = NDArray[np.float64]
+
+RED, GREEN, BLUE, WHITE = (255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255)
+EYE = Camera((1, 2, -9), (-0.1, -0.15, 1), 60)
+AMBIENT = Ambient(0.15, (255, 230, 200))
+LAMP = Light((-4, 6, -5), 0.6, (255, 240, 220))
+SECOND = FurtherLight((5, 3, -2), 0.4, (120, 160, 255))
+SHAPES = (
+    Plane((0, -1, 0), (0, 1, 0), (200, 200, 210)),
+    Sphere((-1.5, 0.2, 0), 2.4, (230, 60, 50)),
+    Cylinder((1.5, 0.3, 0.5), (0.3, 0.9, -0.2), 1.6, 2.5, (70, 180, 80)),
+    Sphere((0.3, -0.6, -2), 0.8, (60, 110, 235)),
+    Plane((0, 0, 6), (0.1, 0.2, -1), (120, 140, 165)),
+    Cylinder((-3, -0.5, -1), (1, 0, 0.4), 1, 1.5, (245, 180, 50)),
+)
+ALL = Scene((AMBIENT, EYE, LAMP, SECOND, *SHAPES))  # every kind of shape, two lamps, shadows
+ONE, TWO = Renderer(1), Renderer(2)
+
+
+def linear(scene: Scene, width: int = 24, height: int = 16, samples: int = 1, renderer: Renderer = TWO) -> Array:
+    """The light of a scene, (height, width, 3), by the compiled kernel."""
+    return picture(scene, width, height, samples, renderer)[1]
+
+
+def picture(
+    scene: Scene, width: int = 24, height: int = 16, samples: int = 1, renderer: Renderer = TWO
+) -> tuple[NDArray[np.uint8], Array]:
+    """The pixels (h, w, 4) in the order blue, green, red, alpha, and their light."""
+    pixels, light = np.full((height, width, 4), 77, np.uint8), np.full((height, width, 3), np.nan)
+    assert renderer.render(scene, pixels, samples, light)
+    return pixels, light
+
+
+def interpreted(scene: Scene, width: int = 24, height: int = 16, samples: int = 1) -> tuple[Any, Array]:
+    """The same by the kernel as it stands, in Python."""
+    words, light = np.zeros((height, width), np.uint32), np.full((height, width, 3), np.nan)
+    traced = Packing().pack(scene, width, height)
+    with np.errstate(all="ignore"):
+        frame.frame(np.zeros(1, np.int64), words, light, sample_places(samples), PACKET, traced)
+    return words.view(np.uint8).reshape(height, width, 4), light

@@ -1,0 +1,102 @@
+"""The frame: all of its pixels, once each, whatever its size, on any number of threads, interpreted or compiled."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from minirt.rendering import Renderer
+from minirt.scene import Scene
+from minirt.scene.view import view
+from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, ONE, SHAPES, TWO, interpreted, linear, picture
+
+SIZES = [(1, 1), (1, 9), (9, 1), (5, 3), (4, 2), (3, 2), (13, 11), (4, 33), (33, 8)]
+
+
+def test_the_interpreted_kernel_gives_the_same_picture() -> None:
+    pixels, light = picture(ALL)
+    words, plain = interpreted(ALL)
+    assert np.abs(light - plain).max() <= 1e-12
+    assert np.array_equal(pixels, words)
+    assert len(np.unique(pixels.reshape(-1, 4), axis=0)) > 100  # there is something to see
+
+
+@pytest.mark.parametrize("index", range(len(SHAPES)))
+def test_the_interpreted_kernel_with_fewer_kinds(index: int) -> None:
+    scene = Scene((AMBIENT, EYE, LAMP, SHAPES[index]))
+    assert np.abs(linear(scene, 13, 7, 2) - interpreted(scene, 13, 7, 2)[1]).max() <= 1e-12
+
+
+def test_one_thread_and_many_give_the_same_bits() -> None:
+    pixels, light = picture(ALL, 150, 83, renderer=ONE)
+    for threads in (TWO, Renderer(7)):
+        again, same = picture(ALL, 150, 83, renderer=threads)
+        assert np.array_equal(pixels, again)
+        assert np.array_equal(light, same)
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_every_pixel_of_every_size_is_made(width: int, height: int) -> None:
+    pixels, light = picture(ALL, width, height)
+    assert np.isfinite(light).all()
+    assert (pixels[..., 3] == 255).all()
+    words, plain = interpreted(ALL, width, height)
+    assert np.abs(light - plain).max() <= 1e-12
+    assert np.array_equal(pixels, words)
+
+
+def test_a_small_picture_is_part_of_a_larger_one() -> None:
+    # The middle row of nine is the only row of a picture as wide, and a packet has rows and columns of its own.
+    assert np.allclose(linear(ALL, 21, 9)[4:5], linear(ALL, 21, 1), atol=1e-12, rtol=0)
+    odd = linear(ALL, 63, 27)
+    assert np.allclose(odd[1::3, 1::3], linear(ALL, 21, 9), atol=1e-12, rtol=0)
+
+
+def test_nothing_outside_of_the_picture_is_written() -> None:
+    whole, light = np.full((16, 10, 4), 77, np.uint8), np.full((16, 10, 3), 5.0)
+    assert TWO.render(ALL, whole[3:10], linear=light[3:10])
+    assert (whole[:3] == 77).all()
+    assert (whole[10:] == 77).all()
+    assert (light[:3] == 5).all()
+    assert (light[10:] == 5).all()
+
+
+def test_bytes_are_clamped_and_rounded() -> None:
+    pixels, light = picture(ALL, 60, 40)
+    expected = np.floor(np.clip(light, 0, 1) * 255 + 0.5)
+    assert np.array_equal(pixels[..., 2::-1], expected)
+    bright = [LAMP.replace(brightness=1, position=EYE.position) for _ in range(3)]
+    glaring = Scene((AMBIENT, EYE, bright[0], *map(further, bright[1:]), *SHAPES))
+    pixels, light = picture(glaring, 60, 40)
+    assert light.max() > 1.5
+    assert np.array_equal(pixels[..., 2::-1], np.floor(np.clip(light, 0, 1) * 255 + 0.5))
+
+
+def further(light: object) -> object:
+    from minirt.scene import FurtherLight
+
+    return FurtherLight(light.position, light.brightness, light.colour)  # type: ignore[attr-defined]
+
+
+def test_samples_are_the_mean_of_pictures_with_finer_pixels() -> None:
+    # One sample is in the centre; many approach the mean of the pixel's area, which 81 finer pixels give too.
+    fine = linear(ALL, 24 * 9, 16 * 9).reshape(16, 9, 24, 9, 3).mean(axis=(1, 3))
+    assert np.abs(linear(ALL, samples=256) - fine).mean() < 0.15 * np.abs(linear(ALL) - fine).mean()
+
+
+def test_the_eye_looks_forward_through_the_middle() -> None:
+    from minirt.kernel.frame import camera_ray
+    from minirt.rendering.camera import camera_numbers
+
+    right, up, forward = map(np.array, view(EYE))
+    numbers = camera_numbers(EYE, 30, 20)
+    half = np.tan(np.radians(30))
+    for (x, y), expected in (
+        ((15, 10), forward),
+        ((30, 10), forward + half * right),
+        ((0, 10), forward - half * right),
+        ((15, 0), forward + half * 2 / 3 * up),
+    ):
+        origin, direction = camera_ray(numbers, 30, 20, np.float64(x), np.float64(y))
+        assert (origin.x, origin.y, origin.z) == EYE.position
+        assert np.allclose([direction.x, direction.y, direction.z], expected / np.linalg.norm(expected), atol=1e-15)

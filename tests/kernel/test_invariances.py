@@ -1,0 +1,114 @@
+"""What may be done to a scene without a change in its picture, or with one that is known."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from minirt.element import Element, fields_of
+from minirt.fields import Direction, Length, Point
+from minirt.kernel import shade
+from minirt.lanes import Vec, any, dot, splat, sqrt, where
+from minirt.scene import FurtherLight, Scene
+from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SECOND, SHAPES, interpreted, linear
+
+
+def changed(scene: Scene, point: Any = None, length: Any = None, direction: Any = None) -> Scene:
+    """The scene with functions applied to its points, lengths and directions."""
+
+    def change(element: Element) -> Element:
+        changes = {}
+        for each in fields_of(type(element)):
+            for kind, function in ((Point, point), (Length, length), (Direction, direction)):
+                if function and isinstance(each, kind):
+                    changes[each.name] = function(getattr(element, each.name))
+        return element.replace(**changes)
+
+    return Scene(change(element) for element in scene.elements)
+
+
+def scaled(scene: Scene, factor: float) -> Scene:
+    return changed(scene, lambda p: tuple(factor * x for x in p), lambda length: factor * length)
+
+
+@pytest.mark.parametrize("power", [-30, -20, -10, -1, 1, 10, 20, 30])
+def test_a_scene_scaled_by_a_power_of_two_gives_the_same_bits(power: int) -> None:
+    assert np.array_equal(linear(scaled(ALL, 2.0**power), 60, 40), linear(ALL, 60, 40))
+
+
+@pytest.mark.parametrize("shift", [(1e8, 0, 0), (-1e8, 1e8, 1e8), (1e4, -1e4, 1e3)])
+def test_a_scene_far_from_the_origin_looks_the_same(shift: tuple[float, float, float]) -> None:
+    # What is given to 1e8 is known to 1e-8: away from edges the light changes by no more than some of that.
+    moved = linear(changed(ALL, lambda p: tuple(x + y for x, y in zip(p, shift, strict=True))), 60, 40)
+    change = np.abs(moved - linear(ALL, 60, 40)).max(axis=-1)
+    assert np.quantile(change, 0.995) <= 1e-5  # the rest may be at an edge
+    assert (change[interior(ALL, 60, 40)] <= 1e-5).all()
+
+
+def interior(scene: Scene, width: int, height: int) -> np.ndarray:
+    """The pixels that have no edge in them: in which the light changes little over the pixel."""
+    fine = linear(scene, 3 * width, 3 * height).reshape(height, 3, width, 3, 3)
+    calm = np.ptp(fine, axis=(1, 3)).max(axis=-1) < 0.02
+    assert 0.5 < calm.mean() < 1
+    return calm
+
+
+def test_a_mirrored_scene_gives_the_mirrored_picture() -> None:
+    mirror = lambda v: (-v[0], v[1], v[2])  # noqa: E731
+    mirrored = changed(ALL, mirror, None, mirror)
+    difference = np.abs(linear(mirrored, 60, 40) - linear(ALL, 60, 40)[:, ::-1]).max(axis=-1)
+    assert np.quantile(difference, 0.995) <= 1e-12
+    assert (difference[interior(ALL, 60, 40)[:, ::-1]] <= 1e-12).all()
+
+
+def test_a_scene_turned_with_its_camera_gives_the_same_picture() -> None:
+    for turn in (lambda v: (v[2], v[1], -v[0]), lambda v: (-v[0], v[1], -v[2])):
+        difference = np.abs(linear(changed(ALL, turn, None, turn), 60, 40) - linear(ALL, 60, 40)).max(axis=-1)
+        assert np.quantile(difference, 0.995) <= 1e-12
+
+
+def test_a_lamp_without_light_is_no_lamp() -> None:
+    dark = Scene((AMBIENT, EYE, LAMP, SECOND.replace(brightness=0), FurtherLight((0, 5, 0), 1, (0, 0, 0)), *SHAPES))
+    assert np.array_equal(linear(dark, 60, 40), linear(Scene((AMBIENT, EYE, LAMP, *SHAPES)), 60, 40))
+
+
+def test_two_half_lamps_are_one() -> None:
+    half = FurtherLight(LAMP.position, LAMP.brightness / 2, LAMP.colour)
+    twice = linear(Scene((AMBIENT, EYE, half, half, *SHAPES)), 60, 40)
+    assert np.abs(twice - linear(Scene((AMBIENT, EYE, LAMP, *SHAPES)), 60, 40)).max() <= 4e-16
+
+
+def test_without_ambient_light_a_shadow_is_black() -> None:
+    picture = linear(Scene((EYE, LAMP, *SHAPES)), 60, 40)
+    assert ((picture == 0).all(axis=-1)).sum() > 100
+    assert (picture > 0.1).any()
+
+
+def test_a_light_of_ambient_alone_is_the_surfaces_colour() -> None:
+    picture = linear(Scene((AMBIENT, EYE, *SHAPES)), 60, 40)
+    colours = {tuple(np.round(np.divide(s.colour, 255) * np.divide(AMBIENT.colour, 255) * 0.15, 12)) for s in SHAPES}
+    assert {tuple(np.round(pixel, 12)) for pixel in picture.reshape(-1, 3)} <= colours | {(0, 0, 0)}
+
+
+def absolute(scene: Any, point: Vec, normal: Vec, extent: Any, hit: Any) -> Vec:
+    """`shade.irradiance` with the start of the way to a lamp a fixed 1e-4 above the surface."""
+    start = point + 1e-4 * normal
+    total = Vec(*(splat(x) for x in scene.ambient))
+    for row in scene.lights:
+        way = Vec(*row[:3]) - start
+        distance = sqrt(dot(way, way))
+        cosine = dot(normal, way / distance)
+        lit = hit & (cosine > 0.0)
+        if any(lit):
+            lit = lit & ~shade.occluded(scene, start, way / distance, distance, lit)
+            total = total + where(lit, cosine, 0.0) * Vec(*row[3:])
+    return total
+
+
+def test_a_fixed_offset_does_not_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = interpreted(ALL)[1]
+    monkeypatch.setattr(shade, "irradiance", absolute)
+    assert np.abs(interpreted(ALL)[1] - before).max() < 0.01  # it is right at the scale that it was made for
+    assert np.abs(interpreted(scaled(ALL, 2.0**-20))[1] - before).max() > 0.1

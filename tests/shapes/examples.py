@@ -1,0 +1,67 @@
+"""Random shapes of any kind, made from the table of its fields; rays at them, and where these hit."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from minirt.element import fields_of
+from minirt.fields import Colour, Direction, Field, Length, Point
+from minirt.kernel.trace import ROUNDING
+from minirt.rendering.packing import extent
+from minirt.shapes import Kind, Shape
+from tests.shapes.regimes import Array, Random, log, unit, ways
+from tests.shapes.ways import compiled, surfaces
+
+
+def value(field: Field, random: Random, size: float, offset: float) -> object:
+    """A random value of a field, of a shape of about this size at about this distance from the origin."""
+    if isinstance(field, Point):
+        return tuple(offset * ways(random) + size * random.normal(size=3))
+    if isinstance(field, Direction):
+        return tuple(ways(random).clip(-1, 1))
+    if isinstance(field, Length):
+        return size * log(random, 0.2, 5)
+    assert isinstance(field, Colour)
+    return tuple(random.integers(0, 256, 3))
+
+
+def example(kind: Kind, random: Random, size: float = 1.0, offset: float = 0.0) -> Shape:
+    """A random shape of a kind."""
+    return kind.element(**{each.name: value(each, random, size, offset) for each in fields_of(kind.element)})
+
+
+def place(shape: Shape) -> Array:
+    """The point that a shape is given by."""
+    return np.array(next(getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)))
+
+
+class Hits(NamedTuple):
+    """What rays from everywhere see of m shapes, n rays for each."""
+
+    shapes: list[Shape]
+    points: Array  # (m, n, 3) on the surface
+    normals: Array  # (m, n, 3) outward where there is an outside
+    facing: Array  # (m, n, 3) the same, on the side of the eye
+    hit: Array  # (m, n) whether the ray hit at all
+
+
+def hits(kind: Kind, seed: int, size: float, offset: float, shapes: int = 100, rays: int = 128) -> Hits:
+    """Random shapes, seen from within ten sizes around them."""
+    random = np.random.default_rng(seed)
+    made = [example(kind, random, size, offset) for _ in range(shapes)]
+    middles = np.stack([place(shape) for shape in made])[:, None]
+    origins = middles + size * log(random, 0.1, 10, shapes, rays, 1) * ways(random, shapes, rays)
+    directions = unit(middles + size * random.uniform(-0.6, 0.6, (shapes, rays, 3)) - origins)
+    t = compiled(made, origins, directions)
+    hit = np.isfinite(t)
+    points, normals = surfaces(made, origins + np.where(hit, t, 1.0)[..., None] * directions)
+    away = np.sum(normals * directions, axis=-1, keepdims=True) > 0
+    return Hits(made, points, normals, np.where(away, -normals, normals), hit)
+
+
+def offsets(points: Array, shapes: list[Shape]) -> Array:
+    """How far from the surface `minirt.kernel.shade` starts the way to a lamp, (m, n, 1)."""
+    extents = np.array([extent(shape) for shape in shapes])[:, None]
+    return (ROUNDING * (np.abs(points).max(axis=-1) + extents))[..., None]

@@ -1,0 +1,139 @@
+"""What every entry of the registry of shapes must have, and what its formulas must agree on."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import re
+import sys
+
+import numpy as np
+import pytest
+
+from minirt.element import fields_of, pattern
+from minirt.fields import Colour, Point
+from minirt.kernel.rows import row_type
+from minirt.scene.registry import ELEMENTS
+from minirt.shapes import KINDS, Kind, Shape
+from tests.shapes.checks import U
+from tests.shapes.examples import example, hits, offsets
+from tests.shapes.ways import WAYS, kind_of, surfaces, table
+
+SIZES = [(1e-4, 0.0), (1.0, 0.0), (1.0, 1e8), (1e8, 0.0)]
+
+
+@pytest.fixture(params=KINDS, ids=lambda kind: kind.element.title)
+def kind(request: pytest.FixtureRequest) -> Kind:
+    return request.param
+
+
+def test_each_kind_has_names_of_its_own() -> None:
+    for name in ("code", "title", "plural"):
+        assert len({getattr(kind.element, name) for kind in KINDS}) == len(KINDS)
+    assert all(ELEMENTS[kind.element.code] is kind.element for kind in KINDS)
+
+
+def test_its_element_is_a_frozen_dataclass_that_ends_in_its_colour(kind: Kind) -> None:
+    assert issubclass(kind.element, Shape)
+    assert kind.element.__dataclass_params__.frozen
+    fields = fields_of(kind.element)
+    assert fields[-1].name == "colour"
+    assert isinstance(fields[-1], Colour)
+    assert any(isinstance(each, Point) for each in fields)
+    assert all(each.doc for each in fields)
+
+
+def test_its_file_opens_with_its_manual_page(kind: Kind) -> None:
+    page = inspect.getdoc(sys.modules[kind.intersect.__module__])
+    assert page is not None
+    first, *rest = page.splitlines()
+    assert first == f"{kind.element.title.capitalize()}: `{pattern(kind.element)}`."
+    assert any(re.match(rf"    {kind.element.code} \S+.*    \S", line) for line in rest), "no example line"
+
+
+def test_its_formulas_have_the_parameters_of_the_protocol(kind: Kind) -> None:
+    assert [*inspect.signature(kind.intersect).parameters][1:] == ["origin", "direction"]
+    assert [*inspect.signature(kind.surface).parameters][1:] == ["point"]
+    assert kind.intersect.__module__ == kind.surface.__module__ == kind.element.__module__ == kind.packed.__module__
+
+
+def test_it_packs_into_a_row_and_back(kind: Kind) -> None:
+    shape = example(kind, np.random.default_rng(1))
+    packed = shape.pack()
+    assert type(packed) is kind.packed
+    assert row_type(kind).itemsize == 8 * (1 + sum(3 if hasattr(part, "x") else 1 for part in packed))
+    (row,) = table([shape])
+    numbers = [c for part in packed for c in ((part.x, part.y, part.z) if hasattr(part, "x") else (part,))]
+    assert np.array_equal(np.hstack([np.ravel(part) for part in row.item()]), [0, *numbers])
+    assert kind_of(shape) is kind
+
+
+@pytest.mark.parametrize(("size", "offset"), SIZES)
+def test_its_surface_is_a_unit_normal_and_stays_where_it_is(kind: Kind, size: float, offset: float) -> None:
+    seen = hits(kind, 1, size, offset)
+    normals, points = seen.normals[seen.hit], seen.points[seen.hit]
+    assert len(points) > 1000
+    assert np.abs(np.linalg.norm(normals, axis=-1) - 1).max() <= 8 * U
+    again, _ = surfaces(seen.shapes, seen.points)
+    moved = np.linalg.norm(again[seen.hit] - points, axis=-1)
+    assert (moved <= offsets(seen.points, seen.shapes)[seen.hit][:, 0] / 2).all()
+
+
+@pytest.mark.parametrize(("size", "offset"), SIZES)
+def test_its_normals_point_outwards(kind: Kind, size: float, offset: float) -> None:
+    seen = hits(kind, 2, size, offset)
+    # One step out of the surface: from there the way back hits it at once, the way on never does.
+    step = 1e-2 * size * np.ones((*seen.hit.shape, 1))
+    outside = seen.points + step * seen.normals
+    back, on = (WAYS["compiled"](seen.shapes, outside, sign * seen.normals)[seen.hit] for sign in (-1, 1))
+    assert np.abs(back - 1e-2 * size).max() <= 64 * U * (size + offset) * 20
+    assert np.isinf(on).all()
+
+
+@pytest.mark.parametrize(("size", "offset"), SIZES)
+def test_its_bounds_contain_its_surface_and_touch_it(kind: Kind, size: float, offset: float) -> None:
+    seen = hits(kind, 3, size, offset, shapes=20, rays=1024)
+    for shape, points, hit in zip(seen.shapes, seen.points, seen.hit, strict=True):
+        box = shape.bounds()
+        if box is None:
+            continue
+        low, high = map(np.array, box)
+        slack = 64 * U * (10 * size + offset)
+        assert (points[hit] >= low - slack).all()
+        assert (points[hit] <= high + slack).all()
+        assert (points[hit].max(axis=0) - points[hit].min(axis=0) >= 0.5 * (high - low)).all()
+
+
+def test_the_three_ways_agree(kind: Kind) -> None:
+    random = np.random.default_rng(5)
+    shapes = [example(kind, random) for _ in range(20)]
+    origins, directions = random.normal(size=(2, 20, 16, 3)) * 5
+    directions /= np.linalg.norm(directions, axis=-1, keepdims=True)
+    numbers, arrays, compiled = (way(shapes, origins, directions) for way in WAYS.values())
+    assert np.array_equal(numbers, arrays)
+    assert np.array_equal(np.isinf(numbers), np.isinf(compiled))
+    seen = np.isfinite(numbers)
+    assert np.abs(compiled[seen] / numbers[seen] - 1).max() <= 1e-12
+
+
+def test_it_scales_exactly(kind: Kind) -> None:
+    random = np.random.default_rng(6)
+    shapes = [example(kind, random) for _ in range(20)]
+    origins, directions = random.normal(size=(2, 20, 16, 3)) * 5
+    directions /= np.linalg.norm(directions, axis=-1, keepdims=True)
+    t = WAYS["compiled"](shapes, origins, directions)
+    for power in (-40, -1, 30):
+        scale = 2.0**power
+        larger = [scaled(shape, scale) for shape in shapes]
+        assert np.array_equal(WAYS["compiled"](larger, origins * scale, directions), t * scale)
+
+
+def scaled(shape: Shape, scale: float) -> Shape:
+    changes = {}
+    for each in fields_of(type(shape)):
+        value = getattr(shape, each.name)
+        if isinstance(each, Point):
+            changes[each.name] = tuple(scale * x for x in value)
+        elif isinstance(value, float):
+            changes[each.name] = scale * value
+    return dataclasses.replace(shape, **changes)

@@ -1,0 +1,45 @@
+"""The quadratic, at its special cases."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+import pytest
+
+from minirt.shapes.quadric import below_zero
+
+CASES = [
+    ((1, 0, -4), (True, -2, 2)),
+    ((1, -3, 8), (True, 2, 4)),
+    ((1, 3, 8), (True, -4, -2)),
+    ((1, 0, 4), (False, None, None)),  # never below zero
+    ((1, 0, 0), (True, 0, 0)),  # touches it at 0
+    ((0, 0, -1), (True, -inf, inf)),  # a constant below zero: a ray along the axis, inside
+    ((0, 0, 0), (True, -inf, inf)),
+    ((0, 0, 1), (False, None, None)),
+    ((1, 1e8, 1), (True, -2e8, -5e-9)),  # the small root, which the formula of school loses
+    ((1, -1e8, 1), (True, 5e-9, 2e8)),
+    ((np.nan, 1, 1), (False, None, None)),
+    ((1, np.nan, 1), (False, None, None)),
+    ((1, 1, np.nan), (False, None, None)),
+]
+
+
+@pytest.mark.parametrize(("coefficients", "expected"), CASES)
+def test_where_a_quadratic_is_below_zero(coefficients: tuple[float, ...], expected: tuple[object, ...]) -> None:
+    with np.errstate(all="ignore"):
+        hit, low, high = below_zero(*map(np.float64, coefficients))
+    assert hit == expected[0]
+    if hit:
+        assert (low, high) == pytest.approx(expected[1:], rel=4e-16, abs=0)
+
+
+def test_several_at_once() -> None:
+    solved = [case for case in CASES if case[1][0]]
+    with np.errstate(all="ignore"):
+        hit, low, high = below_zero(*np.array([coefficients for coefficients, _ in CASES], float).T)
+    assert hit.tolist() == [expected[0] for _, expected in CASES]
+    assert list(zip(low[hit], high[hit], strict=True)) == [
+        pytest.approx(expected[1:], rel=4e-16, abs=0) for _, expected in solved
+    ]

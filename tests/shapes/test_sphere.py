@@ -1,0 +1,102 @@
+"""The sphere's formulas, against answers known by hand and against 60 digits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from minirt.shapes.sphere import Sphere
+from tests.shapes import mutants
+from tests.shapes.checks import U, assert_between, assert_near, assert_verdicts, errors_of, posed
+from tests.shapes.regimes import GREY, Rays, aimed, inside, sphere, tangent, ways
+from tests.shapes.ways import Intersect, surfaces
+
+BALL = Sphere((0, 0, 5), 6, GREY)  # radius 3: its edge is seen from the origin along a 3-4-5 triangle
+BENIGN = posed(aimed, sphere, 1)
+FAR = [
+    posed(aimed, sphere, 2, 1.0, (1e2, 1e6)),
+    posed(aimed, sphere, 3, 1.0, (3.0, 20.0), 1e8),
+    posed(aimed, sphere, 4, 1e-6, (1e11, 1e12)),  # 1e-6 across, 1e5 to 1e6 away
+    posed(aimed, sphere, 5, 1.0, (9e3, 1e4)),
+]
+
+
+def shoot(way: Intersect, shape: Sphere, *rays: tuple[tuple[float, ...], tuple[float, ...]]) -> list[float]:
+    """t of rays, each an origin and a direction."""
+    padded = [*rays, *[rays[-1]] * (-len(rays) % 8)]
+    origins, directions = (np.array([ray[part] for ray in padded], float)[None] for part in (0, 1))
+    return list(way([shape], origins, directions)[0, : len(rays)])
+
+
+def test_answers_known_by_hand(way: Intersect) -> None:
+    rays = [
+        ((0, 0, 0), (0, 0, 1)),  # head on
+        ((0, 0, 0), (0, 0, -1)),  # behind
+        ((0, 0, 5), (0.6, 0, 0.8)),  # from the centre
+        ((0, 0, 4), (0, 0, -1)),  # from inside, the near wall
+        ((0, 0, 4), (0, 0, 1)),  # from inside, the far wall
+        ((1.8, 0, 0), (0, 0, 1)),  # 1.8 off the axis: 2.4 before the centre
+        ((3.1, 0, 0), (0, 0, 1)),  # past it
+        ((0, 0, 9), (0, 0, 1)),  # away from it
+    ]
+    assert shoot(way, BALL, *rays) == pytest.approx([2, np.inf, 3, 2, 4, 2.6, np.inf, np.inf], rel=4e-16)
+
+
+def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(way: Intersect) -> None:
+    inwards, outwards = shoot(way, BALL, ((0, 0, 2), (0, 0, 1)), ((0, 0, 2), (0, 0, -1)))
+    assert inwards == 6
+    assert outwards == np.inf
+
+
+def test_benign_rays(way: Intersect) -> None:
+    assert_near(way(*BENIGN[0]), BENIGN[1], 1e-13)
+    errors = errors_of(way, *BENIGN)
+    assert errors.max() <= 1e-15
+    assert np.sqrt((errors**2).mean()) <= 1e-15
+
+
+@pytest.mark.parametrize("rays", FAR, ids=["far", "offset", "tiny", "1e4"])
+def test_small_and_far_away(way: Intersect, rays: tuple[Rays, object]) -> None:
+    assert_near(way(*rays[0]), rays[1], 1e-13)
+
+
+def test_from_inside(way: Intersect) -> None:
+    rays, right = posed(inside, sphere, 6)
+    assert_near(way(*rays), right, 1e-13)
+    assert np.isfinite(way(*rays)).all()
+
+
+def test_tangents(way: Intersect) -> None:
+    rays, right = posed(tangent, 7)
+    assert_between(way(*rays), right, 1e-13)
+    assert errors_of(way, rays, right).max() <= 1e-6
+
+
+def test_nan_is_a_miss(way: Intersect) -> None:
+    assert shoot(way, BALL, ((np.nan, 0, 0), (0, 0, 1)), ((0, 0, 0), (0, np.nan, 1))) == [np.inf, np.inf]
+
+
+def test_the_surface_is_the_nearest_point_and_the_normal_points_outwards() -> None:
+    random = np.random.default_rng(8)
+    balls = [sphere(random, 1.0, 0.0) for _ in range(20)]
+    for ball, out in zip(balls, ways(random, 20, 8), strict=True):
+        points = np.array(ball.centre) + random.uniform(0.1, 3, (8, 1)) * out
+        on, normal = surfaces([ball], points[None])
+        assert np.abs(normal[0] - out).max() <= 16 * U * 5
+        assert np.abs(np.linalg.norm(on[0] - np.array(ball.centre), axis=-1) - ball.diameter / 2).max() <= 8 * U * 5
+
+
+@pytest.mark.parametrize("rays", FAR[:3], ids=["far", "offset", "tiny"])
+def test_the_schoolbook_formula_does_not_pass(rays: tuple[Rays, object]) -> None:
+    if rays is FAR[1]:  # far from the origin of the scene is not far from the eye: there it is as good
+        assert_near(mutants.way(mutants.from_the_origin)(*rays[0]), rays[1], 1e-13)
+    else:
+        with pytest.raises(AssertionError):
+            assert_near(mutants.way(mutants.from_the_origin)(*rays[0]), rays[1], 1e-13)
+
+
+def test_a_formula_that_accepts_nan_does_not_pass() -> None:
+    with pytest.raises(AssertionError):
+        test_nan_is_a_miss(mutants.way(mutants.accepts_nan))
+    with pytest.raises(AssertionError):
+        assert_verdicts(mutants.way(lambda *ray: (mutants.accepts_nan(*ray)[0] | True, 1.0))(*BENIGN[0]), BENIGN[1])

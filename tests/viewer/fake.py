@@ -1,0 +1,79 @@
+"""A renderer whose pictures take no time, or as long as a test says, and small scenes."""
+
+from __future__ import annotations
+
+import threading
+import zlib
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.scene import Scene, dump, parse
+from minirt.viewer.replay import play
+from minirt.viewer.session import Session
+
+TEXT = """\
+# a comment
+A 0.2 255,255,255
+C 0,0,10 0,0,-1 90   # looks along -z
+L 5,5,5 0.5 255,255,255
+sp 0,0,0 2 255,0,0
+
+pl 0,-1,0 0,1,0 0,255,0
+cy 3,0,0 0,1,0 1 4 0,0,255
+"""
+
+
+def scene(text: str = TEXT) -> Scene:
+    return parse(text, "scene.rt").scene
+
+
+class FakeRenderer:
+    """Paints one colour, which is another for each scene."""
+
+    def __init__(self) -> None:
+        self.rendered: list[tuple[int, int]] = []  # width, height of what was finished
+        self.cancelled = 0
+        self.ready = True
+        self.error: Exception | None = None
+        self.gate = threading.Event()  # pictures wait for it
+        self.gate.set()
+        self.started = threading.Event()
+        self.cancel_asked = threading.Event()
+
+    def is_ready(self, _scene: Scene) -> bool:
+        return self.ready
+
+    def prepare(self, _scene: Scene) -> None:
+        self.started.set()
+        self.gate.wait()
+        self.ready = True
+
+    def render(self, scene: Scene, pixels: NDArray[np.uint8], samples: int = 1) -> bool:
+        assert samples == 1
+        self.cancel_asked.clear()
+        self.started.set()
+        while not self.gate.wait(0.005):
+            if self.cancel_asked.is_set():
+                self.cancelled += 1
+                return False
+        if self.error:
+            raise self.error
+        pixels[...] = colour_of(scene)
+        self.rendered.append((pixels.shape[1], pixels.shape[0]))
+        return True
+
+    def cancel(self) -> None:
+        self.cancel_asked.set()
+
+
+def colour_of(scene: Scene) -> tuple[int, int, int, int]:
+    """BGRA."""
+    blue, green, red, _ = zlib.crc32(dump(scene).encode()).to_bytes(4)
+    return blue, green, red, 255
+
+
+def played(*lines: str, text: str = TEXT, path: Path = Path("scene.rt"), keys: str = "qwerty") -> Session:
+    """The session after these recorded keys."""
+    return play(scene(text), lines, renderer=FakeRenderer(), size=(64, 48), path=path, keys=keys)

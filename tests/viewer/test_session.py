@@ -1,0 +1,235 @@
+"""The viewer with a painter in the background, on a window in memory: when it renders, and when it does not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from minirt.errors import RenderError
+from minirt.mlx import Key, Mlx
+from minirt.mlx.memory import Memory
+from minirt.viewer.background import BackgroundPainter
+from minirt.viewer.pace import LONGEST
+from minirt.viewer.painter import Job, Outcome, Painter
+from minirt.viewer.session import Session
+from tests.viewer.fake import FakeRenderer, colour_of, scene
+from tests.windows import until
+
+SIZE = (64, 48)
+
+
+class ByHand(Painter):
+    """A painter whose pictures come when the test says so, and took as long as it says."""
+
+    def __init__(self, notify) -> None:
+        super().__init__(FakeRenderer(), notify)
+        self.requests: list[Job] = []
+        self.open: list[Job] = []
+
+    @property
+    def busy(self) -> bool:
+        return bool(self.open or self.outcomes)
+
+    def request(self, job: Job) -> None:
+        self.requests.append(job)
+        self.open = [job]
+
+    def finish(self, seconds: float) -> None:
+        (job,) = self.open
+        self.open = []
+        super().request(job)
+        self.outcomes[-1] = replace(self.outcomes[-1], seconds=seconds)
+
+    @property
+    def divisors(self) -> list[int]:
+        return [job.divisor for job in self.requests]
+
+
+class Bench:
+    def __init__(self, painter=ByHand) -> None:
+        self.memory = Memory()
+        m = Mlx(self.memory)
+        self.display = m.mlx_init()
+        self.session = Session(
+            m, self.display, scene(), path=Path("scene.rt"), size=SIZE, painter=painter, pick=lambda *_: None
+        )
+        self.painter = self.session.painter
+        self.memory.play()
+
+    def finish(self, seconds: float) -> None:
+        self.painter.finish(seconds)
+        self.memory.play()
+
+    def tap(self, *keys: Key) -> None:
+        self.memory.tap(*keys)
+        self.memory.play()
+
+
+def test_the_first_picture_is_fine_and_then_nothing_is_rendered():
+    bench = Bench()
+    assert bench.painter.requests == [Job(bench.session.state.scene, *SIZE)]
+    bench.finish(10.0)
+    bench.memory.wait(2)
+    bench.memory.expose()
+    bench.memory.motion(5, 5)
+    bench.memory.minimise(True)
+    bench.memory.minimise(False)
+    bench.tap(Key.I)
+    bench.tap(Key.H)
+    bench.tap(Key.TAB)
+    assert len(bench.painter.requests) == 1
+
+
+def test_the_loop_sleeps_unless_a_key_is_held():
+    bench = Bench()
+    assert not bench.display.busy
+    bench.memory.press(Key.D)
+    bench.memory.play()
+    assert bench.display.busy
+    bench.memory.release(Key.D)
+    bench.memory.play()
+    assert not bench.display.busy
+    bench.memory.press(Key.D)
+    bench.memory.focus(False)
+    bench.memory.play()
+    assert not bench.display.busy
+
+
+def test_slow_pictures_are_coarse_while_a_key_is_held_and_fine_afterwards():
+    bench = Bench()
+    bench.finish(LONGEST * 3)
+    bench.memory.press(Key.D)
+    for _ in range(2):
+        bench.memory.wait(0.5)
+        bench.memory.play()
+        bench.finish(LONGEST * 3 / 4)
+        assert not bench.painter.busy
+    assert set(bench.painter.divisors[1:]) == {2}
+    assert all(job.urgent for job in bench.painter.requests[1:])
+    bench.memory.release(Key.D)
+    bench.memory.play()
+    assert bench.painter.requests[-1] == Job(bench.session.state.scene, *SIZE)
+    bench.finish(LONGEST * 3)
+    bench.memory.wait(1)
+    bench.memory.play()
+    assert not bench.painter.busy
+    assert bench.session.screen.picture.job == Job(bench.session.state.scene, *SIZE)
+
+
+def test_a_press_is_shown_coarse_first_where_that_is_quicker():
+    bench = Bench()
+    bench.finish(LONGEST * 3)
+    bench.tap(Key.D)
+    bench.finish(LONGEST)
+    bench.finish(LONGEST * 3)
+    assert bench.painter.divisors == [1, 2, 1]
+    assert not bench.painter.busy
+
+
+def test_quick_pictures_stay_fine():
+    bench = Bench()
+    bench.finish(LONGEST / 2)
+    bench.memory.press(Key.D)
+    bench.memory.wait(0.5)
+    bench.memory.release(Key.D)
+    bench.memory.play()
+    bench.finish(LONGEST / 2)
+    assert set(bench.painter.divisors) == {1}
+
+
+def test_a_coarse_picture_is_stretched_over_the_window():
+    bench = Bench()
+    bench.finish(LONGEST * 100)
+    bench.tap(Key.I)
+    bench.tap(Key.D)
+    bench.finish(LONGEST)
+    assert bench.session.screen.picture.pixels.shape == (6, 8, 4)
+    assert bench.memory.screenshot().shape == (48, 64, 4)
+    assert (bench.memory.screenshot() == colour_of(bench.session.state.scene)).all()
+
+
+def test_of_many_sizes_the_last_is_rendered():
+    bench = Bench(partial(BackgroundPainter, renderer := FakeRenderer()))
+    until(lambda: renderer.rendered == [SIZE], "the first picture", 5)
+    renderer.gate.clear()
+    for width in range(10, 40):
+        bench.memory.resize(width, 20)
+    bench.memory.play()
+    renderer.gate.set()
+
+    def shown() -> bool:
+        bench.memory.play()
+        return bench.session.screen.picture.job.shows(bench.session.state.scene, 39, 20)
+
+    until(shown, "the picture of the last size", 5)
+    assert {width for width, _ in renderer.rendered} <= {64, 39, 5}
+    assert bench.painter.close(5)
+
+
+def test_the_old_picture_is_stretched_until_the_new_one_comes():
+    bench = Bench()
+    bench.tap(Key.I)
+    bench.finish(0.001)
+    bench.memory.resize(30, 20)
+    bench.memory.play()
+    assert bench.memory.screenshot().shape == (20, 30, 4)
+    assert (bench.memory.screenshot() == colour_of(bench.session.state.scene)).all()
+
+
+def test_an_error_of_the_renderer_is_a_message_over_the_picture():
+    bench = Bench()
+    bench.finish(0.001)
+    bench.tap(Key.D)
+    before = bench.memory.screenshot()
+    bench.painter.renderer.error = RenderError("too many shapes")
+    bench.finish(0.001)
+    assert bench.session.state.message == "too many shapes"
+    assert (bench.session.screen.bare() == colour_of(scene())).all()
+    assert (bench.memory.screenshot() != before).any()
+    bench.memory.wait(1)
+    bench.memory.play()
+    assert len(bench.painter.requests) == 2  # and is not tried again
+
+
+def test_an_unknown_error_ends_the_program_with_a_known_one():
+    bench = Bench()
+    bench.painter.renderer.error = ZeroDivisionError("division by zero")
+    with pytest.raises(RenderError, match="ZeroDivisionError: division by zero"):
+        bench.finish(0.001)
+
+
+def test_a_picture_that_was_cancelled_by_nobody_is_asked_for_again():
+    bench = Bench()
+    bench.painter.open.clear()
+    bench.painter.outcomes.append(Outcome(bench.painter.requests[0]))
+    bench.painter.notify()
+    bench.memory.play()
+    assert len(bench.painter.requests) == 2
+
+
+def test_compiling_is_shown():
+    bench = Bench()
+    bench.tap(Key.I)
+    dark = bench.memory.screenshot()
+    bench.painter.compiling = True
+    bench.painter.notify()
+    bench.memory.play()
+    assert (bench.memory.screenshot() != dark).any()
+    bench.painter.compiling = False
+    bench.finish(0.001)
+    assert (bench.memory.screenshot() == colour_of(scene())).all()
+
+
+def test_a_screenshot_waits_for_the_fine_picture(tmp_path):
+    bench = Bench()
+    bench.session.path = tmp_path / "scene.rt"
+    bench.finish(LONGEST * 100)
+    bench.tap(Key.D)
+    bench.tap(Key.P)
+    bench.finish(LONGEST)
+    assert list(tmp_path.iterdir()) == []
+    bench.finish(LONGEST)
+    assert [file.name for file in tmp_path.iterdir()] == ["scene-1.png"]
