@@ -98,7 +98,7 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
         print(f"miniRT {__version__}")
         return OK
     if asked.list_keys:
-        from minirt.viewer.bindings import keys_text
+        from minirt.viewer import keys_text
 
         print(keys_text())
         return OK

@@ -30,7 +30,7 @@ class BackgroundPainter(Painter):
         with self._changed:
             self._waiting = job
             self._changed.notify()
-            if self._running and not self._running.outlives(job):
+            if self._running and self._superseded(self._running):
                 self.renderer.cancel()
         if self._thread.ident is None:
             self._thread.start()
@@ -74,8 +74,15 @@ class BackgroundPainter(Painter):
             return Outcome(job, error=error)
         finally:
             self.compiling = False
+        if self._closed or self._superseded(job):
+            return Outcome(job)
         start = time.perf_counter()
         return replace(paint(self.renderer, job), seconds=time.perf_counter() - start)
+
+    def _superseded(self, job: Job) -> bool:
+        """Whether nobody waits for that picture any more."""
+        waiting = self._waiting
+        return waiting is not None and not job.outlives(waiting)
 
     def _tell(self) -> None:
         if not self._closed:

@@ -96,13 +96,13 @@ def absolute(scene: Any, point: Vec, normal: Vec, extent: Any, hit: Any) -> Vec:
     """`shade.irradiance` with the start of the way to a lamp a fixed 1e-4 above the surface."""
     start = point + 1e-4 * normal
     total = Vec(*(splat(x) for x in scene.ambient))
-    for row in scene.lights:
+    for lamp, row in enumerate(scene.lights):
         way = Vec(*row[:3]) - start
         distance = sqrt(dot(way, way))
         cosine = dot(normal, way / distance)
         lit = hit & (cosine > 0.0)
         if any(lit):
-            lit = lit & ~shade.occluded(scene, start, way / distance, distance, lit)
+            lit = shade.unhidden(scene, lamp, start, way / distance, distance, lit)
             total = total + where(lit, cosine, 0.0) * Vec(*row[3:])
     return total
 

@@ -16,6 +16,7 @@ from minirt.kernel.rows import row_type
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Kind, Shape
 from tests.shapes.checks import U
+from tests.shapes.regimes import ways
 from tests.shapes.examples import example, hits, offsets
 from tests.shapes.ways import WAYS, kind_of, surfaces, table
 
@@ -61,10 +62,10 @@ def test_it_packs_into_a_row_and_back(kind: Kind) -> None:
     shape = example(kind, np.random.default_rng(1))
     packed = shape.pack()
     assert type(packed) is kind.packed
-    assert row_type(kind).itemsize == 8 * (1 + sum(3 if hasattr(part, "x") else 1 for part in packed))
+    assert row_type(kind).itemsize == 8 * sum(3 if hasattr(part, "x") else 1 for part in packed)
     (row,) = table([shape])
     numbers = [c for part in packed for c in ((part.x, part.y, part.z) if hasattr(part, "x") else (part,))]
-    assert np.array_equal(np.hstack([np.ravel(part) for part in row.item()]), [0, *numbers])
+    assert np.array_equal(np.hstack([np.ravel(part) for part in row.item()]), numbers)
     assert kind_of(shape) is kind
 
 
@@ -102,6 +103,19 @@ def test_its_bounds_contain_its_surface_and_touch_it(kind: Kind, size: float, of
         assert (points[hit] >= low - slack).all()
         assert (points[hit] <= high + slack).all()
         assert (points[hit].max(axis=0) - points[hit].min(axis=0) >= 0.5 * (high - low)).all()
+
+
+@pytest.mark.parametrize(("size", "offset"), SIZES)
+def test_nothing_sticks_out_of_the_hull_of_its_balls(kind: Kind, size: float, offset: float) -> None:
+    seen = hits(kind, 4, size, offset, shapes=20, rays=1024)
+    directions = ways(np.random.default_rng(4), 500)
+    for shape, points, hit in zip(seen.shapes, seen.points, seen.hit, strict=True):
+        balls = shape.balls()
+        assert (shape.bounds() is None) == (not balls)
+        if balls:  # in no direction does a point reach farther than the farthest ball
+            reach = np.max([directions @ np.array(centre) + radius for centre, radius in balls], axis=0)
+            assert ((points[hit] @ directions.T).max(axis=0) <= reach + 64 * U * (10 * size + offset)).all()
+            assert len(balls) == len(seen.shapes[0].balls())
 
 
 def test_the_three_ways_agree(kind: Kind) -> None:

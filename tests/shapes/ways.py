@@ -61,7 +61,7 @@ def on_arrays(shapes: list[Shape], origins: Array, directions: Array, formula: A
 
 def table(shapes: list[Shape]) -> Any:
     """The rows of shapes of one kind."""
-    return np.array([rows.row(i, shape.pack()) for i, shape in enumerate(shapes)], rows.row_type(kind_of(shapes[0])))
+    return np.array([rows.row(shape.pack()) for shape in shapes], rows.row_type(kind_of(shapes[0])))
 
 
 def packets(points: Array) -> Array:

@@ -54,10 +54,11 @@ class FakeRenderer:
         assert samples == 1
         self.cancel_asked.clear()
         self.started.set()
-        while not self.gate.wait(0.005):
-            if self.cancel_asked.is_set():
-                self.cancelled += 1
-                return False
+        while not self.gate.wait(0.005) and not self.cancel_asked.is_set():
+            pass
+        if self.cancel_asked.is_set():
+            self.cancelled += 1
+            return False
         if self.error:
             raise self.error
         pixels[...] = colour_of(scene)

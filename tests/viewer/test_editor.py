@@ -61,7 +61,7 @@ def test_the_camera_moves_where_it_looks():
     assert after(state, "right").element.position == pytest.approx((0, 0, 11))
 
 
-@pytest.mark.parametrize(("kind", "name"), [(Light, "position"), (Sphere, "centre"), (Plane, "point"), (Cylinder, "centre")])
+@pytest.mark.parametrize(("kind", "name"), [(Light, "position"), (Sphere, "centre"), (Plane, "point")])
 def test_everything_with_a_place_moves_in_the_view_and_along_the_axes(kind, name):
     state = selecting(kind)
     x, y, z = getattr(state.element, name)
@@ -271,9 +271,8 @@ class TestStructure:
         assert back.element == Sphere((0, 0, 0), 2, RED)
 
     def test_comments_stay(self):
-        before = selecting(Sphere).scene.items
-        after_all = after(selecting(Sphere), "duplicate", "delete").scene.items
-        assert [item for item in after_all if isinstance(item, str)] == [item for item in before if isinstance(item, str)]
+        state = after(selecting(Sphere), "duplicate", "delete")
+        assert [item for item in state.scene.items if isinstance(item, str)] == ["# a comment", "", ""]
 
 
 def test_every_action_gives_a_scene_for_every_element():

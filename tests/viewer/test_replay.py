@@ -52,13 +52,19 @@ def test_shift_is_a_tenth():
     assert played("press Shift+Left").state.scene.camera.direction[0] == pytest.approx(-np.sin(np.radians(ANGLE / 10)))
 
 
-def test_wheel_and_text_resize():
-    assert played(*SELECT_SPHERE, "wheel up 2").state.scene.spheres[0].diameter == pytest.approx(2 * 1.05**2)
-    assert played(*SELECT_SPHERE, "press -").state.scene.spheres[0].diameter == pytest.approx(2 / 1.05)
-    assert played(*SELECT_SPHERE, "text +++").state.scene.spheres[0].diameter == pytest.approx(2 * 1.05**3)
-    assert played(*SELECT_SPHERE, "down Shift", "wheel up", "up Shift").state.scene.spheres[0].diameter == pytest.approx(
-        2 * 1.05**0.1
-    )
+@pytest.mark.parametrize(
+    ("keys", "steps"),
+    [
+        (["wheel up 2"], 2),
+        (["wheel down"], -1),
+        (["press -"], -1),
+        (["text +++"], 3),
+        (["down Shift", "wheel up", "up Shift"], 0.1),
+    ],
+)
+def test_wheel_and_text_resize(keys, steps):
+    (sphere,) = played(*SELECT_SPHERE, *keys).state.scene.spheres
+    assert sphere.diameter == pytest.approx(2 * 1.05**steps)
 
 
 def test_clicks_select():

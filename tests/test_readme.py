@@ -1,0 +1,76 @@
+"""What README.md says is what the program does."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from minirt.cli import main
+from minirt.scene import format_table
+from minirt.viewer import keys_markdown
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text()
+
+
+def blocks(language: str) -> list[str]:
+    """The code blocks of a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+
+
+def test_the_tables_are_those_of_the_program() -> None:
+    assert keys_markdown().strip() in README
+    assert format_table().strip() in README
+
+
+def test_the_window_program_is_the_one_that_is_tested() -> None:
+    _, program = (ROOT / "tests/mlx/gradient.py").read_text().split('"""\n\n', 1)
+    assert program in blocks("python")
+    assert len(program.splitlines()) <= 15
+
+
+def test_the_lines_of_python_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (lines,) = (block for block in blocks("python") if "minirt.load" in block)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scenes").symlink_to(ROOT / "scenes")
+    names: dict[str, object] = {}
+    exec(lines, names)
+    assert (tmp_path / "demo.png").read_bytes().startswith(b"\x89PNG")
+    assert names["scene"].spheres[0].diameter == 3  # type: ignore[attr-defined]
+
+
+def test_the_scene_is_read(tmp_path: Path) -> None:
+    (scene,) = (block for block in blocks("") if block.startswith("A 0.2"))
+    (tmp_path / "scene.rt").write_text(scene)
+    assert main([str(tmp_path / "scene.rt"), "--check"]) == 0
+
+
+def test_the_errors_are_what_is_printed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (errors,) = (block for block in blocks("") if block.startswith("Error\n"))
+    wrong = re.findall(r"^    (s.*)$", errors, re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    Path("scene.rt").write_text("\n".join(["A 0.2 255,255,255", "C 0,2,-12 0,-0.1,1 60", "", *wrong]))
+    assert main(["scene.rt"]) == 1
+    assert capsys.readouterr().err == errors
+
+
+def test_the_replay_plays(tmp_path: Path) -> None:
+    (keys,) = (block for block in blocks("") if block.startswith("press Tab"))
+    scene = tmp_path / "scene.rt"
+    scene.write_bytes((ROOT / "scenes/eval-sphere.rt").read_bytes())  # the keys save it
+    (tmp_path / "keys.txt").write_text(keys)
+    assert main([str(scene), "--replay", str(tmp_path / "keys.txt"), "-o", str(tmp_path / "out.png")]) == 0
+    assert (tmp_path / "out.png").exists()
+
+
+def test_continuous_integration_installs_what_a_newcomer_is_told_to() -> None:
+    told = set(" ".join(re.findall(r"^apt-get install (.*)$", README, re.MULTILINE)).split()) - {"make"}
+    script = (ROOT / ".ci/run").read_text()
+    (packages,) = re.findall(r'^packages="(.*?)"$', script, re.MULTILINE | re.DOTALL)
+    assert set(packages.split()) == told
+    assert "make test" in script
+    assert "make test" in README

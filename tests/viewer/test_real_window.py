@@ -1,0 +1,182 @@
+"""The whole program in a real window."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import minirt
+from tests.windows import Desktop, until
+
+pytestmark = pytest.mark.window
+
+TEXT = """\
+A 0.2 255,255,255
+C 0,1,8 0,-0.1,-0.995 60
+L 5,5,5 0.6 255,255,255
+sp 0,0,0 2 255,60,60
+pl 0,-1,0 0,1,0 90,200,90
+cy 2,0,0 0,1,0 1 2 60,60,255
+"""
+SIZE = (320, 240)
+
+
+class Viewer(NamedTuple):
+    """The running program and its window."""
+
+    desktop: Desktop
+    process: subprocess.Popen[str]
+    window: int
+    path: Path
+
+    def key(self, *names: str) -> None:
+        self.desktop.key(self.window, *names)
+
+    def shows(self, picture: NDArray[np.uint8]) -> None:
+        """Wait until the window shows exactly that."""
+        until(lambda: np.array_equal(self.desktop.screenshot(self.window), picture), "the picture", 60)
+
+    def end(self) -> tuple[int, str, str]:
+        """Status, standard output and standard error."""
+        output, errors = self.process.communicate(timeout=10)
+        return self.process.returncode, output, errors
+
+
+@contextmanager
+def viewing(desktop: Desktop, path: Path, size: tuple[int, int] = SIZE) -> Iterator[Viewer]:
+    command = (sys.executable, "-W", "error", "-m", "minirt", str(path), "--size", f"{size[0]}x{size[1]}")
+    with desktop.program(*command) as process:
+        yield Viewer(desktop, process, desktop.find(f"miniRT - {path.name}"), path)
+
+
+@pytest.fixture
+def viewer(desktop: Desktop, tmp_path: Path) -> Iterator[Viewer]:
+    path = tmp_path / "scene.rt"
+    path.write_text(TEXT)
+    with viewing(desktop, path) as opened:
+        yield opened
+
+
+def headless(path: Path, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
+    return minirt.render(minirt.load(path), *size).array
+
+
+def test_the_window_shows_the_picture_that_is_rendered_without_one(viewer):
+    viewer.key("i")
+    viewer.shows(headless(viewer.path))
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_escape_at_once(viewer):
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_the_close_button(viewer):
+    viewer.desktop.close_button(viewer.window)
+    assert viewer.end() == (0, "", "")
+
+
+def test_ctrl_c_in_the_terminal(viewer):
+    viewer.key("i")
+    viewer.shows(headless(viewer.path))
+    os.kill(viewer.process.pid, signal.SIGINT)
+    assert viewer.end() == (130, "", "")
+
+
+def test_keys_edit_and_save_the_scene(viewer):
+    viewer.key("i")
+    viewer.key("Tab", "Tab", "e", "plus", "ctrl+s")  # to the light, to the sphere
+    until(lambda: viewer.path.read_text() != TEXT, "the saved scene")
+    scene = minirt.load(viewer.path)
+    assert scene.spheres[0].centre[1] > 0
+    assert scene.spheres[0].diameter == pytest.approx(2.1)
+    viewer.key("Tab")  # takes the message away
+    viewer.shows(headless(viewer.path))
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_unsaved_changes_are_kept(viewer):
+    viewer.key("Tab", "Tab", "Delete", "Escape")
+    copy = viewer.path.with_name("scene.recovered.rt")
+    status, output, errors = viewer.end()
+    assert (status, errors) == (0, "")
+    assert str(copy) in output
+    assert minirt.load(copy).spheres == ()
+
+
+def test_thirty_sizes(viewer):
+    viewer.key("i")
+    for n in range(30):
+        viewer.desktop.run("xdotool", "windowsize", str(viewer.window), str(200 + 13 * n), str(400 - 7 * n))
+    viewer.desktop.resize(viewer.window, 333, 222)
+    viewer.shows(headless(viewer.path, (333, 222)))
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_hiding_and_covering_lose_nothing(viewer, desktop, tmp_path):
+    viewer.key("i")
+    picture = headless(viewer.path)
+    viewer.shows(picture)
+    desktop.minimise(viewer.window)
+    desktop.restore(viewer.window)
+    viewer.shows(picture)
+    other = tmp_path / "other.rt"
+    other.write_text(TEXT)
+    with viewing(desktop, other, (900, 700)) as cover:
+        for window in (viewer.window, cover.window):
+            desktop.run("xdotool", "windowmove", "--sync", str(window), "100", "100")
+        desktop.activate(cover.window)
+        cover.key("Escape")
+        assert cover.end() == (0, "", "")
+    viewer.shows(picture)
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_an_idle_window_costs_no_time(viewer):
+    viewer.key("i")
+    viewer.shows(headless(viewer.path))
+
+    def used() -> float:
+        fields = Path(f"/proc/{viewer.process.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    before = used()
+    viewer.desktop.run("sleep", "3")
+    assert used() - before <= 0.03
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_a_held_key_moves_until_it_is_let_go(viewer):
+    viewer.key("i")
+    picture = headless(viewer.path)
+    viewer.shows(picture)
+    viewer.desktop.activate(viewer.window)
+    viewer.desktop.keydown("d")
+    seen = set()
+
+    def moving() -> bool:
+        seen.add(viewer.desktop.screenshot(viewer.window).tobytes())
+        return len(seen) > 5
+
+    until(moving, "five pictures")
+    viewer.desktop.keyup("d")
+    viewer.key("Home")
+    viewer.shows(picture)
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
