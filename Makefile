@@ -28,8 +28,10 @@ $(DEV): $(NAME) pyproject.toml
 	$(PIP) install --quiet --group dev
 	touch $@
 
+# Without a display the picture goes to a file.
 run: $(NAME)
-	$(NAME) $(SCENE) --fallback $(basename $(notdir $(SCENE))).png
+	@mkdir -p out
+	$(NAME) $(SCENE) --fallback out/$(basename $(notdir $(SCENE))).png
 
 test: $(DEV)
 	$(VENV)/bin/python -m pytest $(TESTS)
@@ -44,7 +46,7 @@ bench: $(NAME)
 
 clean:
 	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +
-	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis build dist
+	rm -rf out .pytest_cache .mypy_cache .ruff_cache .hypothesis build dist
 
 fclean: clean
 	rm -rf $(VENV)

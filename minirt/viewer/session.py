@@ -80,10 +80,15 @@ class Session:
 
     def on_press(self, code: int | str) -> None:
         """A key goes down, or a character was typed."""
-        binding = self.keymap.find(code, self.modifiers if isinstance(code, int) else Modifier.NONE)
+        if isinstance(code, str):  # Shift may be a part of typing it
+            binding = self.keymap.find(code)
+            if binding:
+                self.act(binding, 1.0)
+            return
+        binding = self.keymap.find(code, self.modifiers)
         if binding:
-            self.act(binding)
-            if binding.held and isinstance(code, int):
+            self.act(binding, self.step)
+            if binding.held:
                 self.held.press(code, binding.action, self.now)
                 self.tick_while_held()
 
@@ -97,7 +102,7 @@ class Session:
         if binding and binding.action == "select at pointer":
             self.show(selection.picked(self.state, self.pick(self.state.scene, self.win.width, self.win.height, x, y)))
         elif binding:
-            self.act(binding)
+            self.act(binding, self.step)
 
     def on_tick(self) -> None:
         """A sixtieth of a second with a key held."""
@@ -112,10 +117,10 @@ class Session:
 
     # --- what they lead to ---
 
-    def act(self, binding: Binding) -> None:
+    def act(self, binding: Binding, step: float) -> None:
         """Do what a row of the table says."""
         if binding.action in EDITS:
-            self.show(apply(self.state, binding.action, FINE if binding.fine and self.shift else 1.0, self.now))
+            self.show(apply(self.state, binding.action, step if binding.fine else 1.0, self.now))
             return
         self.state = self.state.say("")
         try:
@@ -129,7 +134,7 @@ class Session:
         state = self.state
         for action, amount in advances:
             if amount:
-                state = apply(state, action, amount * (FINE if self.shift else 1.0), self.now)
+                state = apply(state, action, amount * self.step, self.now)
         if state is not self.state:
             self.show(state)
 
@@ -203,8 +208,9 @@ class Session:
         return self.m.mlx_get_modifiers(self.win)
 
     @property
-    def shift(self) -> bool:
-        return Modifier.SHIFT in self.modifiers
+    def step(self) -> float:
+        """What Shift makes of a step."""
+        return FINE if Modifier.SHIFT in self.modifiers else 1.0
 
 
 def without_parameter(hook: Callable[..., object]) -> Callable[..., object]:

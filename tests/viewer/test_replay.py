@@ -60,6 +60,7 @@ def test_shift_is_a_tenth():
         (["press -"], -1),
         (["text +++"], 3),
         (["down Shift", "wheel up", "up Shift"], 0.1),
+        (["down Shift", "text +", "up Shift"], 1),  # many keyboards type it so
     ],
 )
 def test_wheel_and_text_resize(keys, steps):
