@@ -9,20 +9,18 @@ from __future__ import annotations
 
 import os
 from functools import cache
-from typing import TYPE_CHECKING
-
-import numpy as np
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from minirt.errors import MiniRTError, MlxError, RenderError, ReplayError, SceneError
-from minirt.image import Image
-from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
-from minirt.scene import load as read
-from minirt.shapes.cylinder import Cylinder
-from minirt.shapes.plane import Plane
-from minirt.shapes.sphere import Sphere
 
 if TYPE_CHECKING:
+    from minirt.image import Image
     from minirt.rendering import Renderer
+    from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+    from minirt.shapes.cylinder import Cylinder
+    from minirt.shapes.plane import Plane
+    from minirt.shapes.sphere import Sphere
 
 __version__ = "0.1.0"
 DEFAULT_SIZE = (1280, 720)  # pixels; of a scene that does not name a size
@@ -48,11 +46,29 @@ __all__ = [
 ]
 
 
+# What is imported only when it is used, so that `miniRT --help` need not wait for it.
+HOMES = {
+    "Image": "minirt.image",
+    **dict.fromkeys(("Ambient", "Camera", "FurtherLight", "Light", "Scene"), "minirt.scene"),
+    "Cylinder": "minirt.shapes.cylinder",
+    "Plane": "minirt.shapes.plane",
+    "Sphere": "minirt.shapes.sphere",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in HOMES:
+        raise AttributeError(f"module 'minirt' has no attribute '{name}'")
+    return getattr(import_module(HOMES[name]), name)
+
+
 def load(path: str | os.PathLike[str], lenient: bool = False) -> Scene:
     """Read a scene file. SceneError, with all of its problems, where the file is not a scene.
 
     `lenient` reads what older files have: several `L`, blanks around commas, colours with decimals and the like.
     """
+    from minirt.scene import load as read
+
     return read(path, lenient).scene
 
 
@@ -70,6 +86,10 @@ def render(
     shapes compiles for some seconds, later ones and later programs do not. RenderError for a size or a number of
     samples below 1.
     """
+    import numpy as np
+
+    from minirt.image import Image
+
     width, height = width or size_of(scene)[0], height or size_of(scene)[1]
     if width < 1 or height < 1:
         raise RenderError(f"a picture has at least 1x1 pixels, got {width}x{height}")

@@ -15,8 +15,8 @@ from minirt.scene import Scene, load
 LEAST_FRAMES, LEAST_SECONDS = 9, 1.0
 
 
-def bench(path: str, scene: Scene, size: tuple[int, int] | None, threads: int | None, as_json: bool) -> str:
-    """Time of reading and of frames, as a JSON object or as a line of text.
+def measure(path: str, scene: Scene, size: tuple[int, int] | None, threads: int | None) -> dict[str, str | float]:
+    """Time of reading, in seconds, and of frames, in milliseconds.
 
     `compile_s` is the time until the kernel is ready: of compiling it, or of loading it where it was compiled before.
     """
@@ -35,7 +35,7 @@ def bench(path: str, scene: Scene, size: tuple[int, int] | None, threads: int | 
         start = perf_counter()
         renderer.render(scene, pixels)
         times.append(perf_counter() - start)
-    measured = {
+    return {
         "scene": path,
         "size": f"{width}x{height}",
         "threads": renderer.threads,
@@ -46,4 +46,8 @@ def bench(path: str, scene: Scene, size: tuple[int, int] | None, threads: int | 
         "compile_s": round(compile_s, 3),
         "load_s": round(load_s, 4),
     }
+
+
+def report(measured: dict[str, str | float], as_json: bool) -> str:
+    """What was measured as a JSON object, or as a line of text."""
     return json.dumps(measured) if as_json else ", ".join(f"{name} {value}" for name, value in measured.items())

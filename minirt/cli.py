@@ -92,15 +92,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 def run(parser: Arguments, argv: Sequence[str] | None) -> int:
     """Do what the arguments ask for."""
     asked = parser.parse_args(argv)
-    if asked.version:
-        from minirt import __version__
-
-        print(f"miniRT {__version__}")
-        return OK
-    if asked.list_keys:
-        from minirt.viewer import keys_text
-
-        print(keys_text())
+    if asked.version or asked.list_keys:
+        print(version() if asked.version else keys())
         return OK
     if len(asked.scene) != 1:
         parser.fail(f"expected one scene file, got {len(asked.scene)}: {' '.join(asked.scene)}".rstrip(": "), FAILED)
@@ -109,20 +102,22 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
 
         format_of(asked.output)  # before the work, not after it
     scene = read(asked.scene[0], asked.lenient)
-    if asked.check:
-        print(f"{asked.scene[0]}: no errors, {len(scene.shapes)} shapes, {len(scene.lights)} lights")
-        return OK
-    if asked.bench:
-        from minirt.bench import bench
+    modes = ((asked.check, check), (asked.bench, bench), (asked.replay, replay), (asked.output, headless))
+    return next((mode for wanted, mode in modes if wanted), window)(scene, asked)
 
-        print(bench(asked.scene[0], scene, asked.size, asked.threads, asked.json))
-        return OK
-    if asked.replay:
-        return replay(scene, asked)
-    if asked.output:
-        write(picture(scene, asked), asked.output, asked.verbose)
-        return OK
-    return window(scene, asked)
+
+def version() -> str:
+    """The program's name and version."""
+    from minirt import __version__
+
+    return f"miniRT {__version__}"
+
+
+def keys() -> str:
+    """The keys of the window."""
+    from minirt.viewer import keys_text
+
+    return keys_text()
 
 
 def read(path: str, lenient: bool) -> Scene:
@@ -133,6 +128,27 @@ def read(path: str, lenient: bool) -> Scene:
     for notice in notices:
         print(f"notice: {notice}", file=sys.stderr)
     return scene
+
+
+def check(scene: Scene, asked: argparse.Namespace) -> int:
+    """Say that the scene could be read."""
+    print(f"{asked.scene[0]}: no errors, {len(scene.shapes)} shapes, {len(scene.lights)} lights")
+    return OK
+
+
+def bench(scene: Scene, asked: argparse.Namespace) -> int:
+    """Print how long a frame takes."""
+    from minirt.bench import measure, report
+
+    measured = measure(asked.scene[0], scene, asked.size, asked.threads)
+    print(report(measured, asked.json))
+    return OK
+
+
+def headless(scene: Scene, asked: argparse.Namespace) -> int:
+    """Render to the output."""
+    write(picture(scene, asked), asked.output, asked.verbose)
+    return OK
 
 
 def picture(scene: Scene, asked: argparse.Namespace) -> Image:

@@ -13,6 +13,7 @@ from minirt.lanes.vec import Number
 
 ACROSS, DOWN = 4, WIDTH // 4  # pixels of a packet: the rays that are traced at once
 TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles at a time
+OPAQUE = float(0xFF000000)  # alpha of a pixel
 PACKET = np.array([*(i % ACROSS for i in range(WIDTH)), *(i // ACROSS for i in range(WIDTH))], np.float64)
 
 
@@ -72,15 +73,24 @@ def store(pixels: Any, linear: Any, x: int, y: int, light: Vec) -> None:
     """Put the light of a packet into the picture; what lies beyond its edges is dropped."""
     height, width = pixels.shape
     keep = linear.shape[0] > 0
-    colour = level(light.x) * 65536.0 + level(light.y) * 256.0 + level(light.z)
+    colour = OPAQUE + level(light.x) * 65536.0 + level(light.y) * 256.0 + level(light.z)
+    if x + ACROSS <= width and y + DOWN <= height and not keep:
+        store_block(pixels, x, y, colour)
+        return
     for i in range(WIDTH):
         column, line = x + i % ACROSS, y + i // ACROSS
         if column < width and line < height:
-            pixels[line, column] = int(lane(colour, i)) | 0xFF000000
+            pixels[line, column] = int(lane(colour, i))
             if keep:
                 linear[line, column, 0] = lane(light.x, i)
                 linear[line, column, 1] = lane(light.y, i)
                 linear[line, column, 2] = lane(light.z, i)
+
+
+def store_block(pixels: Any, x: int, y: int, colour: Number) -> None:
+    """Put a whole packet into the picture; compiled, a row of it at a time."""
+    for i in range(WIDTH):
+        pixels[y + i // ACROSS, x + i % ACROSS] = int(lane(colour, i))
 
 
 def fetch_add(counter: Any, amount: int) -> int:

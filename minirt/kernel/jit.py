@@ -17,8 +17,9 @@ from numba.extending import overload, register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
 from minirt.kernel import cache, frame, rows, shade, trace
+from minirt.lanes import WIDTH
 from minirt.lanes.teaching import teach
-from minirt.lanes.vector import VecType, vec_of
+from minirt.lanes.vector import Lanes, VecType, vec_of
 from minirt.shapes import KINDS, basis, quadric
 
 # error_model: x / 0 is infinite or NaN, as in IEEE 754. fastmath: a * b + c may round once, and nothing else. _nrt: the
@@ -92,7 +93,23 @@ def _fetch_add(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.atomic_rmw("add", counter.data, amount, "monotonic")
 
 
-OWN_FORM = (trace.over_kinds, frame.fetch_add, frame.frame)
+@teach(frame.store_block, lambda pixels, x, y, colour: types.none, [(types.Array, types.Integer, types.Integer, Lanes)])
+def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    word = ir.IntType(32)
+    pixels = context.make_array(sig.args[0])(context, builder, value=args[0])
+    x, y = (context.cast(builder, args[i], sig.args[i], types.intp) for i in (1, 2))
+    width = builder.extract_value(pixels.shape, 1)
+    words = builder.fptoui(args[3], ir.VectorType(word, WIDTH))
+    for line in range(frame.DOWN):
+        lanes = [ir.Constant(word, line * frame.ACROSS + i) for i in range(frame.ACROSS)]
+        part = builder.shuffle_vector(words, words, ir.Constant(ir.VectorType(word, frame.ACROSS), lanes))
+        row = builder.mul(builder.add(y, ir.Constant(y.type, line)), width)
+        place = builder.gep(pixels.data, [builder.add(row, x)])
+        builder.store(part, builder.bitcast(place, part.type.as_pointer()), align=4)
+    return context.get_dummy_value()
+
+
+OWN_FORM = (trace.over_kinds, frame.fetch_add, frame.store_block, frame.frame)
 for _module in (basis, quadric, trace, shade, frame, *(sys.modules[kind.intersect.__module__] for kind in KINDS)):
     for _function in own_functions(_module):
         if _function not in OWN_FORM:

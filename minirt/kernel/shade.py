@@ -13,36 +13,33 @@ from minirt.lanes.verbs import Mask
 
 def radiance(scene: Traced, tile: int, origin: Vec, direction: Vec) -> Vec:
     """The light that arrives at `origin` against `direction`, nothing where a ray hits no shape."""
-    t, owner = nearest(scene, tile, origin, direction)
+    t, owner, extent = nearest(scene, tile, origin, direction)
     hit = t < inf
     light = Vec(splat(0.0), splat(0.0), splat(0.0))
     if any(hit):
         point, normal = surfaces(scene, owner, origin + t * direction, hit)
         normal = where(dot(normal, direction) > 0.0, -normal, normal)  # the side that is seen
-        albedo, extent = looks(scene, owner, hit)
-        light = times(albedo, irradiance(scene, point, normal, extent, hit))
+        light = times(colours(scene, owner, hit), irradiance(scene, point, normal, extent, hit))
     return light
 
 
-def looks(scene: Traced, owner: Number, hit: Mask) -> tuple[Vec, Number]:
-    """The colour and the extent of the shape that each ray hits; 0 where it hits none."""
+def colours(scene: Traced, owner: Number, hit: Mask) -> Vec:
+    """The colour of the shape that each ray hits; black where it hits none."""
     colour = Vec(splat(0.0), splat(0.0), splat(0.0))
-    extent = splat(0.0)
     left = hit
     while any(left):
         index = int(lane(owner, first(left)))
         mine = left & (owner == index)
-        red, green, blue = scene.colours[index, 0], scene.colours[index, 1], scene.colours[index, 2]
-        colour = where(mine, Vec(red, green, blue), colour)
-        extent = where(mine, scene.extents[index], extent)
+        colour = where(mine, Vec(scene.colours[index, 0], scene.colours[index, 1], scene.colours[index, 2]), colour)
         left = left & ~mine
-    return colour, extent
+    return colour
 
 
 def irradiance(scene: Traced, point: Vec, normal: Vec, extent: Number, hit: Mask) -> Vec:
     """The light that falls onto a surface from the side of its normal: ambient light and, by Lambert's cosine law, the
     light of every lamp that no shape hides."""
-    start = point + ROUNDING * (largest(point) + extent) * normal  # outside, whatever the rounding of the point
+    # Outside of the surface and of those that coincide with it, whatever the rounding of each.
+    start = point + ROUNDING * (largest(point) + extent) * normal
     total = Vec(splat(scene.ambient[0]), splat(scene.ambient[1]), splat(scene.ambient[2]))
     for i in range(scene.lights.shape[0]):
         lamp = Vec(scene.lights[i, 0], scene.lights[i, 1], scene.lights[i, 2])

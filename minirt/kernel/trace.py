@@ -31,22 +31,23 @@ def largest(v: Vec) -> Number:
     return maximum(maximum(fabs(v.x), fabs(v.y)), fabs(v.z))
 
 
-def nearest(scene: Traced, tile: int, origin: Vec, direction: Vec) -> tuple[Number, Number]:
-    """The distance to the first hit of each ray and the index of the shape that is hit; infinity and -1 where none is.
+def nearest(scene: Traced, tile: int, origin: Vec, direction: Vec) -> tuple[Number, Number, Number]:
+    """The distance to the first hit of each ray, the index of the shape that is hit and its extent; infinity, -1 and 0
+    where none is.
 
     The rays come from the eye and lie in a tile of the picture. Where two surfaces coincide within rounding the shape
-    with the lower index is hit, on the whole of the overlap.
+    with the lower index is hit, on the whole of the overlap, and the extent is the larger of the two.
     """
-    nothing = splat(inf), splat(-1.0)
-    best, owner = over_kinds(nearest_of_kind, scene.groups, nothing, (scene, tile, origin, direction))
-    return best, owner
+    nothing = splat(inf), splat(-1.0), splat(0.0)
+    best, owner, extent = over_kinds(nearest_of_kind, scene.groups, nothing, (scene, tile, origin, direction))
+    return best, owner, extent
 
 
 def nearest_of_kind(
-    group: Group, state: tuple[Number, Number], given: tuple[Traced, int, Vec, Vec]
-) -> tuple[Number, Number]:
+    group: Group, state: tuple[Number, Number, Number], given: tuple[Traced, int, Vec, Vec]
+) -> tuple[Number, Number, Number]:
     """`nearest` over the shapes of one kind, where others gave `state`."""
-    best, owner = state
+    best, owner, extent = state
     scene, tile, origin, direction = given
     for i in range(group.starts[tile], group.starts[tile + 1]):
         index = scene.seen[i]
@@ -56,17 +57,21 @@ def nearest_of_kind(
         hit, t = intersect(shape, origin, direction)
         closer = hit & (t < best)
         contested = hit & (fabs(t - best) <= NEARBY * t)
+        reach = splat(scene.extents[index])
         if any(contested):
             point = origin + t * direction
             _, normal = surface(shape, point)
             gap = fabs(t - best) * fabs(dot(normal, direction))  # between the surfaces
-            rounding = ROUNDING * (largest(point) + largest(origin) + scene.extents[index])
+            rounding = ROUNDING * (largest(point) + largest(origin) + reach)
             same = contested & (gap <= 4.0 * rounding)
             closer = (closer & ~same) | (same & (index < owner))
+            reach = where(same, maximum(reach, extent), reach)
+            extent = where(same, reach, extent)
         if any(closer):
             best = where(closer, t, best)
             owner = where(closer, index, owner)
-    return best, owner
+            extent = where(closer, reach, extent)
+    return best, owner, extent
 
 
 def unhidden(scene: Traced, lamp: int, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
@@ -115,8 +120,9 @@ def cell(direction: Vec, grid: int) -> Number:
     down = where(along_x, direction.z, where(along_y, direction.x, direction.y))
     face = where(along_x, 0.0, where(along_y, 2.0, 4.0)) + where(major > 0.0, 0.0, 1.0)
     half = 0.5 * grid
-    column = minimum(floor((across / fabs(major) + 1.0) * half), grid - 1.0)
-    row = minimum(floor((down / fabs(major) + 1.0) * half), grid - 1.0)
+    scale = half / fabs(major)
+    column = minimum(floor(across * scale + half), grid - 1.0)
+    row = minimum(floor(down * scale + half), grid - 1.0)
     return (face * grid + row) * grid + column
 
 

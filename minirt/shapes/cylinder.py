@@ -73,8 +73,9 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Ma
     )
     t = approach
     if any(hit):
-        bottom = (-cylinder.half - p.z) / d.z
-        top = (cylinder.half - p.z) / d.z
+        per_height = 1.0 / d.z
+        bottom = (-cylinder.half - p.z) * per_height
+        top = (cylinder.half - p.z) * per_height
         enter = maximum(enter, minimum(bottom, top))
         leave = minimum(leave, maximum(bottom, top))
         near = approach + enter

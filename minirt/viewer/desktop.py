@@ -70,7 +70,7 @@ def show(session: Session) -> int:
         status = INTERRUPTED
     finally:
         session.m.mlx_release(session.mlx)
-        stopped = session.painter.close(PATIENCE)
+        stopped = session.pictures.painter.close(PATIENCE)
     if differ(session.state.scene, session.saved):
         print(f"The changes that were not saved are in {recover(session.state.scene, session.path)}")
     if not stopped:

@@ -38,7 +38,7 @@ def line(state: State) -> str:
             words.append(f"[{spelling(field, element)}]")
         elif not field.keyed or getattr(element, field.name) != field.default:
             words.append(spelling(field, element))
-    return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", " ".join(words))
+    return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.3g}", " ".join(words))
 
 
 def status(shown: Outcome) -> str:

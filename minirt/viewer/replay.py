@@ -35,7 +35,7 @@ def replay(
     they cannot be played, before anything is done.
     """
     session = play(scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient)
-    return session.screen.frame if hud else session.screen.bare()
+    return session.screen.frame if hud else session.picture
 
 
 def play(

@@ -12,13 +12,12 @@ from minirt.viewer.state import State
 
 
 class Screen:
-    """Keeps the last picture, to be drawn again with other words on it or at another size."""
+    """What a window shows over its picture, and the drawing of both."""
 
     def __init__(self, m: Mlx, win: Window, layout: str) -> None:
         self.m = m
         self.win = win
         self.layout = layout
-        self.picture: Outcome | None = None
         self.hud = True
         self.help = False
         self.image = m.mlx_new_image(win.display, 1, 1)
@@ -28,22 +27,22 @@ class Screen:
         """The pixels that were last brought to the window."""
         return self.image.pixels
 
-    def draw(self, state: State, compiling: bool) -> None:
+    def draw(self, state: State, picture: Outcome | None, compiling: bool) -> None:
         """Draw all of it."""
-        self.image = Image(self.bare())
+        self.image = Image(self.bare(picture))
         if self.help:
             draw_help(self.frame, self.layout)
         elif self.hud:
-            draw_hud(self.frame, state, self.picture)
+            draw_hud(self.frame, state, picture)
         draw_message(self.frame, COMPILING if compiling else state.message)
         self.m.mlx_put_image_to_window(self.win.display, self.win, self.image, 0, 0)
 
-    def bare(self) -> Pixels:
+    def bare(self, picture: Outcome | None) -> Pixels:
         """A copy of the picture alone, at the size of the window; black where there is none yet."""
         width, height = self.win.width, self.win.height
-        if self.picture is None or self.picture.pixels is None:
+        if picture is None or picture.pixels is None:
             return np.full((height, width, 4), (0, 0, 0, 255), np.uint8)
-        pixels = self.picture.pixels
+        pixels = picture.pixels
         if pixels.shape[:2] == (height, width):
             return pixels.copy()
         words = stretch(pixels.view(np.uint32)[..., 0], width, height)  # type: ignore[arg-type]  # a word a pixel: faster

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,8 +17,8 @@ from minirt.viewer.editor import EDITS, apply
 from minirt.viewer.files import save_picture, summary
 from minirt.viewer.held import Held
 from minirt.viewer.keymap import Keymap
-from minirt.viewer.pace import Pace
-from minirt.viewer.painter import Job, Outcome, Painter
+from minirt.viewer.painter import Painter, Pixels
+from minirt.viewer.pictures import Pictures
 from minirt.viewer.screen import Screen
 from minirt.viewer.state import State, opened
 
@@ -56,12 +55,10 @@ class Session:
         self.saved = scene  # what the file holds
         self.keymap = Keymap(keys)
         self.held = Held()
-        self.pace = Pace()
-        self.painter = painter(lambda: m.mlx_wake(mlx))
-        self.requested: Job | None = None
         self.wants_screenshot = False
         self.full_screen = False
         self.win = m.mlx_new_window(mlx, *size, f"miniRT - {path.name}", resizable=True)
+        self.pictures = Pictures(painter(lambda: m.mlx_wake(mlx)), self.win)
         self.screen = Screen(m, self.win, self.keymap.layout)
         hooks: dict[Event, Callable[..., None]] = {
             Event.EXPOSE: self.update,
@@ -110,8 +107,9 @@ class Session:
 
     def on_wake(self) -> None:
         """The painter has something to tell."""
-        for outcome in self.painter.take():
-            self.receive(outcome)
+        for error in self.pictures.collect():
+            self.complain(error)
+        self.guarded(Session.take_screenshot)
         self.update()
         self.draw()
 
@@ -123,10 +121,7 @@ class Session:
             self.show(apply(self.state, binding.action, step if binding.fine else 1.0, self.now))
             return
         self.state = self.state.say("")
-        try:
-            COMMANDS[binding.action](self)
-        except MiniRTError as error:
-            self.complain(error)
+        self.guarded(COMMANDS[binding.action])
         self.show(self.state)
 
     def go_on(self, advances: list[tuple[str, float]]) -> None:
@@ -147,34 +142,24 @@ class Session:
             self.draw()
 
     def update(self) -> None:
-        """Ask for the picture of the scene as it is now, a coarse one where it has to be quick, then a fine one."""
-        now = Job(self.state.scene, self.win.width, self.win.height)
-        last = self.requested
-        if last is None:
-            self.request(now)
-        elif not last.shows(now.scene, now.width, now.height):
-            self.request(replace(now, divisor=self.pace.divisor(now.width, now.height), urgent=True))
-        elif last.divisor > 1 and not self.held and not self.painter.busy:
-            self.request(now)
+        """See to it that the picture of the scene as it is comes."""
+        self.pictures.want(self.state.scene, moving=bool(self.held))
 
-    def request(self, job: Job) -> None:
-        self.requested = job
-        self.painter.request(job)
+    def draw(self) -> None:
+        self.screen.draw(self.state, self.pictures.latest, self.pictures.painter.compiling)
 
-    def receive(self, outcome: Outcome) -> None:
-        """A picture came, or did not."""
-        if outcome.error:
-            self.complain(outcome.error)
-            return
-        self.pace.learn(outcome)
-        if outcome.pixels is not None:
-            self.screen.picture = outcome
-            try:
-                self.take_screenshot()
-            except MiniRTError as error:
-                self.complain(error)
-        elif outcome.job is self.requested:
-            self.requested = None  # cancelled, and there is no other
+    def take_screenshot(self) -> None:
+        """Save the picture when it is wanted and complete. RenderError."""
+        if self.wants_screenshot and self.pictures.complete:
+            self.wants_screenshot = False
+            self.state = self.state.say(f"picture: {save_picture(self.picture, self.path)}")
+
+    def guarded(self, command: Callable[[Session], None]) -> None:
+        """Do something that may fail; the reason is shown over the picture."""
+        try:
+            command(self)
+        except MiniRTError as error:
+            self.complain(error)
 
     def complain(self, error: Exception) -> None:
         """Show an error over the picture that is there; RenderError where it is none that miniRT knows."""
@@ -182,22 +167,17 @@ class Session:
             raise RenderError(f"the picture cannot be made: {type(error).__name__}: {error}") from error
         self.state = self.state.say(summary(error))
 
-    def take_screenshot(self) -> None:
-        """Save the picture when it is wanted and complete."""
-        picture = self.screen.picture
-        if self.wants_screenshot and picture and picture.job is self.requested and picture.job.divisor == 1:
-            self.wants_screenshot = False
-            self.state = self.state.say(f"picture: {save_picture(self.screen.bare(), self.path)}")
-
     def quit(self) -> None:
         self.m.mlx_loop_exit(self.mlx)
-
-    def draw(self) -> None:
-        self.screen.draw(self.state, self.painter.compiling)
 
     def tick_while_held(self) -> None:
         """Without a held key the loop sleeps until the next event."""
         self.m.mlx_loop_hook(self.mlx, without_parameter(self.on_tick) if self.held else None, None)
+
+    @property
+    def picture(self) -> Pixels:
+        """What the window shows, without the words on it."""
+        return self.screen.bare(self.pictures.latest)
 
     @property
     def now(self) -> float:

@@ -64,7 +64,7 @@ class TestReload:
         session = played(*SELECT_SPHERE, "press d", "press F5", path=path)
         assert session.state.scene.spheres[0].diameter == 7
         assert session.state.element.title == "sphere"
-        assert (session.screen.bare() == colour_of(session.state.scene)).all()
+        assert (session.picture == colour_of(session.state.scene)).all()
         assert not differ(session.state.scene, session.saved)
 
     def test_can_be_undone(self, path):
@@ -78,7 +78,7 @@ class TestReload:
         assert f"{path}:5:10: sphere diameter must be > 0" in session.state.message
         assert "and 1 more" in session.state.message
         assert session.state.scene.camera.position[0] > 0
-        assert (session.screen.bare() == colour_of(session.state.scene)).all()
+        assert (session.picture == colour_of(session.state.scene)).all()
         assert not np.array_equal(session.screen.frame, played("press d", path=path).screen.frame)
 
     def test_of_a_file_with_fewer_elements(self, path):

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -53,17 +54,27 @@ class Viewer(NamedTuple):
 
 
 @contextmanager
-def viewing(desktop: Desktop, path: Path, size: tuple[int, int] = SIZE) -> Iterator[Viewer]:
-    command = (sys.executable, "-W", "error", "-m", "minirt", str(path), "--size", f"{size[0]}x{size[1]}")
+def viewing(desktop: Desktop, path: Path, size: tuple[int, int] = SIZE, cache: Path | None = None) -> Iterator[Viewer]:
+    """`cache`: an empty folder, for a program that has to compile first."""
+    command = [sys.executable, "-W", "error", "-m", "minirt", str(path), "--size", f"{size[0]}x{size[1]}"]
+    if cache:
+        command = ["env", f"XDG_CACHE_HOME={cache}", *command]
+    path.write_text(TEXT)
     with desktop.program(*command) as process:
         yield Viewer(desktop, process, desktop.find(f"miniRT - {path.name}"), path)
 
 
 @pytest.fixture
 def viewer(desktop: Desktop, tmp_path: Path) -> Iterator[Viewer]:
-    path = tmp_path / "scene.rt"
-    path.write_text(TEXT)
-    with viewing(desktop, path) as opened:
+    with viewing(desktop, tmp_path / "scene.rt") as opened:
+        yield opened
+
+
+@pytest.fixture
+def compiling(desktop: Desktop, tmp_path: Path) -> Iterator[Viewer]:
+    """The first run of the program, at a moment when it shows that it compiles."""
+    with viewing(desktop, tmp_path / "first.rt", cache=tmp_path / "cache") as opened:
+        until(lambda: desktop.screenshot(opened.window).any(), "the words on the black window")
         yield opened
 
 
@@ -93,6 +104,27 @@ def test_ctrl_c_in_the_terminal(viewer):
     viewer.shows(headless(viewer.path))
     os.kill(viewer.process.pid, signal.SIGINT)
     assert viewer.end() == (130, "", "")
+
+
+def test_escape_while_it_compiles(compiling):
+    start = time.monotonic()
+    compiling.key("Escape")
+    assert compiling.end() == (0, "", "")
+    assert time.monotonic() - start < 2
+
+
+def test_ctrl_c_while_it_compiles(compiling):
+    os.kill(compiling.process.pid, signal.SIGINT)
+    assert compiling.end() == (130, "", "")
+
+
+def test_keys_work_while_it_compiles(compiling):
+    compiling.key("i", "Tab", "Tab", "Delete", "ctrl+s")
+    until(lambda: compiling.path.read_text() != TEXT, "the saved scene")
+    compiling.key("Tab")
+    compiling.shows(headless(compiling.path))
+    compiling.key("Escape")
+    assert compiling.end() == (0, "", "")
 
 
 def test_keys_edit_and_save_the_scene(viewer):
@@ -134,9 +166,7 @@ def test_hiding_and_covering_lose_nothing(viewer, desktop, tmp_path):
     desktop.minimise(viewer.window)
     desktop.restore(viewer.window)
     viewer.shows(picture)
-    other = tmp_path / "other.rt"
-    other.write_text(TEXT)
-    with viewing(desktop, other, (900, 700)) as cover:
+    with viewing(desktop, tmp_path / "other.rt", (900, 700)) as cover:
         for window in (viewer.window, cover.window):
             desktop.run("xdotool", "windowmove", "--sync", str(window), "100", "100")
         desktop.activate(cover.window)

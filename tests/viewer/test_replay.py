@@ -25,7 +25,7 @@ def test_the_same_keys_give_the_same_frame():
 
 def test_the_last_frame_is_the_picture_of_the_scene_as_edited():
     session = played("hold d 0.3", "press Left")
-    assert (session.screen.bare() == colour_of(session.state.scene)).all()
+    assert (session.picture == colour_of(session.state.scene)).all()
     assert colour_of(session.state.scene) != colour_of(scene())
 
 
@@ -85,7 +85,7 @@ def test_azerty():
 def test_a_resize_renders_anew():
     session = played("resize 40x30")
     assert session.screen.frame.shape == (30, 40, 4)
-    assert session.painter.renderer.rendered == [(64, 48), (40, 30)]
+    assert session.pictures.painter.renderer.rendered == [(64, 48), (40, 30)]
 
 
 def test_what_ends_the_session_ends_the_replay():

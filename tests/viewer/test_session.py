@@ -56,7 +56,7 @@ class Bench:
         self.session = Session(
             m, self.display, scene(), path=Path("scene.rt"), size=SIZE, painter=painter, pick=lambda *_: None
         )
-        self.painter = self.session.painter
+        self.painter = self.session.pictures.painter
         self.memory.play()
 
     def finish(self, seconds: float) -> None:
@@ -116,7 +116,7 @@ def test_slow_pictures_are_coarse_while_a_key_is_held_and_fine_afterwards():
     bench.memory.wait(1)
     bench.memory.play()
     assert not bench.painter.busy
-    assert bench.session.screen.picture.job == Job(bench.session.state.scene, *SIZE)
+    assert bench.session.pictures.latest.job == Job(bench.session.state.scene, *SIZE)
 
 
 def test_a_press_is_shown_coarse_first_where_that_is_quicker():
@@ -146,7 +146,7 @@ def test_a_coarse_picture_is_stretched_over_the_window():
     bench.tap(Key.I)
     bench.tap(Key.D)
     bench.finish(LONGEST)
-    assert bench.session.screen.picture.pixels.shape == (6, 8, 4)
+    assert bench.session.pictures.latest.pixels.shape == (6, 8, 4)
     assert bench.memory.screenshot().shape == (48, 64, 4)
     assert (bench.memory.screenshot() == colour_of(bench.session.state.scene)).all()
 
@@ -162,7 +162,7 @@ def test_of_many_sizes_the_last_is_rendered():
 
     def shown() -> bool:
         bench.memory.play()
-        return bench.session.screen.picture.job.shows(bench.session.state.scene, 39, 20)
+        return bench.session.pictures.latest.job.shows(bench.session.state.scene, 39, 20)
 
     until(shown, "the picture of the last size", 5)
     assert {width for width, _ in renderer.rendered} <= {64, 39, 5}
@@ -187,7 +187,7 @@ def test_an_error_of_the_renderer_is_a_message_over_the_picture():
     bench.painter.renderer.error = RenderError("too many shapes")
     bench.finish(0.001)
     assert bench.session.state.message == "too many shapes"
-    assert (bench.session.screen.bare() == colour_of(scene())).all()
+    assert (bench.session.picture == colour_of(scene())).all()
     assert (bench.memory.screenshot() != before).any()
     bench.memory.wait(1)
     bench.memory.play()

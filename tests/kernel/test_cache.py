@@ -1,0 +1,130 @@
+"""Compiled kernels are kept: found by the next process, and never used for other sources."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import minirt
+from minirt.kernel import cache
+
+PACKAGE = Path(minirt.__file__).parent
+SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\nsp 0,0,5 4 10,20,30\n"
+RENDER = """
+import minirt
+from minirt.kernel import cache, jit
+image = minirt.render(minirt.load("ball.rt"), 8, 8)
+print(cache.folder() and cache.folder().name, sum(jit.render_bands.stats.cache_hits.values()),
+      sum(jit.render_bands.stats.cache_misses.values()), image.array[4, 4].tolist())
+"""
+
+
+def process(folder: Path, place: Path, code: str = RENDER) -> list[str]:
+    """What a new process prints that imports the package in `folder` and keeps its kernels under `place`."""
+    (folder / "ball.rt").write_text(SCENE)
+    environment = os.environ | {"XDG_CACHE_HOME": str(place), "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], cwd=folder, env=environment, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout.strip().split(" ", 3)
+
+
+def files(place: Path) -> dict[str, int]:
+    return {str(path.relative_to(place)): path.stat().st_mtime_ns for path in place.rglob("*") if path.is_file()}
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the package that may be edited."""
+    folder = tmp_path_factory.mktemp("copy")
+    ignored = shutil.ignore_patterns("__pycache__", "viewer", "mlx")
+    shutil.copytree(PACKAGE, folder / "minirt", ignore=ignored)
+    return folder
+
+
+def test_the_next_process_finds_the_kernel_and_edited_sources_do_not(copy: Path, tmp_path: Path) -> None:
+    name, hits, misses, pixel = process(copy, tmp_path)
+    assert (hits, misses, pixel) == ("0", "1", "[10, 20, 30]")
+    kept = files(tmp_path)
+    assert len(kept) == 2  # an index and the machine code
+    assert process(copy, tmp_path) == [name, "1", "0", pixel]
+    assert files(tmp_path) == kept
+
+    shade = copy / "minirt" / "kernel" / "shade.py"
+    source = shade.read_text()
+    shade.write_text(source.replace("return Vec(a.x * b.x, a.y * b.y", "return Vec(a.x * b.x, 2.0 * a.y * b.y"))
+    assert shade.read_text() != source
+    edited, hits, misses, pixel = process(copy, tmp_path)
+    assert edited != name
+    assert (hits, misses, pixel) == ("0", "1", "[10, 40, 30]")
+    shade.write_text(source)
+    assert process(copy, tmp_path) == [name, "1", "0", "[10, 20, 30]"]
+
+
+@pytest.mark.parametrize("source", ["kernel/frame.py", "lanes/vec.py", "shapes/quadric.py", "shapes/new.py"])
+def test_each_source_of_a_kernel_counts(
+    copy: Path, monkeypatch: pytest.MonkeyPatch, source: str, tmp_path: Path
+) -> None:
+    package = shutil.copytree(copy / "minirt", tmp_path / "minirt")
+    monkeypatch.setattr(cache, "PACKAGE", package)
+    before = cache.fingerprint()
+    assert cache.fingerprint() == before
+    with (package / source).open("a") as file:
+        file.write("\n")
+    assert cache.fingerprint() != before
+
+
+def test_other_sources_and_other_places_do_not_count(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    before = cache.fingerprint()
+    package = shutil.copytree(PACKAGE, tmp_path / "elsewhere", ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(cache, "PACKAGE", package)
+    (package / "cli.py").write_text("")
+    assert cache.fingerprint() == before
+
+
+def test_old_folders_are_deleted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    parent = tmp_path / "minirt"
+    for age in range(cache.KEPT + 5):
+        old = parent / f"kernels-{age}"
+        old.mkdir(parents=True)
+        (old / "file").touch()
+        os.utime(old, (time.time() - 1000 * (age + 1),) * 2)
+    (parent / "other").mkdir()
+    place = cache.folder()
+    assert place is not None
+    kept = {path.name for path in parent.iterdir()}
+    assert kept == {place.name, "other", *(f"kernels-{age}" for age in range(cache.KEPT))}
+
+
+def test_the_folder_in_use_stays(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    place = cache.folder()
+    assert place is not None
+    os.utime(place, (0, 0))
+    for age in range(cache.KEPT + 1):
+        (place.parent / f"kernels-{age}").mkdir()
+    assert cache.folder() == place
+    assert place.exists()
+
+
+def test_without_a_place_to_write_there_is_a_picture_all_the_same(copy: Path, tmp_path: Path) -> None:
+    blocked = tmp_path / "file"
+    blocked.touch()
+    assert process(copy, blocked) == ["None", "0", "0", "[10, 20, 30]"]
+
+
+def test_numbas_own_setting_is_left_alone(tmp_path: Path) -> None:
+    from numba.core import config
+
+    before = config.CACHE_DIR
+    with cache.numba_cache(tmp_path):
+        assert str(tmp_path) == config.CACHE_DIR
+    assert before == config.CACHE_DIR

@@ -1,0 +1,163 @@
+"""Cameras, sizes and places at the ends of what a scene may hold."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from minirt.rendering.camera import camera_numbers
+from minirt.scene import Ambient, Camera, Light, Scene
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests import reference
+from tests.kernel.pictures import ALL, AMBIENT, BLUE, EYE, GREEN, LAMP, RED, SHAPES, WHITE, linear, picture
+from tests.kernel.test_invariances import changed
+
+COMPASS = [  # above the eye: red to +x, green to +z
+    Sphere((2, 9, 0), 1.5, RED),
+    Sphere((0, 9, 2), 1.5, GREEN),
+    Sphere((2, -9, 0), 1.5, RED),
+    Sphere((0, -9, 2), 1.5, GREEN),
+]
+
+
+def finite(scene: Scene, width: int = 24, height: int = 16) -> np.ndarray:
+    """The light of a scene, and no other number in it."""
+    light = linear(scene, width, height)
+    assert np.isfinite(light).all()
+    assert (light >= 0).all()
+    return light
+
+
+def middle(light: np.ndarray) -> tuple[float, float]:
+    """Where in the picture there is light, to the right and up of its middle."""
+    rows, columns = np.nonzero(light)
+    return columns.mean() - (light.shape[1] - 1) / 2, (light.shape[0] - 1) / 2 - rows.mean()
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("lean", [0.0, 1e-300, -1e-300, 5e-324])
+def test_looking_along_the_vertical(sign: float, lean: float) -> None:
+    straight = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, sign, 0), 60), *COMPASS)), 48, 32)
+    right, up = middle(straight[..., 0])
+    assert right > 5
+    assert abs(up) < 0.5
+    right, up = middle(straight[..., 1])
+    assert abs(right) < 0.5
+    assert sign * up > 5
+    # A lean of 1e-300 towards +z or -z tells which way is right; it is that of any larger lean.
+    leaning = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, sign, lean), 60), *COMPASS)), 48, 32)
+    if lean:
+        more = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, sign, np.copysign(1e-12, lean)), 60), *COMPASS)), 48, 32)
+        assert np.array_equal(leaning, more)
+
+
+def test_a_field_of_view_of_a_thousandth_of_a_degree_has_as_many_rays_as_pixels() -> None:
+    numbers = camera_numbers(EYE.replace(fov=1e-3), 1920, 1)
+    x = 2 * (np.arange(1920) + 0.5) / 1920 - 1
+    directions = numbers[9:] + x[:, None] * numbers[3:6]
+    directions /= np.linalg.norm(directions, axis=-1, keepdims=True)
+    assert len(np.unique(directions, axis=0)) == 1920
+    # They tell apart what lies a pixel apart: a wall of stripes 1e6 away would show 1920 of them.
+    wall = Scene((AMBIENT, LAMP, Camera((0, 0, 0), (0, 0, 1), 1e-3), Plane((0, 0, 1), (1, 0, -1), WHITE)))
+    assert (np.diff(finite(wall, 192, 1)[0, :, 0]) != 0).all()
+
+
+@pytest.mark.parametrize(("fov", "same"), [(0, 1e-6), (180, 179.9999)])
+def test_the_ends_of_the_field_of_view_are_the_nearest_that_can_be_drawn(fov: float, same: float) -> None:
+    end = finite(changed_camera(fov))
+    assert np.array_equal(end, finite(changed_camera(same)))
+    assert len(np.unique(end.reshape(-1, 3), axis=0)) >= 1
+
+
+def changed_camera(fov: float) -> Scene:
+    return Scene((AMBIENT, LAMP, EYE.replace(fov=fov), *SHAPES))
+
+
+def test_a_field_of_view_of_179_999_shows_what_is_beside_the_eye() -> None:
+    walls = Plane((3, 0, 0), (1, 0, 0), RED), Plane((-3, 0, 0), (1, 0, 0), GREEN)
+    light = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, 0, 1), 179.999), *walls)), 48, 4)
+    assert ((light > 0) == np.repeat([[True, False, False], [False, True, False]], 24, axis=0)).all()  # +x is left
+
+
+@pytest.mark.parametrize("place", [1e9, 1e12, 0.99e15, -0.99e15])
+def test_far_out(place: float) -> None:
+    moved = changed(ALL, lambda p: tuple(x + place for x in p))
+    finite(moved)
+    big = abs(place) / 10
+    large = changed(ALL, lambda p: tuple(x * big for x in p), lambda length: length * big)
+    light = finite(large)
+    assert np.quantile(np.abs(light - linear(ALL)), 0.99) <= 1e-9
+
+
+def test_tiny_things() -> None:
+    for size in (1e-9, 1e-12):
+        tiny = changed(ALL, lambda p, size=size: tuple(x * size for x in p), lambda length, size=size: length * size)
+        assert np.quantile(np.abs(finite(tiny) - linear(ALL)), 0.99) <= 1e-9
+    speck = Sphere((0, 0, 1e6), 1e-9, WHITE), Cylinder((0, 0, 1e6), (0, 1, 0), 1e-9, 1e-9, WHITE)
+    finite(Scene((AMBIENT, LAMP, Camera((0, 0, 0), (0, 0, 1), 1e-6), *speck)))
+
+
+def test_thin_and_long_things() -> None:
+    needle = Cylinder((0, 0, 5), (0.6, 0.8, 0), 1e-9, 1e9, WHITE)
+    disc = Cylinder((0, 0, 5), (0, 0.6, -0.8), 3, 1e-9, RED)
+    finite(Scene((AMBIENT, LAMP, EYE, needle, disc)))
+    seen = finite(Scene((AMBIENT, LAMP, Camera((0, 0, 0), (0, 0, 1), 60), disc)))
+    assert (seen[..., 0] > 0).sum() > 30
+
+
+@pytest.mark.parametrize(
+    ("eye", "shape"),
+    [
+        ((0, 0, 0), Sphere((0, 0, 0), 2, WHITE)),  # in the centre
+        ((0, 0, -1), Sphere((0, 0, 0), 2, WHITE)),  # on the surface, looking in
+        ((0, 0, 1), Sphere((0, 0, 0), 2, WHITE)),  # on it, looking away
+        ((0, 0, 0), Cylinder((0, 0, 0), (0, 0, 1), 2, 3, WHITE)),  # on the axis, along it
+        ((0, 1, 0), Cylinder((0, 0, 0), (0, 0, 1), 2, 3, WHITE)),  # on the side
+        ((0, 0, -1.5), Cylinder((0, 0, 0), (0, 0, 1), 2, 3, WHITE)),  # on a cap
+        ((0, 1, -1.5), Cylinder((0, 0, 0), (0, 0, 1), 2, 3, WHITE)),  # on the rim
+        ((0, 0, 0), Plane((0, 0, 0), (0, 1, 0), WHITE)),  # in the plane
+        ((0, 0, 0), Plane((0, 0, 0), (0, 0, 1), WHITE)),
+    ],
+)
+def test_an_eye_and_a_lamp_in_special_places(eye: tuple[float, float, float], shape: object) -> None:
+    for lamp in (eye, (0, 0, 0), (0, 5, 0), (0, 0, 1e15)):
+        finite(Scene((AMBIENT, Camera(eye, (0, 0, 1), 70), Light(lamp, 1.0), shape)))
+
+
+def test_a_lamp_on_a_surface_lights_it_from_no_side_and_others_do() -> None:
+    ball = Sphere((0, 0, 0), 2, WHITE)
+    light = finite(Scene((AMBIENT, Camera((0, 0, -5), (0, 0, 1), 40), Light((0, 0, -1), 1.0), ball)))
+    assert light.max() <= 0.15 + 1e-9
+    floor = Plane((0, -1, 0), (0, 1, 0), WHITE)
+    lit = finite(Scene((AMBIENT, Camera((0, 3, -5), (0, -0.6, 0.8), 60), Light((0, 1, 0), 1.0), ball, floor)), 48, 32)
+    assert lit.max() == pytest.approx(0.15, abs=1e-9)  # the ball's own top hides the floor from a lamp that stands on it
+
+
+def test_what_lies_beyond_a_lamp_hides_nothing() -> None:
+    floor, ceiling = Plane((0, 0, 0), (0, 1, 0), WHITE), Plane((0, 5, 0), (0, 1, 0), BLUE)
+    below, lamp = Camera((0, 2, 0), (0, -1, 0), 60), Light((0, 4.999999, 0), 1.0)
+    open_sky, covered = (Scene((AMBIENT, below, lamp, floor, *more)) for more in ((), (ceiling,)))
+    assert np.array_equal(finite(open_sky), finite(covered))
+    assert np.array_equal(finite(covered), finite(Scene((AMBIENT, below, lamp, ceiling, floor))))
+
+
+def test_light_is_the_cosine_law() -> None:
+    dark, above, floor = Ambient(0.0, WHITE), Camera((0, 3, 0), (0, -1, 0), 90), Plane((0, 0, 0), (0, 1, 0), (51, 102, 255))
+    light = finite(Scene((dark, above, Light((1, 3, 2), 0.7), floor)), 9, 9)
+    x = 3 * (2 * (np.arange(9) + 0.5) / 9 - 1)
+    z = 3 * (2 * (np.arange(9) + 0.5) / 9 - 1)[:, None]  # looking down, up is -z
+    cosine = 3 / np.sqrt((x - 1) ** 2 + (z - 2) ** 2 + 9)
+    assert np.abs(light - 0.7 * cosine[..., None] * [0.2, 0.4, 1.0]).max() <= 1e-15
+
+
+def test_many_shapes() -> None:
+    # So many that a lamp sorts them into cells.
+    random = np.random.default_rng(1)
+    balls = [Sphere(tuple(random.normal(size=3) * 4), 0.7, tuple(random.integers(30, 256, 3))) for _ in range(250)]
+    scene = Scene((AMBIENT, LAMP, EYE, *balls, *SHAPES))
+    pixels, light = picture(scene, 60, 40)
+    right = reference.render(scene, 60, 40)
+    assert (np.abs(light - right).max(axis=-1) > 1e-9).mean() < 1e-3
+    assert np.array_equal(pixels[..., 3], np.full((40, 60), 255))

@@ -1,0 +1,30 @@
+"""Makes the golden pictures anew, with the reference renderer: `python -m tests.make_goldens`.
+
+Look at each of them afterwards: they are what the program is measured by.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from minirt.image import Image
+from minirt.scene import Scene, load
+from tests.compare import Bytes
+from tests.reference import render, to_bytes
+
+ROOT = Path(__file__).parent.parent
+GOLDENS = Path(__file__).parent / "goldens"
+SCENES = sorted(path for path in (ROOT / "scenes").glob("*.rt") if path.stem != "subject-as-printed")
+SIZE = (320, 180)
+
+
+def golden(scene: Scene) -> Bytes:
+    """The picture of a scene as it should be."""
+    return to_bytes(render(scene, *SIZE))
+
+
+if __name__ == "__main__":
+    for old in GOLDENS.glob("*.png"):
+        old.unlink()
+    for path in SCENES:
+        Image(golden(load(path).scene)).save(GOLDENS / f"{path.stem}.png")
