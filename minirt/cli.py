@@ -10,7 +10,7 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NoReturn, TextIO
 
 from minirt.errors import MiniRTError, MlxError, RenderError
 
@@ -101,9 +101,11 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
         from minirt.image import format_of
 
         format_of(asked.output)  # before the work, not after it
-    scene = read(asked.scene[0], asked.lenient)
     modes = ((asked.check, check), (asked.bench, bench), (asked.replay, replay), (asked.output, headless))
-    return next((mode for wanted, mode in modes if wanted), window)(scene, asked)
+    mode = next((mode for wanted, mode in modes if wanted), window)
+    # A picture may go to standard output; behind a window it is free, and a session without errors leaves none.
+    scene = read(asked.scene[0], asked.lenient, sys.stdout if mode is window else sys.stderr)
+    return mode(scene, asked)
 
 
 def version() -> str:
@@ -120,13 +122,13 @@ def keys() -> str:
     return keys_text()
 
 
-def read(path: str, lenient: bool) -> Scene:
-    """The scene in a file; what was tolerated goes to standard error."""
+def read(path: str, lenient: bool, told: TextIO) -> Scene:
+    """The scene in a file; what was tolerated is told there."""
     from minirt.scene import load
 
     scene, notices = load(path, lenient)
     for notice in notices:
-        print(f"notice: {notice}", file=sys.stderr)
+        print(f"notice: {notice}", file=told, flush=True)
     return scene
 
 

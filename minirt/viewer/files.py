@@ -53,7 +53,8 @@ def contents(scene: Scene) -> list[object]:
 
 
 def summary(error: MiniRTError) -> str:
-    """An error in a few lines: of many problems the first."""
-    if not isinstance(error, SceneError) or len(error.problems) == 1:
+    """An error in short: of many problems the first, without the line that it is in."""
+    if not isinstance(error, SceneError):
         return str(error)
-    return f"{error.problems[0]}\nand {len(error.problems) - 1} more"
+    first, others = str(error.problems[0]).split("\n")[0], len(error.problems) - 1
+    return f"{first}\nand {others} more" if others else first

@@ -11,7 +11,7 @@ from minirt.viewer.measure import ball
 from minirt.viewer.motion import limited
 from minirt.viewer.state import State
 
-ROOM = 1.3  # the ball around the element and what is left free around it
+ROOM = 1.5  # the ball about the element, its corners and what is left free around them
 FLAT = 9 / 16  # height by width of a usual window
 POINT = 1 / 10  # of the scene's size: the radius that is shown around a thing without an extent
 

@@ -14,11 +14,11 @@ Ball = tuple[Triple, float]  # centre and radius
 
 
 def ball(element: Element) -> Ball | None:
-    """A ball around an element: around the box of a shape that has one, or a radius of 0 at its point."""
+    """A ball about an element: as wide as the box of a shape that has one, or a radius of 0 at its point."""
     box = element.bounds() if isinstance(element, Shape) else None
     if box is not None:
         (a, b, c), (x, y, z) = box
-        return ((a + x) / 2, (b + y) / 2, (c + z) / 2), dist(*box) / 2
+        return ((a + x) / 2, (b + y) / 2, (c + z) / 2), max(x - a, y - b, z - c) / 2
     points = [getattr(element, each.name) for each in fields_of(type(element)) if isinstance(each, Point)]
     return (points[0], 0.0) if points else None
 

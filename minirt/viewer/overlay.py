@@ -38,7 +38,7 @@ def line(state: State) -> str:
             words.append(f"[{spelling(field, element)}]")
         elif not field.keyed or getattr(element, field.name) != field.default:
             words.append(spelling(field, element))
-    return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.3g}", " ".join(words))
+    return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", " ".join(words))
 
 
 def status(shown: Outcome) -> str:
@@ -56,10 +56,12 @@ def draw_message(pixels: Pixels, text: str) -> None:
 
 
 def wrapped(text: str, width: int) -> str:
-    """`text` in lines that are about as wide as `width` pixels at most."""
-    characters = max(10, (width - 2 * MARGIN) * len(text) // max(1, sum(measure(part)[0] for part in text.split("\n"))))
-    parts = text.split("\n")
-    return "\n".join(textwrap.fill(part, characters) if len(part) > characters else part for part in parts)
+    """`text` in lines that leave a margin in a picture of that width, as far as ten letters do."""
+    letters, folded = len(text), text
+    while letters > 10 and measure(folded)[0] > width - 2 * MARGIN:
+        letters = letters * 9 // 10
+        folded = "\n".join(textwrap.fill(part, letters) for part in text.split("\n"))
+    return folded
 
 
 def write(pixels: Pixels, y: int, text: str, ink: int) -> None:

@@ -118,7 +118,7 @@ def test_the_folder_in_use_stays(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 def test_without_a_place_to_write_there_is_a_picture_all_the_same(copy: Path, tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.touch()
-    assert process(copy, blocked) == ["None", "0", "0", "[10, 20, 30]"]
+    assert process(copy, blocked) == ["None", "0", "1", "[10, 20, 30]"]
 
 
 def test_numbas_own_setting_is_left_alone(tmp_path: Path) -> None:

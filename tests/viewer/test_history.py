@@ -20,6 +20,15 @@ def test_nudges_within_half_a_second_are_undone_together():
     assert fov(apply(apply(state, "undo"), "redo")) == 98
 
 
+def test_redo_ends():
+    state = apply(apply(opened(scene()), "grow"), "right")
+    for action in ("undo", "undo", "redo", "redo"):
+        state = apply(state, action)
+    assert (fov(state), state.scene.camera.position[0] > 0) == (92, True)
+    assert apply(state, "redo").message == "nothing to redo"
+    assert apply(state, "redo").scene is state.scene
+
+
 def test_a_pause_separates():
     state = apply(apply(opened(scene()), "grow", now=0.0), "grow", now=0.6)
     assert fov(apply(state, "undo")) == 92

@@ -210,3 +210,40 @@ def test_a_held_key_moves_until_it_is_let_go(viewer):
     viewer.shows(picture)
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
+
+
+def test_full_screen_and_back(viewer):
+    """Each change may open another window of the window system."""
+    viewer.key("i")
+    for size in ((2560, 1600), SIZE):
+        viewer.key("F11")
+        viewer = viewer._replace(window=resized(viewer.desktop, size))
+        viewer.shows(headless(viewer.path, size))
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def resized(desktop: Desktop, size: tuple[int, int]) -> int:
+    """Wait for the viewer's window of that size."""
+
+    def right() -> bool:
+        try:
+            return desktop.size(desktop.find("miniRT - scene.rt")) == size
+        except subprocess.CalledProcessError:  # it went while we looked
+            return False
+
+    until(right, f"a window of {size}")
+    return desktop.find("miniRT - scene.rt")
+
+
+def test_the_camera_is_copied_and_a_click_selects(viewer):
+    viewer.key("i")
+    picture = headless(viewer.path)
+    viewer.shows(picture)
+    viewer.key("ctrl+c")
+    until(lambda: not np.array_equal(viewer.desktop.screenshot(viewer.window), picture), "the message")
+    viewer.desktop.click(viewer.window, 160, 130)  # the sphere
+    viewer.shows(picture)
+    viewer.key("Delete", "ctrl+s", "Escape")
+    assert viewer.end() == (0, "", "")
+    assert minirt.load(viewer.path).spheres == ()

@@ -85,6 +85,7 @@ def test_the_size_of_the_window(tmp_path, asked, text, opened):
 
 STUCK = """
 import time
+from concurrent.futures import ThreadPoolExecutor
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
 from minirt.viewer import run
@@ -95,7 +96,7 @@ class Stuck(FakeRenderer):
         return False
     def prepare(self, scene):
         self.started.set()
-        time.sleep(60)
+        ThreadPoolExecutor().submit(time.sleep, 60).result()  # the interpreter would wait for this thread
 
 memory, renderer = Memory(), Stuck()
 memory.do(renderer.started.wait)

@@ -1,0 +1,120 @@
+"""The renderer: threads, cancelling, errors, samples."""
+
+from __future__ import annotations
+
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.errors import RenderError
+from minirt.rendering import Renderer
+from minirt.rendering.renderer import kinds_of, sample_places
+from minirt.scene import Scene
+from tests.kernel.pictures import ALL, AMBIENT, EYE, SHAPES, TWO, picture
+
+
+@pytest.mark.parametrize("samples", [1, 2, 3, 16, 64])
+def test_samples_lie_evenly_in_the_pixel(samples: int) -> None:
+    places = sample_places(samples)
+    assert places.shape == (samples, 2)
+    assert ((places >= 0) & (places < 1)).all()
+    assert np.abs(places.mean(axis=0) - 0.5).max() <= (0 if samples == 1 else 0.5 / samples)
+    assert len(np.unique(places[:, 0])) == len(np.unique(places[:, 1])) == samples
+    quarters = np.histogram2d(places[:, 0], places[:, 1], bins=2, range=[[0, 1], [0, 1]])[0]
+    assert np.ptp(quarters) <= max(1, samples / 8)
+
+
+def test_one_sample_is_in_the_centre() -> None:
+    assert sample_places(1).tolist() == [[0.5, 0.5]]
+
+
+@pytest.mark.parametrize("samples", [0, -1])
+def test_less_than_one_sample_is_refused(samples: int) -> None:
+    with pytest.raises(RenderError, match="at least 1 sample"):
+        TWO.render(ALL, np.zeros((4, 4, 4), np.uint8), samples)
+
+
+def test_a_scene_without_shapes_is_black() -> None:
+    pixels = np.full((5, 7, 4), 9, np.uint8)
+    assert TWO.render(Scene((AMBIENT, EYE)), pixels)
+    assert (pixels == (0, 0, 0, 255)).all()
+
+
+def test_a_picture_without_pixels_is_made_at_once() -> None:
+    assert TWO.render(ALL, np.zeros((0, 7, 4), np.uint8))
+    assert TWO.render(ALL, np.zeros((7, 0, 4), np.uint8))
+
+
+def test_cancelling_ends_a_long_frame_soon_and_the_next_is_right() -> None:
+    renderer = Renderer(2)
+    expected, _ = picture(ALL, 64, 48)
+    renderer.prepare(ALL)
+    answers: list[bool] = []
+    pixels = np.zeros((48, 64, 4), np.uint8)
+    thread = threading.Thread(target=lambda: answers.append(renderer.render(ALL, pixels, 50_000)))  # some minutes
+    thread.start()
+    time.sleep(0.3)
+    start = time.perf_counter()
+    renderer.cancel()
+    thread.join(20)
+    assert time.perf_counter() - start < 1.0
+    assert answers == [False]
+    assert renderer.render(ALL, pixels)
+    assert np.array_equal(pixels, expected)
+
+
+def test_cancelling_when_nothing_is_rendered_does_nothing() -> None:
+    renderer = Renderer(1)
+    renderer.cancel()
+    assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
+    renderer.cancel()
+    assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
+
+
+def test_several_threads_may_render_at_once() -> None:
+    scenes = [ALL.replace(ALL.spheres[0], diameter=1 + i / 4) for i in range(8)]
+    expected = [minirt.render(scene, 50, 40).array for scene in scenes]
+    with ThreadPoolExecutor(8) as pool:
+        made = list(pool.map(lambda scene: minirt.render(scene, 50, 40).array, scenes * 3))
+    assert all(np.array_equal(image, expected[i % 8]) for i, image in enumerate(made))
+
+
+def test_an_error_in_one_thread_reaches_the_caller() -> None:
+    renderer = Renderer(3)
+    renderer.prepare(ALL)
+    kernel = renderer.kernel
+    running = []
+
+    def bands(counter: Any, *rest: Any) -> None:
+        running.append(1)
+        if len(running) == 2:
+            raise ValueError("out of order")
+        while counter[0] < 2**39:  # until it is told to stop
+            time.sleep(0.01)
+
+    renderer.kernel = SimpleNamespace(frame=kernel.frame, render_bands=bands)
+    with pytest.raises(ValueError, match="out of order"):
+        renderer.render(ALL, np.zeros((40, 40, 4), np.uint8))
+    renderer.kernel = kernel
+    assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
+
+
+def test_it_knows_which_kernels_are_there() -> None:
+    renderer = Renderer(1)
+    assert not renderer.is_ready(ALL)
+    renderer.prepare(ALL)
+    assert renderer.is_ready(ALL)
+    assert renderer.is_ready(Scene((EYE, *SHAPES[:3])))
+    assert not renderer.is_ready(Scene((EYE, SHAPES[0])))
+    assert kinds_of(ALL) == {type(shape) for shape in SHAPES}
+
+
+def test_the_number_of_threads() -> None:
+    assert Renderer(5).threads == 5
+    assert Renderer().threads >= 1

@@ -1,0 +1,73 @@
+"""What is written over the picture."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from minirt.viewer.editor import apply
+from minirt.viewer.overlay import draw_help, draw_hud, draw_message, line, status
+from minirt.viewer.painter import Job, Outcome
+from minirt.viewer.state import opened
+from tests.viewer.fake import scene
+
+
+def blank(width: int = 640, height: int = 480):
+    return np.full((height, width, 4), 255, np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("actions", "text"),
+    [
+        ([], "C 0,0,10 0,0,-1 [90]"),
+        (["next value"], "C 0,0,10 0,0,-1 90 [roll:0]"),
+        (["roll right"], "C 0,0,10 0,0,-1 [90] roll:5"),
+        (["turn right"], "C 0,0,10 0.0871557,0,-0.996195 [90]"),
+        (["select next", "select next"], "sp 0,0,0 [2] 255,0,0"),
+        (["select next", "select next", "next value"], "sp 0,0,0 2 [255,0,0]"),
+        (["select previous", "shrink"], "A [0.15] 255,255,255"),
+    ],
+)
+def test_the_line_of_the_selected_element(actions, text):
+    state = opened(scene())
+    for action in actions:
+        state = apply(state, action)
+    assert line(state) == text
+
+
+def test_status():
+    job = Job(scene(), 640, 480)
+    assert status(Outcome(job, seconds=0.0123)) == "640x480    12.3 ms"
+    assert status(Outcome(Job(job.scene, 640, 480, 4))) == "640x480 at 1/4"
+
+
+def test_the_hud_leaves_the_middle_free():
+    pixels = blank()
+    draw_hud(pixels, opened(scene()), Outcome(Job(scene(), 640, 480)))
+    changed = (pixels != 255).any(axis=(1, 2))
+    assert changed[:60].any()
+    assert changed[-60:].any()
+    assert not changed[80:-80].any()
+
+
+def test_a_message_is_wrapped_and_stands_above_the_status():
+    pixels = blank(300, 200)
+    draw_message(pixels, "a very long message " * 10)
+    changed = (pixels != 255).any(axis=2)
+    assert changed[:-30].any()
+    assert not changed[-30:].any()
+    assert not changed[:, -5:].any()
+    pixels = blank()
+    draw_message(pixels, "")
+    assert (pixels == 255).all()
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (640, 480), (200, 100), (1, 1)])
+def test_help_fits(width, height):
+    pixels = blank(width, height)
+    draw_help(pixels, "qwerty")
+    assert pixels[..., :3].min() == 255 // 4  # darkened, with letters that are lighter
+    if width >= 640:
+        border = np.concatenate([pixels[-5:].reshape(-1, 4), pixels[:, -5:].reshape(-1, 4)])
+        assert (border[:, :3] == 255 // 4).all()
+        assert (pixels[..., :3] > 255 // 4).any()
