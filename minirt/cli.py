@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
-from minirt.errors import MiniRTError, MlxError, RenderError
+from minirt.errors import MiniRTError, MlxError, ReplayError
 
 if TYPE_CHECKING:
     from minirt.image import Image
@@ -149,28 +149,40 @@ def bench(scene: Scene, asked: argparse.Namespace) -> int:
 
 def headless(scene: Scene, asked: argparse.Namespace) -> int:
     """Render to the output."""
-    write(picture(scene, asked), asked.output, asked.verbose)
+    write(picture(scene, asked), asked.output)
     return OK
 
 
 def picture(scene: Scene, asked: argparse.Namespace) -> Image:
     """The picture that the arguments ask for."""
+    from time import perf_counter
+
     import minirt
 
     width, height = asked.size or minirt.size_of(scene)
-    return minirt.render(scene, width, height, samples=asked.samples, threads=asked.threads)
+    start = perf_counter()
+    renderer = minirt.renderer(asked.threads)
+    if asked.verbose:
+        renderer.prepare(scene)
+        print(f"kernel ready after {perf_counter() - start:.2f} s", file=sys.stderr)
+        start = perf_counter()
+    image = minirt.render(scene, width, height, samples=asked.samples, threads=asked.threads)
+    if asked.verbose:
+        print(
+            f"{width}x{height}, {asked.samples} samples a pixel, {renderer.threads} threads: "
+            f"{(perf_counter() - start) * 1e3:.1f} ms",
+            file=sys.stderr,
+        )
+    return image
 
 
-def write(image: Image, output: str, verbose: bool = False) -> None:
+def write(image: Image, output: str) -> None:
     """Put a picture into a file or onto standard output."""
     if output == "-":
         sys.stdout.buffer.write(image.encode())
         sys.stdout.buffer.flush()
         return
     image.save(output)
-    if verbose:
-        height, width, _ = image.array.shape
-        print(f"{output}: {width}x{height}", file=sys.stderr)
 
 
 def replay(scene: Scene, asked: argparse.Namespace) -> int:
@@ -182,7 +194,7 @@ def replay(scene: Scene, asked: argparse.Namespace) -> int:
         with open(asked.replay, encoding="utf-8") as file:  # noqa: PTH123
             lines = file.read().split("\n")
     except (OSError, UnicodeDecodeError) as error:
-        raise RenderError(f"{asked.replay}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        raise ReplayError(f"{asked.replay}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
     pixels = play(
         scene,
         lines,

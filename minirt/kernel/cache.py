@@ -8,6 +8,7 @@ sources that a kernel is made of, and of the versions of the compiler.
 from __future__ import annotations
 
 import hashlib
+import logging
 import os
 import shutil
 import sys
@@ -53,7 +54,8 @@ def folder() -> Path | None:
         probe = place / f"probe-{os.getpid()}"
         probe.touch()
         probe.unlink()
-    except (OSError, RuntimeError):  # RuntimeError: the user has no home
+    except (OSError, RuntimeError) as error:  # RuntimeError: the user has no home
+        logging.getLogger(__name__).warning("notice: every run compiles anew, kernels cannot be kept: %s", error)
         return None
     with suppress(OSError):
         forget(place)

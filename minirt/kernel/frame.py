@@ -13,6 +13,7 @@ from minirt.lanes.vec import Number
 
 ACROSS, DOWN = 4, WIDTH // 4  # pixels of a packet: the rays that are traced at once
 TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles at a time
+CANCELLED = 2**40  # a row that no picture has
 OPAQUE = float(0xFF000000)  # alpha of a pixel
 PACKET = np.array([*(i % ACROSS for i in range(WIDTH)), *(i // ACROSS for i in range(WIDTH))], np.float64)
 
@@ -50,7 +51,7 @@ def frame(next_row: Any, pixels: Any, linear: Any, samples: Any, offsets: Any, s
 
     Any number of threads may do so at the same time. `pixels` (h, w) takes 0xAARRGGBB; `linear` (h, w, 3), or one
     without rows where it is not wanted, takes the light as it is. `samples` (k, 2) are places in a pixel, `offsets` is
-    `PACKET`. A counter set to h or more from outside ends the frame.
+    `PACKET`. A counter set to `CANCELLED` from outside ends the frame at the next packet.
     """
     height, width = pixels.shape
     while True:
@@ -60,6 +61,8 @@ def frame(next_row: Any, pixels: Any, linear: Any, samples: Any, offsets: Any, s
         first_tile = top // TILE * tiles(width)
         for y in range(top, min(top + TILE, height), DOWN):
             for x in range(0, width, ACROSS):
+                if next_row[0] >= CANCELLED:
+                    return
                 tile = first_tile + x // TILE
                 store(pixels, linear, x, y, packet(scene, tile, width, height, samples, offsets, x, y))
 

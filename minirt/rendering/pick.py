@@ -6,30 +6,39 @@ from typing import Any
 
 import numpy as np
 
-from minirt.lanes import Vec, dot, sqrt
+from minirt.kernel.frame import TILE, camera_ray, tiles
+from minirt.kernel.trace import NEARBY, nearest
+from minirt.lanes import Vec, lane, splat
 from minirt.rendering.camera import camera_numbers
+from minirt.rendering.packing import Packing
 from minirt.scene import Scene
 from minirt.shapes import KINDS, Shape
 
 
-def pick(scene: Scene, width: int, height: int, x: float, y: float) -> Shape | None:
+def pick(scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
     """The shape in the middle of pixel x, y of a picture of that size, or None where there is none."""
-    numbers = camera_numbers(scene.camera, width, height)
-    origin, right, up, forward = (Vec(*numbers[at : at + 3]) for at in (0, 3, 6, 9))
-    direction = forward + (2 * (x + 0.5) / width - 1) * right + (1 - 2 * (y + 0.5) / height) * up
-    direction = direction / sqrt(dot(direction, direction))
-    found: Shape | None = None
-    nearest = np.inf
+    camera = camera_numbers(scene.camera, width, height)
+    with np.errstate(all="ignore"):
+        shapes = in_front(scene.shapes, *camera_ray(camera, width, height, x + 0.5, y + 0.5))
+        if len(shapes) < 2:
+            return shapes[0] if shapes else None
+        # Surfaces that may coincide: the kernel has a rule for them.
+        traced = Packing().pack(Scene((scene.camera, *shapes)), width, height)
+        origin, direction = camera_ray(camera, width, height, splat(x + 0.5), splat(y + 0.5))
+        _, owner, _ = nearest(traced, y // TILE * tiles(width) + x // TILE, origin, direction)
+    return shapes[int(lane(owner, 0))]
+
+
+def in_front(shapes: tuple[Shape, ...], origin: Vec, direction: Vec) -> list[Shape]:
+    """Of the shapes that a ray hits the nearest, and those so close to it that they may be in the same place."""
+    distance = np.full(len(shapes), np.inf)
     for kind in KINDS:
-        shapes = [shape for shape in scene.shapes if type(shape) is kind.element]
-        if shapes:
-            with np.errstate(all="ignore"):
-                hit, t = kind.intersect(columns([shape.pack() for shape in shapes]), origin, direction)
-            t = np.where(hit, t, np.inf)
-            first = int(np.argmin(t))
-            if t[first] < nearest:
-                found, nearest = shapes[first], t[first]
-    return found
+        places = [place for place, shape in enumerate(shapes) if type(shape) is kind.element]
+        if places:
+            hit, t = kind.intersect(columns([shapes[place].pack() for place in places]), origin, direction)
+            distance[places] = np.where(hit, t, np.inf)
+    least = distance.min(initial=np.inf)
+    return [shapes[place] for place in np.flatnonzero(np.isfinite(distance) & (distance <= least * (1 + 2 * NEARBY)))]
 
 
 def columns(packed: list[Any]) -> Any:

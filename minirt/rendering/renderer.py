@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from minirt.errors import RenderError
+from minirt.kernel.frame import CANCELLED
 from minirt.rendering.cores import usable_cores
 from minirt.scene import Scene
 
 NO_LINEAR = np.zeros((0, 0, 3))
-END = 2**40  # a row that no picture has
 GOLDEN = (5**0.5 - 1) / 2
 
 
@@ -74,7 +74,7 @@ class Renderer:
             offsets = self.kernel.frame.PACKET
             self.run(counter, words, NO_LINEAR if linear is None else linear, sample_places(samples), offsets, traced)
             self.known.add(kinds_of(scene))
-            return bool(counter[0] < END)
+            return bool(counter[0] < CANCELLED)
 
     def run(self, *arguments: Any) -> None:
         """The same frame on all threads, which share its rows; the first error of any thread is raised.
@@ -92,7 +92,7 @@ class Renderer:
 
     def cancel(self) -> None:
         """From any thread: the picture that is being made ends soon, half-made."""
-        self.next_row[0] = END
+        self.next_row[0] = CANCELLED
 
 
 def kinds_of(scene: Scene) -> frozenset[type]:
