@@ -90,7 +90,8 @@ def render(
 
     from minirt.image import Image
 
-    width, height = width or size_of(scene)[0], height or size_of(scene)[1]
+    own_width, own_height = size_of(scene)
+    width, height = own_width if width is None else width, own_height if height is None else height
     if width < 1 or height < 1:
         raise RenderError(f"a picture has at least 1x1 pixels, got {width}x{height}")
     pixels = np.empty((height, width, 4), np.uint8)

@@ -41,7 +41,9 @@ def random_scene(seed: int) -> Scene:
         return Cylinder(place(3), way(), size(), 3 * size(), colour())
 
     shapes = [shape() for _ in range(random.choice([1, 2, 4, 8, 12, 40]))]
-    lamps: list[Element] = [FurtherLight(place(5), random.uniform(0.2, 0.8), colour()) for _ in range(random.integers(3))]
+    lamps: list[Element] = [
+        FurtherLight(place(5), random.uniform(0.2, 0.8), colour()) for _ in range(random.integers(3))
+    ]
     inside = random.choice(shapes)
     middle = inside.point if isinstance(inside, Plane) else inside.centre
     near_middle = tuple(np.array(middle) + 0.05 * random.normal(size=3))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor, as_completed, wait
 from functools import cached_property
 from importlib import import_module
 from threading import Lock
@@ -83,7 +83,7 @@ class Renderer:
         """
         jobs = [self.workers.submit(self.kernel.render_bands, *arguments) for _ in range(self.threads)]
         try:
-            for job in jobs:
+            for job in as_completed(jobs):
                 job.result()
         except BaseException:
             self.cancel()

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from minirt.fields import unit
+from minirt.kernel import trace
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import Shape
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from minirt.kernel import trace
 from tests import reference
 from tests.compare import edges
 from tests.kernel.pictures import BLUE, GREEN, RED, interpreted, linear

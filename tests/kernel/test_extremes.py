@@ -132,7 +132,9 @@ def test_a_lamp_on_a_surface_lights_it_from_no_side_and_others_do() -> None:
     assert light.max() <= 0.15 + 1e-9
     floor = Plane((0, -1, 0), (0, 1, 0), WHITE)
     lit = finite(Scene((AMBIENT, Camera((0, 3, -5), (0, -0.6, 0.8), 60), Light((0, 1, 0), 1.0), ball, floor)), 48, 32)
-    assert lit.max() == pytest.approx(0.15, abs=1e-9)  # the ball's own top hides the floor from a lamp that stands on it
+    assert lit.max() == pytest.approx(
+        0.15, abs=1e-9
+    )  # the ball's own top hides the floor from a lamp that stands on it
 
 
 def test_what_lies_beyond_a_lamp_hides_nothing() -> None:
@@ -144,7 +146,11 @@ def test_what_lies_beyond_a_lamp_hides_nothing() -> None:
 
 
 def test_light_is_the_cosine_law() -> None:
-    dark, above, floor = Ambient(0.0, WHITE), Camera((0, 3, 0), (0, -1, 0), 90), Plane((0, 0, 0), (0, 1, 0), (51, 102, 255))
+    dark, above, floor = (
+        Ambient(0.0, WHITE),
+        Camera((0, 3, 0), (0, -1, 0), 90),
+        Plane((0, 0, 0), (0, 1, 0), (51, 102, 255)),
+    )
     light = finite(Scene((dark, above, Light((1, 3, 2), 0.7), floor)), 9, 9)
     x = 3 * (2 * (np.arange(9) + 0.5) / 9 - 1)
     z = 3 * (2 * (np.arange(9) + 0.5) / 9 - 1)[:, None]  # looking down, up is -z

@@ -100,3 +100,13 @@ def test_the_eye_looks_forward_through_the_middle() -> None:
         origin, direction = camera_ray(numbers, 30, 20, np.float64(x), np.float64(y))
         assert (origin.x, origin.y, origin.z) == EYE.position
         assert np.allclose([direction.x, direction.y, direction.z], expected / np.linalg.norm(expected), atol=1e-15)
+
+
+@pytest.mark.parametrize(("width", "height"), [*SIZES, (60, 40), (150, 83)])
+def test_the_picture_is_the_same_whether_its_light_is_kept_or_not(width: int, height: int) -> None:
+    kept, _ = picture(ALL, width, height)
+    around = np.full((height + 6, width, 4), 77, np.uint8)
+    assert TWO.render(ALL, around[3:-3])
+    assert np.array_equal(around[3:-3], kept)
+    assert (around[:3] == 77).all()
+    assert (around[-3:] == 77).all()

@@ -76,7 +76,8 @@ def on_numbers(function: Function, *given: Any) -> Any:
 
 
 def wrapped(function: Function, count: int) -> Function:
-    return (lambda a: function(a)) if count == 1 else (lambda a, b: function(a, b))
+    # numba compiles plain functions: one around the verb.
+    return (lambda a: function(a)) if count == 1 else (lambda a, b: function(a, b))  # noqa: PLW0108
 
 
 def name(function: Function) -> str:

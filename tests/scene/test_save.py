@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from minirt.errors import SceneError
 from minirt import atomic
+from minirt.errors import SceneError
 from minirt.scene import load, parse, save
 from tests.scene.examples import WHOLE
 

@@ -11,7 +11,7 @@ from minirt.shapes.basis import to_basis
 from minirt.shapes.cylinder import PackedCylinder
 from minirt.shapes.plane import PackedPlane
 from minirt.shapes.sphere import PackedSphere
-from tests.shapes.ways import Array, on_arrays
+from tests.shapes.ways import on_arrays
 
 
 def first(r0: Any, r1: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Rays and shapes, at random, that are hard in one way each. Lengths are in units of the shape unless said otherwise."""
+"""Rays and shapes, at random, that are hard in one way each. Lengths are in units of the shape."""
 
 from __future__ import annotations
 

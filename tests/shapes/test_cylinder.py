@@ -127,10 +127,14 @@ def test_piece_by_piece_does_not_pass() -> None:
             assert_near(naive(*hard[0]), hard[1], tolerance)
 
 
+def assert_solved_well(way: Intersect) -> None:
+    assert_near(way(*LONG[0]), LONG[1], 3e-8)
+    for rays, right in ALONG.values():
+        assert_near(way(*rays), right, 1e-13)
+
+
 @pytest.mark.parametrize("mutant", [mutants.no_sign, mutants.two_roots])
 def test_a_naive_quadratic_does_not_pass(monkeypatch: pytest.MonkeyPatch, mutant: Any) -> None:
     monkeypatch.setattr(module, "below_zero", mutant)
     with pytest.raises(AssertionError):
-        assert_near(on_arrays(*LONG[0]), LONG[1], 3e-8)
-        for name in ALONG:
-            assert_near(on_arrays(*ALONG[name][0]), ALONG[name][1], 1e-13)
+        assert_solved_well(on_arrays)

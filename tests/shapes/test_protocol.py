@@ -16,8 +16,8 @@ from minirt.kernel.rows import row_type
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Kind, Shape
 from tests.shapes.checks import U
-from tests.shapes.regimes import ways
 from tests.shapes.examples import example, hits, offsets
+from tests.shapes.regimes import ways
 from tests.shapes.ways import WAYS, kind_of, surfaces, table
 
 SIZES = [(1e-4, 0.0), (1.0, 0.0), (1.0, 1e8), (1e8, 0.0)]

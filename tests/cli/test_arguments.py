@@ -1,0 +1,152 @@
+"""What the program makes of its arguments: statuses and messages."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import minirt
+from tests.cli.program import ROOT, SCENE, Ended
+
+Run = Callable[..., Ended]
+
+BAD_ARGUMENTS = [
+    ["--nonsense"],
+    ["ball.rt", "--nonsense", "-o", "x.png"],
+    ["ball.rt", "-o"],
+    *(["ball.rt", "-o", "x.png", "--size", size] for size in ("640", "x", "640x", "x480", "0x4", "4x0", "-4x4")),
+    *(
+        ["ball.rt", "-o", "x.png", "--size", size]
+        for size in ("4x4x4", "4.5x4", "\uff14x4", "16385x4", "1_0x4", "99999999999x4")
+    ),
+    *(["ball.rt", "-o", "x.png", "--samples", samples] for samples in ("0", "-1", "x", "1.5", "65537", "\u00b2")),
+    ["ball.rt", "--threads", "0"],
+    ["ball.rt", "--keys", "dvorak"],
+]
+BAD_SCENES = {
+    "no-camera.rt": SCENE.replace("C 0,0,-5 0,0,1 70\n", ""),
+    "no-ambient.rt": SCENE.replace("A 0.2 255,255,255\n", ""),
+    "two-cameras.rt": SCENE + "C 0,0,-5 0,0,1 70\n",
+    "unknown.rt": SCENE + "spp 0,0,20 12.6 10,0,255\n",
+    "range.rt": SCENE + "sp 0,0,20 -3 10,0,255\n",
+    "nan.rt": SCENE + "sp nan,0,20 3 10,0,255\n",
+    "empty.rt": "",
+    "blank.rt": " \n\n",
+    "binary.rt": "\0\1\2",
+    "name.txt": SCENE,
+    "name.rt.txt": SCENE,
+    ".rt": SCENE,
+}
+
+
+def assert_refused(ended: Ended, folder: Path, status: int = 1) -> None:
+    """`Error` comes first, nothing is printed elsewhere, no picture is made."""
+    assert ended.status == status
+    assert ended.out == b""
+    lines = ended.err.split("\n")
+    assert lines[0] == "Error"
+    assert lines[1].strip()
+    assert not [path for path in folder.iterdir() if path.suffix in (".png", ".tmp")]
+
+
+@pytest.mark.parametrize("arguments", BAD_ARGUMENTS, ids=" ".join)
+def test_bad_arguments(run: Run, folder: Path, arguments: list[str]) -> None:
+    ended = run(*arguments)
+    assert_refused(ended, folder, 2)
+    assert "usage: miniRT" in ended.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "expected one scene file, got 0"),
+        (["-o", "x.png"], "expected one scene file, got 0"),
+        (["ball.rt", "ball.rt", "-o", "x.png"], "expected one scene file, got 2: ball.rt ball.rt"),
+        (["--check"], "expected one scene file, got 0"),
+    ],
+)
+def test_not_exactly_one_scene(run: Run, folder: Path, arguments: list[str], message: str) -> None:
+    ended = run(*arguments)
+    assert_refused(ended, folder)
+    assert ended.err.split("\n")[1] == message
+
+
+@pytest.mark.parametrize("name", BAD_SCENES)
+@pytest.mark.parametrize("how", [["-o", "x.png"], ["--check"], []])
+def test_bad_scenes(run: Run, folder: Path, name: str, how: list[str]) -> None:
+    (folder / name).write_text(BAD_SCENES[name])
+    ended = run(name, *how)
+    assert_refused(ended, folder)
+    assert ended.err.split("\n")[1].startswith(f"{name}:")
+
+
+@pytest.mark.parametrize("name", ["missing.rt", "folder.rt"])
+def test_no_file(run: Run, folder: Path, name: str) -> None:
+    (folder / "folder.rt").mkdir()
+    assert_refused(run(name, "-o", "x.png"), folder)
+
+
+def test_an_error_names_file_line_and_column_and_shows_the_line(run: Run, folder: Path) -> None:
+    (folder / "bad.rt").write_text(SCENE + "sp 0,0,20 -3 10,0,255\nspp 0,0,0 1 1,2,3\n")
+    lines = run("bad.rt", "-o", "x.png").err.split("\n")
+    assert lines == [
+        "Error",
+        "bad.rt:6:11: sphere diameter must be > 0, got -3",
+        "    sp 0,0,20 -3 10,0,255",
+        "              ^~",
+        "bad.rt:7:1: unknown element 'spp', did you mean 'sp'?",
+        "    spp 0,0,0 1 1,2,3",
+        "    ^~~",
+        "",
+    ]
+
+
+def test_check_makes_no_picture(run: Run, folder: Path) -> None:
+    assert run("ball.rt", "--check", "-o", "x.png") == (0, b"ball.rt: no errors, 2 shapes, 1 lights\n", "")
+    assert not (folder / "x.png").exists()
+
+
+def test_the_subjects_own_example_is_read_leniently(run: Run, folder: Path) -> None:
+    printed = str(ROOT / "scenes" / "subject-as-printed.rt")
+    assert_refused(run(printed, "--check"), folder)
+    ended = run(printed, "--check", "--lenient")
+    assert ended.status == 0
+    assert ended.out.endswith(b"no errors, 3 shapes, 1 lights\n")
+    assert ended.err.startswith("notice: ")
+    assert run(printed, "--lenient", "-o", "printed.png", "--size", "16x9").status == 0
+    assert (folder / "printed.png").exists()
+
+
+def test_bench_says_what_it_measured(run: Run) -> None:
+    ended = run("ball.rt", "--bench", "--json", "--size", "16x9", "--threads", "2")
+    assert (ended.status, ended.err) == (0, "")
+    measured = json.loads(ended.out)
+    assert [*measured] == [
+        "scene", "size", "threads", "precision", "frames", "ms_min", "ms_median", "compile_s", "load_s",
+    ]  # fmt: skip
+    assert (measured["scene"], measured["size"], measured["threads"]) == ("ball.rt", "16x9", 2)
+    assert measured["precision"] == "double"
+    assert 0 < measured["ms_min"] <= measured["ms_median"] < 1000
+    assert measured["frames"] >= 9
+    text = run("ball.rt", "--bench", "--size", "16x9").out.decode()
+    assert text.startswith("scene ball.rt, size 16x9, threads ")
+
+
+def test_version(run: Run) -> None:
+    assert run("--version") == (0, f"miniRT {minirt.__version__}\n".encode(), "")
+
+
+def test_help_names_every_option(run: Run) -> None:
+    ended = run("--help")
+    assert (ended.status, ended.err) == (0, "")
+    for option in ("--output", "--size", "--samples", "--check", "--lenient", "--bench", "--json", "--list-keys"):
+        assert option in ended.out.decode()
+
+
+def test_list_keys_needs_no_scene(run: Run) -> None:
+    ended = run("--list-keys")
+    assert (ended.status, ended.err) == (0, "")
+    assert len(ended.out.splitlines()) > 10

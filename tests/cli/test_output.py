@@ -1,0 +1,136 @@
+"""Pictures that the program writes: formats, sizes, and files that are whole or not there."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import minirt
+from minirt import atomic
+from tests.cli.program import SCENE, Ended
+
+Run = Callable[..., Ended]
+
+
+def pixels(data: bytes | Path) -> np.ndarray:
+    with Image.open(io.BytesIO(data) if isinstance(data, bytes) else data) as image:
+        return np.asarray(image.convert("RGB"))
+
+
+def rendered(width: int, height: int, samples: int = 1) -> np.ndarray:
+    return minirt.render(minirt.load("ball.rt"), width, height, samples=samples).array
+
+
+@pytest.mark.parametrize(
+    ("suffix", "format"),
+    [("png", "PNG"), ("jpg", "JPEG"), ("bmp", "BMP"), ("ppm", "PPM"), ("webp", "WEBP"), ("PNG", "PNG")],
+)
+def test_the_extension_says_which_format(run: Run, folder: Path, suffix: str, format: str) -> None:
+    target = folder / f"ball.{suffix}"
+    assert run("ball.rt", "-o", str(target), "--size", "40x30") == (0, b"", "")
+    with Image.open(target) as image:
+        assert image.format == format
+    near = 30 if format in ("JPEG", "WEBP") else 0
+    assert np.abs(pixels(target).astype(int) - rendered(40, 30)).mean() <= near
+    assert {path.name for path in folder.iterdir()} == {"ball.rt", target.name}
+
+
+@pytest.mark.parametrize("name", ["x.xyz", "x", "x.", "x.mp3", "x.rt", ".png"])
+def test_a_format_that_cannot_be_written(run: Run, folder: Path, name: str) -> None:
+    ended = run("ball.rt", "-o", name, "--size", "4x4")
+    assert (ended.status, ended.out) == (1, b"")
+    assert ended.err.startswith(f"Error\n{name}: cannot write pictures with the extension")
+    assert [path.name for path in folder.iterdir()] == ["ball.rt"]
+
+
+def test_a_folder_that_does_not_exist(run: Run, folder: Path) -> None:
+    ended = run("ball.rt", "-o", "nowhere/x.png", "--size", "4x4")
+    assert ended == (1, b"", "Error\nnowhere/x.png: cannot write: No such file or directory\n")
+    assert [path.name for path in folder.iterdir()] == ["ball.rt"]
+
+
+def test_a_folder_in_the_place_of_the_file(run: Run, folder: Path) -> None:
+    (folder / "x.png").mkdir()
+    ended = run("ball.rt", "-o", "x.png", "--size", "4x4")
+    assert (ended.status, ended.err.split("\n")[0]) == (1, "Error")
+
+
+def test_an_existing_file_is_replaced_as_a_whole(run: Run, folder: Path) -> None:
+    (folder / "x.png").write_bytes(b"old")
+    assert run("ball.rt", "-o", "x.png", "--size", "8x6").status == 0
+    assert np.array_equal(pixels(folder / "x.png"), rendered(8, 6))
+
+
+def test_an_existing_file_stays_where_writing_fails(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (folder / "x.png").write_bytes(b"old")
+
+    def full(descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(atomic.os, "fsync", full)
+    ended = run("ball.rt", "-o", "x.png", "--size", "8x6")
+    assert ended == (1, b"", "Error\nx.png: cannot write: No space left on device\n")
+    assert (folder / "x.png").read_bytes() == b"old"
+    assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
+
+
+def test_an_existing_file_stays_where_the_scene_is_wrong(run: Run, folder: Path) -> None:
+    (folder / "x.png").write_bytes(b"old")
+    (folder / "bad.rt").write_text("nonsense")
+    assert run("bad.rt", "-o", "x.png").status == 1
+    assert (folder / "x.png").read_bytes() == b"old"
+
+
+def test_standard_output_gets_a_png(run: Run) -> None:
+    ended = run("ball.rt", "-o", "-", "--size", "20x10")
+    assert (ended.status, ended.err) == (0, "")
+    assert ended.out.startswith(b"\x89PNG\r\n")
+    assert np.array_equal(pixels(ended.out), rendered(20, 10))
+
+
+def test_size_and_samples(run: Run) -> None:
+    ended = run("ball.rt", "-o", "-", "--size", "20x10", "--samples", "9")
+    assert np.array_equal(pixels(ended.out), rendered(20, 10, 9))
+    assert not np.array_equal(pixels(ended.out), rendered(20, 10))
+
+
+def test_the_scene_may_name_the_size(run: Run, folder: Path) -> None:
+    (folder / "sized.rt").write_text("R 33 21\n" + SCENE)
+    assert pixels(run("sized.rt", "-o", "-").out).shape == (21, 33, 3)
+    assert pixels(run("sized.rt", "-o", "-", "--size", "7x5").out).shape == (5, 7, 3)
+    assert pixels(run("ball.rt", "-o", "-").out).shape == (720, 1280, 3)
+
+
+def test_verbose_says_how_long_it_took(run: Run) -> None:
+    ended = run("ball.rt", "-o", "x.png", "--size", "8x6", "--samples", "2", "--threads", "1", "-v")
+    assert (ended.status, ended.out) == (0, b"")
+    assert re.fullmatch(r"kernel ready after [0-9.]+ s\n8x6, 2 samples a pixel, 1 threads: [0-9.]+ ms\n", ended.err)
+
+
+def test_threads_do_not_change_the_picture(run: Run) -> None:
+    one, three = (run("ball.rt", "-o", "-", "--size", "50x40", "--threads", n).out for n in "13")
+    assert one == three
+
+
+def test_without_a_display_the_picture_falls_back_to_a_file(
+    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from minirt import viewer
+    from minirt.errors import MlxError
+
+    def no_window(*arguments: object, **more: object) -> int:
+        raise MlxError("no display")
+
+    monkeypatch.setattr(viewer, "run", no_window)
+    assert run("ball.rt") == (1, b"", "Error\nno display\n")
+    ended = run("ball.rt", "--fallback", "x.png", "--size", "8x6")
+    assert (ended.status, ended.err) == (0, "")
+    assert np.array_equal(pixels(folder / "x.png"), rendered(8, 6))
+    assert os.fspath(folder / "x.png").encode() in ended.out

@@ -1,0 +1,142 @@
+"""Which part of the program may import which, read from the sources."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+import minirt
+
+PACKAGE = Path(minirt.__file__).parent
+LOW = {"errors", "fields", "element", "lanes", "shapes"}
+
+# For each part what it may import of ours. A part is a folder or a file of the package.
+MAY: dict[str, set[str]] = {
+    "errors": set(),
+    "atomic": set(),
+    "lanes": set(),
+    "fields": {"errors"},
+    "element": {"errors", "fields"},
+    "shapes": {"lanes", "fields", "element"},
+    "image": {"errors", "atomic"},
+    "scene": {"errors", "fields", "element", "shapes", "atomic"},
+    "kernel": {"lanes", "shapes"},
+    "rendering": LOW | {"kernel", "scene"},
+    "mlx": {"errors"},
+    "viewer": {"errors", "fields", "element", "shapes", "scene", "rendering", "mlx", "image", "__init__"},
+    "bench": {"__init__", "rendering", "scene"},
+    "cli": {"__init__", "errors", "image", "scene", "viewer", "bench", "rendering"},
+    "__main__": {"cli"},
+    "__init__": LOW | {"image", "scene", "rendering"},
+}
+COMPILER = {"numba", "llvmlite"}
+COMPILED = {  # the only files that import the compiler
+    "lanes/compiled.py",
+    "lanes/compiled_operators.py",
+    "lanes/compiled_vec.py",
+    "lanes/compiled_verbs.py",
+    "lanes/teaching.py",
+    "lanes/vector.py",
+    "kernel/jit.py",
+    "kernel/cache.py",
+}
+LATE = {"numba", "llvmlite", "pyglet", "PIL", "minirt.rendering", "minirt.viewer", "minirt.kernel", "minirt.mlx"}
+
+
+def imports(source: str, late: bool = True) -> set[str]:
+    """The modules that a source imports at run time; without those inside functions, unless `late`."""
+    found: set[str] = set()
+
+    def visit(node: ast.AST) -> None:
+        if isinstance(node, ast.Import):
+            found.update(each.name for each in node.names)
+        if isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "relative import"
+            found.update(f"{node.module}.{each.name}" for each in node.names)
+        if isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] in ("import_module", "__import__"):
+            found.update(each.value for each in node.args if isinstance(each, ast.Constant))
+        typing = isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+        if typing or (not late and isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda))):
+            return
+        for child in ast.iter_child_nodes(node):
+            visit(child)
+
+    visit(ast.parse(source))
+    return found
+
+
+def part_of(module: str) -> str:
+    """The part of the program to which a module belongs: `minirt.scene.parser.load` to `scene`."""
+    name = module.split(".")[1] if "." in module else "__init__"
+    return name if (PACKAGE / name).is_dir() or (PACKAGE / f"{name}.py").is_file() else "__init__"
+
+
+def wrong(part: str, source: str) -> set[str]:
+    """What a source of a part imports of ours and may not."""
+    ours = {part_of(module) for module in imports(source) if module.split(".")[0] == "minirt"}
+    return ours - MAY[part] - {part}
+
+
+def sources() -> dict[str, str]:
+    """Every source of the package, by its path."""
+    paths = sorted(PACKAGE.rglob("*.py"))
+    return {path.relative_to(PACKAGE).as_posix(): path.read_text(encoding="utf-8") for path in paths}
+
+
+def part(path: str) -> str:
+    return path.split("/", maxsplit=1)[0].removesuffix(".py")
+
+
+def test_every_part_has_a_rule_and_every_rule_a_part() -> None:
+    assert {part(path) for path in sources()} == set(MAY)
+
+
+@pytest.mark.parametrize("path", sources())
+def test_imports_go_one_way(path: str) -> None:
+    assert wrong(part(path), sources()[path]) == set()
+
+
+def test_the_rules_have_no_circle() -> None:
+    order: list[str] = []
+    while len(order) < len(MAY):
+        free = [each for each in MAY if each not in order and MAY[each] <= set(order)]
+        assert free
+        order += free
+
+
+def test_the_compiler_is_imported_where_it_is_attached_and_nowhere_else() -> None:
+    importers = {path for path, source in sources().items() if {m.split(".")[0] for m in imports(source)} & COMPILER}
+    # `compiled` only gathers the files that teach the compiler.
+    assert importers == COMPILED - {"lanes/compiled.py"}
+
+
+@pytest.mark.parametrize("path", ["__init__.py", "cli.py", "image.py", "bench.py"])
+def test_heavy_imports_are_late(path: str) -> None:
+    early = imports(sources()[path], late=False)
+    allowed = {"minirt.rendering"} if path == "bench.py" else set()  # which cli imports late
+    assert not {each for each in early if any(f"{each}.".startswith(f"{heavy}.") for heavy in LATE - allowed)}
+
+
+@pytest.mark.parametrize(
+    ("where", "source", "found"),
+    [
+        ("kernel", "from minirt.scene import Scene", {"scene"}),
+        ("kernel", "import minirt.scene.parser", {"scene"}),
+        ("kernel", "from minirt import scene", {"scene"}),
+        ("shapes", "def f():\n    from minirt.kernel.rows import row", {"kernel"}),
+        ("rendering", "import_module('minirt.viewer.session')", {"viewer"}),
+        ("mlx", "from minirt import load", {"__init__"}),
+        ("lanes", "from minirt.lanes.vec import Vec\nimport math", set()),
+        ("scene", "if TYPE_CHECKING:\n    from minirt.viewer import run", set()),
+    ],
+)
+def test_a_wrong_import_is_found(where: str, source: str, found: set[str]) -> None:
+    assert wrong(where, source) == found
+
+
+def test_what_is_late_is_told_from_what_is_not() -> None:
+    source = "import numba\ndef f():\n    import pyglet\nclass C:\n    import PIL"
+    assert imports(source, late=False) == {"numba", "PIL"}
+    assert imports(source) == {"numba", "pyglet", "PIL"}

@@ -1,0 +1,123 @@
+"""miniRT as a library."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.scene import Resolution
+from tests.reference import render, to_bytes
+
+SCENES = Path(__file__).parent.parent / "scenes"
+SUBJECT = SCENES / "subject.rt"
+
+
+@pytest.fixture
+def scene() -> minirt.Scene:
+    return minirt.load(SUBJECT)
+
+
+def test_what_is_in_the_package() -> None:
+    assert all(hasattr(minirt, name) for name in minirt.__all__)
+    assert (Path(minirt.__file__).parent / "py.typed").exists()
+
+
+@pytest.mark.parametrize("path", [SUBJECT, str(SUBJECT)])
+def test_a_picture_of_a_scene(path: Path | str) -> None:
+    image = minirt.render(minirt.load(path), 64, 48)
+    assert (image.array.shape, image.array.dtype) == ((48, 64, 3), np.uint8)
+    assert (image.linear.shape, image.linear.dtype) == ((48, 64, 3), np.float64)
+    assert np.array_equal(image.array, to_bytes(image.linear))
+    assert (np.abs(image.linear - render(minirt.load(path), 64, 48)).max(axis=-1) > 1e-9).mean() < 1e-3
+    assert image.pil.size == (64, 48)
+    assert image._repr_png_().startswith(b"\x89PNG")
+
+
+def test_a_picture_in_a_file(scene: minirt.Scene, tmp_path: Path) -> None:
+    image = minirt.render(scene, 32, 18)
+    image.save(tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes() == image.encode()
+
+
+def test_the_size_is_the_scenes_own_or_the_default(scene: minirt.Scene) -> None:
+    assert minirt.size_of(scene) == minirt.DEFAULT_SIZE
+    sized = minirt.Scene((Resolution(40, 20), *scene.items))
+    assert minirt.size_of(sized) == (40, 20)
+    assert minirt.render(sized).array.shape == (20, 40, 3)
+    assert minirt.render(sized, 10).array.shape == (20, 10, 3)
+    assert minirt.render(sized, height=10).array.shape == (10, 40, 3)
+
+
+@pytest.mark.parametrize("size", [(-1, 5), (5, -1)])
+def test_a_size_below_one_pixel(scene: minirt.Scene, size: tuple[int, int]) -> None:
+    with pytest.raises(minirt.RenderError, match=f"at least 1x1 pixels, got {size[0]}x{size[1]}"):
+        minirt.render(scene, *size)
+
+
+@pytest.mark.parametrize("size", [(0, 5), (5, 0)])
+def test_a_size_of_zero(scene: minirt.Scene, size: tuple[int, int]) -> None:
+    with pytest.raises(minirt.RenderError, match="at least 1x1 pixels"):
+        minirt.render(scene, *size)
+
+
+def test_no_samples(scene: minirt.Scene) -> None:
+    with pytest.raises(minirt.RenderError, match="at least 1 sample"):
+        minirt.render(scene, 4, 4, samples=0)
+
+
+def test_more_samples_are_nearer_to_the_mean_of_the_pixels(scene: minirt.Scene) -> None:
+    fine = minirt.render(scene, 320, 180).linear.reshape(18, 10, 32, 10, 3).mean(axis=(1, 3))
+    errors = [np.sqrt(((minirt.render(scene, 32, 18, samples=n).linear - fine) ** 2).mean()) for n in (1, 4, 16, 64)]
+    assert errors == sorted(errors, reverse=True)
+    assert errors[-1] < errors[0] / 5
+
+
+def test_threads_do_not_change_the_picture(scene: minirt.Scene) -> None:
+    assert np.array_equal(*(minirt.render(scene, 50, 40, threads=n).linear for n in (1, 3)))
+
+
+def test_scenes_are_edited_into_new_ones(scene: minirt.Scene) -> None:
+    before = minirt.render(scene, 32, 18).array
+    larger = scene.replace(scene.spheres[0], diameter=30)
+    assert larger.spheres[0].diameter == 30
+    assert scene.spheres[0].diameter == 20
+    assert larger.planes == scene.planes
+    assert not np.array_equal(minirt.render(larger, 32, 18).array, before)
+    assert np.array_equal(minirt.render(scene, 32, 18).array, before)
+    with pytest.raises(ValueError, match="diameter must be > 0"):
+        scene.replace(scene.spheres[0], diameter=-1)
+    with pytest.raises(ValueError, match="not in"):
+        scene.replace(minirt.Sphere((0, 0, 0), 1, (1, 2, 3)), diameter=1)
+    with pytest.raises(AttributeError, match="a scene has no 'tori'"):
+        _ = scene.tori
+    with pytest.raises(AttributeError):
+        scene.items = ()  # type: ignore[misc]
+
+
+def test_scenes_can_be_made_without_a_file() -> None:
+    ball = minirt.Sphere((0, 0, 5), 2, (255, 0, 0))
+    made = minirt.Scene((minirt.Ambient(1, (255, 255, 255)), minirt.Camera((0, 0, 0), (0, 0, 1), 60), ball))
+    assert minirt.render(made, 9, 9).array[4, 4].tolist() == [255, 0, 0]
+    assert minirt.render(made, 9, 9).array[0, 0].tolist() == [0, 0, 0]
+    assert pickle.loads(pickle.dumps(made)) == made
+
+
+def test_errors_name_all_that_is_wrong(tmp_path: Path) -> None:
+    path = tmp_path / "bad.rt"
+    path.write_text("A 0.2 255,255,255\nC 0,0,0 0,0,1 999\nsp 0,0,0 -1 1,2,3\n")
+    with pytest.raises(minirt.SceneError) as caught:
+        minirt.load(path)
+    assert [(each.line, each.column) for each in caught.value.problems] == [(2, 15), (3, 10)]
+    assert isinstance(caught.value, minirt.MiniRTError)
+    assert str(caught.value).startswith(f"{path}:2:15: camera fov must be in [0, 180], got 999")
+
+
+def test_older_scenes_are_read_leniently() -> None:
+    printed = SCENES / "subject-as-printed.rt"
+    with pytest.raises(minirt.SceneError):
+        minirt.load(printed)
+    assert len(minirt.load(printed, lenient=True).shapes) == 3
