@@ -60,4 +60,4 @@ def test_random_scenes(batch: int) -> None:
         bad = off(shown, right)
         assert bad.mean() < 0.01, f"seed {seed}"
         wrong, total = wrong + bad.sum(), total + bad.size
-    assert wrong < 1e-3 * total
+    assert wrong < 1e-4 * total

@@ -6,7 +6,7 @@ from math import inf
 
 from minirt.kernel.trace import ROUNDING, largest, nearest, surfaces, unhidden
 from minirt.kernel.traced import Traced
-from minirt.lanes import Vec, any, dot, first, lane, splat, sqrt, where
+from minirt.lanes import Vec, any, dot, splat, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
@@ -17,22 +17,10 @@ def radiance(scene: Traced, tile: int, origin: Vec, direction: Vec) -> Vec:
     hit = t < inf
     light = Vec(splat(0.0), splat(0.0), splat(0.0))
     if any(hit):
-        point, normal = surfaces(scene, owner, origin + t * direction, hit)
+        point, normal, colour = surfaces(scene, owner, origin + t * direction, hit)
         normal = where(dot(normal, direction) > 0.0, -normal, normal)  # the side that is seen
-        light = times(colours(scene, owner, hit), irradiance(scene, point, normal, extent, hit))
+        light = where(hit, times(colour, irradiance(scene, point, normal, extent, hit)), light)
     return light
-
-
-def colours(scene: Traced, owner: Number, hit: Mask) -> Vec:
-    """The colour of the shape that each ray hits; black where it hits none."""
-    colour = Vec(splat(0.0), splat(0.0), splat(0.0))
-    left = hit
-    while any(left):
-        index = int(lane(owner, first(left)))
-        mine = left & (owner == index)
-        colour = where(mine, Vec(scene.colours[index, 0], scene.colours[index, 1], scene.colours[index, 2]), colour)
-        left = left & ~mine
-    return colour
 
 
 def irradiance(scene: Traced, point: Vec, normal: Vec, extent: Number, hit: Mask) -> Vec:

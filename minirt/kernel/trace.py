@@ -126,20 +126,21 @@ def cell(direction: Vec, grid: int) -> Number:
     return (face * grid + row) * grid + column
 
 
-def surfaces(scene: Traced, owner: Number, point: Vec, hit: Mask) -> tuple[Vec, Vec]:
-    """For rays that hit: the point put onto the surface of the shape that is hit, and the normal there.
+def surfaces(scene: Traced, owner: Number, point: Vec, hit: Mask) -> tuple[Vec, Vec, Vec]:
+    """For rays that hit: the point put onto the surface of the shape that is hit, and the normal and the colour there.
 
-    The rays of a packet hit few different shapes; each shape's formula is asked once, for all of its rays.
+    The rays of a packet hit few different shapes; each shape is asked once, for all of its rays.
     """
-    on, normal = point, point
+    on, normal, colour = point, point, point
     left = hit
     while any(left):
         index = int(lane(owner, first(left)))
         mine = left & (owner == index)
         group, i = scene.places[index, 0], scene.places[index, 1]
         on, normal, _ = over_kinds(surface_of_kind, scene.groups, (on, normal, 0), (group, i, point, mine))
+        colour = where(mine, Vec(scene.colours[index, 0], scene.colours[index, 1], scene.colours[index, 2]), colour)
         left = left & ~mine
-    return on, normal
+    return on, normal, colour
 
 
 def surface_of_kind(

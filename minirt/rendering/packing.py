@@ -37,6 +37,7 @@ class Packing:
     """Packs scene after scene, and keeps what did not change since the last."""
 
     shapes: tuple[Shape | None, ...]
+    lamps: dict[bytes, Lists]  # of the last scene, by the place of each lamp
 
     def __init__(self) -> None:
         self.lay_out(())
@@ -49,7 +50,8 @@ class Packing:
         kinds = self.places[:, 0]
         starts, seen, near = seen_by_eye(self.balls, kinds, camera, width, height)
         grid = grid_for(len(scene.shapes))
-        lamps = [self.lists_of(lamp[:3], grid) for lamp in lights]
+        self.lamps = {lamp[:3].tobytes(): self.lists_of(lamp[:3], grid) for lamp in lights}
+        lamps = [self.lamps[lamp[:3].tobytes()] for lamp in lights]
         before = np.cumsum([0, *(len(lit) for _, lit, _ in lamps)])
         lamp_starts = [starts + before[i] for i, (starts, _, _) in enumerate(lamps)]
         lamp_table = stacked(lamp_starts, (len(self.rows), 6 * grid * grid + 1), np.int64)
@@ -74,9 +76,7 @@ class Packing:
     def lists_of(self, lamp: np.ndarray, grid: int) -> Lists:
         """Which shapes a lamp sees where, worked out once for as long as neither it nor a shape moves."""
         known = self.lamps.get(lamp.tobytes())
-        if known is None:
-            known = self.lamps[lamp.tobytes()] = seen_by_lamp(self.balls, self.places[:, 0], lamp, grid)
-        return known
+        return known or seen_by_lamp(self.balls, self.places[:, 0], lamp, grid)
 
     def pack_shapes(self, shapes: tuple[Shape, ...]) -> None:
         """Bring the arrays of shapes up to date."""
@@ -108,7 +108,7 @@ class Packing:
         self.balls = np.zeros((len(kinds), max((len(shape.balls()) for shape in shapes), default=0) or 1, 4))
         self.colours = np.zeros((len(kinds), 3))
         self.extents = np.zeros(len(kinds))
-        self.lamps: dict[bytes, Lists] = {}
+        self.lamps = {}
         self.shapes = (None,) * len(kinds)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.kernel.rows import read
-from minirt.rendering import packing
+from minirt.rendering import Renderer, packing
 from minirt.rendering.packing import Packing, extent
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
@@ -75,15 +75,15 @@ def test_an_edit_packs_again_only_what_it_changed(packed: list[Any]) -> None:
     packed.clear()
 
     moved = ALL.replace(ALL.spheres[1], centre=(9, 9, 9))
-    assert_same(keeper.pack(moved, 24, 16), moved)
-    assert len([each for each in packed if getattr(each, "centre", None)]) >= 1
+    keeper.pack(moved, 24, 16)
+    assert [repr(each) for each in packed] == [repr(moved.spheres[1].pack())]
     packed.clear()
     keeper.pack(moved, 24, 16)
     keeper.pack(moved.replace(moved.camera, fov=30), 24, 16)
     keeper.pack(moved.replace(moved.lights[0], brightness=0.1), 30, 20)
     assert packed == []
     keeper.pack(ALL, 24, 16)
-    assert packed == [ALL.spheres[1].pack()] or len(packed) == 1
+    assert [repr(each) for each in packed] == [repr(ALL.spheres[1].pack())]
 
 
 @pytest.mark.parametrize(
@@ -112,8 +112,6 @@ def test_after_an_edit_the_arrays_are_those_of_the_new_scene(edit: Any) -> None:
 
 def test_pictures_follow_edits() -> None:
     # One renderer keeps its arrays from picture to picture; another starts anew.
-    from minirt.rendering import Renderer
-
     scene = ALL
     for sphere in ALL.spheres:
         scene = scene.replace(sphere, centre=(0, 3, 2))

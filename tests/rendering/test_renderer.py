@@ -13,6 +13,7 @@ import pytest
 
 import minirt
 from minirt.errors import RenderError
+from minirt.kernel.frame import CANCELLED
 from minirt.rendering import Renderer
 from minirt.rendering.renderer import kinds_of, sample_places
 from minirt.scene import Scene
@@ -95,12 +96,14 @@ def test_an_error_in_one_thread_reaches_the_caller() -> None:
         running.append(1)
         if len(running) == 2:
             raise ValueError("out of order")
-        while counter[0] < 2**39:  # until it is told to stop
+        while counter[0] < CANCELLED and time.perf_counter() < start + 10:  # until it is told to stop
             time.sleep(0.01)
 
     renderer.kernel = SimpleNamespace(frame=kernel.frame, render_bands=bands)
+    start = time.perf_counter()
     with pytest.raises(ValueError, match="out of order"):
         renderer.render(ALL, np.zeros((40, 40, 4), np.uint8))
+    assert time.perf_counter() < start + 5
     renderer.kernel = kernel
     assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.kernel.frame import TILE, camera_ray, tiles
+from minirt.kernel.rows import kind_of, read
 from minirt.kernel.trace import cell
 from minirt.lanes import Vec
 from minirt.rendering import sight
@@ -43,8 +44,6 @@ def seen_rays(traced: Any) -> list[tuple[int, int, float]]:
 
 
 def meets(traced: Any, origin: Vec, direction: Vec) -> list[Any]:
-    from minirt.kernel.rows import kind_of, read
-
     answers = []
     for group, i in traced.places:
         rows = traced.groups[group].rows

@@ -161,6 +161,23 @@ def inside_tube(seed: int, height: float = 1e9, count: int = 50) -> Rays:
     return Rays(shapes, origins, directions)
 
 
+def from_the_wall(seed: int, count: int = 50) -> Rays:
+    """Across a tube, from just inside of its wall: the closest approach to the centre is 1e-13 to 1e-6 off the wall."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, count, WIDTH, 3))
+    for i in range(count):
+        shape = cylinder(random, 1.0, 0.0).replace(height=100.0)
+        axis, radius = np.array(shape.axis), shape.diameter / 2
+        out = across(random, axis, WIDTH)
+        tilt = random.uniform(0.3, 1.2, (WIDTH, 1))
+        directions[i] = unit(np.sin(tilt) * axis - np.cos(tilt) * out)
+        near = radius * (1 - log(random, 1e-13, 1e-6, WIDTH, 1))
+        wall = centre_of(shape) + near * (out + np.cos(tilt) / np.sin(tilt) * axis)
+        origins[i] = wall + random.uniform(0.01, 0.1, (WIDTH, 1)) * directions[i]
+        shapes.append(shape)
+    return Rays(shapes, origins, directions)
+
+
 def disc(seed: int, height: float = 1e-9, count: int = 50) -> Rays:
     """At a cylinder that is next to flat."""
     rays = aimed(cylinder, seed, count=count)

@@ -18,6 +18,7 @@ from tests.shapes.regimes import (
     along_axis,
     cylinder,
     disc,
+    from_the_wall,
     inside,
     inside_tube,
     rim,
@@ -37,6 +38,7 @@ ALONG = {
 }
 RIM = posed(rim, 8)
 LONG = posed(inside_tube, 9)
+WALL = posed(from_the_wall, 13)
 
 
 def test_answers_known_by_hand(way: Intersect) -> None:
@@ -101,6 +103,10 @@ def test_inside_a_tube_of_height_1e9(way: Intersect) -> None:
     assert_near(way(*LONG[0]), LONG[1], 3e-8)
 
 
+def test_across_a_tube_from_its_wall(way: Intersect) -> None:
+    assert_near(way(*WALL[0]), WALL[1], 1e-13)
+
+
 def test_a_disc_of_height_1e_9(way: Intersect) -> None:
     rays, right = posed(disc, 12)
     assert_near(way(*rays), right, 1e-13)
@@ -127,14 +133,9 @@ def test_piece_by_piece_does_not_pass() -> None:
             assert_near(naive(*hard[0]), hard[1], tolerance)
 
 
-def assert_solved_well(way: Intersect) -> None:
-    assert_near(way(*LONG[0]), LONG[1], 3e-8)
-    for rays, right in ALONG.values():
-        assert_near(way(*rays), right, 1e-13)
-
-
-@pytest.mark.parametrize("mutant", [mutants.no_sign, mutants.two_roots])
-def test_a_naive_quadratic_does_not_pass(monkeypatch: pytest.MonkeyPatch, mutant: Any) -> None:
+@pytest.mark.parametrize(("mutant", "hard"), [(mutants.no_sign, WALL), (mutants.two_roots, ALONG["exactly"])])
+def test_a_naive_quadratic_does_not_pass(monkeypatch: pytest.MonkeyPatch, mutant: Any, hard: Any) -> None:
     monkeypatch.setattr(module, "below_zero", mutant)
+    assert_near(on_arrays(*BENIGN[0]), BENIGN[1], 1e-11)  # it is right where nothing is hard
     with pytest.raises(AssertionError):
-        assert_solved_well(on_arrays)
+        assert_near(on_arrays(*hard[0]), hard[1], 1e-13)
