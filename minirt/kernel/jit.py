@@ -20,7 +20,7 @@ from minirt.kernel import cache, frame, rows, shade, trace
 from minirt.lanes import WIDTH
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, VecType, vec_of
-from minirt.shapes import KINDS, basis, quadric
+from minirt.shapes import KINDS, basis, exact, quadric
 
 # error_model: x / 0 is infinite or NaN, as in IEEE 754. fastmath: a * b + c may round once, and nothing else. _nrt: the
 # kernel allocates nothing, and without reference counting it was seen to run twice as fast.
@@ -110,7 +110,15 @@ def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> An
 
 
 OWN_FORM = (trace.over_kinds, frame.fetch_add, frame.store_block, frame.frame)
-for _module in (basis, quadric, trace, shade, frame, *(sys.modules[kind.intersect.__module__] for kind in KINDS)):
+for _module in (
+    basis,
+    exact,
+    quadric,
+    trace,
+    shade,
+    frame,
+    *(sys.modules[kind.intersect.__module__] for kind in KINDS),
+):
     for _function in own_functions(_module):
         if _function not in OWN_FORM:
             register_jitable(**INNER)(_function)

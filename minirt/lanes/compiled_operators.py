@@ -9,8 +9,9 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 
+from minirt.lanes import WIDTH
 from minirt.lanes.teaching import Result, same_numbers, teach
-from minirt.lanes.vector import CONTRACT, LANES, MASK, Lanes, Mask, is_number
+from minirt.lanes.vector import CONTRACT, LANES, MASK, MASK_IR, Lanes, Mask, is_number
 
 PAIRS = ((Lanes, Lanes), (Lanes, types.Number), (types.Number, Lanes))
 
@@ -33,10 +34,19 @@ def teach_comparison(function: Callable[..., Any], symbol: str) -> None:
         return compare(symbol, *same_numbers(context, builder, sig, args))
 
 
+def of_masks(a: types.Type, b: types.Type) -> types.Type | None:
+    """A mask for two masks, or for a mask and a truth that holds for all rays."""
+    return MASK if MASK in (a, b) and {a, b} <= {MASK, types.boolean} else None
+
+
 def teach_logic(function: Callable[..., Any], instruction: str) -> None:
-    @teach(function, lambda a, b: MASK if (a, b) == (MASK, MASK) else None, [(Mask, Mask)])
+    @teach(function, of_masks, [(Mask, Mask), (Mask, types.Boolean), (types.Boolean, Mask)])
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-        return getattr(builder, instruction)(*args)
+        masks = (
+            value if kind == MASK else builder.select(value, *(ir.Constant(MASK_IR, [bit] * WIDTH) for bit in (1, 0)))
+            for value, kind in zip(args, sig.args, strict=True)
+        )
+        return getattr(builder, instruction)(*masks)
 
 
 for _function, _instruction in (

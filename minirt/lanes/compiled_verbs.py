@@ -47,6 +47,19 @@ teach_llvm(verbs.sqrt, "sqrt", 1)
 teach_llvm(verbs.fabs, "fabs", 1)
 teach_llvm(verbs.floor, "floor", 1)
 teach_llvm(verbs.copysign, "copysign", 2)
+
+
+@teach(verbs.rounded_product, two_numbers, [(ANY, ANY)])
+def _rounded_product(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.fmul(*same_numbers(context, builder, sig, args))
+
+
+@teach(verbs.product_error, two_numbers, [(ANY, ANY)])
+def _product_error(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    a, b = same_numbers(context, builder, sig, args)
+    return llvm(builder, "fma", a, b, builder.fneg(builder.fmul(a, b)))
+
+
 teach_choice(verbs.minimum, "<")
 teach_choice(verbs.maximum, ">")
 

@@ -44,6 +44,24 @@ def copysign(x: Number, sign: Number) -> Number:
     return np.copysign(x, sign)
 
 
+def rounded_product(a: Number, b: Number) -> Number:
+    """a * b, rounded here and not together with what follows."""
+    return a * b
+
+
+def product_error(a: Number, b: Number) -> Number:
+    """What rounding drops from a * b, exactly; the numbers must be between 1e-140 and 1e140."""
+    a_high, b_high = high_half(a), high_half(b)
+    a_low, b_low = a - a_high, b - b_high
+    return a_low * b_low - (((a * b - a_high * b_high) - a_low * b_high) - a_high * b_low)
+
+
+def high_half(x: Number) -> Number:
+    """x to 26 of its 53 bits (Veltkamp), so that products of halves are exact."""
+    shifted = x * (2.0**27 + 1.0)
+    return shifted - (shifted - x)
+
+
 def minimum(a: Number, b: Number) -> Number:
     """The lesser; b where one of the two is NaN."""
     return where(a < b, a, b)

@@ -11,10 +11,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, dot, sqrt, where
+from minirt.lanes import Vec, any, dot, fabs, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
+from minirt.shapes.exact import power
 from minirt.shapes.shape import Ball, Box, Shape
+
+CLOSE = 2.0**-9  # to the surface: |f|^2 / radius^2 - 1
 
 
 @dataclass(frozen=True)
@@ -49,18 +52,30 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, 
     """Whether and where a ray meets the sphere.
 
     From the ray's closest approach to the centre both hits are equally far: half a chord, by Pythagoras. Starting
-    there instead of at the origin keeps full precision for small spheres that are far away.
+    there instead of at the origin keeps full precision for small spheres that are far away. Close above or below the
+    surface, seen on the scale of the sphere, one of the hits is the little that is left of the approach and half the
+    chord: there it follows from the other one, because the product of both is the power of the origin.
     """
     f = origin - sphere.centre
+    squared = sphere.radius * sphere.radius
     approach = -dot(f, direction)
     g = f + approach * direction  # from the centre to the closest approach
-    chord = sphere.radius * sphere.radius - dot(g, g)  # the square of half of it
+    chord = squared - dot(g, g)  # the square of half of it
+    close = fabs(dot(f, f) - squared) <= CLOSE * squared
+    product = chord
+    if any(close):
+        product = where(close, power(origin, sphere.centre, sphere.radius), product)
+        chord = where(close, approach * approach - product, chord)
     hit = chord >= 0.0
     t = approach
     if any(hit):
         half = sqrt(chord)
         near = approach - half
-        t = where(near > 0.0, near, approach + half)
+        far = approach + half
+        if any(close):
+            near = where(close & (approach > 0.0), product / far, near)
+            far = where(close & (approach <= 0.0), product / near, far)
+        t = where(near > 0.0, near, far)
         hit = hit & (t > 0.0)
     return hit, t
 

@@ -103,6 +103,17 @@ def tangent(seed: int, count: int = 50) -> Rays:
     return Rays(shapes, touch - random.uniform(3, 20, (count, WIDTH, 1)) * directions, directions)
 
 
+def just_above(seed: int, height: float, count: int = 50) -> Rays:
+    """From a height above a sphere of diameter 1e9, in all directions that go down by a tenth or more."""
+    random = np.random.default_rng(seed)
+    shapes = [Sphere(tuple(ways(random)), 1e9, GREY) for _ in range(count)]
+    centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
+    up = ways(random, count, WIDTH)
+    origins = centres + (5e8 + height) * up
+    aside = across(random, up, count, WIDTH)
+    return Rays(shapes, origins, unit(aside - random.uniform(0.1, 10, (count, WIDTH, 1)) * up))
+
+
 def tangent_to_side(seed: int, count: int = 50) -> Rays:
     """Past the side of a cylinder, from 1e-16 to 1e-4 inside and outside."""
     random = np.random.default_rng(seed)

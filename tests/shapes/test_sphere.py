@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from minirt.shapes import sphere as module
 from minirt.shapes.sphere import Sphere
 from tests.shapes import mutants
 from tests.shapes.checks import U, assert_between, assert_near, assert_verdicts, errors_of, posed
-from tests.shapes.regimes import GREY, Rays, aimed, inside, sphere, tangent, ways
-from tests.shapes.ways import Intersect, surfaces
+from tests.shapes.regimes import GREY, Rays, aimed, inside, just_above, sphere, tangent, ways
+from tests.shapes.ways import Intersect, on_arrays, surfaces
 
 BALL = Sphere((0, 0, 5), 6, GREY)  # radius 3: its edge is seen from the origin along a 3-4-5 triangle
 BENIGN = posed(aimed, sphere, 1)
@@ -58,6 +59,18 @@ def test_benign_rays(way: Intersect) -> None:
 @pytest.mark.parametrize("rays", FAR, ids=["far", "offset", "tiny", "1e4"])
 def test_small_and_far_away(way: Intersect, rays: tuple[Rays, object]) -> None:
     assert_near(way(*rays[0]), rays[1], 1e-13)
+
+
+@pytest.mark.parametrize("height", [1e-6, 1e-3, 1.7])
+def test_just_above_a_huge_sphere(way: Intersect, height: float) -> None:
+    rays, right = posed(just_above, 9, height)
+    assert errors_of(way, rays, right).max() <= 1e-9
+
+
+def test_without_the_power_the_little_above_a_huge_sphere_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "CLOSE", 0.0)
+    rays, right = posed(just_above, 9, 1e-3)
+    assert errors_of(on_arrays, rays, right).max() > 1e-6
 
 
 def test_from_inside(way: Intersect) -> None:

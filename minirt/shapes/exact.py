@@ -1,0 +1,41 @@
+"""Sums that keep what rounding drops, for the few places where nearly everything cancels.
+
+The pairs of a rounded result and its error are exact (Dekker 1971, Knuth, The Art of Computer Programming 2, 4.2.2).
+"""
+
+from __future__ import annotations
+
+from minirt.lanes import Vec, product_error, rounded_product
+from minirt.lanes.vec import Number
+
+
+def two_sum(a: Number, b: Number) -> tuple[Number, Number]:
+    """a + b rounded, and what the rounding dropped."""
+    total = a + b
+    part = total - a
+    return total, (a - (total - part)) + (b - part)
+
+
+def two_product(a: Number, b: Number) -> tuple[Number, Number]:
+    """a * b rounded, and what the rounding dropped."""
+    return rounded_product(a, b), product_error(a, b)
+
+
+def power(point: Vec, centre: Vec, radius: Number) -> Number:
+    """|point - centre|^2 - radius^2 to nearly full precision, however little is left of it.
+
+    It is the power of a point with respect to a sphere: the product of the distances to both hits of any line.
+    """
+    x, x_low = two_sum(point.x, -centre.x)
+    y, y_low = two_sum(point.y, -centre.y)
+    z, z_low = two_sum(point.z, -centre.z)
+    xx, xx_low = two_product(x, x)
+    yy, yy_low = two_product(y, y)
+    zz, zz_low = two_product(z, z)
+    rr, rr_low = two_product(radius, radius)
+    total, low_1 = two_sum(xx, yy)
+    total, low_2 = two_sum(total, zz)
+    total, low_3 = two_sum(total, -rr)
+    squares = xx_low + yy_low + zz_low - rr_low
+    mixed = 2.0 * (x * x_low + y * y_low + z * z_low)
+    return total + (low_1 + low_2 + low_3 + squares + mixed)
