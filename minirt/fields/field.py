@@ -7,6 +7,7 @@ what was expected, without the name of the field.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -20,7 +21,7 @@ class Repair(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Field:
+class Field(ABC):
     """One field of an element; `name` and `default` are those of the dataclass attribute that declares it."""
 
     doc: str
@@ -30,9 +31,9 @@ class Field:
     name: str = ""
     default: Any = None  # None: the field must be given
 
+    @abstractmethod
     def parse(self, text: str) -> Any:
         """The value spelled by `text`, not yet checked."""
-        raise NotImplementedError
 
     def format(self, value: Any) -> str:
         """The spelling of `value` in a scene file."""

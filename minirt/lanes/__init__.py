@@ -14,7 +14,7 @@ needs. Nothing else in a formula shows that it runs on several rays at once.
 This package is the interpreted half and imports no compiler; `minirt.lanes.compiled` teaches numba the same verbs.
 """
 
-from minirt.lanes.vec import Vec, cross, dot
+from minirt.lanes.vec import Vec, dot
 from minirt.lanes.verbs import (
     WIDTH,
     any,
@@ -38,7 +38,6 @@ __all__ = [
     "Vec",
     "any",
     "copysign",
-    "cross",
     "dot",
     "fabs",
     "first",

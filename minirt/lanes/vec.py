@@ -41,8 +41,3 @@ class Vec:
 def dot(a: Vec, b: Vec) -> Number:
     """The scalar product."""
     return a.x * b.x + a.y * b.y + a.z * b.z
-
-
-def cross(a: Vec, b: Vec) -> Vec:
-    """The vector product, right-handed."""
-    return Vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)

@@ -12,6 +12,7 @@ Where the wrapper has numbers for handles, these are objects: `Display`, `Window
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -216,6 +217,7 @@ def _screen() -> Backend:
         with handlers_kept():
             from minirt.mlx.on_pyglet.loop import PygletBackend
     except Exception as error:  # whatever the window system says here, there is no window
-        reason = str(error) or type(error).__name__
+        missing = type(error).__name__ == "NoSuchDisplayException" and not os.environ.get("DISPLAY")
+        reason = "there is no display" if missing else str(error) or type(error).__name__
         raise MlxError(f"no window can be opened ({reason}); -o FILE renders without one") from error
     return PygletBackend()

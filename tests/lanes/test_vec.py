@@ -9,7 +9,7 @@ import pytest
 from numba import njit
 
 import minirt.lanes.compiled  # noqa: F401
-from minirt.lanes import Vec, cross, dot, load
+from minirt.lanes import Vec, dot, load
 from tests.lanes.numbers import NUMBERS, assert_same
 from tests.lanes.test_operators import put
 
@@ -96,14 +96,6 @@ def test_the_scalar_product() -> None:
     products(A, B, out)
     assert (np.abs(out.reshape(3, 8) - right) <= 4 * U * np.array(size)).all()  # a * b + c may round once
     assert_same(dot(Vec(*u), Vec(*v)), u[0] * v[0] + u[1] * v[1] + u[2] * v[2])
-
-
-def test_the_vector_product() -> None:
-    x, y = Vec(1, 0, 0), Vec(0, 1, 0)
-    z = cross(x, y)
-    assert (z.x, z.y, z.z) == (0, 0, 1)
-    w = cross(Vec(*A[:3]), Vec(*B[:3]))
-    assert_same([w.x, w.y, w.z], np.cross(A[:3], B[:3]))
 
 
 def test_a_vec_shows_its_numbers() -> None:

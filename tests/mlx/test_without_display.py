@@ -38,7 +38,7 @@ for _ in range(2):
     try:
         Mlx().mlx_init()
     except MlxError as error:
-        print("-o FILE" in str(error), "None" in str(error))
+        print("-o FILE" in str(error), "no display" in str(error))
 """
     if sys.platform == "linux":
         assert run(program) == "True True\n" * 2
