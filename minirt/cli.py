@@ -202,6 +202,7 @@ def replay(scene: Scene, asked: argparse.Namespace) -> int:
         renderer=minirt.renderer(asked.threads),
         size=asked.size or minirt.size_of(scene),
         path=asked.scene[0],
+        keys="qwerty" if asked.keys == "auto" else asked.keys,  # not the user's: a replay is the same everywhere
         lenient=asked.lenient,
     )
     if asked.output:

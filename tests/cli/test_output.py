@@ -14,6 +14,7 @@ from PIL import Image
 
 import minirt
 from minirt import atomic
+from minirt.cli import main
 from tests.cli.program import SCENE, Ended
 
 Run = Callable[..., Ended]
@@ -134,3 +135,17 @@ def test_without_a_display_the_picture_falls_back_to_a_file(
     assert (ended.status, ended.err) == (0, "")
     assert np.array_equal(pixels(folder / "x.png"), rendered(8, 6))
     assert os.fspath(folder / "x.png").encode() in ended.out
+
+
+def test_a_replay_takes_the_layout_that_is_asked_for(tmp_path: Path) -> None:
+    scene, keys = tmp_path / "scene.rt", tmp_path / "keys.txt"
+    scene.write_text("A 0.5 255,255,255\nC 0,0,0 0,0,1 70\nsp 1,0,9 4 200,30,30\n")
+    pictures = []
+    for layout, pressed in (("qwerty", "a"), ("azerty", "q"), ("azerty", "a")):
+        keys.write_text(f"hold {pressed} 0.5\n")
+        out = tmp_path / f"{layout}-{pressed}.png"
+        assert main([str(scene), "--replay", str(keys), "--keys", layout, "--size", "48x32", "-o", str(out)]) == 0
+        pictures.append(pixels(out))
+    to_the_left, also, down = pictures
+    assert (to_the_left == also).all()
+    assert (to_the_left != down).any()
