@@ -1,16 +1,18 @@
 """A field, and how an element declares one.
 
-A field knows how its value is spelled in a scene file (`parse`, `format`), what it may be (`check`), what a lenient
-reader makes of a wrong spelling (`repair`) and how a key press changes it (`nudge`). Errors are `FieldError`s that say
-what was expected, without the name of the field.
+A field knows how its value is spelled in a scene file (`parse`, `format`; `column` for many at once), what it may be
+(`check`), what a lenient reader makes of a wrong spelling (`repair`) and how a key press changes it (`nudge`). Errors
+are `FieldError`s that say what was expected, without the name of the field.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
+
+from minirt.errors import FieldError
 
 
 class Repair(NamedTuple):
@@ -23,6 +25,8 @@ class Repair(NamedTuple):
 @dataclass(frozen=True, kw_only=True)
 class Field(ABC):
     """One field of an element; `name` and `default` are those of the dataclass attribute that declares it."""
+
+    plain: ClassVar[str] = ""  # regular expression of spellings that `column` reads; empty where it reads none
 
     doc: str
     unit: str = ""
@@ -46,6 +50,31 @@ class Field(ABC):
     def remark(self, value: Any) -> str:
         """What the reader of a file should be told of a value that is in range, or nothing."""
         return ""
+
+    def column(self, texts: Sequence[str]) -> Sequence[Any]:
+        """The checked values of many spellings that match `plain`; None for what is wrong or calls for a remark."""
+        try:
+            values = self.check_all(self.parse_all(texts))
+        except ValueError:
+            values = None
+        return [self.quiet(text) for text in texts] if values is None else values
+
+    def parse_all(self, texts: Sequence[str]) -> Sequence[Any]:
+        """The values of many spellings that match `plain`, not yet checked; ValueError where one is wrong."""
+        return [self.parse(text) for text in texts]
+
+    def check_all(self, values: Sequence[Any]) -> Sequence[Any] | None:
+        """Many values in their normal form. None or FieldError where that is not all that there is to say."""
+        return None
+
+    def quiet(self, text: str) -> Any:
+        """The checked value spelled by `text`; None where it is wrong or calls for a remark."""
+        try:
+            value = self.parse(text)
+            checked = self.check(value)
+        except FieldError:
+            return None
+        return None if self.remark(value) else checked
 
     def repair(self, text: str) -> Repair | None:
         """What a lenient reader takes for the wrong spelling `text`, if anything."""

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
+from collections.abc import Iterable
 
 from minirt.errors import FieldError, quoted
 
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 WHOLE = re.compile(r"[+-]?[0-9]+")
 LONGEST = 300  # characters; many more than `repr` writes, and few enough for a whole number to fit into a float64
+PLAIN = rf"[-+.0-9eE]{{1,{LONGEST}}}"  # of these `float` and `int` accept just what matches NUMBER and WHOLE
 
 
 def number(text: str) -> float:
@@ -28,6 +30,16 @@ def whole(text: str) -> int:
     if len(text) > LONGEST or not WHOLE.fullmatch(text):
         raise FieldError("must be a whole number, " + found(text))
     return int(text)
+
+
+def numbers(texts: Iterable[str]) -> list[float]:
+    """Many numbers that match PLAIN, several times as fast; ValueError where one is none. It may be infinite."""
+    return [float(text) + 0.0 for text in texts]  # -0 becomes 0
+
+
+def wholes(texts: Iterable[str]) -> list[int]:
+    """Many whole numbers that match PLAIN; ValueError where one is none."""
+    return list(map(int, texts))
 
 
 def found(text: str) -> str:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from minirt.errors import FieldError
 from minirt.fields.field import Field
-from minirt.fields.numerals import number, spelled, whole
+from minirt.fields.numerals import PLAIN, number, numbers, spelled, whole, wholes
 
 FARTHEST = 1e15  # scene units; beyond it neighbouring float64 are an eighth of a unit apart
 LEAST_LENGTH = 1e-9  # scene units; editing never makes a length smaller
@@ -18,7 +19,21 @@ def clamp(value: float, low: float, high: float) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Real(Field):
+class Scalar(Field):
+    """One number of an interval."""
+
+    plain = PLAIN
+
+    def parse_all(self, texts: Sequence[str]) -> Sequence[float]:
+        return numbers(texts)
+
+    def check_all(self, values: Sequence[float]) -> Sequence[float] | None:
+        least, greatest = min(values), max(values)  # if they are in range, all are
+        return None if any(self.remark(self.check(end)) for end in (least, greatest)) else values
+
+
+@dataclass(frozen=True, kw_only=True)
+class Real(Scalar):
     """A number in [low, high]."""
 
     low: float = -FARTHEST
@@ -48,7 +63,7 @@ class Real(Field):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Length(Field):
+class Length(Scalar):
     """A size greater than 0; a key press multiplies it by `step`."""
 
     unit: str = "scene unit"
@@ -78,7 +93,7 @@ class Length(Field):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Whole(Field):
+class Whole(Scalar):
     """A whole number in [low, high]."""
 
     low: int
@@ -86,6 +101,9 @@ class Whole(Field):
 
     def parse(self, text: str) -> int:
         return whole(text)
+
+    def parse_all(self, texts: Sequence[str]) -> Sequence[int]:
+        return wholes(texts)
 
     def check(self, value: int) -> int:
         if not (self.low <= value <= self.high and value == int(value)):

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field, Repair
-from minirt.fields.numerals import number, spelled, whole
+from minirt.fields.numerals import PLAIN, number, numbers, spelled, whole, wholes
 from minirt.fields.scalars import FARTHEST, clamp
 
 Triple = tuple[float, float, float]
@@ -20,6 +20,8 @@ SLACK = 1e-3  # how far a direction may be off unit length without a word
 @dataclass(frozen=True, kw_only=True)
 class Three(Field):
     """Three components with commas between them; `names` are what they are called in messages."""
+
+    plain = ",".join([PLAIN] * 3)
 
     names: str = "x,y,z"
 
@@ -40,6 +42,20 @@ class Three(Field):
             return x, y, self.component(parts[2])
         except FieldError as error:
             raise FieldError(f"{self.names[2 * part]} {error}", part) from None
+
+    def parse_all(self, texts: Sequence[str]) -> Sequence[Triple]:
+        components = self.components(",".join(texts).split(","))
+        return list(zip(components[::3], components[1::3], components[2::3], strict=True))
+
+    def check_all(self, values: Sequence[Triple]) -> Sequence[Triple] | None:
+        columns = list(zip(*values, strict=True))
+        self.check(tuple(map(min, columns)))  # if the least and the greatest components are in range, all are
+        self.check(tuple(map(max, columns)))
+        return values
+
+    def components(self, texts: Sequence[str]) -> Sequence[float]:
+        """What `component` gives for each; ValueError where one is wrong."""
+        return numbers(texts)
 
     def format(self, value: Triple) -> str:
         return ",".join(map(spelled, value))
@@ -94,6 +110,9 @@ class Direction(Three):
             raise FieldError("must not be 0,0,0: it points nowhere")
         return unit(value)
 
+    def check_all(self, values: Sequence[Triple]) -> Sequence[Triple] | None:
+        return None if any(map(self.remark, values)) else list(map(self.check, values))
+
     def remark(self, value: Triple) -> str:
         length = math.hypot(*value)
         return f"has length {length:.4g}, and is scaled to 1" if abs(length - 1) > SLACK else ""
@@ -122,6 +141,9 @@ class Colour(Three):
 
     def component(self, text: str) -> int:
         return whole(text)
+
+    def components(self, texts: Sequence[str]) -> Sequence[int]:
+        return wholes(texts)
 
     def format(self, value: Triple) -> str:
         return ",".join(str(int(component)) for component in value)

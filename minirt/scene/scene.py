@@ -2,87 +2,125 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain
+from operator import indexOf
 from pathlib import Path
 from typing import Any
 
 from minirt.element import Element
+from minirt.scene.chained import Chained
 from minirt.scene.elements import Ambient, Camera, Light, Resolution
+from minirt.scene.pages import Item, Page, paged, repaged
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 
-Item = Element | str  # a str is a line without an element, as it stands in the file
+ONCE = tuple(kind for kind in ELEMENTS.values() if kind.once)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Scene:
-    """An immutable scene; every change makes a new one. ValueError without exactly one camera, or with two of what
-    may be there once.
+    """An immutable scene; every change makes a new one, which shares all pages but one with the old. ValueError without
+    exactly one camera, or with two of what may be there once.
 
     `scene.spheres`, `scene.planes` and so on are the elements of one kind.
     """
 
-    items: tuple[Item, ...]
-    file: Path | None = None  # where it was read from
+    items: Chained[Item]
+    file: Path | None  # where it was read from
+    pages: tuple[Page, ...] = field(repr=False, compare=False)
 
     def __init__(self, items: Iterable[Item], file: Path | None = None) -> None:
-        object.__setattr__(self, "items", tuple(items))
-        object.__setattr__(self, "file", file)
-        for kind in ELEMENTS.values():
-            count = sum(type(item) is kind for item in self.items) if kind.once else 1
+        self._hold(tuple(paged(tuple(items))), file)
+
+    def _hold(self, pages: tuple[Page, ...], file: Path | None) -> None:
+        """Become the scene of those pages."""
+        for name, value in (("items", Chained(page.items for page in pages)), ("file", file), ("pages", pages)):
+            object.__setattr__(self, name, value)
+        for kind in ONCE:
+            count = sum(type(each) is kind for page in pages if kind in page.kinds for each in page.of(kind))
             if count > 1 or (kind is Camera and count == 0):
                 raise ValueError(
                     f"a scene has {'exactly' if kind is Camera else 'at most'} one {kind.title}, got {count}"
                 )
 
     @cached_property
-    def elements(self) -> tuple[Element, ...]:
+    def elements(self) -> Chained[Element]:
         """Everything but comments and blank lines, in the order of the file."""
-        return tuple(item for item in self.items if isinstance(item, Element))
+        return Chained(page.of(Element) for page in self.pages)
 
     @cached_property
     def shapes(self) -> tuple[Shape, ...]:
         """The surfaces, in the order of the file."""
-        return tuple(element for element in self.elements if isinstance(element, Shape))
+        return self.of(Shape)
 
     @cached_property
     def lights(self) -> tuple[Light, ...]:
         """The point lights, in the order of the file."""
-        return tuple(element for element in self.elements if isinstance(element, Light))
+        return self.of(Light)
 
     @cached_property
     def camera(self) -> Camera:
         """The eye."""
-        return next(element for element in self.elements if isinstance(element, Camera))
+        camera: Camera = self.of(Camera)[0]
+        return camera
 
     @cached_property
     def ambient(self) -> Ambient | None:
         """The light from everywhere, if there is any."""
-        return next((element for element in self.elements if isinstance(element, Ambient)), None)
+        return next(iter(self.of(Ambient)), None)
 
     @cached_property
     def resolution(self) -> Resolution | None:
         """The size of the picture, if the file names one."""
-        return next((element for element in self.elements if isinstance(element, Resolution)), None)
+        return next(iter(self.of(Resolution)), None)
+
+    def of(self, sort: type[Any]) -> tuple[Any, ...]:
+        """The elements of that type or of one that is derived from it, in the order of the file."""
+        return tuple(chain.from_iterable(page.of(sort) for page in self.pages))
+
+    def places(self, sort: type[Any]) -> Iterator[int]:
+        """The indices in `elements` of those of that type; looks into no page that has none."""
+        for start, elements, page in zip((0, *self.elements.ends), self.elements.parts, self.pages, strict=False):
+            if page.of(sort):
+                yield from (index for index, each in enumerate(elements, start) if isinstance(each, sort))
 
     def __getattr__(self, plural: str) -> tuple[Any, ...]:
         for kind in ELEMENTS.values():
             if kind.plural == plural:
-                return tuple(element for element in self.elements if type(element) is kind)
+                return tuple(element for element in self.of(kind) if type(element) is kind)
         raise AttributeError(f"a scene has no '{plural}'")
 
     def replace(self, old: Element, new: Element | None = None, **changes: Any) -> Scene:
         """The scene with `new`, or with `old` changed in some fields, in the place of `old`; ValueError where `old`
         is not in the scene."""
-        items = list(self.items)
-        items[self.index(old)] = old.replace(**changes) if new is None else new
-        return Scene(items, self.file)
+        return self._edited(*self.items.locate(self.index(old)), old.replace(**changes) if new is None else new)
 
     def index(self, element: Element) -> int:
         """The index in `items` of that very element or else of the first equal one; ValueError where there is none."""
-        for index, item in enumerate(self.items):
-            if item is element:
-                return index
-        return self.items.index(element)
+        try:
+            return indexOf(map(id, self.items), id(element))
+        except ValueError:
+            return tuple(self.items).index(element)
+
+    def edit(self, index: int, *instead: Element) -> Scene:
+        """The scene with other elements, any number of them, in the place of `elements[index]`."""
+        number, at = self.elements.locate(index)
+        items = self.pages[number].items
+        return self._edited(number, [i for i, item in enumerate(items) if isinstance(item, Element)][at], *instead)
+
+    def _edited(self, number: int, at: int, *instead: Element) -> Scene:
+        """The scene with other elements in the place of the item at that index of that page."""
+        page = self.pages[number]
+        scene = object.__new__(Scene)
+        scene._hold((*self.pages[:number], *repaged(page, at, instead), *self.pages[number + 1 :]), self.file)
+        if "shapes" in vars(self) and not any(isinstance(each, Shape) for each in (page.items[at], *instead)):
+            vars(scene)["shapes"] = self.shapes
+        return scene
+
+    def lighten(self) -> Scene:
+        """Forget what takes much room and can be worked out again; for a scene that is kept, but not shown."""
+        vars(self).pop("shapes", None)
+        return self

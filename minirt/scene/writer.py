@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 
 from minirt import atomic
-from minirt.scene import files
+from minirt.scene import files, plain
 from minirt.scene.lines import BOM
+from minirt.scene.pages import Item
 from minirt.scene.rewriting import line_of
 from minirt.scene.scene import Scene
 
 
 def dump(scene: Scene) -> str:
     """The text of a scene file."""
-    lines = [item if isinstance(item, str) else line_of(item) for item in scene.items]
+    lines = [line for page in scene.pages for line in lines_of(page.items)]
     return "\n".join(lines[:1] + [line.removeprefix(BOM) for line in lines[1:]])
+
+
+def lines_of(items: tuple[Item, ...]) -> Iterator[str]:
+    """The lines of a file that hold those items."""
+    sources = [item if isinstance(item, str) else item.source for item in items]
+    for item, source, said in zip(items, sources, plain.read(sources), strict=True):
+        yield source if isinstance(item, str) or item == said else line_of(item)
 
 
 def save(scene: Scene, path: str | os.PathLike[str]) -> None:

@@ -10,7 +10,7 @@ from minirt.viewer.state import State, can_edit, index_of
 def step(way: int, state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
     """The next or the previous element that can be edited, in the order of the file and round again."""
     count = len(state.scene.elements)
-    around = [(state.selected + way * ahead) % count for ahead in range(1, count + 1)]
+    around = ((state.selected + way * ahead) % count for ahead in range(1, count + 1))
     return state.select(next(index for index in around if can_edit(type(state.scene.elements[index]))))
 
 
@@ -21,7 +21,7 @@ def camera(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
 
 def next_light(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
     """The next light behind the selected element, and round again."""
-    lights = [index for index, each in enumerate(state.scene.elements) if isinstance(each, Light)]
+    lights = list(state.scene.places(Light))
     if not lights:
         return state.say("there is no light")
     return state.select(next((index for index in lights if index > state.selected), lights[0]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from operator import indexOf
 from typing import Any
 
 from minirt.element import Element, fields_of
@@ -68,7 +69,7 @@ class State:
     def change(self, scene: Scene, kind: str, now: float, selected: int | None = None) -> State:
         """Another scene; `kind` tells which changes may be undone together. With none that is so for no other."""
         same = bool(kind) and self.recent is not None and self.recent[0] == kind and now - self.recent[1] <= MERGE
-        past = self.past if same else (*self.past, Moment(self.scene, self.selected))
+        past = self.past if same else (*self.past, Moment(self.scene.lighten(), self.selected))
         chosen = self.selected if selected is None else selected
         return replace(self, scene=scene, selected=chosen, past=past, future=(), recent=(kind, now))
 
@@ -76,7 +77,7 @@ class State:
         """`element` in the place of the selected one."""
         if element == self.element:
             return self
-        return self.change(self.scene.replace(self.element, element), kind, now)
+        return self.change(self.scene.edit(self.selected, element), kind, now)
 
 
 def opened(scene: Scene) -> State:
@@ -86,7 +87,7 @@ def opened(scene: Scene) -> State:
 
 def index_of(scene: Scene, element: Element) -> int:
     """The index of that very element in `scene.elements`."""
-    return next(index for index, each in enumerate(scene.elements) if each is element)
+    return indexOf(map(id, scene.elements), id(element))
 
 
 def values(kind: type[Element]) -> tuple[Field, ...]:

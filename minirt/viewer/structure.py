@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from minirt.element import Element, fields_of
-from minirt.scene import Scene
 from minirt.scene.registry import ELEMENTS
 from minirt.viewer.state import State, index_of
 
@@ -14,9 +13,8 @@ def duplicate(state: State, _amount: float, now: float) -> State:
     copy = copied(element)
     if copy is None:
         return state.say(f"a scene has one {element.title}")
-    at = state.scene.index(element) + 1
-    scene = Scene((*state.scene.items[:at], copy, *state.scene.items[at:]), state.scene.file)
-    state = state.select(state.selected).change(scene, "", now, index_of(scene, copy))
+    scene = state.scene.edit(state.selected, element, copy)
+    state = state.select(state.selected).change(scene, "", now, state.selected + 1)
     return state.say(f"a copy of the {element.title}, in the same place")
 
 
@@ -32,7 +30,6 @@ def delete(state: State, _amount: float, now: float) -> State:
     element = state.element
     if element.required:
         return state.say(f"a scene needs its {element.title}")
-    at = state.scene.index(element)
-    scene = Scene((*state.scene.items[:at], *state.scene.items[at + 1 :]), state.scene.file)
+    scene = state.scene.edit(state.selected)
     state = state.change(scene, "", now, index_of(scene, scene.camera))
     return state.select(state.selected).say(f"deleted the {element.title}")

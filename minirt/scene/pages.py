@@ -1,0 +1,49 @@
+"""The items of a scene in pages: an edit makes one page anew, and shares all others with the scene that it changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Any
+
+from minirt.element import Element
+
+Item = Element | str  # a str is a line without an element, as it stands in the file
+
+ITEMS = 1024  # of a page that was just made; inserting makes it at most twice as long
+
+
+class Page:
+    """Consecutive items, and what is asked of them again and again, worked out once."""
+
+    def __init__(self, items: tuple[Item, ...]) -> None:
+        self.items = items
+        self._known: dict[type[Any], tuple[Any, ...]] = {}
+
+    @cached_property
+    def kinds(self) -> frozenset[type[Item]]:
+        """The types of its items."""
+        return frozenset(map(type, self.items))
+
+    def of(self, sort: type[Any]) -> tuple[Any, ...]:
+        """Its items of that type or of one that is derived from it."""
+        if sort not in self._known:
+            self._known[sort] = self._find(sort)
+        return self._known[sort]
+
+    def _find(self, sort: type[Any]) -> tuple[Any, ...]:
+        fitting = {kind for kind in self.kinds if issubclass(kind, sort)}
+        if fitting == self.kinds:
+            return self.items
+        return tuple(item for item in self.items if type(item) in fitting) if fitting else ()
+
+
+def paged(items: tuple[Item, ...]) -> Iterator[Page]:
+    """The items in pages of the usual length."""
+    return (Page(items[start : start + ITEMS]) for start in range(0, len(items), ITEMS))
+
+
+def repaged(page: Page, at: int, instead: tuple[Item, ...]) -> Iterator[Page]:
+    """The page, or the pages if it became too long, with other items in the place of the one at that index."""
+    items = (*page.items[:at], *instead, *page.items[at + 1 :])
+    return paged(items) if len(items) > 2 * ITEMS else iter([Page(items)] if items else [])

@@ -1,0 +1,38 @@
+"""A chain of tuples behaves like the one tuple of all of them."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from minirt.scene.chained import Chained
+
+PARTS = st.lists(st.lists(st.integers(0, 9), max_size=4).map(tuple), max_size=5)
+INDEX = st.integers(-25, 25)
+
+
+@given(PARTS, INDEX, st.slices(20))
+def test_it_is_read_like_a_tuple(parts: list[tuple[int, ...]], index: int, cut: slice) -> None:
+    whole = tuple(each for part in parts for each in part)
+    chain = Chained(parts)
+    assert (len(chain), tuple(chain), repr(chain), hash(chain)) == (len(whole), whole, repr(whole), hash(whole))
+    assert chain[cut] == whole[cut]
+    assert list(reversed(chain)) == list(reversed(whole))
+    assert [each in chain for each in range(10)] == [each in whole for each in range(10)]
+    if -len(whole) <= index < len(whole):
+        assert chain[index] == whole[index]
+        part, at = chain.locate(index)
+        assert (sum(map(len, parts[:part])) + at, parts[part][at]) == (index % len(whole), whole[index])
+    else:
+        with pytest.raises(IndexError):
+            chain[index]
+
+
+@given(PARTS, PARTS)
+def test_it_equals_what_holds_the_same(parts: list[tuple[int, ...]], others: list[tuple[int, ...]]) -> None:
+    whole, other = (tuple(each for part in each_parts for each in part) for each_parts in (parts, others))
+    assert (Chained(parts) == Chained(others)) == (whole == other)
+    assert (Chained(parts) == other) == (other == Chained(parts)) == (whole == other)
+    assert Chained(parts) == Chained([whole])
+    assert Chained(parts) != list(whole)

@@ -1,0 +1,59 @@
+"""Elements that are made many at once are what they would be one by one."""
+
+from __future__ import annotations
+
+import pickle
+import sys
+import tracemalloc
+from dataclasses import FrozenInstanceError, dataclass
+from typing import Any
+
+import pytest
+
+from minirt.element import Element
+from minirt.fields import Real, declare
+from minirt.shapes.sphere import Sphere
+
+COLUMNS = {"centre": [(0.0, 1.0, 2.0), (3.0, 4.0, 5.0)], "diameter": [1.0, 2.0], "colour": [(1, 2, 3)] * 2}
+
+
+def test_they_are_equal_frozen_and_pickled_alike() -> None:
+    made = Sphere.checked(2, {**COLUMNS, "source": ["a", "b"]})
+    built = [Sphere(*row) for row in zip(*COLUMNS.values(), strict=True)]
+    assert made == built
+    assert list(map(hash, made)) == list(map(hash, built))
+    assert [each.source for each in made] == ["a", "b"]
+    again = pickle.loads(pickle.dumps(made))
+    assert [vars(each) for each in again] == [vars(each) for each in made]
+    assert made[1].replace(diameter=9).diameter == 9
+    with pytest.raises(ValueError, match="diameter"):
+        made[1].replace(diameter=-1)
+    with pytest.raises(FrozenInstanceError):
+        made[0].diameter = 5.0  # type: ignore[misc]
+
+
+@pytest.mark.skipif(sys.implementation.name != "cpython", reason="how CPython keeps attributes")
+def test_they_take_no_more_room() -> None:
+    @dataclass(frozen=True)
+    class Cloud(Element):  # a new class: nothing is known of its instances yet
+        code, title, plural = "cl", "cloud", "clouds"
+        width: float = declare(Real, "width")
+        height: float = declare(Real, "height")
+        depth: float = declare(Real, "depth")
+
+    @dataclass(frozen=True)
+    class Fog(Cloud):
+        code, title, plural = "fo", "fog", "fogs"
+
+    def room(make: Any) -> int:
+        tracemalloc.start()
+        try:
+            kept = make()
+            return tracemalloc.get_traced_memory()[0] // len(kept)
+        finally:
+            tracemalloc.stop()
+
+    values = [float(i) for i in range(1000)]
+    columns: dict[str, Any] = dict.fromkeys(("width", "height", "depth"), values) | {"source": [""] * 1000}
+    one_by_one = room(lambda: [Cloud(value, value, value) for value in values])
+    assert room(lambda: Fog.checked(1000, columns)) <= 1.1 * one_by_one
