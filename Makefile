@@ -1,6 +1,8 @@
 # make run     sets everything up and shows a scene: make run SCENE=scenes/subject.rt
 # make test    sets everything up and runs the tests
-# make check   lint and types     make bench    time of a frame
+# make check   lint and types
+# make bench   time of a frame, beside others: make bench BENCH=--quick for a short run
+# make bench-peers   installs what `make bench` compares with and draws by (Debian, Ubuntu)
 
 VENV   := .venv
 NAME   := $(VENV)/bin/miniRT
@@ -8,8 +10,7 @@ DEV    := $(VENV)/.dev
 PYTHON ?= python3
 PIP    := $(VENV)/bin/python -m pip --disable-pip-version-check
 SCENE  ?= scenes/demo.rt
-BENCH  ?= tests/bench/one.rt tests/bench/fifty.rt scenes/demo.rt
-SIZE   ?= 1280x720
+SUDO   ?= $(if $(filter 0,$(shell id -u)),,sudo)
 
 all: $(NAME)
 
@@ -42,7 +43,11 @@ check: $(DEV)
 	$(VENV)/bin/mypy
 
 bench: $(NAME)
-	@for scene in $(BENCH); do $(NAME) $$scene --bench --size $(SIZE) 2>/dev/null || exit 1; done
+	$(VENV)/bin/python -m tests.bench $(BENCH)
+
+bench-peers: $(NAME)
+	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox
+	$(PIP) install --quiet --editable '.[report]' embreex
 
 clean:
 	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +
@@ -54,4 +59,4 @@ fclean: clean
 re: fclean
 	$(MAKE) all
 
-.PHONY: all bonus run test check bench clean fclean re
+.PHONY: all bonus run test check bench bench-peers clean fclean re

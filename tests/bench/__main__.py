@@ -1,0 +1,119 @@
+"""python -m tests.bench: how fast this program is beside others, and how its time grows with the scene."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import platform
+from collections.abc import Callable
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+from minirt.rendering.cores import usable_cores
+from tests.bench import scenes
+from tests.bench.measure import Cells, available, take_turns
+from tests.bench.ours import MiniRT
+from tests.bench.peers.embree import Embree
+from tests.bench.peers.povray import PovRay
+from tests.bench.peers.tachyon import Tachyon
+from tests.bench.system import Setting, System
+from tests.bench.table import MARK, records, table
+from tests.bench.yardstick import Yardstick
+
+Maker = Callable[[Setting], System]
+
+OWN: list[Maker] = [partial(MiniRT, precision="double"), partial(MiniRT, precision="single"), Yardstick]
+PEERS: list[Maker] = [Embree, Tachyon, PovRay]
+WIDTH, HEIGHT = 1280, 720
+
+
+class Plan(NamedTuple):
+    """How thorough to be."""
+
+    rounds: int  # in which scenes are compared
+    grown_rounds: int  # for the growth curve
+    most: int  # spheres of it
+    seconds: float  # of a turn
+
+
+FULL = Plan(rounds=5, grown_rounds=3, most=1_000_000, seconds=0.6)
+QUICK = Plan(rounds=2, grown_rounds=1, most=10_000, seconds=0.2)
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m tests.bench", description=__doc__.split(": ")[1])
+    parser.add_argument("--quick", action="store_true", help="fewer rounds, and the growth up to 10,000 spheres")
+    parser.add_argument("--threads", type=int, default=usable_cores(), help="of each system (default: %(default)s)")
+    parser.add_argument("--out", type=Path, default=Path("out"), help="folder for bench.json and the pictures")
+    return parser.parse_args()
+
+
+def processor() -> str:
+    """Its name, where Linux tells it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor()
+    return next((line.split(": ")[1] for line in lines if line.startswith("model name")), platform.processor())
+
+
+def main() -> None:
+    asked = arguments()
+    plan = QUICK if asked.quick else FULL
+    folder = asked.out / "bench"
+    folder.mkdir(parents=True, exist_ok=True)
+    setting = Setting(WIDTH, HEIGHT, asked.threads, folder)
+    own, reasons = available(partial(make, setting) for make in OWN)
+    peers, more_reasons = available(partial(make, setting) for make in PEERS)
+    systems = own + peers
+
+    print(f"{processor()}, {usable_cores()} processors; {asked.threads} threads each.")
+    print(f"{WIDTH}x{HEIGHT} pixels, a ray for each and a shadow ray to each light. Median of {plan.rounds} rounds")
+    print("in which the systems take turns; the second figure is a multiple of the first row.\n", flush=True)
+    three = scenes.compared(folder)
+    compared = take_turns(systems, three, plan.rounds, plan.seconds)
+    print(table(compared, names(systems), [scene.stem for scene in three]), end="\n\n", flush=True)
+
+    grown = [scenes.grown(folder, count) for count in scenes.COUNTS if count <= plan.most]
+    growth = take_turns(own, grown, plan.grown_rounds, plan.seconds)
+    print(table(growth, names(own), [scene.stem for scene in grown], "spheres in view"), end="\n\n")
+
+    if any(cell.disturbed for cell in (*compared.values(), *growth.values())):
+        print(f"{MARK} other programs needed the processors in every round")
+    for system in systems:
+        print(f"{system.name}: {system.how}")
+    for reason in reasons + more_reasons:
+        print(f"not measured: {reason}")
+    found = {
+        "processor": processor(),
+        "processors": usable_cores(),
+        "size": [WIDTH, HEIGHT],
+        "how": {system.name: system.how for system in systems},
+        "not measured": reasons + more_reasons,
+        "compared": records(compared),
+        "growth": records(growth),
+    }
+    (asked.out / "bench.json").write_text(json.dumps(found, indent=1) + "\n")
+    draw(compared, growth, asked.out)
+
+
+def names(systems: list[System]) -> list[str]:
+    return [system.name for system in systems]
+
+
+def draw(compared: Cells, growth: Cells, out: Path) -> None:
+    """The pictures, where there is what draws them."""
+    if find_spec("matplotlib") is None:
+        print("no pictures: matplotlib is not installed (pip install -e '.[report]')")
+        return
+    from tests.bench import charts
+
+    charts.bars(compared, out / "bench.png")
+    charts.growth(growth, out / "growth.png")
+    print(f"{out}: bench.json, bench.png, growth.png")
+
+
+if __name__ == "__main__":
+    main()

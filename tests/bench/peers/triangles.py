@@ -1,0 +1,42 @@
+"""Planes and cylinders as triangles: their corners, (n, 3, 3)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.fields import Triple
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+
+Corners = NDArray[np.float64]
+
+SIDES = 64  # of a cylinder
+ENDLESS = 1e5  # half of an edge of a plane
+
+
+def across(axis: Triple) -> tuple[Corners, Corners]:
+    """Two unit vectors perpendicular to an axis and to each other."""
+    u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    u /= np.linalg.norm(u)
+    return u, np.cross(axis, u)
+
+
+def cylinder(shape: Cylinder) -> Corners:
+    """A prism with as many sides, which touches the cylinder at its edges."""
+    u, v = across(shape.axis)
+    angles = np.arange(SIDES) * (2 * np.pi / SIDES)
+    around = shape.diameter / 2 * (np.outer(np.cos(angles), u) + np.outer(np.sin(angles), v))
+    low, high = (np.array(shape.centre) + end * shape.height / 2 * np.array(shape.axis) for end in (-1, 1))
+    a, b = low + around, high + around
+    c, d = np.roll(a, -1, axis=0), np.roll(b, -1, axis=0)  # the next edge
+    centres = [np.broadcast_to(end, a.shape) for end in (low, high)]
+    faces = [(a, c, d), (a, d, b), (centres[0], a, c), (centres[1], b, d)]
+    return np.concatenate([np.stack(face, axis=1) for face in faces])
+
+
+def plane(shape: Plane) -> Corners:
+    """A large square."""
+    u, v = (ENDLESS * each for each in across(shape.normal))
+    point = np.array(shape.point)
+    return np.array([[point - u - v, point + u - v, point + u + v], [point - u - v, point + u + v, point - u + v]])

@@ -1,0 +1,86 @@
+"""Scenes of many spheres, the same at each run.
+
+`tenthousand` fills a box with small balls. `growth` keeps the picture as full whatever the number of spheres: all lie
+in view, and their radius goes with 1 / sqrt(count), so that together they would cover it once if none overlapped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi, radians, sqrt, tan
+from pathlib import Path
+from random import Random
+
+HERE = Path(__file__).parent
+COUNTS = (10, 100, 1_000, 10_000, 100_000, 1_000_000)
+
+FOV, ASPECT = 70.0, 16 / 9
+WIDE = tan(radians(FOV) / 2)  # half of the picture at distance 1
+HIGH = WIDE / ASPECT
+NEAREST, FARTHEST = 50.0, 150.0  # depth of the centres
+
+TEN_THOUSAND = """\
+A 0.2 255,255,255
+C -50,40,0 1,-0.15,0 70
+L -60,90,40 0.7 255,255,255
+pl 0,-10,0 0,1,0 200,200,200
+"""
+GROWTH = """\
+A 0.2 255,255,255
+C 0,0,0 0,0,1 70
+L -60,120,-20 0.7 255,255,255
+pl 0,-80,0 0,1,0 200,200,200
+"""
+
+
+def sphere(random: Random, centre: tuple[float, float, float], diameter: float) -> str:
+    """A line with a sphere of some light colour."""
+    red, green, blue = (60 + int(random.random() * 196) for _ in range(3))
+    x, y, z = centre
+    return f"sp {x:.5g},{y:.5g},{z:.5g} {diameter:.5g} {red},{green},{blue}\n"
+
+
+def tenthousand() -> Iterator[str]:
+    """The lines of a scene of 10,000 spheres in a box of 100 x 60 x 100, with diameters from 1 to 2."""
+    random = Random(42)
+    yield TEN_THOUSAND
+    for _ in range(10_000):
+        centre = random.random() * 100, random.random() * 60, random.random() * 100 - 50
+        yield sphere(random, centre, 1 + random.random())
+
+
+def radius(count: int) -> float:
+    """Of each of `count` spheres: their discs are as large as the picture, seen from where they lie on average."""
+    mean_inverse_square = 3 * (FARTHEST - NEAREST) / (FARTHEST**3 - NEAREST**3)  # of the depth
+    return sqrt(4 * WIDE * HIGH / (count * pi * mean_inverse_square))
+
+
+def growth(count: int) -> Iterator[str]:
+    """The lines of a scene of `count` spheres whose centres fill the frustum of the camera evenly."""
+    random = Random(count)
+    yield GROWTH
+    for _ in range(count):
+        z = (NEAREST**3 + random.random() * (FARTHEST**3 - NEAREST**3)) ** (1 / 3)
+        x, y = ((2 * random.random() - 1) * half * z for half in (WIDE, HIGH))
+        yield sphere(random, (x, y, z), 2 * radius(count))
+
+
+def write(path: Path, lines: Iterator[str]) -> Path:
+    """Write a scene, unless the file is there."""
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = path.with_suffix(".part")
+        with unfinished.open("w", encoding="ascii") as file:
+            file.writelines(lines)
+        unfinished.rename(path)
+    return path
+
+
+def compared(folder: Path) -> list[Path]:
+    """The three scenes on which all systems are compared; what is not at hand is written into the folder."""
+    return [HERE / "one.rt", HERE / "fifty.rt", write(folder / "tenthousand.rt", tenthousand())]
+
+
+def grown(folder: Path, count: int) -> Path:
+    """The file of a scene of the growth curve."""
+    return write(folder / "growth" / f"{count}.rt", growth(count))

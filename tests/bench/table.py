@@ -1,0 +1,55 @@
+"""What was measured, as text and as JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tests.bench.measure import Cells
+
+MARK = "*"  # of a figure that other programs disturbed
+
+
+def figure(ms: float) -> str:
+    """Milliseconds in three digits, or as many as there are before the point."""
+    digits = 2 if ms < 9.995 else 1 if ms < 99.95 else 0
+    return f"{ms:.{digits}f}"
+
+
+def times(ratio: float) -> str:
+    """A ratio in two digits, or as many as there are before the point."""
+    digits = 2 if ratio < 0.995 else 1 if ratio < 9.95 else 0
+    return f"x{ratio:.{digits}f}"
+
+
+def table(cells: Cells, systems: list[str], scenes: list[str], title: str = "ms a frame") -> str:
+    """A row for each system and a column for each scene; the ratios are to the first row."""
+    rows = [[title, *scenes]]
+    for system in systems:
+        row = [system]
+        for scene in scenes:
+            cell = cells[system, scene]
+            ratio = times(cell.ms / cells[systems[0], scene].ms)
+            row.append(f"{figure(cell.ms)}{MARK if cell.disturbed else ' '} {ratio:>5}")
+        rows.append(row)
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = (
+        "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(aligned))
+        for aligned in (zip(row, widths, strict=True) for row in rows)
+    )
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def records(cells: Cells) -> list[dict[str, Any]]:
+    """The same for a JSON file."""
+    return [
+        {
+            "system": system,
+            "scene": scene,
+            "ms": round(cell.ms, 3),
+            "disturbed": cell.disturbed,
+            "rounds": [round(each.ms, 3) for each in cell.rounds],
+            "elsewhere": [round(each.elsewhere, 2) for each in cell.rounds],
+            "threads": cell.threads,
+        }
+        for (system, scene), cell in cells.items()
+    ]

@@ -1,0 +1,61 @@
+"""The yardstick: the same pictures by C++ that is written by hand for the vector registers of this processor."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+from tests.bench.system import MissingError, Setting, System
+
+HERE = Path(__file__).parent
+FLAGS = [
+    "-std=c++20",
+    "-O3",
+    "-march=native",
+    "-fopenmp",
+    "-ffp-contract=fast",
+    "-fno-math-errno",
+    "-fno-trapping-math",
+]
+
+
+def build(folder: Path) -> Path:
+    """Compile the yardstick, unless that is done; `MissingError` where there is no compiler that can."""
+    program = folder / "yardstick"
+    sources = [*HERE.glob("*.cpp"), *HERE.glob("*.h")]
+    if program.exists() and program.stat().st_mtime > max(source.stat().st_mtime for source in sources):
+        return program
+    compiler = os.environ.get("CXX") or next(filter(shutil.which, ("g++", "clang++", "c++")), None)
+    if compiler is None:
+        raise MissingError("C++ yardstick: no compiler is installed")
+    folder.mkdir(parents=True, exist_ok=True)
+    command = [*compiler.split(), *FLAGS, *map(str, sorted(HERE.glob("*.cpp"))), "-o", str(program)]
+    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    if ran.returncode:
+        raise MissingError(f"C++ yardstick: {compiler} cannot compile it: {ran.stderr.strip().splitlines()[0]}")
+    return program
+
+
+class Yardstick(System):
+    how = "frames on the same terms as miniRT's, in single precision"
+
+    def __init__(self, setting: Setting) -> None:
+        super().__init__(setting)
+        self.program = build(setting.folder)
+        self.name = "C++ yardstick"
+
+    def run(self, path: Path, *arguments: str) -> dict[str, float]:
+        """What the program prints about the scene in a file."""
+        size = f"{self.setting.width}x{self.setting.height}"
+        command = [str(self.program), str(path), "--size", size, "--threads", str(self.setting.threads), *arguments]
+        ran = subprocess.run(command, capture_output=True, text=True, check=False)
+        if ran.returncode:
+            raise RuntimeError(f"{self.name} on {path}: {ran.stderr}")
+        printed: dict[str, float] = json.loads(ran.stdout)
+        return printed
+
+    def frame_times(self, path: Path, seconds: float) -> list[float]:
+        return [self.run(path, "--seconds", str(seconds))["ms_median"]]

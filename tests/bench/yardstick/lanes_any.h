@@ -1,0 +1,99 @@
+// Eight floats in vectors of the compiler's own (GCC, Clang), whatever the processor has for them.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
+typedef float Floats __attribute__((vector_size(32)));
+typedef int32_t Ints __attribute__((vector_size(32)));
+
+struct Mask {
+    Ints all; // -1 or 0 each
+
+    friend Mask operator&(Mask a, Mask b) { return {a.all & b.all}; }
+    friend Mask operator|(Mask a, Mask b) { return {a.all | b.all}; }
+    Mask without(Mask b) const { return {all & ~b.all}; }
+};
+
+struct Lanes {
+    static constexpr int count = 8;
+    Floats v;
+
+    Lanes() = default;
+    Lanes(Floats v) : v(v) {}
+    Lanes(float all) : v(all - Floats{}) {}
+
+    friend Lanes operator+(Lanes a, Lanes b) { return a.v + b.v; }
+    friend Lanes operator-(Lanes a, Lanes b) { return a.v - b.v; }
+    friend Lanes operator*(Lanes a, Lanes b) { return a.v * b.v; }
+    friend Mask operator<(Lanes a, Lanes b) { return {a.v < b.v}; }
+    friend Mask operator<=(Lanes a, Lanes b) { return {a.v <= b.v}; }
+    friend Mask operator==(Lanes a, Lanes b) { return {a.v == b.v}; }
+};
+
+inline unsigned bits(Mask m) {
+#ifdef __AVX__
+    return unsigned(_mm256_movemask_ps(__m256(m.all)));
+#else
+    unsigned found = 0;
+    for (int i = 0; i < Lanes::count; i++) found |= unsigned(m.all[i] & 1) << i;
+    return found;
+#endif
+}
+
+inline bool any(Mask m) {
+#ifdef __AVX__
+    return bits(m) != 0;
+#else
+    int64_t words[4];
+    memcpy(words, &m.all, sizeof words);
+    return (words[0] | words[1] | words[2] | words[3]) != 0;
+#endif
+}
+
+inline Lanes where(Mask m, Lanes a, Lanes b) { return m.all ? a.v : b.v; }
+
+// Of a NaN and a number, the second operand.
+inline Lanes min(Lanes a, Lanes b) { return a.v < b.v ? a.v : b.v; }
+inline Lanes max(Lanes a, Lanes b) { return a.v > b.v ? a.v : b.v; }
+inline Lanes reciprocal(Lanes a) { return 1.0f / a.v; }
+
+inline Lanes floor(Lanes a) {
+    for (int i = 0; i < Lanes::count; i++) a.v[i] = std::floor(a.v[i]);
+    return a;
+}
+
+inline Lanes sqrt(Lanes a) {
+#ifdef __AVX__
+    return Floats(_mm256_sqrt_ps(__m256(a.v)));
+#else
+    for (int i = 0; i < Lanes::count; i++) a.v[i] = std::sqrt(a.v[i]);
+    return a;
+#endif
+}
+
+inline Lanes inverse_sqrt(Lanes a) { return reciprocal(sqrt(a)); }
+
+inline Lanes load(const float* from) {
+    Lanes a;
+    memcpy(&a.v, from, sizeof a.v);
+    return a;
+}
+
+inline void store(float* to, Lanes a) { memcpy(to, &a.v, sizeof a.v); }
+
+inline float largest(Mask m, Lanes a) {
+    a = where(m, a, -INFINITY);
+    float most = a.v[0];
+    for (int i = 1; i < Lanes::count; i++) most = a.v[i] > most ? a.v[i] : most;
+    return most;
+}
+
+// Whole numbers below 2^24 as 0xff......, an opaque pixel each.
+inline void store_pixels(uint32_t* to, Lanes a) {
+    Ints words = __builtin_convertvector(a.v, Ints) | int32_t(0xff000000u);
+    memcpy(to, &words, sizeof words);
+}

@@ -1,0 +1,33 @@
+// What the yardstick knows of a scene file: one camera, ambient light, lamps, planes, spheres and cylinders.
+#pragma once
+#include "vec.h"
+#include <string>
+#include <vector>
+
+struct Lamp {
+    Point at;
+    Point light; // colour times brightness
+};
+
+struct Plane {
+    Point at, normal, colour;
+};
+
+struct Shape { // a sphere, or a cylinder with both caps
+    Point centre, axis;
+    float radius, half; // of its height; 0 for a sphere
+    Point colour;
+    bool is_cylinder;
+};
+
+struct Scene {
+    Point eye{}, forward{0, 0, 1};
+    float slope = 1; // x / z at the right edge of the picture
+    Point ambient{};
+    std::vector<Lamp> lamps;
+    std::vector<Plane> planes;
+    std::vector<Shape> shapes;
+};
+
+// Throws std::runtime_error for what it cannot read.
+Scene read_scene(const std::string& path);

@@ -1,0 +1,76 @@
+// Shapes as they are seen from a point that many rays start from, the eye or a lamp: what is alike for all of these
+// rays is worked out once.
+#pragma once
+#include "scene.h"
+
+constexpr float AT_LEAST = 1e-3f; // t of a hit
+
+struct alignas(64) Seen {
+    Point from;  // the point relative to the centre; for a cylinder, the part across its axis
+    float power; // |from|^2 - radius^2
+    Point axis;  // of a cylinder
+    float along; // the part of the point relative to the centre along it
+    float half;  // of its height
+    float near;  // no point of the shape is nearer
+    int index;
+    bool is_cylinder;
+};
+
+inline Seen seen_from(Point point, const Shape& shape, int index) {
+    Point from = point - shape.centre;
+    float along = dot(from, shape.axis);
+    Seen seen{from, 0, shape.axis, along, shape.half, 0, index, shape.is_cylinder};
+    seen.near = length(from) - std::hypot(shape.radius, shape.half);
+    if (shape.is_cylinder) seen.from = from - along * shape.axis;
+    seen.power = dot(seen.from, seen.from) - shape.radius * shape.radius;
+    return seen;
+}
+
+inline bool is_inside(const Seen& seen) {
+    return seen.power <= 0 && (!seen.is_cylinder || std::fabs(seen.along) <= seen.half);
+}
+
+// Where rays enter a shape: t along `direction`, whose squared length is `squared`.
+struct Entry {
+    Mask hit;
+    Lanes t;
+    Mask on_cap;
+};
+
+inline Entry enter_sphere(const Seen& sphere, const Rays& direction, Lanes squared, Lanes per_squared, Lanes limit) {
+    Lanes b = dot(sphere.from, direction);
+    Lanes discriminant = b * b - squared * sphere.power;
+    Mask hit = Lanes(0) <= discriminant;
+    Lanes t = 0;
+    if (any(hit)) {
+        t = (Lanes(0) - b - sqrt(discriminant)) * per_squared;
+        hit = hit & (Lanes(AT_LEAST) < t) & (t < limit);
+    }
+    return {hit, t, Mask{}};
+}
+
+// A ray is inside of the endless tube for one interval of t and between the planes of the caps for another one.
+inline Entry enter_cylinder(const Seen& tube, const Rays& direction, Lanes squared, Lanes limit) {
+    Lanes rise = dot(tube.axis, direction);
+    Lanes b = dot(tube.from, direction);
+    Lanes a = squared - rise * rise;
+    Lanes discriminant = b * b - a * tube.power;
+    Mask hit = Lanes(0) <= discriminant;
+    Lanes t = 0;
+    Mask on_cap{};
+    if (any(hit)) {
+        Lanes root = sqrt(discriminant), per_a = reciprocal(max(a, 1e-8f)), per_rise = reciprocal(rise);
+        Lanes side = (Lanes(0) - b - root) * per_a, other_side = (root - b) * per_a;
+        Lanes bottom = (-tube.half - tube.along) * per_rise, top = (tube.half - tube.along) * per_rise;
+        Lanes cap = min(bottom, top), other_cap = max(bottom, top);
+        on_cap = side < cap;
+        t = max(cap, side);
+        hit = hit & (t <= min(other_cap, other_side)) & (Lanes(AT_LEAST) < t) & (t < limit);
+    }
+    return {hit, t, on_cap};
+}
+
+inline Entry enter(const Seen& shape, const Rays& direction, Lanes squared, Lanes per_squared, Lanes limit) {
+    return shape.is_cylinder ? enter_cylinder(shape, direction, squared, limit)
+                             : enter_sphere(shape, direction, squared, per_squared, limit);
+}
