@@ -40,6 +40,7 @@ COMPILED = {  # the only files that import the compiler
     "lanes/teaching.py",
     "lanes/vector.py",
     "kernel/jit.py",
+    "kernel/jit_lists.py",
     "kernel/cache.py",
 }
 LATE = {"numba", "llvmlite", "pyglet", "PIL", "minirt.rendering", "minirt.viewer", "minirt.kernel", "minirt.mlx"}

@@ -1,19 +1,21 @@
-"""Scene -> the arrays that the kernel reads; an edit packs again only the shapes that it changed."""
+"""Scene -> the arrays that the kernel reads; what did not change since the last scene is kept."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
+from importlib import import_module
+from typing import Any
+
 import numpy as np
 
-from minirt.element import fields_of
-from minirt.fields import Point
-from minirt.kernel.rows import row, row_type
 from minirt.kernel.traced import Group, Traced
 from minirt.rendering.camera import camera_numbers
+from minirt.rendering.flats import same_side
+from minirt.rendering.notes import notes
 from minirt.rendering.sight import Lists, grid_for, seen_by_eye, seen_by_lamp
+from minirt.rendering.tables import Tables, extents
 from minirt.scene import Ambient, Light, Scene
-from minirt.shapes import KINDS, Ball, Shape
-
-ENDLESS: tuple[Ball, ...] = (((0.0, 0.0, 0.0), np.inf),)
+from minirt.shapes import Shape
 
 
 def light_of(source: Ambient | Light) -> np.ndarray:
@@ -23,95 +25,74 @@ def light_of(source: Ambient | Light) -> np.ndarray:
 
 def light_numbers(scene: Scene) -> np.ndarray:
     """Place and light of every lamp that shines."""
-    lamps = [np.concatenate([lamp.position, light_of(lamp)]) for lamp in scene.lights if light_of(lamp).any()]
-    return np.array(lamps).reshape(len(lamps), 6)
+    lamps = [(*lamp.position, *light) for lamp in scene.lights if (light := light_of(lamp)).any()]
+    return np.array(lamps, np.float64).reshape(len(lamps), 6)
 
 
 def extent(shape: Shape) -> float:
     """The largest coordinate of a shape; of one without end, the largest of its points."""
-    points = shape.bounds() or [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)]
-    return max(abs(float(coordinate)) for point in points for coordinate in point)
+    return float(extents([shape])[0])
 
 
 class Packing:
-    """Packs scene after scene, and keeps what did not change since the last."""
+    """Packs scene after scene. Given `minirt.kernel.lists` for the kernel it does without the compiler."""
 
-    shapes: tuple[Shape | None, ...]
-    lamps: dict[bytes, Lists]  # of the last scene, by the place of each lamp
-
-    def __init__(self) -> None:
-        self.lay_out(())
+    def __init__(self, kernel: Any = None) -> None:
+        self.kernel = kernel
+        self.tables = Tables()
+        self.known: dict[Hashable, Any] = {}  # what was worked out for the last scene, by what it was worked out from
+        self.last: tuple[Scene, Traced] | None = None
 
     def pack(self, scene: Scene, width: int, height: int) -> Traced:
         """The scene, seen in a picture of that size."""
-        self.pack_shapes(scene.shapes)
-        camera = camera_numbers(scene.camera, width, height)
-        lights = light_numbers(scene)
-        kinds = self.places[:, 0]
-        starts, seen, near = seen_by_eye(self.balls, kinds, camera, width, height)
+        self.kernel = self.kernel or import_module("minirt.kernel.jit_lists")
+        tables = self.tables
+        before = {} if tables.update(scene.shapes) else self.known
+        self.known = {}
+
+        def keep(key: Hashable, work: Callable[..., Any], *given: Any) -> Any:
+            self.known[key] = before[key] if key in before else work(*given)
+            return self.known[key]
+
+        camera, lights = camera_numbers(scene.camera, width, height), light_numbers(scene)
+        eye = keep((camera.tobytes(), width, height), seen_by_eye, self.kernel, tables, camera, width, height)
         grid = grid_for(len(scene.shapes))
-        self.lamps = {lamp[:3].tobytes(): self.lists_of(lamp[:3], grid) for lamp in lights}
-        lamps = [self.lamps[lamp[:3].tobytes()] for lamp in lights]
-        before = np.cumsum([0, *(len(lit) for _, lit, _ in lamps)])
-        lamp_starts = [starts + before[i] for i, (starts, _, _) in enumerate(lamps)]
-        lamp_table = stacked(lamp_starts, (len(self.rows), 6 * grid * grid + 1), np.int64)
-        return Traced(
+        lamps: list[Lists] = []
+        keys: list[Hashable] = []
+        for lamp in lights[:, :3]:
+            skipped = same_side(tables.planes, camera[:3], lamp)
+            keys.append((lamp.tobytes(), skipped.tobytes()))
+            lamps.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, lamp, grid, skipped))
+        lamp_starts, lit, lamp_near = keep(tuple(keys), joined, lamps, eye)
+        traced = Traced(
             camera=camera,
             ambient=light_of(scene.ambient) if scene.ambient else np.zeros(3),
             lights=lights,
-            colours=self.colours,
-            extents=self.extents,
-            places=self.places,
-            seen=seen,
-            near=near,
+            colours=tables.colours,
+            extents=tables.extents,
+            places=tables.places,
+            seen=eye.members,
+            near=eye.near,
             grid=grid,
-            lit=np.concatenate([np.zeros(0, np.int64), *(lit for _, lit, _ in lamps)]),
-            lamp_near=stacked([near for _, _, near in lamps], near.shape, np.float64),
-            groups=tuple(
-                Group(rows, starts[kind], np.ascontiguousarray(lamp_table[:, kind]))
-                for kind, rows in enumerate(self.rows)
-            ),
+            lit=lit,
+            lamp_near=lamp_near,
+            groups=tuple(map(Group, tables.rows, eye.starts, lamp_starts)),
         )
+        self.last = scene, traced
+        return traced
 
-    def lists_of(self, lamp: np.ndarray, grid: int) -> Lists:
-        """Which shapes a lamp sees where, worked out once for as long as neither it nor a shape moves."""
-        known = self.lamps.get(lamp.tobytes())
-        return known or seen_by_lamp(self.balls, self.places[:, 0], lamp, grid)
-
-    def pack_shapes(self, shapes: tuple[Shape, ...]) -> None:
-        """Bring the arrays of shapes up to date."""
-        if [type(new) for new in shapes] != [type(old) for old in self.shapes]:
-            self.lay_out(shapes)
-        for index, (new, old) in enumerate(zip(shapes, self.shapes, strict=True)):
-            if new is not old:
-                self.lamps.clear()
-                group, place = self.places[index]
-                self.rows[group][place] = row(new.pack())
-                self.colours[index] = np.divide(new.colour, 255)
-                self.extents[index] = extent(new)
-                balls = new.balls() or ENDLESS
-                self.balls[index] = [
-                    (*centre, radius) for centre, radius in balls + balls[-1:] * (self.balls.shape[1] - len(balls))
-                ]
-        self.shapes = shapes
-
-    def lay_out(self, shapes: tuple[Shape, ...]) -> None:
-        """Make room for as many shapes of the same kinds, those of one kind in one array."""
-        kinds = [type(shape) for shape in shapes]
-        used = [kind for kind in KINDS if kind.element in kinds]
-        self.rows = tuple(np.zeros(kinds.count(kind.element), row_type(kind)) for kind in used)
-        self.places = np.zeros((len(kinds), 2), np.int64)
-        for group, kind in enumerate(used):
-            members = [index for index, each in enumerate(kinds) if each is kind.element]
-            self.places[members, 0] = group
-            self.places[members, 1] = range(len(members))
-        self.balls = np.zeros((len(kinds), max((len(shape.balls()) for shape in shapes), default=0) or 1, 4))
-        self.colours = np.zeros((len(kinds), 3))
-        self.extents = np.zeros(len(kinds))
-        self.lamps = {}
-        self.shapes = (None,) * len(kinds)
+    @property
+    def notes(self) -> list[str]:
+        """What was decided about the last scene, in words."""
+        return list(notes(self.last[0], self.tables, self.last[1])) if self.last else []
 
 
-def stacked(parts: list[np.ndarray], shape: tuple[int, ...], dtype: type) -> np.ndarray:
-    """The arrays one above the other, also where there are none."""
-    return np.stack(parts) if parts else np.zeros((0, *shape), dtype)
+def joined(lamps: list[Lists], eye: Lists) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The lists of all lamps as one: starts (kinds, m, cells + 1), members, distances (m, n)."""
+    if len(lamps) == 1:
+        return lamps[0].starts[:, None], lamps[0].members, lamps[0].near[None]
+    if not lamps:
+        return np.zeros((len(eye.starts), 0, 1), np.int64), eye.members[:0], np.zeros((0, len(eye.near)))
+    before = np.cumsum([0, *(len(each.members) for each in lamps[:-1])])
+    starts = np.stack([each.starts + first for each, first in zip(lamps, before, strict=True)], axis=1)
+    return starts, np.concatenate([each.members for each in lamps]), np.stack([each.near for each in lamps])

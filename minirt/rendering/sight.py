@@ -2,17 +2,34 @@
 
 from __future__ import annotations
 
+from functools import cache
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from minirt.kernel.frame import TILE, tiles
-from minirt.rendering.cells import Spread, least_distances, lists, rectangles, seen_from, whole_cells
+from minirt.kernel.lists import MARGIN, Grid
+from minirt.rendering.flats import heights, runs
+from minirt.rendering.tables import Tables
 
-# Right, up and forward of the six faces of a cube, in the order of `minirt.kernel.trace.cell`.
+# Across, down and forward of the six faces of a cube, in the order of `minirt.kernel.trace.cell`.
 FACES = np.array([np.roll(np.diag([1.0, 1.0, side]), axis + 1, axis=1) for axis in range(3) for side in (1, -1)])
-EDGE = 1e-6  # of a cell: rectangles grow by it before they are rounded to cells
-GRIDS = ((8, 1), (200, 16), (2_000, 32), (np.inf, 64))  # up to so many shapes, cells along an edge of a lamp's cube
+EDGE = 1e-6  # of a cell: what a cube's intervals grow by
+# Up to so many shapes, cells along an edge of a lamp's cube: a compromise between building and using the lists.
+GRIDS = ((8, 1), (200, 16), (2_000, 32), (100_000, 64), (np.inf, 128))
 
-Lists = tuple[np.ndarray, np.ndarray, np.ndarray]  # starts (kinds, cells + 1), members, least distances
+# Numbers above zero are in the order of their bits, the exponent first. The order of depth knows of those of a distance
+# the upper 20, from 2^-128 on: a distance to a 256th of it.
+DROPPED = 44
+NEAREST = (1023 - 128) << (52 - DROPPED)
+
+
+class Lists(NamedTuple):
+    """What may be met in each cell: `members[starts[kind, cell]:starts[kind, cell + 1]]`, the nearest first."""
+
+    starts: np.ndarray  # (kinds, cells + 1)
+    members: np.ndarray
+    near: np.ndarray  # (n,) a distance that no point of a shape falls below
 
 
 def grid_for(shapes: int) -> int:
@@ -20,50 +37,73 @@ def grid_for(shapes: int) -> int:
     return next(cells for most, cells in GRIDS if shapes <= most)
 
 
-def seen_by_eye(balls: np.ndarray, kinds: np.ndarray, camera: np.ndarray, width: int, height: int) -> Lists:
-    """The shapes in each tile of a picture, by kind."""
-    eye, right, up, forward = camera.reshape(4, 3)
-    places, radii = seen_from(eye, balls)
-    near = least_distances(places, radii)
-    order = np.argsort(near, kind="stable")
-    wide, high = np.linalg.norm(right), np.linalg.norm(up)
-    frame = np.stack([right / wide, up / high, forward])
-    left, right_end, bottom, top = rectangles(places, radii, frame[None])[0, order].T
-    x = (np.stack([left, right_end]) / wide + 1) * (width / 2)
-    y = (1 - np.stack([top, bottom]) / high) * (height / 2)
-    across, down = tiles(width), tiles(height)
-    column, columns = whole_cells((x[0] - 1) / TILE, (x[1] + 1) / TILE, across)  # a pixel of margin
-    row, rows = whole_cells((y[0] - 1) / TILE, (y[1] + 1) / TILE, down)
-    first = (kinds[order] * down + row) * across + column
-    starts, seen = by_kind(kinds, order, (first, columns, rows), across, across * down)
-    return starts, seen, near
+def screen(camera: np.ndarray, width: int, height: int) -> Grid:
+    """The tiles of a picture; they see a pixel more on all sides."""
+    _, right, up, forward = camera.reshape(4, 3)
+    wide, high = float(np.linalg.norm(right)), float(np.linalg.norm(up))
+    x, y = width / (2 * TILE), height / (2 * TILE)
+    frames = np.stack([right / wide, -up / high, forward])[None]
+    return Grid(frames, tiles(width), tiles(height), x / wide, x, y / high, y, 1 / TILE)
 
 
-def seen_by_lamp(balls: np.ndarray, kinds: np.ndarray, lamp: np.ndarray, grid: int) -> Lists:
-    """The shapes in each cell of the cube around a lamp, by kind."""
-    places, radii = seen_from(lamp, balls)
-    near = least_distances(places, radii)
-    order = np.argsort(near, kind="stable")
-    if grid == 1:
-        one = np.ones(len(order), np.int64)
-        starts, lit = by_kind(kinds, order, (kinds[order] * 6, one, one), 1, 6)
-        return starts, lit, near
-    cells = (rectangles(places, radii, FACES)[:, order] + 1) * (grid / 2)
-    column, columns = whole_cells(cells[..., 0] - EDGE, cells[..., 1] + EDGE, grid)
-    row, rows = whole_cells(cells[..., 2] - EDGE, cells[..., 3] + EDGE, grid)
-    face = np.arange(6)[:, None]
-    first = ((kinds[order] * 6 + face) * grid + row) * grid + column
-    spread = first.T.ravel(), columns.T.ravel(), rows.T.ravel()  # for each shape its six faces
-    starts, lit = by_kind(kinds, np.repeat(order, 6), spread, grid, 6 * grid * grid)
-    return starts, lit, near
+@cache
+def cube(grid: int) -> Grid:
+    """The cells around a lamp."""
+    half = grid / 2
+    return Grid(FACES, grid, grid, half, half, half, half, EDGE)
 
 
-def by_kind(
-    kinds: np.ndarray, order: np.ndarray, spread: Spread, across: int, cells: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """The lists of a grid for each kind, starts (kinds, cells + 1) and members; the grids of the kinds lie one behind
-    the other, and shape `order[i]` covers the cells of `spread` i."""
-    count = int(kinds.max()) + 1
-    starts, members = lists(spread, across, count * cells)
-    windows = np.arange(count)[:, None] * cells + np.arange(cells + 1)
-    return starts[windows], order[members]
+def seen_by_eye(kernel: Any, tables: Tables, camera: np.ndarray, width: int, height: int) -> Lists:
+    """The shapes in each tile of a picture. `kernel` is `minirt.kernel.lists` or its compiled form."""
+    return lists(kernel, tables, camera[:3], screen(camera, width, height), np.zeros(len(tables.planes), bool))
+
+
+def seen_by_lamp(kernel: Any, tables: Tables, lamp: np.ndarray, grid: int, skipped: np.ndarray) -> Lists:
+    """The shapes in each cell of the cube around a lamp, but for the planes that are `skipped` (p,)."""
+    found = lists(kernel, tables, np.array(lamp), cube(grid), skipped)
+    return one_cell(tables, found.near, skipped) if grid == 1 else found
+
+
+def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: np.ndarray) -> Lists:
+    """The shapes in each cell of a grid around a point."""
+    kinds, faces = len(tables.rows), len(grid.frames)
+    stride = faces * grid.down * grid.across + 1
+    near, counts = np.zeros(len(tables.shapes)), np.zeros(kinds * stride, np.int64)
+    height = heights(tables.planes, origin)
+    flat = np.zeros((0, 4), np.int64)
+    if not skipped.all():
+        shown = ~skipped
+        which, cell, columns = runs(grid, -np.sign(height[shown, None]) * tables.planes[shown, :3])
+        shape = tables.flat[shown][which]
+        cell += tables.places[shape, 0] * stride
+        flat = np.stack([shape, cell, columns, np.ones_like(cell)], axis=1)
+        begins, ends = (np.bincount(each, minlength=len(counts)) for each in (cell, cell + columns))
+        counts = np.cumsum(begins - ends)
+    rectangles = np.empty((len(flat) + faces * len(near), 4), np.int32)
+    rectangles[: len(flat)] = flat
+    slack = MARGIN * float(np.abs(origin).max())
+    room = rectangles, len(flat), near, counts
+    used = kernel.cover(origin, grid, tables.balls, slack, tables.first, tables.places, *room)
+    near[tables.flat] = np.abs(height)
+    near, depths = by_depth(near)
+    order = np.argsort(depths[rectangles[:used, 0]], kind="stable")
+    starts = np.cumsum(counts)  # for now the ends
+    members = np.empty(starts[-1], np.int32)
+    kernel.fill(rectangles, order, grid.across, starts, members)
+    return Lists(starts.reshape(kinds, stride), members, near)
+
+
+def by_depth(near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distances rounded down, and their places in the order of depth, in 16 bits: numpy sorts those by counting."""
+    depths = np.maximum((near.view(np.int64) >> DROPPED) - NEAREST, 0)
+    rounded = np.where(depths > 0, (depths + NEAREST) << DROPPED, 0).view(np.float64)
+    return rounded, depths.astype(np.uint16)
+
+
+def one_cell(tables: Tables, near: np.ndarray, skipped: np.ndarray) -> Lists:
+    """All shapes in a single cell."""
+    shapes = np.delete(np.arange(len(near)), tables.flat[skipped])
+    kinds = tables.places[shapes, 0]
+    order = np.lexsort((near[shapes], kinds))
+    starts = np.searchsorted(kinds[order], np.arange(len(tables.rows))[:, None] + [0, 1])
+    return Lists(starts, shapes[order].astype(np.int32), near)

@@ -34,6 +34,9 @@ class Plane(Shape):
     def balls(self) -> tuple[Ball, ...]:
         return ()
 
+    def flat(self) -> tuple[Triple, Triple]:
+        return self.point, self.normal
+
     def bounds(self) -> None:
         return None
 

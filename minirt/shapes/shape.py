@@ -39,6 +39,10 @@ class Shape(Element):
         """Balls around whose convex hull nothing of the shape sticks out, as many for each shape of a kind; none where
         the shape has no end."""
 
+    def flat(self) -> tuple[Triple, Triple] | None:
+        """A point and the unit normal of a shape that is a whole plane; None for all others. The kind decides which."""
+        return None
+
     @abstractmethod
     def bounds(self) -> Box | None:
         """The axis-aligned box around the shape, or None where it has no end."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.kernel.rows import read
-from minirt.rendering import Renderer, packing
+from minirt.rendering import Renderer, tables
 from minirt.rendering.packing import Packing, extent
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
@@ -21,7 +21,7 @@ from tests.kernel.pictures import ALL, EYE, LAMP, SHAPES, linear
 def packed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What was packed so far."""
     done: list[Any] = []
-    monkeypatch.setattr(packing, "row", lambda shape, row=packing.row: done.append(shape) or row(shape))
+    monkeypatch.setattr(tables, "numbers", lambda new, numbers=tables.numbers: done.extend(new) or numbers(new))
     return done
 
 

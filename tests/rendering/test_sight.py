@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 
+from minirt.kernel import jit_lists, lists
 from minirt.kernel.frame import TILE, camera_ray, tiles
 from minirt.kernel.rows import kind_of, read
 from minirt.kernel.trace import cell
@@ -15,6 +17,9 @@ from minirt.rendering import sight
 from minirt.rendering.packing import Packing
 from minirt.scene import Camera, Light, Scene
 from minirt.shapes import KINDS
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
 from tests.random_scenes import random_scene
 from tests.shapes.examples import hits
 
@@ -52,30 +57,131 @@ def meets(traced: Any, origin: Vec, direction: Vec) -> list[Any]:
     return answers
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_a_tile_lists_all_that_its_rays_hit(seed: int) -> None:
-    traced = Packing().pack(random_scene(seed), WIDTH, HEIGHT)
+def hard_scene(seed: int) -> Scene:
+    """Tiny and huge things anywhere, some at 1e8 from the origin; eye and lamp often inside or close to a surface."""
+    random = np.random.default_rng(seed)
+    offset = random.choice([0, 0, 1e8]) * random.normal(size=3)
+
+    def place(spread: float) -> Any:
+        return tuple(offset + spread * random.normal(size=3))
+
+    def way() -> Any:
+        return tuple(random.normal(size=3).clip(-1, 1))
+
+    shapes: list[Any] = [Plane(place(3), way(), (1, 2, 3)) for _ in range(random.integers(3))]
+    for _ in range(random.choice([3, 12])):
+        size = 10.0 ** random.uniform(-3, 3)
+        shapes.append(Sphere(place(5 + size / 2), size, (1, 2, 3)))
+        shapes.append(Cylinder(place(5 + size / 2), way(), size, 10.0 ** random.uniform(-3, 3), (1, 2, 3)))
+    near = [tuple(np.array(each.centre) + 0.5 * each.diameter * np.array(way())) for each in shapes[-2:]]
+    eye, lamp = near if random.random() < 0.6 else (place(5), place(5))
+    return Scene((Camera(eye, way(), random.choice([1e-3, 20, 90, 170, 179.99])), Light(lamp, 1), *shapes))
+
+
+SCENES = [*((random_scene, seed) for seed in range(12)), *((hard_scene, seed) for seed in range(40))]
+KERNELS = pytest.mark.parametrize("kernel", [lists, jit_lists], ids=["interpreted", "compiled"])
+
+
+@KERNELS
+@pytest.mark.parametrize(("make", "seed"), SCENES)
+def test_a_tile_lists_all_that_its_rays_hit(make: Any, seed: int, kernel: Any) -> None:
+    traced = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
     lists = [members(traced, "starts", traced.seen, None, at) for at in range(tiles(WIDTH) * tiles(HEIGHT))]
     for tile, shape, t in seen_rays(traced):
         assert shape in lists[tile]
         assert t >= traced.near[shape]
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(seed: int) -> None:
-    traced = Packing().pack(random_scene(seed), WIDTH, HEIGHT)
+@KERNELS
+@pytest.mark.parametrize(("make", "seed"), SCENES)
+def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int, kernel: Any) -> None:
+    traced = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
     random = np.random.default_rng(seed)
     directions = random.normal(size=(3, 2000))
     directions[:, :40] = np.round(directions[:, :40])  # along axes and diagonals too
     directions[2, (directions == 0).all(axis=0)] = 1
     directions /= np.linalg.norm(directions, axis=0)
+    planes = [index for index, shape in enumerate(make(seed).shapes) if shape.flat()]
     for lamp, row in enumerate(traced.lights):
+        count = 6 * traced.grid**2 if traced.grid > 1 else 1
         cells = cell(Vec(*directions), traced.grid) if traced.grid > 1 else np.zeros(2000)
-        lists = [members(traced, "lamp_starts", traced.lit, lamp, at) for at in range(6 * traced.grid**2)]
-        assert 0 <= cells.min() <= cells.max() < 6 * traced.grid**2
+        lists = [members(traced, "lamp_starts", traced.lit, lamp, at) for at in range(count)]
+        assert 0 <= cells.min() <= cells.max() < count
+        left_out = {shape for shape in planes if not any(shape in each for each in lists)}
         for shape, (hit, t) in enumerate(meets(traced, Vec(*row[:3]), Vec(*directions))):
             assert (t[hit] >= traced.lamp_near[lamp, shape]).all()
-            assert all(shape in lists[int(at)] for at in cells[hit])
+            assert shape in left_out or all(shape in lists[int(at)] for at in cells[hit])
+
+
+@pytest.mark.parametrize(("make", "seed"), SCENES)
+def test_lists_begin_with_the_nearest_and_name_a_shape_once(make: Any, seed: int) -> None:
+    traced = Packing().pack(make(seed), WIDTH, HEIGHT)
+    for near, found, every in [
+        (traced.near, traced.seen, [group.starts for group in traced.groups]),
+        *(
+            (near, traced.lit, [group.lamp_starts[lamp] for group in traced.groups])
+            for lamp, near in enumerate(traced.lamp_near)
+        ),
+    ]:
+        assert np.isfinite(near).all()
+        assert (near >= 0).all()
+        for starts in every:
+            for start, end in pairwise(starts):
+                listed = found[start:end]
+                assert (np.diff(near[listed]) >= 0).all()
+                assert len(set(listed.tolist())) == end - start
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_a_sphere_is_listed_about_where_it_is_seen(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    ball = Sphere(tuple(0.5 * random.normal(size=3) + (0, 0, 5)), random.uniform(0.1, 3), (1, 2, 3))
+    traced = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), ball)), 640, 640)
+    listed = np.diff(traced.groups[0].starts).reshape(40, 40) > 0
+    x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(640), np.arange(640)))
+    origin, direction = camera_ray(traced.camera, 640, 640, x, y)
+    ((hit, _),) = meets(traced, Vec(*map(np.float64, (origin.x, origin.y, origin.z))), direction)
+    assert not hit.reshape(640, 640)[[0, -1]].any()
+    for axis in (0, 1):
+        seen, there = (np.flatnonzero(each.any(axis=axis)) for each in (hit.reshape(640, 640), listed))
+        assert there[0] in (seen[0] // TILE, seen[0] // TILE - 1)
+        assert there[-1] in (seen[-1] // TILE, seen[-1] // TILE + 1)
+
+
+def test_of_a_ball_like_a_planet_nothing_is_above_its_horizon() -> None:
+    planet = Sphere((0, -101, 3), 200, (1, 2, 3))  # its centre is hardly before the eye, and its radius far greater
+    traced = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), planet)), 320, 320)
+    listed = np.diff(traced.groups[0].starts).reshape(20, 20) > 0
+    assert listed[13:].all()
+    assert not listed[:9].any()
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "radius"), [(0, 5, 1), (3, 4, 2), (-3, 1, 2), (4, 0, 1), (4, -0.5, 1), (-9, -0.1, 2)]
+)
+def test_tangents_are_turned_from_the_way_to_the_centre_by_the_angle_that_the_disc_covers(
+    x: float, z: float, radius: float
+) -> None:
+    middle, half = np.arctan2(x, z), np.arcsin(radius / np.hypot(x, z))
+    low, high = lists.tangents(x, z, radius)
+    assert low == (pytest.approx(np.tan(middle - half)) if middle - half > -np.pi / 2 else -np.inf)
+    assert high == (pytest.approx(np.tan(middle + half)) if middle + half < np.pi / 2 else np.inf)
+
+
+@KERNELS
+def test_a_ball_without_end_is_everywhere_and_at_no_distance(kernel: Any) -> None:
+    balls, grid = np.array([[0.0, 0.0, 0.0, np.inf]]), sight.cube(2)
+    rectangles, near, counts = np.zeros((6, 4), np.int32), np.ones(1), np.zeros(25, np.int64)
+    place = np.zeros((1, 2), np.int64)
+    for origin in (np.zeros(3), np.array([1.0, 2.0, -3.0])):
+        counts[:] = 0
+        assert kernel.cover(origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, near, counts) == 6
+        assert near[0] == 0
+        assert counts.tolist() == [1] * 24 + [0]
+
+
+def test_around_the_eye_a_disc_is_everywhere() -> None:
+    assert lists.tangents(0.5, -0.5, 1.0) == (-np.inf, np.inf)
 
 
 def test_lists_leave_something_out() -> None:
@@ -86,8 +192,9 @@ def test_lists_leave_something_out() -> None:
     assert traced.grid > 1
     lists = [members(traced, "starts", traced.seen, None, at) for at in range(tiles(WIDTH) * tiles(HEIGHT))]
     assert np.mean([len(each) for each in lists]) < 0.3 * len(scene.shapes)
-    ahead = {index for index, shape in enumerate(scene.shapes) if shape.centre[2] < -2}
-    assert not any(each & ahead for each in lists)  # nothing behind the eye
+    behind = {index for index, shape in enumerate(scene.shapes) if shape.centre[2] < -2}
+    assert behind
+    assert not any(each & behind for each in lists)
 
 
 def scattered() -> list[Any]:

@@ -1,0 +1,26 @@
+"""Where the compiler is attached to the lists of what may be met where."""
+
+from __future__ import annotations
+
+from numba import njit, types
+from numba.extending import register_jitable
+
+from minirt.kernel import cache, lists
+from minirt.kernel.jit import CACHE, FLAGS, INNER, own_functions
+
+for _function in own_functions(lists):
+    if _function not in (lists.cover, lists.fill):
+        register_jitable(**INNER)(_function)
+
+# With the types said at once they are compiled when this module is imported.
+NUMBER, WHOLE, SHORT = types.float64, types.int64, types.int32
+GRID = types.NamedTuple([NUMBER[:, :, ::1], WHOLE, WHOLE, *[NUMBER] * 5], lists.Grid)
+COVER = WHOLE(
+    *(NUMBER[::1], GRID, NUMBER[:, ::1], NUMBER, WHOLE[::1], WHOLE[:, ::1]),
+    *(SHORT[:, ::1], WHOLE, NUMBER[::1], WHOLE[::1]),
+)
+FILL = types.void(SHORT[:, ::1], WHOLE[::1], WHOLE, WHOLE[::1], SHORT[::1])
+
+with cache.numba_cache(CACHE):
+    cover = njit(COVER, cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(lists.cover)
+    fill = njit(FILL, cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(lists.fill)

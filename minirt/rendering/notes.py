@@ -1,0 +1,37 @@
+"""What was decided about a scene when it was packed, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from minirt.kernel.traced import Traced
+from minirt.rendering.flats import same_side
+from minirt.rendering.tables import Tables
+from minirt.scene import Scene
+
+
+def notes(scene: Scene, tables: Tables, traced: Traced) -> Iterator[str]:
+    """Sentences; lights and shapes have the numbers of their places among those of their kind in the file."""
+    shapes = f"{len(scene.shapes)} shape{'s' * (len(scene.shapes) != 1)}"
+    sizes = sum(np.diff(group.starts) for group in traced.groups)
+    yield f"tiles: {len(sizes)}, {np.mean(sizes):.1f} of {shapes} in each, {np.count_nonzero(sizes == 0)} without any"
+    if traced.grid == 1:
+        yield f"light buffer: none, every shape is tried ({shapes})"
+    else:
+        yield f"light buffer: 6 x {traced.grid} x {traced.grid} cells a lamp ({shapes})"
+    for number, light in enumerate(scene.lights, 1):
+        if not light.brightness:
+            yield f"light {number} has brightness 0"
+        elif not any(light.colour):
+            yield f"light {number} is black"
+        else:
+            idle = same_side(tables.planes, traced.camera[:3], np.array(light.position))
+            for index in tables.flat[idle].tolist():
+                yield f"{name(tables, index)} hides nothing from light {number}"
+
+
+def name(tables: Tables, index: int) -> str:
+    """What people call a shape: plane 2."""
+    return f"{type(tables.shapes[index]).title} {tables.places[index, 1] + 1}"

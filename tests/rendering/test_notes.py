@@ -1,0 +1,39 @@
+"""What a packing says of the scene that it packed."""
+
+from __future__ import annotations
+
+from minirt.rendering.packing import Packing
+from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+
+GREY = (128, 128, 128)
+
+
+def said(*balls: Sphere) -> list[str]:
+    lights = Light((0, 5, 0), 1), FurtherLight((0, 5, 0), 0), FurtherLight((0, -5, 0), 1)
+    black = FurtherLight((0, 0, 9), 1, (0, 0, 0))
+    planes = Plane((0, -9, 0), (0, 1, 0), GREY), Plane((0, -1, 0), (0, -1, 0), GREY)
+    scene = Scene((Ambient(0.1, GREY), Camera((0, 0, -9), (0, 0, 1), 60), *lights, black, *planes, *balls))
+    packing = Packing()
+    assert packing.notes == []
+    packing.pack(scene, 64, 48)
+    return packing.notes
+
+
+def test_what_is_left_out_and_why() -> None:
+    tiles, buffer, *rest = said(Sphere((0, 0, 0), 1, GREY))
+    assert tiles.startswith("tiles: 12, ")
+    assert buffer == "light buffer: none, every shape is tried (3 shapes)"
+    assert rest == [
+        "plane 1 hides nothing from light 1",
+        "plane 2 hides nothing from light 1",
+        "light 2 has brightness 0",
+        "plane 1 hides nothing from light 3",
+        "light 4 is black",
+    ]
+
+
+def test_the_size_of_the_light_buffer() -> None:
+    _, buffer, *_ = said(*(Sphere((i, 0, 0), 1, GREY) for i in range(48)))
+    assert buffer == "light buffer: 6 x 16 x 16 cells a lamp (50 shapes)"

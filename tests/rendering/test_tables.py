@@ -1,0 +1,49 @@
+"""The arrays of shapes: what differs is found, and many shapes at once become the numbers of each."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from minirt.rendering import tables
+from minirt.rendering.tables import Tables, differing, extents
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.kernel.pictures import SHAPES
+
+MANY = tuple(Sphere((i, 2.0 * i, 3), 1 + i, (i % 256, 0, 0)) for i in range(3 * tables.PIECE))
+
+
+@pytest.mark.parametrize("places", [(), (0,), (tables.PIECE,), (7, tables.PIECE - 1, len(MANY) - 1)])
+def test_what_differs_is_found(places: tuple[int, ...]) -> None:
+    new = list(MANY)
+    for place in places:
+        new[place] = replace(new[place], diameter=9e9)
+    assert differing(MANY, tuple(new)) == list(places)
+
+
+def test_many_shapes_at_once_are_the_same_numbers_as_each() -> None:
+    mixed = [shape.replace(colour=(i % 256, 7, 9)) for i, shape in enumerate(SHAPES * 5)]
+    keeper = Tables()
+    assert keeper.update(tuple(mixed))
+    for i, shape in enumerate(mixed):
+        kind, number = keeper.places[i]
+        packed = [c for part in shape.pack() for c in ((part.x, part.y, part.z) if hasattr(part, "x") else (part,))]
+        assert np.hstack([np.ravel(part) for part in keeper.rows[kind][number]]).tolist() == packed
+        assert keeper.colours[i].tolist() == [c / 255 for c in shape.colour]
+        balls = keeper.balls[keeper.first[i] : keeper.first[i + 1]]
+        assert balls[:, :3].tolist() == [list(centre) for centre, _ in shape.balls()]
+        for ball, (centre, radius) in zip(balls, shape.balls(), strict=True):
+            assert radius + 1e-13 * max(map(abs, centre)) < ball[3] < radius + 1e-11 * (radius + max(map(abs, centre)))
+    assert [mixed[i] for i in keeper.flat] == [shape for shape in mixed if isinstance(shape, Plane)]
+    assert [keeper.planes[i, :3].tolist() for i in range(10)] == [list(mixed[i].normal) for i in keeper.flat]
+    assert not keeper.update(keeper.shapes)
+    assert not keeper.update((*mixed,))
+
+
+def test_extents_of_several() -> None:
+    shapes = [Cylinder((1, -7, 3), (0, 1, 0), 4, 6, (0, 0, 0)), Cylinder((1, -7, 3), (1, 0, 0), 4, 40, (0, 0, 0))]
+    assert extents(list(shapes)).tolist() == [10, 21]
