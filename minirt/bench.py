@@ -15,7 +15,7 @@ from minirt.scene import Scene, load
 LEAST_FRAMES, LEAST_SECONDS = 9, 1.0
 
 
-def measure(path: str, scene: Scene, size: tuple[int, int] | None, threads: int | None) -> dict[str, str | float]:
+def measure(path: str, scene: Scene, size: tuple[int, int] | None, threads: int | None, precision: str) -> dict[str, str | float]:
     """Time of reading, in seconds, and of frames, in milliseconds.
 
     `compile_s` is the time until the kernel is ready: of compiling it, or of loading it where it was compiled before.
@@ -24,7 +24,7 @@ def measure(path: str, scene: Scene, size: tuple[int, int] | None, threads: int 
     load(path, lenient=True)
     load_s = perf_counter() - start
     width, height = size or minirt.size_of(scene)
-    renderer = Renderer(threads)
+    renderer = Renderer(threads, precision)
     start = perf_counter()
     renderer.prepare(scene)
     compile_s = perf_counter() - start
@@ -39,7 +39,7 @@ def measure(path: str, scene: Scene, size: tuple[int, int] | None, threads: int 
         "scene": path,
         "size": f"{width}x{height}",
         "threads": renderer.threads,
-        "precision": "double",
+        "precision": precision,
         "frames": len(times),
         "ms_min": round(min(times) * 1e3, 3),
         "ms_median": round(median(times) * 1e3, 3),

@@ -70,6 +70,7 @@ def arguments() -> Arguments:
     add("--json", action="store_true", help="with --bench: as JSON")
     add("--list-keys", action="store_true", help="list the keys of the window")
     add("--threads", type=lambda text: whole(text, 1, 1024), metavar="N", help="threads that render")
+    add("--precision", choices=("double", "single"), default="double", help="of the numbers that pictures are made of")
     add("-v", "--verbose", action="store_true", help="say what is done, and how long it takes")
     add("--version", action="store_true", help="print the version")
     return parser
@@ -142,7 +143,7 @@ def bench(scene: Scene, asked: argparse.Namespace) -> int:
     """Print how long a frame takes."""
     from minirt.bench import measure, report
 
-    measured = measure(asked.scene[0], scene, asked.size, asked.threads)
+    measured = measure(asked.scene[0], scene, asked.size, asked.threads, asked.precision)
     print(report(measured, asked.json))
     return OK
 
@@ -161,16 +162,20 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
 
     width, height = asked.size or minirt.size_of(scene)
     start = perf_counter()
-    renderer = minirt.renderer(asked.threads)
+    renderer = minirt.renderer(asked.threads, asked.precision)
     if asked.verbose:
         renderer.prepare(scene)
         print(f"kernel ready after {perf_counter() - start:.2f} s", file=sys.stderr)
         start = perf_counter()
-    image = minirt.render(scene, width, height, samples=asked.samples, threads=asked.threads)
+    image = minirt.render(
+        scene, width, height, samples=asked.samples, threads=asked.threads, precision=asked.precision
+    )
     if asked.verbose:
         print(
-            f"{width}x{height}, {asked.samples} samples a pixel, {renderer.threads} threads: "
-            f"{(perf_counter() - start) * 1e3:.1f} ms",
+            f"{width}x{height}, {asked.samples} samples a pixel, {renderer.threads} threads, {renderer.precision} "
+            f"precision: {(perf_counter() - start) * 1e3:.1f} ms",
+            *renderer.packing.notes,
+            sep="\n",
             file=sys.stderr,
         )
     return image
@@ -199,7 +204,7 @@ def replay(scene: Scene, asked: argparse.Namespace) -> int:
         scene,
         lines,
         file=asked.replay,
-        renderer=minirt.renderer(asked.threads),
+        renderer=minirt.renderer(asked.threads, asked.precision),
         size=asked.size or minirt.size_of(scene),
         path=asked.scene[0],
         keys="qwerty" if asked.keys == "auto" else asked.keys,  # not the user's: a replay is the same everywhere
@@ -212,11 +217,17 @@ def replay(scene: Scene, asked: argparse.Namespace) -> int:
 
 def window(scene: Scene, asked: argparse.Namespace) -> int:
     """Show the scene in a window until it is closed."""
+    import minirt
     from minirt import viewer
 
     try:
         return viewer.run(
-            scene, path=asked.scene[0], size=asked.size, threads=asked.threads, keys=asked.keys, lenient=asked.lenient
+            scene,
+            path=asked.scene[0],
+            size=asked.size,
+            keys=asked.keys,
+            lenient=asked.lenient,
+            renderer=minirt.renderer(asked.threads, asked.precision),
         )
     except MlxError as error:
         if not asked.fallback:

@@ -37,6 +37,7 @@ COMPILED = {  # the only files that import the compiler
     "lanes/compiled_operators.py",
     "lanes/compiled_vec.py",
     "lanes/compiled_verbs.py",
+    "lanes/root.py",
     "lanes/teaching.py",
     "lanes/vector.py",
     "kernel/jit.py",

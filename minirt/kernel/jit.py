@@ -17,9 +17,8 @@ from numba.extending import overload, register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
 from minirt.kernel import cache, frame, rows, shade, trace
-from minirt.lanes import WIDTH
 from minirt.lanes.teaching import teach
-from minirt.lanes.vector import Lanes, VecType, vec_of
+from minirt.lanes.vector import Lanes, VecType, common, constant, splat, vec_of
 from minirt.shapes import KINDS, basis, exact, quadric
 
 # error_model: x / 0 is infinite or NaN, as in IEEE 754. fastmath: a * b + c may round once, and nothing else. _nrt: the
@@ -62,17 +61,26 @@ def _surface(shape, point):  # type: ignore[no-untyped-def]
 
 
 def first_number(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    """The address of the first number of a row, as that of a float64."""
+    """The address of the first number of a row."""
     array = context.make_array(sig.args[0])(context, builder, value=args[0])
     place = builder.gep(array.data, [context.cast(builder, args[1], sig.args[1], types.intp)])
-    return builder.bitcast(place, ir.DoubleType().as_pointer())
+    number = context.get_value_type(common(*numbers_of(sig.args[0])))
+    return builder.bitcast(place, number.as_pointer())
+
+
+def numbers_of(array: Any) -> list[Any]:
+    """The types of the numbers in the fields of a row; all are the same."""
+    kinds = [each.type for each in array.dtype.fields.values()]
+    return [kind.dtype if isinstance(kind, types.NestedArray) else kind for kind in kinds]
 
 
 def packed_type(array: Any, i: Any) -> Any:
     """The type of a packed shape: the kind's NamedTuple of float64s and Vecs."""
-    fields = array.dtype.fields.values()
-    numbers = [VecType(types.float64) if isinstance(each.type, types.NestedArray) else types.float64 for each in fields]
-    return types.NamedTuple(numbers, rows.kind_of(array.dtype.fields).packed)
+    number = common(*numbers_of(array))
+    fields = [
+        VecType(number) if isinstance(each.type, types.NestedArray) else number for each in array.dtype.fields.values()
+    ]
+    return types.NamedTuple(fields, rows.kind_of(array.dtype.fields).packed)
 
 
 @teach(rows.read, packed_type, [(types.Array, types.Integer)])
@@ -93,16 +101,26 @@ def _fetch_add(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.atomic_rmw("add", counter.data, amount, "monotonic")
 
 
-@teach(frame.store_block, lambda pixels, x, y, colour: types.none, [(types.Array, types.Integer, types.Integer, Lanes)])
+def whole_block(pixels: Any, x: Any, y: Any, *levels: Any) -> Any:
+    """Nothing, for a place and three levels of lanes."""
+    return types.none if all(isinstance(each, Lanes) for each in levels) else None
+
+
+@teach(frame.store_block, whole_block, [(types.Array, types.Integer, types.Integer, Lanes, Lanes, Lanes)])
 def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     word = ir.IntType(32)
     pixels = context.make_array(sig.args[0])(context, builder, value=args[0])
     x, y = (context.cast(builder, args[i], sig.args[i], types.intp) for i in (1, 2))
     width = builder.extract_value(pixels.shape, 1)
-    words = builder.fptoui(args[3], ir.VectorType(word, WIDTH))
+    count = sig.args[3].count
+    step = count // frame.DOWN
+    words = splat(builder, ir.Constant(word, frame.OPAQUE), count)
+    for level, shift in zip(args[3:], (16, 8, 0), strict=True):
+        byte = builder.fptosi(level, words.type)
+        words = builder.or_(words, builder.shl(byte, constant(words, shift)))
     for line in range(frame.DOWN):
-        lanes = [ir.Constant(word, line * frame.ACROSS + i) for i in range(frame.ACROSS)]
-        part = builder.shuffle_vector(words, words, ir.Constant(ir.VectorType(word, frame.ACROSS), lanes))
+        lanes = [ir.Constant(word, line * step + i) for i in range(step)]
+        part = builder.shuffle_vector(words, words, ir.Constant(ir.VectorType(word, step), lanes))
         row = builder.mul(builder.add(y, ir.Constant(y.type, line)), width)
         place = builder.gep(pixels.data, [builder.add(row, x)])
         builder.store(part, builder.bitcast(place, part.type.as_pointer()), align=4)

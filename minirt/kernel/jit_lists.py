@@ -17,7 +17,7 @@ NUMBER, WHOLE, SHORT = types.float64, types.int64, types.int32
 GRID = types.NamedTuple([NUMBER[:, :, ::1], WHOLE, WHOLE, *[NUMBER] * 5], lists.Grid)
 COVER = WHOLE(
     *(NUMBER[::1], GRID, NUMBER[:, ::1], NUMBER, WHOLE[::1], WHOLE[:, ::1]),
-    *(SHORT[:, ::1], WHOLE, NUMBER[::1], WHOLE[::1]),
+    *(SHORT[:, ::1], WHOLE, NUMBER[:, ::1], WHOLE[::1]),
 )
 FILL = types.void(SHORT[:, ::1], WHOLE[::1], WHOLE, WHOLE[::1], SHORT[::1])
 

@@ -13,6 +13,7 @@ from math import inf, sqrt
 from typing import Any, NamedTuple
 
 MARGIN = 1e-12  # of the coordinates that a place is computed from, which are rounded to 1e-16
+ROUND = 1e-7  # of the cosine of a cone, in which the root of a difference is precise to 1e-8
 
 
 class Grid(NamedTuple):
@@ -37,18 +38,18 @@ def cover(
     places: Any,
     rectangles: Any,
     used: int,
-    near: Any,
+    views: Any,
     counts: Any,
 ) -> int:
     """Find the rectangles of the shapes that have balls.
 
     Shape i is the convex hull of `balls[first[i]:first[i + 1]]`, (b, 4) centre and radius, which grow by `slack`; its
     cells begin at `places[i, 0]` times one more than the grid has. Writes rectangles, (r, 4) shape, first cell, columns
-    and rows, from number `used` on, and answers how many there are; for each shape (n,) a distance that no point of it
-    falls below, or 0 where it has no rectangle; and adds to `counts` how many rectangles cover each cell.
+    and rows, from number `used` on, and answers how many there are; for each shape with a rectangle its `view`; and adds
+    to `counts` how many rectangles cover each cell.
     """
     stride = grid.frames.shape[0] * grid.down * grid.across + 1
-    for shape in range(near.shape[0]):
+    for shape in range(views.shape[0]):
         before = used
         for face in range(grid.frames.shape[0]):
             column, row, columns, rows = rectangle(origin, grid, face, balls, first[shape], first[shape + 1], slack)
@@ -62,9 +63,8 @@ def cover(
                 for line in range(cell, cell + rows * grid.across, grid.across):
                     for at in range(line, line + columns):
                         counts[at] += 1
-        near[shape] = 0.0
         if used > before:
-            near[shape] = least_distance(origin, balls, first[shape], first[shape + 1], slack)
+            view(origin, balls, first[shape], first[shape + 1], slack, views[shape])
     return used
 
 
@@ -132,9 +132,11 @@ def interval(low: float, high: float, scale: float, middle: float, margin: float
     return start, int(min(end, cells - 1.0)) + 1 - start
 
 
-def least_distance(origin: Any, balls: Any, start: int, end: int, slack: float) -> float:
-    """A distance that no point of the convex hull of some balls, grown by `slack`, falls below: how far all of it lies
-    in the direction of its middle."""
+def view(origin: Any, balls: Any, start: int, end: int, slack: float, seen: Any) -> None:
+    """How the convex hull of some balls, grown by `slack`, looks from a point, in five numbers: a cone around it, as its
+    axis, the direction of the middle, and the cosine of its half-angle; and a distance that none of it falls below, how
+    far all of it lies along the axis. -2 stands for the cosine where the cone would take in half of all directions.
+    """
     x = 0.0
     y = 0.0
     z = 0.0
@@ -143,13 +145,24 @@ def least_distance(origin: Any, balls: Any, start: int, end: int, slack: float) 
         y += balls[i, 1] - origin[1]
         z += balls[i, 2] - origin[2]
     length = sqrt(x * x + y * y + z * z)
+    seen[3], seen[4] = -2.0, 0.0
     if length == 0.0:
-        return 0.0
-    least = inf
+        return
+    least, cosine = inf, 1.0
     for i in range(start, end):
-        along = (balls[i, 0] - origin[0]) * x + (balls[i, 1] - origin[1]) * y + (balls[i, 2] - origin[2]) * z
-        least = min(least, along / length - balls[i, 3] - slack)
-    return max(least, 0.0)
+        px, py, pz = balls[i, 0] - origin[0], balls[i, 1] - origin[1], balls[i, 2] - origin[2]
+        radius = balls[i, 3] + slack
+        squared = px * px + py * py + pz * pz
+        along = (px * x + py * y + pz * z) / length
+        aside = sqrt(max(squared - along * along, 0.0))
+        tangent = sqrt(max(squared - radius * radius, 0.0))
+        least = min(least, along - radius)
+        # Of the sum of two angles: from the axis to the centre, and from there to the rim.
+        cosine = min(cosine, (along * tangent - aside * radius) / squared) if tangent > 0.0 else -2.0
+    seen[0], seen[1], seen[2] = x / length, y / length, z / length
+    if cosine > 0.0:
+        seen[3] = cosine - ROUND
+    seen[4] = max(least, 0.0)
 
 
 def fill(rectangles: Any, order: Any, across: int, ends: Any, members: Any) -> None:

@@ -12,28 +12,32 @@ import numpy as np
 
 from minirt.lanes import Vec
 from minirt.shapes import KINDS, Kind
+from minirt.shapes.shape import Place
 
 Rows = Any  # an array of dtype `row_type(kind)`
 
 
 @cache
-def row_type(kind: Kind) -> np.dtype[Any]:
-    """The dtype of the rows of a kind."""
+def row_type(kind: Kind, number: type = np.float64) -> np.dtype[Any]:
+    """The dtype of the rows of a kind, made of numbers of a type."""
     hints = get_type_hints(kind.packed).items()
-    return np.dtype(
-        [(f"{kind.element.title}.{name}", np.float64, (3,) if hint is Vec else ()) for name, hint in hints], align=True
-    )
+    return np.dtype([(field(kind, name), number, (3,) if hint in (Vec, Place) else ()) for name, hint in hints])
+
+
+def field(kind: Kind, name: str) -> str:
+    """What a number or Vec of a packed shape is called in the rows of its kind."""
+    return f"{kind.element.title}.{name}"
+
+
+def place_fields(kind: Kind) -> list[str]:
+    """The fields of the rows of a kind that are points."""
+    return [field(kind, name) for name, hint in get_type_hints(kind.packed).items() if hint is Place]
 
 
 def kind_of(fields: Any) -> Kind:
     """The kind to which a row with these field names belongs."""
     title = next(iter(fields)).split(".")[0]
     return next(kind for kind in KINDS if kind.element.title == title)
-
-
-def row(packed: Any) -> tuple[Any, ...]:
-    """The row of a packed shape."""
-    return tuple((part.x, part.y, part.z) if isinstance(part, Vec) else part for part in packed)
 
 
 def read(rows: Rows, i: int) -> Any:

@@ -3,43 +3,47 @@
 from __future__ import annotations
 
 from math import inf
+from typing import Any
 
 from minirt.kernel.trace import ROUNDING, largest, nearest, surfaces, unhidden
 from minirt.kernel.traced import Traced
-from minirt.lanes import Vec, any, dot, splat, sqrt, where
+from minirt.lanes import Vec, any, dot, inverse_root, splat, unit_roundoff, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
 
-def radiance(scene: Traced, tile: int, origin: Vec, direction: Vec) -> Vec:
+def radiance(scene: Traced, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
     """The light that arrives at `origin` against `direction`, nothing where a ray hits no shape."""
     t, owner, extent = nearest(scene, tile, origin, direction)
     hit = t < inf
-    light = Vec(splat(0.0), splat(0.0), splat(0.0))
+    nothing = splat(0.0, t)
+    light = Vec(nothing, nothing, nothing)
     if any(hit):
-        point, normal, colour = surfaces(scene, owner, origin + t * direction, hit)
+        point, normal, colour = surfaces(scene, memory, owner, origin + t * direction, hit)
         normal = where(dot(normal, direction) > 0.0, -normal, normal)  # the side that is seen
-        light = where(hit, times(colour, irradiance(scene, point, normal, extent, hit)), light)
+        light = times(colour, irradiance(scene, memory, point, normal, extent, hit))
     return light
 
 
-def irradiance(scene: Traced, point: Vec, normal: Vec, extent: Number, hit: Mask) -> Vec:
+def irradiance(scene: Traced, memory: Any, point: Vec, normal: Vec, extent: Number, hit: Mask) -> Vec:
     """The light that falls onto a surface from the side of its normal: ambient light and, by Lambert's cosine law, the
     light of every lamp that no shape hides."""
-    # Outside of the surface and of those that coincide with it, whatever the rounding of each.
-    start = point + ROUNDING * (largest(point) + extent) * normal
-    total = Vec(splat(scene.ambient[0]), splat(scene.ambient[1]), splat(scene.ambient[2]))
+    u = unit_roundoff(extent)
+    rounding = ROUNDING * u * (largest(point) + extent)
+    start = point + rounding * normal  # outside of the surface and of those that coincide with it
+    total = Vec(splat(scene.ambient[0], extent), splat(scene.ambient[1], extent), splat(scene.ambient[2], extent))
     for i in range(scene.lights.shape[0]):
         lamp = Vec(scene.lights[i, 0], scene.lights[i, 1], scene.lights[i, 2])
         light = Vec(scene.lights[i, 3], scene.lights[i, 4], scene.lights[i, 5])
         way = lamp - start
-        distance = sqrt(dot(way, way))
-        towards = way / distance
+        squared = dot(way, way)
+        per_length = inverse_root(squared)
+        towards = way * per_length
         cosine = dot(normal, towards)
         lit = hit & (cosine > 0.0)
         if any(lit):
-            reach = distance - 4.0 * ROUNDING * (largest(lamp) + largest(start))  # a surface hides no lamp on it
-            lit = unhidden(scene, i, start, towards, reach, lit)
+            reach = squared * per_length - 4.0 * (rounding + ROUNDING * u * largest(lamp))  # a surface hides no lamp on it
+            lit = unhidden(scene, memory, i, start, towards, reach, lit)
             total = total + where(lit, cosine, 0.0) * light
     return total
 

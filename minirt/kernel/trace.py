@@ -8,12 +8,12 @@ from typing import Any
 
 from minirt.kernel.rows import intersect, read, surface
 from minirt.kernel.traced import Group, Traced
-from minirt.lanes import Vec, any, dot, fabs, first, floor, lane, maximum, minimum, splat, where
+from minirt.lanes import Vec, any, dot, fabs, first, floor, lane, maximum, minimum, splat, unit_roundoff, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
-ROUNDING = 16 * 2.0**-53  # of a point on a surface, relative to its largest coordinate and the extent of the shape
-NEARBY = 1e-5  # two hits so close to each other, relative to their distance, may be one place
+ROUNDING = 16  # of a point on a surface: unit roundoffs of its largest coordinate and of the extent of the shape
+NEARBY = 2.0**-14  # two hits so close to each other, relative to their distance, may be one place
 
 
 def over_kinds(step: Callable[..., Any], groups: tuple[Group, ...], state: Any, given: Any) -> Any:
@@ -24,6 +24,16 @@ def over_kinds(step: Callable[..., Any], groups: tuple[Group, ...], state: Any, 
     for group in groups:
         state = step(group, state, given)
     return state
+
+
+def is_empty(scene: Traced, tile: int) -> bool:
+    """Whether no shape can be seen in a tile of the picture."""
+    return bool(over_kinds(count_of_kind, scene.groups, 0, tile) == 0)
+
+
+def count_of_kind(group: Group, count: int, tile: int) -> int:
+    """The number of shapes of a kind in a tile, and `count`."""
+    return count + int(group.starts[tile + 1] - group.starts[tile])
 
 
 def largest(v: Vec) -> Number:
@@ -38,7 +48,7 @@ def nearest(scene: Traced, tile: int, origin: Vec, direction: Vec) -> tuple[Numb
     The rays come from the eye and lie in a tile of the picture. Where two surfaces coincide within rounding the shape
     with the lower index is hit, on the whole of the overlap, and the extent is the larger of the two.
     """
-    nothing = splat(inf), splat(-1.0), splat(0.0)
+    nothing = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
     best, owner, extent = over_kinds(nearest_of_kind, scene.groups, nothing, (scene, tile, origin, direction))
     return best, owner, extent
 
@@ -49,20 +59,26 @@ def nearest_of_kind(
     """`nearest` over the shapes of one kind, where others gave `state`."""
     best, owner, extent = state
     scene, tile, origin, direction = given
+    u = unit_roundoff(best)
     for i in range(group.starts[tile], group.starts[tile + 1]):
         index = scene.seen[i]
-        if not any(best > scene.near[index]):
+        view = scene.views[index]
+        if not any(best > view[4]):
             break
+        if view[3] > -1.0 and not any(within(view, direction)):
+            continue
         shape = read(group.rows, scene.places[index, 1])
         hit, t = intersect(shape, origin, direction)
         closer = hit & (t < best)
-        contested = hit & (fabs(t - best) <= NEARBY * t)
-        reach = splat(scene.extents[index])
+        reach = splat(scene.looks[index, 3], best)
+        contested = hit & (best < inf)
+        if any(contested):
+            contested = contested & (fabs(t - best) <= NEARBY * t)
         if any(contested):
             point = origin + t * direction
             _, normal = surface(shape, point)
             gap = fabs(t - best) * fabs(dot(normal, direction))  # between the surfaces
-            rounding = ROUNDING * (largest(point) + largest(origin) + reach)
+            rounding = ROUNDING * u * (largest(point) + largest(origin) + reach)
             same = contested & (gap <= 4.0 * rounding)
             closer = (closer & ~same) | (same & (index < owner))
             reach = where(same, maximum(reach, extent), reach)
@@ -74,24 +90,47 @@ def nearest_of_kind(
     return best, owner, extent
 
 
-def unhidden(scene: Traced, lamp: int, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
+def within(cone: Any, direction: Vec) -> Mask:
+    """Whether a direction from the tip of a cone lies in it."""
+    return dot(Vec(cone[0], cone[1], cone[2]), direction) >= cone[3]
+
+
+def unhidden(
+    scene: Traced, memory: Any, lamp: int, origin: Vec, direction: Vec, distance: Number, asked: Mask
+) -> Mask:
     """Of the rays towards a lamp that are `asked` for, those that hit nothing nearer than `distance`.
 
-    Only shapes that the lamp sees in the direction of a ray are tried. The rays of a packet lie in few different cells
-    of the cube around the lamp; each cell is done once, for all of its rays.
+    Only shapes that the lamp sees in the direction of a ray are tried. The list of a cell holds for directions around
+    it too, and `memory` (m, 4) keeps for each lamp the direction that was last looked up and its cell: mostly the rays
+    of a packet, and those of the next, need no other.
     """
-    if scene.grid == 1:  # a single cell holds all shapes
+    if scene.grid == 1:
         return over_kinds(unhidden_by_kind, scene.groups, asked, (scene, lamp, 0, asked, origin, direction, distance))
-    cells = cell(-direction, scene.grid)
     free = asked
     left = asked
     while any(left):
-        at = lane(cells, first(left))
-        mine = left & (cells == at)
-        given = (scene, lamp, int(at), mine, origin, direction, distance)
+        mine = left & close(memory[lamp], direction, scene.spread)
+        if not any(mine):
+            look_up(memory[lamp], scene.grid, direction, first(left))
+            mine = left & close(memory[lamp], direction, scene.spread)
+        given = (scene, lamp, int(memory[lamp, 3]), mine, origin, direction, distance)
         free = over_kinds(unhidden_by_kind, scene.groups, free, given)
         left = left & ~mine
     return free
+
+
+def close(remembered: Any, direction: Vec, spread: float) -> Mask:
+    """Whether a direction is as close to the remembered one as the lists of cells allow."""
+    return dot(Vec(remembered[0], remembered[1], remembered[2]), direction) >= spread
+
+
+def look_up(remembered: Any, grid: int, direction: Vec, ray: int) -> None:
+    """Remember the direction of a ray of the packet towards the lamp, and the cell that it comes through."""
+    x, y, z = lane(direction.x, ray), lane(direction.y, ray), lane(direction.z, ray)
+    remembered[0] = x
+    remembered[1] = y
+    remembered[2] = z
+    remembered[3] = cell(Vec(-x, -y, -z), grid)
 
 
 def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Mask, Vec, Vec, Number]) -> Mask:
@@ -99,8 +138,11 @@ def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Ma
     scene, lamp, at, mine, origin, direction, distance = given
     for i in range(group.lamp_starts[lamp, at], group.lamp_starts[lamp, at + 1]):
         index = scene.lit[i]
-        if not any(free & mine & (distance > scene.lamp_near[lamp, index])):
+        view = scene.lamp_views[lamp, index]
+        if not any(free & mine & (distance > view[4])):
             break
+        if view[3] > -1.0 and not any(mine & within(view, -direction)):
+            continue
         hit, t = intersect(read(group.rows, scene.places[index, 1]), origin, direction)
         free = free & ~(mine & hit & (t < distance))
     return free
@@ -126,20 +168,25 @@ def cell(direction: Vec, grid: int) -> Number:
     return (face * grid + row) * grid + column
 
 
-def surfaces(scene: Traced, owner: Number, point: Vec, hit: Mask) -> tuple[Vec, Vec, Vec]:
+def surfaces(scene: Traced, memory: Any, owner: Number, point: Vec, hit: Mask) -> tuple[Vec, Vec, Vec]:
     """For rays that hit: the point put onto the surface of the shape that is hit, and the normal and the colour there.
 
-    The rays of a packet hit few different shapes; each shape is asked once, for all of its rays.
+    The rays of a packet hit few different shapes; each shape is asked once, for all of its rays. The first one that is
+    asked is the last one of the packet before, which `memory` keeps.
     """
-    on, normal, colour = point, point, point
+    nothing = splat(0.0, point.x)
+    on, normal, colour = point, point, Vec(nothing, nothing, nothing)
     left = hit
     while any(left):
-        index = int(lane(owner, first(left)))
+        index = int(memory[scene.lights.shape[0], 0])
         mine = left & (owner == index)
-        group, i = scene.places[index, 0], scene.places[index, 1]
-        on, normal, _ = over_kinds(surface_of_kind, scene.groups, (on, normal, 0), (group, i, point, mine))
-        colour = where(mine, Vec(scene.colours[index, 0], scene.colours[index, 1], scene.colours[index, 2]), colour)
-        left = left & ~mine
+        if any(mine):
+            group, i = scene.places[index, 0], scene.places[index, 1]
+            on, normal, _ = over_kinds(surface_of_kind, scene.groups, (on, normal, 0), (group, i, point, mine))
+            colour = where(mine, Vec(scene.looks[index, 0], scene.looks[index, 1], scene.looks[index, 2]), colour)
+            left = left & ~mine
+        else:
+            memory[scene.lights.shape[0], 0] = lane(owner, first(left))
     return on, normal, colour
 
 

@@ -1,4 +1,4 @@
-"""A scene in the arrays that the kernel reads."""
+"""A scene in the arrays that the kernel reads: all of them float64, or all of them float32."""
 
 from __future__ import annotations
 
@@ -19,17 +19,20 @@ class Group(NamedTuple):
 
 
 class Traced(NamedTuple):
-    """What a frame is made from; m lamps and n shapes, the shapes numbered from 0 in the order of the file."""
+    """What a frame is made from; m lamps and n shapes, the shapes numbered from 0 in the order of the file.
 
-    camera: Any  # (12,) eye, right, up, forward; right and up reach from the middle of the picture, at 1, to its edges
+    A cone from a point encloses a shape: axis, and cosine of the half-angle; -2 where it takes in all directions.
+    """
+
+    camera: Any  # (12,) eye, direction through the upper left corner, what a pixel to the right and one down add to it
     ambient: Any  # (3,) light, red green blue
     lights: Any  # (m, 6) place and light of each lamp
-    colours: Any  # (n, 3) of each shape, red green blue in [0, 1]
-    extents: Any  # (n,) largest coordinate of each shape
+    looks: Any  # (n, 4) colour of each shape, red green blue in [0, 1], and its largest coordinate
     places: Any  # (n, 2) where each shape is: its group and its row there
     seen: Any  # the shapes in each tile, the nearest first
-    near: Any  # (n,) no point of the shape is nearer to the eye
-    grid: int  # cells along an edge of the cubes around the lamps
+    views: Any  # (n, 5) the cone from the eye; no point of the shape is nearer to it than the last number
+    grid: int  # cells along an edge of the cubes around the lamps; 1 where they have no cells
+    spread: float  # cosine of an angle: a cell's list holds for all directions so close to one that goes through it
     lit: Any  # the shapes in each cell of each cube, the nearest first
-    lamp_near: Any  # (m, n) no point of the shape is nearer to the lamp
+    lamp_views: Any  # (m, n, 5) the same from each lamp
     groups: Any  # a tuple of Group: one for each kind of shape that the scene has

@@ -4,8 +4,9 @@ A formula of a shape is written once, for one ray, with the operators of Python 
 computes with is decided by who calls it:
 
 - a test passes a numpy float64 (a Python float that divides by zero as IEEE 754 says) and gets the plain formula;
-- interpreted, a kernel passes a numpy array of `WIDTH` float64: one number for each of `WIDTH` rays;
-- compiled, a kernel passes the same `WIDTH` numbers as one vector of the processor (`minirt.lanes.vector`).
+- interpreted, a kernel passes a numpy array of 16 float64 or 32 float32: one number for each ray of a packet;
+- compiled, a kernel passes the same numbers as one vector of the processor, `f64x16` or `f32x32`
+  (`minirt.lanes.vector`).
 
 So a number may stand for many, and a formula must not branch on one of them. `a < b` is a mask, one truth a ray;
 masks combine with `&`, `|` and `~`; `where(mask, a, b)` chooses for each ray; `if any(mask):` skips work that no ray
@@ -16,12 +17,12 @@ This package is the interpreted half and imports no compiler; `minirt.lanes.comp
 
 from minirt.lanes.vec import Vec, dot
 from minirt.lanes.verbs import (
-    WIDTH,
     any,
     copysign,
     fabs,
     first,
     floor,
+    inverse_root,
     lane,
     load,
     maximum,
@@ -30,11 +31,13 @@ from minirt.lanes.verbs import (
     rounded_product,
     splat,
     sqrt,
+    unit,
+    unit_roundoff,
     where,
+    width,
 )
 
 __all__ = [
-    "WIDTH",
     "Vec",
     "any",
     "copysign",
@@ -42,6 +45,7 @@ __all__ = [
     "fabs",
     "first",
     "floor",
+    "inverse_root",
     "lane",
     "load",
     "maximum",
@@ -50,5 +54,8 @@ __all__ = [
     "rounded_product",
     "splat",
     "sqrt",
+    "unit",
+    "unit_roundoff",
     "where",
+    "width",
 ]

@@ -9,9 +9,10 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 
-from minirt.lanes import WIDTH, vec
+from minirt.lanes import vec, verbs
+from minirt.lanes.root import inverse_root
 from minirt.lanes.teaching import Result, same_numbers, teach
-from minirt.lanes.vector import CONTRACT, VecType, common, is_number, vec_of, vec_parts, widen
+from minirt.lanes.vector import CONTRACT, VecType, common, constant, is_number, vec_of, vec_parts, widen
 
 ANY = types.Any
 
@@ -70,7 +71,7 @@ teach_by_component(operator.mul, "fmul", number_and_vec, (ANY, VecType))
 def _divide(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     number = sig.return_type.number
     parts, (divisor, *_) = components(context, builder, sig, args, number)
-    inverse = builder.fdiv(ir.Constant(divisor.type, 1.0 if number == types.float64 else [1.0] * WIDTH), divisor)
+    inverse = builder.fdiv(constant(divisor, 1.0), divisor)
     return vec_of(context, builder, sig.return_type, [builder.fmul(part, inverse) for part in parts])
 
 
@@ -79,8 +80,18 @@ def _negate_vec(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any
     return vec_of(context, builder, sig.return_type, [builder.fneg(part) for part in vec_parts(builder, args[0])])
 
 
-@teach(vec.dot, lambda a, b: getattr(two_vecs(a, b), "number", None), [(VecType, VecType)])
-def _dot(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    a, b = components(context, builder, sig, args, sig.return_type)
+def scalar_product(builder: ir.IRBuilder, a: list[Any], b: list[Any]) -> Any:
     x, y, z = (builder.fmul(*pair, flags=CONTRACT) for pair in zip(a, b, strict=True))
     return builder.fadd(builder.fadd(x, y, flags=CONTRACT), z, flags=CONTRACT)
+
+
+@teach(vec.dot, lambda a, b: getattr(two_vecs(a, b), "number", None), [(VecType, VecType)])
+def _dot(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return scalar_product(builder, *components(context, builder, sig, args, sig.return_type))
+
+
+@teach(verbs.unit, lambda a: a if isinstance(a, VecType) else None, [(VecType,)])
+def _unit(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    parts = vec_parts(builder, args[0])
+    factor = inverse_root(context, builder, scalar_product(builder, parts, parts))
+    return vec_of(context, builder, sig.return_type, [builder.fmul(part, factor) for part in parts])

@@ -9,25 +9,22 @@ from llvmlite import ir
 from numba import types
 
 from minirt.lanes import verbs
+from minirt.lanes.root import inverse_root
 from minirt.lanes.teaching import one_number, same_numbers, teach, two_numbers
 from minirt.lanes.vector import (
-    BITS,
-    LANES,
-    LANES_IR,
-    MASK,
     Lanes,
     Mask,
     VecType,
     common,
     is_number,
     llvm,
-    splat,
     vec_of,
     vec_parts,
     widen,
 )
 
 ANY = types.Any
+ROUNDOFF = {64: 2.0**-53, 32: 2.0**-24}  # by the size of a number in bits
 
 
 def teach_llvm(function: Callable[..., Any], name: str, arguments: int) -> None:
@@ -49,6 +46,11 @@ teach_llvm(verbs.floor, "floor", 1)
 teach_llvm(verbs.copysign, "copysign", 2)
 
 
+@teach(verbs.inverse_root, one_number, [(ANY,)])
+def _inverse_root(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return inverse_root(context, builder, *same_numbers(context, builder, sig, args))
+
+
 @teach(verbs.rounded_product, two_numbers, [(ANY, ANY)])
 def _rounded_product(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.fmul(*same_numbers(context, builder, sig, args))
@@ -68,8 +70,8 @@ def chosen(mask: types.Type, a: types.Type, b: types.Type) -> types.Type | None:
     """The type of `where`: lanes as soon as one of its arguments has lanes."""
     if isinstance(a, VecType) and isinstance(b, VecType):
         return VecType(chosen(mask, a.number, b.number))
-    if mask in (MASK, types.boolean) and is_number(a) and is_number(b):
-        return LANES if mask == MASK else common(a, b)
+    if is_number(a) and is_number(b):
+        return mask.lanes if isinstance(mask, Mask) else common(a, b)
     return None
 
 
@@ -100,37 +102,65 @@ def _where(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 
 def bits(builder: ir.IRBuilder, mask: Any) -> Any:
     """A mask as a whole number with one bit a lane."""
-    return builder.bitcast(mask, BITS)
+    return builder.bitcast(mask, ir.IntType(mask.type.count))
 
 
-@teach(verbs.any, lambda mask: types.boolean if mask in (MASK, types.boolean) else None, [(ANY,)])
+@teach(verbs.any, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
 def _any(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.icmp_unsigned("!=", bits(builder, args[0]), ir.Constant(BITS, 0)) if sig.args[0] == MASK else args[0]
+    if sig.args[0] == types.boolean:
+        return args[0]
+    whole = bits(builder, args[0])
+    return builder.icmp_unsigned("!=", whole, ir.Constant(whole.type, 0))
 
 
-@teach(verbs.first, lambda mask: types.int64 if mask == MASK else None, [(Mask,)])
+@teach(verbs.first, lambda mask: types.int64 if isinstance(mask, Mask) else None, [(Mask,)])
 def _first(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.cttz(builder.zext(bits(builder, args[0]), ir.IntType(64)), ir.Constant(ir.IntType(1), 1))
 
 
+@teach(verbs.width, lambda x: types.int64 if isinstance(x, (Lanes, types.Array)) else None, [(ANY,)])
+def _width(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    kind = sig.args[0]
+    return context.get_constant(types.int64, (Lanes(kind.dtype) if isinstance(kind, types.Array) else kind).count)
+
+
 @teach(
     verbs.lane,
-    lambda x, ray: types.float64 if x == LANES and isinstance(ray, types.Integer) else None,
+    lambda x, ray: x.number if isinstance(x, Lanes) and isinstance(ray, types.Integer) else None,
     [(Lanes, types.Integer)],
 )
 def _lane(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.extract_element(args[0], context.cast(builder, args[1], sig.args[1], types.int32))
 
 
-@teach(verbs.splat, lambda x: LANES if is_number(x) and x != LANES else None, [(ANY,)])
+def like_the_second(x: types.Type, like: types.Type) -> types.Type | None:
+    """Lanes for a number, and lanes of the precision that is wanted."""
+    return like if is_number(x) and isinstance(like, Lanes) else None
+
+
+@teach(verbs.splat, like_the_second, [(ANY, Lanes)])
 def _splat(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return splat(builder, context.cast(builder, args[0], sig.args[0], types.float64))
+    return widen(context, builder, args[0], sig.args[0], sig.return_type)
 
 
-@teach(
-    verbs.load, lambda values, start: LANES if isinstance(values, types.Array) else None, [(types.Array, types.Integer)]
-)
+def single(x: types.Type) -> types.Type | None:
+    """The type of one number of x."""
+    return getattr(common(x), "number", common(x)) if is_number(x) else None
+
+
+@teach(verbs.unit_roundoff, single, [(ANY,)])
+def _unit_roundoff(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return context.get_constant(sig.return_type, ROUNDOFF[sig.return_type.bitwidth])
+
+
+def loaded(values: types.Type, start: types.Type) -> types.Type | None:
+    """Lanes of what an array holds."""
+    return Lanes(values.dtype) if isinstance(values, types.Array) and isinstance(start, types.Integer) else None
+
+
+@teach(verbs.load, loaded, [(types.Array, types.Integer)])
 def _load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     values = context.make_array(sig.args[0])(context, builder, value=args[0])
     place = builder.gep(values.data, [context.cast(builder, args[1], sig.args[1], types.intp)])
-    return builder.load(builder.bitcast(place, LANES_IR.as_pointer()), align=8)
+    lanes = context.get_value_type(sig.return_type)
+    return builder.load(builder.bitcast(place, lanes.as_pointer()), align=sig.return_type.number.bitwidth // 8)

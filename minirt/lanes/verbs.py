@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from minirt.lanes.vec import Number, Vec
+from minirt.lanes.vec import Number, Vec, dot
 
-WIDTH = 8  # rays that a kernel traces at once: one AVX-512 register of float64, two of AVX2
+BYTES = 128  # of the lanes of a number: 16 float64 or 32 float32
 Mask = Any  # a numpy bool, an array of them, or a mask of the processor
 
 
@@ -27,6 +27,21 @@ def any(mask: Mask) -> bool:
 def sqrt(x: Number) -> Number:
     """The square root, NaN below 0."""
     return np.sqrt(x)
+
+
+def inverse_root(x: Number) -> Number:
+    """1 / sqrt(x) for a positive normal number; compiled, the last two bits may be others."""
+    return 1.0 / np.sqrt(x)
+
+
+def unit(v: Vec) -> Vec:
+    """The vector of length 1 in the direction of v."""
+    return v * inverse_root(dot(v, v))
+
+
+def unit_roundoff(x: Number) -> float:
+    """The largest relative error of rounding to the precision of x: 2^-53, or 2^-24 for float32."""
+    return float(np.finfo(np.asarray(x).dtype).eps) / 2
 
 
 def fabs(x: Number) -> Number:
@@ -50,15 +65,15 @@ def rounded_product(a: Number, b: Number) -> Number:
 
 
 def product_error(a: Number, b: Number) -> Number:
-    """What rounding drops from a * b, exactly; the numbers must be between 1e-140 and 1e140."""
+    """What rounding drops from a * b, exactly; float64 must be between 1e-140 and 1e140, float32 1e-12 and 1e12."""
     a_high, b_high = high_half(a), high_half(b)
     a_low, b_low = a - a_high, b - b_high
     return a_low * b_low - (((a * b - a_high * b_high) - a_low * b_high) - a_high * b_low)
 
 
 def high_half(x: Number) -> Number:
-    """x to 26 of its 53 bits (Veltkamp), so that products of halves are exact."""
-    shifted = x * (2.0**27 + 1.0)
+    """x to half of its bits (Veltkamp), so that products of halves are exact."""
+    shifted = x * (2.0 ** (27 if np.asarray(x).itemsize == 8 else 12) + 1.0)
     return shifted - (shifted - x)
 
 
@@ -72,14 +87,19 @@ def maximum(a: Number, b: Number) -> Number:
     return where(a > b, a, b)
 
 
-def splat(x: float) -> Number:
-    """The same number for each of `WIDTH` rays."""
-    return np.full(WIDTH, x)
+def width(values: Any) -> int:
+    """How many rays of their precision, float64 or float32, a kernel traces at once."""
+    return BYTES // int(values.dtype.itemsize)
+
+
+def splat(x: float, like: Number) -> Number:
+    """The same number for each ray, in the precision of the lanes `like`."""
+    return np.full_like(like, x)[()]
 
 
 def load(values: Any, start: int) -> Number:
-    """`WIDTH` numbers of an array from index `start` on."""
-    return values[start : start + WIDTH].copy()
+    """A number for each ray: those of an array from index `start` on."""
+    return values[start : start + width(values)].copy()
 
 
 def lane(x: Number, ray: int) -> float:

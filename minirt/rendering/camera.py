@@ -7,6 +7,8 @@ from math import radians, tan
 import numpy as np
 
 from minirt.fields import clamp
+from minirt.kernel.frame import DOWN
+from minirt.lanes import width
 from minirt.scene import Camera
 from minirt.scene.view import view
 
@@ -18,3 +20,22 @@ def camera_numbers(camera: Camera, width: int, height: int) -> np.ndarray:
     right, up, forward = map(np.array, view(camera))
     half = tan(radians(clamp(camera.fov, NARROWEST, WIDEST)) / 2)
     return np.concatenate([camera.position, right * half, up * (half * height / width), forward])
+
+
+def pixel_rays(camera: np.ndarray, width: int, height: int) -> np.ndarray:
+    """The same as eye, direction through the upper left corner of the picture, and what a pixel to the right and one
+    down change in it."""
+    eye, right, up, forward = camera.reshape(4, 3)
+    return np.concatenate([eye, forward - right + up, right * (2 / width), up * (-2 / height)])
+
+
+def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:
+    """For each sample of a pixel, (k, 3 * width): the directions of the rays of a packet as differences from the one
+    through its upper left corner."""
+    count = width(rays)
+    lane = np.arange(count)
+    x = lane % (count // DOWN) + samples[:, :1]
+    y = lane // (count // DOWN) + samples[:, 1:]
+    across, down = rays[6:9], rays[9:]
+    differences = x[:, None] * across[:, None] + y[:, None] * down[:, None]
+    return differences.reshape(len(samples), 3 * count).astype(rays.dtype)

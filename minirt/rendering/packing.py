@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from minirt.kernel.traced import Group, Traced
-from minirt.rendering.camera import camera_numbers
+from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.rendering.flats import same_side
 from minirt.rendering.notes import notes
-from minirt.rendering.sight import Lists, grid_for, seen_by_eye, seen_by_lamp
-from minirt.rendering.tables import Tables, extents
+from minirt.rendering.sight import Lists, grid_for, seen_by_eye, seen_by_lamp, spread_for
+from minirt.rendering.tables import Tables
 from minirt.scene import Ambient, Light, Scene
-from minirt.shapes import Shape
 
 
 def light_of(source: Ambient | Light) -> np.ndarray:
@@ -27,11 +26,6 @@ def light_numbers(scene: Scene) -> np.ndarray:
     """Place and light of every lamp that shines."""
     lamps = [(*lamp.position, *light) for lamp in scene.lights if (light := light_of(lamp)).any()]
     return np.array(lamps, np.float64).reshape(len(lamps), 6)
-
-
-def extent(shape: Shape) -> float:
-    """The largest coordinate of a shape; of one without end, the largest of its points."""
-    return float(extents([shape])[0])
 
 
 class Packing:
@@ -63,19 +57,19 @@ class Packing:
             skipped = same_side(tables.planes, camera[:3], lamp)
             keys.append((lamp.tobytes(), skipped.tobytes()))
             lamps.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, lamp, grid, skipped))
-        lamp_starts, lit, lamp_near = keep(tuple(keys), joined, lamps, eye)
+        lamp_starts, lit, lamp_views = keep(tuple(keys), joined, lamps, eye)
         traced = Traced(
-            camera=camera,
+            camera=pixel_rays(camera, width, height),
             ambient=light_of(scene.ambient) if scene.ambient else np.zeros(3),
             lights=lights,
-            colours=tables.colours,
-            extents=tables.extents,
+            looks=tables.looks,
             places=tables.places,
             seen=eye.members,
-            near=eye.near,
+            views=eye.views,
             grid=grid,
+            spread=spread_for(grid),
             lit=lit,
-            lamp_near=lamp_near,
+            lamp_views=lamp_views,
             groups=tuple(map(Group, tables.rows, eye.starts, lamp_starts)),
         )
         self.last = scene, traced
@@ -88,11 +82,11 @@ class Packing:
 
 
 def joined(lamps: list[Lists], eye: Lists) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The lists of all lamps as one: starts (kinds, m, cells + 1), members, distances (m, n)."""
+    """The lists of all lamps as one: starts (kinds, m, cells + 1), members, views (m, n, 5)."""
     if len(lamps) == 1:
-        return lamps[0].starts[:, None], lamps[0].members, lamps[0].near[None]
+        return lamps[0].starts[:, None], lamps[0].members, lamps[0].views[None]
     if not lamps:
-        return np.zeros((len(eye.starts), 0, 1), np.int64), eye.members[:0], np.zeros((0, len(eye.near)))
+        return np.zeros((len(eye.starts), 0, 1), np.int64), eye.members[:0], np.zeros((0, *eye.views.shape))
     before = np.cumsum([0, *(len(each.members) for each in lamps[:-1])])
     starts = np.stack([each.starts + first for each, first in zip(lamps, before, strict=True)], axis=1)
-    return starts, np.concatenate([each.members for each in lamps]), np.stack([each.near for each in lamps])
+    return starts, np.concatenate([each.members for each in lamps]), np.stack([each.views for each in lamps])

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from minirt.kernel.frame import TILE, camera_ray, tiles
+from minirt.kernel.frame import TILE, tiles, towards
 from minirt.kernel.trace import NEARBY, nearest
-from minirt.lanes import Vec, lane, splat
-from minirt.rendering.camera import camera_numbers
+from minirt.lanes import Vec, lane, splat, unit
+from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing import Packing
 from minirt.scene import Scene
 from minirt.shapes import KINDS, Shape
@@ -17,15 +17,16 @@ from minirt.shapes import KINDS, Shape
 
 def pick(scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
     """The shape in the middle of pixel x, y of a picture of that size, or None where there is none."""
-    camera = camera_numbers(scene.camera, width, height)
+    camera = pixel_rays(camera_numbers(scene.camera, width, height), width, height)
+    origin, direction = Vec(*camera[:3]), unit(towards(camera, x + 0.5, y + 0.5))
     with np.errstate(all="ignore"):
-        shapes = in_front(scene.shapes, *camera_ray(camera, width, height, x + 0.5, y + 0.5))
+        shapes = in_front(scene.shapes, origin, direction)
         if len(shapes) < 2:
             return shapes[0] if shapes else None
         # Surfaces that may coincide: the kernel has a rule for them.
         traced = Packing().pack(Scene((scene.camera, *shapes)), width, height)
-        origin, direction = camera_ray(camera, width, height, splat(x + 0.5), splat(y + 0.5))
-        _, owner, _ = nearest(traced, y // TILE * tiles(width) + x // TILE, origin, direction)
+        rays = Vec(*(splat(part, camera) for part in (direction.x, direction.y, direction.z)))
+        _, owner, _ = nearest(traced, y // TILE * tiles(width) + x // TILE, origin, rays)
     return shapes[int(lane(owner, 0))]
 
 

@@ -11,11 +11,17 @@ from typing import Any
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.kernel.frame import CANCELLED
+from minirt.kernel.frame import CANCELLED, DOWN
+from minirt.lanes import width
+from minirt.rendering.adaptive import contrasts, packets_of
+from minirt.rendering.camera import packet_rays
 from minirt.rendering.cores import usable_cores
+from minirt.rendering.single import in_single
 from minirt.scene import Scene
 
+PRECISIONS = ("double", "single")
 NO_LINEAR = np.zeros((0, 0, 3))
+ALL_PACKETS = np.zeros((0, 0), np.uint8)
 GOLDEN = (5**0.5 - 1) / 2
 
 
@@ -28,8 +34,12 @@ def sample_places(samples: int) -> np.ndarray:
 class Renderer:
     """Keeps threads and packed shapes from picture to picture. Any thread may call it; pictures are made one by one."""
 
-    def __init__(self, threads: int | None = None) -> None:
+    def __init__(self, threads: int | None = None, precision: str = "double") -> None:
+        """As many threads as there are usable processors; "double" or "single" `precision`, or RenderError."""
+        if precision not in PRECISIONS:
+            raise RenderError(f"precision must be double or single, got '{precision}'")
         self.threads = threads or usable_cores()
+        self.precision = precision
         self.next_row = np.zeros(1, np.int64)
         self.known: set[frozenset[type]] = set()  # kinds of shapes that there is a kernel for
         self.busy = Lock()
@@ -61,27 +71,43 @@ class Renderer:
         """Render into `pixels`, C-contiguous uint8 (h, w, 4) in the order blue, green, red, alpha, and where it is
         given the light as it is into `linear`, float64 (h, w, 3). False where `cancel` ended it early.
         """
+        with self.busy:
+            return self.draw(scene, pixels, samples, NO_LINEAR if linear is None else linear, edges=False)
+
+    def refine(self, scene: Scene, pixels: np.ndarray, samples: int) -> bool:
+        """Render again, with more samples, where neighbouring pixels of a picture of the scene differ. False where
+        `cancel` ended it early."""
+        with self.busy:
+            return self.draw(scene, pixels, samples, NO_LINEAR, edges=True)
+
+    def draw(self, scene: Scene, pixels: np.ndarray, samples: int, linear: np.ndarray, edges: bool) -> bool:
+        """`render` or, of `edges` alone, `refine`."""
         if samples < 1:
             raise RenderError(f"a pixel needs at least 1 sample, got {samples}")
-        height, width, _ = pixels.shape
-        with self.busy:
-            if not scene.shapes or not pixels.size:
-                pixels[...] = (0, 0, 0, 255)
-                return True
-            self.next_row = counter = np.zeros(1, np.int64)
-            words = pixels.view(np.uint32)[..., 0]
-            traced = self.packing.pack(scene, width, height)
-            offsets = self.kernel.frame.PACKET
-            self.run(counter, words, NO_LINEAR if linear is None else linear, sample_places(samples), offsets, traced)
-            self.known.add(kinds_of(scene))
-            return bool(counter[0] < CANCELLED)
+        height, across, _ = pixels.shape
+        if not scene.shapes or not pixels.size:
+            pixels[...] = (0, 0, 0, 255)
+            return True
+        self.next_row = counter = np.zeros(1, np.int64)
+        traced = self.packing.pack(scene, across, height)
+        if self.precision == "single":
+            traced = in_single(traced, self.packing.tables.boxes)
+        rays = packet_rays(traced.camera, sample_places(samples))
+        wanted = packets_of(contrasts(pixels), width(rays) // DOWN) if edges else ALL_PACKETS
+        self.run(counter, pixels.view(np.uint32)[..., 0], linear, rays, wanted, traced)
+        self.known.add(kinds_of(scene))
+        return bool(counter[0] < CANCELLED)
 
-    def run(self, *arguments: Any) -> None:
+    def run(self, counter: Any, words: Any, linear: Any, rays: Any, wanted: Any, traced: Any) -> None:
         """The same frame on all threads, which share its rows; the first error of any thread is raised.
 
         The caller's thread only waits, so that Ctrl+C reaches it.
         """
-        jobs = [self.workers.submit(self.kernel.render_bands, *arguments) for _ in range(self.threads)]
+        draw = self.kernel.render_bands
+        jobs = [
+            self.workers.submit(draw, counter, words, linear, rays, wanted, memory_for(traced), traced)
+            for _ in range(self.threads)
+        ]
         try:
             for job in as_completed(jobs):
                 job.result()
@@ -98,3 +124,8 @@ class Renderer:
 def kinds_of(scene: Scene) -> frozenset[type]:
     """The kinds of shapes in a scene: for each set of them there is a kernel of its own."""
     return frozenset(map(type, scene.shapes))
+
+
+def memory_for(traced: Any) -> np.ndarray:
+    """What a thread remembers from one packet to the next, see `minirt.kernel.trace`: nothing yet."""
+    return np.zeros((len(traced.lights) + 1, 4), traced.lights.dtype)

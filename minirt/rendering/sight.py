@@ -14,9 +14,13 @@ from minirt.rendering.tables import Tables
 
 # Across, down and forward of the six faces of a cube, in the order of `minirt.kernel.trace.cell`.
 FACES = np.array([np.roll(np.diag([1.0, 1.0, side]), axis + 1, axis=1) for axis in range(3) for side in (1, -1)])
-EDGE = 1e-6  # of a cell: what a cube's intervals grow by
-# Up to so many shapes, cells along an edge of a lamp's cube: a compromise between building and using the lists.
-GRIDS = ((8, 1), (200, 16), (2_000, 32), (100_000, 64), (np.inf, 128))
+SPREAD = 0.5  # of the angle that cells have on average: a cell's list holds for directions so close to one in it
+# By how many cells a cube's intervals grow for that: at the corner of a face, where slopes change most with the angle,
+# an angle e changes them by less than 3 e.
+EDGE = 3 * SPREAD * np.pi / 4
+# Up to so many shapes, cells along an edge of a lamp's cube, where building and using the lists was seen to take least;
+# with more than 512 float32 could not tell apart the directions that a list holds for.
+GRIDS = ((8, 1), (200, 16), (5_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
 # Numbers above zero are in the order of their bits, the exponent first. The order of depth knows of those of a distance
 # the upper 20, from 2^-128 on: a distance to a 256th of it.
@@ -29,12 +33,17 @@ class Lists(NamedTuple):
 
     starts: np.ndarray  # (kinds, cells + 1)
     members: np.ndarray
-    near: np.ndarray  # (n,) a distance that no point of a shape falls below
+    views: np.ndarray  # (n, 5) as in `minirt.kernel.traced`
 
 
 def grid_for(shapes: int) -> int:
     """Cells along an edge of the cube around a lamp; 1 where trying all shapes is faster than looking them up."""
     return next(cells for most, cells in GRIDS if shapes <= most)
+
+
+def spread_for(grid: int) -> float:
+    """The cosine of the angle around a direction for which the list of its cell holds."""
+    return float(np.cos(SPREAD * np.pi / 2 / grid))
 
 
 def screen(camera: np.ndarray, width: int, height: int) -> Grid:
@@ -61,14 +70,14 @@ def seen_by_eye(kernel: Any, tables: Tables, camera: np.ndarray, width: int, hei
 def seen_by_lamp(kernel: Any, tables: Tables, lamp: np.ndarray, grid: int, skipped: np.ndarray) -> Lists:
     """The shapes in each cell of the cube around a lamp, but for the planes that are `skipped` (p,)."""
     found = lists(kernel, tables, np.array(lamp), cube(grid), skipped)
-    return one_cell(tables, found.near, skipped) if grid == 1 else found
+    return one_cell(tables, found.views, skipped) if grid == 1 else found
 
 
 def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: np.ndarray) -> Lists:
     """The shapes in each cell of a grid around a point."""
     kinds, faces = len(tables.rows), len(grid.frames)
     stride = faces * grid.down * grid.across + 1
-    near, counts = np.zeros(len(tables.shapes)), np.zeros(kinds * stride, np.int64)
+    views, counts = np.zeros((len(tables.shapes), 5)), np.zeros(kinds * stride, np.int64)
     height = heights(tables.planes, origin)
     flat = np.zeros((0, 4), np.int64)
     if not skipped.all():
@@ -79,18 +88,19 @@ def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: 
         flat = np.stack([shape, cell, columns, np.ones_like(cell)], axis=1)
         begins, ends = (np.bincount(each, minlength=len(counts)) for each in (cell, cell + columns))
         counts = np.cumsum(begins - ends)
-    rectangles = np.empty((len(flat) + faces * len(near), 4), np.int32)
+    rectangles = np.empty((len(flat) + faces * len(views), 4), np.int32)
     rectangles[: len(flat)] = flat
     slack = MARGIN * float(np.abs(origin).max())
-    room = rectangles, len(flat), near, counts
+    room = rectangles, len(flat), views, counts
     used = kernel.cover(origin, grid, tables.balls, slack, tables.first, tables.places, *room)
-    near[tables.flat] = np.abs(height)
-    near, depths = by_depth(near)
+    views[tables.flat, 3] = -2.0
+    views[tables.flat, 4] = np.abs(height)
+    views[:, 4], depths = by_depth(views[:, 4].copy())
     order = np.argsort(depths[rectangles[:used, 0]], kind="stable")
     starts = np.cumsum(counts)  # for now the ends
     members = np.empty(starts[-1], np.int32)
     kernel.fill(rectangles, order, grid.across, starts, members)
-    return Lists(starts.reshape(kinds, stride), members, near)
+    return Lists(starts.reshape(kinds, stride), members, views)
 
 
 def by_depth(near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -100,10 +110,10 @@ def by_depth(near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return rounded, depths.astype(np.uint16)
 
 
-def one_cell(tables: Tables, near: np.ndarray, skipped: np.ndarray) -> Lists:
+def one_cell(tables: Tables, views: np.ndarray, skipped: np.ndarray) -> Lists:
     """All shapes in a single cell."""
-    shapes = np.delete(np.arange(len(near)), tables.flat[skipped])
+    shapes = np.delete(np.arange(len(views)), tables.flat[skipped])
     kinds = tables.places[shapes, 0]
-    order = np.lexsort((near[shapes], kinds))
+    order = np.lexsort((views[shapes, 4], kinds))
     starts = np.searchsorted(kinds[order], np.arange(len(tables.rows))[:, None] + [0, 1])
-    return Lists(starts, shapes[order].astype(np.int32), near)
+    return Lists(starts, shapes[order].astype(np.int32), views)

@@ -20,7 +20,8 @@ EVERYWHERE: tuple[Ball, ...] = (((0.0, 0.0, 0.0), np.inf),)  # where a shape lie
 class Tables:
     """The last shapes that it was told of, n of them, those of each kind in rows of their own.
 
-    `rows`, `colours`, `extents` and `places` are those of `minirt.kernel.traced`. Shape i lies in the convex hull of
+    `rows`, `looks` and `places` are those of `minirt.kernel.traced`; `boxes` (n, 4) are the middle of the box around each
+    shape and the largest half of its edges, or what is the same of the points of one without end. Shape i lies in the convex hull of
     `balls[first[i]:first[i + 1]]`, (b, 4) centre and radius, grown by what rounding may do to it; or it is one of the
     `planes`, (p, 5) unit normal, its product with the points of the plane and by how much rounding may change that,
     whose indices are `flat`.
@@ -61,8 +62,8 @@ class Tables:
         self.places[:, 0] = groups
         for mine in members:
             self.places[mine, 1] = np.arange(len(mine))
-        self.colours = np.zeros((len(kinds), 3))
-        self.extents = np.zeros(len(kinds))
+        self.looks = np.zeros((len(kinds), 4))
+        self.boxes = np.zeros((len(kinds), 4))
         self.flat = np.flatnonzero(np.array([each.flat() is not None for each in examples], bool)[groups])
         self.planes = np.zeros((len(self.flat), 5))
         counts = np.array([0 if each.flat() else len(each.balls() or EVERYWHERE) for each in examples], np.int64)
@@ -75,14 +76,18 @@ class Tables:
         members = [self.shapes[index] for index in indices.tolist()]
         rows = self.rows[group].view(np.float64).reshape(len(self.rows[group]), -1)
         rows[self.places[indices, 1]] = numbers([shape.pack() for shape in members])
-        self.colours[indices] = np.array([shape.colour for shape in members]) / 255
-        self.extents[indices] = extents(members)
+        corners = boxes(members)
+        extents = np.abs(corners).max(axis=(1, 2))
+        self.looks[indices, :3] = np.array([shape.colour for shape in members]) / 255
+        self.looks[indices, 3] = extents
+        self.boxes[indices, :3] = corners.mean(axis=1)
+        self.boxes[indices, 3] = (corners.max(axis=1) - corners.min(axis=1)).max(axis=1) / 2
         if members[0].flat():
             flats = np.array([shape.flat() for shape in members])
             at = np.searchsorted(self.flat, indices)
             self.planes[at, :3] = flats[:, 1]
             self.planes[at, 3] = (flats[:, 0] * flats[:, 1]).sum(axis=1)
-            self.planes[at, 4] = MARGIN * self.extents[indices]
+            self.planes[at, 4] = MARGIN * extents
         else:
             balls = np.array([(*centre, radius) for each in members for centre, radius in each.balls() or EVERYWHERE])
             balls[:, 3] += MARGIN * (balls[:, 3] + np.abs(balls[:, :3]).max(axis=1))
@@ -111,11 +116,14 @@ def numbers(packed: list[Any]) -> np.ndarray:
     return np.array(columns).T
 
 
-def extents(shapes: list[Shape]) -> np.ndarray:
-    """The largest coordinate of each shape; of one without end, the largest of its points."""
-    points = np.array([shape.bounds() or own_points(shape) for shape in shapes])
-    largest: np.ndarray = np.abs(points).max(axis=(1, 2))
-    return largest
+def boxes(shapes: list[Shape]) -> np.ndarray:
+    """For each shape of a kind the corners of the box around it, (n, 2, 3); of one without end, its points."""
+    return np.array([shape.bounds() or own_points(shape) for shape in shapes])
+
+
+def extent(shape: Shape) -> float:
+    """The largest coordinate of a shape; of one without end, the largest of its points."""
+    return float(np.abs(boxes([shape])).max())
 
 
 def own_points(shape: Shape) -> list[Any]:

@@ -12,12 +12,12 @@ from math import sqrt as root
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, copysign, dot, fabs, maximum, minimum, sqrt, where
+from minirt.lanes import Vec, any, copysign, dot, fabs, maximum, minimum, splat, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.quadric import below_zero
-from minirt.shapes.shape import Ball, Box, Shape
+from minirt.shapes.shape import Ball, Box, Place, Shape
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Cylinder(Shape):
 
     def pack(self) -> PackedCylinder:
         u, v, w = basis(self.axis)
-        return PackedCylinder(Vec(*self.centre), u, v, w, self.diameter / 2, self.height / 2)
+        return PackedCylinder(Place(Vec(*self.centre)), u, v, w, self.diameter / 2, self.height / 2)
 
     def balls(self) -> tuple[Ball, ...]:
         (x, y, z), (u, v, w), half = self.centre, self.axis, self.height / 2
@@ -50,7 +50,7 @@ class Cylinder(Shape):
 class PackedCylinder(NamedTuple):
     """What the kernel keeps of a cylinder: a frame of its own in which it stands upright at the origin."""
 
-    centre: Vec
+    centre: Place
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -90,7 +90,8 @@ def surface(cylinder: PackedCylinder, point: Vec) -> tuple[Vec, Vec]:
     rho = sqrt(p.x * p.x + p.y * p.y)
     up = copysign(1.0, p.z)
     side = rho - cylinder.radius >= fabs(p.z) - cylinder.half
-    out = where(side, Vec(p.x / rho, p.y / rho, 0.0 * rho), Vec(0.0 * rho, 0.0 * rho, up))
+    flat = splat(0.0, p.z)
+    out = where(side, Vec(p.x, p.y, flat) / rho, Vec(flat, flat, up))
     on = where(side, Vec(out.x * cylinder.radius, out.y * cylinder.radius, p.z), Vec(p.x, p.y, up * cylinder.half))
     return (
         cylinder.centre + from_basis(cylinder.u, cylinder.v, cylinder.w, on),

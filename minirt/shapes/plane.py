@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
-from minirt.lanes import Vec, dot, fabs
+from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
-from minirt.shapes.shape import Ball, Shape
+from minirt.shapes.shape import Ball, Place, Shape
 
-PARALLEL = 4 * 2.0**-53  # rounding of the scalar product of two unit vectors
+PARALLEL = 4  # unit roundoffs of the scalar product of two unit vectors
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Plane(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedPlane:
-        return PackedPlane(Vec(*self.point), Vec(*self.normal))
+        return PackedPlane(Place(Vec(*self.point)), Vec(*self.normal))
 
     def balls(self) -> tuple[Ball, ...]:
         return ()
@@ -44,7 +44,7 @@ class Plane(Shape):
 class PackedPlane(NamedTuple):
     """What the kernel keeps of a plane."""
 
-    point: Vec
+    point: Place
     normal: Vec
 
 
@@ -52,7 +52,7 @@ def intersect(plane: PackedPlane, origin: Vec, direction: Vec) -> tuple[Mask, Nu
     """Whether and where a ray meets the plane; a ray along it, within rounding, does not."""
     slope = dot(plane.normal, direction)
     t = dot(plane.normal, plane.point - origin) / slope
-    return (fabs(slope) > PARALLEL) & (t > 0.0), t
+    return (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0), t
 
 
 def surface(plane: PackedPlane, point: Vec) -> tuple[Vec, Vec]:

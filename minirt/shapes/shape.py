@@ -14,13 +14,15 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, NewType
 
 from minirt.element import Element
 from minirt.fields import Triple
+from minirt.lanes import Vec
 
 Box = tuple[Triple, Triple]  # least and greatest corner
 Ball = tuple[Triple, float]  # centre and radius
+Place = NewType("Place", Vec)  # in a packed shape: a point, where other Vecs are directions
 
 
 @dataclass(frozen=True)

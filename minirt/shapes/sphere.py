@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, dot, fabs, sqrt, where
+from minirt.lanes import Vec, any, dot, fabs, sqrt, unit, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.exact import power
-from minirt.shapes.shape import Ball, Box, Shape
+from minirt.shapes.shape import Ball, Box, Place, Shape
 
 CLOSE = 2.0**-9  # to the surface: |f|^2 / radius^2 - 1
 
@@ -30,7 +30,7 @@ class Sphere(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedSphere:
-        return PackedSphere(Vec(*self.centre), self.diameter / 2)
+        return PackedSphere(Place(Vec(*self.centre)), self.diameter / 2)
 
     def balls(self) -> tuple[Ball, ...]:
         return ((self.centre, self.diameter / 2),)
@@ -44,7 +44,7 @@ class Sphere(Shape):
 class PackedSphere(NamedTuple):
     """What the kernel keeps of a sphere."""
 
-    centre: Vec
+    centre: Place
     radius: float
 
 
@@ -82,6 +82,5 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, 
 
 def surface(sphere: PackedSphere, point: Vec) -> tuple[Vec, Vec]:
     """The point of the sphere nearest to `point`, and the outward normal."""
-    f = point - sphere.centre
-    normal = f / sqrt(dot(f, f))
+    normal = unit(point - sphere.centre)
     return sphere.centre + sphere.radius * normal, normal

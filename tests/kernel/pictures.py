@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.kernel import frame
-from minirt.kernel.frame import PACKET
 from minirt.rendering import Renderer
+from minirt.rendering.camera import packet_rays
 from minirt.rendering.packing import Packing
-from minirt.rendering.renderer import sample_places
+from minirt.rendering.renderer import ALL_PACKETS, memory_for, sample_places
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -55,5 +55,6 @@ def interpreted(scene: Scene, width: int = 24, height: int = 16, samples: int = 
     words, light = np.zeros((height, width), np.uint32), np.full((height, width, 3), np.nan)
     traced = Packing().pack(scene, width, height)
     with np.errstate(all="ignore"):
-        frame.frame(np.zeros(1, np.int64), words, light, sample_places(samples), PACKET, traced)
+        rays = packet_rays(traced.camera, sample_places(samples))
+        frame.frame(np.zeros(1, np.int64), words, light, rays, ALL_PACKETS, memory_for(traced), traced)
     return words.view(np.uint8).reshape(height, width, 4), light

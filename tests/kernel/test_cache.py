@@ -55,7 +55,7 @@ def test_the_next_process_finds_the_kernel_and_edited_sources_do_not(copy: Path,
     name, hits, misses, pixel = process(copy, tmp_path)
     assert (hits, misses, pixel) == ("0", "1", "[10, 20, 30]")
     kept = files(tmp_path)
-    assert len(kept) == 2  # an index and the machine code
+    assert len(kept) == 6  # index and machine code of the kernel and of the two that make the lists
     assert process(copy, tmp_path) == [name, "1", "0", pixel]
     assert files(tmp_path) == kept
 

@@ -92,17 +92,17 @@ def test_a_light_of_ambient_alone_is_the_surfaces_colour() -> None:
     assert {tuple(np.round(pixel, 12)) for pixel in picture.reshape(-1, 3)} <= colours | {(0, 0, 0)}
 
 
-def absolute(scene: Any, point: Vec, normal: Vec, extent: Any, hit: Any) -> Vec:
+def absolute(scene: Any, memory: Any, point: Vec, normal: Vec, extent: Any, hit: Any) -> Vec:
     """`shade.irradiance` with the start of the way to a lamp a fixed 1e-4 above the surface."""
     start = point + 1e-4 * normal
-    total = Vec(*(splat(x) for x in scene.ambient))
+    total = Vec(*(splat(x, extent) for x in scene.ambient))
     for lamp, row in enumerate(scene.lights):
         way = Vec(*row[:3]) - start
         distance = sqrt(dot(way, way))
         cosine = dot(normal, way / distance)
         lit = hit & (cosine > 0.0)
         if any(lit):
-            lit = shade.unhidden(scene, lamp, start, way / distance, distance, lit)
+            lit = shade.unhidden(scene, memory, lamp, start, way / distance, distance, lit)
             total = total + where(lit, cosine, 0.0) * Vec(*row[3:])
     return total
 

@@ -9,7 +9,8 @@ import pytest
 
 from minirt.kernel.rows import read
 from minirt.rendering import Renderer, tables
-from minirt.rendering.packing import Packing, extent
+from minirt.rendering.packing import Packing
+from minirt.rendering.tables import extent
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -42,8 +43,7 @@ def test_the_numbers_of_a_scene() -> None:
     traced = Packing().pack(Scene((Ambient(0.5, blue), EYE, *lamps, wall, ball)), 24, 16)
     assert traced.ambient.tolist() == [0, 0.1, 0.5]
     assert traced.lights.tolist() == [[1, 2, 3, 0, 0.1, 0.5]]  # the dark ones are left out
-    assert traced.colours.tolist() == [[0, 0.2, 1], [1, 0, 0.2]]
-    assert traced.extents.tolist() == [9, 5]
+    assert traced.looks.tolist() == [[0, 0.2, 1, 9], [1, 0, 0.2, 5]]
     assert traced.places.tolist() == [[1, 0], [0, 0]]  # kinds in the order of the registry
     ball_again = read(traced.groups[0].rows, 0)
     assert (ball_again.centre.x, ball_again.centre.y, ball_again.centre.z, ball_again.radius) == (1, 2, 3, 2)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from minirt.kernel import jit_lists, lists
-from minirt.kernel.frame import TILE, camera_ray, tiles
+from minirt.kernel.frame import TILE, tiles, towards
 from minirt.kernel.rows import kind_of, read
-from minirt.kernel.trace import cell
-from minirt.lanes import Vec
+from minirt.kernel.trace import cell, within
+from minirt.lanes import Vec, dot, unit
 from minirt.rendering import sight
 from minirt.rendering.packing import Packing
 from minirt.scene import Camera, Light, Scene
@@ -35,14 +35,14 @@ def members(traced: Any, starts: str, table: Any, row: Any, at: int) -> set[int]
     return found
 
 
-def seen_rays(traced: Any) -> list[tuple[int, int, float]]:
-    """What the rays through all pixels hit: the tile, the shape and the distance, of all shapes that they meet."""
+def seen_rays(traced: Any) -> list[tuple[int, int, float, bool]]:
+    """What the rays through all pixels hit: the tile, the shape and the distance, of all shapes that they meet, and
+    whether the ray is in the cone of the shape."""
     x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT)))
-    origin, direction = camera_ray(traced.camera, WIDTH, HEIGHT, x, y)
-    origin = Vec(*(np.float64(part) for part in (origin.x, origin.y, origin.z)))
+    origin, direction = Vec(*traced.camera[:3]), unit(towards(traced.camera, x, y))
     tile = (y // TILE * tiles(WIDTH) + x // TILE).astype(int)
     return [
-        (int(tile[i]), index, float(t[i]))
+        (int(tile[i]), index, float(t[i]), bool(np.broadcast_to(within(traced.views[index], direction), x.shape)[i]))
         for index, (hit, t) in enumerate(meets(traced, origin, direction))
         for i in np.flatnonzero(hit)
     ]
@@ -87,9 +87,10 @@ KERNELS = pytest.mark.parametrize("kernel", [lists, jit_lists], ids=["interprete
 def test_a_tile_lists_all_that_its_rays_hit(make: Any, seed: int, kernel: Any) -> None:
     traced = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
     lists = [members(traced, "starts", traced.seen, None, at) for at in range(tiles(WIDTH) * tiles(HEIGHT))]
-    for tile, shape, t in seen_rays(traced):
+    for tile, shape, t, in_cone in seen_rays(traced):
         assert shape in lists[tile]
-        assert t >= traced.near[shape]
+        assert in_cone
+        assert t >= traced.views[shape, 4]
 
 
 @KERNELS
@@ -104,12 +105,17 @@ def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int,
     planes = [index for index, shape in enumerate(make(seed).shapes) if shape.flat()]
     for lamp, row in enumerate(traced.lights):
         count = 6 * traced.grid**2 if traced.grid > 1 else 1
-        cells = cell(Vec(*directions), traced.grid) if traced.grid > 1 else np.zeros(2000)
+        # The list of a cell that was looked up holds for directions close by.
+        nearby = directions + sight.SPREAD * np.pi / 2 / traced.grid * 0.57 * random.uniform(-1, 1, (3, 2000))
+        nearby /= np.linalg.norm(nearby, axis=0)
+        nearby = np.where(dot(Vec(*directions), Vec(*nearby)) >= traced.spread, nearby, directions)
+        cells = cell(Vec(*nearby), traced.grid) if traced.grid > 1 else np.zeros(2000)
         lists = [members(traced, "lamp_starts", traced.lit, lamp, at) for at in range(count)]
         assert 0 <= cells.min() <= cells.max() < count
         left_out = {shape for shape in planes if not any(shape in each for each in lists)}
         for shape, (hit, t) in enumerate(meets(traced, Vec(*row[:3]), Vec(*directions))):
-            assert (t[hit] >= traced.lamp_near[lamp, shape]).all()
+            assert (t[hit] >= traced.lamp_views[lamp, shape, 4]).all()
+            assert (within(traced.lamp_views[lamp, shape], Vec(*directions)) | ~hit).all()
             assert shape in left_out or all(shape in lists[int(at)] for at in cells[hit])
 
 
@@ -117,10 +123,10 @@ def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int,
 def test_lists_begin_with_the_nearest_and_name_a_shape_once(make: Any, seed: int) -> None:
     traced = Packing().pack(make(seed), WIDTH, HEIGHT)
     for near, found, every in [
-        (traced.near, traced.seen, [group.starts for group in traced.groups]),
+        (traced.views[:, 4], traced.seen, [group.starts for group in traced.groups]),
         *(
             (near, traced.lit, [group.lamp_starts[lamp] for group in traced.groups])
-            for lamp, near in enumerate(traced.lamp_near)
+            for lamp, near in enumerate(traced.lamp_views[..., 4])
         ),
     ]:
         assert np.isfinite(near).all()
@@ -139,8 +145,7 @@ def test_a_sphere_is_listed_about_where_it_is_seen(seed: int) -> None:
     traced = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), ball)), 640, 640)
     listed = np.diff(traced.groups[0].starts).reshape(40, 40) > 0
     x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(640), np.arange(640)))
-    origin, direction = camera_ray(traced.camera, 640, 640, x, y)
-    ((hit, _),) = meets(traced, Vec(*map(np.float64, (origin.x, origin.y, origin.z))), direction)
+    ((hit, _),) = meets(traced, Vec(*traced.camera[:3]), unit(towards(traced.camera, x, y)))
     assert not hit.reshape(640, 640)[[0, -1]].any()
     for axis in (0, 1):
         seen, there = (np.flatnonzero(each.any(axis=axis)) for each in (hit.reshape(640, 640), listed))
@@ -171,12 +176,12 @@ def test_tangents_are_turned_from_the_way_to_the_centre_by_the_angle_that_the_di
 @KERNELS
 def test_a_ball_without_end_is_everywhere_and_at_no_distance(kernel: Any) -> None:
     balls, grid = np.array([[0.0, 0.0, 0.0, np.inf]]), sight.cube(2)
-    rectangles, near, counts = np.zeros((6, 4), np.int32), np.ones(1), np.zeros(25, np.int64)
+    rectangles, views, counts = np.zeros((6, 4), np.int32), np.ones((1, 5)), np.zeros(25, np.int64)
     place = np.zeros((1, 2), np.int64)
     for origin in (np.zeros(3), np.array([1.0, 2.0, -3.0])):
         counts[:] = 0
-        assert kernel.cover(origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, near, counts) == 6
-        assert near[0] == 0
+        assert kernel.cover(origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, views, counts) == 6
+        assert views[0, 3:].tolist() == [-2, 0]
         assert counts.tolist() == [1] * 24 + [0]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.rendering import tables
-from minirt.rendering.tables import Tables, differing, extents
+from minirt.rendering.tables import Tables, differing
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
@@ -33,7 +33,7 @@ def test_many_shapes_at_once_are_the_same_numbers_as_each() -> None:
         kind, number = keeper.places[i]
         packed = [c for part in shape.pack() for c in ((part.x, part.y, part.z) if hasattr(part, "x") else (part,))]
         assert np.hstack([np.ravel(part) for part in keeper.rows[kind][number]]).tolist() == packed
-        assert keeper.colours[i].tolist() == [c / 255 for c in shape.colour]
+        assert keeper.looks[i, :3].tolist() == [c / 255 for c in shape.colour]
         balls = keeper.balls[keeper.first[i] : keeper.first[i + 1]]
         assert balls[:, :3].tolist() == [list(centre) for centre, _ in shape.balls()]
         for ball, (centre, radius) in zip(balls, shape.balls(), strict=True):
@@ -46,4 +46,7 @@ def test_many_shapes_at_once_are_the_same_numbers_as_each() -> None:
 
 def test_extents_of_several() -> None:
     shapes = [Cylinder((1, -7, 3), (0, 1, 0), 4, 6, (0, 0, 0)), Cylinder((1, -7, 3), (1, 0, 0), 4, 40, (0, 0, 0))]
-    assert extents(list(shapes)).tolist() == [10, 21]
+    keeper = Tables()
+    keeper.update(tuple(shapes))
+    assert keeper.looks[:, 3].tolist() == [10, 21]
+    assert keeper.boxes.tolist() == [[1, -7, 3, 3], [1, -7, 3, 20]]

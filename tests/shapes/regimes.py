@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.lanes import WIDTH
 from minirt.shapes import Shape
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.sphere import Sphere
@@ -16,6 +15,7 @@ from minirt.shapes.sphere import Sphere
 Array = NDArray[np.float64]
 Random = np.random.Generator
 GREY = (128, 128, 128)
+RAYS = 16  # for each shape: a packet
 
 
 class Rays(NamedTuple):
@@ -71,125 +71,125 @@ def aimed(
     size: float = 1.0,
     far: tuple[float, float] = (3.0, 20.0),
     offset: float = 0.0,
-    count: int = 50,
+    count: int = 25,
 ) -> Rays:
     """From `far` sizes away at places in and around the shape: some hit and some miss, few near the edge."""
     random = np.random.default_rng(seed)
     shapes = [make(random, size, offset) for _ in range(count)]
     centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
-    origins = centres + size * log(random, *far, count, WIDTH, 1) * ways(random, count, WIDTH)
-    targets = centres + size * random.uniform(-0.6, 0.6, (count, WIDTH, 3))
+    origins = centres + size * log(random, *far, count, RAYS, 1) * ways(random, count, RAYS)
+    targets = centres + size * random.uniform(-0.6, 0.6, (count, RAYS, 3))
     return Rays(shapes, origins, unit(targets - origins))
 
 
-def inside(make: Make, seed: int, size: float = 1.0, offset: float = 0.0, count: int = 50) -> Rays:
+def inside(make: Make, seed: int, size: float = 1.0, offset: float = 0.0, count: int = 25) -> Rays:
     """From inside of the shape, in all directions."""
     random = np.random.default_rng(seed)
     shapes = [make(random, size, offset) for _ in range(count)]
     centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
-    origins = centres + size * random.uniform(-0.14, 0.14, (count, WIDTH, 3))
-    return Rays(shapes, origins, ways(random, count, WIDTH))
+    origins = centres + size * random.uniform(-0.14, 0.14, (count, RAYS, 3))
+    return Rays(shapes, origins, ways(random, count, RAYS))
 
 
-def tangent(seed: int, count: int = 50) -> Rays:
+def tangent(seed: int, count: int = 25) -> Rays:
     """Past the edge of a sphere, from 1e-16 to 1e-4 of its radius inside and outside."""
     random = np.random.default_rng(seed)
     shapes = [sphere(random, 1.0, 0.0) for _ in range(count)]
-    aside, sign = ways(random, count, WIDTH), random.choice([-1.0, 1.0], (count, WIDTH, 1))
+    aside, sign = ways(random, count, RAYS), random.choice([-1.0, 1.0], (count, RAYS, 1))
     centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
     radii = np.array([shape.diameter / 2 for shape in shapes])[:, None, None]
-    touch = centres + radii * (1 + sign * log(random, 1e-16, 1e-4, count, WIDTH, 1)) * aside
-    directions = across(random, aside, count, WIDTH)
-    return Rays(shapes, touch - random.uniform(3, 20, (count, WIDTH, 1)) * directions, directions)
+    touch = centres + radii * (1 + sign * log(random, 1e-16, 1e-4, count, RAYS, 1)) * aside
+    directions = across(random, aside, count, RAYS)
+    return Rays(shapes, touch - random.uniform(3, 20, (count, RAYS, 1)) * directions, directions)
 
 
-def just_above(seed: int, height: float, count: int = 50) -> Rays:
+def just_above(seed: int, height: float, count: int = 25) -> Rays:
     """From a height above a sphere of diameter 1e9, in all directions that go down by a tenth or more."""
     random = np.random.default_rng(seed)
     shapes = [Sphere(tuple(ways(random)), 1e9, GREY) for _ in range(count)]
     centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
-    up = ways(random, count, WIDTH)
+    up = ways(random, count, RAYS)
     origins = centres + (5e8 + height) * up
-    aside = across(random, up, count, WIDTH)
-    return Rays(shapes, origins, unit(aside - random.uniform(0.1, 10, (count, WIDTH, 1)) * up))
+    aside = across(random, up, count, RAYS)
+    return Rays(shapes, origins, unit(aside - random.uniform(0.1, 10, (count, RAYS, 1)) * up))
 
 
-def tangent_to_side(seed: int, count: int = 50) -> Rays:
+def tangent_to_side(seed: int, count: int = 25) -> Rays:
     """Past the side of a cylinder, from 1e-16 to 1e-4 inside and outside."""
     random = np.random.default_rng(seed)
     shapes = [cylinder(random, 1.0, 0.0) for _ in range(count)]
-    origins, directions = np.empty((2, count, WIDTH, 3))
+    origins, directions = np.empty((2, count, RAYS, 3))
     for i, shape in enumerate(shapes):
         axis = np.array(shape.axis)
-        aside = across(random, axis, WIDTH)
-        sign = random.choice([-1.0, 1.0], (WIDTH, 1))
-        touch = centre_of(shape) + shape.height * random.uniform(-0.4, 0.4, (WIDTH, 1)) * axis
-        touch = touch + shape.diameter / 2 * (1 + sign * log(random, 1e-16, 1e-4, WIDTH, 1)) * aside
-        directions[i] = unit(np.cross(aside, axis) + random.uniform(-1, 1, (WIDTH, 1)) * axis)
-        origins[i] = touch - random.uniform(3, 20, (WIDTH, 1)) * directions[i]
+        aside = across(random, axis, RAYS)
+        sign = random.choice([-1.0, 1.0], (RAYS, 1))
+        touch = centre_of(shape) + shape.height * random.uniform(-0.4, 0.4, (RAYS, 1)) * axis
+        touch = touch + shape.diameter / 2 * (1 + sign * log(random, 1e-16, 1e-4, RAYS, 1)) * aside
+        directions[i] = unit(np.cross(aside, axis) + random.uniform(-1, 1, (RAYS, 1)) * axis)
+        origins[i] = touch - random.uniform(3, 20, (RAYS, 1)) * directions[i]
     return Rays(shapes, origins, directions)
 
 
-def rim(seed: int, count: int = 50) -> Rays:
+def rim(seed: int, count: int = 25) -> Rays:
     """At the edge between cap and side, from 1e-16 to 1e-6 beside it, from everywhere."""
     random = np.random.default_rng(seed)
     shapes = [cylinder(random, 1.0, 0.0) for _ in range(count)]
-    origins, directions = np.empty((2, count, WIDTH, 3))
+    origins, directions = np.empty((2, count, RAYS, 3))
     for i, shape in enumerate(shapes):
         axis = np.array(shape.axis)
-        edge = centre_of(shape) + shape.height / 2 * axis + shape.diameter / 2 * across(random, axis, WIDTH)
-        edge = edge + log(random, 1e-16, 1e-6, WIDTH, 1) * ways(random, WIDTH)
-        directions[i] = ways(random, WIDTH)
-        origins[i] = edge - random.uniform(3, 20, (WIDTH, 1)) * directions[i]
+        edge = centre_of(shape) + shape.height / 2 * axis + shape.diameter / 2 * across(random, axis, RAYS)
+        edge = edge + log(random, 1e-16, 1e-6, RAYS, 1) * ways(random, RAYS)
+        directions[i] = ways(random, RAYS)
+        origins[i] = edge - random.uniform(3, 20, (RAYS, 1)) * directions[i]
     return Rays(shapes, origins, directions)
 
 
-def along_axis(seed: int, off: tuple[float, float] | None, offset: float = 0.0, count: int = 50) -> Rays:
+def along_axis(seed: int, off: tuple[float, float] | None, offset: float = 0.0, count: int = 25) -> Rays:
     """Along the axis of a cylinder, or off it by an angle (radians) in `off`, at its cap and beside it."""
     random = np.random.default_rng(seed)
     shapes = [cylinder(random, 1.0, offset) for _ in range(count)]
-    origins, directions = np.empty((2, count, WIDTH, 3))
+    origins, directions = np.empty((2, count, RAYS, 3))
     for i, shape in enumerate(shapes):
         axis = np.array(shape.axis)
-        angle = log(random, *off, WIDTH, 1) if off else np.zeros((WIDTH, 1))
-        start = shape.diameter / 2 * random.choice([0.0, 0.5, 0.9, 1.1], (WIDTH, 1))
-        directions[i] = axis if off is None else unit(axis + angle * across(random, axis, WIDTH))
-        origins[i] = centre_of(shape) - 5 * axis + start * across(random, axis, WIDTH)
+        angle = log(random, *off, RAYS, 1) if off else np.zeros((RAYS, 1))
+        start = shape.diameter / 2 * random.choice([0.0, 0.5, 0.9, 1.1], (RAYS, 1))
+        directions[i] = axis if off is None else unit(axis + angle * across(random, axis, RAYS))
+        origins[i] = centre_of(shape) - 5 * axis + start * across(random, axis, RAYS)
     return Rays(shapes, origins, directions)
 
 
-def inside_tube(seed: int, height: float = 1e9, count: int = 50) -> Rays:
+def inside_tube(seed: int, height: float = 1e9, count: int = 25) -> Rays:
     """In the middle of a very long tube, looking 1e-8 to 1e-2 off its axis."""
     random = np.random.default_rng(seed)
-    shapes, origins, directions = [], *np.empty((2, count, WIDTH, 3))
+    shapes, origins, directions = [], *np.empty((2, count, RAYS, 3))
     for i in range(count):
         shape = cylinder(random, 1.0, 0.0).replace(height=height)
         axis = np.array(shape.axis)
-        start = 0.4 * shape.diameter * random.uniform(-1, 1, (WIDTH, 1)) * across(random, axis, WIDTH)
+        start = 0.4 * shape.diameter * random.uniform(-1, 1, (RAYS, 1)) * across(random, axis, RAYS)
         origins[i] = centre_of(shape) + start
-        directions[i] = unit(axis + log(random, 1e-8, 1e-2, WIDTH, 1) * across(random, axis, WIDTH))
+        directions[i] = unit(axis + log(random, 1e-8, 1e-2, RAYS, 1) * across(random, axis, RAYS))
         shapes.append(shape)
     return Rays(shapes, origins, directions)
 
 
-def from_the_wall(seed: int, count: int = 50) -> Rays:
+def from_the_wall(seed: int, count: int = 25) -> Rays:
     """Across a tube, from just inside of its wall: the closest approach to the centre is 1e-13 to 1e-6 off the wall."""
     random = np.random.default_rng(seed)
-    shapes, origins, directions = [], *np.empty((2, count, WIDTH, 3))
+    shapes, origins, directions = [], *np.empty((2, count, RAYS, 3))
     for i in range(count):
         shape = cylinder(random, 1.0, 0.0).replace(height=100.0)
         axis, radius = np.array(shape.axis), shape.diameter / 2
-        out = across(random, axis, WIDTH)
-        tilt = random.uniform(0.3, 1.2, (WIDTH, 1))
+        out = across(random, axis, RAYS)
+        tilt = random.uniform(0.3, 1.2, (RAYS, 1))
         directions[i] = unit(np.sin(tilt) * axis - np.cos(tilt) * out)
-        near = radius * (1 - log(random, 1e-13, 1e-6, WIDTH, 1))
+        near = radius * (1 - log(random, 1e-13, 1e-6, RAYS, 1))
         wall = centre_of(shape) + near * (out + np.cos(tilt) / np.sin(tilt) * axis)
-        origins[i] = wall + random.uniform(0.01, 0.1, (WIDTH, 1)) * directions[i]
+        origins[i] = wall + random.uniform(0.01, 0.1, (RAYS, 1)) * directions[i]
         shapes.append(shape)
     return Rays(shapes, origins, directions)
 
 
-def disc(seed: int, height: float = 1e-9, count: int = 50) -> Rays:
+def disc(seed: int, height: float = 1e-9, count: int = 25) -> Rays:
     """At a cylinder that is next to flat."""
     rays = aimed(cylinder, seed, count=count)
     return rays._replace(shapes=[shape.replace(height=height) for shape in rays.shapes])

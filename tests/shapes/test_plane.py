@@ -8,7 +8,7 @@ import pytest
 from minirt.shapes.plane import Plane
 from tests.shapes import mutants
 from tests.shapes.checks import U, assert_near, errors_of, posed
-from tests.shapes.regimes import GREY, Rays, across, log, unit, ways
+from tests.shapes.regimes import GREY, RAYS, Rays, across, log, unit, ways
 from tests.shapes.test_sphere import shoot
 from tests.shapes.ways import Intersect, surfaces
 
@@ -22,10 +22,10 @@ def planes(seed: int, offset: float = 0.0, grazing: tuple[float, float] = (0.05,
     points = offset * ways(random, count) + random.normal(size=(count, 3))
     shapes = [Plane(tuple(p), tuple(n.clip(-1, 1)), GREY) for p, n in zip(points, normals, strict=True)]
     normals = np.array([shape.normal for shape in shapes])[:, None]
-    aside = unit(np.cross(ways(random, count, 8), normals))
-    slope = log(random, *grazing, count, 8, 1) * random.choice([-1.0, 1.0], (count, 8, 1))
-    origins = points[:, None] + 3 * aside + random.uniform(1, 20, (count, 8, 1)) * normals
-    directions = unit(across(random, normals, count, 8) * np.sqrt(1 - slope**2) + slope * normals)
+    aside = unit(np.cross(ways(random, count, RAYS), normals))
+    slope = log(random, *grazing, count, RAYS, 1) * random.choice([-1.0, 1.0], (count, RAYS, 1))
+    origins = points[:, None] + 3 * aside + random.uniform(1, 20, (count, RAYS, 1)) * normals
+    directions = unit(across(random, normals, count, RAYS) * np.sqrt(1 - slope**2) + slope * normals)
     return Rays(shapes, origins, directions)
 
 
@@ -68,10 +68,11 @@ def test_a_ray_along_the_plane_misses_it(way: Intersect, slope: float, seen: boo
 
 
 def test_the_surface_is_the_foot_of_the_perpendicular() -> None:
-    points = np.random.default_rng(4).normal(size=(1, 8, 3))
+    points = np.random.default_rng(4).normal(size=(1, RAYS, 3))
     on, normal = surfaces([FLOOR], points)
-    assert np.array_equal(on, np.stack([points[..., 0], np.full((1, 8), -2.0), points[..., 2]], axis=-1))
-    assert np.array_equal(normal, np.broadcast_to([0.0, 1.0, 0.0], (1, 8, 3)))
+    assert np.array_equal(on[..., ::2], points[..., ::2])
+    assert np.abs(on[..., 1] + 2.0).max() <= 4 * U
+    assert np.array_equal(normal, np.broadcast_to([0.0, 1.0, 0.0], (1, RAYS, 3)))
 
 
 def test_a_plane_that_is_hit_behind_the_eye_does_not_pass() -> None:

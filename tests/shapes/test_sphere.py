@@ -9,7 +9,7 @@ from minirt.shapes import sphere as module
 from minirt.shapes.sphere import Sphere
 from tests.shapes import mutants
 from tests.shapes.checks import U, assert_between, assert_near, assert_verdicts, errors_of, posed
-from tests.shapes.regimes import GREY, Rays, aimed, inside, just_above, sphere, tangent, ways
+from tests.shapes.regimes import GREY, RAYS, Rays, aimed, inside, just_above, sphere, tangent, ways
 from tests.shapes.ways import Intersect, on_arrays, surfaces
 
 BALL = Sphere((0, 0, 5), 6, GREY)  # radius 3: its edge is seen from the origin along a 3-4-5 triangle
@@ -24,7 +24,7 @@ FAR = [
 
 def shoot(way: Intersect, shape: Sphere, *rays: tuple[tuple[float, ...], tuple[float, ...]]) -> list[float]:
     """t of rays, each an origin and a direction."""
-    padded = [*rays, *[rays[-1]] * (-len(rays) % 8)]
+    padded = [*rays, *[rays[-1]] * (-len(rays) % RAYS)]
     origins, directions = (np.array([ray[part] for ray in padded], float)[None] for part in (0, 1))
     return list(way([shape], origins, directions)[0, : len(rays)])
 
@@ -92,8 +92,8 @@ def test_nan_is_a_miss(way: Intersect) -> None:
 def test_the_surface_is_the_nearest_point_and_the_normal_points_outwards() -> None:
     random = np.random.default_rng(8)
     balls = [sphere(random, 1.0, 0.0) for _ in range(20)]
-    for ball, out in zip(balls, ways(random, 20, 8), strict=True):
-        points = np.array(ball.centre) + random.uniform(0.1, 3, (8, 1)) * out
+    for ball, out in zip(balls, ways(random, 20, RAYS), strict=True):
+        points = np.array(ball.centre) + random.uniform(0.1, 3, (RAYS, 1)) * out
         on, normal = surfaces([ball], points[None])
         assert np.abs(normal[0] - out).max() <= 16 * U * 5
         assert np.abs(np.linalg.norm(on[0] - np.array(ball.centre), axis=-1) - ball.diameter / 2).max() <= 8 * U * 5

@@ -11,7 +11,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from minirt.kernel import jit, rows
-from minirt.lanes import WIDTH, Vec, lane, load, where
+from minirt.lanes import Vec, lane, load, where, width
+from minirt.rendering.tables import numbers
 from minirt.shapes import KINDS, Kind, Shape
 
 Array = NDArray[np.float64]
@@ -61,7 +62,8 @@ def on_arrays(shapes: list[Shape], origins: Array, directions: Array, formula: A
 
 def table(shapes: list[Shape]) -> Any:
     """The rows of shapes of one kind."""
-    return np.array([rows.row(shape.pack()) for shape in shapes], rows.row_type(kind_of(shapes[0])))
+    packed = np.ascontiguousarray(numbers([shape.pack() for shape in shapes]))
+    return packed.view(rows.row_type(kind_of(shapes[0])))[:, 0]
 
 
 def packets(points: Array) -> Array:
@@ -74,19 +76,19 @@ def kernel() -> Any:
     """`intersect`, compiled with the flags of the renderer."""
 
     def run(table: Any, each: Any, o: Any, d: Any, t: Any) -> None:
-        for i in range(0, t.size, WIDTH):
+        for i in range(0, t.size, width(t)):
             origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
             direction = Vec(load(d[0], i), load(d[1], i), load(d[2], i))
             hit, at = rows.intersect(rows.read(table, i // each), origin, direction)
             at = where(hit, at, np.inf)
-            for ray in range(WIDTH):
+            for ray in range(width(t)):
                 t[i + ray] = lane(at, ray)
 
     return njit(**jit.FLAGS)(run)
 
 
 def compiled(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """The same, compiled; the number of rays of a shape is a multiple of WIDTH."""
+    """The same, compiled; the number of rays of a shape is a multiple of those of a packet."""
     t = np.empty(origins.shape[:2])
     kernel()(table(shapes), origins.shape[1], packets(origins), packets(directions), t.reshape(-1))
     return t

@@ -1,0 +1,61 @@
+"""A packed scene in float32: less precise, and twice as many rays at once.
+
+Everything is moved so that the eye is the origin before it is rounded, so what is precise is what is near the eye,
+wherever in the world that is. What leaves shapes out is rounded to the safe side.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from minirt.kernel.rows import kind_of, place_fields, row_type
+from minirt.kernel.traced import Group, Traced
+
+MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
+
+
+def in_single(traced: Traced, boxes: np.ndarray) -> Traced:
+    """The scene in float32, the eye at the origin; `boxes` as in `minirt.rendering.tables`."""
+    eye = traced.camera[:3]
+    looks = traced.looks.copy()
+    looks[:, 3] = np.abs(boxes[:, :3] - eye).max(axis=1) + boxes[:, 3]
+    here = np.concatenate([eye, np.zeros(3)])
+    return Traced(
+        camera=rounded(np.concatenate([np.zeros(3), traced.camera[3:]])),
+        ambient=rounded(traced.ambient),
+        lights=rounded(traced.lights - here),
+        looks=rounded(looks),
+        places=traced.places,
+        seen=traced.seen,
+        views=wider(traced.views),
+        grid=traced.grid,
+        spread=min(1.0, traced.spread + MARGIN),
+        lit=traced.lit,
+        lamp_views=wider(traced.lamp_views),
+        groups=tuple(Group(moved(group.rows, eye), group.starts, group.lamp_starts) for group in traced.groups),
+    )
+
+
+def rounded(numbers: np.ndarray) -> np.ndarray:
+    """In float32, to nearest."""
+    with np.errstate(over="ignore"):
+        return numbers.astype(np.float32)
+
+
+def wider(views: np.ndarray) -> np.ndarray:
+    """Views in float32: cones that have in them what was in the cones, also when a scalar product in float32 decides
+    that, and distances that are not greater."""
+    views = rounded(views)
+    views[..., 3] -= MARGIN
+    views[..., 4] = np.nextafter(views[..., 4], np.float32(-np.inf))
+    return views
+
+
+def moved(rows: np.ndarray, eye: np.ndarray) -> np.ndarray:
+    """Rows of shapes in float32, relative to the eye."""
+    kind = kind_of(rows.dtype.names)
+    rows = rows.copy()
+    for name in place_fields(kind):
+        rows[name] -= eye
+    with np.errstate(over="ignore"):
+        return rows.astype(row_type(kind, np.float32))
