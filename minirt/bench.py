@@ -15,7 +15,9 @@ from minirt.scene import Scene, load
 LEAST_FRAMES, LEAST_SECONDS = 9, 1.0
 
 
-def measure(path: str, scene: Scene, size: tuple[int, int] | None, threads: int | None, precision: str) -> dict[str, str | float]:
+def measure(
+    path: str, scene: Scene, size: tuple[int, int] | None, threads: int | None, precision: str
+) -> dict[str, str | float]:
     """Time of reading, in seconds, and of frames, in milliseconds.
 
     `compile_s` is the time until the kernel is ready: of compiling it, or of loading it where it was compiled before.

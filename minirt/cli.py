@@ -167,9 +167,7 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
         renderer.prepare(scene)
         print(f"kernel ready after {perf_counter() - start:.2f} s", file=sys.stderr)
         start = perf_counter()
-    image = minirt.render(
-        scene, width, height, samples=asked.samples, threads=asked.threads, precision=asked.precision
-    )
+    image = minirt.render(scene, width, height, samples=asked.samples, threads=asked.threads, precision=asked.precision)
     if asked.verbose:
         print(
             f"{width}x{height}, {asked.samples} samples a pixel, {renderer.threads} threads, {renderer.precision} "

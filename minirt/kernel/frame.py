@@ -17,7 +17,7 @@ OPAQUE = 0xFF000000  # alpha of a pixel
 
 
 def towards(camera: Any, x: float, y: float) -> Vec:
-    """The direction of the ray through a place of the picture, in pixels from its upper left corner; not of length 1."""
+    """The direction of the ray through a place of the picture, in pixels from its upper left corner; of any length."""
     corner = Vec(camera[3], camera[4], camera[5])
     return corner + x * Vec(camera[6], camera[7], camera[8]) + y * Vec(camera[9], camera[10], camera[11])
 

@@ -45,8 +45,8 @@ def cover(
 
     Shape i is the convex hull of `balls[first[i]:first[i + 1]]`, (b, 4) centre and radius, which grow by `slack`; its
     cells begin at `places[i, 0]` times one more than the grid has. Writes rectangles, (r, 4) shape, first cell, columns
-    and rows, from number `used` on, and answers how many there are; for each shape with a rectangle its `view`; and adds
-    to `counts` how many rectangles cover each cell.
+    and rows, from number `used` on, and answers how many there are; of shapes with a rectangle the `view`; and adds to
+    `counts` how many rectangles cover each cell.
     """
     stride = grid.frames.shape[0] * grid.down * grid.across + 1
     for shape in range(views.shape[0]):
@@ -133,9 +133,11 @@ def interval(low: float, high: float, scale: float, middle: float, margin: float
 
 
 def view(origin: Any, balls: Any, start: int, end: int, slack: float, seen: Any) -> None:
-    """How the convex hull of some balls, grown by `slack`, looks from a point, in five numbers: a cone around it, as its
-    axis, the direction of the middle, and the cosine of its half-angle; and a distance that none of it falls below, how
-    far all of it lies along the axis. -2 stands for the cosine where the cone would take in half of all directions.
+    """How the convex hull of some balls, grown by `slack`, looks from a point, in five numbers.
+
+    A cone around it: the axis, which is the direction of its middle, and the cosine of the half-angle, or -2 where it
+    would take in half of all directions; and a distance that none of it falls below: how far all of it lies along the
+    axis.
     """
     x = 0.0
     y = 0.0

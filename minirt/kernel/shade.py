@@ -42,7 +42,9 @@ def irradiance(scene: Traced, memory: Any, point: Vec, normal: Vec, extent: Numb
         cosine = dot(normal, towards)
         lit = hit & (cosine > 0.0)
         if any(lit):
-            reach = squared * per_length - 4.0 * (rounding + ROUNDING * u * largest(lamp))  # a surface hides no lamp on it
+            reach = squared * per_length - 4.0 * (
+                rounding + ROUNDING * u * largest(lamp)
+            )  # a surface hides no lamp on it
             lit = unhidden(scene, memory, i, start, towards, reach, lit)
             total = total + where(lit, cosine, 0.0) * light
     return total

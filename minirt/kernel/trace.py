@@ -8,7 +8,7 @@ from typing import Any
 
 from minirt.kernel.rows import intersect, read, surface
 from minirt.kernel.traced import Group, Traced
-from minirt.lanes import Vec, any, dot, fabs, first, floor, lane, maximum, minimum, splat, unit_roundoff, where
+from minirt.lanes import Vec, any, dot, fabs, first, floor, lane, maximum, minimum, splat, unit_roundoff, where, width
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
@@ -95,9 +95,7 @@ def within(cone: Any, direction: Vec) -> Mask:
     return dot(Vec(cone[0], cone[1], cone[2]), direction) >= cone[3]
 
 
-def unhidden(
-    scene: Traced, memory: Any, lamp: int, origin: Vec, direction: Vec, distance: Number, asked: Mask
-) -> Mask:
+def unhidden(scene: Traced, memory: Any, lamp: int, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
     """Of the rays towards a lamp that are `asked` for, those that hit nothing nearer than `distance`.
 
     Only shapes that the lamp sees in the direction of a ray are tried. The list of a cell holds for directions around
@@ -108,7 +106,9 @@ def unhidden(
         return over_kinds(unhidden_by_kind, scene.groups, asked, (scene, lamp, 0, asked, origin, direction, distance))
     free = asked
     left = asked
-    while any(left):
+    for _ in range(width(distance)):  # at most a look for each ray
+        if not any(left):
+            break
         mine = left & close(memory[lamp], direction, scene.spread)
         if not any(mine):
             look_up(memory[lamp], scene.grid, direction, first(left))

@@ -23,8 +23,8 @@ def contrasts(pixels: np.ndarray, least: int = CONTRAST) -> np.ndarray:
         (colours[1:], colours[:-1], edge[1:], edge[:-1]),
     ):
         differs = (np.maximum(a, b) - np.minimum(a, b) > least).any(axis=-1)
-        at_a |= differs
-        at_b |= differs
+        np.logical_or(at_a, differs, out=at_a)
+        np.logical_or(at_b, differs, out=at_b)
     return edge
 
 
@@ -34,4 +34,4 @@ def packets_of(pixels: np.ndarray, across: int) -> np.ndarray:
     rows, columns = -(-height // DOWN), -(-width // across)
     whole = np.zeros((rows * DOWN, columns * across), bool)
     whole[:height, :width] = pixels
-    return whole.reshape(rows, DOWN, columns, across).any(axis=(1, 3)).view(np.uint8)
+    return np.asarray(whole.reshape(rows, DOWN, columns, across).any(axis=(1, 3)), np.uint8)

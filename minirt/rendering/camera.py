@@ -38,4 +38,5 @@ def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:
     y = lane // (count // DOWN) + samples[:, 1:]
     across, down = rays[6:9], rays[9:]
     differences = x[:, None] * across[:, None] + y[:, None] * down[:, None]
-    return differences.reshape(len(samples), 3 * count).astype(rays.dtype)
+    packed: np.ndarray = differences.reshape(len(samples), 3 * count).astype(rays.dtype)
+    return packed

@@ -20,8 +20,8 @@ EVERYWHERE: tuple[Ball, ...] = (((0.0, 0.0, 0.0), np.inf),)  # where a shape lie
 class Tables:
     """The last shapes that it was told of, n of them, those of each kind in rows of their own.
 
-    `rows`, `looks` and `places` are those of `minirt.kernel.traced`; `boxes` (n, 4) are the middle of the box around each
-    shape and the largest half of its edges, or what is the same of the points of one without end. Shape i lies in the convex hull of
+    `rows`, `looks` and `places` are those of `minirt.kernel.traced`; `boxes`, (n, 4), are the middle of the box around
+    each shape and half of its longest edge, or the same of the points of one without end. Shape i lies in the hull of
     `balls[first[i]:first[i + 1]]`, (b, 4) centre and radius, grown by what rounding may do to it; or it is one of the
     `planes`, (p, 5) unit normal, its product with the points of the plane and by how much rounding may change that,
     whose indices are `flat`.

@@ -1,0 +1,62 @@
+"""What a scene does not need is not in its kernel."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+
+from minirt.kernel import jit
+from minirt.rendering import Renderer
+from minirt.scene import Scene
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.kernel.pictures import AMBIENT, EYE, LAMP, SHAPES, linear
+
+ROOT = "call <16 x double> @llvm.sqrt.v16f64"
+
+
+def of(*kinds: type[Any]) -> Scene:
+    return Scene((AMBIENT, EYE, LAMP, *(shape for shape in SHAPES if isinstance(shape, kinds))))
+
+
+def code(scene: Scene) -> str:
+    """The kernel of a scene, compiled here and now: what is kept from other runs shows no LLVM code."""
+    kernel = jit.njit(no_cfunc_wrapper=True, **jit.FLAGS)(jit.frame.frame)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(jit, "render_bands", kernel)
+        Renderer(1).prepare(scene)
+    (signature,) = kernel.signatures
+    return str(kernel.inspect_llvm(signature))
+
+
+def test_square_roots_come_with_the_shapes_that_take_them() -> None:
+    planes, balls, tubes = (code(of(*kinds)).count(ROOT) for kinds in ((Plane,), (Sphere,), (Sphere, Cylinder)))
+    assert planes < balls < tubes
+
+
+def size_without(*titles: str) -> int:
+    """Lines of LLVM code of the kernel of spheres where the package has no shapes of these titles."""
+    program = f"""
+from minirt import shapes
+shapes.KINDS = tuple(kind for kind in shapes.KINDS if kind.element.title not in {titles})
+from minirt.shapes.sphere import Sphere
+from tests.kernel.test_left_out import code, of
+print(code(of(Sphere)).count(chr(10)))
+"""
+    return int(subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout)
+
+
+def test_a_kernel_does_not_change_with_the_kinds_of_shapes_that_there_are() -> None:
+    assert size_without() == size_without("plane", "cylinder") > 1000
+
+
+def test_shapes_that_are_not_seen_change_nothing() -> None:
+    behind = [Sphere((9 * i, 0, -900), 3, (1, 2, 3)) for i in range(20)]
+    scene = of(Plane, Sphere)
+    more = Scene((*scene.elements, *behind))
+    assert np.array_equal(linear(more, 60, 40), linear(scene, 60, 40))
