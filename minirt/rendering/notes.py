@@ -10,11 +10,16 @@ from minirt.kernel.traced import Traced
 from minirt.rendering.flats import same_side
 from minirt.rendering.tables import Tables
 from minirt.scene import Scene
+from minirt.shapes import KINDS, Shape
 
 
 def notes(scene: Scene, tables: Tables, traced: Traced) -> Iterator[str]:
     """Sentences; lights and shapes have the numbers of their places among those of their kind in the file."""
     shapes = f"{len(scene.shapes)} shape{'s' * (len(scene.shapes) != 1)}"
+    used = {type(shape) for shape in scene.shapes}
+    yield f"kernel for {plurals(used)}"
+    if idle_kinds := {kind.element for kind in KINDS} - used:
+        yield f"kernel without {plurals(idle_kinds)}"
     sizes = sum(np.diff(group.starts) for group in traced.groups)
     yield f"tiles: {len(sizes)}, {np.mean(sizes):.1f} of {shapes} in each, {np.count_nonzero(sizes == 0)} without any"
     if traced.grid == 1:
@@ -27,9 +32,14 @@ def notes(scene: Scene, tables: Tables, traced: Traced) -> Iterator[str]:
         elif not any(light.colour):
             yield f"light {number} is black"
         else:
-            idle = same_side(tables.planes, traced.camera[:3], np.array(light.position))
+            idle = same_side(tables.planes, np.array(scene.camera.position), np.array(light.position))
             for index in tables.flat[idle].tolist():
                 yield f"{name(tables, index)} hides nothing from light {number}"
+
+
+def plurals(elements: set[type[Shape]]) -> str:
+    """What people call shapes of these kinds, in the order of the registry."""
+    return ", ".join(kind.element.plural for kind in KINDS if kind.element in elements)
 
 
 def name(tables: Tables, index: int) -> str:

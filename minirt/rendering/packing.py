@@ -13,6 +13,7 @@ from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.rendering.flats import same_side
 from minirt.rendering.notes import notes
 from minirt.rendering.sight import Lists, grid_for, seen_by_eye, seen_by_lamp, spread_for
+from minirt.rendering.single import in_single
 from minirt.rendering.tables import Tables
 from minirt.scene import Ambient, Light, Scene
 
@@ -29,16 +30,28 @@ def light_numbers(scene: Scene) -> np.ndarray:
 
 
 class Packing:
-    """Packs scene after scene. Given `minirt.kernel.lists` for the kernel it does without the compiler."""
+    """Packs scene after scene, in "double" or "single" `precision`. Given `minirt.kernel.lists` for the kernel it does
+    without the compiler."""
 
-    def __init__(self, kernel: Any = None) -> None:
+    def __init__(self, kernel: Any = None, precision: str = "double") -> None:
         self.kernel = kernel
+        self.precision = precision
         self.tables = Tables()
         self.known: dict[Hashable, Any] = {}  # what was worked out for the last scene, by what it was worked out from
-        self.last: tuple[Scene, Traced] | None = None
+        self.last: tuple[Scene, int, int, Traced] | None = None
 
     def pack(self, scene: Scene, width: int, height: int) -> Traced:
         """The scene, seen in a picture of that size."""
+        if self.last and self.last[0] is scene and self.last[1:3] == (width, height):
+            return self.last[3]
+        traced = self.traced(scene, width, height)
+        if self.precision == "single":
+            traced = in_single(traced, self.tables.boxes)
+        self.last = scene, width, height, traced
+        return traced
+
+    def traced(self, scene: Scene, width: int, height: int) -> Traced:
+        """The same in double precision, anew."""
         self.kernel = self.kernel or import_module("minirt.kernel.jit_lists")
         tables = self.tables
         before = {} if tables.update(scene.shapes) else self.known
@@ -58,7 +71,7 @@ class Packing:
             keys.append((lamp.tobytes(), skipped.tobytes()))
             lamps.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, lamp, grid, skipped))
         lamp_starts, lit, lamp_views = keep(tuple(keys), joined, lamps, eye)
-        traced = Traced(
+        return Traced(
             camera=pixel_rays(camera, width, height),
             ambient=light_of(scene.ambient) if scene.ambient else np.zeros(3),
             lights=lights,
@@ -72,13 +85,11 @@ class Packing:
             lamp_views=lamp_views,
             groups=tuple(map(Group, tables.rows, eye.starts, lamp_starts)),
         )
-        self.last = scene, traced
-        return traced
 
     @property
     def notes(self) -> list[str]:
         """What was decided about the last scene, in words."""
-        return list(notes(self.last[0], self.tables, self.last[1])) if self.last else []
+        return list(notes(self.last[0], self.tables, self.last[3])) if self.last else []
 
 
 def joined(lamps: list[Lists], eye: Lists) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

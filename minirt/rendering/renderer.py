@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor, as_completed, wait
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from functools import cached_property
 from importlib import import_module
 from threading import Lock
@@ -16,7 +16,6 @@ from minirt.lanes import width
 from minirt.rendering.adaptive import contrasts, packets_of
 from minirt.rendering.camera import packet_rays
 from minirt.rendering.cores import usable_cores
-from minirt.rendering.single import in_single
 from minirt.scene import Scene
 
 PRECISIONS = ("double", "single")
@@ -52,7 +51,7 @@ class Renderer:
     @cached_property
     def packing(self) -> Any:
         """The arrays of the last scene."""
-        return import_module("minirt.rendering.packing").Packing()
+        return import_module("minirt.rendering.packing").Packing(precision=self.precision)
 
     @cached_property
     def kernel(self) -> Any:
@@ -90,8 +89,6 @@ class Renderer:
             return True
         self.next_row = counter = np.zeros(1, np.int64)
         traced = self.packing.pack(scene, across, height)
-        if self.precision == "single":
-            traced = in_single(traced, self.packing.tables.boxes)
         rays = packet_rays(traced.camera, sample_places(samples))
         wanted = packets_of(contrasts(pixels), width(rays) // DOWN) if edges else ALL_PACKETS
         self.run(counter, pixels.view(np.uint32)[..., 0], linear, rays, wanted, traced)
@@ -109,7 +106,7 @@ class Renderer:
             for _ in range(self.threads)
         ]
         try:
-            for job in as_completed(jobs):
+            for job in wait(jobs, return_when=FIRST_EXCEPTION).done:
                 job.result()
         except BaseException:
             self.cancel()

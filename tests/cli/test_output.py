@@ -112,7 +112,18 @@ def test_the_scene_may_name_the_size(run: Run, folder: Path) -> None:
 def test_verbose_says_how_long_it_took(run: Run) -> None:
     ended = run("ball.rt", "-o", "x.png", "--size", "8x6", "--samples", "2", "--threads", "1", "-v")
     assert (ended.status, ended.out) == (0, b"")
-    assert re.fullmatch(r"kernel ready after [0-9.]+ s\n8x6, 2 samples a pixel, 1 threads: [0-9.]+ ms\n", ended.err)
+    ready, made, *rest = ended.err.splitlines()
+    assert re.fullmatch(r"kernel ready after [0-9.]+ s", ready)
+    assert re.fullmatch(r"8x6, 2 samples a pixel, 1 threads, double precision: [0-9.]+ ms", made)
+    assert rest[:2] == ["kernel for spheres, planes", "kernel without cylinders"]
+
+
+def test_precision(run: Run) -> None:
+    for precision in ("double", "single"):
+        ended = run("ball.rt", "-o", f"{precision}.png", "--size", "80x60", "--precision", precision, "-v")
+        assert f"{precision} precision" in ended.err
+    ended = run("ball.rt", "-o", "x.png", "--precision", "half")
+    assert (ended.status, "invalid choice: 'half'" in ended.err) == (2, True)
 
 
 def test_threads_do_not_change_the_picture(run: Run) -> None:

@@ -12,7 +12,6 @@ from minirt.rendering import Renderer
 from minirt.rendering.camera import packet_rays
 from minirt.rendering.packing import Packing
 from minirt.rendering.renderer import ALL_PACKETS, memory_for, sample_places
-from minirt.rendering.single import in_single
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -56,10 +55,7 @@ def interpreted(
 ) -> tuple[Any, Array]:
     """The same by the kernel as it stands, in Python."""
     words, light = np.zeros((height, width), np.uint32), np.full((height, width, 3), np.nan)
-    packing = Packing()
-    traced = packing.pack(scene, width, height)
-    if precision == "single":
-        traced = in_single(traced, packing.tables.boxes)
+    traced = Packing(precision=precision).pack(scene, width, height)
     with np.errstate(all="ignore"):
         rays = packet_rays(traced.camera, sample_places(samples))
         frame.frame(np.zeros(1, np.int64), words, light, rays, ALL_PACKETS, memory_for(traced), traced)

@@ -22,7 +22,8 @@ def said(*balls: Sphere) -> list[str]:
 
 
 def test_what_is_left_out_and_why() -> None:
-    tiles, buffer, *rest = said(Sphere((0, 0, 0), 1, GREY))
+    kernel, without, tiles, buffer, *rest = said(Sphere((0, 0, 0), 1, GREY))
+    assert (kernel, without) == ("kernel for spheres, planes", "kernel without cylinders")
     assert tiles.startswith("tiles: 12, ")
     assert buffer == "light buffer: none, every shape is tried (3 shapes)"
     assert rest == [
@@ -35,5 +36,5 @@ def test_what_is_left_out_and_why() -> None:
 
 
 def test_the_size_of_the_light_buffer() -> None:
-    _, buffer, *_ = said(*(Sphere((i, 0, 0), 1, GREY) for i in range(48)))
+    *_, buffer, _, _, _, _, _ = said(*(Sphere((i, 0, 0), 1, GREY) for i in range(48)))
     assert buffer == "light buffer: 6 x 16 x 16 cells a lamp (50 shapes)"
