@@ -2,23 +2,36 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 import numpy as np
+import pytest
 
-from minirt.lanes import WIDTH
+DTYPES = (np.float64, np.float32)
+PRECISIONS = pytest.mark.parametrize("dtype", DTYPES, ids=["f64x16", "f32x32"])
 
-TINY = sys.float_info.min
-EDGES = [0.0, 5e-324, 1e-310, TINY, 1e-160, 0.1, 0.5, 1.0, 1.5, 2.5, 3.0, 1e15 + 0.5, 1e154, 1e300, sys.float_info.max]
-NUMBERS = np.array([sign * each for each in [*EDGES, np.inf, np.nan] for sign in (1, -1)] + [7.0, -7.25] * 3)
-assert NUMBERS.size % WIDTH == 0
-FIRST, SECOND = (side.ravel() for side in np.meshgrid(NUMBERS, NUMBERS, indexing="ij"))  # every number with every other
+
+def edges(dtype: Any) -> Any:
+    """Zeros, denormal, tiny, ordinary, whole, large and infinite numbers of both signs, and NaN; full packets of them."""
+    kind = np.finfo(dtype)
+    small, root = float(kind.tiny), float(kind.max) ** 0.5
+    whole = 2.0 ** (kind.nmant - 1) + 0.5
+    values = [0, kind.smallest_subnormal, 3 * float(kind.smallest_subnormal), small, 1 / root, 0.1, 0.5, 1, 1.5, 2.5, 3]
+    values += [whole, root, float(kind.max) / 2, kind.max, np.inf, np.nan]
+    signed = [sign * float(each) for each in values for sign in (1, -1)]
+    return np.array([*signed, *np.linspace(-7.25, 9, -len(signed) % 32)], dtype)
+
+
+def pairs(dtype: Any) -> tuple[Any, Any]:
+    """Every number with every other."""
+    first, second = np.meshgrid(edges(dtype), edges(dtype), indexing="ij")
+    return first.ravel(), second.ravel()
 
 
 def assert_same(actual: Any, expected: Any) -> None:
     """Equal bit for bit, -0 and 0 apart; a NaN is any NaN."""
-    actual, expected = np.broadcast_arrays(np.asarray(actual, float), np.asarray(expected, float))
+    actual, expected = np.broadcast_arrays(np.asarray(actual), np.asarray(expected))
     nan = np.isnan(expected)
     assert np.array_equal(np.isnan(actual), nan)
-    assert np.array_equal(actual[~nan].view(np.int64), expected[~nan].view(np.int64))
+    assert np.array_equal(actual[~nan], expected[~nan])
+    assert np.array_equal(np.signbit(actual[~nan]), np.signbit(expected[~nan]))

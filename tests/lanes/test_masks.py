@@ -9,20 +9,27 @@ import pytest
 from numba import njit
 
 import minirt.lanes.compiled  # noqa: F401
-from minirt.lanes import WIDTH, Vec, any, first, load, where
-from tests.lanes.numbers import NUMBERS, assert_same
+from minirt.lanes import Vec, any, first, load, where, width
+from tests.lanes.numbers import PRECISIONS, assert_same, edges
 from tests.lanes.test_operators import put
 
-TRUTHS = [np.array([bits >> ray & 1 for ray in range(WIDTH)], float) for bits in range(2**WIDTH)]
+
+def truths(dtype: Any) -> list[Any]:
+    """None, all, each ray alone, each but one, neighbours, and some at random, as 0 and 1."""
+    count = 128 // np.dtype(dtype).itemsize
+    alone = np.eye(count)
+    some = np.random.default_rng(1).integers(0, 2, (12, count))
+    return list(
+        np.concatenate([np.zeros((1, count)), alone, 1 - alone, alone + np.roll(alone, 1, axis=1), some]).astype(dtype)
+    )
 
 
 @njit(error_model="numpy")
 def logic(a: Any, b: Any, out: Any) -> None:
     p, q = load(a, 0) > 0.5, load(b, 0) > 0.5
-    put(out, 0, where(p & q, 1.0, 0.0))
-    put(out, 8, where(p | q, 1.0, 0.0))
-    put(out, 16, where(p ^ q, 1.0, 0.0))
-    put(out, 24, where(~p, 1.0, 0.0))
+    truth = b[0] > 0.5
+    for row, mask in enumerate((p & q, p | q, p ^ q, ~p, p & truth, truth | p, truth ^ p)):
+        put(out[row], 0, where(mask, 1.0, 0.0))
 
 
 @njit(error_model="numpy")
@@ -31,76 +38,88 @@ def asked(a: Any) -> tuple[bool, int]:
     return any(mask), first(mask) if any(mask) else -1
 
 
-def test_logic() -> None:
-    out = np.empty(4 * WIDTH)
-    for a in TRUTHS[::5]:
-        for b in TRUTHS[::7]:
+@PRECISIONS
+def test_logic(dtype: Any) -> None:
+    out = np.empty((7, truths(dtype)[0].size), dtype)
+    for a in truths(dtype)[::5]:
+        for b in truths(dtype)[::7]:
             logic(a, b, out)
-            assert_same(out.reshape(4, WIDTH), [a * b, np.maximum(a, b), a != b, 1 - a])
+            assert_same(out[:4], [a * b, np.maximum(a, b), a != b, 1 - a])
+            assert_same(out[4:], [a * b[0], np.maximum(a, b[0]), a != b[0]])
 
 
+@PRECISIONS
 @pytest.mark.parametrize("interpreted", [False, True])
-def test_any_and_first(interpreted: bool) -> None:
-    for truths in TRUTHS:
-        found = [ray for ray in range(WIDTH) if truths[ray]]
-        answer = (asked.py_func if interpreted else asked)(truths)
-        assert answer == (bool(found), found[0] if found else -1)
+def test_any_and_first(interpreted: bool, dtype: Any) -> None:
+    for each in truths(dtype):
+        found = np.flatnonzero(each)
+        answer = (asked.py_func if interpreted else asked)(each)
+        assert answer == (found.size > 0, found[0] if found.size else -1)
 
 
 @njit(error_model="numpy")
-def choices(truths: Any, a: Any, b: Any, single: float, truth: bool, out: Any) -> None:
-    mask = load(truths, 0) > 0.5
+def choices(given: Any, a: Any, b: Any, single: float, truth: bool, out: Any) -> None:
+    mask = load(given, 0) > 0.5
     x, y = load(a, 0), load(b, 0)
-    put(out, 0, where(mask, x, y))
-    put(out, 8, where(mask, single, y))
-    put(out, 16, where(mask, x, single))
-    put(out, 24, where(mask, single, 1))
-    put(out, 32, where(truth, x, y))
-    put(out, 40, where(truth, single, y))
-    put(out, 48, where(mask, where(truth, single, 2), y))
+    put(out[0], 0, where(mask, x, y))
+    put(out[1], 0, where(mask, single, y))
+    put(out[2], 0, where(mask, x, single))
+    put(out[3], 0, where(mask, single, 1))
+    put(out[4], 0, where(truth, x, y))
+    put(out[5], 0, where(truth, single, y))
+    put(out[6], 0, where(mask, where(truth, single, 2), y))
 
 
+@PRECISIONS
 @pytest.mark.parametrize("truth", [True, False])
-def test_where(truth: bool) -> None:
-    a, b, out = NUMBERS[-8:], NUMBERS[-18:-10], np.empty(7 * WIDTH)  # NaN and infinity among them
-    for truths in TRUTHS[::3]:
+def test_where(truth: bool, dtype: Any) -> None:
+    count = 128 // np.dtype(dtype).itemsize
+    a, b, out = edges(dtype)[:count], edges(dtype)[-count:], np.empty((7, count), dtype)
+    tenth = dtype(0.1)
+    for each in truths(dtype)[::3]:
+        mask = each > 0.5
         expected = [
-            np.where(truths, a, b),
-            np.where(truths, 0.1, b),
-            np.where(truths, a, 0.1),
-            np.where(truths, 0.1, 1),
+            np.where(mask, a, b),
+            np.where(mask, tenth, b),
+            np.where(mask, a, tenth),
+            np.where(mask, tenth, 1),
             a if truth else b,
-            np.full(8, 0.1) if truth else b,
-            np.where(truths, 0.1 if truth else 2, b),
+            np.full(count, tenth) if truth else b,
+            np.where(mask, tenth if truth else 2, b),
         ]
-        choices(truths, a, b, 0.1, truth, out)
-        assert_same(out.reshape(7, WIDTH), expected)
+        choices(each, a, b, 0.1, truth, out)
+        for made, right in zip(out, expected, strict=True):
+            assert_same(made, right)
 
 
 @njit(error_model="numpy")
-def vectors(truths: Any, a: Any, b: Any, out: Any) -> None:
-    mask = load(truths, 0) > 0.5
-    lanes = Vec(load(a, 0), load(a, 8), load(a, 16))
+def vectors(given: Any, a: Any, b: Any, out: Any) -> None:
+    mask = load(given, 0) > 0.5
+    n = width(given)
+    lanes = Vec(load(a, 0), load(a, n), load(a, 2 * n))
     one = Vec(1, 2.0, 3.0)
-    for row, v in (
-        (0, where(mask, lanes, Vec(load(b, 0), load(b, 8), load(b, 16)))),
-        (24, where(mask, one, lanes)),
-        (48, where(mask, lanes, one)),
-        (72, where(mask, one, -one)),
-    ):
-        put(out, row, v.x)
-        put(out, row + 8, v.y)
-        put(out, row + 16, v.z)
+    chosen = (
+        where(mask, lanes, Vec(load(b, 0), load(b, n), load(b, 2 * n))),
+        where(mask, one, lanes),
+        where(mask, lanes, one),
+        where(mask, one, -one),
+    )
+    for row, v in enumerate(chosen):
+        put(out[row], 0, v.x)
+        put(out[row], n, v.y)
+        put(out[row], 2 * n, v.z)
 
 
-def test_where_on_vecs() -> None:
-    a, b, out = NUMBERS[:24], NUMBERS[8:32], np.empty(96)
-    one = np.repeat([1.0, 2.0, 3.0], 8)
-    for truths in TRUTHS[::3]:
-        vectors(truths, a, b, out)
-        mask = np.tile(truths, 3)
+@PRECISIONS
+def test_where_on_vecs(dtype: Any) -> None:
+    count = 128 // np.dtype(dtype).itemsize
+    a = np.resize(edges(dtype), 3 * count)
+    b, out = a[::-1].copy(), np.empty((4, 3 * count), dtype)
+    one = np.repeat(np.array([1.0, 2.0, 3.0], dtype), count)
+    for each in truths(dtype)[::3]:
+        vectors(each, a, b, out)
+        mask = np.tile(each, 3) > 0.5
         expected = [np.where(mask, x, y) for x, y in ((a, b), (one, a), (a, one), (one, -one))]
-        assert_same(out.reshape(4, 24), expected)
-        mask = truths > 0.5
-        chosen = where(mask, Vec(a[:8], a[8:16], a[16:]), Vec(1.0, 2.0, 3.0))
-        assert_same([chosen.x, chosen.y, chosen.z], expected[2].reshape(3, 8))
+        assert_same(out, expected)
+        chosen = where(each > 0.5, Vec(*a.reshape(3, count)), Vec(1.0, 2.0, 3.0))
+        assert_same([chosen.x, chosen.y, chosen.z], expected[2].reshape(3, count))

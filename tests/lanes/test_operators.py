@@ -13,8 +13,8 @@ from numba.extending import register_jitable
 
 import minirt.lanes.compiled  # noqa: F401
 from minirt import lanes
-from minirt.lanes import WIDTH, lane, load, splat, where
-from tests.lanes.numbers import FIRST, NUMBERS, SECOND, assert_same
+from minirt.lanes import lane, load, splat, unit_roundoff, where, width
+from tests.lanes.numbers import PRECISIONS, assert_same, edges, pairs
 
 Function = Callable[..., Any]
 
@@ -31,7 +31,7 @@ TWO = {
 
 @register_jitable
 def put(out: Any, start: int, x: Any) -> None:
-    for ray in range(WIDTH):
+    for ray in range(width(out)):
         out[start + ray] = lane(x, ray)
 
 
@@ -43,28 +43,29 @@ def compiled(function: Function, *given: Any) -> Any:
     if len(given) == 1:
 
         def run(a: Any, out: Any) -> None:
-            for i in range(0, out.size, WIDTH):
+            for i in range(0, out.size, width(out)):
                 put(out, i, jitable(load(a, i)))
     elif np.ndim(given[1]) == 0:
 
         def run(a: Any, b: Any, out: Any) -> None:
-            for i in range(0, out.size, WIDTH):
+            for i in range(0, out.size, width(out)):
                 x = jitable(load(a, i), b)
                 put(out, i, where(x, 1.0, 0.0) if verdict else x)
     elif np.ndim(given[0]) == 0:
 
         def run(a: Any, b: Any, out: Any) -> None:
-            for i in range(0, out.size, WIDTH):
+            for i in range(0, out.size, width(out)):
                 x = jitable(a, load(b, i))
                 put(out, i, where(x, 1.0, 0.0) if verdict else x)
     else:
 
         def run(a: Any, b: Any, out: Any) -> None:
-            for i in range(0, out.size, WIDTH):
+            for i in range(0, out.size, width(out)):
                 x = jitable(load(a, i), load(b, i))
                 put(out, i, where(x, 1.0, 0.0) if verdict else x)
 
-    out = np.empty(max(np.size(each) for each in given))
+    (array, *_) = (each for each in given if np.ndim(each))
+    out = np.empty_like(array)
     njit(error_model="numpy")(run)(*given, out)
     return out
 
@@ -90,55 +91,88 @@ def quiet() -> Any:
         yield
 
 
+@PRECISIONS
 @pytest.mark.parametrize("function", ONE, ids=name)
-def test_of_one_number(function: Function) -> None:
-    expected = ONE[function](NUMBERS)
-    assert_same(compiled(function, NUMBERS), expected)
-    assert_same(function(NUMBERS), expected)
+def test_of_one_number(function: Function, dtype: Any) -> None:
+    numbers = edges(dtype)
+    expected = ONE[function](numbers)
+    assert_same(compiled(function, numbers), expected)
+    interpreted = function(numbers)
+    assert_same(interpreted, expected)
+    assert interpreted.dtype == dtype
     if function is not operator.neg:
-        assert_same(on_numbers(function, NUMBERS), expected)
+        assert_same(on_numbers(function, numbers), expected)
 
 
+@PRECISIONS
 @pytest.mark.parametrize("function", TWO, ids=name)
-def test_of_two_numbers(function: Function) -> None:
-    expected = TWO[function](FIRST, SECOND)
-    assert_same(compiled(function, FIRST, SECOND), expected)
-    assert_same(function(FIRST, SECOND), expected)
+def test_of_two_numbers(function: Function, dtype: Any) -> None:
+    first, second = pairs(dtype)
+    expected = TWO[function](first, second)
+    assert_same(compiled(function, first, second), expected)
+    interpreted = function(first, second)
+    assert_same(interpreted, expected)
+    assert interpreted.dtype == dtype
     if function not in ARITHMETIC:
-        assert_same(on_numbers(function, FIRST, SECOND), expected)
+        assert_same(on_numbers(function, first, second), expected)
 
 
+@PRECISIONS
 @pytest.mark.parametrize("function", TWO, ids=name)
-def test_of_lanes_and_a_single_number(function: Function) -> None:
+def test_of_lanes_and_a_single_number(function: Function, dtype: Any) -> None:
+    # A single number takes the precision of the lanes beside it.
+    numbers = edges(dtype)
     for single in (3, 0.1):
-        assert_same(compiled(function, NUMBERS, single), TWO[function](NUMBERS, np.float64(single)))
-        assert_same(compiled(function, single, NUMBERS), TWO[function](np.float64(single), NUMBERS))
+        assert_same(compiled(function, numbers, single), TWO[function](numbers, dtype(single)))
+        assert_same(compiled(function, single, numbers), TWO[function](dtype(single), numbers))
 
 
+@PRECISIONS
 @pytest.mark.parametrize("function", COMPARISONS, ids=name)
-def test_comparisons(function: Function) -> None:
-    assert_same(compiled(function, FIRST, SECOND), function(FIRST, SECOND).astype(float))
-    assert_same(compiled(function, NUMBERS, 1.5), function(NUMBERS, 1.5).astype(float))
-    assert_same(compiled(function, 1, NUMBERS), function(1.0, NUMBERS).astype(float))
+def test_comparisons(function: Function, dtype: Any) -> None:
+    first, second = pairs(dtype)
+    assert_same(compiled(function, first, second), function(first, second).astype(dtype))
+    numbers = edges(dtype)
+    assert_same(compiled(function, numbers, 1.5), function(numbers, dtype(1.5)).astype(dtype))
+    assert_same(compiled(function, 1, numbers), function(dtype(1), numbers).astype(dtype))
 
 
-def test_splat_and_load_at_any_index() -> None:
+@PRECISIONS
+def test_splat_and_load_at_any_index(dtype: Any) -> None:
     @njit(error_model="numpy")
     def run(a: Any, start: int, out: Any) -> None:
-        put(out, 0, load(a, start))
-        put(out, WIDTH, splat(a[1]))
-        put(out, 2 * WIDTH, splat(7))
+        x = load(a, start)
+        put(out, 0, x)
+        put(out, width(out), splat(a[1], x))
+        put(out, 2 * width(out), splat(0.1, x))
 
-    for start in range(4):
-        out = np.empty(3 * WIDTH)
-        run(NUMBERS, start, out)
-        expected = [*NUMBERS[start : start + WIDTH], *[NUMBERS[1]] * WIDTH, *[7.0] * WIDTH]
+    numbers = edges(dtype)
+    count = width(numbers)
+    for start in range(2):
+        out = np.empty(3 * count, dtype)
+        run(numbers, start, out)
+        expected = [*numbers[start : start + count], *[numbers[1]] * count, *[dtype(0.1)] * count]
         assert_same(out, expected)
-        assert_same([*load(NUMBERS, start), *splat(NUMBERS[1]), *splat(7)], expected)
+        x = load(numbers, start)
+        assert_same([*x, *splat(numbers[1], x), *splat(0.1, x)], expected)
+        assert splat(0.1, x).dtype == dtype
+
+
+@PRECISIONS
+def test_as_many_lanes_as_fill_two_registers(dtype: Any) -> None:
+    @njit(error_model="numpy")
+    def run(a: Any) -> Any:
+        return width(a), width(load(a, 0)), unit_roundoff(load(a, 0)), unit_roundoff(a[0])
+
+    numbers = edges(dtype)
+    roundoff = {np.float64: 2.0**-53, np.float32: 2.0**-24}[dtype]
+    expected = 128 // numbers.itemsize, 128 // numbers.itemsize, roundoff, roundoff
+    assert run(numbers) == run.py_func(numbers) == expected
+    assert dtype(1) + dtype(roundoff) == 1 < dtype(1) + dtype(1.01 * roundoff)
 
 
 def test_what_is_loaded_does_not_change_with_the_array() -> None:
-    values = np.arange(8.0)
+    values = np.arange(16.0)
     loaded = load(values, 0)
     values[:] = 0
-    assert loaded.tolist() == [0, 1, 2, 3, 4, 5, 6, 7]
+    assert loaded.tolist() == list(range(16))

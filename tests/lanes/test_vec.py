@@ -9,63 +9,71 @@ import pytest
 from numba import njit
 
 import minirt.lanes.compiled  # noqa: F401
-from minirt.lanes import Vec, dot, load
-from tests.lanes.numbers import NUMBERS, assert_same
+from minirt.lanes import Vec, dot, load, width
+from tests.lanes.numbers import PRECISIONS, assert_same, edges
 from tests.lanes.test_operators import put
 
-U = 2.0**-53
-RANDOM = np.random.default_rng(1)
-A, B = RANDOM.normal(size=(2, 24))
-EDGES = NUMBERS[:24]
+
+def table(dtype: Any, seed: int) -> Any:
+    """The components of as many vectors as there are lanes, one behind the other; and edges of numbers for seed 0."""
+    count = 3 * 128 // np.dtype(dtype).itemsize
+    numbers = np.resize(edges(dtype), count) if seed == 0 else np.random.default_rng(seed).normal(size=count)
+    return numbers.astype(dtype)
 
 
 @njit(error_model="numpy")
 def operators(a: Any, b: Any, out: Any) -> None:
-    u, v = Vec(load(a, 0), load(a, 8), load(a, 16)), Vec(load(b, 0), load(b, 8), load(b, 16))
-    w = Vec(b[0], b[8], b[16])
+    n = width(a)
+    u, v = Vec(load(a, 0), load(a, n), load(a, 2 * n)), Vec(load(b, 0), load(b, n), load(b, 2 * n))
+    w = Vec(b[0], b[n], b[2 * n])
     s = load(a, 4)
     results = (u + v, u - v, u * s, s * u, u / s, -u, u + w, w - u, u * b[1], b[1] * u, u / b[1], w * s, s * w, 2 * u)
     for k, r in enumerate(results):
         put(out[k], 0, r.x)
-        put(out[k], 8, r.y)
-        put(out[k], 16, r.z)
+        put(out[k], n, r.y)
+        put(out[k], 2 * n, r.z)
 
 
 def expected(a: Any, b: Any) -> list[Any]:
     """The same by numpy, component by component."""
-    u, v, w = a.reshape(3, 8), b.reshape(3, 8), b.reshape(3, 8)[:, :1]
-    s, t = a[4:12], b[1]
+    n = a.size // 3
+    u, v, w = a.reshape(3, n), b.reshape(3, n), b.reshape(3, n)[:, :1]
+    s, t = a[4 : 4 + n], b[1]
     # A quotient is a product with the inverse.
     return [u + v, u - v, u * s, s * u, u * (1 / s), -u, u + w, w - u, u * t, t * u, u * (1 / t), w * s, s * w, 2 * u]
 
 
-@pytest.mark.parametrize(("a", "b"), [(A, B), (EDGES, B), (A, EDGES), (EDGES, EDGES[::-1].copy())])
-def test_operators_compiled(a: Any, b: Any) -> None:
-    out = np.empty((14, 24))
+@PRECISIONS
+@pytest.mark.parametrize(("one", "other"), [(1, 2), (0, 2), (1, 0), (0, 0)])
+def test_operators_compiled(one: int, other: int, dtype: Any) -> None:
+    a, b = table(dtype, one), table(dtype, other)[:: -1 if one == other else 1].copy()
+    out = np.empty((14, a.size), dtype)
     operators(a, b, out)
     with np.errstate(all="ignore"):
-        for actual, right in zip(out.reshape(14, 3, 8), expected(a, b), strict=True):
+        for actual, right in zip(out.reshape(14, 3, -1), expected(a, b), strict=True):
             assert_same(actual, right)
 
 
 @njit(error_model="numpy")
 def of_single_numbers(a: Any) -> Any:
     u, v = Vec(a[0], a[1], a[2]), Vec(a[3], a[4], a[5])
-    r, s = (u + v * 2 - v / a[6]), -u
+    r, s = (u + v - v / a[6]), -u
     return r.x, r.y, r.z, s.x, s.y, s.z
 
 
-def test_single_numbers_compiled() -> None:
-    u, v = A[:3], A[3:6]
-    with np.errstate(all="ignore"):
-        right = [*(u + v * 2 - v * (1 / A[6])), *-u]
-    assert_same(of_single_numbers(A), right)
+@PRECISIONS
+def test_single_numbers_compiled(dtype: Any) -> None:
+    a = table(dtype, 1)
+    u, v = a[:3], a[3:6]
+    assert_same(np.array(of_single_numbers(a), dtype), [*(u + v - v * (1 / a[6])), *-u])
 
 
-def test_operators_interpreted() -> None:
-    u, v, s = Vec(A[:8], A[8:16], A[16:]), Vec(*B[:3]), A[4:12]
-    w = B[:3, None]
-    columns = A.reshape(3, 8)
+@PRECISIONS
+def test_operators_interpreted(dtype: Any) -> None:
+    n = 128 // np.dtype(dtype).itemsize
+    a, b = table(dtype, 1), table(dtype, 2)
+    columns, w = a.reshape(3, n), b[:3, None]
+    u, v, s = Vec(*columns), Vec(*b[:3]), a[4 : 4 + n]
     for made, right in (
         (u + v, columns + w),
         (u - v, columns - w),
@@ -73,28 +81,35 @@ def test_operators_interpreted() -> None:
         (s * v, s * w),
         (v * s, s * w),
         (u / s, columns * (1 / s)),
-        (np.float64(2) * u, 2 * columns),
+        (dtype(2) * u, 2 * columns),
         (-u, -columns),
     ):
         assert isinstance(made, Vec)
         assert_same([made.x, made.y, made.z], right)
+        assert made.x.dtype == dtype
 
 
 @njit(error_model="numpy")
 def products(a: Any, b: Any, out: Any) -> None:
-    u, v = Vec(load(a, 0), load(a, 8), load(a, 16)), Vec(load(b, 0), load(b, 8), load(b, 16))
-    put(out, 0, dot(u, v))
-    put(out, 8, dot(u, Vec(b[0], b[8], b[16])))
-    put(out, 16, dot(Vec(b[0], b[8], b[16]), u))
+    n = width(a)
+    u, v = Vec(load(a, 0), load(a, n), load(a, 2 * n)), Vec(load(b, 0), load(b, n), load(b, 2 * n))
+    w = Vec(b[0], b[n], b[2 * n])
+    put(out[0], 0, dot(u, v))
+    put(out[1], 0, dot(u, w))
+    put(out[2], 0, dot(w, u))
 
 
-def test_the_scalar_product() -> None:
-    u, v = A.reshape(3, 8), B.reshape(3, 8)
-    right = [np.sum(u * v, axis=0), np.sum(u * v[:, :1], axis=0), np.sum(u * v[:, :1], axis=0)]
-    size = [np.sum(np.abs(u * w), axis=0) for w in (v, v[:, :1], v[:, :1])]
-    out = np.empty(24)
-    products(A, B, out)
-    assert (np.abs(out.reshape(3, 8) - right) <= 4 * U * np.array(size)).all()  # a * b + c may round once
+@PRECISIONS
+def test_the_scalar_product(dtype: Any) -> None:
+    n = 128 // np.dtype(dtype).itemsize
+    a, b = table(dtype, 1), table(dtype, 2)
+    u, v = a.reshape(3, n), b.reshape(3, n)
+    w = v[:, :1]
+    right = [np.sum(u * v, axis=0), np.sum(u * w, axis=0), np.sum(u * w, axis=0)]
+    size = [np.sum(np.abs(u * each), axis=0) for each in (v, w, w)]
+    out = np.empty((3, n), dtype)
+    products(a, b, out)
+    assert (np.abs(out - right) <= 2 * np.finfo(dtype).eps * np.array(size)).all()  # a * b + c may round once
     assert_same(dot(Vec(*u), Vec(*v)), u[0] * v[0] + u[1] * v[1] + u[2] * v[2])
 
 

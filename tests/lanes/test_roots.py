@@ -1,0 +1,81 @@
+"""The inverse square root: within two units in the last place, with the estimate of AVX-512 and without."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+import minirt.lanes.compiled  # noqa: F401
+from minirt.lanes import Vec, inverse_root, lane, load, unit, width
+from tests.lanes.numbers import DTYPES, PRECISIONS
+from tests.lanes.test_operators import put
+
+AVX2 = {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": "+avx,+avx2,+fma,+bmi,+bmi2,+lzcnt,+popcnt,+sse4.2"}
+
+
+@njit(error_model="numpy")
+def inverse_roots(a: Any, out: Any) -> None:
+    for i in range(0, a.size, width(a)):
+        put(out, i, inverse_root(load(a, i)))
+
+
+@njit(error_model="numpy")
+def units(a: Any, out: Any) -> None:
+    n = width(a)
+    v = unit(Vec(load(a, 0), load(a, n), load(a, 2 * n)))
+    for ray in range(n):
+        out[0, ray], out[1, ray], out[2, ray] = lane(v.x, ray), lane(v.y, ray), lane(v.z, ray)
+
+
+def off(dtype: Any) -> float:
+    """The largest error of `inverse_root`, in units in the last place, over many exponents."""
+    kind = np.finfo(dtype)
+    random = np.random.default_rng(3)
+    exponents = random.uniform(kind.minexp * 0.9, kind.maxexp * 0.9, 32_000)
+    numbers = np.concatenate([2.0**exponents, random.uniform(0.9, 4.1, 32_000), 4.0 ** np.arange(-32, 32)])
+    numbers = numbers.astype(dtype)
+    out = np.empty_like(numbers)
+    inverse_roots(numbers, out)
+    exact = 1 / np.sqrt(numbers.astype(np.longdouble))
+    return float(np.max(np.abs(out - exact) / np.spacing(exact.astype(dtype))))
+
+
+@PRECISIONS
+def test_within_two_units_in_the_last_place(dtype: Any) -> None:
+    assert off(dtype) <= 2
+
+
+@PRECISIONS
+def test_a_power_of_four_changes_the_exponent_alone(dtype: Any) -> None:
+    numbers = np.random.default_rng(4).uniform(1, 4, 32).astype(dtype)
+    one, other = np.empty((2, 32), dtype)
+    inverse_roots(numbers, one)
+    inverse_roots(numbers * dtype(4.0**20), other)
+    assert np.array_equal(other, one * dtype(2.0**-20))
+
+
+@PRECISIONS
+def test_unit_vectors(dtype: Any) -> None:
+    n = 128 // np.dtype(dtype).itemsize
+    v = np.random.default_rng(5).normal(size=(3, n)).astype(dtype)
+    out = np.empty_like(v)
+    units(v.ravel(), out)
+    exact = v.astype(np.longdouble) / np.sqrt((v.astype(np.longdouble) ** 2).sum(axis=0))
+    assert np.abs(out - exact).max() <= 4 * np.finfo(dtype).eps
+    interpreted = unit(Vec(*v))
+    assert np.abs([interpreted.x, interpreted.y, interpreted.z] - exact).max() <= 4 * np.finfo(dtype).eps
+    assert interpreted.x.dtype == dtype
+
+
+def test_without_avx_512() -> None:
+    program = "from tests.lanes.test_roots import DTYPES, off; print(max(map(off, DTYPES)))"
+    ended = subprocess.run(
+        [sys.executable, "-c", program], env=os.environ | AVX2, check=True, capture_output=True, text=True
+    )
+    assert float(ended.stdout) <= 1.5  # a root and a division, each rounded
+    assert len(DTYPES) == 2
