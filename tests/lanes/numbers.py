@@ -12,7 +12,7 @@ PRECISIONS = pytest.mark.parametrize("dtype", DTYPES, ids=["f64x16", "f32x32"])
 
 
 def edges(dtype: Any) -> Any:
-    """Zeros, denormal, tiny, ordinary, whole, large and infinite numbers of both signs, and NaN; full packets of them."""
+    """Zero, denormal, tiny, ordinary, whole, large and infinite numbers of both signs, and NaN; whole packets."""
     kind = np.finfo(dtype)
     small, root = float(kind.tiny), float(kind.max) ** 0.5
     whole = 2.0 ** (kind.nmant - 1) + 0.5
