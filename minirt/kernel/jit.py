@@ -13,10 +13,12 @@ from typing import Any
 
 from llvmlite import ir
 from numba import njit, types
-from numba.extending import overload, register_jitable
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.extending import lower_builtin, overload, register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
 from minirt.kernel import cache, frame, rows, shade, trace
+from minirt.kernel.inlined import Inlined
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, VecType, common, constant, splat, vec_of
 from minirt.shapes import KINDS, basis, exact, quadric
@@ -26,7 +28,12 @@ from minirt.shapes import KINDS, basis, exact, quadric
 FLAGS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True, "_nrt": False}
 # Functions that only the kernel calls: without wrappers for calls from outside 20 % less to compile; inlined, because a
 # call passes vectors through memory, 1.5 to 2 times as fast.
-INNER: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
+INNER: dict[str, Any] = {
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+    "forceinline": True,
+    "pipeline_class": Inlined,
+}
 
 
 def own_functions(module: ModuleType) -> list[FunctionType]:
@@ -40,24 +47,46 @@ def own_functions(module: ModuleType) -> list[FunctionType]:
 # numba compares them with those of the implementation.
 
 
-@overload(trace.over_kinds, jit_options=INNER)
-def _over_kinds(step, groups, state, given):  # type: ignore[no-untyped-def]
-    if len(groups) == 0:
-        return lambda step, groups, state, given: state
-    over_kinds = trace.over_kinds
-    return lambda step, groups, state, given: over_kinds(step, groups[1:], step(groups[0], state, given), given)
-
-
-@overload(rows.intersect, jit_options=INNER)
+@overload(rows.intersect, jit_options=INNER, strict=False)
 def _intersect(shape, origin, direction):  # type: ignore[no-untyped-def]
-    formula = rows.kind_of_packed(shape.instance_class).intersect
-    return lambda shape, origin, direction: formula(shape, origin, direction)  # noqa: PLW0108  (numba compares names)
+    return rows.kind_of_packed(shape.instance_class).intersect
 
 
-@overload(rows.surface, jit_options=INNER)
+@overload(rows.surface, jit_options=INNER, strict=False)
 def _surface(shape, point):  # type: ignore[no-untyped-def]
-    formula = rows.kind_of_packed(shape.instance_class).surface
-    return lambda shape, point: formula(shape, point)  # noqa: PLW0108
+    return rows.kind_of_packed(shape.instance_class).surface
+
+
+@infer_global(trace.over_kinds)
+class OverKinds(AbstractTemplate):
+    """The type of `over_kinds`: that of the state after the last step."""
+
+    key = trace.over_kinds
+
+    def generic(self, args: Any, kws: Any) -> Any:
+        return signature(steps_of(self.context, *args)[-1].return_type, *args)
+
+
+def steps_of(context: Any, step: Any, groups: Any, state: Any, given: Any) -> list[Any]:
+    """The signature of the step for each kind."""
+    found = []
+    for group in groups:
+        found.append(context.resolve_function_type(step, (group, state, given), {}))
+        state = found[-1].return_type
+    return found
+
+
+@lower_builtin(trace.over_kinds, types.Any, types.BaseTuple, types.Any, types.Any)
+def _over_kinds(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    _, groups, state, given = args
+    kind = sig.args[2]
+    for place, each in enumerate(steps_of(context.typing_context, *sig.args)):
+        function = context.get_function(sig.args[0], each)
+        context.add_linking_libs(getattr(function, "libs", ()))
+        state = context.cast(builder, state, kind, each.args[1])
+        state = function(builder, (builder.extract_value(groups, place), state, given))
+        kind = each.return_type
+    return state
 
 
 def first_number(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
