@@ -18,6 +18,7 @@ from pathlib import Path
 
 import llvmlite
 import numba
+from llvmlite.binding import get_host_cpu_name
 from numba.core import config
 
 PACKAGE = Path(__file__).parent.parent
@@ -37,8 +38,9 @@ def user_folder() -> Path:
 
 
 def fingerprint() -> str:
-    """A hash of the sources and of the compiler's versions."""
-    digest = hashlib.sha256(f"{sys.version} {numba.__version__} {llvmlite.__version__}".encode())
+    """A hash of the sources, of the compiler's versions and of the processor."""
+    versions = sys.version, numba.__version__, llvmlite.__version__, get_host_cpu_name()
+    digest = hashlib.sha256(" ".join(versions).encode())
     for folder in SOURCES:
         for source in sorted((PACKAGE / folder).rglob("*.py")):
             digest.update(source.relative_to(PACKAGE).as_posix().encode() + b"\0" + source.read_bytes())

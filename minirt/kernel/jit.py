@@ -7,21 +7,26 @@ formulas by the types of shapes, so what is compiled holds just the kinds of sha
 from __future__ import annotations
 
 import sys
+from functools import lru_cache
 from itertools import count
 from types import FunctionType, ModuleType
-from typing import Any
+from typing import Any, TypeAlias
 
+import numpy as np
 from llvmlite import ir
-from numba import njit, types
+from numba import njit, typeof, types
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import lower_builtin, overload, register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
 from minirt.kernel import cache, frame, rows, shade, trace
 from minirt.kernel.inlined import Inlined
+from minirt.kernel.traced import Traced
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, VecType, common, constant, splat, vec_of
 from minirt.shapes import KINDS, basis, exact, quadric
+
+Arguments: TypeAlias = tuple[Any, ...]  # of `minirt.kernel.frame.frame`
 
 # error_model: x / 0 is infinite or NaN, as in IEEE 754. fastmath: a * b + c may round once, and nothing else. _nrt: the
 # kernel allocates nothing, and without reference counting it was seen to run twice as fast.
@@ -171,5 +176,33 @@ for _module in (
             register_jitable(**INNER)(_function)
 
 CACHE = cache.folder()
-with cache.numba_cache(CACHE):
-    render_bands = njit(cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(frame.frame)
+
+
+@lru_cache(None)
+def kernel_of(*rows: np.dtype[Any]) -> Any:
+    """The kernel for shapes that lie in rows of these types, compiled or loaded when it is first called.
+
+    Each has a folder of its own: numba's index of a folder does not bear two programs that write it at the same time.
+    """
+    place = CACHE and CACHE / "-".join([each.names[0].split(".")[0] for each in rows] + [str(rows[0][0].base)])
+    with cache.numba_cache(place):
+        return njit(cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(frame.frame)
+
+
+def kernel_for(traced: Traced) -> Any:
+    """The kernel for a scene."""
+    return kernel_of(*(group.rows.dtype for group in traced.groups))
+
+
+def compile(arguments: Arguments) -> None:
+    """Compile the kernel for arguments of these types, unless it is kept from an earlier run."""
+    kernel_for(arguments[-1]).compile(tuple(map(typeof, arguments)))
+
+
+def is_kept(arguments: Arguments) -> bool:
+    """Whether the kernel for arguments of these types need not be compiled."""
+    kernel = kernel_for(arguments[-1])
+    signature, keeper = tuple(map(typeof, arguments)), kernel._cache
+    if CACHE is None or signature in kernel.overloads:
+        return signature in kernel.overloads
+    return keeper._index_key(signature, kernel.targetctx.codegen()) in keeper._cache_file._load_index()

@@ -16,6 +16,7 @@ from minirt.lanes import width
 from minirt.rendering.adaptive import contrasts, packets_of
 from minirt.rendering.camera import packet_rays
 from minirt.rendering.cores import usable_cores
+from minirt.rendering.helper import Helper
 from minirt.scene import Scene
 
 PRECISIONS = ("double", "single")
@@ -42,6 +43,7 @@ class Renderer:
         self.next_row = np.zeros(1, np.int64)
         self.known: set[frozenset[type]] = set()  # kinds of shapes that there is a kernel for
         self.busy = Lock()
+        self.helper = Helper()
 
     @cached_property
     def workers(self) -> ThreadPoolExecutor:
@@ -60,11 +62,29 @@ class Renderer:
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether the kernel for the kinds of shapes of this scene is there."""
-        return kinds_of(scene) in self.known
+        return not scene.shapes or kinds_of(scene) in self.known
 
     def prepare(self, scene: Scene) -> None:
-        """Load the kernel for the kinds of shapes of this scene, or compile it, which takes seconds."""
-        self.render(scene, np.zeros((1, 1, 4), np.uint8))
+        """Load the kernel for the kinds of shapes of this scene, or compile it, which takes seconds.
+
+        Another process compiles, where what it makes can be kept. RenderError where that fails.
+        """
+        pixels = np.zeros((1, 1, 4), np.uint8)
+        if scene.shapes and self.kernel.CACHE:
+            packing = import_module("minirt.rendering.packing").Packing()
+            arguments = frame_arguments(packing.pack(one_of_each(scene), 1, 1), pixels)
+            if not self.kernel.is_kept(arguments):
+                self.helper.compile(arguments)
+        self.render(scene, pixels)
+
+    def stop(self) -> None:
+        """From any thread: `prepare` need not go on."""
+        self.helper.stop()
+
+    def preview(self, scene: Scene, width: int, height: int) -> np.ndarray | None:
+        """Without a kernel, a coarse picture of a scene; see `minirt.rendering.preview`."""
+        made: np.ndarray | None = import_module("minirt.rendering.preview").preview(scene, width, height)
+        return made
 
     def render(self, scene: Scene, pixels: np.ndarray, samples: int = 1, linear: np.ndarray | None = None) -> bool:
         """Render into `pixels`, C-contiguous uint8 (h, w, 4) in the order blue, green, red, alpha, and where it is
@@ -87,20 +107,19 @@ class Renderer:
         if not scene.shapes or not pixels.size:
             pixels[...] = (0, 0, 0, 255)
             return True
-        self.next_row = counter = np.zeros(1, np.int64)
         traced = self.packing.pack(scene, across, height)
-        rays = packet_rays(traced.camera, sample_places(samples))
-        wanted = packets_of(contrasts(pixels), width(rays) // DOWN) if edges else ALL_PACKETS
-        self.run(counter, pixels.view(np.uint32)[..., 0], linear, rays, wanted, traced)
+        given = frame_arguments(traced, pixels, samples, linear, edges)
+        self.next_row = counter = given[0]
+        self.run(*given)
         self.known.add(kinds_of(scene))
         return bool(counter[0] < CANCELLED)
 
-    def run(self, counter: Any, words: Any, linear: Any, rays: Any, wanted: Any, traced: Any) -> None:
+    def run(self, counter: Any, words: Any, linear: Any, rays: Any, wanted: Any, _memory: Any, traced: Any) -> None:
         """The same frame on all threads, which share its rows; the first error of any thread is raised.
 
         The caller's thread only waits, so that Ctrl+C reaches it.
         """
-        draw = self.kernel.render_bands
+        draw = self.kernel.kernel_for(traced)
         jobs = [
             self.workers.submit(draw, counter, words, linear, rays, wanted, memory_for(traced), traced)
             for _ in range(self.threads)
@@ -121,6 +140,21 @@ class Renderer:
 def kinds_of(scene: Scene) -> frozenset[type]:
     """The kinds of shapes in a scene: for each set of them there is a kernel of its own."""
     return frozenset(map(type, scene.shapes))
+
+
+def one_of_each(scene: Scene) -> Scene:
+    """A small scene with the same kinds of shapes."""
+    return Scene((scene.camera, *{type(shape): shape for shape in scene.shapes}.values()))
+
+
+def frame_arguments(
+    traced: Any, pixels: np.ndarray, samples: int = 1, linear: np.ndarray = NO_LINEAR, edges: bool = False
+) -> tuple[Any, ...]:
+    """What `minirt.kernel.frame.frame` is called with."""
+    rays = packet_rays(traced.camera, sample_places(samples))
+    wanted = packets_of(contrasts(pixels), width(rays) // DOWN) if edges else ALL_PACKETS
+    words = pixels.view(np.uint32)[..., 0]
+    return np.zeros(1, np.int64), words, linear, rays, wanted, memory_for(traced), traced
 
 
 def memory_for(traced: Any) -> np.ndarray:
