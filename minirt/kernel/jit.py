@@ -37,6 +37,7 @@ INNER: dict[str, Any] = {
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
     "forceinline": True,
+    "no_rewrites": True,
     "pipeline_class": Inlined,
 }
 

@@ -1,4 +1,7 @@
-"""Rendering beside the window: the latest request wins, and what nobody waits for any more is cancelled."""
+"""Rendering beside the window: the latest request wins, and what nobody waits for any more is cancelled.
+
+Until the kernel for a scene is there, its pictures are previews; the last of them is then made again.
+"""
 
 from __future__ import annotations
 
@@ -7,33 +10,39 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-from minirt.viewer.painter import Job, Outcome, Painter, Renderer, paint
+from minirt.viewer.painter import Job, Outcome, Painter, Renderer, paint, preview
+
+
+GRACE = 0.4  # seconds until a kernel that is not there yet is worth a preview and a word: loading one takes less
 
 
 class BackgroundPainter(Painter):
-    """Renders in a thread of its own, which starts with the first request. `notify` is called from there."""
+    """Renders in a thread of its own, which starts with the first request; another has kernels made. `notify` is called
+    from both."""
 
     def __init__(self, renderer: Renderer, notify: Callable[[], object]) -> None:
         super().__init__(renderer, notify)
         self._changed = threading.Condition()
         self._waiting: Job | None = None
         self._running: Job | None = None
+        self._previewed: Job | None = None  # to be made again when the kernel is there
         self._closed = False
-        self._thread = threading.Thread(target=self._work, name="minirt-painter", daemon=True)
+        self._preparing = False
+        self._threads = [threading.Thread(target=self._work, name="minirt-painter", daemon=True)]
 
     @property
     def busy(self) -> bool:
         with self._changed:
-            return bool(self._waiting or self._running or self.outcomes)
+            return bool(self._waiting or self._running or self._previewed or self.outcomes)
 
     def request(self, job: Job) -> None:
         with self._changed:
-            self._waiting = job
-            self._changed.notify()
+            self._waiting, self._previewed = job, None
+            self._changed.notify_all()
             if self._running and self._superseded(self._running):
                 self.renderer.cancel()
-        if self._thread.ident is None:
-            self._thread.start()
+        if self._threads[0].ident is None:
+            self._threads[0].start()
 
     def take(self) -> list[Outcome]:
         with self._changed:
@@ -42,19 +51,23 @@ class BackgroundPainter(Painter):
     def close(self, patience: float) -> bool:
         with self._changed:
             self._closed = True
-            self._changed.notify()
-        if self._thread.ident is None:
+            self._changed.notify_all()
+        if self._threads[0].ident is None:
             return True
+        self.renderer.stop()
         self.renderer.cancel()
-        self._thread.join(patience)
-        return not self._thread.is_alive()
+        end = time.monotonic() + patience
+        for thread in self._threads:
+            thread.join(max(0.0, end - time.monotonic()))
+        return not any(thread.is_alive() for thread in self._threads)
 
     def _work(self) -> None:
         while job := self._next():
             outcome = self._do(job)
             with self._changed:
                 self._running = None
-                self.outcomes.append(outcome)
+                if outcome:
+                    self.outcomes.append(outcome)
             self._tell()
 
     def _next(self) -> Job | None:
@@ -64,20 +77,47 @@ class BackgroundPainter(Painter):
             self._running, self._waiting = self._waiting, None
             return None if self._closed else self._running
 
-    def _do(self, job: Job) -> Outcome:
-        try:
-            if not self.renderer.is_ready(job.scene):
-                self.compiling = True
-                self._tell()
-                self.renderer.prepare(job.scene)
-        except Exception as error:
-            return Outcome(job, error=error)
-        finally:
-            self.compiling = False
+    def _do(self, job: Job) -> Outcome | None:
+        """What becomes of a job; None where there is no kernel for it yet and no preview of it."""
+        if not self.renderer.is_ready(job.scene) and not self._prepared_soon(job):
+            outcome = preview(self.renderer, job)
+            return outcome if outcome.pixels is not None or outcome.error else None
         if self._closed or self._superseded(job):
             return Outcome(job)
         start = time.perf_counter()
         return replace(paint(self.renderer, job), seconds=time.perf_counter() - start)
+
+    def _prepared_soon(self, job: Job) -> bool:
+        """Have the kernel made, unless that is under way; whether it is there before the time of grace is over."""
+        with self._changed:
+            if not self._preparing:
+                self._preparing = True
+                self._threads[1:] = [threading.Thread(target=self._prepare, args=(job,), daemon=True)]
+                self._threads[1].start()
+                self._changed.wait_for(lambda: not self._preparing or self._closed, GRACE)
+            if not self._preparing:
+                return self.renderer.is_ready(job.scene)
+            self.compiling = True
+            self._previewed = None if self._waiting else job
+        self._tell()
+        return False
+
+    def _prepare(self, job: Job) -> None:
+        """Have the kernel made and then, if it was missed, the picture."""
+        error = None
+        try:
+            self.renderer.prepare(job.scene)
+        except Exception as reason:
+            error = reason
+        with self._changed:
+            self._preparing = self.compiling = False
+            if error:
+                self.outcomes.append(Outcome(job, error=error))
+            elif not self._waiting:
+                self._waiting = self._previewed
+            self._previewed = None
+            self._changed.notify_all()
+        self._tell()
 
     def _superseded(self, job: Job) -> bool:
         """Whether nobody waits for that picture any more."""

@@ -44,7 +44,7 @@ def line(state: State) -> str:
 def status(shown: Outcome) -> str:
     """Resolution and time of the picture."""
     job = shown.job
-    coarse = f" at 1/{job.divisor}" if job.divisor > 1 else ""
+    coarse = " preview" if shown.preview else f" at 1/{job.divisor}" if job.divisor > 1 else ""
     time = f"    {shown.seconds * 1000:.1f} ms" if shown.seconds else ""
     return f"{job.width}x{job.height}{coarse}{time}"
 

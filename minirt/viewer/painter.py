@@ -20,6 +20,12 @@ class Renderer(Protocol):
     def prepare(self, scene: Scene) -> None:
         """Compile or load what the scene needs; may take seconds."""
 
+    def stop(self) -> None:
+        """From any thread: nobody waits for `prepare` any more; it ends soon if it can."""
+
+    def preview(self, scene: Scene, width: int, height: int) -> Pixels | None:
+        """A coarse picture, of at most that size, of what nothing is prepared for; None where that would take long."""
+
     def is_ready(self, scene: Scene) -> bool:
         """Whether `render` would begin at once."""
 
@@ -66,6 +72,7 @@ class Outcome:
     pixels: Pixels | None = None
     error: Exception | None = None
     seconds: float = 0.0  # of rendering; 0 where time is not real
+    preview: bool = False  # another picture follows when the kernel is there
 
 
 class Painter:
@@ -109,3 +116,11 @@ def paint(renderer: Renderer, job: Job) -> Outcome:
     except Exception as error:  # whatever it is, it is raised where the program is run, not here
         return Outcome(job, error=error)
     return Outcome(job, pixels if done else None)
+
+
+def preview(renderer: Renderer, job: Job) -> Outcome:
+    """Do what can be done of a job before the renderer is ready for it."""
+    try:
+        return Outcome(job, renderer.preview(job.scene, job.width, job.height), preview=True)
+    except Exception as error:
+        return Outcome(job, error=error)

@@ -23,7 +23,8 @@ class Pictures:
     @property
     def complete(self) -> bool:
         """Whether the latest picture is the one that was asked for last, in full resolution."""
-        return self.latest is not None and self.latest.job is self._requested and self.latest.job.divisor == 1
+        latest = self.latest
+        return bool(latest and latest.job is self._requested and latest.job.divisor == 1 and not latest.preview)
 
     def want(self, scene: Scene, moving: bool) -> None:
         """Ask for what is missing of the picture of that scene; `moving`: it will soon be another."""
@@ -44,7 +45,8 @@ class Pictures:
             if outcome.error:
                 errors.append(outcome.error)
                 continue
-            self._pace.learn(outcome)
+            if not outcome.preview:
+                self._pace.learn(outcome)
             if outcome.pixels is not None:
                 self.latest = outcome
             elif outcome.job is self._requested:

@@ -36,7 +36,10 @@ class FakeRenderer:
         self.rendered: list[tuple[int, int]] = []  # width, height of what was finished
         self.cancelled = 0
         self.ready = True
+        self.previews = True
+        self.stops = False  # whether `stop` ends `prepare`
         self.error: Exception | None = None
+        self.prepare_error: Exception | None = None
         self.gate = threading.Event()  # pictures wait for it
         self.gate.set()
         self.started = threading.Event()
@@ -48,7 +51,18 @@ class FakeRenderer:
     def prepare(self, _scene: Scene) -> None:
         self.started.set()
         self.gate.wait()
+        if self.prepare_error:
+            raise self.prepare_error
         self.ready = True
+
+    def stop(self) -> None:
+        if self.stops:
+            self.gate.set()
+
+    def preview(self, scene: Scene, width: int, height: int) -> NDArray[np.uint8] | None:
+        if not self.previews:
+            return None
+        return np.full((2, 3, 4), colour_of(scene), np.uint8)
 
     def render(self, scene: Scene, pixels: NDArray[np.uint8], samples: int = 1) -> bool:
         assert samples == 1

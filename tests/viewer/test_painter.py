@@ -8,10 +8,11 @@ from dataclasses import replace
 
 import pytest
 
+from minirt.errors import RenderError
 from minirt.viewer.background import BackgroundPainter
 from minirt.viewer.pace import LONGEST, Pace
 from minirt.viewer.painter import Job, Outcome
-from tests.viewer.fake import FakeRenderer, colour_of, scene
+from tests.viewer.fake import TEXT, FakeRenderer, colour_of, scene
 from tests.windows import until
 
 JOB = Job(scene(), 64, 48)
@@ -102,27 +103,84 @@ def test_an_exception_is_an_outcome_and_the_painter_lives_on(bench):
     assert bench.outcomes(1)[0].pixels is not None
 
 
-def test_compiling_is_told_while_it_lasts(bench):
-    bench.renderer.ready = False
-    bench.start(JOB)
-    assert bench.told.acquire(timeout=5)
-    assert bench.painter.compiling
-    bench.renderer.gate.set()
-    bench.outcomes(1)
-    assert not bench.painter.compiling
+class TestWithoutAKernel:
+    """What is shown while `prepare` takes its time."""
+
+    @pytest.fixture
+    def bench(self, bench):
+        bench.renderer.ready = False
+        return bench
+
+    def test_compiling_is_told_while_it_lasts(self, bench):
+        bench.start(JOB)
+        assert bench.told.acquire(timeout=5)
+        assert bench.painter.compiling
+        bench.renderer.gate.set()
+        until(lambda: not bench.painter.compiling, "the kernel", 5)
+
+    def test_a_preview_is_followed_by_the_picture(self, bench):
+        bench.start(JOB)
+        (outcome,) = bench.outcomes(1)
+        assert (outcome.job, outcome.preview, outcome.error) == (JOB, True, None)
+        assert outcome.pixels.shape == (2, 3, 4)
+        assert bench.painter.busy
+        bench.renderer.gate.set()
+        (outcome,) = bench.outcomes(1)
+        assert (outcome.job, outcome.preview) == (JOB, False)
+        assert outcome.pixels.shape == (48, 64, 4)
+        assert not bench.painter.busy
+
+    def test_edits_are_previewed_and_only_the_last_is_rendered(self, bench):
+        bench.start(JOB)
+        bench.outcomes(1)
+        for line in ("sp 1,0,0 2 255,0,0", "sp 2,0,0 2 255,0,0"):
+            edited = replace(JOB, scene=scene(f"{TEXT}{line}\n"))
+            bench.painter.request(edited)
+            (outcome,) = bench.outcomes(1)
+            assert (outcome.job, outcome.preview) == (edited, True)
+        bench.renderer.gate.set()
+        (outcome,) = bench.outcomes(1)
+        assert (outcome.job, outcome.preview) == (edited, False)
+        assert bench.renderer.rendered == [(64, 48)]
+
+    def test_a_kernel_that_is_soon_there_needs_no_preview(self, bench):
+        bench.painter.request(JOB)
+        (outcome,) = bench.outcomes(1)
+        assert not outcome.preview
+        assert not bench.painter.compiling
+
+    def test_without_a_preview_the_picture_comes_all_the_same(self, bench):
+        bench.renderer.previews = False
+        bench.start(JOB)
+        until(lambda: bench.painter.compiling, "the word", 5)
+        bench.renderer.gate.set()
+        assert not bench.outcomes(1)[0].preview
+
+    def test_a_reason_why_there_is_no_kernel_is_an_outcome(self, bench):
+        bench.renderer.prepare_error = RenderError("no")
+        bench.painter.request(JOB)
+        outcomes = bench.outcomes(2)
+        assert [each.error for each in outcomes] == [bench.renderer.prepare_error, None]
+        assert outcomes[1].preview
+        assert not bench.painter.busy
+
+    @pytest.mark.parametrize("stops", [True, False])
+    def test_close_ends_what_can_be_ended(self, stops):
+        bench = Bench()
+        bench.renderer.ready, bench.renderer.stops = False, stops
+        bench.start(JOB)
+        until(lambda: bench.painter.compiling, "the word", 5)
+        start = time.monotonic()
+        assert bench.painter.close(0.05) == stops
+        assert time.monotonic() - start < 0.3
+        bench.renderer.gate.set()
+        assert bench.painter.close(5)
 
 
-def test_close_stops_a_picture_but_not_the_compiler():
+def test_close_stops_a_picture():
     bench = Bench()
     bench.start(JOB)
     assert bench.painter.close(5)
-    bench = Bench()
-    bench.renderer.ready = False
-    bench.start(JOB)
-    assert not bench.painter.close(0.05)
-    bench.renderer.gate.set()
-    assert bench.painter.close(5)
-    assert bench.renderer.rendered in ([], [(64, 48)])
     assert Bench().painter.close(0)
 
 
