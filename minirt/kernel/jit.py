@@ -15,6 +15,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from llvmlite import ir
 from numba import njit, typeof, types
+from numba.core.registry import cpu_target
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import lower_builtin, overload, register_jitable
 
@@ -198,6 +199,12 @@ def kernel_for(traced: Traced) -> Any:
 def compile(arguments: Arguments) -> None:
     """Compile the kernel for arguments of these types, unless it is kept from an earlier run."""
     kernel_for(arguments[-1]).compile(tuple(map(typeof, arguments)))
+
+
+def get_ready() -> None:
+    """Load what numba needs to load a kernel, which it would do with the first."""
+    cpu_target.typing_context.refresh()
+    cpu_target.target_context.refresh()
 
 
 def is_kept(arguments: Arguments) -> bool:

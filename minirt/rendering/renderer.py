@@ -74,7 +74,7 @@ class Renderer:
             packing = import_module("minirt.rendering.packing").Packing()
             arguments = frame_arguments(packing.pack(one_of_each(scene), 1, 1), pixels)
             if not self.kernel.is_kept(arguments):
-                self.helper.compile(arguments)
+                self.helper.compile(arguments, self.kernel.get_ready)
         self.render(scene, pixels)
 
     def stop(self) -> None:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 OK, INTERRUPTED = 0, 130
 PATIENCE = 0.3  # seconds that a picture under way has to notice that it is cancelled
+SWITCH = 0.0005  # seconds that another thread may keep the interpreter: the loop takes it back ten times a turn
 
 
 def run(
@@ -64,11 +65,14 @@ def run(
 def show(session: Session) -> int:
     """Run the loop until it ends, and leave nothing behind; returns the exit status."""
     status = OK
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(SWITCH)
     try:
         session.m.mlx_loop(session.mlx)
     except KeyboardInterrupt:
         status = INTERRUPTED
     finally:
+        sys.setswitchinterval(before)
         session.m.mlx_release(session.mlx)
         stopped = session.pictures.painter.close(PATIENCE)
     if differ(session.state.scene, session.saved):

@@ -21,6 +21,7 @@ class Screen:
         self.hud = True
         self.help = False
         self.image = m.mlx_new_image(win.display, 1, 1)
+        draw_message(self.frame, COMPILING)  # the first text takes 50 ms, in which no event would be answered later
 
     @property
     def frame(self) -> Pixels:
