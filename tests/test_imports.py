@@ -43,6 +43,7 @@ COMPILED = {  # the only files that import the compiler
     "kernel/jit.py",
     "kernel/jit_lists.py",
     "kernel/cache.py",
+    "kernel/inlined.py",
 }
 LATE = {"numba", "llvmlite", "pyglet", "PIL", "minirt.rendering", "minirt.viewer", "minirt.kernel", "minirt.mlx"}
 

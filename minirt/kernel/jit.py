@@ -83,7 +83,7 @@ def steps_of(context: Any, step: Any, groups: Any, state: Any, given: Any) -> li
     return found
 
 
-@lower_builtin(trace.over_kinds, types.Any, types.BaseTuple, types.Any, types.Any)
+@lower_builtin(trace.over_kinds, types.Any, types.BaseTuple, types.Any, types.Any)  # type: ignore[untyped-decorator]
 def _over_kinds(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     _, groups, state, given = args
     kind = sig.args[2]
@@ -181,12 +181,13 @@ CACHE = cache.folder()
 
 
 @lru_cache(None)
-def kernel_of(*rows: np.dtype[Any]) -> Any:
+def kernel_of(*row_types: np.dtype[Any]) -> Any:
     """The kernel for shapes that lie in rows of these types, compiled or loaded when it is first called.
 
     Each has a folder of its own: numba's index of a folder does not bear two programs that write it at the same time.
     """
-    place = CACHE and CACHE / "-".join([each.names[0].split(".")[0] for each in rows] + [str(rows[0][0].base)])
+    titles = (rows.kind_of(each.names).element.title for each in row_types)
+    place = CACHE and CACHE / "-".join([*titles, str(row_types[0][0].base)])
     with cache.numba_cache(place):
         return njit(cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(frame.frame)
 

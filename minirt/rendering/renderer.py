@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import gc
+from collections.abc import Iterator
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from functools import cached_property
 from importlib import import_module
 from threading import Lock
@@ -69,6 +72,11 @@ class Renderer:
 
         Another process compiles, where what it makes can be kept. RenderError where that fails.
         """
+        with uncollected():
+            self.load(scene)
+
+    def load(self, scene: Scene) -> None:
+        """`prepare`, as it is."""
         pixels = np.zeros((1, 1, 4), np.uint8)
         if scene.shapes and self.kernel.CACHE:
             packing = import_module("minirt.rendering.packing").Packing()
@@ -135,6 +143,20 @@ class Renderer:
     def cancel(self) -> None:
         """From any thread: the picture that is being made ends soon, half-made."""
         self.next_row[0] = CANCELLED
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """Look for no garbage now, nor later in what is made now: with the modules of numba that holds all threads for
+    30 ms."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        if enabled:
+            gc.enable()
 
 
 def kinds_of(scene: Scene) -> frozenset[type]:

@@ -12,7 +12,6 @@ from dataclasses import replace
 
 from minirt.viewer.painter import Job, Outcome, Painter, Renderer, paint, preview
 
-
 GRACE = 0.4  # seconds until a kernel that is not there yet is worth a preview and a word: loading one takes less
 
 

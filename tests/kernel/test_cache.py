@@ -19,9 +19,12 @@ SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\nsp 0,0,5 4 10,20,30\n"
 RENDER = """
 import minirt
 from minirt.kernel import jit
-image = minirt.render(minirt.load("ball.rt"), 8, 8)
-print(jit.CACHE and jit.CACHE.name, sum(jit.render_bands.stats.cache_hits.values()),
-      sum(jit.render_bands.stats.cache_misses.values()), image.array[4, 4].tolist())
+from minirt.rendering.packing import Packing
+scene = minirt.load("ball.rt")
+image = minirt.render(scene, 8, 8)
+stats = jit.kernel_for(Packing().pack(scene, 8, 8)).stats
+print(jit.CACHE and jit.CACHE.name, sum(stats.cache_hits.values()),
+      sum(stats.cache_misses.values()), image.array[4, 4].tolist())
 """
 
 

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import minirt
 from minirt.kernel import jit
+from minirt.kernel.rows import row_type
+from minirt.shapes import KINDS
 from tests.shapes.test_sphere import BENIGN
 from tests.shapes.ways import compiled, kernel
 
@@ -16,7 +18,7 @@ FASTMATH = "fastmath"
 
 
 def test_the_kernel_divides_as_ieee_754_says_and_keeps_nan() -> None:
-    options = jit.render_bands.targetoptions
+    options = jit.kernel_of(row_type(KINDS[0])).targetoptions
     assert options["error_model"] == "numpy"
     assert options[FASTMATH] == {"contract"}
 

@@ -99,7 +99,7 @@ def test_an_error_in_one_thread_reaches_the_caller() -> None:
         while counter[0] < CANCELLED and time.perf_counter() < start + 10:  # until it is told to stop
             time.sleep(0.01)
 
-    renderer.kernel = SimpleNamespace(frame=kernel.frame, render_bands=bands)
+    renderer.kernel = SimpleNamespace(frame=kernel.frame, kernel_for=lambda _traced: bands)
     start = time.perf_counter()
     with pytest.raises(ValueError, match="out of order"):
         renderer.render(ALL, np.zeros((40, 40, 4), np.uint8))

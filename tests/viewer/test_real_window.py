@@ -70,14 +70,6 @@ def viewer(desktop: Desktop, tmp_path: Path) -> Iterator[Viewer]:
         yield opened
 
 
-@pytest.fixture
-def compiling(desktop: Desktop, tmp_path: Path) -> Iterator[Viewer]:
-    """The first run of the program, at a moment when it shows that it compiles."""
-    with viewing(desktop, tmp_path / "first.rt", cache=tmp_path / "cache") as opened:
-        until(lambda: desktop.screenshot(opened.window).any(), "the words on the black window")
-        yield opened
-
-
 def headless(path: Path, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
     return minirt.render(minirt.load(path), *size).array
 
@@ -104,27 +96,6 @@ def test_ctrl_c_in_the_terminal(viewer):
     viewer.shows(headless(viewer.path))
     os.kill(viewer.process.pid, signal.SIGINT)
     assert viewer.end() == (130, "", "")
-
-
-def test_escape_while_it_compiles(compiling):
-    start = time.monotonic()
-    compiling.key("Escape")
-    assert compiling.end() == (0, "", "")
-    assert time.monotonic() - start < 2
-
-
-def test_ctrl_c_while_it_compiles(compiling):
-    os.kill(compiling.process.pid, signal.SIGINT)
-    assert compiling.end() == (130, "", "")
-
-
-def test_keys_work_while_it_compiles(compiling):
-    compiling.key("i", "Tab", "Tab", "Delete", "ctrl+s")
-    until(lambda: compiling.path.read_text() != TEXT, "the saved scene")
-    compiling.key("Tab")
-    compiling.shows(headless(compiling.path))
-    compiling.key("Escape")
-    assert compiling.end() == (0, "", "")
 
 
 def test_keys_edit_and_save_the_scene(viewer):

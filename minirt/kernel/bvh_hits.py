@@ -1,0 +1,192 @@
+"""Rays that share no origin against all shapes of a scene: `minirt.kernel.trace` by means of a tree."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+from minirt.kernel.bvh import (
+    DIRECTION,
+    FOUND,
+    ORIGIN,
+    WIDTH,
+    Group,
+    Tree,
+    aim,
+    bits,
+    lowest,
+    packet_memory,
+    put,
+    put_vec,
+    reach,
+    vec_at,
+    walk,
+)
+from minirt.kernel.frame import fetch_add
+from minirt.kernel.rows import intersect, kind_of, read, surface
+from minirt.kernel.trace import NEARBY, ROUNDING, largest, over_kinds
+from minirt.lanes import Vec, any, dot, fabs, lane, load, maximum, splat, unit, unit_roundoff, where
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+
+CHUNK = 16 * WIDTH  # rays that a thread takes at a time
+
+Nearest = tuple[Number, Number, Number]  # distance, index and extent of what is hit
+
+
+def nearest(tree: Tree, origin: Vec, direction: Vec, asked: Mask) -> Nearest:
+    """As `trace.nearest`, for any rays; those that are not `asked` for hit endless shapes only."""
+    memory = packet_memory()
+    aim(memory, origin, direction)
+    nothing = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
+    best, owner, extent = over_kinds(nearest_endless, tree.groups, nothing, (tree, origin, direction))
+    put_vec(memory, FOUND, Vec(best, owner, extent))
+    left = bits(asked)
+    while left != 0:
+        ray = lowest(left)
+        left = left & (left - 1)
+        found = vec_at(memory, FOUND, ray)
+        found = walk(nearest_of_block, tree, memory, ray, (found.x, found.y, found.z))
+        memory[FOUND + ray], memory[FOUND + WIDTH + ray], memory[FOUND + 2 * WIDTH + ray] = found
+    return load(memory, FOUND), load(memory, FOUND + WIDTH), load(memory, FOUND + 2 * WIDTH)
+
+
+def nearest_endless(group: Group, state: Nearest, given: tuple[Tree, Vec, Vec]) -> Nearest:
+    """`nearest` over the shapes of one kind that have no end."""
+    tree, origin, direction = given
+    for i in range(group.endless.shape[0]):
+        index = group.endless[i]
+        shape = read(group.rows, tree.places[index, 1])
+        hit, t = intersect(shape, origin, direction)
+        state = nearer(shape, index, tree.extents[index], hit, t, origin, direction, state)
+    return state
+
+
+def nearest_of_block(group: Group, block: int, tree: Tree, origin: Vec, direction: Vec, state: Nearest) -> Nearest:
+    """`nearest` of one ray over a block of shapes."""
+    hit, t = intersect(read_block(group.blocks, block), origin, direction)
+    left = bits(hit & (t <= reach(state[0])))
+    while left != 0:
+        i = lowest(left)
+        left = left & (left - 1)
+        index = group.owners[block, i]
+        shape = read(group.rows, tree.places[index, 1])
+        state = nearer(shape, index, tree.extents[index], True, lane(t, i), origin, direction, state)
+    return state
+
+
+def nearer(
+    shape: Any, index: int, extent: float, hit: Mask, t: Number, origin: Vec, direction: Vec, state: Nearest
+) -> Nearest:
+    """The state, or the hit of a shape at t in its place where that is nearer.
+
+    Where two surfaces coincide within rounding the shape with the lower index is hit, on the whole of the overlap.
+    """
+    best, owner, before = state
+    closer = hit & (t < best)
+    contested = hit & (fabs(t - best) <= NEARBY * t)
+    here = where(closer, extent, before)
+    if any(contested):
+        point = origin + t * direction
+        _, normal = surface(shape, point)
+        gap = fabs(t - best) * fabs(dot(normal, direction))  # between the surfaces
+        rounding = ROUNDING * unit_roundoff(best) * (largest(point) + largest(origin) + extent)
+        same = contested & (gap <= 4.0 * rounding)
+        closer = (closer & (same ^ True)) | (same & (index < owner))
+        here = where(same, maximum(extent, before), where(closer, extent, before))
+    return where(closer, t, best), where(closer, index, owner), here
+
+
+def unhidden(tree: Tree, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
+    """Of the rays that are `asked` for, those that hit nothing nearer than `distance`."""
+    memory = packet_memory()
+    aim(memory, origin, direction)
+    free = over_kinds(free_of_endless, tree.groups, asked, (tree, origin, direction, distance))
+    put(memory, FOUND, where(free, distance, -inf))
+    left = bits(free)
+    while left != 0:
+        ray = lowest(left)
+        left = left & (left - 1)
+        memory[FOUND + ray] = walk(free_of_block, tree, memory, ray, (memory[FOUND + ray],))[0]
+    return load(memory, FOUND) > -inf
+
+
+def free_of_endless(group: Group, free: Mask, given: tuple[Tree, Vec, Vec, Number]) -> Mask:
+    """Of the rays that are free so far, those that no shape without end of one kind stops."""
+    tree, origin, direction, distance = given
+    for i in range(group.endless.shape[0]):
+        hit, t = intersect(read(group.rows, tree.places[group.endless[i], 1]), origin, direction)
+        free = free & ~(hit & (t < distance))
+    return free
+
+
+def free_of_block(
+    group: Group, block: int, tree: Tree, origin: Vec, direction: Vec, state: tuple[float]
+) -> tuple[float]:
+    """How far a ray has to be looked at: -infinity as soon as something stops it."""
+    hit, t = intersect(read_block(group.blocks, block), origin, direction)
+    return (where(any(hit & (t < state[0])), -inf, state[0]),)
+
+
+def read_block(blocks: Any, i: int) -> Any:
+    """The packed shapes of a block as one whose numbers are lanes."""
+    parts = (Vec(*part) if part.ndim == 2 else part for part in blocks[i])
+    return kind_of(blocks.dtype.names).packed(*parts)
+
+
+def trace_rays(
+    next_ray: Any, tree: Tree, origins: Any, directions: Any, distances: Any, owners: Any, points: Any, normals: Any
+) -> None:
+    """Trace rays, taking the next ones from the counter `next_ray` until none is left.
+
+    Any number of threads may do so at the same time. `origins`, `directions` of any length, `points` and `normals` are
+    (n, 3), `distances` and `owners` (n,); what belongs to a ray without a hit stays as it is.
+    """
+    count = origins.shape[0]
+    memory = packet_memory()
+    while True:
+        start = fetch_add(next_ray, CHUNK)
+        if start >= count:
+            return
+        for first in range(start, min(start + CHUNK, count), WIDTH):
+            for ray in range(WIDTH):
+                memory[FOUND + ray] = first + ray
+                for axis in range(3):
+                    memory[ORIGIN + axis * WIDTH + ray] = origins[min(first + ray, count - 1), axis]
+                    memory[DIRECTION + axis * WIDTH + ray] = directions[min(first + ray, count - 1), axis]
+            origin, direction = lanes_at(memory, ORIGIN), unit(rescaled(lanes_at(memory, DIRECTION)))
+            t, owner, _ = nearest(tree, origin, direction, load(memory, FOUND) < count)
+            put_vec(memory, ORIGIN, origin + t * direction)
+            for ray in range(min(WIDTH, count - first)):
+                index = int(lane(owner, ray))
+                if index >= 0:
+                    point = vec_at(memory, ORIGIN, ray)
+                    group, row = tree.places[index, 0], tree.places[index, 1]
+                    on, normal, _ = over_kinds(surface_of_kind, tree.groups, (point, point, 0), (group, row, point))
+                    distances[first + ray], owners[first + ray] = lane(t, ray), index
+                    store_vec(points, first + ray, on)
+                    store_vec(normals, first + ray, normal)
+
+
+def lanes_at(memory: Any, at: int) -> Vec:
+    """The vectors of all rays of a packet."""
+    return Vec(load(memory, at), load(memory, at + WIDTH), load(memory, at + 2 * WIDTH))
+
+
+def store_vec(vectors: Any, i: int, v: Vec) -> None:
+    vectors[i, 0], vectors[i, 1], vectors[i, 2] = v.x, v.y, v.z
+
+
+def rescaled(v: Vec) -> Vec:
+    """The vector in the direction of v whose largest coordinate is 1, however short or long v is."""
+    size = largest(v)
+    return Vec(v.x / size, v.y / size, v.z / size)
+
+
+def surface_of_kind(group: Group, state: tuple[Vec, Vec, int], given: tuple[int, int, Vec]) -> tuple[Vec, Vec, int]:
+    """`surface` of a shape, if it is of this kind; the last of the state counts the kinds."""
+    on, normal, number = state
+    wanted, row, point = given
+    if number == wanted:
+        on, normal = surface(read(group.rows, row), point)
+    return on, normal, number + 1

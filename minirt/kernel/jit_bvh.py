@@ -1,0 +1,103 @@
+"""Where the compiler is attached to the tree and to the rays that walk it."""
+
+from __future__ import annotations
+
+from itertools import count
+from typing import Any
+
+from llvmlite import ir
+from numba import njit, types
+from numba.core import cgutils
+from numba.extending import register_jitable
+
+from minirt.kernel import bvh, bvh_build, bvh_collapse, bvh_hits, cache, rows
+from minirt.kernel.jit import CACHE, FLAGS, INNER, first_number, own_functions
+from minirt.lanes import compiled_verbs, verbs
+from minirt.lanes.teaching import teach
+from minirt.lanes.vector import Lanes, Mask, VecType, constant, vec_of
+
+WORD = ir.IntType(64)
+LANES = Lanes(types.float64)
+LANES_IR = ir.VectorType(ir.DoubleType(), LANES.count)
+WORDS = ir.VectorType(WORD, LANES.count)
+MEMORY = types.CPointer(types.float64)
+
+
+@teach(bvh.packet_memory, lambda: MEMORY, [()])
+def _packet_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return cgutils.alloca_once(builder, ir.DoubleType(), size=bvh.MEMORY)
+
+
+def lanes_place(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    """Where in a memory the lanes from an index on are."""
+    place = builder.gep(args[0], [context.cast(builder, args[1], sig.args[1], types.intp)])
+    return builder.bitcast(place, LANES_IR.as_pointer())
+
+
+@teach(verbs.load, lambda memory, at: LANES if memory == MEMORY else None, [(types.CPointer, types.Integer)])
+def _load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.load(lanes_place(context, builder, sig, args), align=8)
+
+
+@teach(verbs.splat, lambda x, like: like if isinstance(like, types.Float) else None, [(types.Number, types.Float)])
+def _splat(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return context.cast(builder, args[0], sig.args[0], sig.return_type)
+
+
+@teach(bvh.put, lambda memory, at, x: types.none, [(types.CPointer, types.Integer, Lanes)])
+def _put(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    builder.store(args[2], lanes_place(context, builder, sig, args), align=8)
+    return context.get_dummy_value()
+
+
+@teach(bvh.tag, lambda distance, names: LANES, [(Lanes, Lanes)])
+def _tag(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    distance, names = (builder.bitcast(each, WORDS) for each in args)
+    kept = builder.and_(distance, constant(distance, ~bvh.NAME))
+    return builder.bitcast(builder.or_(kept, names), LANES_IR)
+
+
+@teach(bvh.name_of, lambda tagged: types.int64 if tagged == types.float64 else None, [(types.Float,)])
+def _name_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.sext(builder.trunc(builder.bitcast(args[0], WORD), ir.IntType(32)), WORD)
+
+
+@teach(bvh.bits, lambda mask: types.int64, [(Mask,)])
+def _bits(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.zext(compiled_verbs.bits(builder, args[0]), WORD)
+
+
+@teach(bvh.lowest, lambda number: types.int64 if number == types.int64 else None, [(types.Integer,)])
+def _lowest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.cttz(args[0], ir.Constant(ir.IntType(1), 1))
+
+
+def packed_lanes(blocks: Any, i: Any) -> Any:
+    """The type of a block: the kind's NamedTuple of lanes and of Vecs of them."""
+    fields = blocks.dtype.fields.values()
+    numbers = [VecType(LANES) if len(each.type.shape) == 2 else LANES for each in fields]
+    return types.NamedTuple(numbers, rows.kind_of(blocks.dtype.fields).packed)
+
+
+@teach(bvh_hits.read_block, packed_lanes, [(types.Array, types.Integer)])
+def _read_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    first = builder.bitcast(first_number(context, builder, sig, args), LANES_IR.as_pointer())
+    numbers = (builder.load(builder.gep(first, [ir.Constant(WORD, i)]), align=8) for i in count())
+    parts = [
+        vec_of(context, builder, kind, [next(numbers) for _ in "xyz"]) if isinstance(kind, VecType) else next(numbers)
+        for kind in sig.return_type.types
+    ]
+    return context.make_tuple(builder, sig.return_type, parts)
+
+
+TAUGHT = (bvh.packet_memory, bvh.put, bvh.tag, bvh.name_of, bvh.bits, bvh.lowest, bvh_hits.read_block)
+ENTRIES = (bvh_hits.trace_rays, bvh_build.divide, bvh_collapse.weigh, bvh_collapse.collapse)
+for _module in (bvh, bvh_build, bvh_collapse, bvh_hits):
+    for _function in own_functions(_module):
+        if _function not in (*TAUGHT, *ENTRIES):
+            register_jitable(**INNER)(_function)
+
+with cache.numba_cache(CACHE):
+    trace_rays, divide, weigh, collapse = (
+        njit(cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(each) for each in ENTRIES
+    )

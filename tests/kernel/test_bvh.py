@@ -1,0 +1,202 @@
+"""The tree: every shape once, every box around what is in it, and the same hits as without boxes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from minirt.kernel import bvh, bvh_collapse, bvh_hits, jit_bvh
+from minirt.kernel.bvh import LEVELS, MARGIN, MEMORY, NODE, TODO, WIDTH, Tree
+from minirt.lanes import Vec, load, maximum, minimum
+from minirt.rendering.tree import wide_nodes
+from minirt.shapes import Shape
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.kernel.trees import Plain, some, trace, tree, without_boxes
+from tests.shapes.regimes import Array, unit, ways
+
+GREY = (128, 128, 128)
+
+
+def ball(*numbers: float) -> Sphere:
+    return Sphere(numbers[:3], numbers[3], GREY)
+
+
+def checked(scene: Tree, shapes: list[Shape]) -> int:
+    """The levels of a tree; every node and every shape is in it once, and within the boxes above it."""
+    nodes = scene.nodes.reshape(-1, 7, WIDTH)
+    names, met, depth = [0], [], 0
+    todo = [(0, np.full(3, -np.inf), np.full(3, np.inf), 1)]
+    while todo:
+        node, low, high, level = todo.pop()
+        depth = max(depth, level)
+        for child in np.flatnonzero(nodes[node, 0] < np.inf):
+            box_low, box_high = nodes[node, :3, child], nodes[node, 3:6, child]
+            assert (low <= box_low).all()
+            assert (box_high <= high).all()
+            name = bvh.name_of(nodes[node, 6, child])
+            if name >= 0:
+                names.append(name // NODE)
+                todo.append((name // NODE, box_low, box_high, level + 1))
+                continue
+            block, group = divmod(-1 - name, len(scene.groups))
+            owners = scene.groups[group].owners[block]
+            met += set(owners.tolist())
+            corners = np.array([shapes[index].bounds() for index in owners])
+            assert (box_low <= corners[:, 0] - MARGIN * np.abs(corners).max(axis=(1, 2))[:, None] / 2).all()
+            assert (box_high >= corners[:, 1] + MARGIN * np.abs(corners).max(axis=(1, 2))[:, None] / 2).all()
+        empty = nodes[node, 0] == np.inf
+        assert (nodes[node, :3, empty] == np.inf).all()
+        assert (nodes[node, 3:6, empty] == -np.inf).all()
+    assert sorted(names) == list(range(len(nodes)))
+    endless = np.concatenate([group.endless for group in scene.groups]).tolist()
+    assert sorted(met + endless) == list(range(len(shapes)))
+    return depth
+
+
+@pytest.mark.parametrize("count", [1, 2, WIDTH, WIDTH + 1, 100, 1000])
+@pytest.mark.parametrize("kernel", [Plain, jit_bvh], ids=["interpreted", "compiled"])
+def test_every_shape_is_in_the_tree_once_and_every_box_holds_what_is_below_it(count: int, kernel: Any) -> None:
+    shapes = some(np.random.default_rng(count), count)
+    checked(tree(shapes, kernel), shapes)
+
+
+def test_shapes_without_end_are_in_no_box() -> None:
+    shapes: list[Shape] = [Plane((0, i, 0), (0, 1, 0), GREY) for i in range(40)]
+    assert checked(tree(shapes), shapes) == 1
+
+
+@pytest.mark.parametrize(
+    "shapes",
+    [
+        [ball(1, 2, 3, 1)] * 1000,
+        [ball(0, 0, 0, 2.0**-i) for i in range(30) for _ in range(30)],
+        [ball(2.0**i, 0, 0, 2.0**i) for i in range(-40, 48) for _ in range(20)],
+        [Cylinder((0, 0, 1e-3 * i), (0, 0, 1), 1, 1e-9, GREY) for i in range(300)],
+        [ball(1, 2, 3, 1), Cylinder((1, 2, 3), (0, 0, 1), 1, 1, GREY)] * 300,
+    ],
+    ids=["equal", "nested", "halving", "flat", "two kinds in one place"],
+)
+def test_bad_shapes_to_sort(shapes: list[Shape]) -> None:
+    assert checked(tree(shapes), shapes) <= LEVELS + WIDTH
+
+
+def test_a_ray_has_room_for_all_that_it_meets() -> None:
+    # Each box is half as large and as far as the one before: the cheapest is to split them off one by one.
+    far = 2.0 ** np.arange(-450, 450)[:, None]
+    boxes = np.hstack([np.repeat(far, 6, axis=1) * [-1, -1, -1, 1.5, 1.5, 1.5], np.zeros((900, 2))])
+    nodes, leaves = wide_nodes(np.repeat(boxes, WIDTH, axis=0), jit_bvh)
+    children = nodes.reshape(-1, 7, WIDTH)[:, 6].astype(int) // NODE
+    deepest = np.ones(len(children), int)
+    for node in range(len(children) - 1, -1, -1):  # a child comes behind its parent
+        deepest[node] += (
+            max(deepest[child] for child in children[node] if child > 0) if (children[node] > 0).any() else 0
+        )
+    assert leaves[:, 1].max() == 900 * WIDTH
+    assert TODO + deepest[0] * (WIDTH - 1) <= MEMORY
+
+
+def test_few_boxes_are_met() -> None:
+    # 27,000 balls on a grid: a ray passes some 30 of them, in nodes of 16.
+    shapes: list[Shape] = [ball(*place, 0.1) for place in np.ndindex(30, 30, 30)]
+    scene = tree(shapes)
+    memory = bvh.packet_memory()
+    met: list[int] = []
+    visit = lambda group, block, *_: met.append(block) or (np.inf,)  # noqa: E731
+    with np.errstate(all="ignore"):
+        bvh.aim(
+            memory, *(Vec(*(np.full(WIDTH, x) for x in v)) for v in ((-1, 14.3, 13.7), unit(np.array([1, 0.3, 0.2]))))
+        )
+        bvh.walk(visit, scene, memory, 0, (np.inf,))
+    assert 0 < len(met) < 60
+    assert len(scene.nodes) // NODE < 27_000 / 16
+
+
+def grazing(seed: int) -> tuple[list[Shape], Array, Array]:
+    """A ball, and rays that touch it where it touches its box, along the side of that within rounding."""
+    random = np.random.default_rng(seed)
+    centre, radius = random.normal(size=3) * 10, random.uniform(0.01, 1)
+    axis = np.eye(3)[random.integers(3, size=300)] * random.choice([-1, 1], size=(300, 1))
+    directions = unit(np.cross(axis, ways(random, 300))) + random.uniform(-4e-16, 4e-16, (300, 1)) * axis
+    return (
+        [ball(*centre, 2 * radius)],
+        centre + radius * axis - random.uniform(1, 50, (300, 1)) * directions,
+        directions,
+    )
+
+
+def lost(scene: Tree, shapes: list[Shape], rays: tuple[Array, Array]) -> int:
+    """How many rays, interpreted, hit something else than without boxes."""
+    found, right = trace(scene, *rays, bvh_hits.trace_rays), trace(without_boxes(shapes), *rays, bvh_hits.trace_rays)
+    return int((found[1] != right[1]).sum())
+
+
+def test_rays_that_graze_the_sides_of_boxes() -> None:
+    hits = 0
+    for seed in range(100):
+        shapes, *rays = grazing(seed)
+        found, right = trace(tree(shapes), *rays), trace(without_boxes(shapes), *rays)
+        assert np.array_equal(found[1], right[1])
+        hits += (found[1] >= 0).sum()
+    assert 3000 < hits < 27_000
+
+
+def test_boxes_that_are_not_widened_do_not_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    shapes, *rays = grazing(1)
+    assert lost(tree(shapes, Plain), shapes, rays) == 0
+    monkeypatch.setattr(bvh, "MARGIN", 0.0)
+    assert lost(tree(shapes, Plain), shapes, rays) == 0  # one of the two margins is enough so near to the box
+    monkeypatch.setattr(bvh_collapse, "MARGIN", 0.0)
+    assert lost(tree(shapes, Plain), shapes, rays) > 5
+
+
+def zeros() -> tuple[list[Shape], tuple[Array, Array]]:
+    """Balls around the origin, and rays from there along axes: the other parts of a direction are 0 or -0."""
+    shapes: list[Shape] = [ball(*(10 * sign * axis), 1) for axis in np.eye(3) for sign in (1, -1)]
+    zero = np.array([[x, y] for x in (0.0, -0.0) for y in (0.0, -0.0)])
+    ways = [np.insert(pair, axis, sign) for axis in range(3) for sign in (1.0, -1.0) for pair in zero]
+    return shapes, (np.zeros((24, 3)), np.array(ways))
+
+
+def test_parts_of_a_direction_may_be_0_or_minus_0(monkeypatch: pytest.MonkeyPatch) -> None:
+    shapes, rays = zeros()
+    for found in (trace(tree(shapes), *rays), trace(tree(shapes), *rays, bvh_hits.trace_rays)):
+        assert found[1].tolist() == np.repeat(range(6), 4).tolist()
+        assert np.array_equal(found[0], np.full(24, 9.5))
+    right = bvh.planes_of
+    one = np.float64(1)
+    signs = lambda x: one if 1 / x >= 0 else -one  # noqa: E731  (the inverse of -infinity is -0, which is not below 0)
+    monkeypatch.setattr(
+        bvh, "planes_of", lambda inverse: right(Vec(*(signs(x) for x in (inverse.x, inverse.y, inverse.z))))
+    )
+    assert lost(tree(shapes), shapes, rays) > 5
+
+
+def nan_first(nodes: Any, node: int, memory: Any, ray: int, planes: Any, limit: float) -> Any:
+    """`bvh.boxes_met` that takes over NaN."""
+    enter, leave, inverse = (bvh.vec_at(memory, at, ray) for at in (bvh.ENTER, bvh.LEAVE, bvh.INVERSE))
+    near, far = np.zeros(WIDTH), np.full(WIDTH, limit)
+    for axis, part in enumerate("xyz"):
+        first, last = planes[axis], (3 + 2 * axis) * WIDTH - planes[axis]
+        near = maximum(near, (load(nodes, node + first) - getattr(enter, part)) * getattr(inverse, part))
+        far = minimum(far, (load(nodes, node + last) - getattr(leave, part)) * getattr(inverse, part))
+    return near <= far, near
+
+
+def test_a_ray_in_the_side_of_a_box_has_a_distance() -> None:
+    scene = tree([ball(0, 0, 0, 2)])
+    memory = bvh.packet_memory()
+    side = scene.nodes[2 * WIDTH]  # the low one in z
+    found = []
+    for tests in (bvh.boxes_met, nan_first):
+        # Where the ray, moved as far as it is for the test, lies in the side to the last bit.
+        starts = side - 9 * MARGIN + np.arange(-100, 100) * 2.0**-52
+        (z, *_) = starts[starts + 9 * MARGIN == side]
+        with np.errstate(all="ignore"):
+            bvh.aim(memory, *(Vec(*(np.full(WIDTH, x) for x in v)) for v in ((-9.0, 0.0, z), (1.0, 0.0, 0.0))))
+            _, near = tests(scene.nodes, 0, memory, 0, (0, WIDTH, 2 * WIDTH), np.inf)
+        found.append(np.isnan(near).any())
+    assert found == [False, True]

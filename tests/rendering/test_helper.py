@@ -1,0 +1,138 @@
+"""A process of its own compiles: what it keeps is found, what it says is told, and none is left behind."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.errors import RenderError
+from minirt.rendering import helper
+from minirt.rendering.helper import Helper
+from minirt.rendering.packing import Packing
+from minirt.rendering.renderer import frame_arguments
+from minirt.scene import Camera, Scene
+from minirt.shapes.sphere import Sphere
+
+PACKAGE = Path(minirt.__file__).parent
+SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\nsp 0,0,5 4 10,20,30\n"
+SPHERE = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Sphere((0, 0, 5), 4, (10, 20, 30))))
+PREPARE = """
+import sys
+import minirt
+from minirt.rendering import Renderer
+from minirt.rendering.packing import Packing
+import numpy as np
+
+sys.path.append("")
+renderer, scene, pixels = Renderer(1), minirt.load("ball.rt"), np.zeros((8, 8, 4), np.uint8)
+renderer.prepare(scene)
+assert renderer.is_ready(scene)
+assert renderer.render(scene, pixels)
+stats = renderer.kernel.kernel_for(Packing().pack(scene, 8, 8)).stats
+print(sum(stats.cache_hits.values()), sum(stats.cache_misses.values()), renderer.helper.process is not None)
+print(pixels[4, 4].tolist())
+"""
+WAIT = """
+import subprocess, sys
+child = subprocess.Popen([sys.executable, "-P", "-m", "minirt.kernel.compile"], stdin=subprocess.PIPE)
+child.stdin.write(bytes.fromhex(sys.argv[1]))
+child.stdin.flush()
+print(child.pid, flush=True)
+child.wait()
+"""
+
+
+def prepared(folder: Path, place: Path) -> list[str]:
+    """What a new process prints that prepares for a scene: how often the kernel was found and not, whether another
+    process compiled it, and a pixel."""
+    (folder / "ball.rt").write_text(SCENE)
+    command = [sys.executable, "-P", "-W", "error", "-c", PREPARE]
+    environment = os.environ | {"XDG_CACHE_HOME": str(place), "PYTHONPATH": str(PACKAGE.parent)}
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split("\n")
+
+
+def test_another_process_compiles_and_the_next_program_finds_it(tmp_path: Path) -> None:
+    (tmp_path / "numba.py").write_text("raise SystemExit('a module of the current folder was imported')")
+    place = tmp_path / "cache"
+    assert prepared(tmp_path, place)[:2] == ["1 0 True", "[30, 20, 10, 255]"]
+    assert prepared(tmp_path, place)[:2] == ["1 0 False", "[30, 20, 10, 255]"]
+
+
+def test_two_programs_at_once(tmp_path: Path) -> None:
+    said: list[list[str]] = []
+    threads = [threading.Thread(target=lambda: said.append(prepared(tmp_path, tmp_path / "cache"))) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert [each[1] for each in said] == ["[30, 20, 10, 255]"] * 2
+    assert prepared(tmp_path, tmp_path / "cache")[0] == "1 0 False"
+
+
+@pytest.mark.parametrize(
+    ("code", "reason"),
+    [
+        ("import sys; sys.stdin.buffer.read(1); raise MemoryError('no room')", "MemoryError: no room"),
+        ("import os; os._exit(3)", "the compiler ended with status 3"),
+    ],
+)
+def test_what_goes_wrong_is_told(monkeypatch: pytest.MonkeyPatch, code: str, reason: str) -> None:
+    monkeypatch.setattr(helper, "COMMAND", (sys.executable, "-c", code))
+    with pytest.raises(RenderError, match=f"^the kernel cannot be compiled: {reason}$"):
+        Helper().compile((), lambda: None)
+
+
+def test_where_no_process_can_be_started_nothing_is_done(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(helper, "COMMAND", (str(tmp_path / "nothing"),))
+    Helper().compile((), lambda: None)
+
+
+def test_stop_ends_the_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(helper, "COMMAND", (sys.executable, "-c", "import time; time.sleep(60)"))
+    errors: list[RenderError] = []
+    started = threading.Event()
+    made = Helper()
+    made.stop()  # of nothing
+
+    def compile() -> None:
+        with pytest.raises(RenderError) as caught:
+            made.compile((), started.set)
+        errors.append(caught.value)
+
+    thread = threading.Thread(target=compile)
+    thread.start()
+    assert started.wait(5)
+    start = time.monotonic()
+    made.stop()
+    thread.join(5)
+    assert errors
+    assert time.monotonic() - start < 0.5
+    assert made.process is not None
+    assert made.process.poll() is not None
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="kills as POSIX does")
+def test_the_process_ends_when_the_program_is_killed(tmp_path: Path) -> None:
+    arguments = pickle.dumps(frame_arguments(Packing().pack(SPHERE, 1, 1), np.zeros((1, 1, 4), np.uint8)))
+    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": str(PACKAGE.parent)}
+    command = [sys.executable, "-c", WAIT, arguments.hex()]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as program:
+        assert program.stdout is not None
+        program.stdout.readline()
+        os.kill(program.pid, signal.SIGKILL)
+        start = time.monotonic()
+        program.stdout.read()  # until the compiler, which inherited it, has ended too
+        assert time.monotonic() - start < 1
+    assert not list(tmp_path.rglob("*.nbc"))  # it was not simply ready
