@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
 from minirt.errors import MiniRTError, MlxError, ReplayError
+from minirt.garbage import uncollected
 
 if TYPE_CHECKING:
     from minirt.image import Image
@@ -150,7 +151,8 @@ def bench(scene: Scene, asked: argparse.Namespace) -> int:
 
 def headless(scene: Scene, asked: argparse.Namespace) -> int:
     """Render to the output."""
-    write(picture(scene, asked), asked.output)
+    with uncollected():
+        write(picture(scene, asked), asked.output)
     return OK
 
 

@@ -16,6 +16,7 @@ LOW = {"errors", "fields", "element", "lanes", "shapes"}
 MAY: dict[str, set[str]] = {
     "errors": set(),
     "atomic": set(),
+    "garbage": set(),
     "lanes": set(),
     "fields": {"errors"},
     "element": {"errors", "fields"},
@@ -23,11 +24,11 @@ MAY: dict[str, set[str]] = {
     "image": {"errors", "atomic"},
     "scene": {"errors", "fields", "element", "shapes", "atomic"},
     "kernel": {"lanes", "shapes"},
-    "rendering": LOW | {"kernel", "scene"},
+    "rendering": LOW | {"garbage", "kernel", "scene"},
     "mlx": {"errors"},
-    "viewer": {"errors", "fields", "element", "shapes", "scene", "rendering", "mlx", "image", "__init__"},
+    "viewer": {"errors", "garbage", "fields", "element", "shapes", "scene", "rendering", "mlx", "image", "__init__"},
     "bench": {"__init__", "rendering", "scene"},
-    "cli": {"__init__", "errors", "image", "scene", "viewer", "bench", "rendering"},
+    "cli": {"__init__", "errors", "garbage", "image", "scene", "viewer", "bench", "rendering"},
     "__main__": {"cli"},
     "__init__": LOW | {"image", "scene", "rendering"},
 }

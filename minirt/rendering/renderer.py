@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Iterator
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
-from contextlib import contextmanager
 from functools import cached_property
 from importlib import import_module
 from threading import Lock
@@ -14,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from minirt.errors import RenderError
+from minirt.garbage import uncollected
 from minirt.kernel.frame import CANCELLED, DOWN
 from minirt.lanes import width
 from minirt.rendering.adaptive import contrasts, packets_of
@@ -143,20 +141,6 @@ class Renderer:
     def cancel(self) -> None:
         """From any thread: the picture that is being made ends soon, half-made."""
         self.next_row[0] = CANCELLED
-
-
-@contextmanager
-def uncollected() -> Iterator[None]:
-    """Look for no garbage now, nor later in what is made now: with the modules of numba that holds all threads for
-    30 ms."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        gc.freeze()
-        if enabled:
-            gc.enable()
 
 
 def kinds_of(scene: Scene) -> frozenset[type]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import minirt
+from minirt.garbage import uncollected
 from minirt.mlx import Mlx
 from minirt.rendering import pick
 from minirt.scene import Scene
@@ -46,17 +47,18 @@ def run(
     m = mlx or Mlx()
     display = m.mlx_init()
     try:
-        session = Session(
-            m,
-            display,
-            scene,
-            path=Path(path),
-            size=fitting(m, display, size or minirt.size_of(scene)),
-            painter=partial(BackgroundPainter, renderer or minirt.renderer(threads)),
-            pick=pick,
-            keys=keys,
-            lenient=lenient,
-        )
+        with uncollected():
+            session = Session(
+                m,
+                display,
+                scene,
+                path=Path(path),
+                size=fitting(m, display, size or minirt.size_of(scene)),
+                painter=partial(BackgroundPainter, renderer or minirt.renderer(threads)),
+                pick=pick,
+                keys=keys,
+                lenient=lenient,
+            )
         return show(session)
     finally:
         m.mlx_release(display)
