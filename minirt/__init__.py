@@ -17,6 +17,7 @@ from minirt.errors import MiniRTError, MlxError, RenderError, ReplayError, Scene
 if TYPE_CHECKING:
     from minirt.image import Image
     from minirt.rendering import Renderer
+    from minirt.rendering.rays import Hits, trace
     from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
     from minirt.shapes.cylinder import Cylinder
     from minirt.shapes.plane import Plane
@@ -30,6 +31,7 @@ __all__ = [
     "Camera",
     "Cylinder",
     "FurtherLight",
+    "Hits",
     "Image",
     "Light",
     "MiniRTError",
@@ -43,6 +45,7 @@ __all__ = [
     "load",
     "render",
     "size_of",
+    "trace",
 ]
 
 
@@ -53,6 +56,7 @@ HOMES = {
     "Cylinder": "minirt.shapes.cylinder",
     "Plane": "minirt.shapes.plane",
     "Sphere": "minirt.shapes.sphere",
+    **dict.fromkeys(("Hits", "trace"), "minirt.rendering.rays"),
 }
 
 

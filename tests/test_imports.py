@@ -42,6 +42,7 @@ COMPILED = {  # the only files that import the compiler
     "lanes/teaching.py",
     "lanes/vector.py",
     "kernel/jit.py",
+    "kernel/jit_bvh.py",
     "kernel/jit_lists.py",
     "kernel/cache.py",
     "kernel/inlined.py",

@@ -10,6 +10,7 @@ import gc
 import os
 import pickle
 import sys
+from importlib import import_module
 from threading import Thread
 
 
@@ -20,6 +21,7 @@ def main() -> None:
     gc.disable()  # a tenth less time
     from minirt.kernel import jit
 
+    import_module("minirt.kernel.jit_lists")  # which compiles as it is imported
     jit.compile(arguments)
 
 

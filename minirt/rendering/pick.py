@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from minirt.kernel import lists
 from minirt.kernel.frame import TILE, tiles, towards
 from minirt.kernel.trace import NEARBY, nearest
 from minirt.lanes import Vec, lane, splat, unit
@@ -24,7 +25,7 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
         if len(shapes) < 2:
             return shapes[0] if shapes else None
         # Surfaces that may coincide: the kernel has a rule for them.
-        traced = Packing().pack(Scene((scene.camera, *shapes)), width, height)
+        traced = Packing(lists).pack(Scene((scene.camera, *shapes)), width, height)
         rays = Vec(*(splat(part, camera) for part in (direction.x, direction.y, direction.z)))
         _, owner, _ = nearest(traced, y // TILE * tiles(width) + x // TILE, origin, rays)
     return shapes[int(lane(owner, 0))]

@@ -9,6 +9,7 @@ from math import ceil
 
 import numpy as np
 
+from minirt.kernel import lists
 from minirt.kernel.frame import level, towards
 from minirt.kernel.shade import radiance
 from minirt.kernel.traced import Traced
@@ -37,7 +38,7 @@ def picture(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarr
     """The picture of that size, and its light, (h, w, 3)."""
     light = np.zeros((height, width, 3))
     if scene.shapes:
-        traced = in_one_list(Packing().pack(scene, width, height))
+        traced = in_one_list(Packing(lists).pack(scene, width, height))
         y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
         with np.errstate(all="ignore"):
             direction = unit(towards(traced.camera, x, y))
@@ -53,9 +54,9 @@ def in_one_list(traced: Traced) -> Traced:
     kinds = traced.places[:, 0]
     starts = np.searchsorted(np.sort(kinds), np.arange(len(traced.groups) + 1))
     lamps = np.arange(len(traced.lights))[:, None] * len(kinds)
-    by_lamp = [np.lexsort((near, kinds)) for near in traced.lamp_near]
+    by_lamp = [np.lexsort((near, kinds)) for near in traced.lamp_views[..., 4]]
     return traced._replace(
-        seen=np.lexsort((traced.near, kinds)),
+        seen=np.lexsort((traced.views[:, 4], kinds)),
         grid=1,
         lit=np.array(by_lamp, np.int64).ravel(),
         groups=tuple(

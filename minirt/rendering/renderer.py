@@ -12,6 +12,7 @@ import numpy as np
 
 from minirt.errors import RenderError
 from minirt.garbage import uncollected
+from minirt.kernel import lists
 from minirt.kernel.frame import CANCELLED, DOWN
 from minirt.lanes import width
 from minirt.rendering.adaptive import contrasts, packets_of
@@ -77,7 +78,7 @@ class Renderer:
         """`prepare`, as it is."""
         pixels = np.zeros((1, 1, 4), np.uint8)
         if scene.shapes and self.kernel.CACHE:
-            packing = import_module("minirt.rendering.packing").Packing()
+            packing = import_module("minirt.rendering.packing").Packing(lists, self.precision)
             arguments = frame_arguments(packing.pack(one_of_each(scene), 1, 1), pixels)
             if not self.kernel.is_kept(arguments):
                 self.helper.compile(arguments, self.kernel.get_ready)

@@ -8,7 +8,7 @@ A solid tube with both caps about the axis `ax,ay,az`; `x,y,z` is its centre, ha
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt as root
+from math import hypot
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
@@ -41,8 +41,13 @@ class Cylinder(Shape):
         return tuple((end, self.diameter / 2) for end in ends)
 
     def bounds(self) -> Box:
-        # A disc of radius r reaches r * sqrt(1 - w_i^2) along axis i.
-        reach = [self.height / 2 * abs(w) + self.diameter / 2 * root(max(0.0, 1 - w * w)) for w in self.axis]
+        # A disc of radius r reaches r * sqrt(1 - w_i^2) along axis i; 1 is the sum of the squares of all three.
+        u, v, w = self.axis
+        across = hypot(v, w), hypot(w, u), hypot(u, v)
+        reach = [
+            self.height / 2 * abs(along) + self.diameter / 2 * aside
+            for along, aside in zip(self.axis, across, strict=True)
+        ]
         (x, y, z), (i, j, k) = self.centre, reach
         return (x - i, y - j, z - k), (x + i, y + j, z + k)
 

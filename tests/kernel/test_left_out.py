@@ -28,8 +28,8 @@ def code(scene: Scene) -> str:
     """The kernel of a scene, compiled here and now: what is kept from other runs shows no LLVM code."""
     kernel = jit.njit(no_cfunc_wrapper=True, **jit.FLAGS)(jit.frame.frame)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(jit, "render_bands", kernel)
-        Renderer(1).prepare(scene)
+        patch.setattr(jit, "kernel_for", lambda traced: kernel)
+        Renderer(1).render(scene, np.zeros((8, 8, 4), np.uint8))
     (signature,) = kernel.signatures
     return str(kernel.inspect_llvm(signature))
 
