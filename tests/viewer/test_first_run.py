@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.viewer.test_real_window import TEXT, Viewer, headless, viewing
+from tests.viewer.test_real_window import SIZE, TEXT, Viewer, headless, viewing
 from tests.windows import Desktop, until
 
 pytestmark = pytest.mark.window
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.window
 def compiling(desktop: Desktop, tmp_path: Path) -> Iterator[Viewer]:
     """The first run of the program, from the moment when it shows something; afterwards no compiler is left."""
     with viewing(desktop, tmp_path / "first.rt", cache=tmp_path / "cache") as opened:
-        until(lambda: desktop.screenshot(opened.window).any(), "a preview in the black window")
+        until(lambda: desktop.screenshot(opened.window).any(), "words in the black window")
         compilers = children(opened.process.pid)
         assert len(compilers) == 1
         yield opened
@@ -66,12 +66,12 @@ def test_ctrl_c(compiling):
 
 def test_a_preview_comes_first_and_then_the_picture(compiling):
     compiling.key("i")
-    until(lambda: not compiling.desktop.screenshot(compiling.window)[:8, :8].any(), "the picture without words")
+    between = slice(80, SIZE[1] - 60)  # the words above and below
+    until(lambda: bool(compiling.desktop.screenshot(compiling.window)[between].any()), "the preview")
     preview = compiling.desktop.screenshot(compiling.window)
     picture = headless(compiling.path)
-    above = slice(0, len(picture) - 60)  # the words
     assert (preview != picture).any()
-    assert abs(preview[above].astype(int) - picture[above]).mean() < 12
+    assert abs(preview[between].astype(int) - picture[between]).mean() < 12
     compiling.shows(picture)
     compiling.key("Escape")
     assert compiling.end() == (0, "", "")
