@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from functools import cached_property
 from importlib import import_module
+from itertools import takewhile
 from threading import Lock
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,7 +17,7 @@ from minirt.garbage import uncollected
 from minirt.kernel import lists
 from minirt.kernel.frame import CANCELLED, DOWN
 from minirt.lanes import width
-from minirt.rendering.adaptive import contrasts, packets_of
+from minirt.rendering.adaptive import edge_packets
 from minirt.rendering.camera import packet_rays
 from minirt.rendering.cores import usable_cores
 from minirt.rendering.helper import Helper
@@ -93,20 +95,40 @@ class Renderer:
         made: np.ndarray | None = import_module("minirt.rendering.preview").preview(scene, width, height)
         return made
 
-    def render(self, scene: Scene, pixels: np.ndarray, samples: int = 1, linear: np.ndarray | None = None) -> bool:
+    def render(
+        self,
+        scene: Scene,
+        pixels: np.ndarray,
+        samples: int = 1,
+        linear: np.ndarray | None = None,
+        is_wanted: Callable[[], bool] = lambda: True,
+    ) -> bool:
         """Render into `pixels`, C-contiguous uint8 (h, w, 4) in the order blue, green, red, alpha, and where it is
-        given the light as it is into `linear`, float64 (h, w, 3). False where `cancel` ended it early.
+        given the light as it is into `linear`, float64 (h, w, 3).
+
+        False where `cancel` ended it early. `is_wanted` is asked once, as soon as `cancel` can: who stops wanting the
+        picture and then cancels is heard at any time.
         """
         with self.busy:
-            return self.draw(scene, pixels, samples, NO_LINEAR if linear is None else linear, edges=False)
+            return self.draw(scene, pixels, samples, NO_LINEAR if linear is None else linear, False, is_wanted)
 
-    def refine(self, scene: Scene, pixels: np.ndarray, samples: int) -> bool:
-        """Render again, with more samples, where neighbouring pixels of a picture of the scene differ. False where
-        `cancel` ended it early."""
+    def refine(
+        self, scene: Scene, pixels: np.ndarray, samples: int, is_wanted: Callable[[], bool] = lambda: True
+    ) -> bool:
+        """Render again, with more samples, where neighbouring pixels of a picture of the scene differ. False and
+        `is_wanted` as for `render`."""
         with self.busy:
-            return self.draw(scene, pixels, samples, NO_LINEAR, edges=True)
+            return self.draw(scene, pixels, samples, NO_LINEAR, True, is_wanted)
 
-    def draw(self, scene: Scene, pixels: np.ndarray, samples: int, linear: np.ndarray, edges: bool) -> bool:
+    def draw(
+        self,
+        scene: Scene,
+        pixels: np.ndarray,
+        samples: int,
+        linear: np.ndarray,
+        edges: bool,
+        is_wanted: Callable[[], bool],
+    ) -> bool:
         """`render` or, of `edges` alone, `refine`."""
         if samples < 1:
             raise RenderError(f"a pixel needs at least 1 sample, got {samples}")
@@ -114,22 +136,27 @@ class Renderer:
         if not scene.shapes or not pixels.size:
             pixels[...] = (0, 0, 0, 255)
             return True
+        self.next_row = counter = np.zeros(1, np.int64)
+        if not is_wanted():
+            return False
         traced = self.packing.pack(scene, across, height)
-        given = frame_arguments(traced, pixels, samples, linear, edges)
-        self.next_row = counter = given[0]
-        self.run(*given)
+        given = frame_arguments(traced, pixels, samples, linear, counter)
+        if edges:
+            strips = edge_packets(pixels, width(traced.camera) // DOWN)
+            found = list(takewhile(lambda _: counter[0] < CANCELLED, strips))
+            given = given._replace(wanted=np.concatenate(found) if found else ALL_PACKETS)
+        self.run(given)
         self.known.add(kinds_of(scene))
         return bool(counter[0] < CANCELLED)
 
-    def run(self, counter: Any, words: Any, linear: Any, rays: Any, wanted: Any, _memory: Any, traced: Any) -> None:
-        """The same frame on all threads, which share its rows; the first error of any thread is raised.
+    def run(self, given: Frame) -> None:
+        """The same frame on all threads, which share its rows; an error of any thread is raised.
 
         The caller's thread only waits, so that Ctrl+C reaches it.
         """
-        draw = self.kernel.kernel_for(traced)
+        draw = self.kernel.kernel_for(given.scene)
         jobs = [
-            self.workers.submit(draw, counter, words, linear, rays, wanted, memory_for(traced), traced)
-            for _ in range(self.threads)
+            self.workers.submit(draw, *given._replace(memory=memory_for(given.scene))) for _ in range(self.threads)
         ]
         try:
             for job in wait(jobs, return_when=FIRST_EXCEPTION).done:
@@ -154,14 +181,31 @@ def one_of_each(scene: Scene) -> Scene:
     return Scene((scene.camera, *{type(shape): shape for shape in scene.shapes}.values()))
 
 
-def frame_arguments(
-    traced: Any, pixels: np.ndarray, samples: int = 1, linear: np.ndarray = NO_LINEAR, edges: bool = False
-) -> tuple[Any, ...]:
+class Frame(NamedTuple):
     """What `minirt.kernel.frame.frame` is called with."""
-    rays = packet_rays(traced.camera, sample_places(samples))
-    wanted = packets_of(contrasts(pixels), width(rays) // DOWN) if edges else ALL_PACKETS
-    words = pixels.view(np.uint32)[..., 0]
-    return np.zeros(1, np.int64), words, linear, rays, wanted, memory_for(traced), traced
+
+    next_row: np.ndarray
+    pixels: np.ndarray
+    linear: np.ndarray
+    rays: np.ndarray
+    wanted: np.ndarray
+    memory: np.ndarray
+    scene: Any
+
+
+def frame_arguments(
+    traced: Any, pixels: np.ndarray, samples: int = 1, linear: np.ndarray = NO_LINEAR, counter: np.ndarray | None = None
+) -> Frame:
+    """A frame of all packets."""
+    return Frame(
+        next_row=np.zeros(1, np.int64) if counter is None else counter,
+        pixels=pixels.view(np.uint32)[..., 0],
+        linear=linear,
+        rays=packet_rays(traced.camera, sample_places(samples)),
+        wanted=ALL_PACKETS,
+        memory=memory_for(traced),
+        scene=traced,
+    )
 
 
 def memory_for(traced: Any) -> np.ndarray:
