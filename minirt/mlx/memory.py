@@ -130,11 +130,13 @@ class Memory(Backend):
     # --- playing it ---
 
     def play(self) -> None:
-        """Play the script to its end, without `mlx_loop`; raises what a hook raises."""
-        self.display.turn(tick=False)
+        """Play the script to its end, without `mlx_loop`; raises what a hook raises.
+
+        A step comes when nothing is left to do after the one before."""
+        self._settle()
         while self._script and not self.display.over:
             self._script.popleft()()
-            self.display.turn(tick=False)
+            self._settle()
         self.display.raise_failure()
 
     def run(self) -> None:
@@ -170,6 +172,12 @@ class Memory(Backend):
 
     def _at(self, window: Window | None) -> Window:
         return self.display.windows[0] if window is None else window
+
+    def _settle(self) -> None:
+        """Take a turn, and more of them for as long as hooks call `mlx_wake`."""
+        self.display.turn(tick=False)
+        while self.display.woken and not self.display.over:
+            self.display.turn(tick=False)
 
     def _pass(self, seconds: float) -> None:
         ticks = max(1, math.ceil(seconds / TICK - 1e-9))

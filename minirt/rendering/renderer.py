@@ -155,9 +155,7 @@ class Renderer:
         The caller's thread only waits, so that Ctrl+C reaches it.
         """
         draw = self.kernel.kernel_for(given.scene)
-        jobs = [
-            self.workers.submit(draw, *given._replace(memory=memory_for(given.scene))) for _ in range(self.threads)
-        ]
+        jobs = [self.workers.submit(draw, *given._replace(memory=memory_for(given.scene))) for _ in range(self.threads)]
         try:
             for job in wait(jobs, return_when=FIRST_EXCEPTION).done:
                 job.result()

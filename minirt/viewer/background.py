@@ -81,10 +81,9 @@ class BackgroundPainter(Painter):
         if not self.renderer.is_ready(job.scene) and not self._prepared_soon(job):
             outcome = preview(self.renderer, job)
             return outcome if outcome.pixels is not None or outcome.error else None
-        if self._closed or self._superseded(job):
-            return Outcome(job)
         start = time.perf_counter()
-        return replace(paint(self.renderer, job), seconds=time.perf_counter() - start)
+        outcome = paint(self.renderer, job, job.base, lambda: not (self._closed or self._superseded(job)))
+        return replace(outcome, seconds=time.perf_counter() - start)
 
     def _prepared_soon(self, job: Job) -> bool:
         """Have the kernel made, unless that is under way; whether it is there before the time of grace is over."""

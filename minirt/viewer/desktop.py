@@ -34,13 +34,15 @@ def run(
     threads: int | None = None,
     keys: str = "auto",
     lenient: bool = False,
+    samples: int = 1,
     renderer: Renderer | None = None,
     mlx: Mlx | None = None,
 ) -> int:
     """Show a scene until the user has seen enough; returns the exit status: 0, or 130 after Ctrl+C.
 
-    `path` is the scene's file. Changes that were not saved are kept in a file that standard output names. MlxError
-    where no window can be opened, RenderError where the pictures cannot be made.
+    `path` is the scene's file. Changes that were not saved are kept in a file that standard output names. When nothing
+    moves the edges in the picture are refined to `samples` rays for each pixel. MlxError where no window can be opened,
+    RenderError where the pictures cannot be made.
 
     Where the renderer cannot be stopped (inside the compiler) the process ends here and now.
     """
@@ -58,6 +60,7 @@ def run(
                 pick=pick,
                 keys=keys,
                 lenient=lenient,
+                samples=samples,
             )
         return show(session)
     finally:

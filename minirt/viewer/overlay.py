@@ -42,11 +42,12 @@ def line(state: State) -> str:
 
 
 def status(shown: Outcome) -> str:
-    """Resolution and time of the picture."""
+    """Resolution and time of the picture, and how many samples its pixels have of those that they will."""
     job = shown.job
     coarse = " preview" if shown.preview else f" at 1/{job.divisor}" if job.divisor > 1 else ""
     time = f"    {shown.seconds * 1000:.1f} ms" if shown.seconds else ""
-    return f"{job.width}x{job.height}{coarse}{time}"
+    samples = f"{job.samples} of {job.goal} samples" if job.goal > 1 else "1 sample"
+    return f"{job.width}x{job.height}{coarse}{time}    {samples}"
 
 
 def draw_message(pixels: Pixels, text: str) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Protocol, TypeAlias
 
 import numpy as np
@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 from minirt.scene import Scene
 
 Pixels: TypeAlias = NDArray[np.uint8]  # (h, w, 4) BGRA
+Wanted: TypeAlias = Callable[[], bool]  # whether somebody still waits for a picture
+
+MORE = 4  # times the samples of one pass are those of the next
 
 
 class Renderer(Protocol):
@@ -29,11 +32,14 @@ class Renderer(Protocol):
     def is_ready(self, scene: Scene) -> bool:
         """Whether `render` would begin at once."""
 
-    def render(self, scene: Scene, pixels: Pixels) -> bool:
-        """Fill `pixels`; False when cancelled."""
+    def render(self, scene: Scene, pixels: Pixels, samples: int = 1, *, is_wanted: Wanted = ...) -> bool:
+        """Fill `pixels`; False when cancelled, or where `is_wanted` says so once `cancel` has an effect."""
+
+    def refine(self, scene: Scene, pixels: Pixels, samples: int, *, is_wanted: Wanted = ...) -> bool:
+        """Render the edges in `pixels` with more samples; False as above."""
 
     def cancel(self) -> None:
-        """From any thread: a running `render` returns False soon."""
+        """From any thread: a running `render` or `refine` returns False soon."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +51,9 @@ class Job:
     height: int
     divisor: int = 1  # of both, for a coarser picture
     urgent: bool = False  # worth finishing when another is wanted already: something moves
+    samples: int = 1  # of a pixel
+    goal: int = 1  # samples of the last picture, when nothing moves any more
+    base: Pixels | None = field(default=None, compare=False, repr=False)  # the same picture with fewer samples
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -58,6 +67,17 @@ class Job:
     def shows(self, scene: Scene, width: int, height: int) -> bool:
         """Whether that is what it is a picture of, however coarse."""
         return self.scene is scene and (self.width, self.height) == (width, height)
+
+    @property
+    def is_last(self) -> bool:
+        """Whether no picture of the same is better."""
+        return self.divisor == 1 and self.samples >= self.goal
+
+    def next(self, pixels: Pixels) -> Job:
+        """The next better one, where that became `pixels`: in full resolution, or with more samples."""
+        if self.divisor > 1:
+            return replace(self, divisor=1, urgent=False)
+        return replace(self, urgent=False, samples=min(MORE * self.samples, self.goal), base=pixels)
 
     def outlives(self, newer: Job) -> bool:
         """Whether it should be finished although a newer one waits."""
@@ -76,7 +96,8 @@ class Outcome:
 
 
 class Painter:
-    """Renders before `request` returns: for replays, where time is simulated."""
+    """Renders before `request` returns: for replays, where time is simulated. All pixels get all samples, as in a
+    picture that is made without a window."""
 
     compiling = False  # the first picture waits for the kernel
 
@@ -106,13 +127,14 @@ class Painter:
         return True
 
 
-def paint(renderer: Renderer, job: Job) -> Outcome:
-    """Do a job."""
-    pixels = np.empty(job.shape, np.uint8)
+def paint(renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: Wanted = lambda: True) -> Outcome:
+    """Do a job; on `base`, which stays as it is, only where it has edges."""
+    pixels = np.empty(job.shape, np.uint8) if base is None else base.copy()
     try:
         if not renderer.is_ready(job.scene):
             renderer.prepare(job.scene)
-        done = renderer.render(job.scene, pixels)
+        make = renderer.render if base is None else renderer.refine
+        done = make(job.scene, pixels, job.samples, is_wanted=is_wanted)
     except Exception as error:  # whatever it is, it is raised where the program is run, not here
         return Outcome(job, error=error)
     return Outcome(job, pixels if done else None)

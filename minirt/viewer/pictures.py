@@ -1,8 +1,6 @@
-"""Which pictures are asked for, and when: none while nothing changes, coarse ones in haste, a fine one in the end."""
+"""Which pictures are asked for, and when: coarse ones in haste, then finer and finer ones, and none in the end."""
 
 from __future__ import annotations
-
-from dataclasses import replace
 
 from minirt.mlx import Window
 from minirt.scene import Scene
@@ -11,32 +9,32 @@ from minirt.viewer.painter import Job, Outcome, Painter
 
 
 class Pictures:
-    """The pictures of one window."""
+    """The pictures of one window; the last one of what does not move has so many samples a pixel."""
 
-    def __init__(self, painter: Painter, win: Window) -> None:
+    def __init__(self, painter: Painter, win: Window, samples: int) -> None:
         self.painter = painter
+        self.pace = Pace()
         self.latest: Outcome | None = None  # the last one that came
         self._win = win
-        self._pace = Pace()
+        self._samples = samples
         self._requested: Job | None = None
 
     @property
     def complete(self) -> bool:
-        """Whether the latest picture is the one that was asked for last, in full resolution."""
-        latest = self.latest
-        return bool(latest and latest.job is self._requested and latest.job.divisor == 1 and not latest.preview)
+        """Whether the latest picture is the best there will be of what was asked for last."""
+        return self._answered is not None and self._answered.job.is_last
 
     def want(self, scene: Scene, moving: bool) -> None:
         """Ask for what is missing of the picture of that scene; `moving`: it will soon be another."""
         width, height = self._win.width, self._win.height
-        now = Job(scene, width, height)
         last = self._requested
         if last is None:
-            self._request(now)
+            self._request(Job(scene, width, height, goal=self._samples))
         elif not last.shows(scene, width, height):
-            self._request(replace(now, divisor=self._pace.divisor(width, height), urgent=True))
-        elif last.divisor > 1 and not moving and not self.painter.busy:
-            self._request(now)
+            divisor = self.pace.divisor(width, height)
+            self._request(Job(scene, width, height, divisor, urgent=True, goal=self._samples))
+        elif not moving and (shown := self._answered) and shown.pixels is not None and not shown.job.is_last:
+            self._request(last.next(shown.pixels))
 
     def collect(self) -> list[Exception]:
         """Take what the painter has; returns the reasons for pictures that did not come."""
@@ -46,12 +44,18 @@ class Pictures:
                 errors.append(outcome.error)
                 continue
             if not outcome.preview:
-                self._pace.learn(outcome)
+                self.pace.learn(outcome)
             if outcome.pixels is not None:
                 self.latest = outcome
             elif outcome.job is self._requested:
                 self._requested = None  # cancelled, and there is no other
         return errors
+
+    @property
+    def _answered(self) -> Outcome | None:
+        """The latest picture, where it is what was asked for last and no preview of it."""
+        latest = self.latest
+        return latest if latest and latest.job is self._requested and not latest.preview else None
 
     def _request(self, job: Job) -> None:
         self._requested = job

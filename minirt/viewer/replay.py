@@ -26,6 +26,7 @@ def replay(
     file: str = "replay",
     keys: str = "qwerty",
     lenient: bool = False,
+    samples: int = 1,
     hud: bool = True,
 ) -> Pixels:
     """Play `lines` (see `minirt.viewer.script`) and return the last frame, (h, w, 4) BGRA; without `hud` its picture
@@ -34,7 +35,9 @@ def replay(
     `path` is the scene's file, which keys may save and reload; `file` is what errors call the lines. ReplayError where
     they cannot be played, before anything is done.
     """
-    session = play(scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient)
+    session = play(
+        scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient, samples=samples
+    )
     return session.screen.frame if hud else session.picture
 
 
@@ -48,6 +51,7 @@ def play(
     file: str = "replay",
     keys: str = "qwerty",
     lenient: bool = False,
+    samples: int = 1,
 ) -> Session:
     """Like `replay`; returns the session as it is at the end."""
     memory = Memory()
@@ -56,7 +60,7 @@ def play(
     display = m.mlx_init()
     session = Session(
         m, display, scene, path=Path(path), size=size, painter=partial(Painter, renderer), pick=pick, keys=keys,
-        lenient=lenient,
+        lenient=lenient, samples=samples,
     )  # fmt: skip
     try:
         memory.play()

@@ -45,7 +45,9 @@ class Session:
         pick: Pick,
         keys: str = "auto",
         lenient: bool = False,
+        samples: int = 1,
     ) -> None:
+        """`samples`: rays for each pixel of a picture that does not move."""
         self.m = m
         self.mlx = mlx
         self.path = path
@@ -58,7 +60,7 @@ class Session:
         self.wants_screenshot = False
         self.full_screen = False
         self.win = m.mlx_new_window(mlx, *size, f"miniRT - {path.name}", resizable=True)
-        self.pictures = Pictures(painter(lambda: m.mlx_wake(mlx)), self.win)
+        self.pictures = Pictures(painter(lambda: m.mlx_wake(mlx)), self.win, samples)
         self.screen = Screen(m, self.win, self.keymap.layout)
         hooks: dict[Event, Callable[..., None]] = {
             Event.EXPOSE: self.update,
@@ -110,8 +112,8 @@ class Session:
         for error in self.pictures.collect():
             self.complain(error)
         self.guarded(Session.take_screenshot)
-        self.update()
         self.draw()
+        self.update()
 
     # --- what they lead to ---
 
@@ -146,7 +148,11 @@ class Session:
         self.pictures.want(self.state.scene, moving=bool(self.held))
 
     def draw(self) -> None:
-        self.screen.draw(self.state, self.pictures.latest, self.pictures.painter.compiling)
+        """Show it now, and let the pace know how long that takes."""
+        start = self.now
+        if self.screen.draw(self.state, self.pictures.latest, self.pictures.painter.compiling):
+            self.m.mlx_sync(self.mlx, self.m.SYNC_WIN_FLUSH, self.win)
+            self.pictures.pace.learn_showing(self.now - start)
 
     def take_screenshot(self) -> None:
         """Save the picture when it is wanted and complete. RenderError."""

@@ -148,6 +148,27 @@ def test_without_a_display_the_picture_falls_back_to_a_file(
     assert os.fspath(folder / "x.png").encode() in ended.out
 
 
+@pytest.mark.parametrize("samples", [(), ("--samples", "1"), ("--samples", "6")])
+def test_the_last_frame_of_a_replay_is_the_picture_without_a_window(
+    run: Run, folder: Path, samples: tuple[str, ...]
+) -> None:
+    (folder / "keys.txt").write_text("press I\nhold d 0.2\npress Home\n")
+    ended = run("ball.rt", "--replay", "keys.txt", "--size", "40x30", *samples, "-o", "-")
+    assert (ended.status, ended.err) == (0, "")
+    assert np.array_equal(pixels(ended.out), rendered(40, 30, int(samples[1]) if samples else 1))
+
+
+def test_the_window_gets_more_samples_than_a_file(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    from minirt import viewer
+
+    asked: list[object] = []
+    monkeypatch.setattr(viewer, "run", lambda *_, samples, **more: asked.append(samples) or 0)
+    run("ball.rt")
+    run("ball.rt", "--samples", "1")
+    run("ball.rt", "--samples", "64")
+    assert asked == [16, 1, 64]
+
+
 def test_a_replay_takes_the_layout_that_is_asked_for(tmp_path: Path) -> None:
     scene, keys = tmp_path / "scene.rt", tmp_path / "keys.txt"
     scene.write_text("A 0.5 255,255,255\nC 0,0,0 0,0,1 70\nsp 1,0,9 4 200,30,30\n")

@@ -89,3 +89,18 @@ def test_a_window_of_fixed_size_keeps_it() -> None:
     memory.play()
     assert m.mlx_get_window_size(win) == (0, 2, 1)
     assert memory.screenshot()[..., 0].tolist() == [[0, 0, 255, 255]] * 2
+
+
+def test_a_hidden_window_is_brought_up_to_date_when_it_is_seen_again() -> None:
+    memory = Memory()
+    m = Mlx(memory)
+    win = m.mlx_new_window(m.mlx_init(), 4, 3, "hidden")
+    memory.play()
+    memory.minimise(True)
+    memory.play()
+    m.mlx_pixel_put(win.display, win, 1, 1, 0xFFFFFFFF)
+    m.mlx_sync(win.display, m.SYNC_WIN_FLUSH, win)
+    assert not memory.screenshot()[..., :3].any()  # a flip may take a second there
+    memory.minimise(False)
+    memory.play()
+    assert memory.screenshot()[1, 1].tolist() == [255] * 4

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.scene import Scene, dump, parse
+from minirt.viewer.painter import Wanted
 from minirt.viewer.replay import play
 from minirt.viewer.session import Session
 
@@ -24,6 +25,8 @@ pl 0,-1,0 0,1,0 0,255,0
 cy 3,0,0 0,1,0 1 4 0,0,255
 """
 
+MARK = (1, 2, 3, 255)  # a pixel that was refined
+
 
 def scene(text: str = TEXT) -> Scene:
     return parse(text, "scene.rt").scene
@@ -34,6 +37,8 @@ class FakeRenderer:
 
     def __init__(self) -> None:
         self.rendered: list[tuple[int, int]] = []  # width, height of what was finished
+        self.samples: list[int] = []  # of what was begun
+        self.refined: list[int] = []  # samples of what was begun
         self.cancelled = 0
         self.ready = True
         self.previews = True
@@ -64,10 +69,33 @@ class FakeRenderer:
             return None
         return np.full((2, 3, 4), colour_of(scene), np.uint8)
 
-    def render(self, scene: Scene, pixels: NDArray[np.uint8], samples: int = 1) -> bool:
-        assert samples == 1
+    def render(
+        self, scene: Scene, pixels: NDArray[np.uint8], samples: int = 1, is_wanted: Wanted = lambda: True
+    ) -> bool:
+        self.samples.append(samples)
+        if not self.may_finish(is_wanted):
+            return False
+        pixels[...] = colour_of(scene)
+        self.rendered.append((pixels.shape[1], pixels.shape[0]))
+        return True
+
+    def refine(self, scene: Scene, pixels: NDArray[np.uint8], samples: int, is_wanted: Wanted = lambda: True) -> bool:
+        """Marks as many pixels of the first row as there are samples, the first half before it can be cancelled."""
+        assert (pixels[1:] == colour_of(scene)).all()
+        self.refined.append(samples)
+        pixels[0, : samples // 2] = MARK
+        if not self.may_finish(is_wanted):
+            return False
+        pixels[0, :samples] = MARK
+        return True
+
+    def may_finish(self, is_wanted: Wanted) -> bool:
+        """Wait for the gate; False where the picture was cancelled."""
         self.cancel_asked.clear()
         self.started.set()
+        if not is_wanted():
+            self.cancelled += 1
+            return False
         while not self.gate.wait(0.005) and not self.cancel_asked.is_set():
             pass
         if self.cancel_asked.is_set():
@@ -75,8 +103,6 @@ class FakeRenderer:
             return False
         if self.error:
             raise self.error
-        pixels[...] = colour_of(scene)
-        self.rendered.append((pixels.shape[1], pixels.shape[0]))
         return True
 
     def cancel(self) -> None:

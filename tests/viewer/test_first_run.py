@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.viewer.test_real_window import SIZE, TEXT, Viewer, headless, viewing
+from tests.viewer.test_real_window import SIZE, TEXT, Viewer, picture, viewing
 from tests.windows import Desktop, until
 
 pytestmark = pytest.mark.window
@@ -69,10 +69,10 @@ def test_a_preview_comes_first_and_then_the_picture(compiling):
     between = slice(80, SIZE[1] - 60)  # the words above and below
     until(lambda: bool(compiling.desktop.screenshot(compiling.window)[between].any()), "the preview")
     preview = compiling.desktop.screenshot(compiling.window)
-    picture = headless(compiling.path)
-    assert (preview != picture).any()
-    assert abs(preview[between].astype(int) - picture[between]).mean() < 12
-    compiling.shows(picture)
+    right = picture(compiling.path)
+    assert (preview != right).any()
+    assert abs(preview[between].astype(int) - right[between]).mean() < 12
+    compiling.shows(right)
     compiling.key("Escape")
     assert compiling.end() == (0, "", "")
 
@@ -81,6 +81,6 @@ def test_keys_work(compiling):
     compiling.key("i", "Tab", "Tab", "Delete", "ctrl+s")
     until(lambda: compiling.path.read_text() != TEXT, "the saved scene")
     compiling.key("Tab")
-    compiling.shows(headless(compiling.path))
+    compiling.shows(picture(compiling.path))
     compiling.key("Escape")
     assert compiling.end() == (0, "", "")

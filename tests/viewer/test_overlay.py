@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -37,8 +39,9 @@ def test_the_line_of_the_selected_element(actions, text):
 
 def test_status():
     job = Job(scene(), 640, 480)
-    assert status(Outcome(job, seconds=0.0123)) == "640x480    12.3 ms"
-    assert status(Outcome(Job(job.scene, 640, 480, 4))) == "640x480 at 1/4"
+    assert status(Outcome(job, seconds=0.0123)) == "640x480    12.3 ms    1 sample"
+    assert status(Outcome(Job(job.scene, 640, 480, 4, goal=16))) == "640x480 at 1/4    1 of 16 samples"
+    assert status(Outcome(replace(job, samples=4, goal=16), seconds=0.0123)) == "640x480    12.3 ms    4 of 16 samples"
 
 
 def test_the_hud_leaves_the_middle_free():

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
 import threading
 import time
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from minirt.errors import RenderError
 from minirt.viewer.background import BackgroundPainter
 from minirt.viewer.pace import LONGEST, Pace
 from minirt.viewer.painter import Job, Outcome
-from tests.viewer.fake import TEXT, FakeRenderer, colour_of, scene
+from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
 from tests.windows import until
 
 JOB = Job(scene(), 64, 48)
@@ -184,25 +186,87 @@ def test_close_stops_a_picture():
     assert Bench().painter.close(0)
 
 
+REFINED = replace(JOB, samples=16, goal=16, base=np.full((48, 64, 4), colour_of(JOB.scene), np.uint8))
+
+
+def test_a_picture_is_refined_in_a_copy(bench):
+    bench.painter.request(REFINED)
+    (outcome,) = bench.outcomes(1)
+    assert (outcome.pixels[0, :16] == MARK).all()
+    assert (outcome.pixels[1:] == colour_of(JOB.scene)).all()
+    assert (REFINED.base == colour_of(JOB.scene)).all()
+    assert bench.renderer.refined == [16]
+    assert bench.renderer.rendered == []
+
+
+def test_refining_is_cancelled_by_what_comes_next(bench):
+    bench.start(REFINED)
+    bench.painter.request(replace(JOB, urgent=True))
+    cancelled = bench.outcomes(1)[0]
+    assert (cancelled.job, cancelled.pixels, cancelled.error) == (REFINED, None, None)
+    assert (REFINED.base == colour_of(JOB.scene)).all()
+    bench.renderer.gate.set()
+    assert bench.outcomes(1)[0].job.samples == 1
+
+
+def test_a_request_just_before_the_renderer_can_be_cancelled_is_heard(bench):
+    renderer = bench.renderer
+    refine = renderer.refine
+
+    def late(*arguments, **keywords):
+        bench.painter.request(JOB)  # and its cancel comes too early
+        renderer.gate.clear()  # it would never end
+        return refine(*arguments, **keywords)
+
+    renderer.refine = late
+    bench.painter.request(REFINED)
+    assert bench.outcomes(1)[0].pixels is None
+    renderer.gate.set()
+    assert bench.outcomes(1)[0].job is JOB
+
+
+@pytest.mark.parametrize(
+    ("goal", "passes"), [(1, []), (2, [2]), (4, [4]), (8, [4, 8]), (16, [4, 16]), (64, [4, 16, 64])]
+)
+def test_the_passes(goal, passes):
+    job, made = replace(JOB, goal=goal, urgent=True), []
+    pixels = np.zeros(JOB.shape, np.uint8)
+    while not job.is_last:
+        job = job.next(pixels)
+        made.append(job.samples)
+        assert job.base is pixels
+        assert not job.urgent
+    assert made == passes
+
+
+def test_after_a_coarse_picture_comes_a_whole_one():
+    coarse = replace(JOB, divisor=3, goal=16, urgent=True)
+    assert not coarse.is_last
+    assert coarse.next(np.zeros(coarse.shape, np.uint8)) == replace(JOB, goal=16)
+
+
 class TestPace:
     @staticmethod
-    def made(seconds: float, divisor: int = 1, pixels: bool = True) -> Outcome:
-        job = Job(JOB.scene, 800, 600, divisor)
+    def made(seconds: float, divisor: int = 1, pixels: bool = True, samples: int = 1, urgent: bool = False) -> Outcome:
+        job = Job(JOB.scene, 800, 600, divisor, urgent, samples)
         return Outcome(job, colour_of(JOB.scene) if pixels else None, seconds=seconds)
 
+    def moving(self, pace: Pace, seconds: float, always: float = 0.0) -> int:
+        """Render a picture while something moves: a whole one takes that long, and each `always` of it."""
+        divisor = pace.divisor(800, 600)
+        pace.learn(self.made(always + (seconds - always) / divisor**2, divisor, urgent=True))
+        return divisor
+
     @pytest.mark.parametrize(
-        ("longest", "divisor"), [(0.5, 1), (1.0, 1), (1.1, 2), (4, 2), (4.1, 4), (16, 4), (17, 8), (1e6, 8)]
+        ("longest", "divisor"),
+        [(0.5, 1), (0.99, 1), (1.1, 2), (3.9, 2), (4.1, 3), (8.9, 3), (9.1, 4), (16, 4), (17, 8), (1e6, 8)],
     )
     def test_as_coarse_as_needed(self, longest, divisor):
         pace = Pace()
         pace.learn(self.made(longest * LONGEST))
         assert pace.divisor(800, 600) == divisor
-
-    def test_learns_from_coarse_pictures_and_for_other_sizes(self):
-        pace = Pace()
-        pace.learn(self.made(LONGEST, divisor=4))
-        assert pace.divisor(800, 600) == 4
-        assert pace.divisor(400, 300) == 2
+        for _ in range(20):
+            assert self.moving(pace, longest * LONGEST) == divisor
 
     def test_is_careful_while_nothing_is_known(self):
         pace = Pace()
@@ -210,10 +274,77 @@ class TestPace:
         pace.learn(self.made(0.001, pixels=False))
         assert pace.divisor(800, 600) == 8
 
+    def test_another_size_has_another_cost(self):
+        pace = Pace()
+        pace.learn(self.made(LONGEST * 4))
+        assert pace.divisor(400, 300) == 1
+
     def test_a_cancelled_picture_took_at_least_that_long(self):
         pace = Pace()
         pace.learn(self.made(LONGEST / 2))
-        pace.learn(self.made(LONGEST * 3, pixels=False))
+        pace.learn(self.made(LONGEST / 4, pixels=False))  # which says nothing
+        for _ in range(2):
+            assert pace.divisor(800, 600) == 1
+            pace.learn(self.made(LONGEST * 3, pixels=False))
         assert pace.divisor(800, 600) == 2
-        pace.learn(self.made(LONGEST, pixels=False))
+
+    def test_refined_pictures_say_nothing(self):
+        pace = Pace()
+        pace.learn(self.made(LONGEST / 2))
+        for _ in range(3):
+            pace.learn(self.made(LONGEST * 9, samples=4))
+        assert pace.divisor(800, 600) == 1
+
+    def test_one_slow_picture_changes_nothing_and_two_do(self):
+        pace = Pace()
+        for _ in range(3):
+            pace.learn(self.made(LONGEST / 2))
+        pace.learn(self.made(LONGEST * 5, urgent=True))
+        assert pace.divisor(800, 600) == 1
+        pace.learn(self.made(LONGEST * 5, urgent=True))
+        assert pace.divisor(800, 600) == 3
+
+    def test_what_is_under_way_is_waited_for(self):
+        pace = Pace()
+        pace.learn(self.made(LONGEST * 3))
         assert pace.divisor(800, 600) == 2
+        pace.learn(self.made(LONGEST * 30, urgent=True))  # of before
+        assert pace.divisor(800, 600) == 2
+
+    def test_a_whole_picture_that_was_not_waited_for_leaves_the_pace_as_it_was(self):
+        pace = Pace()
+        pace.learn(self.made(LONGEST * 3))
+        self.moving(pace, LONGEST * 3)
+        pace.learn(self.made(LONGEST / 100, pixels=False))
+        assert pace.divisor(800, 600) == 2
+
+    def test_near_the_limit_the_resolution_does_not_flicker(self):
+        pace = Pace()
+        pace.learn(self.made(LONGEST * 0.98))
+        used = [self.moving(pace, LONGEST * (1.02 if n // 3 % 2 else 0.98)) for n in range(200)]
+        assert set(used) == {1, 2}
+        assert sum(a != b for a, b in itertools.pairwise(used)) <= 5
+        used = [self.moving(pace, LONGEST * 0.7) for _ in range(5)]
+        assert used[-1] == 1  # with ease
+
+    def test_a_finer_picture_is_tried_where_coarse_ones_mislead(self):
+        """Each picture takes a tenth of the time, whatever its size."""
+        pace, always = Pace(), LONGEST / 10
+        pace.learn(self.made(LONGEST * 90))
+        assert self.moving(pace, LONGEST * 90, always) == 8  # somebody else had the processor
+        used = [self.moving(pace, LONGEST * 0.9, always) for _ in range(1000)]
+        assert used[-1] == 1
+        assert sum(a != b for a, b in itertools.pairwise(used)) <= 4
+
+    def test_trying_in_vain_becomes_rare(self):
+        pace = Pace()
+        pace.learn(self.made(LONGEST * 1.1))
+        used = [self.moving(pace, LONGEST * 1.1) for _ in range(1000)]
+        assert 1 <= used.count(1) <= 12
+
+    def test_what_showing_takes_is_not_left_for_rendering(self):
+        for showing, divisor in ((0.1, 1), (0.4, 2), (40, 2)):  # the last is the screen's fault
+            pace = Pace()
+            pace.learn_showing(LONGEST * showing)
+            pace.learn(self.made(LONGEST * 0.7))
+            assert pace.divisor(800, 600) == divisor

@@ -16,6 +16,7 @@ import pytest
 from numpy.typing import NDArray
 
 import minirt
+from minirt.rendering.adaptive import contrasts
 from tests.windows import Desktop, until
 
 pytestmark = pytest.mark.window
@@ -53,9 +54,15 @@ class Viewer(NamedTuple):
 
 
 @contextmanager
-def viewing(desktop: Desktop, path: Path, size: tuple[int, int] = SIZE, cache: Path | None = None) -> Iterator[Viewer]:
-    """`cache`: an empty folder, for a program that has to compile first."""
-    command = [sys.executable, "-W", "error", "-m", "minirt", str(path), "--size", f"{size[0]}x{size[1]}"]
+def viewing(
+    desktop: Desktop,
+    path: Path,
+    size: tuple[int, int] = SIZE,
+    cache: Path | None = None,
+    more: tuple[str, ...] = (),
+) -> Iterator[Viewer]:
+    """`cache`: an empty folder, for a program that has to compile first; `more` arguments."""
+    command = [sys.executable, "-W", "error", "-m", "minirt", str(path), "--size", f"{size[0]}x{size[1]}", *more]
     if cache:
         command = ["env", f"XDG_CACHE_HOME={cache}", *command]
     path.write_text(TEXT)
@@ -69,15 +76,37 @@ def viewer(desktop: Desktop, tmp_path: Path) -> Iterator[Viewer]:
         yield opened
 
 
-def headless(path: Path, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
-    return minirt.render(minirt.load(path), *size).array
+def picture(path: Path, size: tuple[int, int] = SIZE, passes: tuple[int, ...] = (4, 16)) -> NDArray[np.uint8]:
+    """What the renderer makes of the scene in a file; refined as the window does it when nothing moves."""
+    scene, renderer = minirt.load(path), minirt.renderer(None)
+    pixels = np.zeros((size[1], size[0], 4), np.uint8)
+    renderer.render(scene, pixels)
+    for samples in passes:
+        renderer.refine(scene, pixels, samples)
+    return pixels[..., 2::-1]
 
 
-def test_the_window_shows_the_picture_that_is_rendered_without_one(viewer):
+def test_the_window_shows_the_refined_picture(viewer):
     viewer.key("i")
-    viewer.shows(headless(viewer.path))
+    refined = picture(viewer.path)
+    viewer.shows(refined)
+    plain = minirt.render(minirt.load(viewer.path), *SIZE).array
+    many = minirt.render(minirt.load(viewer.path), *SIZE, samples=16).array
+    edge = contrasts(np.dstack([plain, np.full(plain.shape[:2], 255, np.uint8)]))
+    assert np.abs(many.astype(int) - refined)[edge].mean() < 0.05 * np.abs(many.astype(int) - plain)[edge].mean()
+    assert (plain == refined).all(axis=2).mean() > 0.75
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
+
+
+def test_with_one_sample_it_is_the_picture_that_is_rendered_without_a_window(desktop, tmp_path):
+    with viewing(desktop, tmp_path / "scene.rt", more=("--samples", "1")) as viewer:
+        viewer.key("i")
+        viewer.shows(minirt.render(minirt.load(viewer.path), *SIZE).array)
+        viewer.desktop.run("sleep", "0.5")
+        viewer.shows(picture(viewer.path, passes=()))
+        viewer.key("Escape")
+        assert viewer.end() == (0, "", "")
 
 
 def test_escape_at_once(viewer):
@@ -92,7 +121,7 @@ def test_the_close_button(viewer):
 
 def test_ctrl_c_in_the_terminal(viewer):
     viewer.key("i")
-    viewer.shows(headless(viewer.path))
+    viewer.shows(picture(viewer.path))
     os.kill(viewer.process.pid, signal.SIGINT)
     assert viewer.end() == (130, "", "")
 
@@ -105,7 +134,7 @@ def test_keys_edit_and_save_the_scene(viewer):
     assert scene.spheres[0].centre[1] > 0
     assert scene.spheres[0].diameter == pytest.approx(2.1)
     viewer.key("Tab")  # takes the message away
-    viewer.shows(headless(viewer.path))
+    viewer.shows(picture(viewer.path))
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
 
@@ -124,32 +153,32 @@ def test_thirty_sizes(viewer):
     for n in range(30):
         viewer.desktop.run("xdotool", "windowsize", str(viewer.window), str(200 + 13 * n), str(400 - 7 * n))
     viewer.desktop.resize(viewer.window, 333, 222)
-    viewer.shows(headless(viewer.path, (333, 222)))
+    viewer.shows(picture(viewer.path, (333, 222)))
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
 
 
 def test_hiding_and_covering_lose_nothing(viewer, desktop, tmp_path):
     viewer.key("i")
-    picture = headless(viewer.path)
-    viewer.shows(picture)
+    still = picture(viewer.path)
+    viewer.shows(still)
     desktop.minimise(viewer.window)
     desktop.restore(viewer.window)
-    viewer.shows(picture)
+    viewer.shows(still)
     with viewing(desktop, tmp_path / "other.rt", (900, 700)) as cover:
         for window in (viewer.window, cover.window):
             desktop.run("xdotool", "windowmove", "--sync", str(window), "100", "100")
         desktop.activate(cover.window)
         cover.key("Escape")
         assert cover.end() == (0, "", "")
-    viewer.shows(picture)
+    viewer.shows(still)
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
 
 
 def test_an_idle_window_costs_no_time(viewer):
     viewer.key("i")
-    viewer.shows(headless(viewer.path))
+    viewer.shows(picture(viewer.path))
 
     def used() -> float:
         fields = Path(f"/proc/{viewer.process.pid}/stat").read_text().rpartition(")")[2].split()
@@ -164,8 +193,8 @@ def test_an_idle_window_costs_no_time(viewer):
 
 def test_a_held_key_moves_until_it_is_let_go(viewer):
     viewer.key("i")
-    picture = headless(viewer.path)
-    viewer.shows(picture)
+    still = picture(viewer.path)
+    viewer.shows(still)
     viewer.desktop.activate(viewer.window)
     viewer.desktop.keydown("d")
     seen = set()
@@ -177,7 +206,7 @@ def test_a_held_key_moves_until_it_is_let_go(viewer):
     until(moving, "five pictures")
     viewer.desktop.keyup("d")
     viewer.key("Home")
-    viewer.shows(picture)
+    viewer.shows(still)
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
 
@@ -188,7 +217,7 @@ def test_full_screen_and_back(viewer):
     for size in ((2560, 1600), SIZE):
         viewer.key("F11")
         viewer = viewer._replace(window=resized(viewer.desktop, size))
-        viewer.shows(headless(viewer.path, size))
+        viewer.shows(picture(viewer.path, size))
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
 
@@ -208,12 +237,12 @@ def resized(desktop: Desktop, size: tuple[int, int]) -> int:
 
 def test_the_camera_is_copied_and_a_click_selects(viewer):
     viewer.key("i")
-    picture = headless(viewer.path)
-    viewer.shows(picture)
+    still = picture(viewer.path)
+    viewer.shows(still)
     viewer.key("ctrl+c")
-    until(lambda: not np.array_equal(viewer.desktop.screenshot(viewer.window), picture), "the message")
+    until(lambda: not np.array_equal(viewer.desktop.screenshot(viewer.window), still), "the message")
     viewer.desktop.click(viewer.window, 160, 130)  # the sphere
-    viewer.shows(picture)
+    viewer.shows(still)
     viewer.key("Delete", "ctrl+s", "Escape")
     assert viewer.end() == (0, "", "")
     assert minirt.load(viewer.path).spheres == ()

@@ -29,6 +29,17 @@ def test_the_last_frame_is_the_picture_of_the_scene_as_edited():
     assert colour_of(session.state.scene) != colour_of(scene())
 
 
+def test_what_is_still_at_the_end_has_all_samples_in_all_pixels():
+    renderer = FakeRenderer()
+    replay(scene(), ["hold d 0.3"], renderer=renderer, size=(64, 48), path="scene.rt", samples=9)
+    assert renderer.samples[:3] == [1, 4, 9]  # before the key
+    assert renderer.samples[-3:] == [1, 4, 9]  # and after it
+    assert set(renderer.samples[3:-3]) == {1}
+    assert renderer.refined == []
+    session = played("hold d 0.3")
+    assert set(session.pictures.painter.renderer.samples) == {1}
+
+
 def test_the_hud_is_on_the_frame_and_not_on_the_picture():
     bare = frame(hud=False)
     assert (bare == colour_of(scene())).all()

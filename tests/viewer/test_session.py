@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from minirt.errors import RenderError
@@ -13,9 +14,9 @@ from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
 from minirt.viewer.background import BackgroundPainter
 from minirt.viewer.pace import LONGEST
-from minirt.viewer.painter import Job, Outcome, Painter
+from minirt.viewer.painter import Job, Outcome, Painter, paint
 from minirt.viewer.session import Session
-from tests.viewer.fake import FakeRenderer, colour_of, scene
+from tests.viewer.fake import MARK, FakeRenderer, colour_of, scene
 from tests.windows import until
 
 SIZE = (64, 48)
@@ -40,21 +41,32 @@ class ByHand(Painter):
     def finish(self, seconds: float) -> None:
         (job,) = self.open
         self.open = []
-        super().request(job)
-        self.outcomes[-1] = replace(self.outcomes[-1], seconds=seconds)
+        self.outcomes.append(replace(paint(self.renderer, job, job.base), seconds=seconds))
+        self.notify()
 
     @property
     def divisors(self) -> list[int]:
         return [job.divisor for job in self.requests]
 
+    @property
+    def samples(self) -> list[int]:
+        return [job.samples for job in self.requests]
+
 
 class Bench:
-    def __init__(self, painter=ByHand) -> None:
-        self.memory = Memory()
+    def __init__(self, painter=ByHand, samples: int = 1, memory: Memory | None = None) -> None:
+        self.memory = memory or Memory()
         m = Mlx(self.memory)
         self.display = m.mlx_init()
         self.session = Session(
-            m, self.display, scene(), path=Path("scene.rt"), size=SIZE, painter=painter, pick=lambda *_: None
+            m,
+            self.display,
+            scene(),
+            path=Path("scene.rt"),
+            size=SIZE,
+            painter=painter,
+            pick=lambda *_: None,
+            samples=samples,
         )
         self.painter = self.session.pictures.painter
         self.memory.play()
@@ -140,6 +152,129 @@ def test_quick_pictures_stay_fine():
     assert set(bench.painter.divisors) == {1}
 
 
+def test_what_does_not_move_is_refined_pass_by_pass_and_then_nothing_is_rendered():
+    bench = Bench(samples=16)
+    bench.tap(Key.I)
+    for marked in (0, 4, 16):
+        bench.finish(0.001)
+        shown = bench.memory.screenshot()
+        assert (shown[0, :marked] == MARK).all()
+        assert (shown[0, marked:] == colour_of(scene())).all()
+        assert (shown[1:] == colour_of(scene())).all()
+    bench.memory.wait(2)
+    bench.memory.expose()
+    bench.tap(Key.H)
+    bench.tap(Key.TAB)
+    assert bench.painter.samples == [1, 4, 16]
+    assert bench.painter.divisors == [1, 1, 1]
+    assert not bench.painter.busy
+    assert not bench.display.busy
+
+
+def test_what_moves_again_has_one_sample_at_once():
+    bench = Bench(samples=16)
+    bench.finish(0.001)
+    bench.finish(0.001)
+    bench.memory.press(Key.D)
+    bench.memory.play()
+    job = bench.painter.requests[-1]
+    assert (job.samples, job.base, job.urgent, job.divisor) == (1, None, True, 1)
+    bench.finish(0.001)
+    assert (bench.session.picture == colour_of(bench.session.state.scene)).all()
+    for _ in range(3):
+        bench.memory.wait(0.5)
+        bench.memory.play()
+        bench.finish(0.001)
+    assert set(bench.painter.samples[3:]) == {1}
+    bench.memory.release(Key.D)
+    bench.memory.play()
+    while bench.painter.busy:
+        bench.finish(0.001)
+    assert bench.painter.samples[-3:] == [1, 4, 16]
+
+
+def test_from_coarse_to_whole_to_refined():
+    bench = Bench(samples=4)
+    bench.finish(LONGEST * 3)
+    bench.finish(LONGEST * 10)
+    bench.tap(Key.D)
+    while bench.painter.busy:
+        bench.finish(LONGEST / 2)
+    assert list(zip(bench.painter.divisors, bench.painter.samples, strict=True))[2:] == [(2, 1), (1, 1), (1, 4)]
+
+
+def test_nothing_is_rendered_after_an_error_in_a_pass():
+    bench = Bench(samples=16)
+    bench.finish(0.001)
+    bench.painter.renderer.error = RenderError("no more")
+    bench.finish(0.001)
+    assert bench.session.state.message == "no more"
+    assert not bench.painter.busy
+    assert (bench.session.picture == colour_of(scene())).all()
+
+
+def test_no_picture_is_shown_half_made():
+    renderer = FakeRenderer()
+    renderer.gate.clear()
+    bench = Bench(partial(BackgroundPainter, renderer), samples=16)
+    bench.tap(Key.I)
+    renderer.gate.set()
+    for n in range(1, 6):
+        until(lambda n=n: len(renderer.rendered) == n, "a picture", 5)
+        renderer.gate.clear()
+
+        def half_refined(n=n) -> bool:
+            bench.memory.play()
+            return len(renderer.refined) == n
+
+        until(half_refined, "a pass", 5)
+        whole = bench.memory.screenshot()
+        assert (whole == colour_of(bench.session.state.scene)).all()
+        bench.tap(Key.D)
+        renderer.gate.set()
+        until(lambda n=n: renderer.cancelled == n, "the end of the pass", 5)
+        assert np.array_equal(bench.memory.screenshot(), whole)
+    assert bench.painter.close(5)
+
+
+class SlowScreen(Memory):
+    """Showing takes four tenths of the time."""
+
+    def show(self, window) -> None:
+        super().show(window)
+        self._now += 0.4 * LONGEST
+
+
+def test_a_slow_screen_leaves_less_time_for_rendering():
+    for memory, divisor in ((Memory(), 1), (SlowScreen(), 2)):
+        bench = Bench(memory=memory)
+        bench.finish(LONGEST * 0.7)
+        bench.tap(Key.D)
+        assert bench.painter.divisors == [1, divisor]
+
+
+def test_a_picture_is_shown_before_the_next_one_is_begun(monkeypatch):
+    bench = Bench(samples=4)
+    begun = []
+    show = bench.memory.show
+    monkeypatch.setattr(bench.memory, "show", lambda win: (begun.append(bench.painter.samples), show(win)))
+    bench.finish(0.001)
+    bench.finish(0.001)
+    assert begun == [[1], [1, 4]]
+
+
+def test_without_news_nothing_is_drawn():
+    bench = Bench()
+    bench.finish(0.001)
+    frame = bench.session.screen.frame
+    bench.painter.outcomes.append(Outcome(Job(scene(), *SIZE)))  # cancelled: another is wanted
+    bench.painter.notify()
+    bench.memory.play()
+    assert bench.session.screen.frame is frame
+    bench.tap(Key.I)
+    assert bench.session.screen.frame is not frame
+
+
 def test_a_coarse_picture_is_stretched_over_the_window():
     bench = Bench()
     bench.finish(LONGEST * 100)
@@ -223,13 +358,14 @@ def test_compiling_is_shown():
     assert (bench.memory.screenshot() == colour_of(scene())).all()
 
 
-def test_a_screenshot_waits_for_the_fine_picture(tmp_path):
-    bench = Bench()
+def test_a_screenshot_waits_for_the_last_picture(tmp_path):
+    bench = Bench(samples=4)
     bench.session.path = tmp_path / "scene.rt"
     bench.finish(LONGEST * 100)
     bench.tap(Key.D)
     bench.tap(Key.P)
-    bench.finish(LONGEST)
-    assert list(tmp_path.iterdir()) == []
+    for _ in range(2):  # the coarse one, the whole one
+        bench.finish(LONGEST)
+        assert list(tmp_path.iterdir()) == []
     bench.finish(LONGEST)
     assert [file.name for file in tmp_path.iterdir()] == ["scene-1.png"]
