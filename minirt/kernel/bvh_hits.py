@@ -24,8 +24,8 @@ from minirt.kernel.bvh import (
 )
 from minirt.kernel.frame import fetch_add
 from minirt.kernel.rows import intersect, kind_of, read, surface
-from minirt.kernel.trace import NEARBY, ROUNDING, largest, over_kinds
-from minirt.lanes import Vec, any, dot, fabs, lane, load, maximum, splat, unit, unit_roundoff, where
+from minirt.kernel.trace import largest, nearer, over_kinds
+from minirt.lanes import Vec, any, lane, load, splat, unit, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
@@ -73,28 +73,6 @@ def nearest_of_block(group: Group, block: int, tree: Tree, origin: Vec, directio
         shape = read(group.rows, tree.places[index, 1])
         state = nearer(shape, index, tree.extents[index], True, lane(t, i), origin, direction, state)
     return state
-
-
-def nearer(
-    shape: Any, index: int, extent: float, hit: Mask, t: Number, origin: Vec, direction: Vec, state: Nearest
-) -> Nearest:
-    """The state, or the hit of a shape at t in its place where that is nearer.
-
-    Where two surfaces coincide within rounding the shape with the lower index is hit, on the whole of the overlap.
-    """
-    best, owner, before = state
-    closer = hit & (t < best)
-    contested = hit & (fabs(t - best) <= NEARBY * t)
-    here = where(closer, extent, before)
-    if any(contested):
-        point = origin + t * direction
-        _, normal = surface(shape, point)
-        gap = fabs(t - best) * fabs(dot(normal, direction))  # between the surfaces
-        rounding = ROUNDING * unit_roundoff(best) * (largest(point) + largest(origin) + extent)
-        same = contested & (gap <= 4.0 * rounding)
-        closer = (closer & (same ^ True)) | (same & (index < owner))
-        here = where(same, maximum(extent, before), where(closer, extent, before))
-    return where(closer, t, best), where(closer, index, owner), here
 
 
 def unhidden(tree: Tree, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:

@@ -39,11 +39,6 @@ def _load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.load(lanes_place(context, builder, sig, args), align=8)
 
 
-@teach(verbs.splat, lambda x, like: like if isinstance(like, types.Float) else None, [(types.Number, types.Float)])
-def _splat(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return context.cast(builder, args[0], sig.args[0], sig.return_type)
-
-
 @teach(bvh.put, lambda memory, at, x: types.none, [(types.CPointer, types.Integer, Lanes)])
 def _put(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     builder.store(args[2], lanes_place(context, builder, sig, args), align=8)

@@ -57,36 +57,50 @@ def nearest_of_kind(
     group: Group, state: tuple[Number, Number, Number], given: tuple[Traced, int, Vec, Vec]
 ) -> tuple[Number, Number, Number]:
     """`nearest` over the shapes of one kind, where others gave `state`."""
-    best, owner, extent = state
     scene, tile, origin, direction = given
-    u = unit_roundoff(best)
     for i in range(group.starts[tile], group.starts[tile + 1]):
         index = scene.seen[i]
         view = scene.views[index]
-        if not any(best > view[4]):
+        if not any(state[0] > view[4]):
             break
         if view[3] > -1.0 and not any(within(view, direction)):
             continue
         shape = read(group.rows, scene.places[index, 1])
         hit, t = intersect(shape, origin, direction)
-        closer = hit & (t < best)
-        reach = splat(scene.looks[index, 3], best)
-        contested = hit & (best < inf)
-        if any(contested):
-            contested = contested & (fabs(t - best) <= NEARBY * t)
-        if any(contested):
-            point = origin + t * direction
-            _, normal = surface(shape, point)
-            gap = fabs(t - best) * fabs(dot(normal, direction))  # between the surfaces
-            rounding = ROUNDING * u * (largest(point) + largest(origin) + reach)
-            same = contested & (gap <= 4.0 * rounding)
-            closer = (closer & ~same) | (same & (index < owner))
-            reach = where(same, maximum(reach, extent), reach)
-            extent = where(same, reach, extent)
-        if any(closer):
-            best = where(closer, t, best)
-            owner = where(closer, index, owner)
-            extent = where(closer, reach, extent)
+        state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
+    return state
+
+
+def nearer(
+    shape: Any,
+    index: int,
+    reach: float,
+    hit: Mask,
+    t: Number,
+    origin: Vec,
+    direction: Vec,
+    state: tuple[Number, Number, Number],
+) -> tuple[Number, Number, Number]:
+    """The state of `nearest`, or in its place, where that is nearer, the hit of a shape of extent `reach` at t."""
+    best, owner, extent = state
+    wide = splat(reach, best)
+    closer = hit & (t < best)
+    contested = hit & (best < inf)
+    if any(contested):
+        contested = contested & (fabs(t - best) <= NEARBY * t)
+    if any(contested):
+        point = origin + t * direction
+        _, normal = surface(shape, point)
+        gap = fabs(t - best) * fabs(dot(normal, direction))  # between the surfaces
+        rounding = ROUNDING * unit_roundoff(best) * (largest(point) + largest(origin) + wide)
+        same = contested & (gap <= 4.0 * rounding)
+        closer = (closer & (same ^ True)) | (same & (index < owner))
+        wide = where(same, maximum(wide, extent), wide)
+        extent = where(same, wide, extent)
+    if any(closer):
+        best = where(closer, t, best)
+        owner = where(closer, index, owner)
+        extent = where(closer, wide, extent)
     return best, owner, extent
 
 

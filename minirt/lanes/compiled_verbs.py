@@ -134,11 +134,11 @@ def _lane(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 
 
 def like_the_second(x: types.Type, like: types.Type) -> types.Type | None:
-    """Lanes for a number, and lanes of the precision that is wanted."""
-    return like if is_number(x) and isinstance(like, Lanes) else None
+    """What the second is: lanes, or a single number."""
+    return like if is_number(x) and isinstance(like, (Lanes, types.Float)) else None
 
 
-@teach(verbs.splat, like_the_second, [(ANY, Lanes)])
+@teach(verbs.splat, like_the_second, [(ANY, ANY)])
 def _splat(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return widen(context, builder, args[0], sig.args[0], sig.return_type)
 
