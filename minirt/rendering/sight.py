@@ -20,7 +20,7 @@ SPREAD = 0.5  # of the angle that cells have on average: a cell's list holds for
 EDGE = 3 * SPREAD * np.pi / 4
 # Up to so many shapes, cells along an edge of a lamp's cube, where building and using the lists was seen to take least;
 # with more than 512 float32 could not tell apart the directions that a list holds for.
-GRIDS = ((8, 1), (200, 16), (5_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
+GRIDS = ((8, 1), (30, 16), (200, 32), (5_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
 # Numbers above zero are in the order of their bits, the exponent first. The order of depth knows of those of a distance
 # the upper 20, from 2^-128 on: a distance to a 256th of it.

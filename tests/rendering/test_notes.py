@@ -37,4 +37,4 @@ def test_what_is_left_out_and_why() -> None:
 
 def test_the_size_of_the_light_buffer() -> None:
     *_, buffer, _, _, _, _, _ = said(*(Sphere((i, 0, 0), 1, GREY) for i in range(48)))
-    assert buffer == "light buffer: 6 x 16 x 16 cells a lamp (50 shapes)"
+    assert buffer == "light buffer: 6 x 32 x 32 cells a lamp (50 shapes)"
