@@ -29,9 +29,10 @@ def field(kind: Kind, name: str) -> str:
     return f"{kind.element.title}.{name}"
 
 
-def place_fields(kind: Kind) -> list[str]:
+@cache
+def place_fields(kind: Kind) -> tuple[str, ...]:
     """The fields of the rows of a kind that are points."""
-    return [field(kind, name) for name, hint in get_type_hints(kind.packed).items() if hint is Place]
+    return tuple(field(kind, name) for name, hint in get_type_hints(kind.packed).items() if hint is Place)
 
 
 def kind_of(fields: Any) -> Kind:

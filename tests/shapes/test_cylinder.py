@@ -139,3 +139,10 @@ def test_a_naive_quadratic_does_not_pass(monkeypatch: pytest.MonkeyPatch, mutant
     assert_near(on_arrays(*BENIGN[0]), BENIGN[1], 1e-11)  # it is right where nothing is hard
     with pytest.raises(AssertionError):
         assert_near(on_arrays(*hard[0]), hard[1], 1e-13)
+
+
+def test_the_box_of_a_wide_disc_that_is_hardly_tilted() -> None:
+    # Its rim rises by radius times tilt, though 1 - cos^2 of the tilt is nothing in float64.
+    disc = Cylinder((0, 0, 0), (1e-9, 1, 0), 2e6, 1e-6, GREY)
+    _, (_, top, _) = disc.bounds()
+    assert top == pytest.approx(1e6 * 1e-9 + 5e-7, rel=1e-12)
