@@ -7,7 +7,7 @@ from typing import Any
 from minirt.kernel.shade import radiance
 from minirt.kernel.trace import is_empty
 from minirt.kernel.traced import Traced
-from minirt.lanes import Vec, lane, load, maximum, minimum, splat, unit, width
+from minirt.lanes import Vec, lane, load, maximum, minimum, save, splat, unit, width
 from minirt.lanes.vec import Number
 
 DOWN = 4  # pixels of a packet, from top to bottom; as many from left to right as make one of `width` rays
@@ -23,18 +23,25 @@ def towards(camera: Any, x: float, y: float) -> Vec:
 
 
 def packet(scene: Traced, memory: Any, tile: int, rays: Any, x: int, y: int) -> Vec:
-    """The light of the pixels of a packet whose upper left one is x, y: the mean of their samples."""
-    origin = Vec(scene.camera[0], scene.camera[1], scene.camera[2])
-    corner = towards(scene.camera, x, y)
-    nothing = splat(0.0, load(rays[0], 0))
-    total = Vec(nothing, nothing, nothing)
-    if is_empty(scene, tile):
-        return total
+    """The light of the pixels of a packet whose upper left one is x, y, along the `rays` of a sample."""
     count = width(rays)
-    for i in range(rays.shape[0]):
-        direction = corner + Vec(load(rays[i], 0), load(rays[i], count), load(rays[i], 2 * count))
-        total = total + radiance(scene, memory, tile, origin, unit(direction))
-    return total / rays.shape[0]
+    nothing = splat(0.0, load(rays, 0))
+    if is_empty(scene, tile):
+        return Vec(nothing, nothing, nothing)
+    origin = Vec(scene.camera[0], scene.camera[1], scene.camera[2])
+    direction = towards(scene.camera, x, y) + Vec(load(rays, 0), load(rays, count), load(rays, 2 * count))
+    return radiance(scene, memory, tile, origin, unit(direction))
+
+
+def added(light: Vec, sums: Any, start: int, sample: int) -> Vec:
+    """The light of a sample and of those before it, whose sum is kept in `sums` from index `start` on."""
+    count = width(sums)
+    if sample > 0:
+        light = light + Vec(load(sums, start), load(sums, start + count), load(sums, start + 2 * count))
+    save(light.x, sums, start)
+    save(light.y, sums, start + count)
+    save(light.z, sums, start + 2 * count)
+    return light
 
 
 def level(light: Number) -> Number:
@@ -42,17 +49,20 @@ def level(light: Number) -> Number:
     return minimum(maximum(light, 0.0), 1.0) * 255.0 + 0.5
 
 
-def frame(next_row: Any, pixels: Any, linear: Any, rays: Any, wanted: Any, memory: Any, scene: Traced) -> None:
+def frame(
+    next_row: Any, pixels: Any, linear: Any, rays: Any, wanted: Any, memory: Any, sums: Any, scene: Traced
+) -> None:
     """Render rows of tiles, taking the next one from the counter `next_row` until none is left.
 
-    Any number of threads may do so at the same time, each with a `memory` of its own (see `trace`). `pixels` (h, w)
-    takes 0xAARRGGBB; `linear` (h, w, 3), or one without rows where it is not wanted, takes the light as it is. `rays`
-    (k, 3 * width) are the directions of a packet's rays for each sample of a pixel: x, y and z of their differences
-    from the one through the upper left corner of the packet. `wanted` is not 0 for each packet (row, column) that is to
-    be rendered, or has no rows where all are. A counter set to `CANCELLED` from outside ends the frame
-    at the next packet.
+    Any number of threads may do so at the same time, each with a `memory` (see `trace`) and room for the `sums` of
+    samples of a tile (3 * TILE * TILE) of its own. `pixels` (h, w) takes 0xAARRGGBB; `linear` (h, w, 3), or one without
+    rows where it is not wanted, takes the light as it is. `rays` (k, 3 * width) are the directions of a packet's rays
+    for each sample of a pixel: x, y and z of their differences from the one through the upper left corner of the
+    packet. `wanted` is not 0 for each packet (row, column) that is to be rendered, or has no rows where all are. A
+    counter set to `CANCELLED` from outside ends the frame at the next packet.
     """
     height, across = pixels.shape
+    samples = rays.shape[0]
     step = width(rays) // DOWN
     while True:
         top = fetch_add(next_row, TILE)
@@ -60,13 +70,21 @@ def frame(next_row: Any, pixels: Any, linear: Any, rays: Any, wanted: Any, memor
             return
         for left in range(0, across, TILE):
             tile = top // TILE * tiles(across) + left // TILE
-            for y in range(top, min(top + TILE, height), DOWN):
-                for x in range(left, min(left + TILE, across), step):
-                    if next_row[0] >= CANCELLED:
-                        return
-                    if wanted.shape[0] > 0 and wanted[y // DOWN, x // step] == 0:
-                        continue
-                    store(pixels, linear, x, y, packet(scene, memory, tile, rays, x, y))
+            # All packets for each sample, not all samples for each packet: a sum that is kept through the loop takes
+            # registers from what is in it, and a seventh more time.
+            for sample in range(samples):
+                for y in range(top, min(top + TILE, height), DOWN):
+                    for x in range(left, min(left + TILE, across), step):
+                        if next_row[0] >= CANCELLED:
+                            return
+                        if wanted.shape[0] > 0 and wanted[y // DOWN, x // step] == 0:
+                            continue
+                        light = packet(scene, memory, tile, rays[sample], x, y)
+                        if samples > 1:
+                            place = (y - top) * TILE + (x - left) * DOWN
+                            light = added(light, sums, 3 * place, sample) / samples
+                        if sample == samples - 1:
+                            store(pixels, linear, x, y, light)
 
 
 def tiles(pixels: int) -> int:

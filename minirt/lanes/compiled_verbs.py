@@ -164,3 +164,16 @@ def _load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     place = builder.gep(values.data, [context.cast(builder, args[1], sig.args[1], types.intp)])
     lanes = context.get_value_type(sig.return_type)
     return builder.load(builder.bitcast(place, lanes.as_pointer()), align=sig.return_type.number.bitwidth // 8)
+
+
+def saved(x: types.Type, values: types.Type, start: types.Type) -> types.Type | None:
+    """Nothing, for lanes and an array of such numbers."""
+    return types.none if isinstance(values, types.Array) and x == Lanes(values.dtype) else None
+
+
+@teach(verbs.save, saved, [(Lanes, types.Array, types.Integer)])
+def _save(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    values = context.make_array(sig.args[1])(context, builder, value=args[1])
+    place = builder.gep(values.data, [context.cast(builder, args[2], sig.args[2], types.intp)])
+    builder.store(args[0], builder.bitcast(place, args[0].type.as_pointer()), align=sig.args[0].number.bitwidth // 8)
+    return context.get_dummy_value()

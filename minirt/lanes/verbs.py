@@ -102,6 +102,11 @@ def load(values: Any, start: int) -> Number:
     return values[start : start + width(values)].copy()
 
 
+def save(x: Number, values: Any, start: int) -> None:
+    """Put the numbers of all rays into an array from index `start` on."""
+    values[start : start + width(values)] = x
+
+
 def lane(x: Number, ray: int) -> float:
     """The number of one ray."""
     return float(x[ray])

@@ -15,7 +15,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.garbage import uncollected
 from minirt.kernel import lists
-from minirt.kernel.frame import CANCELLED, DOWN
+from minirt.kernel.frame import CANCELLED, DOWN, TILE
 from minirt.lanes import width
 from minirt.rendering.adaptive import edge_packets
 from minirt.rendering.camera import packet_rays
@@ -155,7 +155,10 @@ class Renderer:
         The caller's thread only waits, so that Ctrl+C reaches it.
         """
         draw = self.kernel.kernel_for(given.scene)
-        jobs = [self.workers.submit(draw, *given._replace(memory=memory_for(given.scene))) for _ in range(self.threads)]
+        jobs = [
+            self.workers.submit(draw, *given._replace(memory=memory_for(given.scene), sums=room_for_sums(given.scene)))
+            for _ in range(self.threads)
+        ]
         try:
             for job in wait(jobs, return_when=FIRST_EXCEPTION).done:
                 job.result()
@@ -188,6 +191,7 @@ class Frame(NamedTuple):
     rays: np.ndarray
     wanted: np.ndarray
     memory: np.ndarray
+    sums: np.ndarray
     scene: Any
 
 
@@ -202,8 +206,14 @@ def frame_arguments(
         rays=packet_rays(traced.camera, sample_places(samples)),
         wanted=ALL_PACKETS,
         memory=memory_for(traced),
+        sums=room_for_sums(traced),
         scene=traced,
     )
+
+
+def room_for_sums(traced: Any) -> np.ndarray:
+    """Room for the light of a tile."""
+    return np.empty(3 * TILE * TILE, traced.camera.dtype)
 
 
 def memory_for(traced: Any) -> np.ndarray:

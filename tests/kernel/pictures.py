@@ -11,7 +11,7 @@ from minirt.kernel import frame
 from minirt.rendering import Renderer
 from minirt.rendering.camera import packet_rays
 from minirt.rendering.packing import Packing
-from minirt.rendering.renderer import ALL_PACKETS, memory_for, sample_places
+from minirt.rendering.renderer import ALL_PACKETS, memory_for, room_for_sums, sample_places
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -58,5 +58,7 @@ def interpreted(
     traced = Packing(precision=precision).pack(scene, width, height)
     with np.errstate(all="ignore"):
         rays = packet_rays(traced.camera, sample_places(samples))
-        frame.frame(np.zeros(1, np.int64), words, light, rays, ALL_PACKETS, memory_for(traced), traced)
+        frame.frame(
+            np.zeros(1, np.int64), words, light, rays, ALL_PACKETS, memory_for(traced), room_for_sums(traced), traced
+        )
     return words.view(np.uint8).reshape(height, width, 4), light
