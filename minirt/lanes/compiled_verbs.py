@@ -113,6 +113,13 @@ def _any(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.icmp_unsigned("!=", whole, ir.Constant(whole.type, 0))
 
 
+@teach(verbs.rarely, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
+def _rarely(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    bit = ir.IntType(1)
+    expect = builder.module.declare_intrinsic("llvm.expect", [bit], ir.FunctionType(bit, [bit, bit]))
+    return builder.call(expect, [_any(context, builder, sig, args), ir.Constant(bit, 0)])
+
+
 @teach(verbs.first, lambda mask: types.int64 if isinstance(mask, Mask) else None, [(Mask,)])
 def _first(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.cttz(builder.zext(bits(builder, args[0]), ir.IntType(64)), ir.Constant(ir.IntType(1), 1))

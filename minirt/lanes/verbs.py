@@ -24,6 +24,11 @@ def any(mask: Mask) -> bool:
     return bool(np.any(mask))
 
 
+def rarely(mask: Mask) -> bool:
+    """`any`, where that is not expected: what follows if it is so may be slow."""
+    return any(mask)
+
+
 def sqrt(x: Number) -> Number:
     """The square root, NaN below 0."""
     return np.sqrt(x)
@@ -93,7 +98,7 @@ def width(values: Any) -> int:
 
 
 def splat(x: float, like: Number) -> Number:
-    """The same number for each ray, in the precision of the lanes `like`."""
+    """The same number for each ray, in the precision of the lanes `like`; what is one for each ray stays."""
     return np.full_like(like, x)[()]
 
 
