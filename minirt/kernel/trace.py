@@ -78,11 +78,10 @@ def nearest_of_kind(
         view = scene.views[index]
         if not any(state[0] > view[4]):
             break
-        if view[3] > -1.0 and not any(within(view, direction)):
-            continue
-        shape = read(group.rows, scene.places[index, 1])
-        hit, t = intersect(shape, origin, direction)
-        state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
+        if view[3] <= -1.0 or rarely(within(view, direction)):
+            shape = read(group.rows, scene.places[index, 1])
+            hit, t = intersect(shape, origin, direction)
+            state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
     return state
 
 
@@ -139,7 +138,7 @@ def unhidden(scene: Traced, memory: Any, lamp: int, origin: Vec, direction: Vec,
         if not any(left):
             break
         mine = left & close(memory[lamp], direction, scene.spread)
-        if not any(mine):
+        if rarely(not any(mine)):
             look_up(memory[lamp], scene.grid, direction, first(left))
             mine = left & close(memory[lamp], direction, scene.spread)
         given = (scene, lamp, int(memory[lamp, 3]), mine, origin, direction, distance)
@@ -170,10 +169,9 @@ def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Ma
         view = scene.lamp_views[lamp, index]
         if not any(free & mine & (distance > view[4])):
             break
-        if view[3] > -1.0 and not any(mine & within(view, -direction)):
-            continue
-        hit, t = intersect(read(group.rows, scene.places[index, 1]), origin, direction)
-        free = free & ~(mine & hit & (t < distance))
+        if view[3] <= -1.0 or rarely(mine & within(view, -direction)):
+            hit, t = intersect(read(group.rows, scene.places[index, 1]), origin, direction)
+            free = free & ~(mine & hit & (t < distance))
     return free
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from importlib import import_module
 from itertools import takewhile
 from threading import Lock
@@ -29,6 +29,7 @@ ALL_PACKETS = np.zeros((0, 0), np.uint8)
 GOLDEN = (5**0.5 - 1) / 2
 
 
+@cache
 def sample_places(samples: int) -> np.ndarray:
     """Where in a pixel its samples lie, (samples, 2) in [0, 1): a Fibonacci lattice; one sample lies in the centre."""
     each = np.arange(samples)
