@@ -59,6 +59,18 @@ def floor(x: Number) -> Number:
     return np.floor(x)
 
 
+def exponent(x: Number) -> Number:
+    """The greatest whole number e with 2^e <= x, for x >= 0; for 0 and denormal numbers the one below all others."""
+    least = np.finfo(np.asarray(x).dtype).minexp
+    return np.maximum(np.where(x > 0.0, np.frexp(x)[1] - 1, least - 1), least - 1).astype(np.asarray(x).dtype)[()]
+
+
+def two_to(x: Number) -> Number:
+    """2^x for whole numbers x up to the largest `exponent`; 0 where that is less than the least normal number."""
+    kind = np.asarray(x).dtype
+    return np.where(x < np.finfo(kind).minexp, 0.0, np.ldexp(kind.type(1), np.asarray(x).astype(int))).astype(kind)[()]
+
+
 def copysign(x: Number, sign: Number) -> Number:
     """The absolute value of x with the sign of `sign`."""
     return np.copysign(x, sign)
