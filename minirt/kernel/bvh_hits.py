@@ -22,7 +22,7 @@ from minirt.kernel.bvh import (
     vec_at,
     walk,
 )
-from minirt.kernel.frame import fetch_add
+from minirt.kernel.counter import fetch_add
 from minirt.kernel.rows import intersect, kind_of, read, surface
 from minirt.kernel.trace import largest, nearer, over_kinds
 from minirt.lanes import Vec, any, lane, load, splat, unit, where

@@ -5,9 +5,11 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-from minirt.kernel.shade import radiance
+from minirt.kernel.counter import fetch_add
+from minirt.kernel.shade import lit_sky
 from minirt.kernel.trace import is_empty
 from minirt.kernel.traced import Traced
+from minirt.kernel.whitted import radiance
 from minirt.lanes import Vec, lane, load, minimum, rarely, save, splat, unit, where, width
 from minirt.lanes.vec import Number
 
@@ -80,7 +82,7 @@ def frame(
     samples = rays.shape[0]
     step = width(rays) // DOWN
     nothing = splat(0.0, load(rays[0], 0))
-    black = Vec(nothing, nothing, nothing)
+    empty_sky = lit_sky(scene.sky, nothing > 0.0, Vec(nothing, nothing, nothing))
     while True:
         top = fetch_add(next_row, TILE)
         if top >= height:
@@ -98,7 +100,7 @@ def frame(
                         if rarely(wanted.shape[0] > 0) and wanted[y // DOWN, x // step] == 0:
                             continue
                         if empty:
-                            store(pixels, linear, x, y, black)
+                            store(pixels, linear, x, y, empty_sky)
                             continue
                         light = made_finite(packet(scene, memory, tile, rays[sample], x, y), memory)
                         if rarely(samples > 1):
@@ -142,10 +144,3 @@ def store_block(pixels: Any, x: int, y: int, red: Number, green: Number, blue: N
     step = width(red) // DOWN
     for i in range(width(red)):
         pixels[y + i // step, x + i % step] = colour(lane(red, i), lane(green, i), lane(blue, i))
-
-
-def fetch_add(counter: Any, amount: int) -> int:
-    """Add to a counter that threads share, and return what it was before."""
-    before = int(counter[0])
-    counter[0] += amount
-    return before

@@ -13,6 +13,7 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.typed_passes import NativeLowering
+from numba.core.untyped_passes import DeadBranchPrune, ReconstructSSA
 
 
 class Part(JITCodeLibrary):
@@ -44,11 +45,13 @@ class PartLowering(NativeLowering):
 
 
 class Inlined(CompilerBase):
-    """The steps of numba, with the last one replaced."""
+    """The steps of numba, with the last one replaced; `if x is None` is decided by the type of an argument x."""
 
     def define_pipelines(self) -> list[PassManager]:
         steps = PassManager("inlined")
         for step, why in DefaultPassBuilder.define_nopython_pipeline(self.state).passes:
+            if step is ReconstructSSA:  # left out with the rewrites, which nothing here needs
+                steps.add_pass(DeadBranchPrune, "what is done only with what is None")
             steps.add_pass(PartLowering if step is NativeLowering else step, why)
         steps.finalize()
         return [steps]

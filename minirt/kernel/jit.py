@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from functools import lru_cache
+from importlib import import_module
 from itertools import count
 from types import FunctionType, ModuleType
 from typing import Any, TypeAlias
@@ -20,7 +21,7 @@ from numba.core.typing.templates import AbstractTemplate, infer_global, signatur
 from numba.extending import lower_builtin, overload, register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
-from minirt.kernel import cache, frame, rows, shade, trace
+from minirt.kernel import cache, counter, frame, highlight, lamps, rows, shade, trace, whitted
 from minirt.kernel.inlined import Inlined
 from minirt.kernel.traced import Traced
 from minirt.lanes import power
@@ -131,7 +132,7 @@ def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return context.make_tuple(builder, sig.return_type, parts)
 
 
-@teach(frame.fetch_add, lambda counter, amount: types.int64, [(types.Array, types.Integer)])
+@teach(counter.fetch_add, lambda counter, amount: types.int64, [(types.Array, types.Integer)])
 def _fetch_add(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     counter = context.make_array(sig.args[0])(context, builder, value=args[0])
     amount = context.cast(builder, args[1], sig.args[1], types.int64)
@@ -164,14 +165,17 @@ def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> An
     return context.get_dummy_value()
 
 
-OWN_FORM = (trace.over_kinds, frame.fetch_add, frame.store_block, frame.frame)
+OWN_FORM = (whitted.path_memory, trace.over_kinds, counter.fetch_add, frame.store_block, frame.frame)
 for _module in (
     basis,
     exact,
     power,
     quadric,
     trace,
+    highlight,
+    lamps,
     shade,
+    whitted,
     frame,
     *(sys.modules[kind.intersect.__module__] for kind in KINDS),
 ):
@@ -180,23 +184,28 @@ for _module in (
             register_jitable(**INNER)(_function)
 
 CACHE = cache.folder()
+OPTIONAL = tuple(name for name, default in Traced._field_defaults.items() if default is None)
 
 
 @lru_cache(None)
-def kernel_of(*row_types: np.dtype[Any]) -> Any:
-    """The kernel for shapes that lie in rows of these types, compiled or loaded when it is first called.
+def kernel_of(features: tuple[str, ...], *row_types: np.dtype[Any]) -> Any:
+    """The kernel for shapes that lie in rows of these types and for `features` of a scene, compiled or loaded when it
+    is first called.
 
     Each has a folder of its own: numba's index of a folder does not bear two programs that write it at the same time.
     """
+    if features:
+        import_module("minirt.kernel.jit_bvh")
     titles = (rows.kind_of(each.names).element.title for each in row_types)
-    place = CACHE and CACHE / "-".join([*titles, str(row_types[0][0].base)])
+    place = CACHE and CACHE / "-".join([*titles, *features, str(row_types[0][0].base)])
     with cache.numba_cache(place):
         return njit(cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(frame.frame)
 
 
 def kernel_for(traced: Traced) -> Any:
     """The kernel for a scene."""
-    return kernel_of(*(group.rows.dtype for group in traced.groups))
+    features = tuple(name for name in OPTIONAL if getattr(traced, name) is not None)
+    return kernel_of(features, *(group.rows.dtype for group in traced.groups))
 
 
 def compile(arguments: Arguments) -> None:

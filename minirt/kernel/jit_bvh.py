@@ -10,7 +10,7 @@ from numba import njit, types
 from numba.core import cgutils
 from numba.extending import register_jitable
 
-from minirt.kernel import bvh, bvh_build, bvh_collapse, bvh_hits, cache, rows
+from minirt.kernel import bvh, bvh_build, bvh_collapse, bvh_hits, cache, rows, whitted
 from minirt.kernel.jit import CACHE, FLAGS, INNER, first_number, own_functions
 from minirt.lanes import compiled_verbs, verbs
 from minirt.lanes.teaching import teach
@@ -26,6 +26,11 @@ MEMORY = types.CPointer(types.float64)
 @teach(bvh.packet_memory, lambda: MEMORY, [()])
 def _packet_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return cgutils.alloca_once(builder, ir.DoubleType(), size=bvh.MEMORY)
+
+
+@teach(whitted.path_memory, lambda: MEMORY, [()])
+def _path_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return cgutils.alloca_once(builder, ir.DoubleType(), size=whitted.MEMORY)
 
 
 def lanes_place(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:

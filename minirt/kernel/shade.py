@@ -2,56 +2,84 @@
 
 from __future__ import annotations
 
-from math import inf
 from typing import Any
 
-from minirt.kernel.trace import ROUNDING, largest, nearest, surfaces, unhidden
+from minirt.kernel import bvh_hits
+from minirt.kernel.highlight import highlight
+from minirt.kernel.lamps import arrival
+from minirt.kernel.trace import ROUNDING, largest, unhidden
 from minirt.kernel.traced import Traced
-from minirt.lanes import Vec, any, dot, inverse_root, rarely, splat, unit_roundoff, where
+from minirt.lanes import Vec, any, dot, splat, unit_roundoff, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
 
-def radiance(scene: Traced, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
-    """The light that arrives at `origin` against `direction`, nothing where a ray hits no shape."""
-    t, owner, extent = nearest(scene, tile, origin, direction)
-    hit = t < inf
-    nothing = splat(0.0, t)
-    light = Vec(nothing, nothing, nothing)
-    if any(hit):
-        point, normal, colour = surfaces(scene, memory, owner, origin + t * direction, hit)
-        away = hit & (dot(normal, direction) > 0.0)
-        if rarely(away):
-            normal = where(away, -normal, normal)  # the side that is seen
-        light = times(colour, irradiance(scene, memory, point, normal, extent, hit))
-    return light
+def clearance(point: Vec, extent: Number) -> Number:
+    """How far from a surface a ray starts so that it is outside of it, and of surfaces that coincide with it."""
+    return ROUNDING * unit_roundoff(extent) * (largest(point) + extent)
 
 
-def irradiance(scene: Traced, memory: Any, point: Vec, normal: Vec, extent: Number, hit: Mask) -> Vec:
+def received(
+    scene: Traced, memory: Any, point: Vec, normal: Vec, direction: Vec, extent: Number, gloss: Vec, hit: Mask
+) -> tuple[Vec, Vec]:
     """The light that falls onto a surface from the side of its normal: ambient light and, by Lambert's cosine law, the
-    light of every lamp that no shape hides. Rays that do not hit bring none."""
+    light of every lamp that no shape hides; and of that what is a highlight along `direction`. Rays that do not hit
+    bring none."""
     u = unit_roundoff(extent)
-    rounding = ROUNDING * u * (largest(point) + extent)
-    start = point + rounding * normal  # outside of the surface and of those that coincide with it
+    rounding = clearance(point, extent)
+    start = point + rounding * normal
     total = where(hit, Vec(scene.ambient[0], scene.ambient[1], scene.ambient[2]), Vec(0.0, 0.0, 0.0))
+    nothing = splat(0.0, extent)
+    shine = Vec(nothing, nothing, nothing)
     for i in range(scene.lights.shape[0]):
         lamp = Vec(scene.lights[i, 0], scene.lights[i, 1], scene.lights[i, 2])
         light = Vec(scene.lights[i, 3], scene.lights[i, 4], scene.lights[i, 5])
-        way = lamp - start
-        squared = dot(way, way)
-        per_length = inverse_root(squared)
-        towards = way * per_length
-        cosine = dot(normal, towards)
+        towards, distance, strength = arrival(scene.beams, i, lamp, start)
+        cosine = dot(normal, towards) * strength
         lit = hit & (cosine > 0.0)
         if any(lit):
-            reach = squared * per_length - 4.0 * (
-                rounding + ROUNDING * u * largest(lamp)
-            )  # a surface hides no lamp on it
-            lit = unhidden(scene, memory, i, start, towards, reach, lit)
+            reach = distance - 4.0 * (rounding + ROUNDING * u * largest(lamp))  # a surface hides no lamp on it
+            lit = unblocked(scene.beams, scene, memory, i, start, towards, reach, lit)
             total = total + where(lit, cosine, 0.0) * light
-    return total
+            share = highlight(scene.gloss, gloss, normal, towards, direction, lit)
+            shine = with_shine(scene.gloss, shine, share * strength * light)
+    return total, shine
 
 
-def times(a: Vec, b: Vec) -> Vec:
+def unblocked(
+    beams: Any, scene: Traced, memory: Any, lamp: int, start: Vec, towards: Vec, reach: Number, lit: Mask
+) -> Mask:
+    """`unhidden`; the rays to a lamp whose light is parallel share no end, and walk the tree where there is one."""
+    if beams is None:
+        return unhidden(scene, memory, lamp, start, towards, reach, lit)
+    if beams[lamp, 6] > 0.5:
+        return unhidden_in_tree(scene.tree, scene, memory, lamp, start, towards, reach, lit)
+    return unhidden(scene, memory, lamp, start, towards, reach, lit)
+
+
+def unhidden_in_tree(
+    tree: Any, scene: Traced, memory: Any, lamp: int, start: Vec, towards: Vec, reach: Number, lit: Mask
+) -> Mask:
+    """The same for such a lamp."""
+    if tree is None:
+        return unhidden(scene, memory, lamp, start, towards, reach, lit)
+    return bvh_hits.unhidden(tree, start, towards, reach, lit)
+
+
+def with_shine(gloss: Any, light: Vec, shine: Vec) -> Vec:
+    """Light and a highlight."""
+    if gloss is None:
+        return light
+    return light + shine
+
+
+def coloured(light: Vec, colour: Vec) -> Vec:
     """Light of one colour on a surface of another."""
-    return Vec(a.x * b.x, a.y * b.y, a.z * b.z)
+    return Vec(light.x * colour.x, light.y * colour.y, light.z * colour.z)
+
+
+def lit_sky(sky: Any, hit: Mask, light: Vec) -> Vec:
+    """The light of rays that hit, and of the sky for those that do not."""
+    if sky is None:
+        return light
+    return where(hit, light, Vec(sky[0], sky[1], sky[2]))

@@ -195,8 +195,9 @@ def cell(direction: Vec, grid: int) -> Number:
     return (face * grid + row) * grid + column
 
 
-def surfaces(scene: Traced, memory: Any, owner: Number, point: Vec, hit: Mask) -> tuple[Vec, Vec, Vec]:
-    """For rays that hit: the point put onto the surface of the shape that is hit, and the normal and the colour there.
+def surfaces(scene: Traced, memory: Any, owner: Number, point: Vec, hit: Mask) -> tuple[Vec, Vec, Vec, tuple[Vec, Vec]]:
+    """For rays that hit: the point put onto the surface of the shape that is hit, the normal and the colour there, and
+    the rows of `gloss` and `bounces`.
 
     The rays of a packet hit few different shapes, mostly one. The first that is asked is the last one of the packet
     before, which `memory` keeps, and what it answers is taken for all rays; others only correct it for theirs.
@@ -207,18 +208,21 @@ def surfaces(scene: Traced, memory: Any, owner: Number, point: Vec, hit: Mask) -
         index = int(lane(owner, first(hit)))
         left = hit & (owner != index)
     on, normal = surface_at(scene, index, point)
-    look = colour_of(scene, index)
-    colour = Vec(splat(look.x, point.x), splat(look.y, point.x), splat(look.z, point.x))
+    colour = row_of(scene.looks, index, point.x)
+    gloss = row_of(scene.gloss, index, point.x)
+    bounces = row_of(scene.bounces, index, point.x)
     while rarely(left):
         index = int(lane(owner, first(left)))
         mine = left & (owner == index)
         moved, out = surface_at(scene, index, point)
         on = where(mine, moved, on)
         normal = where(mine, out, normal)
-        colour = where(mine, colour_of(scene, index), colour)
+        colour = put_row(scene.looks, index, mine, colour)
+        gloss = put_row(scene.gloss, index, mine, gloss)
+        bounces = put_row(scene.bounces, index, mine, bounces)
         left = left & ~mine
     memory[scene.lights.shape[0], 0] = index
-    return on, normal, colour
+    return on, normal, colour, (gloss, bounces)
 
 
 def surface_at(scene: Traced, index: int, point: Vec) -> tuple[Vec, Vec]:
@@ -238,6 +242,15 @@ def surface_of_kind(group: Group, state: tuple[Vec, Vec, int], given: tuple[int,
     return on, normal, number + 1
 
 
-def colour_of(scene: Traced, index: int) -> Vec:
-    """The colour of a shape."""
-    return Vec(scene.looks[index, 0], scene.looks[index, 1], scene.looks[index, 2])
+def row_of(table: Any, index: int, like: Number) -> Vec:
+    """The first three numbers of a row, for all rays; 0 where there is no table."""
+    if table is None:
+        return Vec(splat(0.0, like), splat(0.0, like), splat(0.0, like))
+    return Vec(splat(table[index, 0], like), splat(table[index, 1], like), splat(table[index, 2], like))
+
+
+def put_row(table: Any, index: int, mine: Mask, before: Vec) -> Vec:
+    """The same for the rays that are `mine`, and what was `before` for the others."""
+    if table is None:
+        return before
+    return where(mine, Vec(table[index, 0], table[index, 1], table[index, 2]), before)

@@ -36,3 +36,10 @@ class Traced(NamedTuple):
     lit: Any  # the shapes in each cell of each cube, the nearest first
     lamp_views: Any  # (m, n, 5) the same from each lamp
     groups: Any  # a tuple of Group: one for each kind of shape that the scene has
+    # What most scenes do without, and then None: code for it is compiled only where it is there.
+    beams: Any = None  # (m, 7) see `minirt.kernel.lamps`
+    gloss: Any = None  # (n, 3) see `minirt.kernel.highlight`
+    bounces: Any = None  # (n, 3) see `minirt.kernel.whitted`
+    depth: int = 0  # how often light may be mirrored or refracted on its way
+    sky: Any = None  # (3,) light from where no shape is
+    tree: Any = None  # `minirt.kernel.bvh.Tree` of the shapes, for rays that share no origin

@@ -11,8 +11,8 @@ import numpy as np
 
 from minirt.kernel import lists
 from minirt.kernel.frame import level, towards
-from minirt.kernel.shade import radiance
 from minirt.kernel.traced import Traced
+from minirt.kernel.whitted import radiance
 from minirt.lanes import Vec, unit
 from minirt.rendering.packing import Packing
 from minirt.rendering.renderer import memory_for
@@ -50,7 +50,7 @@ def picture(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarr
 
 
 def in_one_list(traced: Traced) -> Traced:
-    """The scene with a single tile, and around each lamp a single cell, in which all shapes are."""
+    """The scene without mirrors, with a single tile, and around each lamp a single cell, in which all shapes are."""
     kinds = traced.places[:, 0]
     starts = np.searchsorted(np.sort(kinds), np.arange(len(traced.groups) + 1))
     lamps = np.arange(len(traced.lights))[:, None] * len(kinds)
@@ -58,6 +58,8 @@ def in_one_list(traced: Traced) -> Traced:
     return traced._replace(
         seen=np.lexsort((traced.views[:, 4], kinds)),
         grid=1,
+        bounces=None,
+        tree=None,
         lit=np.array(by_lamp, np.int64).ravel(),
         groups=tuple(
             group._replace(starts=starts[kind : kind + 2], lamp_starts=lamps + starts[kind : kind + 2])

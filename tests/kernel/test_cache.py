@@ -64,7 +64,7 @@ def test_the_next_process_finds_the_kernel_and_edited_sources_do_not(copy: Path,
 
     shade = copy / "minirt" / "kernel" / "shade.py"
     source = shade.read_text()
-    shade.write_text(source.replace("return Vec(a.x * b.x, a.y * b.y", "return Vec(a.x * b.x, 2.0 * a.y * b.y"))
+    shade.write_text(source.replace("light.y * colour.y", "2.0 * light.y * colour.y"))
     assert shade.read_text() != source
     edited, hits, misses, pixel = process(copy, tmp_path)
     assert edited != name

@@ -18,7 +18,7 @@ FASTMATH = "fastmath"
 
 
 def test_the_kernel_divides_as_ieee_754_says_and_keeps_nan() -> None:
-    options = jit.kernel_of(row_type(KINDS[0])).targetoptions
+    options = jit.kernel_of((), row_type(KINDS[0])).targetoptions
     assert options["error_model"] == "numpy"
     assert options[FASTMATH] == {"contract"}
 

@@ -10,7 +10,7 @@ import pytest
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Length, Point
 from minirt.kernel import shade
-from minirt.lanes import Vec, any, dot, splat, sqrt, where
+from minirt.lanes import splat
 from minirt.scene import FurtherLight, Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SECOND, SHAPES, interpreted, linear
 
@@ -92,23 +92,8 @@ def test_a_light_of_ambient_alone_is_the_surfaces_colour() -> None:
     assert {tuple(np.round(pixel, 12)) for pixel in picture.reshape(-1, 3)} <= colours | {(0, 0, 0)}
 
 
-def absolute(scene: Any, memory: Any, point: Vec, normal: Vec, extent: Any, hit: Any) -> Vec:
-    """`shade.irradiance` with the start of the way to a lamp a fixed 1e-4 above the surface."""
-    start = point + 1e-4 * normal
-    total = Vec(*(splat(x, extent) for x in scene.ambient))
-    for lamp, row in enumerate(scene.lights):
-        way = Vec(*row[:3]) - start
-        distance = sqrt(dot(way, way))
-        cosine = dot(normal, way / distance)
-        lit = hit & (cosine > 0.0)
-        if any(lit):
-            lit = shade.unhidden(scene, memory, lamp, start, way / distance, distance, lit)
-            total = total + where(lit, cosine, 0.0) * Vec(*row[3:])
-    return total
-
-
 def test_a_fixed_offset_does_not_pass(monkeypatch: pytest.MonkeyPatch) -> None:
     before = interpreted(ALL)[1]
-    monkeypatch.setattr(shade, "irradiance", absolute)
+    monkeypatch.setattr(shade, "clearance", lambda point, extent: splat(1e-4, extent))
     assert np.abs(interpreted(ALL)[1] - before).max() < 0.01  # it is right at the scale that it was made for
     assert np.abs(interpreted(scaled(ALL, 2.0**-20))[1] - before).max() > 0.1

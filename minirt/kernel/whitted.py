@@ -1,0 +1,145 @@
+"""The light that a ray brings back, by way of mirrors and glass too: Whitted, An Improved Illumination Model for Shaded
+Display, 1980.
+
+A surface that mirrors the share k of the light and lets the share g through sends on a ray for each, and shows
+1 - k - g of its own light. `bounces` (n, 3) has k, g and the index of refraction for each shape. Glass throws a shadow
+as if it were opaque: light that it would gather or tint is left out.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from minirt.kernel import bvh_hits
+from minirt.kernel.bvh import put, put_vec
+from minirt.kernel.shade import clearance, coloured, lit_sky, received, with_shine
+from minirt.kernel.trace import nearest, surfaces
+from minirt.kernel.traced import Traced
+from minirt.lanes import Vec, any, dot, lane, load, maximum, rarely, splat, sqrt, unit, where, width
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import BYTES, Mask
+
+DEEPEST = 32  # bounces, at most
+LEAST = 2.0**-10  # share of the light of a picture below which a ray is not followed
+ORIGIN, DIRECTION, WEIGHT, LEVEL = 0, 3, 6, 7  # of a ray that is to be followed, in rows of lanes
+ROWS = 8
+MEMORY = (DEEPEST + 2) * ROWS * BYTES // 8
+
+
+def radiance(scene: Traced, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
+    """The light that arrives at `origin` against `direction`."""
+    t, owner, extent = nearest(scene, tile, origin, direction)
+    return followed(scene.bounces, scene, memory, t, owner, extent, origin, direction)
+
+
+def followed(
+    bounces: Any, scene: Traced, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec
+) -> Vec:
+    """The same, knowing what is hit."""
+    hit = t < inf
+    nothing = splat(0.0, t)
+    light = Vec(nothing, nothing, nothing)
+    if bounces is None:
+        if any(hit):
+            light, _, _, _ = leaving(scene, memory, t, owner, extent, origin, direction, hit)
+        return lit_sky(scene.sky, hit, light)
+    return whitted(scene, memory, t, owner, extent, origin + 0.0 * direction, direction)
+
+
+def leaving(
+    scene: Traced, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec, hit: Mask
+) -> tuple[Vec, Vec, Vec, Vec]:
+    """The light of the surfaces that are hit, as if they were opaque, the points and the normals there, outward, and
+    the rows of `bounces`."""
+    point, normal, colour, (gloss, bounces) = surfaces(scene, memory, owner, origin + t * direction, hit)
+    seen = normal
+    away = hit & (dot(normal, direction) > 0.0)
+    if rarely(away):
+        seen = where(away, -normal, normal)  # the side that is seen
+    total, shine = received(scene, memory, point, seen, direction, extent, gloss, hit)
+    own = opaque(scene.bounces, bounces, coloured(total, colour))
+    return with_shine(scene.gloss, own, shine), point, normal, bounces
+
+
+def opaque(table: Any, bounces: Vec, light: Vec) -> Vec:
+    """The share of its own light that a surface shows."""
+    if table is None:
+        return light
+    return light * maximum(1.0 - bounces.x - bounces.y, 0.0)
+
+
+def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec) -> Vec:
+    """The light along rays whose hits are known, and along those that they send on, depth first."""
+    paths = path_memory()
+    weight = splat(1.0, t)
+    level = 0
+    waiting = 0
+    light = Vec(splat(0.0, t), splat(0.0, t), splat(0.0, t))
+    while True:
+        asked = weight > 0.0
+        hit = asked & (t < inf)
+        if any(hit):
+            own, point, normal, bounces = leaving(scene, memory, t, owner, extent, origin, direction, hit)
+            light = light + where(hit, weight, 0.0) * own
+            if level < scene.depth:
+                rounding = clearance(point, extent)
+                against = -dot(normal, direction)
+                facing = where(against < 0.0, -normal, normal)
+                cosine = where(against < 0.0, -against, against)
+                # Snell's law: the ratio of the indices in front of the surface and behind it.
+                ratio = where(against < 0.0, bounces.z, 1.0 / bounces.z)
+                squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine)
+                total = squared < 0.0  # reflection
+                through = where(hit & ~total, weight * bounces.y, 0.0)
+                back = where(hit, weight * bounces.x + where(total, weight * bounces.y, 0.0), 0.0)
+                if any(back > LEAST):
+                    way = unit(direction + 2.0 * cosine * facing)
+                    waiting = keep(
+                        paths, waiting, point + rounding * facing, way, where(back > LEAST, back, 0.0), level
+                    )
+                if any(through > LEAST):
+                    way = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * facing)
+                    kept = where(through > LEAST, through, 0.0)
+                    waiting = keep(paths, waiting, point - rounding * facing, way, kept, level)
+        light = beyond(scene.sky, light, where(asked & ~hit, weight, 0.0))
+        if waiting == 0:
+            break
+        waiting -= 1
+        at = waiting * ROWS * width(t)
+        origin, direction = vec_from(paths, at, t), vec_from(paths, at + DIRECTION * width(t), t)
+        weight = load(paths, at + WEIGHT * width(t))
+        level = int(lane(load(paths, at + LEVEL * width(t)), 0))
+        t, owner, extent = bvh_hits.nearest(scene.tree, origin, direction, weight > 0.0)
+    return light
+
+
+def path_memory() -> Any:
+    """Room for the rays that wait; compiled, it is a thread's own."""
+    return np.zeros(MEMORY)
+
+
+def keep(paths: Any, waiting: int, origin: Vec, direction: Vec, weight: Number, level: int) -> int:
+    """Put rays to those that wait, and count them."""
+    count = width(weight)
+    at = waiting * ROWS * count
+    put_vec(paths, at, origin)
+    put_vec(paths, at + DIRECTION * count, direction)
+    put(paths, at + WEIGHT * count, weight)
+    put(paths, at + LEVEL * count, splat(level + 1.0, weight))
+    return waiting + 1
+
+
+def vec_from(paths: Any, at: int, like: Number) -> Vec:
+    """The vectors of rays that waited."""
+    count = width(like)
+    return Vec(load(paths, at), load(paths, at + count), load(paths, at + 2 * count))
+
+
+def beyond(sky: Any, light: Vec, weight: Number) -> Vec:
+    """Light, and that of the sky for the rays that hit nothing."""
+    if sky is None:
+        return light
+    return light + weight * Vec(sky[0], sky[1], sky[2])
