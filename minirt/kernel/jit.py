@@ -21,10 +21,10 @@ from numba.core.typing.templates import AbstractTemplate, infer_global, signatur
 from numba.extending import lower_builtin, overload, register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
-from minirt.kernel import cache, counter, frame, highlight, lamps, rows, shade, trace, whitted
+from minirt.kernel import cache, counter, frame, highlight, lamps, rows, shade, skins, surfaces, texels, trace, whitted
 from minirt.kernel.inlined import Inlined
 from minirt.kernel.traced import Traced
-from minirt.lanes import power
+from minirt.lanes import power, vec
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, VecType, common, constant, splat, vec_of
 from minirt.shapes import KINDS, basis, exact, quadric
@@ -64,6 +64,11 @@ def _intersect(shape, origin, direction):  # type: ignore[no-untyped-def]
 @overload(rows.surface, jit_options=INNER, strict=False)
 def _surface(shape, point):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).surface
+
+
+@overload(rows.mapping, jit_options=INNER, strict=False)
+def _mapping(shape, point, normal):  # type: ignore[no-untyped-def]
+    return rows.kind_of_packed(shape.instance_class).mapping
 
 
 @infer_global(trace.over_kinds)
@@ -165,6 +170,7 @@ def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> An
     return context.get_dummy_value()
 
 
+register_jitable(**INNER)(vec.cross)
 OWN_FORM = (whitted.path_memory, trace.over_kinds, counter.fetch_add, frame.store_block, frame.frame)
 for _module in (
     basis,
@@ -174,6 +180,9 @@ for _module in (
     trace,
     highlight,
     lamps,
+    texels,
+    skins,
+    surfaces,
     shade,
     whitted,
     frame,

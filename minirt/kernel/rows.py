@@ -57,6 +57,11 @@ def intersect(shape: Any, origin: Vec, direction: Vec) -> Any:
     return kind_of_packed(type(shape)).intersect(shape, origin, direction)
 
 
+def mapping(shape: Any, point: Vec, normal: Vec) -> Any:
+    """`mapping` of the shape's own kind."""
+    return kind_of_packed(type(shape)).mapping(shape, point, normal)
+
+
 def surface(shape: Any, point: Vec) -> Any:
     """`surface` of the shape's own kind."""
     return kind_of_packed(type(shape)).surface(shape, point)

@@ -7,6 +7,7 @@ from typing import Any
 from minirt.kernel import bvh_hits
 from minirt.kernel.highlight import highlight
 from minirt.kernel.lamps import arrival
+from minirt.kernel.surfaces import Surface
 from minirt.kernel.trace import ROUNDING, largest, unhidden
 from minirt.kernel.traced import Traced
 from minirt.lanes import Vec, any, dot, splat, unit_roundoff, where
@@ -20,14 +21,14 @@ def clearance(point: Vec, extent: Number) -> Number:
 
 
 def received(
-    scene: Traced, memory: Any, point: Vec, normal: Vec, direction: Vec, extent: Number, gloss: Vec, hit: Mask
+    scene: Traced, memory: Any, found: Surface, normal: Vec, bent: Vec, direction: Vec, extent: Number, hit: Mask
 ) -> tuple[Vec, Vec]:
     """The light that falls onto a surface from the side of its normal: ambient light and, by Lambert's cosine law, the
-    light of every lamp that no shape hides; and of that what is a highlight along `direction`. Rays that do not hit
-    bring none."""
+    light of every lamp that no shape hides; and of that what is a highlight along `direction`. It is lit as if its
+    normal were `bent`. Rays that do not hit bring none."""
     u = unit_roundoff(extent)
-    rounding = clearance(point, extent)
-    start = point + rounding * normal
+    rounding = clearance(found.point, extent)
+    start = found.point + rounding * normal
     total = where(hit, Vec(scene.ambient[0], scene.ambient[1], scene.ambient[2]), Vec(0.0, 0.0, 0.0))
     nothing = splat(0.0, extent)
     shine = Vec(nothing, nothing, nothing)
@@ -35,13 +36,13 @@ def received(
         lamp = Vec(scene.lights[i, 0], scene.lights[i, 1], scene.lights[i, 2])
         light = Vec(scene.lights[i, 3], scene.lights[i, 4], scene.lights[i, 5])
         towards, distance, strength = arrival(scene.beams, i, lamp, start)
-        cosine = dot(normal, towards) * strength
+        cosine = dot(bent, towards) * strength
         lit = hit & (cosine > 0.0)
         if any(lit):
             reach = distance - 4.0 * (rounding + ROUNDING * u * largest(lamp))  # a surface hides no lamp on it
             lit = unblocked(scene.beams, scene, memory, i, start, towards, reach, lit)
             total = total + where(lit, cosine, 0.0) * light
-            share = highlight(scene.gloss, gloss, normal, towards, direction, lit)
+            share = highlight(scene.gloss, found.gloss, bent, towards, direction, lit)
             shine = with_shine(scene.gloss, shine, share * strength * light)
     return total, shine
 

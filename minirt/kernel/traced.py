@@ -40,6 +40,7 @@ class Traced(NamedTuple):
     beams: Any = None  # (m, 7) see `minirt.kernel.lamps`
     gloss: Any = None  # (n, 3) see `minirt.kernel.highlight`
     bounces: Any = None  # (n, 3) see `minirt.kernel.whitted`
+    skins: Any = None  # `minirt.kernel.skins.Skins`
     depth: int = 0  # how often light may be mirrored or refracted on its way
     sky: Any = None  # (3,) light from where no shape is
     tree: Any = None  # `minirt.kernel.bvh.Tree` of the shapes, for rays that share no origin

@@ -16,7 +16,8 @@ import numpy as np
 from minirt.kernel import bvh_hits
 from minirt.kernel.bvh import put, put_vec
 from minirt.kernel.shade import clearance, coloured, lit_sky, received, with_shine
-from minirt.kernel.trace import nearest, surfaces
+from minirt.kernel.surfaces import Surface, surfaces
+from minirt.kernel.trace import nearest
 from minirt.kernel.traced import Traced
 from minirt.lanes import Vec, any, dot, lane, load, maximum, rarely, splat, sqrt, unit, where, width
 from minirt.lanes.vec import Number
@@ -44,24 +45,24 @@ def followed(
     light = Vec(nothing, nothing, nothing)
     if bounces is None:
         if any(hit):
-            light, _, _, _ = leaving(scene, memory, t, owner, extent, origin, direction, hit)
+            light, _ = leaving(scene, memory, t, owner, extent, origin, direction, hit)
         return lit_sky(scene.sky, hit, light)
     return whitted(scene, memory, t, owner, extent, origin + 0.0 * direction, direction)
 
 
 def leaving(
     scene: Traced, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec, hit: Mask
-) -> tuple[Vec, Vec, Vec, Vec]:
-    """The light of the surfaces that are hit, as if they were opaque, the points and the normals there, outward, and
-    the rows of `bounces`."""
-    point, normal, colour, (gloss, bounces) = surfaces(scene, memory, owner, origin + t * direction, hit)
-    seen = normal
+) -> tuple[Vec, Surface]:
+    """The light of their own that surfaces send back along rays that hit them, and the surfaces."""
+    found = surfaces(scene, memory, owner, origin + t * direction, hit)
+    normal, bent = found.normal, found.bent
     away = hit & (dot(normal, direction) > 0.0)
-    if rarely(away):
-        seen = where(away, -normal, normal)  # the side that is seen
-    total, shine = received(scene, memory, point, seen, direction, extent, gloss, hit)
-    own = opaque(scene.bounces, bounces, coloured(total, colour))
-    return with_shine(scene.gloss, own, shine), point, normal, bounces
+    if rarely(away):  # the side that is seen counts
+        normal = where(away, -normal, normal)
+        bent = where(away, -bent, bent)
+    total, shine = received(scene, memory, found, normal, bent, direction, extent, hit)
+    own = opaque(scene.bounces, found.bounces, coloured(total, found.colour))
+    return with_shine(scene.gloss, own, shine), found
 
 
 def opaque(table: Any, bounces: Vec, light: Vec) -> Vec:
@@ -82,7 +83,8 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
         asked = weight > 0.0
         hit = asked & (t < inf)
         if any(hit):
-            own, point, normal, bounces = leaving(scene, memory, t, owner, extent, origin, direction, hit)
+            own, found = leaving(scene, memory, t, owner, extent, origin, direction, hit)
+            point, normal, bounces = found.point, found.normal, found.bounces
             light = light + where(hit, weight, 0.0) * own
             if level < scene.depth:
                 rounding = clearance(point, extent)

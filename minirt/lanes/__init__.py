@@ -15,7 +15,7 @@ needs. Nothing else in a formula shows that it runs on several rays at once.
 This package is the interpreted half and imports no compiler; `minirt.lanes.compiled` teaches numba the same verbs.
 """
 
-from minirt.lanes.vec import Vec, dot
+from minirt.lanes.vec import Vec, cross, dot
 from minirt.lanes.verbs import (
     any,
     copysign,
@@ -23,6 +23,7 @@ from minirt.lanes.verbs import (
     fabs,
     first,
     floor,
+    gather,
     inverse_root,
     lane,
     load,
@@ -45,11 +46,13 @@ __all__ = [
     "Vec",
     "any",
     "copysign",
+    "cross",
     "dot",
     "exponent",
     "fabs",
     "first",
     "floor",
+    "gather",
     "inverse_root",
     "lane",
     "load",

@@ -205,6 +205,32 @@ def _load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.load(builder.bitcast(place, lanes.as_pointer()), align=sig.return_type.number.bitwidth // 8)
 
 
+def gathered(values: types.Type, places: types.Type) -> types.Type | None:
+    """Lanes of what an array holds."""
+    return places if isinstance(values, types.Array) and isinstance(places, Lanes) else None
+
+
+@teach(verbs.gather, gathered, [(types.Array, Lanes)])
+def _gather(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    values = context.make_array(sig.args[0])(context, builder, value=args[0])
+    lanes = sig.return_type
+    held = ir.VectorType(context.get_value_type(sig.args[0].dtype), lanes.count)
+    words = builder.fptosi(args[1], ir.VectorType(ir.IntType(64), lanes.count))
+    got = ir.Constant(held, ir.Undefined)
+    for i in range(lanes.count):
+        lane = ir.Constant(ir.IntType(32), i)
+        number = builder.load(builder.gep(values.data, [builder.extract_element(words, lane)]))
+        got = builder.insert_element(got, number, lane)
+    target = context.get_value_type(lanes)
+    if held == target:
+        return got
+    return (
+        builder.fpext(got, target)
+        if sig.args[0].dtype.bitwidth < lanes.number.bitwidth
+        else builder.fptrunc(got, target)
+    )
+
+
 def saved(x: types.Type, values: types.Type, start: types.Type) -> types.Type | None:
     """Nothing, for lanes and an array of such numbers."""
     return types.none if isinstance(values, types.Array) and x == Lanes(values.dtype) else None

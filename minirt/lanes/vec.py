@@ -38,6 +38,11 @@ class Vec:
         return f"Vec({self.x}, {self.y}, {self.z})"
 
 
+def cross(a: Vec, b: Vec) -> Vec:
+    """The vector product."""
+    return Vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
+
+
 def dot(a: Vec, b: Vec) -> Number:
     """The scalar product."""
     return a.x * b.x + a.y * b.y + a.z * b.z

@@ -119,6 +119,11 @@ def load(values: Any, start: int) -> Number:
     return values[start : start + width(values)].copy()
 
 
+def gather(values: Any, places: Number) -> Number:
+    """For each ray the number of an array at a whole-number place, in the precision of the places."""
+    return np.asarray(values[np.asarray(places).astype(np.int64)]).astype(np.asarray(places).dtype)[()]
+
+
 def save(x: Number, values: Any, start: int) -> None:
     """Put the numbers of all rays into an array from index `start` on."""
     values[start : start + width(values)] = x

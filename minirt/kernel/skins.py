@@ -1,0 +1,111 @@
+"""What is painted on shapes by their coordinates u and v: checkerboards, pictures and reliefs."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from minirt.kernel.rows import mapping, read
+from minirt.kernel.texels import height_slopes, picture_at
+from minirt.kernel.trace import over_kinds
+from minirt.kernel.traced import Group, Traced
+from minirt.lanes import Vec, any, cross, dot, floor, splat, unit, where
+from minirt.lanes.vec import Number
+
+FLAT = 1e-30  # squared length of the product of the tangents: less than that they have no direction
+
+
+class Skins(NamedTuple):
+    """What is painted on n shapes, and the pictures. Each of the first four is None where no shape has such.
+
+    The numbers of the pictures begin with 1; a shape without one has 0.
+    """
+
+    checks: Any  # (n, 4) edge of a square in u and v, or 0; and the second colour
+    textures: Any  # (n,) the picture that takes the place of the colour
+    bumps: Any  # (n, 2) the picture whose first channel is a height, and by how much it raises the surface
+    normals: Any  # (n,) the picture of normals
+    used: Any  # (n,) 0 for shapes on which nothing is painted
+    texels: Any  # the pictures one after the other: rows from the top, pixels from the left, three channels in [0, 1]
+    pictures: Any  # (k, 3) for each picture where it begins in `texels`, its width and its height
+
+
+Mapped = tuple[Number, Number, Vec, Vec, int]
+
+
+def skinned(skins: Any, scene: Traced, index: int, point: Vec, normal: Vec, colour: Vec) -> tuple[Vec, Vec]:
+    """The normal by which places of a shape are lit, and their colour."""
+    if skins is None:
+        return normal, colour
+    if skins.used[index] != 0:
+        nothing = splat(0.0, point.x)
+        given = scene.places[index, 0], scene.places[index, 1], point, normal
+        u, v, along_u, along_v, _ = over_kinds(
+            mapping_of_kind, scene.groups, (nothing, nothing, point, point, 0), given
+        )
+        colour = textured(skins.textures, skins, index, u, v, checkered(skins.checks, index, u, v, colour))
+        normal = raised(skins.bumps, skins, index, u, v, along_u, along_v, normal)
+        normal = turned(skins.normals, skins, index, u, v, along_u, along_v, normal)
+    return normal, colour
+
+
+def mapping_of_kind(group: Group, state: Mapped, given: tuple[int, int, Vec, Vec]) -> Mapped:
+    """`mapping` of row i of this kind, if it is the one that is wanted; the last of the state counts the kinds."""
+    u, v, along_u, along_v, number = state
+    wanted, i, point, normal = given
+    if number == wanted:
+        u, v, to_u, to_v = mapping(read(group.rows, i), point, normal)
+        along_u = Vec(splat(to_u.x, point.x), splat(to_u.y, point.x), splat(to_u.z, point.x))
+        along_v = Vec(splat(to_v.x, point.x), splat(to_v.y, point.x), splat(to_v.z, point.x))
+    return u, v, along_u, along_v, number + 1
+
+
+def checkered(checks: Any, index: int, u: Number, v: Number, colour: Vec) -> Vec:
+    """The colour, and the second one in every other square."""
+    if checks is None:
+        return colour
+    size = checks[index, 0]
+    if size == 0.0:
+        return colour
+    half = 0.5 * (floor(u / size) + floor(v / size))
+    return where(half == floor(half), colour, Vec(checks[index, 1], checks[index, 2], checks[index, 3]))
+
+
+def textured(textures: Any, skins: Any, index: int, u: Number, v: Number, colour: Vec) -> Vec:
+    """The colour of the picture, where there is one."""
+    if textures is None:
+        return colour
+    if textures[index] == 0:
+        return colour
+    return picture_at(skins.texels, skins.pictures, textures[index] - 1, u, v)
+
+
+def raised(bumps: Any, skins: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec) -> Vec:
+    """The normal of a surface raised by the heights of a picture: Blinn, Simulation of Wrinkled Surfaces, 1978."""
+    if bumps is None:
+        return normal
+    if bumps[index, 0] == 0.0:
+        return normal
+    over_u, over_v = height_slopes(skins.texels, skins.pictures, int(bumps[index, 0]) - 1, u, v)
+    strength = bumps[index, 1]
+    plain = cross(along_u, along_v)
+    area = dot(plain, plain)
+    steep = area > FLAT
+    if not any(steep):
+        return normal
+    change = strength * (over_u * cross(normal, along_v) - over_v * cross(normal, along_u))
+    outside = where(dot(plain, normal) < 0.0, -1.0, 1.0)
+    return where(steep, unit(outside * where(steep, plain, normal) + change), normal)
+
+
+def turned(normals: Any, skins: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec) -> Vec:
+    """The normal that a picture has in terms of the tangents and of the plain normal: red, green, blue from 0 to 1
+    stand for -1 to 1 along u, v and the normal."""
+    if normals is None:
+        return normal
+    if normals[index] == 0:
+        return normal
+    seen = picture_at(skins.texels, skins.pictures, normals[index] - 1, u, v)
+    right = where(dot(along_u, along_u) > FLAT, along_u, normal)
+    up = where(dot(along_v, along_v) > FLAT, along_v, normal)
+    x, y, z = 2.0 * seen.x - 1.0, 2.0 * seen.y - 1.0, 2.0 * seen.z - 1.0
+    return unit(x * unit(right) + y * unit(up) + z * normal)

@@ -1,0 +1,79 @@
+"""What is where a ray hits: the surface and how it looks."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from minirt.kernel.rows import read, surface
+from minirt.kernel.skins import skinned
+from minirt.kernel.trace import over_kinds
+from minirt.kernel.traced import Group, Traced
+from minirt.lanes import Vec, any, first, lane, rarely, splat, where
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+
+
+class Surface(NamedTuple):
+    """A place of a shape for each ray."""
+
+    point: Vec  # on the surface
+    normal: Vec  # of the shape, outward where there is an outside
+    bent: Vec  # the normal by which it is lit
+    colour: Vec
+    gloss: Vec  # its row of `Traced.gloss`
+    bounces: Vec  # and of `Traced.bounces`
+
+
+def surfaces(scene: Traced, memory: Any, owner: Number, point: Vec, hit: Mask) -> Surface:
+    """The surfaces that rays hit within rounding of a point.
+
+    The rays of a packet hit few different shapes, mostly one. The first that is asked is the last one of the packet
+    before, which `memory` keeps, and what it answers is taken for all rays; others only correct it for theirs.
+    """
+    index = int(memory[scene.lights.shape[0], 0])
+    left = hit & (owner != index)
+    if rarely(left) and not any(hit & (owner == index)):
+        index = int(lane(owner, first(hit)))
+        left = hit & (owner != index)
+    found = surface_at(scene, index, point)
+    while rarely(left):
+        index = int(lane(owner, first(left)))
+        mine = left & (owner == index)
+        other = surface_at(scene, index, point)
+        found = Surface(
+            where(mine, other.point, found.point),
+            where(mine, other.normal, found.normal),
+            where(mine, other.bent, found.bent),
+            where(mine, other.colour, found.colour),
+            where(mine, other.gloss, found.gloss),
+            where(mine, other.bounces, found.bounces),
+        )
+        left = left & ~mine
+    memory[scene.lights.shape[0], 0] = index
+    return found
+
+
+def surface_at(scene: Traced, index: int, point: Vec) -> Surface:
+    """The surface of one shape, for all rays."""
+    given = scene.places[index, 0], scene.places[index, 1], point
+    on, normal, _ = over_kinds(surface_of_kind, scene.groups, (point, point, 0), given)
+    bent, colour = skinned(scene.skins, scene, index, on, normal, row_of(scene.looks, index, point.x))
+    gloss, bounces = row_of(scene.gloss, index, point.x), row_of(scene.bounces, index, point.x)
+    return Surface(on, normal, bent, colour, gloss, bounces)
+
+
+def surface_of_kind(group: Group, state: tuple[Vec, Vec, int], given: tuple[int, int, Vec]) -> tuple[Vec, Vec, int]:
+    """`surface` of row i of this kind, if it is the one that is wanted; the last of the state counts the kinds."""
+    on, normal, number = state
+    wanted, i, point = given
+    if number == wanted:
+        on, out = surface(read(group.rows, i), point)
+        normal = Vec(splat(out.x, point.x), splat(out.y, point.x), splat(out.z, point.x))
+    return on, normal, number + 1
+
+
+def row_of(table: Any, index: int, like: Number) -> Vec:
+    """The first three numbers of a row, for all rays; 0 where there is no table."""
+    if table is None:
+        return Vec(splat(0.0, like), splat(0.0, like), splat(0.0, like))
+    return Vec(splat(table[index, 0], like), splat(table[index, 1], like), splat(table[index, 2], like))
