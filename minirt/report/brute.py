@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from minirt.errors import RenderError
@@ -32,7 +34,7 @@ def with_all_shapes(traced: Traced, tiles: int) -> Traced:
     counts = np.bincount(kinds, minlength=len(traced.groups))
     starts = np.concatenate([[0], np.cumsum(counts)])
     # The lists of a kind lie one behind the other, those of the next kind behind them.
-    seen = [np.tile(members[a:b], tiles) for a, b in zip(starts, starts[1:], strict=False)]
+    seen = [np.tile(members[a:b], tiles) for a, b in pairwise(starts)]
     lit = [members] * lamps
     return traced._replace(
         seen=np.concatenate(seen),
@@ -49,4 +51,3 @@ def with_all_shapes(traced: Traced, tiles: int) -> Traced:
             for kind, group in enumerate(traced.groups)
         ),
     )
-

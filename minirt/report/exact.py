@@ -29,7 +29,7 @@ def distance(shape: Shape, origin: Sequence[float], direction: Sequence[float], 
     """
     with localcontext(DIGITS):
         inside = INSIDE[type(shape)](shape, exact(origin), exact(direction), Decimal(swell))
-        return min((t for t in inside or () if 0 < t), default=END)
+        return min((t for t in inside or () if t > 0), default=END)
 
 
 def in_plane(plane: Any, origin: Exact, direction: Exact, _: Decimal) -> Interval:

@@ -100,16 +100,19 @@ def strength(channel: Array, bell: Array, slope: Array) -> Array:
 
 
 def balanced(weights: Array) -> Array:
-    """Weights, those above 0 scaled to a sum of 1, those below to -1."""
-    return np.where(weights > 0, weights / weights[weights > 0].sum(), -weights / weights[weights < 0].sum())
+    """Weights that sum to 0, those above it scaled to a sum of 1."""
+    positive, negative = np.maximum(weights, 0.0), np.minimum(weights, 0.0)
+    scaled: Array = positive / positive.sum() - negative / negative.sum()
+    return scaled
 
 
 def filtered(channel: Array, across: Array, down: Array) -> Array:
     """A channel under weights across and then down; beyond its edges it goes on as it ends there."""
     for weights in (across, down):  # each turn filters along the last axis and swaps both
-        wide = np.pad(channel, ((0, 0), (len(weights) // 2,) * 2), "edge")
-        width = channel.shape[1]
-        channel = sum((w * wide[:, i : i + width] for i, w in enumerate(weights)), np.zeros_like(channel)).T
+        wide, total = np.pad(channel, ((0, 0), (len(weights) // 2,) * 2), "edge"), np.zeros_like(channel)
+        for start, weight in enumerate(weights):
+            total += weight * wide[:, start : start + channel.shape[1]]
+        channel = total.T
     return channel
 
 
@@ -125,5 +128,4 @@ MOST = float(difference(GREEN, BLUE)[0, 0]) ** COLOUR_POWER  # no two colours of
 
 def spread(far: Array) -> Array:
     """Differences of colours in [0, MOST] as errors in [0, 1]: the small ones get most of the room."""
-    knee = KNEE * MOST
-    return np.where(far < knee, KNEE_ERROR / knee * far, KNEE_ERROR + (far - knee) / (MOST - knee) * (1 - KNEE_ERROR))
+    return np.interp(far, (0.0, KNEE * MOST, MOST), (0.0, KNEE_ERROR, 1.0))

@@ -111,8 +111,8 @@ def answers(rays: Rays) -> Answers:
 
 def reach(shape: Shape, origin: Array) -> float:
     """How large the numbers are that a hit is computed from: the way to the shape and its lengths."""
-    lengths = sum(getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Length))
-    return float(np.linalg.norm(origin - own_points(shape)[0])) + lengths
+    lengths: list[float] = [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Length)]
+    return float(np.linalg.norm(origin - own_points(shape)[0])) + sum(lengths)
 
 
 def verdicts(found: Array, right: Answers) -> tuple[int, float, float, int, int]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.element import fields_of
-from minirt.fields import Colour, Direction, Field, Length, Point
+from minirt.fields import Colour, Direction, Field, Length, Point, Real
 from minirt.lanes import Vec
 from minirt.shapes import Kind, Shape
 
@@ -35,8 +35,9 @@ class Scale(NamedTuple):
 
 def unit(v: Array) -> Array:
     """Vectors of any length, scaled to length 1."""
-    v = v / np.abs(v).max(axis=-1, keepdims=True)
-    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+    scaled: Array = v / np.abs(v).max(axis=-1, keepdims=True)
+    scaled /= np.linalg.norm(scaled, axis=-1, keepdims=True)
+    return scaled
 
 
 def ways(random: Random, *shape: int) -> Array:
@@ -56,7 +57,9 @@ def log(random: Random, low: float, high: float, *shape: int) -> Array:
 
 def example(kind: Kind, random: Random, scale: Scale) -> Shape:
     """A random shape of a kind, made from the table of its fields."""
-    values = {each.name: value(each, random, scale) for each in fields_of(kind.element) if each.default is None}
+    values: dict[str, Any] = {
+        each.name: value(each, random, scale) for each in fields_of(kind.element) if each.default is None
+    }
     return kind.element(**values | dict(scale.lengths))
 
 
@@ -68,6 +71,8 @@ def value(field: Field, random: Random, scale: Scale) -> object:
         return tuple(ways(random).clip(-1, 1))
     if isinstance(field, Length):
         return scale.size * float(log(random, 0.2, 5))
+    if isinstance(field, Real):
+        return random.uniform(field.low, field.high)
     if isinstance(field, Colour):
         return GREY
     raise TypeError(f"no random value for a {type(field).__name__}")
