@@ -9,7 +9,7 @@ from math import isfinite
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from minirt.report.pareto import front
 from minirt.report.pictures import Row
@@ -35,6 +35,7 @@ def diagram(rows: Iterable[Row], reference_error: float, title: str) -> bytes:
             panel.axvline(reference_error, color="#999999", linestyle="--", linewidth=1, label="error of the reference")
         panel.set(xlabel="error: RMSE of colours, 1 from black to white", ylabel="milliseconds a picture")
         for axis in (panel.xaxis, panel.yaxis):
+            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
             axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
             axis.set_minor_locator(NullLocator())
         panel.grid(alpha=0.3)
@@ -47,9 +48,10 @@ def diagram(rows: Iterable[Row], reference_error: float, title: str) -> bytes:
 def line(panel: Axes, rows: list[Row], colour: str, mark: str) -> None:
     """The points of a knob, joined, each with its number of samples."""
     errors, times = [row.rmse for row in rows], [row.wall_ms for row in rows]
-    panel.plot(errors, times, color=colour, label=rows[0].knob)
+    panel.plot(errors, times, color=colour, marker=mark, label=rows[0].knob)
     for row in rows:
-        panel.plot(row.rmse, row.wall_ms, mark, color=colour, markerfacecolor=colour if row.valid else "white")
+        if not row.valid:
+            panel.plot(row.rmse, row.wall_ms, mark, color=colour, markerfacecolor="white")
         if isfinite(row.rmse):
             panel.annotate(
                 str(row.samples), (row.rmse, row.wall_ms), (5, 5), textcoords="offset points", color=colour, fontsize=9

@@ -6,6 +6,8 @@ import platform
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+import minirt
+
 PACKAGES = ("numpy", "numba", "llvmlite", "pillow", "matplotlib")
 
 
@@ -19,8 +21,8 @@ def processor() -> str:
 
 
 def versions() -> dict[str, str]:
-    """Those of Python and of the packages that compute."""
-    found = {"python": platform.python_version()}
+    """Those of this program, of Python and of the packages that compute."""
+    found = {"minirt": minirt.__version__, "python": platform.python_version()}
     for package in PACKAGES:
         try:
             found[package] = version(package)

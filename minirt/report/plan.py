@@ -26,7 +26,7 @@ class Plan(NamedTuple):
     budget: Budget
 
 
-FULL = Plan(64, 1024, 64, 16384, 300.0, Budget(0.3, 20.0, tries=3))
+FULL = Plan(64, 1024, 64, 16384, 300.0, Budget(0.3, 5.0, tries=3))
 QUICK = Plan(8, 1024, 16, 320, 3.0, Budget(0.0, 0.25, tries=1))
 
 
