@@ -50,17 +50,8 @@ COMPILED = {  # the only files that import the compiler
     "kernel/cache.py",
     "kernel/inlined.py",
 }
-LATE = {
-    "numba",
-    "llvmlite",
-    "pyglet",
-    "PIL",
-    "minirt.rendering",
-    "minirt.viewer",
-    "minirt.kernel",
-    "minirt.mlx",
-    "minirt.report",
-}
+HEAVY = ("rendering", "viewer", "kernel", "mlx", "report")
+LATE = {"numba", "llvmlite", "pyglet", "PIL", *(f"minirt.{part}" for part in HEAVY)}
 
 
 def imports(source: str, late: bool = True) -> set[str]:
