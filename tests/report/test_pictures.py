@@ -110,16 +110,15 @@ def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
     assert np.array_equal(made[refined], everywhere.linear[refined])
 
 
-def test_infinite_light_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    render = Renderer.render
-
-    def spoiled(self: Renderer, scene: Scene, pixels: np.ndarray, samples: int, linear: np.ndarray | None) -> None:
-        render(self, scene, pixels, samples, linear)
+def test_infinite_light_is_counted() -> None:
+    def spoiled(
+        renderer: Renderer, scene: Scene, pixels: np.ndarray, samples: int, linear: np.ndarray | None = None
+    ) -> None:
+        renderer.render(scene, pixels, samples, linear)
         if linear is not None:
             linear[0, 0] = np.nan, np.inf, 0.5
 
-    monkeypatch.setattr(Renderer, "render", spoiled)
-    (row,) = rows_for(Setting(KNOBS[0], 1))
+    (row,) = rows_for(Setting(Knob("spoiled", "", picture=spoiled), 1))
     assert row.non_finite == 2
     assert row.rmse > 0
 
