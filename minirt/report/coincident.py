@@ -41,7 +41,7 @@ def coincident(scene: Scene, tables: Tables) -> Iterator[Stiff]:
         world = np.abs(points + eye[:, None]).max(axis=0) + np.abs(eye).max()
         double = gap / (TIE * DOUBLE * (world + tables.looks[pair, 3].max(axis=0)))
         single = gap / (TIE * SINGLE * (np.abs(points).max(axis=0) + reach[pair].max(axis=0)))
-        close = np.isfinite(far) & ((double <= CLOSE) | (single <= 1))
+        close = (double <= CLOSE) | (single <= 1)
     pairs = Counter(zip(*np.sort(pair[:, close], axis=0).tolist(), strict=True))
     for (one, other), count in pairs.items():
         mine = close & (pair.min(axis=0) == one) & (pair.max(axis=0) == other)

@@ -39,6 +39,7 @@ CASES = [(kind, regime) for kind in KINDS if kind.element in exact.INSIDE for re
         (TUBE, (3.5, 9, 5), (0, -1, 0), "Infinity"),  # past it, along the axis
         (TUBE, (0, 2.5, 0), (0, 0, 1), "Infinity"),  # over it
         (TUBE, (0, 0, 5), (0, 1, 0), 2),  # from within
+        (TUBE, (0, 0, 0), (0, 1, 1), 2),  # just touches the rim
     ],
 )
 def test_answers_known_by_hand(shape: Any, origin: Any, direction: Any, t: Any) -> None:

@@ -18,6 +18,14 @@ def waves(height: int = 120, width: int = 160) -> Array:
     return np.stack([np.sin(x * 2 + y) * 0.5 + 0.5, hard, np.cos(x * y) * 0.5 + 0.5], -1)
 
 
+def board(contrast: float, height: int = 120, width: int = 160) -> Array:
+    """Grey, with squares that are bluer and yellower."""
+    y, x = np.mgrid[:height, :width] // 4
+    picture = np.full((height, width, 3), 0.5)
+    picture[..., 2] += ((x + y) % 2 - 0.5) * contrast
+    return picture
+
+
 def mean(a: Array, b: Array) -> float:
     return float(flip(seen(a), seen(b)).mean())
 
@@ -28,8 +36,9 @@ def mean(a: Array, b: Array) -> float:
         (waves(), np.roll(waves(), 1, axis=1), 0.099324),
         (waves(), np.clip(waves() + 0.01, 0, 1), 0.083893),
         (np.zeros((20, 20, 3)), np.ones((20, 20, 3)), 0.967386),
+        (board(0.0), board(0.8), 0.406478),
     ],
-    ids=["shifted", "lighter", "black and white"],
+    ids=["shifted", "lighter", "black and white", "blue and yellow"],
 )
 def test_the_figures_of_the_authors(a: Array, b: Array, right: float) -> None:
     assert mean(a, b) == pytest.approx(right, rel=5e-5)

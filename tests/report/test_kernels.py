@@ -78,6 +78,14 @@ def test_the_own_formula_is_exact_and_float32_is_not(kind: Kind) -> None:
     assert own.cpu_ns_ray > 0
 
 
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+@pytest.mark.parametrize("name", ["offset", "far"])
+def test_float32_is_relative_to_the_eye(kind: Kind, name: str) -> None:
+    single = rows_of(kind, name)["miniRT, float32"]
+    assert single.hits > 50
+    assert single.rms_error < 1e-4
+
+
 def test_textbooks_lose_what_is_tiny_and_far() -> None:
     rows = rows_of(BALL, "tiny and far")
     assert rows["miniRT"].max_error < 1e-15

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import minirt
+from minirt.kernel.frame import towards
+from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.rendering.tables import Tables
 from minirt.report.coincident import ACROSS, DOWN, coincident
 from minirt.report.stiffness import Stiff, stiff_shapes
@@ -117,7 +119,10 @@ def test_a_cap_on_a_wall_is_found_and_surfaces_that_cross_are_not() -> None:
     (cap,) = close(wall, Cylinder((0, 0, 10), (0, 0, 1), 6, 2, RED))
     assert cap.element == "plane 1 and cylinder 1"
     assert cap.figures["share of the picture"] == pytest.approx(np.pi * 9 / (18 * 18 * DOWN / ACROSS), rel=0.05)
-    assert close(wall, Sphere((0, 0, 9), 6, RED), Plane((0, 0, 9), (0, 0.7, 0.7), RED)) == []
+    camera = pixel_rays(camera_numbers(EYE, ACROSS, DOWN), ACROSS, DOWN)
+    way = towards(camera, 40.5, 10.5)  # one of the rays that are tried, onto the line where both planes cross
+    across = Plane((9 * way.x, 9 * way.y, 9 * way.z), (0.3, 0.4711, -0.8), RED)
+    assert close(wall, Sphere((0, 0, 9), 6, RED), across) == []
 
 
 def test_what_it_says_has_its_figures() -> None:
