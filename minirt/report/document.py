@@ -75,7 +75,8 @@ def chosen(row: Any) -> str:
     """A setting that was chosen, in words."""
     if row is None:
         return "none of these settings"
-    return f"{row.knob}, {row.samples} samples ({row.wall_ms:.3g} ms, RMSE {row.rmse:.2g}, {row.psnr:.1f} dB)"
+    samples = f"{row.samples} sample{'s' * (row.samples != 1)}"
+    return f"{row.knob}, {samples} ({row.wall_ms:.3g} ms, RMSE {row.rmse:.2g}, {row.psnr:.1f} dB)"
 
 
 def formulas(rows: list[Row]) -> Iterator[str]:
