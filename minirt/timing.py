@@ -6,7 +6,7 @@ from collections.abc import Callable
 from time import perf_counter, process_time
 from typing import NamedTuple
 
-DISTURBED = 1.25  # of the time that passed to the time of the processors
+DISTURBED = 1.15  # of the time that passed to the time of the processors
 
 
 class Run(NamedTuple):

@@ -39,7 +39,7 @@ def test_work_takes_a_processor_and_sleep_does_not() -> None:
 
 def test_who_waits_is_disturbed() -> None:
     assert not is_disturbed(Run(wall=1.0, cpu=1.0), 1)
-    assert not is_disturbed(Run(wall=1.2, cpu=1.0), 1)
-    assert is_disturbed(Run(wall=1.3, cpu=1.0), 1)
+    assert not is_disturbed(Run(wall=1.1, cpu=1.0), 1)
+    assert is_disturbed(Run(wall=1.2, cpu=1.0), 1)
     assert not is_disturbed(Run(wall=1.0, cpu=1.95), 2)
     assert is_disturbed(Run(wall=1.0, cpu=1.0), 2)

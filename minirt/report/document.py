@@ -49,14 +49,12 @@ def lines(found: Findings, has_diagram: bool) -> Iterator[str]:
     yield "\n" + as_markdown(found.pictures, PICTURES)
     yield from ("", *(f"- {knob.name}: {knob.about}" for knob in KNOBS))
     yield "\n## What to take\n"
-    if not any(row.valid for row in found.pictures):
-        yield "Other programs disturbed every measurement of time.\n"
     yield from (f"- {choice['wanted']}: {chosen(choice['best'])}" for choice in choices(found.pictures))
     yield "\n## What the scene does without\n"
     yield from (f"- {note}" for note in found.notes)
     if found.same:
         counts = " and ".join(map(str, found.same))
-        yield f"- with every shape tried for every ray the pictures of {counts} samples are the same, bit for bit"
+        yield f"- trying every shape for every ray: the same pictures, bit for bit (samples: {counts})"
     yield "\n## Where the scene is stiff\n"
     yield from [f"- {each}" for each in found.stiff] or ["Nowhere."]
     yield from formulas(found.kernels)
@@ -76,7 +74,8 @@ def chosen(row: Any) -> str:
     if row is None:
         return "none of these settings"
     samples = f"{row.samples} sample{'s' * (row.samples != 1)}"
-    return f"{row.knob}, {samples} ({row.wall_ms:.3g} ms, RMSE {row.rmse:.2g}, {row.psnr:.1f} dB)"
+    figures = f"{row.wall_ms:.3g} ms, RMSE {row.rmse:.2g}, {row.psnr:.1f} dB"
+    return f"{row.knob}, {samples} ({figures}{'' if row.valid else ', disturbed'})"
 
 
 def formulas(rows: list[Row]) -> Iterator[str]:

@@ -85,7 +85,7 @@ def measured(
         knob, samples = setting.knob.name, setting.samples
         expected = cost.get(knob, 0.0) * samples
         if expected > budget.longest:
-            yield Row(knob, samples, remark=f"left out: takes about {expected:.0f} s"), None
+            yield Row(knob, samples, remark=f"left out: takes about {expected:.2g} s"), None
             continue
         try:
             row, picture = measure(stage, setting, reference, right, budget)
@@ -101,18 +101,15 @@ def measure(
 ) -> tuple[Row, Picture]:
     """The row of a setting, and its picture."""
     renderer, compile_s, sort_ms = stage.renderer(setting)
-    light = stage.light(setting)  # which warms up too
-    picture = shown(light)
-
-    def work() -> object:
-        return setting.knob.picture(renderer, stage.scene, stage.pixels, setting.samples, None)
-
-    best = Run(inf, inf)
-    for _ in range(budget.tries):
-        best = min(best, *runs(work, RUNS, budget.seconds))
-        valid = not is_disturbed(best, stage.threads)
-        if valid:
-            break
+    lights: list[Picture] = []
+    (first,) = runs(lambda: lights.append(stage.light(setting)), 1, 0.0)
+    picture = shown(lights[0])
+    best, remark = timed(
+        lambda: setting.knob.picture(renderer, stage.scene, stage.pixels, setting.samples, None),
+        first,
+        stage.threads,
+        budget,
+    )
     error = rmse(picture, reference.picture)
     row = Row(
         setting.knob.name,
@@ -121,12 +118,24 @@ def measure(
         psnr=psnr(error),
         flip=float(flip.flip(flip.seen(picture), right).mean()),
         changed=changed(picture, reference.picture),
-        non_finite=int(np.count_nonzero(~np.isfinite(light))),
+        non_finite=int(np.count_nonzero(~np.isfinite(lights[0]))),
         wall_ms=best.wall * 1e3,
         cpu_ms=best.cpu * 1e3,
         sort_ms=sort_ms,
         compile_s=compile_s,
-        valid=valid,
-        remark="" if valid else "other programs needed the processors",
+        valid=not remark,
+        remark=remark,
     )
     return row, picture
+
+
+def timed(work: Callable[[], object], first: Run, threads: int, budget: Budget) -> tuple[Run, str]:
+    """The best of some runs after the first one, which warmed up, and what is wrong with it, if anything."""
+    if first.wall > budget.longest:
+        return first, "takes too long for more than the first run"
+    best = Run(inf, inf)
+    for _ in range(budget.tries):
+        best = min(best, *runs(work, RUNS, budget.seconds))
+        if not is_disturbed(best, threads):
+            return best, ""
+    return best, "other programs needed the processors"

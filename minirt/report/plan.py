@@ -27,7 +27,7 @@ class Plan(NamedTuple):
 
 
 FULL = Plan(64, 1024, 64, 16384, 300.0, Budget(0.3, 5.0, tries=3))
-QUICK = Plan(8, 1024, 16, 320, 3.0, Budget(0.0, 0.25, tries=1))
+QUICK = Plan(8, 1024, 16, 320, 3.0, Budget(0.0, 0.1, tries=1))
 
 
 def fitting(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, int]:

@@ -19,8 +19,8 @@ from minirt.scene import Scene
 from minirt.shapes import KINDS
 
 DOUBLE, SINGLE = 2.0**-53, 2.0**-24  # unit roundoffs
-WORTH_A_WORD = 1e-4  # of what is looked at: an error that large
-LISTED = 10  # warnings of a sort, the worst first
+VISIBLE = 1 / 255  # of what is looked at: an error that turns surfaces by so much changes a level of a colour
+LISTED = 3  # shapes that are named, the worst first; the others are counted
 
 
 class Stiff(NamedTuple):
@@ -31,8 +31,8 @@ class Stiff(NamedTuple):
     figures: dict[str, float]
 
     def __str__(self) -> str:
-        figures = (f"{name} {value:.2g}" for name, value in self.figures.items())
-        return f"{self.element}: {self.why} ({', '.join(figures)})"
+        figures = ", ".join(f"{name} {value:.2g}" for name, value in self.figures.items())
+        return f"{self.element}: {self.why} ({figures})"
 
 
 class Views(NamedTuple):
@@ -53,10 +53,10 @@ def stiff_shapes(scene: Scene, tables: Tables, width: int, height: int) -> Itera
         scale = np.minimum(seen.size, seen.distance)
         double, single = seen.double / scale, seen.single / scale
         pixels = seen.size / (seen.distance * 2 * np.linalg.norm(camera[3:6]) / width)
-    for index in worst(np.maximum(double, single), WORTH_A_WORD):
+    for index, element in worst(tables, np.maximum(double, single), VISIBLE):
         small = seen.size[index] <= seen.distance[index]
         yield Stiff(
-            name(tables, index),
+            element,
             "small for its coordinates or its distance" if small else "the eye is close to it for its size",
             {
                 "size": float(seen.size[index]),
@@ -65,18 +65,17 @@ def stiff_shapes(scene: Scene, tables: Tables, width: int, height: int) -> Itera
                 "single": float(single[index]),
             },
         )
-    for index in worst(np.where(seen.ahead & (pixels > 0), 1 / pixels, 0.0), 1.0):
-        yield Stiff(
-            name(tables, index),
-            "thinner than a pixel, so samples may miss it",
-            {"pixels": float(pixels[index])},
-        )
+    thinness = np.where(seen.ahead & (pixels > 0), 1 / pixels, 0.0)
+    for index, element in worst(tables, thinness, 1.0):
+        yield Stiff(element, "thinner than a pixel, so samples may miss it", {"pixels": float(pixels[index])})
 
 
-def worst(amounts: np.ndarray, limit: float) -> list[int]:
-    """The places of the largest amounts above a limit."""
-    order = np.argsort(-amounts, kind="stable")[:LISTED]
-    return [int(index) for index in order if amounts[index] > limit]
+def worst(tables: Tables, amounts: np.ndarray, limit: float) -> Iterator[tuple[int, str]]:
+    """The shapes with the largest amounts above a limit: indices and names, the last one with how many more there
+    are."""
+    more = int(np.count_nonzero(amounts > limit)) - LISTED
+    for place, index in enumerate(np.argsort(-amounts, kind="stable")[: LISTED + min(0, more)].tolist(), 1):
+        yield index, name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
 
 
 def views(tables: Tables, camera: np.ndarray) -> Views:

@@ -137,6 +137,7 @@ def test_a_setting_that_fails_stays_as_nan() -> None:
 def test_a_setting_that_takes_too_long_is_left_out() -> None:
     one, four = rows_for(Setting(KNOBS[0], 1), Setting(KNOBS[0], 4), budget=EASY._replace(longest=1e-9))
     assert one.wall_ms > 0
+    assert (one.valid, one.remark) == (False, "takes too long for more than the first run")
     assert isnan(four.wall_ms)
     assert four.remark.startswith("left out: takes about")
 
