@@ -27,7 +27,7 @@ def diagram(rows: Iterable[Row], reference_error: float, title: str) -> bytes:
     with rc_context(STYLE):
         canvas = Figure(figsize=(9, 5.2), layout="constrained")
         panel = canvas.add_subplot(xscale="log", yscale="log", title=title)
-        best = front(rows)
+        best = front(rows, reference_error)
         panel.plot([row.rmse for row in best], [row.wall_ms for row in best], color="#cccccc", linewidth=7, zorder=0)
         for knob, colour, mark in zip(knobs, COLOURS, MARKS, strict=False):
             line(panel, [row for row in rows if row.knob == knob], colour, mark)

@@ -49,7 +49,9 @@ def lines(found: Findings, has_diagram: bool) -> Iterator[str]:
     yield "\n" + as_markdown(found.pictures, PICTURES)
     yield from ("", *(f"- {knob.name}: {knob.about}" for knob in KNOBS))
     yield "\n## What to take\n"
-    yield from (f"- {choice['wanted']}: {chosen(choice['best'])}" for choice in choices(found.pictures))
+    yield from (
+        f"- {choice['wanted']}: {chosen(choice['best'])}" for choice in choices(found.pictures, found.reference_error)
+    )
     yield "\n## What the scene does without\n"
     yield from (f"- {note}" for note in found.notes)
     if found.same:
@@ -65,7 +67,9 @@ def lines(found: Findings, has_diagram: bool) -> Iterator[str]:
 
 def short(found: Findings) -> str:
     """What to know first."""
-    best = (f"{choice['wanted']}: {chosen(choice['best'])}" for choice in choices(found.pictures))
+    best = (
+        f"{choice['wanted']}: {chosen(choice['best'])}" for choice in choices(found.pictures, found.reference_error)
+    )
     return "\n".join([*best, *(f"stiff: {each}" for each in found.stiff), *found.not_measured])
 
 

@@ -48,10 +48,10 @@ def subject(scene: Scene, name: str, width: int, height: int, threads: int, seed
     return Subject(name, digest, width, height, threads, seed, processor(), versions())
 
 
-def choices(rows: list[pictures.Row]) -> list[dict[str, Any]]:
-    """The best setting for each wanted error and each wanted time, None where there is none. A time that was disturbed
-    is too long, so what is said of it holds."""
+def choices(rows: list[pictures.Row], doubt: float) -> list[dict[str, Any]]:
+    """The best setting for each wanted error and each wanted time, None where there is none; errors are known but for
+    a `doubt`. A time that was disturbed is too long, so what is said of it holds."""
     wanted: list[dict[str, Any]] = [
         {"wanted": f"error at most {error:g}", "best": fastest(rows, error)} for error in ERRORS
     ]
-    return wanted + [{"wanted": f"at most {time:g} ms", "best": closest(rows, time)} for time in TIMES]
+    return wanted + [{"wanted": f"at most {time:g} ms", "best": closest(rows, time, doubt)} for time in TIMES]

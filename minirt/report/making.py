@@ -123,7 +123,7 @@ def files(found: Findings, pictures: dict[str, Picture], right: Reference) -> Ma
     has_diagram = NO_DIAGRAM not in found.not_measured
     made = {
         REPORT: document(found, has_diagram).encode(),
-        "report.json": as_json(found._asdict() | {"choices": choices(found.pictures)}).encode(),
+        "report.json": as_json(found._asdict() | {"choices": choices(found.pictures, found.reference_error)}).encode(),
         "pictures.csv": as_csv(found.pictures).encode(),
         "kernels.csv": as_csv(found.kernels).encode(),
     }

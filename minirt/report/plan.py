@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import ceil, log2
 from typing import NamedTuple
 
 import numpy as np
@@ -27,18 +27,20 @@ class Plan(NamedTuple):
 
 
 FULL = Plan(64, 1024, 64, 16384, 300.0, Budget(0.3, 5.0, tries=3))
-QUICK = Plan(8, 1024, 16, 320, 3.0, Budget(0.0, 0.1, tries=1))
+QUICK = Plan(8, 1024, 16, 320, 5.0, Budget(0.0, 0.1, tries=1))
 
 
 def fitting(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, int]:
-    """The size of the pictures: as it is wanted, or smaller, so that the plan's time is enough."""
+    """The size of the pictures: as it is wanted, or halved until the plan's time is enough; by halves, so that it is
+    mostly the same when it is worked out again."""
     renderer = Renderer()
     renderer.prepare(scene)
     width, height = scaled(size, min(1.0, plan.width / size[0]))
     pixels = np.zeros((height, width, 4), np.uint8)
     renderer.render(scene, pixels)
     once = min(runs(lambda: renderer.render(scene, pixels), 2, 0.0)).wall
-    return scaled((width, height), min(1.0, sqrt(plan.seconds / (once * plan.samples))))
+    halvings = ceil(log2(once * plan.samples / plan.seconds) / 2)
+    return scaled((width, height), 0.5 ** max(0, halvings))
 
 
 def scaled(size: tuple[int, int], factor: float) -> tuple[int, int]:

@@ -87,7 +87,8 @@ def test_what_it_says(made: Path) -> None:
     assert 0 < found["reference_error"] < min(row["rmse"] for row in found["pictures"])
     assert f"about {found['reference_error']:.1g}" in text
     wanted = next(each for each in found["choices"] if each["wanted"] == "at most 1000 ms")
-    assert wanted["best"]["rmse"] == min(row["rmse"] for row in found["pictures"])
+    least = min(row["rmse"] for row in found["pictures"])
+    assert least <= wanted["best"]["rmse"] <= least + found["reference_error"]
 
 
 def test_error_pictures_show_the_errors(made: Path) -> None:
