@@ -19,6 +19,8 @@ def main() -> None:
         report_formulas(asked.folder, asked.quick)
     except RenderError as error:
         sys.exit(f"Error\n{error}")
+    except KeyboardInterrupt:
+        sys.exit(130)
 
 
 if __name__ == "__main__":

@@ -49,9 +49,7 @@ def lines(found: Findings, has_diagram: bool) -> Iterator[str]:
     yield "\n" + as_markdown(found.pictures, PICTURES)
     yield from ("", *(f"- {knob.name}: {knob.about}" for knob in KNOBS))
     yield "\n## What to take\n"
-    yield from (
-        f"- {choice['wanted']}: {chosen(choice['best'])}" for choice in choices(found.pictures, found.reference_error)
-    )
+    yield from (f"- {each}" for each in advice(found))
     yield "\n## What the scene does without\n"
     yield from (f"- {note}" for note in found.notes)
     if found.same:
@@ -67,10 +65,13 @@ def lines(found: Findings, has_diagram: bool) -> Iterator[str]:
 
 def short(found: Findings) -> str:
     """What to know first."""
-    best = (
-        f"{choice['wanted']}: {chosen(choice['best'])}" for choice in choices(found.pictures, found.reference_error)
-    )
-    return "\n".join([*best, *(f"stiff: {each}" for each in found.stiff), *found.not_measured])
+    return "\n".join([*advice(found), *(f"stiff: {each}" for each in found.stiff), *found.not_measured])
+
+
+def advice(found: Findings) -> Iterator[str]:
+    """What to take for each wish."""
+    for choice in choices(found.pictures, found.reference_error):
+        yield f"{choice['wanted']}: {chosen(choice['best'])}"
 
 
 def chosen(row: Any) -> str:
