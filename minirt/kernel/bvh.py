@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.kernel.trace import NEARBY, largest, over_kinds
-from minirt.lanes import Vec, copysign, lane, load, maximum, minimum, width
+from minirt.lanes import Vec, copysign, load, maximum, minimum, width
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
@@ -26,7 +26,8 @@ NAME = 0xFFFFFFFF  # the bits of a number that hold a name
 
 # What a packet keeps on its way, in numbers of its memory: a row of lanes for each of x, y and z.
 ENTER, LEAVE, INVERSE, ORIGIN, DIRECTION, FOUND = (3 * WIDTH * i for i in range(6))
-TODO = 18 * WIDTH  # nodes and leaves that a ray has still to visit
+TAGS = 18 * WIDTH  # of the children of a node
+TODO = 19 * WIDTH  # nodes and leaves that a ray has still to visit
 MEMORY = TODO + (LEVELS + WIDTH) * (WIDTH - 1)
 
 
@@ -121,11 +122,11 @@ def walk(visit: Callable[..., Any], tree: Tree, memory: Any, ray: int, state: An
                     name = name_of(tree.nodes[name + 6 * WIDTH + child])
                     continue
                 # The nearest is visited next. The others wait, sorted so that the nearer is last.
-                tags = tag(near, load(tree.nodes, name + 6 * WIDTH))
-                next_tag = lane(tags, child)
+                put(memory, TAGS, tag(near, load(tree.nodes, name + 6 * WIDTH)))
+                next_tag = memory[TAGS + child]
                 start = left
                 while children != 0:
-                    other = lane(tags, lowest(children))
+                    other = memory[TAGS + lowest(children)]
                     children = children & (children - 1)
                     left = wait(memory, start, left, maximum(next_tag, other))
                     next_tag = minimum(next_tag, other)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 from minirt.kernel.shade import radiance
 from minirt.kernel.trace import is_empty
 from minirt.kernel.traced import Traced
-from minirt.lanes import Vec, lane, load, maximum, minimum, save, splat, unit, width
+from minirt.lanes import Vec, lane, load, minimum, rarely, save, splat, unit, where, width
 from minirt.lanes.vec import Number
 
 DOWN = 4  # pixels of a packet, from top to bottom; as many from left to right as make one of `width` rays
@@ -25,9 +26,6 @@ def towards(camera: Any, x: float, y: float) -> Vec:
 def packet(scene: Traced, memory: Any, tile: int, rays: Any, x: int, y: int) -> Vec:
     """The light of the pixels of a packet whose upper left one is x, y, along the `rays` of a sample."""
     count = width(rays)
-    nothing = splat(0.0, load(rays, 0))
-    if is_empty(scene, tile):
-        return Vec(nothing, nothing, nothing)
     origin = Vec(scene.camera[0], scene.camera[1], scene.camera[2])
     direction = towards(scene.camera, x, y) + Vec(load(rays, 0), load(rays, count), load(rays, 2 * count))
     return radiance(scene, memory, tile, origin, unit(direction))
@@ -44,9 +42,26 @@ def added(light: Vec, sums: Any, start: int, sample: int) -> Vec:
     return light
 
 
+def made_finite(light: Vec, memory: Any) -> Vec:
+    """The light, which is not negative, without components that are infinite or NaN. The rays that have such are added
+    up in the last row of `memory`."""
+    total = light.x + light.y + light.z
+    if rarely(~(total < inf)):
+        for i in range(width(total)):
+            if not lane(total, i) < inf:
+                memory[memory.shape[0] - 1, 1] += 1.0
+        light = Vec(finite(light.x), finite(light.y), finite(light.z))
+    return light
+
+
+def finite(light: Number) -> Number:
+    """Light as it is, or 0 for infinity and NaN."""
+    return where(light < inf, light, 0.0)
+
+
 def level(light: Number) -> Number:
-    """Light in [0, 1] as a byte, still to be cut to a whole number; what lies outside is clamped, and NaN is black."""
-    return minimum(maximum(light, 0.0), 1.0) * 255.0 + 0.5
+    """Light, which is not negative, as a byte, still to be cut to a whole number; what is above 1 is clamped."""
+    return minimum(light, 1.0) * 255.0 + 0.5
 
 
 def frame(
@@ -64,23 +79,29 @@ def frame(
     height, across = pixels.shape
     samples = rays.shape[0]
     step = width(rays) // DOWN
+    nothing = splat(0.0, load(rays[0], 0))
+    black = Vec(nothing, nothing, nothing)
     while True:
         top = fetch_add(next_row, TILE)
         if top >= height:
             return
         for left in range(0, across, TILE):
             tile = top // TILE * tiles(across) + left // TILE
+            empty = is_empty(scene, tile)
             # All packets for each sample, not all samples for each packet: a sum that is kept through the loop takes
             # registers from what is in it, and a seventh more time.
             for sample in range(samples):
                 for y in range(top, min(top + TILE, height), DOWN):
                     for x in range(left, min(left + TILE, across), step):
-                        if next_row[0] >= CANCELLED:
+                        if rarely(next_row[0] >= CANCELLED):
                             return
-                        if wanted.shape[0] > 0 and wanted[y // DOWN, x // step] == 0:
+                        if rarely(wanted.shape[0] > 0) and wanted[y // DOWN, x // step] == 0:
                             continue
-                        light = packet(scene, memory, tile, rays[sample], x, y)
-                        if samples > 1:
+                        if empty:
+                            store(pixels, linear, x, y, black)
+                            continue
+                        light = made_finite(packet(scene, memory, tile, rays[sample], x, y), memory)
+                        if rarely(samples > 1):
                             place = (y - top) * TILE + (x - left) * DOWN
                             light = added(light, sums, 3 * place, sample) / samples
                         if sample == samples - 1:
@@ -98,17 +119,17 @@ def store(pixels: Any, linear: Any, x: int, y: int, light: Vec) -> None:
     keep = linear.shape[0] > 0
     step = width(light.x) // DOWN
     red, green, blue = level(light.x), level(light.y), level(light.z)
-    if x + step <= across and y + DOWN <= height and not keep:
+    if rarely(keep or x + step > across or y + DOWN > height):
+        for i in range(width(light.x)):
+            column, line = x + i % step, y + i // step
+            if column < across and line < height:
+                pixels[line, column] = colour(lane(red, i), lane(green, i), lane(blue, i))
+                if keep:
+                    linear[line, column, 0] = lane(light.x, i)
+                    linear[line, column, 1] = lane(light.y, i)
+                    linear[line, column, 2] = lane(light.z, i)
+    else:
         store_block(pixels, x, y, red, green, blue)
-        return
-    for i in range(width(light.x)):
-        column, line = x + i % step, y + i // step
-        if column < across and line < height:
-            pixels[line, column] = colour(lane(red, i), lane(green, i), lane(blue, i))
-            if keep:
-                linear[line, column, 0] = lane(light.x, i)
-                linear[line, column, 1] = lane(light.y, i)
-                linear[line, column, 2] = lane(light.z, i)
 
 
 def colour(red: float, green: float, blue: float) -> int:

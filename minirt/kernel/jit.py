@@ -23,6 +23,7 @@ import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the form
 from minirt.kernel import cache, frame, rows, shade, trace
 from minirt.kernel.inlined import Inlined
 from minirt.kernel.traced import Traced
+from minirt.lanes import power
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, VecType, common, constant, splat, vec_of
 from minirt.shapes import KINDS, basis, exact, quadric
@@ -167,6 +168,7 @@ OWN_FORM = (trace.over_kinds, frame.fetch_add, frame.store_block, frame.frame)
 for _module in (
     basis,
     exact,
+    power,
     quadric,
     trace,
     shade,

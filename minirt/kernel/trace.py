@@ -8,7 +8,22 @@ from typing import Any
 
 from minirt.kernel.rows import intersect, read, surface
 from minirt.kernel.traced import Group, Traced
-from minirt.lanes import Vec, any, dot, fabs, first, floor, lane, maximum, minimum, splat, unit_roundoff, where, width
+from minirt.lanes import (
+    Vec,
+    any,
+    dot,
+    fabs,
+    first,
+    floor,
+    lane,
+    maximum,
+    minimum,
+    rarely,
+    splat,
+    unit_roundoff,
+    where,
+    width,
+)
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
@@ -63,11 +78,10 @@ def nearest_of_kind(
         view = scene.views[index]
         if not any(state[0] > view[4]):
             break
-        if view[3] > -1.0 and not any(within(view, direction)):
-            continue
-        shape = read(group.rows, scene.places[index, 1])
-        hit, t = intersect(shape, origin, direction)
-        state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
+        if view[3] <= -1.0 or rarely(within(view, direction)):
+            shape = read(group.rows, scene.places[index, 1])
+            hit, t = intersect(shape, origin, direction)
+            state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
     return state
 
 
@@ -86,7 +100,7 @@ def nearer(
     wide = splat(reach, best)
     closer = hit & (t < best)
     contested = hit & (best < inf)
-    if any(contested):
+    if rarely(contested):
         contested = contested & (fabs(t - best) <= NEARBY * t)
     if any(contested):
         point = origin + t * direction
@@ -124,7 +138,7 @@ def unhidden(scene: Traced, memory: Any, lamp: int, origin: Vec, direction: Vec,
         if not any(left):
             break
         mine = left & close(memory[lamp], direction, scene.spread)
-        if not any(mine):
+        if rarely(not any(mine)):
             look_up(memory[lamp], scene.grid, direction, first(left))
             mine = left & close(memory[lamp], direction, scene.spread)
         given = (scene, lamp, int(memory[lamp, 3]), mine, origin, direction, distance)
@@ -155,10 +169,9 @@ def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Ma
         view = scene.lamp_views[lamp, index]
         if not any(free & mine & (distance > view[4])):
             break
-        if view[3] > -1.0 and not any(mine & within(view, -direction)):
-            continue
-        hit, t = intersect(read(group.rows, scene.places[index, 1]), origin, direction)
-        free = free & ~(mine & hit & (t < distance))
+        if view[3] <= -1.0 or rarely(mine & within(view, -direction)):
+            hit, t = intersect(read(group.rows, scene.places[index, 1]), origin, direction)
+            free = free & ~(mine & hit & (t < distance))
     return free
 
 
@@ -185,33 +198,46 @@ def cell(direction: Vec, grid: int) -> Number:
 def surfaces(scene: Traced, memory: Any, owner: Number, point: Vec, hit: Mask) -> tuple[Vec, Vec, Vec]:
     """For rays that hit: the point put onto the surface of the shape that is hit, and the normal and the colour there.
 
-    The rays of a packet hit few different shapes; each shape is asked once, for all of its rays. The first one that is
-    asked is the last one of the packet before, which `memory` keeps.
+    The rays of a packet hit few different shapes, mostly one. The first that is asked is the last one of the packet
+    before, which `memory` keeps, and what it answers is taken for all rays; others only correct it for theirs.
     """
-    nothing = splat(0.0, point.x)
-    on, normal, colour = point, point, Vec(nothing, nothing, nothing)
-    left = hit
-    while any(left):
-        index = int(memory[scene.lights.shape[0], 0])
+    index = int(memory[scene.lights.shape[0], 0])
+    left = hit & (owner != index)
+    if rarely(left) and not any(hit & (owner == index)):
+        index = int(lane(owner, first(hit)))
+        left = hit & (owner != index)
+    on, normal = surface_at(scene, index, point)
+    look = colour_of(scene, index)
+    colour = Vec(splat(look.x, point.x), splat(look.y, point.x), splat(look.z, point.x))
+    while rarely(left):
+        index = int(lane(owner, first(left)))
         mine = left & (owner == index)
-        if any(mine):
-            group, i = scene.places[index, 0], scene.places[index, 1]
-            on, normal, _ = over_kinds(surface_of_kind, scene.groups, (on, normal, 0), (group, i, point, mine))
-            colour = where(mine, Vec(scene.looks[index, 0], scene.looks[index, 1], scene.looks[index, 2]), colour)
-            left = left & ~mine
-        else:
-            memory[scene.lights.shape[0], 0] = lane(owner, first(left))
+        moved, out = surface_at(scene, index, point)
+        on = where(mine, moved, on)
+        normal = where(mine, out, normal)
+        colour = where(mine, colour_of(scene, index), colour)
+        left = left & ~mine
+    memory[scene.lights.shape[0], 0] = index
     return on, normal, colour
 
 
-def surface_of_kind(
-    group: Group, state: tuple[Vec, Vec, int], given: tuple[int, int, Vec, Mask]
-) -> tuple[Vec, Vec, int]:
-    """`surfaces` for the rays `mine`, if they hit row i of this kind; the last of the state counts the kinds."""
+def surface_at(scene: Traced, index: int, point: Vec) -> tuple[Vec, Vec]:
+    """`surface` of a shape, for all rays."""
+    given = scene.places[index, 0], scene.places[index, 1], point
+    on, normal, _ = over_kinds(surface_of_kind, scene.groups, (point, point, 0), given)
+    return on, normal
+
+
+def surface_of_kind(group: Group, state: tuple[Vec, Vec, int], given: tuple[int, int, Vec]) -> tuple[Vec, Vec, int]:
+    """`surface` of row i of this kind, if it is the one that is wanted; the last of the state counts the kinds."""
     on, normal, number = state
-    wanted, i, point, mine = given
+    wanted, i, point = given
     if number == wanted:
-        moved, out = surface(read(group.rows, i), point)
-        on = where(mine, moved, on)
-        normal = where(mine, out, normal)
+        on, out = surface(read(group.rows, i), point)
+        normal = Vec(splat(out.x, point.x), splat(out.y, point.x), splat(out.z, point.x))
     return on, normal, number + 1
+
+
+def colour_of(scene: Traced, index: int) -> Vec:
+    """The colour of a shape."""
+    return Vec(scene.looks[index, 0], scene.looks[index, 1], scene.looks[index, 2])

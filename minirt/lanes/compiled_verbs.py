@@ -16,6 +16,7 @@ from minirt.lanes.vector import (
     Mask,
     VecType,
     common,
+    constant,
     is_number,
     llvm,
     vec_of,
@@ -49,6 +50,37 @@ teach_llvm(verbs.copysign, "copysign", 2)
 @teach(verbs.inverse_root, one_number, [(ANY,)])
 def _inverse_root(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return inverse_root(context, builder, *same_numbers(context, builder, sig, args))
+
+
+# How many bits of a number are its fraction, and what its exponent is stored with added, by the size of a number.
+FRACTION = {64: 52, 32: 23}
+BIAS = {64: 1023, 32: 127}
+
+
+def words_of(number: types.Float, like: Any) -> tuple[ir.Type, int, int]:
+    """The whole numbers that lie in the place of numbers, their bits of fraction and their bias."""
+    word = ir.IntType(number.bitwidth)
+    lanes = isinstance(like.type, ir.VectorType)
+    return ir.VectorType(word, like.type.count) if lanes else word, FRACTION[number.bitwidth], BIAS[number.bitwidth]
+
+
+@teach(verbs.exponent, one_number, [(ANY,)])
+def _exponent(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    (x,) = same_numbers(context, builder, sig, args)
+    words, fraction, bias = words_of(single(sig.return_type), x)
+    stored = builder.bitcast(x, words)
+    stored = builder.lshr(stored, constant(stored, fraction))
+    return builder.sitofp(builder.sub(stored, constant(stored, bias)), x.type)
+
+
+@teach(verbs.two_to, one_number, [(ANY,)])
+def _two_to(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    (x,) = same_numbers(context, builder, sig, args)
+    words, fraction, bias = words_of(single(sig.return_type), x)
+    kept = llvm(builder, "maxnum", x, constant(x, float(-bias)))
+    whole = builder.fptosi(kept, words)
+    stored = builder.shl(builder.add(whole, constant(whole, bias)), constant(whole, fraction))
+    return builder.bitcast(stored, x.type)
 
 
 @teach(verbs.rounded_product, two_numbers, [(ANY, ANY)])
@@ -111,6 +143,13 @@ def _any(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         return args[0]
     whole = bits(builder, args[0])
     return builder.icmp_unsigned("!=", whole, ir.Constant(whole.type, 0))
+
+
+@teach(verbs.rarely, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
+def _rarely(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    bit = ir.IntType(1)
+    expect = builder.module.declare_intrinsic("llvm.expect", [bit], ir.FunctionType(bit, [bit, bit]))
+    return builder.call(expect, [_any(context, builder, sig, args), ir.Constant(bit, 0)])
 
 
 @teach(verbs.first, lambda mask: types.int64 if isinstance(mask, Mask) else None, [(Mask,)])

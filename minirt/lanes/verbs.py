@@ -24,6 +24,11 @@ def any(mask: Mask) -> bool:
     return bool(np.any(mask))
 
 
+def rarely(mask: Mask) -> bool:
+    """`any`, where that is not expected: what follows if it is so may be slow."""
+    return any(mask)
+
+
 def sqrt(x: Number) -> Number:
     """The square root, NaN below 0."""
     return np.sqrt(x)
@@ -52,6 +57,18 @@ def fabs(x: Number) -> Number:
 def floor(x: Number) -> Number:
     """The greatest whole number not above x."""
     return np.floor(x)
+
+
+def exponent(x: Number) -> Number:
+    """The greatest whole number e with 2^e <= x, for x >= 0; for 0 and denormal numbers the one below all others."""
+    least = np.finfo(np.asarray(x).dtype).minexp
+    return np.maximum(np.where(x > 0.0, np.frexp(x)[1] - 1, least - 1), least - 1).astype(np.asarray(x).dtype)[()]
+
+
+def two_to(x: Number) -> Number:
+    """2^x for whole numbers x up to the largest `exponent`; 0 where that is less than the least normal number."""
+    kind = np.asarray(x).dtype
+    return np.where(x < np.finfo(kind).minexp, 0.0, np.ldexp(kind.type(1), np.asarray(x).astype(int))).astype(kind)[()]
 
 
 def copysign(x: Number, sign: Number) -> Number:
@@ -93,7 +110,7 @@ def width(values: Any) -> int:
 
 
 def splat(x: float, like: Number) -> Number:
-    """The same number for each ray, in the precision of the lanes `like`."""
+    """The same number for each ray, in the precision of the lanes `like`; what is one for each ray stays."""
     return np.full_like(like, x)[()]
 
 

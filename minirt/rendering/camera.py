@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from math import radians, tan
 
 import numpy as np
@@ -32,11 +33,13 @@ def pixel_rays(camera: np.ndarray, width: int, height: int) -> np.ndarray:
 def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:
     """For each sample of a pixel, (k, 3 * width): the directions of the rays of a packet as differences from the one
     through its upper left corner."""
-    count = width(rays)
-    lane = np.arange(count)
-    x = lane % (count // DOWN) + samples[:, :1]
-    y = lane // (count // DOWN) + samples[:, 1:]
-    across, down = rays[6:9], rays[9:]
-    differences = x[:, None] * across[:, None] + y[:, None] * down[:, None]
-    packed: np.ndarray = differences.reshape(len(samples), 3 * count).astype(rays.dtype)
-    return packed
+    across_and_down = rays[6:].reshape(2, 3)
+    places = packet_places(width(rays)) + samples[..., None]
+    differences: np.ndarray = across_and_down.T @ places
+    return differences.reshape(len(samples), -1).astype(rays.dtype)
+
+
+@cache
+def packet_places(rays: int) -> np.ndarray:
+    """Where the pixels of the rays of a packet lie in it, x and y: (2, rays)."""
+    return np.stack(np.divmod(np.arange(rays), rays // DOWN)[::-1]).astype(np.float64)

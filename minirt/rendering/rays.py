@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from importlib import import_module
 from threading import Lock
 from typing import Any, NamedTuple
@@ -12,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from minirt.rendering.cores import usable_cores
+from minirt.rendering.workers import Workers
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
@@ -71,9 +71,9 @@ class Tracer:
         self.busy = Lock()
 
     @cached_property
-    def workers(self) -> ThreadPoolExecutor:
+    def workers(self) -> Workers:
         """The threads that trace."""
-        return ThreadPoolExecutor(self.threads, "minirt-trace")
+        return Workers(self.threads)
 
     @cached_property
     def tables(self) -> Any:
@@ -96,10 +96,9 @@ class Tracer:
                 if self.shapes is not scene.shapes:
                     self.plant(scene.shapes)
                 # The caller's thread only waits, so that Ctrl+C reaches it.
-                arguments: tuple[Any, ...] = (np.zeros(1, np.int64), self.tree, origins, directions, *hits)
-                jobs = [self.workers.submit(self.kernel.trace_rays, *arguments) for _ in range(self.threads)]
-                for job in jobs:
-                    job.result()
+                counter = np.zeros(1, np.int64)
+                job = partial(self.kernel.trace_rays, counter, self.tree, origins, directions, *hits)
+                self.workers.run([job] * self.threads, partial(counter.fill, count))
         return hits
 
     def plant(self, shapes: tuple[Shape, ...]) -> None:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
-from functools import cached_property
+from functools import cache, cached_property, partial
 from importlib import import_module
 from itertools import takewhile
 from threading import Lock
@@ -21,6 +20,7 @@ from minirt.rendering.adaptive import edge_packets
 from minirt.rendering.camera import packet_rays
 from minirt.rendering.cores import usable_cores
 from minirt.rendering.helper import Helper
+from minirt.rendering.workers import Workers
 from minirt.scene import Scene
 
 PRECISIONS = ("double", "single")
@@ -29,6 +29,7 @@ ALL_PACKETS = np.zeros((0, 0), np.uint8)
 GOLDEN = (5**0.5 - 1) / 2
 
 
+@cache
 def sample_places(samples: int) -> np.ndarray:
     """Where in a pixel its samples lie, (samples, 2) in [0, 1): a Fibonacci lattice; one sample lies in the centre."""
     each = np.arange(samples)
@@ -46,13 +47,14 @@ class Renderer:
         self.precision = precision
         self.next_row = np.zeros(1, np.int64)
         self.known: set[frozenset[type]] = set()  # kinds of shapes that there is a kernel for
+        self.not_finite = 0  # rays of the last picture whose light was infinite or NaN, and is 0 in it
         self.busy = Lock()
         self.helper = Helper()
 
     @cached_property
-    def workers(self) -> ThreadPoolExecutor:
+    def workers(self) -> Workers:
         """The threads that render."""
-        return ThreadPoolExecutor(self.threads, "minirt-render")
+        return Workers(self.threads)
 
     @cached_property
     def packing(self) -> Any:
@@ -160,17 +162,11 @@ class Renderer:
         The caller's thread only waits, so that Ctrl+C reaches it.
         """
         draw = self.kernel.kernel_for(given.scene)
-        jobs = [
-            self.workers.submit(draw, *given._replace(memory=memory_for(given.scene), sums=room_for_sums(given.scene)))
-            for _ in range(self.threads)
+        own = [
+            given._replace(memory=memory_for(given.scene), sums=room_for_sums(given.scene)) for _ in range(self.threads)
         ]
-        try:
-            for job in wait(jobs, return_when=FIRST_EXCEPTION).done:
-                job.result()
-        except BaseException:
-            self.cancel()
-            wait(jobs)
-            raise
+        self.workers.run([partial(draw, *each) for each in own], self.cancel)
+        self.not_finite = int(sum(each.memory[-1, 1] for each in own))
 
     def cancel(self) -> None:
         """From any thread: the picture that is being made ends soon, half-made."""
@@ -206,7 +202,7 @@ def frame_arguments(
     """A frame of all packets."""
     return Frame(
         next_row=np.zeros(1, np.int64) if counter is None else counter,
-        pixels=pixels.view(np.uint32)[..., 0],
+        pixels=pixels.view(np.uint32).reshape(pixels.shape[:2]),
         linear=linear,
         rays=packet_rays(traced.camera, sample_places(samples)),
         wanted=ALL_PACKETS,

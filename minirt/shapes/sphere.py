@@ -11,13 +11,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, dot, fabs, sqrt, unit, where
+from minirt.lanes import Vec, any, dot, fabs, rarely, sqrt, unit, unit_roundoff, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.exact import power
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
 CLOSE = 2.0**-9  # to the surface: |f|^2 / radius^2 - 1
+ROUNDING = 16  # of the same, in unit roundoffs, and more
 
 
 @dataclass(frozen=True)
@@ -54,29 +55,33 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, 
     From the ray's closest approach to the centre both hits are equally far: half a chord, by Pythagoras. Starting
     there instead of at the origin keeps full precision for small spheres that are far away. Close above or below the
     surface, seen on the scale of the sphere, one of the hits is the little that is left of the approach and half the
-    chord: there it follows from the other one, because the product of both is the power of the origin.
+    chord: there it follows from the other one, because the product of both is the power of the origin. A ray that
+    leaves the sphere, as those from its surface to a lamp do, never meets it again.
     """
     f = origin - sphere.centre
     squared = sphere.radius * sphere.radius
+    height = dot(f, f) - squared  # of the origin above the surface, times a length
     approach = -dot(f, direction)
     g = f + approach * direction  # from the centre to the closest approach
     chord = squared - dot(g, g)  # the square of half of it
-    close = fabs(dot(f, f) - squared) <= CLOSE * squared
-    product = chord
-    if any(close):
-        product = where(close, power(origin, sphere.centre, sphere.radius), product)
-        chord = where(close, approach * approach - product, chord)
-    hit = chord >= 0.0
+    leaving = (approach <= 0.0) & (height > ROUNDING * unit_roundoff(height) * squared)
+    close = fabs(height) <= CLOSE * squared
+    hit = ((chord >= 0.0) | close) & ~leaving
     t = approach
     if any(hit):
+        close = hit & close
+        product = chord
+        if rarely(close):
+            product = where(close, power(origin, sphere.centre, sphere.radius), product)
+            chord = where(close, approach * approach - product, chord)
         half = sqrt(chord)
         near = approach - half
         far = approach + half
-        if any(close):
+        if rarely(close):
             near = where(close & (approach > 0.0), product / far, near)
             far = where(close & (approach <= 0.0), product / near, far)
         t = where(near > 0.0, near, far)
-        hit = hit & (t > 0.0)
+        hit = hit & (chord >= 0.0) & (t > 0.0)
     return hit, t
 
 

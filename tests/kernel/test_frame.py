@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from minirt.kernel import frame
 from minirt.kernel.frame import towards
-from minirt.rendering import Renderer
+from minirt.lanes import Vec
+from minirt.rendering import Renderer, packing
 from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.scene import FurtherLight, Scene
 from minirt.scene.view import view
@@ -102,3 +104,27 @@ def test_the_picture_is_the_same_whether_its_light_is_kept_or_not(width: int, he
     assert np.array_equal(around[3:-3], kept)
     assert (around[:3] == 77).all()
     assert (around[-3:] == 77).all()
+
+
+def test_light_that_is_not_finite_is_made_black_and_counted() -> None:
+    light = np.full((3, 16), 0.5)
+    light[0, 3], light[1, 5] = np.nan, np.inf
+    memory = np.zeros((3, 4))
+    mended = frame.made_finite(Vec(*light), memory)
+    assert memory[2, 1] == 2
+    assert memory.sum() == 2
+    light[0, 3] = light[1, 5] = 0.0
+    assert np.array_equal(np.stack([mended.x, mended.y, mended.z]), light)
+    frame.made_finite(Vec(*light), memory)
+    assert memory.sum() == 2
+
+
+def test_a_renderer_counts_the_rays_whose_light_is_not_finite(monkeypatch: pytest.MonkeyPatch) -> None:
+    renderer, pixels = Renderer(2), np.zeros((32, 32, 4), np.uint8)
+    assert renderer.render(ALL, pixels)
+    assert renderer.not_finite == 0
+    light_numbers = packing.light_numbers
+    monkeypatch.setattr(packing, "light_numbers", lambda scene: light_numbers(scene) * [1, 1, 1, np.nan, 1, 1])
+    spoiled = Renderer(2)
+    assert spoiled.render(ALL, pixels)
+    assert 100 < spoiled.not_finite <= 32 * 32
