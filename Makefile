@@ -2,6 +2,7 @@
 # make test    sets everything up and runs the tests
 # make check   lint and types
 # make bench   time of a frame, beside others: make bench BENCH=--quick for a short run
+# make report  error against run time of some scenes: make report REPORT=--quick for a short run
 # make bench-peers   installs what `make bench` compares with and draws by (Debian, Ubuntu)
 
 VENV   := .venv
@@ -45,6 +46,12 @@ check: $(DEV)
 bench: $(NAME)
 	$(VENV)/bin/python -m tests.bench $(BENCH)
 
+REPORTED := demo figure-v4-everything eval-shadows-many
+
+report: $(NAME)
+	$(VENV)/bin/python -m minirt.report out/report/shapes $(REPORT)
+	$(foreach scene,$(REPORTED),$(NAME) scenes/$(scene).rt --report out/report/$(scene) $(REPORT) &&) true
+
 bench-peers: $(NAME)
 	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox
 	$(PIP) install --quiet --editable '.[report]' embreex
@@ -59,4 +66,4 @@ fclean: clean
 re: fclean
 	$(MAKE) all
 
-.PHONY: all bonus run test check bench bench-peers clean fclean re
+.PHONY: all bonus run test check bench report bench-peers clean fclean re

@@ -11,6 +11,7 @@ import numpy as np
 import minirt
 from minirt.rendering import Renderer
 from minirt.scene import Scene, load
+from minirt.timing import runs
 
 LEAST_FRAMES, LEAST_SECONDS = 9, 1.0
 
@@ -32,11 +33,7 @@ def measure(
     compile_s = perf_counter() - start
     pixels = np.empty((height, width, 4), np.uint8)
     renderer.render(scene, pixels)
-    times: list[float] = []
-    while len(times) < LEAST_FRAMES or sum(times) < LEAST_SECONDS:
-        start = perf_counter()
-        renderer.render(scene, pixels)
-        times.append(perf_counter() - start)
+    times = [run.wall for run in runs(lambda: renderer.render(scene, pixels), LEAST_FRAMES, LEAST_SECONDS)]
     return {
         "scene": path,
         "size": f"{width}x{height}",

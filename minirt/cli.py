@@ -73,6 +73,8 @@ def arguments() -> Arguments:
     add("--lenient", action="store_true", help="read what older scenes have: several L, blanks around commas, ...")
     add("--bench", action="store_true", help="measure the time of a frame")
     add("--json", action="store_true", help="with --bench: as JSON")
+    add("--report", metavar="DIR", help="measure error against run time; tables, pictures and a diagram go into DIR")
+    add("--quick", action="store_true", help="with --report: smaller pictures, fewer rays, some seconds")
     add("--list-keys", action="store_true", help="list the keys of the window")
     add("--threads", type=lambda text: whole(text, 1, 1024), metavar="N", help="threads that render")
     add("--precision", choices=("double", "single"), default="double", help="of the numbers that pictures are made of")
@@ -107,7 +109,13 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
         from minirt.image import format_of
 
         format_of(asked.output)  # before the work, not after it
-    modes = ((asked.check, check), (asked.bench, bench), (asked.replay, replay), (asked.output, headless))
+    modes = (
+        (asked.check, check),
+        (asked.bench, bench),
+        (asked.report, report),
+        (asked.replay, replay),
+        (asked.output, headless),
+    )
     mode = next((mode for wanted, mode in modes if wanted), window)
     # A picture may go to standard output; behind a window it is free, and a session without errors leaves none.
     scene = read(asked.scene[0], asked.lenient, sys.stdout if mode is window else sys.stderr)
@@ -150,6 +158,16 @@ def bench(scene: Scene, asked: argparse.Namespace) -> int:
 
     measured = measure(asked.scene[0], scene, asked.size, asked.threads, asked.precision)
     print(report(measured, asked.json))
+    return OK
+
+
+def report(scene: Scene, asked: argparse.Namespace) -> int:
+    """Write how error and run time go together into a folder."""
+    import minirt
+    from minirt.report import report as measure
+
+    size = asked.size or minirt.size_of(scene)
+    print(measure(scene, asked.scene[0], asked.report, size, asked.threads, asked.quick))
     return OK
 
 

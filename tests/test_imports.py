@@ -27,8 +27,10 @@ MAY: dict[str, set[str]] = {
     "rendering": LOW | {"garbage", "kernel", "scene"},
     "mlx": {"errors"},
     "viewer": {"errors", "garbage", "fields", "element", "shapes", "scene", "rendering", "mlx", "image", "__init__"},
-    "bench": {"__init__", "rendering", "scene"},
-    "cli": {"__init__", "errors", "garbage", "image", "scene", "viewer", "bench", "rendering"},
+    "timing": set(),
+    "bench": {"__init__", "rendering", "scene", "timing"},
+    "report": LOW | {"__init__", "atomic", "image", "kernel", "rendering", "scene", "timing"},
+    "cli": {"__init__", "errors", "garbage", "image", "scene", "viewer", "bench", "rendering", "report"},
     "__main__": {"cli"},
     "__init__": LOW | {"image", "scene", "rendering"},
 }
@@ -44,10 +46,12 @@ COMPILED = {  # the only files that import the compiler
     "kernel/jit.py",
     "kernel/jit_bvh.py",
     "kernel/jit_lists.py",
+    "kernel/jit_probe.py",
     "kernel/cache.py",
     "kernel/inlined.py",
 }
-LATE = {"numba", "llvmlite", "pyglet", "PIL", "minirt.rendering", "minirt.viewer", "minirt.kernel", "minirt.mlx"}
+HEAVY = ("rendering", "viewer", "kernel", "mlx", "report")
+LATE = {"numba", "llvmlite", "pyglet", "PIL", *(f"minirt.{part}" for part in HEAVY)}
 
 
 def imports(source: str, late: bool = True) -> set[str]:

@@ -115,12 +115,17 @@ class Renderer:
             return self.draw(scene, pixels, samples, NO_LINEAR if linear is None else linear, False, is_wanted)
 
     def refine(
-        self, scene: Scene, pixels: np.ndarray, samples: int, is_wanted: Callable[[], bool] = lambda: True
+        self,
+        scene: Scene,
+        pixels: np.ndarray,
+        samples: int,
+        is_wanted: Callable[[], bool] = lambda: True,
+        linear: np.ndarray | None = None,
     ) -> bool:
-        """Render again, with more samples, where neighbouring pixels of a picture of the scene differ. False and
-        `is_wanted` as for `render`."""
+        """Render again, with more samples, where neighbouring pixels of a picture of the scene differ. False,
+        `is_wanted` and `linear` as for `render`; light stays as it is where no pixel differs."""
         with self.busy:
-            return self.draw(scene, pixels, samples, NO_LINEAR, True, is_wanted)
+            return self.draw(scene, pixels, samples, NO_LINEAR if linear is None else linear, True, is_wanted)
 
     def draw(
         self,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import platform
 from collections.abc import Callable
 from functools import partial
 from importlib.util import find_spec
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from minirt.rendering.cores import usable_cores
+from minirt.report.machine import processor
 from tests.bench import scenes
 from tests.bench.measure import Cells, available, take_turns
 from tests.bench.ours import MiniRT
@@ -48,15 +48,6 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--threads", type=int, default=usable_cores(), help="of each system (default: %(default)s)")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for bench.json and the pictures")
     return parser.parse_args()
-
-
-def processor() -> str:
-    """Its name, where Linux tells it."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return platform.processor()
-    return next((line.split(": ")[1] for line in lines if line.startswith("model name")), platform.processor())
 
 
 def main() -> None:

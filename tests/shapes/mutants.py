@@ -6,12 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from minirt.lanes import Vec, dot, fabs, minimum, sqrt, where
-from minirt.shapes.basis import to_basis
-from minirt.shapes.cylinder import PackedCylinder
+from minirt.lanes import Vec, dot, fabs, sqrt
+from minirt.report.textbook import meets_cylinder, meets_sphere
 from minirt.shapes.plane import PackedPlane
 from minirt.shapes.sphere import PackedSphere
 from tests.shapes.ways import on_arrays
+
+from_the_origin = meets_sphere  # loses a small sphere that is far away
+piece_by_piece = meets_cylinder  # cracks at the rim, and no way along the axis
 
 
 def first(r0: Any, r1: Any) -> Any:
@@ -20,39 +22,12 @@ def first(r0: Any, r1: Any) -> Any:
     return np.where(near > 0, near, far)
 
 
-def from_the_origin(sphere: PackedSphere, origin: Vec, direction: Vec) -> Any:
-    """The schoolbook quadratic, which loses a small sphere that is far away."""
-    f = origin - sphere.centre
-    b, c = dot(f, direction), dot(f, f) - sphere.radius * sphere.radius
-    D = b * b - c
-    t = first(-b - sqrt(D), -b + sqrt(D))
-    return (D >= 0) & (t > 0), t
-
-
 def accepts_nan(sphere: PackedSphere, origin: Vec, direction: Vec) -> Any:
     """The sphere's formula with its test turned round."""
     f = origin - sphere.centre
     g = f - dot(f, direction) * direction
     chord = sphere.radius * sphere.radius - dot(g, g)
     return ~(chord < 0), first(-dot(f, direction) - sqrt(chord), -dot(f, direction) + sqrt(chord))
-
-
-def piece_by_piece(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> Any:
-    """Side and caps one after the other, from the origin: cracks at the rim, and no way along the axis."""
-    p = to_basis(cylinder.u, cylinder.v, cylinder.w, origin - cylinder.centre)
-    d = to_basis(cylinder.u, cylinder.v, cylinder.w, direction)
-    a, b = d.x * d.x + d.y * d.y, p.x * d.x + p.y * d.y
-    c = p.x * p.x + p.y * p.y - cylinder.radius * cylinder.radius
-    root = sqrt(b * b - a * c)
-    best = np.inf
-    for t in ((-b - root) / a, (-b + root) / a):
-        best = where((t > 0) & (fabs(p.z + t * d.z) <= cylinder.half), minimum(t, best), best)
-    for cap in (-cylinder.half, cylinder.half):
-        t = (cap - p.z) / d.z
-        x, y = p.x + t * d.x, p.y + t * d.y
-        inside = x * x + y * y <= cylinder.radius * cylinder.radius
-        best = where((t > 0) & inside, minimum(t, best), best)
-    return best < np.inf, best
 
 
 def no_sign(a: Any, b: Any, c: Any) -> Any:

@@ -1,0 +1,136 @@
+"""How precise and how fast the formulas of shapes are, one kind and one regime at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from decimal import Decimal, localcontext
+from math import ceil, inf, isfinite, nan, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from minirt.element import fields_of
+from minirt.fields import Length
+from minirt.kernel.jit_probe import probe
+from minirt.kernel.rows import row_type
+from minirt.rendering.single import moved
+from minirt.rendering.tables import numbers, own_points
+from minirt.report import exact, textbook
+from minirt.report.poses import Array, Rays
+from minirt.shapes import Kind, Shape
+from minirt.timing import is_disturbed, runs
+
+U = 2.0**-53
+SLACK = 64 * U  # of distance and size: a verdict so close to the boundary may be either
+TIMED = 100_000  # rays of a run
+RUNS = 7
+
+
+class Row(NamedTuple):
+    """A formula in a regime."""
+
+    kind: str
+    regime: str
+    formula: str
+    rays: int
+    hits: int  # that count for the errors
+    max_error: float  # of t, relative; NaN where nothing is hit
+    rms_error: float
+    false_misses: int
+    false_hits: int
+    ns_ray: float  # of one thread
+    cpu_ns_ray: float
+    valid: bool  # False: other programs disturbed the measurement of time
+
+
+class Answers(NamedTuple):
+    """t for each ray: of the shape, and of one thicker and one thinner by the slack. Infinity where it misses."""
+
+    t: list[Decimal]
+    thicker: list[Decimal]
+    thinner: list[Decimal]
+
+
+def measured(kind: Kind, regime: str, rays: Rays) -> Iterator[Row]:
+    """The rows of all formulas for the rays of a regime; the number of rays for a shape is a multiple of 32."""
+    right = answers(rays)
+    for name, formula, number in formulas(kind):
+        shoot, found = prepared(formula, rays, kind, number)
+        shoot(1)
+        times = runs(lambda: shoot(ceil(TIMED / len(found))), RUNS, 0.0)  # noqa: B023
+        best = min(times)
+        each = 1e9 / (ceil(TIMED / len(found)) * len(found))
+        yield Row(
+            kind.element.title,
+            regime,
+            name,
+            len(found),
+            *verdicts(found.astype(np.float64), right),
+            best.wall * each,
+            best.cpu * each,
+            not is_disturbed(best, 1),
+        )
+
+
+def formulas(kind: Kind) -> Iterator[tuple[str, Callable[..., Any], type[np.floating[Any]]]]:
+    """What is compared: name, formula, and the precision in which it is computed."""
+    yield "miniRT", kind.intersect, np.float64
+    if kind.element in textbook.FORMULAS:
+        yield "textbook", textbook.FORMULAS[kind.element], np.float64
+    yield "miniRT, float32", kind.intersect, np.float32
+
+
+def prepared(
+    formula: Callable[..., Any], rays: Rays, kind: Kind, number: type[np.floating[Any]]
+) -> tuple[Callable[[int], None], np.ndarray]:
+    """What computes all distances so many times, and where it puts them. float32 is relative to the first origin of
+    each shape, as the renderer has it relative to the eye."""
+    packed = np.ascontiguousarray(numbers([shape.pack() for shape in rays.shapes])).view(row_type(kind))[:, 0]
+    origins = rays.origins
+    if number is np.float32:
+        eyes = rays.origins[:, 0]
+        packed, origins = moved(packed, eyes), rays.origins - eyes[:, None]
+    found = np.empty(rays.origins.shape[0] * rays.origins.shape[1], number)
+    o, d = (np.ascontiguousarray(each.reshape(-1, 3).T.astype(number)) for each in (origins, rays.directions))
+    run = probe(formula)
+    return lambda times: run(packed, rays.origins.shape[1], o, d, found, times), found
+
+
+def answers(rays: Rays) -> Answers:
+    """The right ones."""
+    found = Answers([], [], [])
+    for shape, origins, directions in zip(*rays, strict=True):
+        for origin, direction in zip(origins, directions, strict=True):
+            t = exact.distance(shape, origin, direction)
+            slack = SLACK * (reach(shape, origin) + (float(t) if t.is_finite() else 0.0))
+            found.t.append(t)
+            found.thicker.append(exact.distance(shape, origin, direction, slack))
+            found.thinner.append(exact.distance(shape, origin, direction, -slack))
+    return found
+
+
+def reach(shape: Shape, origin: Array) -> float:
+    """How large the numbers are that a hit is computed from: the way to the shape and its lengths."""
+    lengths: list[float] = [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Length)]
+    return float(np.linalg.norm(origin - own_points(shape)[0])) + sum(lengths)
+
+
+def verdicts(found: Array, right: Answers) -> tuple[int, float, float, int, int]:
+    """Hits, largest and root mean square of the relative errors of t, false misses and false hits.
+
+    Counted are rays about which the thicker and the thinner shape agree.
+    """
+    errors: list[float] = []
+    misses = hits = 0
+    with localcontext(exact.DIGITS):
+        for t, exactly, thicker, thinner in zip(found.tolist(), *right, strict=True):
+            hit = isfinite(t)
+            if thicker.is_finite() != thinner.is_finite():
+                continue
+            misses += not hit and thicker.is_finite()
+            hits += hit and not thicker.is_finite()
+            if hit and thicker.is_finite():
+                errors.append(float(abs(Decimal(t) / exactly - 1)))
+    if not errors:
+        return 0, nan, nan, misses, hits
+    return len(errors), max(errors, default=inf), sqrt(sum(e * e for e in errors) / len(errors)), misses, hits

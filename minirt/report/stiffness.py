@@ -1,0 +1,105 @@
+"""Where a scene asks for more digits, or for more samples, than there are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from minirt.element import fields_of
+from minirt.fields import Length
+from minirt.kernel.trace import ROUNDING
+from minirt.lanes import Vec
+from minirt.rendering.camera import camera_numbers
+from minirt.rendering.notes import name
+from minirt.rendering.pick import columns
+from minirt.rendering.tables import Tables
+from minirt.scene import Scene
+from minirt.shapes import KINDS
+
+DOUBLE, SINGLE = 2.0**-53, 2.0**-24  # unit roundoffs
+VISIBLE = 1 / 255  # of what is looked at: an error that turns surfaces by so much changes a level of a colour
+LISTED = 3  # shapes that are named, the worst first; the others are counted
+
+
+class Stiff(NamedTuple):
+    """A shape that is stiff, and by how much."""
+
+    element: str
+    why: str
+    figures: dict[str, float]
+
+    def __str__(self) -> str:
+        figures = ", ".join(f"{name} {value:.2g}" for name, value in self.figures.items())
+        return f"{self.element}: {self.why} ({figures})"
+
+
+class Views(NamedTuple):
+    """How the eye and n shapes lie to each other, in scene units."""
+
+    distance: np.ndarray  # (n,) from the eye to the surface
+    size: np.ndarray  # (n,) the shortest length of each shape, infinity where it has none
+    double: np.ndarray  # (n,) what rounding may do to a point on it
+    single: np.ndarray  # (n,) the same in float32, relative to the eye
+    ahead: np.ndarray  # (n,) whether the nearest point is before the camera
+
+
+def stiff_shapes(scene: Scene, tables: Tables, width: int, height: int) -> Iterator[Stiff]:
+    """What is stiff about the shapes of a scene, one by one, in a picture of that size."""
+    camera = camera_numbers(scene.camera, width, height)
+    seen = views(tables, camera)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        scale = np.minimum(seen.size, seen.distance)
+        double, single = seen.double / scale, seen.single / scale
+        pixels = seen.size / (seen.distance * 2 * np.linalg.norm(camera[3:6]) / width)
+    for index, element in worst(tables, np.maximum(double, single), VISIBLE):
+        small = seen.size[index] <= seen.distance[index]
+        yield Stiff(
+            element,
+            "small for its coordinates or its distance" if small else "the eye is close to it for its size",
+            {
+                "size": float(seen.size[index]),
+                "distance": float(seen.distance[index]),
+                "relative rounding of a hit, double": float(double[index]),
+                "single": float(single[index]),
+            },
+        )
+    thinness = np.where(seen.ahead & (pixels > 0), 1 / pixels, 0.0)
+    for index, element in worst(tables, thinness, 1.0):
+        yield Stiff(element, "thinner than a pixel, so samples may miss it", {"pixels": float(pixels[index])})
+
+
+def worst(tables: Tables, amounts: np.ndarray, limit: float) -> Iterator[tuple[int, str]]:
+    """The shapes with the largest amounts above a limit: indices and names, the last one with how many more there
+    are."""
+    more = int(np.count_nonzero(amounts > limit)) - LISTED
+    for place, index in enumerate(np.argsort(-amounts, kind="stable")[: LISTED + min(0, more)].tolist(), 1):
+        yield index, name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
+
+
+def views(tables: Tables, camera: np.ndarray) -> Views:
+    """How the eye and the shapes in some tables lie to each other."""
+    eye, forward = camera[:3], camera[9:]
+    nearest, size = np.zeros((len(tables.shapes), 3)), np.full(len(tables.shapes), np.inf)
+    for kind in KINDS:
+        mine = [index for index, shape in enumerate(tables.shapes) if type(shape) is kind.element]
+        if not mine:
+            continue
+        shapes = [tables.shapes[index] for index in mine]
+        with np.errstate(all="ignore"):
+            on, _ = kind.surface(columns([shape.pack() for shape in shapes]), Vec(*eye))
+        nearest[mine] = np.stack([np.broadcast_to(part, len(mine)) for part in (on.x, on.y, on.z)], axis=-1)
+        lengths = [each.name for each in fields_of(kind.element) if isinstance(each, Length)]
+        if lengths:
+            size[mine] = [min(getattr(shape, length) for length in lengths) for shape in shapes]
+    nearest = np.where(np.isfinite(nearest), nearest, tables.boxes[:, :3])  # from the very middle no point is nearest
+    way = nearest - eye
+    reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]  # of the shape, seen from the eye
+    return Views(
+        np.linalg.norm(way, axis=1),
+        size,
+        ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + tables.looks[:, 3]),
+        ROUNDING * SINGLE * (np.abs(way).max(axis=1) + reach),
+        way @ forward > 0,
+    )

@@ -1,0 +1,164 @@
+"""Errors of formulas that are wrong by a known amount are found, and those of the real ones are small."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from math import inf, isnan, nan
+from typing import Any
+
+import numpy as np
+import pytest
+
+from minirt.report import kernels, textbook
+from minirt.report.eye import from_the_eye
+from minirt.report.kernels import Answers, Row, measured, verdicts
+from minirt.report.poses import Rays
+from minirt.report.regimes import REGIMES, regimes_of
+from minirt.shapes import KINDS, Kind, sphere
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.kernel.pictures import ALL
+
+KIND = {kind.element: kind for kind in KINDS}
+BALL = KIND[Sphere]
+
+
+def rays_of(kind: Kind, name: str, shapes: int = 6) -> Rays:
+    regime = next(each for each in regimes_of(kind) if each.name == name)
+    return regime.pose(kind, np.random.default_rng(11), shapes, 32)
+
+
+def rows_of(kind: Kind, name: str) -> dict[str, Row]:
+    return {row.formula: row for row in measured(kind, name, rays_of(kind, name))}
+
+
+def answers(*t: float, thicker: Any = (), thinner: Any = ()) -> Answers:
+    return Answers(*([Decimal(each) for each in some or t] for some in (t, thicker, thinner)))
+
+
+def test_errors_by_hand() -> None:
+    right = answers(2, 4, inf, 8)
+    assert verdicts(np.array([2.0, 4.0, inf, 8.0]), right) == (3, 0, 0, 0, 0)
+    hits, largest, rms, misses, false = verdicts(np.array([2.5, 4.0, 3.0, inf]), right)
+    assert (hits, largest, misses, false) == (2, 0.25, 1, 1)
+    assert rms == pytest.approx(0.25 / 2**0.5)
+
+
+def test_errors_far_below_the_roundoff_of_the_answer_are_found() -> None:
+    exactly = Decimal(1) / 3
+    largest = verdicts(np.array([1 / 3]), Answers([exactly], [exactly], [exactly]))[1]
+    assert largest == pytest.approx(float(abs(Decimal(1 / 3) * 3 - 1)), rel=1e-12)
+    assert 0 < largest < 2.0**-53
+
+
+def test_where_rounding_decides_both_verdicts_are_right() -> None:
+    edge = answers(2, thicker=(2,), thinner=(inf,))
+    for t in (2.0, inf):
+        hits, largest, _, misses, false = verdicts(np.array([t]), edge)
+        assert (hits, misses, false) == (0, 0, 0)
+        assert isnan(largest)
+
+
+def test_nan_is_a_miss() -> None:
+    assert verdicts(np.array([nan]), answers(2))[3] == 1
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+def test_the_own_formula_is_exact_and_float32_is_not(kind: Kind) -> None:
+    rows = rows_of(kind, "benign")
+    own, single = rows["miniRT"], rows["miniRT, float32"]
+    assert own.rays == 192
+    assert own.hits > 50
+    assert own.max_error < 1e-12
+    assert 1e-8 < single.max_error < 1e-2
+    assert own.false_misses == own.false_hits == 0
+    assert 0 < own.rms_error < own.max_error
+    assert 0.01 < own.ns_ray < 1000
+    assert own.cpu_ns_ray > 0
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+@pytest.mark.parametrize("name", ["offset", "far"])
+def test_float32_is_relative_to_the_eye(kind: Kind, name: str) -> None:
+    single = rows_of(kind, name)["miniRT, float32"]
+    assert single.hits > 50
+    assert single.rms_error < 1e-4
+
+
+def test_textbooks_lose_what_is_tiny_and_far() -> None:
+    rows = rows_of(BALL, "tiny and far")
+    assert rows["miniRT"].max_error < 1e-15
+    assert rows["miniRT"].false_misses == rows["miniRT"].false_hits == 0
+    assert rows["textbook"].false_misses > 10
+    assert rows["textbook"].false_hits > 5
+    assert rows["miniRT, float32"].hits == 0
+
+
+def test_textbooks_crack_at_rims_and_take_grazing_for_parallel() -> None:
+    rim, grazing = rows_of(KIND[Cylinder], "rim"), rows_of(KIND[Plane], "grazing")
+    assert rim["miniRT"].max_error < 1e-12 < rim["textbook"].max_error
+    assert grazing["miniRT"].false_misses == 0
+    assert grazing["textbook"].hits == 0
+
+
+def test_a_worse_formula_has_a_larger_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernels, "formulas", lambda kind: [("planted", textbook.meets_sphere, np.float64)])
+    (planted,) = measured(BALL, "just above", rays_of(BALL, "just above"))
+    assert planted.max_error > 1e-6
+
+
+def test_a_formula_and_its_double_are_the_same_rays() -> None:
+    shoot, found = kernels.prepared(sphere.intersect, rays_of(BALL, "benign"), BALL, np.float64)
+    shoot(1)
+    once = found.copy()
+    shoot(3)
+    assert np.array_equal(once, found)
+    assert np.isfinite(found).any()
+
+
+def test_a_disturbed_measurement_is_not_valid(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernels, "is_disturbed", lambda run, threads: True)
+    assert not any(row.valid for row in rows_of(KIND[Plane], "benign").values())
+
+
+def test_kinds_have_the_regimes_that_their_fields_allow() -> None:
+    names = {kind.element: {regime.name for regime in regimes_of(kind)} for kind in KINDS}
+    assert {"benign", "far", "offset"} <= names[Plane]
+    assert "grazing" in names[Plane]
+    assert not {"inside", "rim", "long tube"} & names[Plane]
+    assert {"inside", "tangent", "just above"} <= names[Sphere]
+    assert "rim" not in names[Sphere]
+    assert names[Cylinder] == {regime.name for regime in REGIMES} - {"grazing"}
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high"), [("benign", 0.5, 40), ("far", 50, 2e6), ("tiny and far", 0.5e5, 2e6), ("offset", 0.5, 40)]
+)
+def test_rays_start_as_far_away_as_the_table_says(name: str, low: float, high: float) -> None:
+    shapes, origins, directions = rays_of(BALL, name, 20)
+    away = np.linalg.norm(origins - np.array([ball.centre for ball in shapes])[:, None], axis=-1)
+    assert low < away.min() < away.max() < high
+    assert np.abs(np.linalg.norm(directions, axis=-1) - 1).max() < 1e-15
+    assert (np.linalg.norm([ball.centre for ball in shapes], axis=-1).mean() > 1e7) == (name == "offset")
+
+
+def test_tangents_pass_close_to_the_surface() -> None:
+    shapes, origins, directions = rays_of(BALL, "tangent")
+    f = origins - np.array([ball.centre for ball in shapes])[:, None]
+    closest = np.linalg.norm(f - (f * directions).sum(-1, keepdims=True) * directions, axis=-1)
+    off = np.abs(closest - np.array([ball.diameter / 2 for ball in shapes])[:, None])
+    assert off.max() < 1.1e-4
+    assert np.median(off) < 1e-8
+
+
+def test_rays_of_a_scene_start_at_its_eye_and_hit_its_shapes() -> None:
+    for kind in KINDS:
+        if not any(type(shape) is kind.element for shape in ALL.shapes):
+            continue
+        rays = from_the_eye(kind, ALL, np.random.default_rng(1), 8, 32)
+        assert set(rays.shapes) == {shape for shape in ALL.shapes if type(shape) is kind.element}
+        assert (rays.origins == ALL.camera.position).all()
+        assert next(measured(kind, "this scene", rays)).hits > 20
+    many = from_the_eye(BALL, ALL, np.random.default_rng(1), 1, 32)
+    assert len(many.shapes) == 1

@@ -1,0 +1,161 @@
+"""The figures of pictures, against an independent measurement of the same."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import isfinite, isnan
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.errors import RenderError
+from minirt.rendering import packing
+from minirt.report import pictures
+from minirt.report.knobs import KNOBS, Knob, Setting, settings
+from minirt.report.pictures import Budget, Row, Stage, measured
+from minirt.report.reference import Reference, passes, reference
+from minirt.scene import Scene
+from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
+
+WIDTH, HEIGHT, SAMPLES = 96, 64, 1024
+EASY = Budget(seconds=0.0, longest=60.0, tries=1)
+
+
+@cache
+def right() -> Reference:
+    return reference(ALL, WIDTH, HEIGHT, SAMPLES, seed=3)
+
+
+def light(samples: int) -> np.ndarray:
+    """The program's own picture."""
+    made = minirt.render(ALL, WIDTH, HEIGHT, samples=samples).linear
+    assert made is not None
+    return np.clip(made, 0, 1)
+
+
+def error(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.linalg.norm(a - b) / np.sqrt(a.size))
+
+
+def rows_for(*wanted: Setting, budget: Budget = EASY) -> list[Row]:
+    return [row for row, _ in measured(Stage(ALL, WIDTH, HEIGHT, 1), list(wanted), right(), budget, lambda name: None)]
+
+
+@cache
+def rows() -> dict[tuple[str, int], Row]:
+    return {(row.knob, row.samples): row for row in rows_for(*settings(16))}
+
+
+@pytest.mark.parametrize("samples", [1, 4, 16])
+def test_the_error_is_that_of_an_independent_measurement(samples: int) -> None:
+    assert rows()["uniform", samples].rmse == pytest.approx(error(light(samples), light(1024)), rel=0.1)
+
+
+def test_changed_pixels_are_those_of_an_independent_measurement() -> None:
+    few, many = (minirt.render(ALL, WIDTH, HEIGHT, samples=samples).array for samples in (1, 1024))
+    assert rows()["uniform", 1].changed == pytest.approx((few != many).any(axis=-1).sum(), rel=0.1)
+
+
+def test_the_error_of_the_reference_is_what_it_says() -> None:
+    finer = light(16384)
+    assert right().error == pytest.approx(error(right().picture, finer), rel=0.5)
+    assert right().error < rows()["uniform", 16].rmse / 5
+
+
+def test_the_reference_follows_from_its_seed_and_has_other_places_than_the_pictures() -> None:
+    few = reference(ALL, 32, 16, 8, seed=3).picture
+    assert np.array_equal(few, reference(ALL, 32, 16, 8, seed=3).picture)
+    assert not np.array_equal(few, reference(ALL, 32, 16, 8, seed=4).picture)
+    plain = minirt.render(ALL, 32, 16, samples=8).linear
+    assert plain is not None
+    assert not np.array_equal(few, np.clip(plain, 0, 1))
+
+
+def test_the_reference_tells_how_far_it_is() -> None:
+    for samples in (2, 64, 100, 1024):
+        told: list[int] = []
+        reference(ALL, 16, 16, samples, 3, lambda told=told: told.append(1))  # type: ignore[misc]
+        assert len(told) == passes(samples)
+
+
+def test_more_samples_are_closer_and_take_longer() -> None:
+    one, four, sixteen = (rows()["uniform", samples] for samples in (1, 4, 16))
+    assert one.rmse > four.rmse > sixteen.rmse
+    assert one.psnr < four.psnr < sixteen.psnr
+    assert one.flip > four.flip > sixteen.flip > 0
+    assert one.cpu_ms < four.cpu_ms < sixteen.cpu_ms
+
+
+def test_knobs_do_what_they_say() -> None:
+    uniform, adaptive = rows()["uniform", 16], rows()["adaptive", 16]
+    assert adaptive.rmse == pytest.approx(uniform.rmse, rel=0.3)
+    assert adaptive.cpu_ms < uniform.cpu_ms
+    assert rows()["single", 4].rmse == pytest.approx(rows()["uniform", 4].rmse, rel=0.05)
+    assert rows()["single", 4].rmse != rows()["uniform", 4].rmse
+    brute = rows()["brute force", 4]
+    assert brute[1:6] == rows()["uniform", 4][1:6]  # samples and all errors
+    assert all(row.not_finite == 0 for row in rows().values())
+
+
+def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
+    stage = Stage(ALL, WIDTH, HEIGHT, 1)
+    (knob,) = (knob for knob in KNOBS if knob.name == "adaptive")
+    made, _ = stage.light(Setting(knob, 4))
+    once, everywhere = minirt.render(ALL, WIDTH, HEIGHT, samples=1).linear, minirt.render(ALL, WIDTH, HEIGHT, samples=4)
+    assert once is not None
+    assert everywhere.linear is not None
+    refined = (made != once).any(axis=-1)
+    assert 0.05 < refined.mean() < 0.9
+    assert np.array_equal(made[refined], everywhere.linear[refined])
+
+
+def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two lamps as bright as no file may have: where both shine straight down, their sum is infinite."""
+    bright = Scene((AMBIENT, EYE, LAMP, *SHAPES))
+    monkeypatch.setattr(packing, "light_numbers", lambda scene: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * 2))
+    stage = Stage(bright, WIDTH, HEIGHT, 1)
+    wanted = list(settings(4))
+    rows = [row for row, _ in measured(stage, wanted, right(), EASY, lambda name: None)]
+    counts = {(row.knob, row.samples): row.not_finite for row in rows}
+    assert 0 < counts["uniform", 1] < WIDTH * HEIGHT
+    assert counts["uniform", 4] == pytest.approx(4 * counts["uniform", 1], rel=0.05)
+    assert counts["uniform", 1] < counts["adaptive", 4] < counts["uniform", 1] + counts["uniform", 4]
+    assert counts["brute force", 1] == counts["uniform", 1]
+    assert all(isfinite(row.rmse) for row in rows)
+
+
+def test_a_setting_that_fails_stays_as_nan() -> None:
+    def fails(*_: object) -> int:
+        raise RenderError("no room")
+
+    failed, good = rows_for(Setting(Knob("bad", "", picture=fails), 1), Setting(KNOBS[0], 1))
+    assert isnan(failed.rmse)
+    assert isnan(failed.wall_ms)
+    assert (failed.valid, failed.remark) == (False, "failed: no room")
+    assert good.rmse > 0
+
+
+def test_a_setting_that_takes_too_long_is_left_out() -> None:
+    one, four = rows_for(Setting(KNOBS[0], 1), Setting(KNOBS[0], 4), budget=EASY._replace(longest=1e-9))
+    assert one.wall_ms > 0
+    assert (one.valid, one.remark) == (False, "takes too long for more than the first run")
+    assert isnan(four.wall_ms)
+    assert four.remark.startswith("left out: takes about")
+
+
+def test_a_disturbed_measurement_is_tried_again_and_then_not_valid(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int] = []
+    monkeypatch.setattr(pictures, "is_disturbed", lambda run, threads: asked.append(threads) or len(asked) < 3)
+    (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(tries=2))
+    assert (row.valid, row.remark) == (False, "other programs needed the processors")
+    assert asked == [1, 1]
+    (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(tries=2))
+    assert (row.valid, row.remark) == (True, "")
+
+
+def test_a_scene_without_shapes_is_black() -> None:
+    black = reference(Scene((AMBIENT, EYE)), 8, 4, 16, 0)
+    assert isinstance(black, Reference)
+    assert not black.picture.any()
+    assert black.error == 0

@@ -1,0 +1,193 @@
+"""A report from the first step to the last file."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+import signal
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import minirt
+from minirt.errors import RenderError
+from minirt.report import __main__, making, report, report_formulas
+from minirt.report.errors import HEAT
+from minirt.report.making import NO_DIAGRAM
+from minirt.report.plan import QUICK, fitting
+from minirt.scene import Scene, dump
+from minirt.shapes import KINDS
+from tests.cli.conftest import folder, run
+from tests.cli.program import Ended, start
+from tests.kernel.pictures import ALL, AMBIENT, EYE
+
+__all__ = ["folder", "run"]
+Run = Callable[..., Ended]
+TABLES = {"report.md", "report.json", "pictures.csv", "kernels.csv"}
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plan for tests, of a second."""
+    monkeypatch.setattr(making, "QUICK", QUICK._replace(shapes=1, samples=64, most=4))
+
+
+@pytest.fixture
+def made(tmp_path: Path) -> Path:
+    """The folder of a report."""
+    report(ALL, "all.rt", tmp_path / "deep" / "folder", (64, 40), 1, quick=True)
+    return tmp_path / "deep" / "folder"
+
+
+def test_the_files_agree(made: Path) -> None:
+    names = {path.name for path in made.iterdir()}
+    found = json.loads((made / "report.json").read_text())
+    settings = {f"{row['knob']} {row['samples']}".replace(" ", "-") for row in found["pictures"]}
+    expected = {"uniform": (1, 4), "adaptive": (4,), "single": (1, 4), "brute-force": (1, 4)}
+    assert settings == {f"{knob}-{samples}" for knob, counts in expected.items() for samples in counts}
+    assert names - {"diagram.png"} == TABLES | {f"error-{name}.png" for name in settings}
+    for table in ("pictures", "kernels"):
+        read = list(csv.DictReader((made / f"{table}.csv").read_text().splitlines()))
+        assert [list(row) for row in read] == [list(row) for row in found[table]]
+        assert len(read) == len(found[table]) > 5
+        for one, other in zip(read, found[table], strict=True):
+            assert all(str(value) == one[key] for key, value in other.items() if value is not None)
+    text = (made / "report.md").read_text()
+    for row in found["pictures"]:
+        assert f"| {row['knob']} | {row['samples']} | {row['rmse']:.5f} |" in text
+    for kind in {row["kind"] for row in found["kernels"]}:
+        assert f"| {kind} | this scene |" in text
+
+
+def test_it_can_be_done_again(made: Path) -> None:
+    found = json.loads((made / "report.json").read_text())
+    about = found["subject"]
+    assert (about["scene"], about["width"], about["height"], about["threads"]) == ("all.rt", 64, 40, 1)
+    assert about["sha256"] == hashlib.sha256(dump(ALL).encode()).hexdigest()
+    assert {"minirt", "python", "numpy", "numba"} <= set(about["versions"])
+    assert about["processor"]
+    report(ALL, "all.rt", made / "again", (64, 40), 1, quick=True)
+    again = json.loads((made / "again" / "report.json").read_text())
+    for table, figures in (("pictures", ("rmse", "flip", "changed")), ("kernels", ("max_error", "hits", "false_hits"))):
+        for figure in figures:
+            assert [row[figure] for row in found[table]] == [row[figure] for row in again[table]]
+
+
+def test_what_it_says(made: Path) -> None:
+    found, text = json.loads((made / "report.json").read_text()), (made / "report.md").read_text()
+    assert "plane 1 hides nothing from light 1" in text
+    assert found["same"] == [1, 4]
+    assert "trying every shape for every ray: the same pictures, bit for bit (samples: 1 and 4)" in text
+    assert found["reference_samples"] == 64
+    assert 0 < found["reference_error"] < min(row["rmse"] for row in found["pictures"])
+    assert f"about {found['reference_error']:.1g}" in text
+    wanted = next(each for each in found["choices"] if each["wanted"] == "at most 1000 ms")
+    least = min(row["rmse"] for row in found["pictures"])
+    assert least <= wanted["best"]["rmse"] <= least + found["reference_error"]
+
+
+def test_error_pictures_show_the_errors(made: Path) -> None:
+    one, four = (np.asarray(Image.open(made / f"error-uniform-{samples}.png")).astype(int) for samples in (1, 4))
+    assert one.shape == (40, 64, 3)
+    assert (one[..., 0] >= HEAT[2, 0]).sum() > (four[..., 0] >= HEAT[2, 0]).sum() > 0  # errors of a hundredth and more
+    brute = np.asarray(Image.open(made / "error-brute-force-4.png"))
+    assert np.array_equal(brute, four)
+
+
+def test_without_matplotlib_the_tables_come_and_say_what_draws_the_diagram(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(making, "find_spec", lambda name: None)
+    assert NO_DIAGRAM in report(ALL, "all.rt", tmp_path, (32, 20), 1, quick=True)
+    assert "matplotlib" in NO_DIAGRAM
+    assert {path.name for path in tmp_path.iterdir()} >= TABLES
+    assert not (tmp_path / "diagram.png").exists()
+    text = (tmp_path / "report.md").read_text()
+    assert NO_DIAGRAM in text
+    assert "diagram.png" not in text
+
+
+def test_a_scene_without_shapes(tmp_path: Path) -> None:
+    with pytest.raises(RenderError, match=r"^empty\.rt: a scene without shapes"):
+        report(Scene((AMBIENT, EYE)), "empty.rt", tmp_path / "x", (8, 8), 1, quick=True)
+    assert not (tmp_path / "x").exists()
+
+
+def test_a_folder_that_cannot_be_made_is_told_before_the_work(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    before = time.perf_counter()
+    with pytest.raises(RenderError, match="file/x: cannot be made: Not a directory"):
+        report(ALL, "all.rt", tmp_path / "file" / "x", (4096, 4096), 1, quick=False)
+    assert time.perf_counter() - before < 1
+
+
+def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
+    (tmp_path / "report.json").mkdir()
+    with pytest.raises(RenderError, match=r"report\.json: cannot write"):
+        report(ALL, "all.rt", tmp_path, (16, 16), 1, quick=True)
+
+
+def test_kinds_that_nothing_exact_is_known_of_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(making, "SOLIDS", {})
+    assert "formula of the sphere: none in 60 digits" in report(ALL, "all.rt", tmp_path, (16, 16), 1, quick=True)
+    assert (tmp_path / "kernels.csv").read_text().strip() == ""
+
+
+def test_the_formulas_of_all_kinds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.argv", ["report", str(tmp_path / "shapes"), "--quick"])
+    __main__.main()
+    rows = json.loads((tmp_path / "shapes" / "kernels.json").read_text())
+    assert {row["kind"] for row in rows} == {kind.element.title for kind in KINDS if kind.element in making.SOLIDS}
+    assert "| cylinder | long tube |" in (tmp_path / "shapes" / "kernels.md").read_text()
+    (tmp_path / "file").touch()
+    monkeypatch.setattr("sys.argv", ["report", str(tmp_path / "file")])
+    with pytest.raises(SystemExit, match=r"^Error\n.*file: cannot be made"):
+        __main__.main()
+    with pytest.raises(RenderError):
+        report_formulas(tmp_path / "file", quick=True)
+
+
+def test_pictures_are_as_small_as_the_time_asks() -> None:
+    assert fitting(ALL, (64, 36), QUICK) == (64, 36)
+    assert fitting(ALL, (1280, 720), QUICK._replace(width=320, seconds=1e9)) == (320, 180)
+    width, height = fitting(ALL, (1280, 720), QUICK._replace(width=320, seconds=1e-3))
+    assert 1 <= width < 100
+    assert height == pytest.approx(width * 9 / 16, abs=1)
+    assert fitting(ALL, (10_000, 1), QUICK) == (320, 1)
+
+
+def test_the_program_writes_a_report(run: Run, folder: Path) -> None:
+    ended = run("ball.rt", "--report", "out", "--quick", "--size", "32x20", "--threads", "1")
+    assert (ended.status, ended.err) == (0, "")
+    assert ended.out.decode().splitlines()[-1] == "The report is in out/report.md"
+    assert b"error at most 0.01: " in ended.out
+    assert {path.name for path in (folder / "out").iterdir()} >= TABLES
+    subject = json.loads((folder / "out" / "report.json").read_text())["subject"]
+    assert subject["sha256"] == hashlib.sha256((folder / "ball.rt").read_bytes()).hexdigest()
+    assert minirt.load("ball.rt").shapes
+
+
+def test_the_program_refuses_a_folder_that_is_a_file(run: Run, folder: Path) -> None:
+    ended = run("ball.rt", "--report", "ball.rt", "--quick")
+    assert (ended.status, ended.out, ended.err) == (1, b"", "Error\nball.rt: cannot be made: File exists\n")
+
+
+@pytest.mark.parametrize("seconds", [0.2, 3.0])
+def test_an_interrupt_leaves_no_files(folder: Path, seconds: float) -> None:
+    process = start(folder, "ball.rt", "--report", "out", "--size", "1920x1080")
+    while not (folder / "out").exists():
+        assert process.poll() is None
+        time.sleep(0.01)
+    time.sleep(seconds)
+    assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    before = time.perf_counter()
+    out, err = process.communicate(timeout=30)
+    assert time.perf_counter() - before < 3
+    assert (process.returncode, out, err) == (130, b"", b"")
+    assert [*folder.glob("out/*")] == []
