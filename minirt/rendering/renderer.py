@@ -31,9 +31,15 @@ GOLDEN = (5**0.5 - 1) / 2
 
 @cache
 def sample_places(samples: int) -> np.ndarray:
-    """Where in a pixel its samples lie, (samples, 2) in [0, 1): a Fibonacci lattice; one sample lies in the centre."""
+    """Where in a pixel its samples lie, (samples, 2): a Fibonacci lattice whose middle is the middle of the pixel.
+
+    With its middle elsewhere the whole picture would be moved: of 4 samples by a fourteenth of a pixel, which was a
+    seventh of their error.
+    """
     each = np.arange(samples)
-    return np.stack([(each + 0.5) / samples, (each * GOLDEN + 0.5) % 1.0], axis=1)
+    lattice = np.stack([(each + 0.5) / samples, (each * GOLDEN + 0.5) % 1.0], axis=1)
+    centred: np.ndarray = lattice - lattice.mean(axis=0) + 0.5
+    return centred
 
 
 class Renderer:
