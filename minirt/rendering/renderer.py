@@ -22,10 +22,12 @@ from minirt.rendering.camera import packet_rays
 from minirt.rendering.cores import usable_cores
 from minirt.rendering.helper import Helper
 from minirt.scene import Scene
+from minirt.shapes import Shape
 
 PRECISIONS = ("double", "single")
 NO_LINEAR = np.zeros((0, 0, 3))
 ALL_PACKETS = np.zeros((0, 0), np.uint8)
+PATIENCE = 0.05  # seconds that somebody who clicks waits for a picture
 GOLDEN = (5**0.5 - 1) / 2
 
 
@@ -166,6 +168,18 @@ class Renderer:
             self.cancel()
             wait(jobs)
             raise
+
+    def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
+        """What a pixel of a picture shows, see `minirt.rendering.pick`; a picture that is being made gives way."""
+        while not self.busy.acquire(timeout=PATIENCE):
+            self.cancel()
+        try:
+            found: Shape | None = import_module("minirt.rendering.pick").pick(
+                scene, width, height, x, y, self.packing.tables
+            )
+        finally:
+            self.busy.release()
+        return found
 
     def cancel(self) -> None:
         """From any thread: the picture that is being made ends soon, half-made."""

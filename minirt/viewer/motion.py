@@ -9,7 +9,9 @@ from minirt.element import Element
 from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit
 from minirt.scene import Camera
 from minirt.scene.view import mix, view
-from minirt.viewer.state import named
+from minirt.viewer.state import Frame, named
+
+WORLD: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
 
 
 def translated(element: Element, axis: Triple, distance: float) -> tuple[Element, bool]:
