@@ -94,6 +94,10 @@ class Memory(Backend):
         """Turn the wheel by so many steps; negative ones go down and left."""
         self.do(lambda: self.display.scroll(self._at(window), right, up, x, y))
 
+    def drop(self, *files: str, window: Window | None = None) -> None:
+        """Drop files on the window."""
+        self.do(lambda: self.display.drop(self._at(window), files))
+
     def enter(self, inside: bool, window: Window | None = None) -> None:
         """The pointer comes into the window, or leaves it."""
         self.do(lambda: self._at(window).deliver(Event.ENTER_NOTIFY if inside else Event.LEAVE_NOTIFY))

@@ -66,6 +66,11 @@ class Renderer:
         """The compiled code, and the compiler where it is not there yet."""
         return import_module("minirt.kernel.jit")
 
+    @property
+    def about(self) -> list[str]:
+        """How the last picture was made, and what it does without, in words."""
+        return [f"{self.threads} threads, {self.precision} precision", *self.packing.notes]
+
     def is_ready(self, scene: Scene) -> bool:
         """Whether the kernel for the kinds of shapes of this scene is there."""
         return not scene.shapes or kinds_of(scene) in self.known

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, NoReturn
 import minirt
 from minirt.garbage import uncollected
 from minirt.mlx import Mlx
-from minirt.rendering import pick
 from minirt.scene import Scene
 from minirt.viewer.background import BackgroundPainter
 from minirt.viewer.files import differ, recover
@@ -37,10 +36,11 @@ def run(
     samples: int = 1,
     renderer: Renderer | None = None,
     mlx: Mlx | None = None,
+    watch: bool = True,
 ) -> int:
     """Show a scene until the user has seen enough; returns the exit status: 0, or 130 after Ctrl+C.
 
-    `path` is the scene's file. Changes that were not saved are kept in a file that standard output names. When nothing
+    `path` is the scene's file, which is read again when another program changes it (`watch`). Changes that were not saved are kept in a file that standard output names. When nothing
     moves the edges in the picture are refined to `samples` rays for each pixel. MlxError where no window can be opened,
     RenderError where the pictures cannot be made.
 
@@ -49,6 +49,7 @@ def run(
     m = mlx or Mlx()
     display = m.mlx_init()
     try:
+        maker = renderer or minirt.renderer(threads)
         with uncollected():
             session = Session(
                 m,
@@ -56,11 +57,12 @@ def run(
                 scene,
                 path=Path(path),
                 size=fitting(m, display, size or minirt.size_of(scene)),
-                painter=partial(BackgroundPainter, renderer or minirt.renderer(threads)),
-                pick=pick,
+                painter=partial(BackgroundPainter, maker),
+                pick=maker.pick,
                 keys=keys,
                 lenient=lenient,
                 samples=samples,
+                watch=watch,
             )
         return show(session)
     finally:
@@ -79,9 +81,10 @@ def show(session: Session) -> int:
     finally:
         sys.setswitchinterval(before)
         session.m.mlx_release(session.mlx)
+        session.disk.close()
         stopped = session.pictures.painter.close(PATIENCE)
-    if differ(session.state.scene, session.saved):
-        print(f"The changes that were not saved are in {recover(session.state.scene, session.path)}")
+        if differ(session.state.scene, session.saved):
+            print(f"The changes that were not saved are in {recover(session.state.scene, session.path)}")
     if not stopped:
         leave(status)
     return status

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
-from minirt.rendering import pick
 from minirt.scene import Scene
 from minirt.viewer.painter import Painter, Pixels, Renderer
 from minirt.viewer.script import record
@@ -59,7 +58,7 @@ def play(
     m = Mlx(memory)
     display = m.mlx_init()
     session = Session(
-        m, display, scene, path=Path(path), size=size, painter=partial(Painter, renderer), pick=pick, keys=keys,
+        m, display, scene, path=Path(path), size=size, painter=partial(Painter, renderer), pick=renderer.pick, keys=keys,
         lenient=lenient, samples=samples,
     )  # fmt: skip
     try:

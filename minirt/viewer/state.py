@@ -9,7 +9,7 @@ from operator import indexOf
 from typing import Any
 
 from minirt.element import Element, fields_of
-from minirt.fields import Direction, Point
+from minirt.fields import Direction, Point, Triple
 from minirt.scene import Camera, Scene
 from minirt.viewer.measure import size_of
 from minirt.viewer.neat import neat, nice
@@ -76,9 +76,11 @@ class State:
         """Select another element; what follows is undone by itself."""
         return replace(self, selected=index, value=0, recent=None)
 
-    def change(
-        self, scene: Scene, kind: str, now: float, selected: int | None = None, lasting: bool = False
-    ) -> State:
+    def cut(self) -> State:
+        """What follows is undone by itself."""
+        return replace(self, recent=None)
+
+    def change(self, scene: Scene, kind: str, now: float, selected: int | None = None, lasting: bool = False) -> State:
         """Another scene; `kind` tells which changes may be undone together: for a while, or while nothing else happens
         where that is `lasting`. With no kind that is so for no other."""
         same = bool(kind) and self.recent is not None and self.recent[0] == kind and now <= self.recent[1]
@@ -115,6 +117,13 @@ def index_of(scene: Scene, element: Element) -> int:
 def named(kind: type[Element], sort: type[Any]) -> tuple[str, ...]:
     """The names of the fields of one sort: of the points, of the directions."""
     return tuple(each.name for each in fields_of(kind) if isinstance(each, sort))
+
+
+def place_of(element: Element) -> Triple | None:
+    """The first of its points, None where it has none."""
+    names = named(type(element), Point)
+    place: Triple | None = getattr(element, names[0]) if names else None
+    return place
 
 
 def can_edit(kind: type[Element]) -> bool:
