@@ -49,6 +49,7 @@ class Memory(Backend):
         self.patience = patience
         self.clipboard_text = ""
         self.pointer_shown = True
+        self.after_tick: Callable[[], object] = lambda: None  # called whenever simulated time has gone by
         self._script: deque[Callable[[], object]] = deque()
         self._display: Display | None = None
         self._stir = threading.Event()
@@ -189,6 +190,7 @@ class Memory(Backend):
             if not self.display.over:
                 self._now += seconds / ticks
                 self.display.turn(tick=True)
+                self.after_tick()
 
     def _await_wake(self) -> None:
         deadline = time.monotonic() + self.patience

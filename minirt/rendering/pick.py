@@ -1,5 +1,5 @@
-"""Which shape a pixel shows, and where: the formulas of the kernel, interpreted, for one ray and all shapes of a kind at
-once."""
+"""Which shape a pixel shows, and where: the formulas of the kernel, interpreted, for one ray and all shapes of a kind
+at once."""
 
 from __future__ import annotations
 
@@ -42,13 +42,23 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: Tables |
 
 def place(shape: Shape, camera: Camera, width: int, height: int, x: int, y: int) -> Triple | None:
     """Where in the scene the middle of pixel x, y is on a shape; None where it is not on it."""
-    numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
-    origin, direction = Vec(*numbers[:3]), unit(towards(numbers, x + 0.5, y + 0.5))
-    kind = next(kind for kind in KINDS if kind.element is type(shape))
-    with np.errstate(all="ignore"):
-        hit, t = kind.intersect(shape.pack(), origin, direction)
+    hit, t, origin, direction = met(shape, camera, width, height, x, y)
     point = origin + float(t) * direction
     return (float(point.x), float(point.y), float(point.z)) if hit else None
+
+
+def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Whether the middles of pixels x, y show a shape where nothing is in front of it."""
+    return np.broadcast_to(met(shape, camera, width, height, x, y)[0], x.shape)
+
+
+def met(shape: Shape, camera: Camera, width: int, height: int, x: Any, y: Any) -> tuple[Any, Any, Vec, Vec]:
+    """Whether and where the rays of pixels meet a shape, their origin and their directions."""
+    numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
+    kind = next(kind for kind in KINDS if kind.element is type(shape))
+    with np.errstate(all="ignore"):
+        origin, direction = Vec(*numbers[:3]), unit(towards(numbers, x + 0.5, y + 0.5))
+        return *kind.intersect(shape.pack(), origin, direction), origin, direction
 
 
 def in_front(tables: Tables, origin: Vec, direction: Vec) -> list[Shape]:

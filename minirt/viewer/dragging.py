@@ -15,9 +15,10 @@ from minirt.scene import Camera
 from minirt.scene.view import mix, view
 from minirt.viewer.lens import Lens, lens, minus
 from minirt.viewer.measure import ball, middle_of
-from minirt.viewer.motion import WORLD, limited, looked, rotated, translated
+from minirt.viewer.motion import WORLD, limited, looked, orbited, rotated, translated
 from minirt.viewer.state import State, named
 
+MIDDLE = 0.5  # of a pixel
 TURN = 180.0  # degrees: a drag over the shorter side of the picture
 
 
@@ -48,10 +49,10 @@ def move(state: State, held: Grip, x: int, y: int) -> State:
         return look(state, held, x, y)
     axis = WORLD.get(state.frame)
     if axis:
-        ends = [held.lens.along(*place, held.point, axis) for place in ((held.x, held.y), (x, y))]
-        if None in ends:
+        distance = held.lens.along(x + MIDDLE, y + MIDDLE, held.point, axis)
+        if distance is None:
             return state.say("seen along the axis nothing moves")
-        way = mix(ends[1] - ends[0], axis, 0.0, axis)  # type: ignore[operator]
+        way = mix(distance, axis, 0.0, axis)
     else:
         way = minus(under(held, x, y, held.point), under(held, held.x, held.y, held.point))
     moved, met = translated(held.element, way, 1.0)
@@ -61,7 +62,7 @@ def move(state: State, held: Grip, x: int, y: int) -> State:
 
 def under(held: Grip, x: int, y: int, point: Triple) -> Triple:
     """The place under the pointer that is as far away as `point`."""
-    return held.lens.at_depth(x, y, held.lens.depth(point))
+    return held.lens.at_depth(x + MIDDLE, y + MIDDLE, held.lens.depth(point))
 
 
 def turn(state: State, held: Grip, x: int, y: int) -> State:
@@ -91,12 +92,7 @@ def orbit(state: State, held: Grip, x: int, y: int) -> State:
     around = None if isinstance(held.element, Camera) else ball(held.element)
     pivot = around[0] if around else middle_of(state.scene)
     right, down = angles(held, x, y)
-    camera = looked(held.camera, right, -down)
-    way = minus(held.camera.position, pivot)
-    place = pivot
-    for old, new in zip(view(held.camera), view(camera), strict=True):
-        place = mix(1.0, place, sum(a * b for a, b in zip(way, old, strict=True)), new)
-    return state.put_camera(camera.replace(position=limited(place)), "drag", 0.0, lasting=True)
+    return state.put_camera(orbited(held.camera, pivot, right, -down), "drag", 0.0, lasting=True)
 
 
 def pan(state: State, held: Grip, x: int, y: int) -> State:

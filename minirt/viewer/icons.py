@@ -22,7 +22,7 @@ SIGNED = tuple(kind for kind in ELEMENTS.values() if can_edit(kind) and not issu
 class Icon(NamedTuple):
     """One of them."""
 
-    index: int  # of the element
+    owner: int  # the index of its element
     x: int  # of its middle, in pixels
     y: int
     code: str

@@ -12,7 +12,8 @@ from minirt.scene.view import mix
 
 Pixel = tuple[float, float]
 
-NEAR = 1e-3  # of the distance to the eye: what is less in front of it than half of that is on no picture
+BESIDE = 1e-9  # of the distance to the eye: what is less in front of it than that is on no picture
+NEAR = 1e-3  # of the distance to the eye: how near to its plane a line is drawn
 FAR = 1e3  # times that distance: how far a line is drawn
 PARALLEL = 1e-6  # square of the sine of the angle between a ray and an axis
 
@@ -48,7 +49,7 @@ class Lens(NamedTuple):
         """Where in the picture, or beside it, a place shows; None where it is not in front of the eye."""
         way = minus(point, self.eye)
         depth = dot(way, self.forward)
-        if depth <= NEAR / 2 * hypot(*way):
+        if depth <= BESIDE * hypot(*way):
             return None
         across = dot(way, self.right) / (depth * dot(self.right, self.right))
         down = dot(way, self.up) / (depth * dot(self.up, self.up))

@@ -20,7 +20,7 @@ from minirt.viewer.state import Frame, State
 
 GOLD, BLACK = 0xFFD75F, 0x000000
 AXES = {Frame.X: 0xFF5050, Frame.Y: 0x60E060, Frame.Z: 0x6090FF}
-QUICK, CAREFUL = 20_000, 200_000  # rays for an outline: while something moves, and when nothing does
+QUICK, CAREFUL = 20_000, 60_000  # rays for an outline: while something moves, and when nothing does
 
 
 class Marks:
@@ -36,18 +36,17 @@ class Marks:
         seen = lens(state.scene.camera, pixels.shape[1], pixels.shape[0])
         element = state.element
         if isinstance(element, Shape):
-            outside, inside = self.outline(element, seen, CAREFUL if not moving else QUICK)
-            pixels[inside] = blue_first(BLACK)
-            pixels[outside] = blue_first(GOLD)
+            draw_outline(pixels, *self.outline(element, state.scene.camera, pixels, QUICK if moving else CAREFUL))
         draw_axis(pixels, state, seen)
         for icon in self.placed(state, seen, scale):
-            draw_icon(pixels, icon, scale, chosen=icon.index == state.selected)
+            draw_icon(pixels, icon, scale, chosen=icon.owner == state.selected)
 
-    def outline(self, shape: Shape, seen: Lens, rays: int) -> tuple[Places, Places]:
+    def outline(self, shape: Shape, camera: Camera, pixels: Pixels, rays: int) -> tuple[Places, Places]:
         """Pixels outside and inside of it."""
-        wanted = (shape, seen, rays)
+        height, width = pixels.shape[:2]
+        wanted = (shape, camera, width, height, rays)
         if wanted != self._outlined:
-            self._rims, self._outlined = rims(shape, seen, rays), wanted
+            self._rims, self._outlined = rims(shape, camera, width, height, rays), wanted
         return self._rims
 
     def placed(self, state: State, seen: Lens, scale: float) -> list[Icon]:
@@ -61,6 +60,16 @@ def indices(scene: Scene, selected: int, every: bool) -> list[int]:
         return signed(scene)
     element = scene.elements[selected]
     return [] if isinstance(element, (Shape, Camera)) else [selected]
+
+
+def draw_outline(pixels: Pixels, outside: Places, inside: Places) -> None:
+    """A line of two pixels with a dark one on either side, to be seen on any colour."""
+    height, width = pixels.shape[:2]
+    for rows, columns in (outside, inside):
+        for down, right in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+            around = np.clip(rows + down, 0, height - 1), np.clip(columns + right, 0, width - 1)
+            pixels[around] = blue_first(BLACK)
+    pixels[inside] = pixels[outside] = blue_first(GOLD)
 
 
 def draw_axis(pixels: Pixels, state: State, seen: Lens) -> None:
@@ -94,10 +103,8 @@ def draw_line(pixels: Pixels, start: Pixel, end: Pixel, colour: int) -> None:
     at = np.linspace(low, high, int((high - low) * hypot(dx, dy)) + 2)
     columns, rows = np.round(x + at * dx).astype(np.int64), np.round(y + at * dy).astype(np.int64)
     pixels[rows, columns] = blue_first(colour)
-    beside = (
-        (np.minimum(rows + 1, height - 1), columns) if abs(dx) > abs(dy) else (rows, np.minimum(columns + 1, width - 1))
-    )
-    pixels[beside] = blue_first(colour)
+    steep = abs(dy) > abs(dx)
+    pixels[np.minimum(rows + (not steep), height - 1), np.minimum(columns + steep, width - 1)] = blue_first(colour)
 
 
 def draw_icon(pixels: Pixels, icon: Icon, scale: float, chosen: bool) -> None:

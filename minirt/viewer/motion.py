@@ -61,6 +61,16 @@ def looked(camera: Camera, right: float, up: float) -> Camera:
     return camera.replace(direction=unit(direction))
 
 
+def orbited(camera: Camera, pivot: Triple, right: float, up: float) -> Camera:
+    """The camera turned like that, and moved so that `pivot` stays in the picture where it is."""
+    turned_camera = looked(camera, right, up)
+    place = pivot
+    for old, new in zip(view(camera), view(turned_camera), strict=True):
+        along = sum((at - middle) * part for at, middle, part in zip(camera.position, pivot, old, strict=True))
+        place = mix(1.0, place, along, new)
+    return turned_camera.replace(position=limited(place))
+
+
 def rolled(camera: Camera, degrees: float) -> Camera:
     """The camera turned about its direction, clockwise."""
     return camera.replace(roll=fmod(camera.roll + degrees, 360.0))

@@ -92,8 +92,8 @@ class Mouse:
         icon = icon_at(shown, x, y, win.scale)
         if icon:
             if selecting:
-                session.show(state.say("").select(icon.index))
-            element = state.scene.elements[icon.index]
+                session.show(state.say("").select(icon.owner))
+            element = state.scene.elements[icon.owner]
             return None if isinstance(element, Camera) else place_of(element)
         shape: Shape | None = session.pick(state.scene, win.width, win.height, x, y)
         if selecting:

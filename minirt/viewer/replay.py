@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 
@@ -51,16 +51,18 @@ def play(
     keys: str = "qwerty",
     lenient: bool = False,
     samples: int = 1,
+    watch: Callable[[Session], object] = lambda _: None,
 ) -> Session:
-    """Like `replay`; returns the session as it is at the end."""
+    """Like `replay`; returns the session as it is at the end. `watch` sees it sixty times a simulated second."""
     memory = Memory()
     record(lines, file, memory)
     m = Mlx(memory)
     display = m.mlx_init()
     session = Session(
-        m, display, scene, path=Path(path), size=size, painter=partial(Painter, renderer), pick=renderer.pick, keys=keys,
-        lenient=lenient, samples=samples,
+        m, display, scene, path=Path(path), size=size, painter=partial(Painter, renderer), pick=renderer.pick,
+        keys=keys, lenient=lenient, samples=samples,
     )  # fmt: skip
+    memory.after_tick = lambda: watch(session)
     try:
         memory.play()
     finally:

@@ -13,8 +13,8 @@ from minirt.errors import RenderError
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
 from minirt.viewer.background import BackgroundPainter
-from minirt.viewer.pace import LONGEST
 from minirt.viewer.overlay import Level
+from minirt.viewer.pace import LONGEST
 from minirt.viewer.painter import Job, Outcome, Painter, paint
 from minirt.viewer.session import Session
 from tests.viewer.fake import MARK, FakeRenderer, colour_of, scene

@@ -185,7 +185,8 @@ class NativeWindow:
 
     def _scale(self) -> float:
         """Where the platform counts in units that are larger than pixels, or says how fine its screen is."""
-        return max(1.0, self.pyglet.get_framebuffer_size()[0] / self.pyglet.get_size()[0], self.pyglet.scale)
+        finer = self.pyglet.get_framebuffer_size()[0] / self.pyglet.get_size()[0]
+        return max(1.0, float(finer), float(self.pyglet.scale))
 
     def _forget_keys(self, keys: list[int] | None = None) -> None:
         """On X11 pyglet swallows the press of a key whose release it never saw."""
