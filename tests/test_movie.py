@@ -13,8 +13,8 @@ from PIL import Image as pillow  # noqa: N813
 import minirt
 from minirt.errors import RenderError
 from minirt.movie import save_movie, with_progress
-from minirt.viewer.film import TICKS, film, turntable
 from minirt.viewer.film import FPS as FILM
+from minirt.viewer.film import TICKS, film, turntable
 from minirt.viewer.lens import lens
 from minirt.viewer.measure import middle_of
 from tests.viewer.fake import FakeRenderer, scene

@@ -10,7 +10,7 @@ from minirt.errors import SceneError
 from minirt.scene import Scene, load, save
 from minirt.viewer.disk import Disk, signature
 from minirt.viewer.files import differ, keep, recover, summary
-from minirt.viewer.state import Moment, State, opened
+from minirt.viewer.state import MOST, Moment, State, opened
 
 if TYPE_CHECKING:
     from minirt.viewer.session import Session
@@ -71,7 +71,7 @@ def followed(old: State, scene: Scene, saved: Scene | None) -> State:
         selected=old.selected if same else new.selected,
         value=old.value if same else 0,
         frame=old.frame,
-        past=(*old.past, Moment(old.scene, old.selected)),
+        past=(*old.past[1 - MOST :], Moment(old.scene, old.selected)),
     )
 
 

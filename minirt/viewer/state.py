@@ -17,6 +17,7 @@ from minirt.viewer.values import Value, values
 
 STRIDE = 1 / 40  # of the scene's size: one step of a movement, about
 MERGE = 0.5  # seconds; changes of the same kind that follow each other faster are undone together
+MOST = 1000  # changes that can be undone
 
 
 class Frame(Enum):
@@ -84,7 +85,7 @@ class State:
         """Another scene; `kind` tells which changes may be undone together: for a while, or while nothing else happens
         where that is `lasting`. With no kind that is so for no other."""
         same = bool(kind) and self.recent is not None and self.recent[0] == kind and now <= self.recent[1]
-        past = self.past if same else (*self.past, Moment(self.scene.lighten(), self.selected))
+        past = self.past if same else (*self.past[1 - MOST :], Moment(self.scene.lighten(), self.selected))
         chosen = self.selected if selected is None else selected
         until = inf if lasting else now + MERGE
         return replace(self, scene=scene, selected=chosen, past=past, future=(), recent=(kind, until))
