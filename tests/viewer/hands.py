@@ -32,26 +32,24 @@ def command(window: int, text: str) -> list[str]:
     words = Line("hands", 1, text).words
     at = ["mousemove", "--window", str(window)]
     match words:
-        case ["press", key]:
-            return ["key", name(key)]
-        case ["down", key]:
-            return ["keydown", name(key)]
-        case ["up", key]:
-            return ["keyup", name(key)]
+        case ["press" | "down" | "up" as how, key]:
+            found = [{"press": "key", "down": "keydown", "up": "keyup"}[how], name(key)]
         case ["move", place]:
-            return [*at, *place.split(",")]
+            found = [*at, *place.split(",")]
         case ["click", place, *button]:
-            return [*at, *place.split(","), "click", BUTTONS[button[0] if button else "left"]]
+            found = [*at, *place.split(","), "click", BUTTONS[button[0] if button else "left"]]
         case ["wheel", way, *count]:
-            return ["click", "--delay", "5", "--repeat", count[0] if count else "1", BUTTONS[way]]
+            found = ["click", "--delay", "5", "--repeat", count[0] if count else "1", BUTTONS[way]]
         case ["drag", start, end, *button]:
             number = BUTTONS[button[0] if button else "left"]
             (x, y), (to_x, to_y) = (map(int, place.split(",")) for place in (start, end))
             moves = [*at, str((x + to_x) // 2), str((y + to_y) // 2), "sleep", "0.02", *at, str(to_x), str(to_y)]
-            return [*at, str(x), str(y), "mousedown", number, *moves, "sleep", "0.02", "mouseup", number]
+            found = [*at, str(x), str(y), "mousedown", number, *moves, "sleep", "0.02", "mouseup", number]
         case ["resize", size]:
-            return ["windowsize", str(window), *size.split("x")]
-    raise ValueError(text)
+            found = ["windowsize", str(window), *size.split("x")]
+        case _:
+            raise ValueError(text)
+    return found
 
 
 def do(desktop: Desktop, window: int, *lines: str) -> None:
