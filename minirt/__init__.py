@@ -16,12 +16,14 @@ from minirt.errors import MiniRTError, MlxError, RenderError, ReplayError, Scene
 
 if TYPE_CHECKING:
     from minirt.image import Image
+    from minirt.movie import save_movie
     from minirt.rendering import Renderer
     from minirt.rendering.rays import Hits, trace
     from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
     from minirt.shapes.cylinder import Cylinder
     from minirt.shapes.plane import Plane
     from minirt.shapes.sphere import Sphere
+    from minirt.viewer import view
 
 __version__ = "0.1.0"
 DEFAULT_SIZE = (1280, 720)  # pixels; of a scene that does not name a size
@@ -44,8 +46,10 @@ __all__ = [
     "Sphere",
     "load",
     "render",
+    "save_movie",
     "size_of",
     "trace",
+    "view",
 ]
 
 
@@ -57,6 +61,8 @@ HOMES = {
     "Plane": "minirt.shapes.plane",
     "Sphere": "minirt.shapes.sphere",
     **dict.fromkeys(("Hits", "trace"), "minirt.rendering.rays"),
+    "save_movie": "minirt.movie",
+    "view": "minirt.viewer",
 }
 
 

@@ -10,20 +10,19 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from minirt.fields import Direction, Point, Triple
+from minirt.fields import Direction, Point
 from minirt.scene import Camera
 from minirt.scene.view import view
 from minirt.viewer import framing, history, selection, structure
-from minirt.viewer.motion import looked, rolled, rotated, translated
-from minirt.viewer.state import Frame, State, named, values
+from minirt.viewer.motion import WORLD, looked, rolled, rotated, translated
+from minirt.viewer.state import Frame, State, named
+from minirt.viewer.values import values
 
 Edit = Callable[[State, float, float], State]  # (state, amount, now)
 
-STRIDE = 1 / 40  # of the scene's size: one step of a movement
 ANGLE = 5.0  # degrees: one step of a turn
 
 RIGHT, UP, FORWARD = range(3)  # of view()
-WORLD: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
 
 
 def apply(state: State, action: str, amount: float = 1.0, now: float = 0.0) -> State:
@@ -38,7 +37,7 @@ def move(way: int, sign: float, state: State, amount: float, now: float) -> Stat
         return state.say(f"{element.title} has no place to move from")
     frame = Frame.VIEW if isinstance(element, Camera) else state.frame
     axis = WORLD.get(frame) or view(state.scene.camera)[way]
-    moved, met = translated(element, axis, sign * amount * STRIDE * state.size)
+    moved, met = translated(element, axis, sign * amount * state.stride)
     state = state.put(moved, "move", now)
     return state.say("the end of the range: no further") if met else state
 
@@ -62,15 +61,18 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
 
 def resize(sign: float, state: State, amount: float, now: float) -> State:
     """Change the active value of the selected element."""
-    field = state.active
-    if field is None:
+    active = state.active
+    if active is None:
         return state.say(f"{state.element.title} has no size")
-    old = getattr(state.element, field.name)
-    new = field.nudge(old, sign * amount)
-    if new == old:
-        limits = f" ({field.range})" if field.range else ""
-        return state.say(f"{field.name} cannot go further{limits}")
-    return state.put(state.element.replace(**{field.name: new}), f"value {field.name}", now)
+    changed = state.put(
+        state.element.replace(**{active.field.name: active.nudged(state.element, sign * amount)}),
+        f"value {active.name}",
+        now,
+    )
+    if changed is state:
+        limits = f" ({active.field.range})" if active.field.range else ""
+        return state.say(f"{active.name} cannot go further{limits}")
+    return changed
 
 
 def next_value(state: State, _amount: float, _now: float) -> State:
@@ -112,6 +114,8 @@ EDITS: dict[str, Edit] = {
     "reset camera": framing.reset_camera,
     "undo": history.undo,
     "redo": history.redo,
+    "add": partial(structure.add, 1),
+    "add previous": partial(structure.add, -1),
     "duplicate": structure.duplicate,
     "delete": structure.delete,
 }

@@ -9,7 +9,9 @@ from minirt.element import Element
 from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit
 from minirt.scene import Camera
 from minirt.scene.view import mix, view
-from minirt.viewer.state import named
+from minirt.viewer.state import Frame, named
+
+WORLD: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
 
 
 def translated(element: Element, axis: Triple, distance: float) -> tuple[Element, bool]:
@@ -57,6 +59,16 @@ def looked(camera: Camera, right: float, up: float) -> Camera:
     height = clamp(atan2(y, hypot(x, z)) + radians(up), -pi / 2, pi / 2)
     direction = cos(height) * cos(heading), sin(height), cos(height) * sin(heading)
     return camera.replace(direction=unit(direction))
+
+
+def orbited(camera: Camera, pivot: Triple, right: float, up: float) -> Camera:
+    """The camera turned like that, and moved so that `pivot` stays in the picture where it is."""
+    turned_camera = looked(camera, right, up)
+    place = pivot
+    for old, new in zip(view(camera), view(turned_camera), strict=True):
+        along = sum((at - middle) * part for at, middle, part in zip(camera.position, pivot, old, strict=True))
+        place = mix(1.0, place, along, new)
+    return turned_camera.replace(position=limited(place))
 
 
 def rolled(camera: Camera, degrees: float) -> Camera:
