@@ -3,6 +3,7 @@
     MiniRTError
     ├── SceneError     a scene file cannot be read, used or written: every problem found in it
     ├── RenderError    a picture cannot be made or written
+    ├── FileError      a file that something else names, a picture, cannot be used
     ├── ReplayError    a file of recorded keys cannot be played
     └── MlxError       no window can be opened
 
@@ -14,6 +15,7 @@ Only `minirt.cli` prints them.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 
 
@@ -68,6 +70,14 @@ class SceneError(MiniRTError):
 
 class RenderError(MiniRTError):
     """A picture that cannot be made or written."""
+
+
+class FileError(MiniRTError):
+    """A file that cannot be used; `reason` is without its name."""
+
+    def __init__(self, path: str | os.PathLike[str], reason: str) -> None:
+        self.reason = reason
+        super().__init__(f"{printable(os.fspath(path))}: {reason}")
 
 
 class ReplayError(MiniRTError):

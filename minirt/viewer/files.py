@@ -10,7 +10,8 @@ from minirt import atomic
 from minirt.errors import MiniRTError, SceneError
 from minirt.image import Image
 from minirt.scene import Camera, Scene, save
-from minirt.scene.files import reason, refused
+from minirt.regular import reason
+from minirt.scene.files import refused
 from minirt.viewer.painter import Pixels
 
 
