@@ -16,10 +16,11 @@ from minirt.errors import MiniRTError, MlxError, RenderError, ReplayError, Scene
 
 if TYPE_CHECKING:
     from minirt.image import Image
+    from minirt.materials import Bump, Checker, Glass, Specular
     from minirt.movie import save_movie
     from minirt.rendering import Renderer
     from minirt.rendering.rays import Hits, trace
-    from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+    from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
     from minirt.shapes.cylinder import Cylinder
     from minirt.shapes.plane import Plane
     from minirt.shapes.sphere import Sphere
@@ -30,20 +31,27 @@ DEFAULT_SIZE = (1280, 720)  # pixels; of a scene that does not name a size
 
 __all__ = [
     "Ambient",
+    "Background",
+    "Bump",
     "Camera",
+    "Checker",
     "Cylinder",
     "FurtherLight",
+    "Glass",
     "Hits",
     "Image",
     "Light",
     "MiniRTError",
     "MlxError",
+    "ParallelLight",
     "Plane",
     "RenderError",
     "ReplayError",
     "Scene",
     "SceneError",
+    "Specular",
     "Sphere",
+    "SpotLight",
     "load",
     "render",
     "save_movie",
@@ -56,7 +64,11 @@ __all__ = [
 # What is imported only when it is used, so that `miniRT --help` need not wait for it.
 HOMES = {
     "Image": "minirt.image",
-    **dict.fromkeys(("Ambient", "Camera", "FurtherLight", "Light", "Scene"), "minirt.scene"),
+    **dict.fromkeys(("Bump", "Checker", "Glass", "Specular"), "minirt.materials"),
+    **dict.fromkeys(
+        ("Ambient", "Background", "Camera", "FurtherLight", "Light", "ParallelLight", "Scene", "SpotLight"),
+        "minirt.scene",
+    ),
     "Cylinder": "minirt.shapes.cylinder",
     "Plane": "minirt.shapes.plane",
     "Sphere": "minirt.shapes.sphere",

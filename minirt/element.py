@@ -13,6 +13,7 @@ from functools import cache
 from itertools import repeat
 from typing import Any, ClassVar, Self, TypeVar, cast
 
+from minirt.errors import ElementError
 from minirt.fields import Field, FieldError
 
 Answer = TypeVar("Answer")
@@ -68,20 +69,31 @@ class Record:
 
 @dataclass(frozen=True)
 class Element(Record):
-    """One element of a scene."""
+    """One element of a scene; ElementError where two fields do not go together."""
 
     code: ClassVar[str]
-    aliases: ClassVar[tuple[str, ...]] = ()  # identifiers that mean the same
+    aliases: ClassVar[tuple[str, ...]] = ()  # what else a line may begin with
     plural: ClassVar[str]
     once: ClassVar[bool] = False  # at most one in a scene
     required: ClassVar[bool] = False  # at least one in a file
     source: str = field(default="", kw_only=True, compare=False, repr=False)  # its line as it stood in the file
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        conflict = self.conflict()
+        if conflict:
+            raise ElementError(" ".join((self.title, *conflict)))
+
+    def conflict(self) -> tuple[str, str] | None:
+        """The name of a field that does not go with the others, and what it must be; None where all are in order."""
+        return None
+
     @classmethod
     def checked(cls, count: int, columns: dict[str, Iterable[Any]]) -> list[Self]:
-        """That many elements at once, of values that their fields have checked, by name; the rest is at its default.
+        """That many elements at once, of values that their fields have checked, by name. Whether these go together is
+        not asked.
 
-        What is not given is not kept with each element: its class has the default. Without a Python call for each: 0.5 us instead of 5 us an element.
+        What is left out is kept by the class, once. Without a Python call for each: 0.5 us instead of 5 us an element.
         """
         first = object.__new__(cls)
         for name in columns:  # CPython keeps attributes without a dict, in half the space, where it knows their names

@@ -6,7 +6,7 @@ from minirt.errors import FieldError
 from minirt.fields.field import Field, PictureFile, Repair, declare
 from minirt.fields.numerals import number, spelled, whole
 from minirt.fields.pictures import Paint, Picture
-from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Flag, Length, Real, Whole, clamp
+from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Factor, Flag, Length, Real, Whole, clamp
 from minirt.fields.triples import Colour, Direction, Point, Three, Triple, unit
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "LEAST_LENGTH",
     "Colour",
     "Direction",
+    "Factor",
     "Field",
     "FieldError",
     "Flag",

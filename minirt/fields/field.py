@@ -1,7 +1,9 @@
 """A field, and how an element declares one.
 
-A field stands at its place in a line, or it is an attribute: it stands behind the others with its key, `mirror:0.3`, and
-may be left out, at its default or absent (None). A field knows how its value is spelled in a scene file (`parse`, `format`; `column` for many at once), what it may be
+A field has its place in a line, or it is an attribute: it stands behind the others with its key, `mirror:0.3`, and may
+be left out, at its default or absent (None).
+
+A field knows how its value is spelled in a scene file (`parse`, `format`; `column` for many at once), what it may be
 (`check`), what a lenient reader makes of a wrong spelling (`repair`) and how a key press changes it (`nudge`). Errors
 are `FieldError`s that say what was expected, without the name of the field.
 """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from minirt.errors import FieldError, quoted
+from minirt.errors import FieldError
 from minirt.fields.field import Field, PictureFile, Repair
 from minirt.fields.triples import Colour, Triple
 
@@ -21,23 +21,20 @@ def file_name(text: str, also: str = "") -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Picture(Field):
-    """A picture file, kept as it is written; `heights`: read as a height map."""
+    """A picture file, kept as it is written; `heights`: read as a height map, `also`: what its name must not have."""
 
     placeholder: str = "file"
     heights: bool = False
+    also: str = ""
 
     def parse(self, text: str) -> str:
-        return file_name(text)
+        return file_name(text, self.also)
 
     def check(self, value: str) -> str:
-        return file_name(value)
+        return file_name(value, self.also)
 
     def pictures(self, value: str) -> Iterator[PictureFile]:
         yield PictureFile(value, self.heights)
-
-    @property
-    def range(self) -> str:
-        return "a picture file"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,4 +62,4 @@ class Paint(Colour):
 
     @property
     def notation(self) -> str:
-        return "R,G,B|file"
+        return "R,G,B or file"

@@ -93,6 +93,17 @@ class Length(Scalar):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Factor(Real):
+    """A number in [low, high], above 0; a key press multiplies it by `step`."""
+
+    low: float = 1.0
+    step: float = 1.1
+
+    def nudge(self, value: float, steps: float) -> float:
+        return clamp(value * self.step ** clamp(steps, -1000, 1000), self.low, self.high)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Whole(Scalar):
     """A whole number in [low, high]."""
 

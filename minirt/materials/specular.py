@@ -1,11 +1,11 @@
 """Highlight: `specular:share,exponent[,blinn]`, in short `spc:`.
 
-The image of a lamp in a surface that is not quite smooth. To the colour of a point every lamp that reaches it adds
-`share` of its light times cos(a)^exponent, whatever the colour of the surface. `a` is the angle between the mirrored
-direction of the light and that to the eye (Phong 1975: Illumination for Computer Generated Pictures), or with `blinn`
-that between the normal and the direction half-way between lamp and eye (Blinn 1977: Models of Light Reflection for
-Computer Synthesized Pictures). The greater the exponent, the smaller the highlight; with `blinn` about four times as
-great an exponent gives one of the same size.
+The image of a lamp in a surface that is not quite smooth. Every lamp that reaches a point adds `share` of its light
+times cos(a)^`exponent`, whatever the colour of the surface. `a` is the angle between the mirrored direction of the
+light and that to the eye (Phong 1975, Illumination for Computer Generated Pictures), or with `blinn` that between the
+normal and the direction half-way from the lamp to the eye (Blinn 1977, Models of Light Reflection for Computer
+Synthesized Pictures). The greater the exponent, the smaller the highlight; with `blinn` one of the same size takes about
+four times the exponent.
 
     sp 0,0,20 8 200,30,30 specular:0.6,50
 """
@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from minirt.element import Record
-from minirt.fields import Flag, Length, Real, declare
+from minirt.fields import Factor, Flag, Real, declare
 
 GREATEST = 1e6  # an exponent whose highlight is a tenth of a degree wide
 
@@ -26,5 +26,5 @@ class Specular(Record):
 
     title = "specular"
     share: float = declare(Real, "share of the light", low=0.0, high=1.0, step=0.05)
-    exponent: float = declare(Exponent, "smoothness")
-    blinn: bool = declare(Flag, "the halfway vector instead of the mirrored one", default=False)
+    exponent: float = declare(Factor, "how smooth", high=GREATEST)
+    blinn: bool = declare(Flag, "from the halfway direction", default=False)

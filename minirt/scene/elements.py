@@ -1,13 +1,11 @@
-"""The elements of a scene that are not shapes: ambient light, camera, lights, window size."""
+"""The elements of a scene that are neither shapes nor lamps: window size, ambient light, camera, background."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from minirt.element import Element
-from minirt.fields import Colour, Direction, Point, Real, Triple, Whole, declare
-
-WHITE = (255, 255, 255)
+from minirt.fields import Colour, Direction, Paint, Point, Real, Triple, Whole, declare
 
 
 @dataclass(frozen=True)
@@ -50,17 +48,13 @@ class Camera(Element):
 
 
 @dataclass(frozen=True)
-class Light(Element):
-    """`L x,y,z ratio [R,G,B]`: the point light of the mandatory format."""
+class Background(Element):
+    """`bg R,G,B` or `bg file`: what rays see that meet nothing, black where there is none.
 
-    code, title, plural, once = "L", "light", "lights", True
-    position: Triple = declare(Point, "where it stands")
-    brightness: float = declare(Real, "brightness", unit="ratio", low=0.0, high=1.0, step=0.05)
-    colour: Triple = declare(Colour, "colour", default=WHITE)
+    A picture is wrapped around the scene as an infinitely large sphere: its middle is seen along +z, its upper border
+    along +y, and what is to the right of its middle is on the right of a camera that looks along +z (equirectangular
+    projection: columns are equal angles of longitude, rows of latitude).
+    """
 
-
-@dataclass(frozen=True)
-class FurtherLight(Light):
-    """`l x,y,z ratio [R,G,B]`: any number of further point lights."""
-
-    code, title, plural, once = "l", "further light", "further_lights", False
+    code, title, plural, once = "bg", "background", "backgrounds", True
+    paint: Triple | str = declare(Paint, "colour, or a picture of the whole sky")

@@ -20,7 +20,6 @@ AWAY = 1 / 2  # of the scene's size: how far in front of the camera
 LARGE = 1 / 8  # of the scene's size: what is added
 SMALLER = (1.0, 1 / 2, 1 / 4)  # what a length may be of the one before it, where a kind asks for that
 GREY = (200, 200, 200)
-UP = (0.0, 1.0, 0.0)
 
 
 def kinds(scene: Scene) -> list[type[Element]]:
@@ -46,7 +45,7 @@ def made(kind: type[Element], state: State) -> Element | None:
 
 def chosen(kind: type[Element], state: State, ratio: float) -> Iterator[tuple[str, Any]]:
     """The fields that must be given; each length has that ratio to the one before it."""
-    fields = [field for field in fields_of(kind) if field.default is None]
+    fields = [field for field in fields_of(kind) if field.required]
     places = iter(corners(state, sum(isinstance(field, Point) for field in fields)))
     length = nice(LARGE * state.size)
     for field in fields:
@@ -83,7 +82,7 @@ def round_place(place: Triple, stride: float) -> Triple:
 def usual(field: Field, state: State) -> Any:
     """A value of any other field."""
     if isinstance(field, Direction):
-        return UP
+        return field.instead
     if isinstance(field, Colour):
         return GREY
     if isinstance(field, Real):

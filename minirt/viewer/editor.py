@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+from minirt.errors import ElementError
 from minirt.fields import Direction, Point
 from minirt.scene import Camera
 from minirt.scene.view import view
@@ -27,7 +28,10 @@ RIGHT, UP, FORWARD = range(3)  # of view()
 
 def apply(state: State, action: str, amount: float = 1.0, now: float = 0.0) -> State:
     """The state after an action; KeyError where there is no such one."""
-    return EDITS[action](state.say(""), amount, now)
+    try:
+        return EDITS[action](state.say(""), amount, now)
+    except ElementError as error:
+        return state.say(str(error))
 
 
 def move(way: int, sign: float, state: State, amount: float, now: float) -> State:
@@ -49,7 +53,7 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
         if axis == FORWARD:
             return state.put(rolled(element, angle), "roll", now)
         return state.put(looked(element, angle * (axis == UP), angle * (axis == RIGHT)), "turn", now)
-    if not named(type(element), Direction):
+    if not named(type(element), Direction) and len(named(type(element), Point)) < 2:
         return state.say(f"{element.title} looks the same from all sides: nothing to turn")
     world = WORLD.get(state.frame)
     if world:
@@ -70,14 +74,14 @@ def resize(sign: float, state: State, amount: float, now: float) -> State:
         now,
     )
     if changed is state:
-        limits = f" ({active.field.range})" if active.field.range else ""
+        limits = f" ({active.range})" if active.range else ""
         return state.say(f"{active.name} cannot go further{limits}")
     return changed
 
 
 def next_value(state: State, _amount: float, _now: float) -> State:
     """Let the next value be the active one."""
-    known = values(type(state.element))
+    known = values(state.element)
     if not known:
         return state.say(f"{state.element.title} has no value to change")
     return replace(state, value=(state.value + 1) % len(known), recent=None)

@@ -9,8 +9,8 @@ from pathlib import Path
 from minirt import atomic
 from minirt.errors import MiniRTError, SceneError
 from minirt.image import Image
-from minirt.scene import Camera, Scene, save
 from minirt.regular import reason
+from minirt.scene import Camera, Scene, save
 from minirt.scene.files import refused
 from minirt.viewer.painter import Pixels
 

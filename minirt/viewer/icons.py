@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from minirt.element import Element, fields_of
-from minirt.fields import Colour, Triple
+from minirt.fields import Colour
 from minirt.scene import Camera, Scene
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
@@ -57,8 +57,6 @@ def icon_at(placed: list[Icon], x: int, y: int, scale: float) -> Icon | None:
 
 def colour(element: Element) -> int:
     """The element's own colour, 0xRRGGBB."""
-    own: Triple = next(
-        (getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour)), WHITE
-    )
-    red, green, blue = map(int, own)
+    colours = [getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour)]
+    red, green, blue = map(int, next((each for each in colours if not isinstance(each, str)), WHITE))
     return red << 16 | green << 8 | blue

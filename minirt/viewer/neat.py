@@ -5,15 +5,15 @@ from __future__ import annotations
 from math import floor, log10
 from typing import Any, TypeVar
 
-from minirt.element import Element, fields_of
-from minirt.fields import Field, Length, Point, Real
+from minirt.element import Record, fields_of
+from minirt.fields import Factor, Field, Length, Point, Real
 
 PLACES = 5  # decimals of a step of movement that are kept
 DIGITS = 5  # of a length that are kept
 TENTHS = 3  # decimals of a step of any other number that are kept
 SLACK = 1 + 1e-9  # what rounding may have done to a power of ten
 
-Kind = TypeVar("Kind", bound=Element)
+Kind = TypeVar("Kind", bound=Record)
 
 
 def decimals(number: float) -> int:
@@ -28,7 +28,7 @@ def nice(length: float) -> float:
     return max(step for step in steps if step <= length * SLACK)
 
 
-def neat(old: Element, new: Kind, stride: float) -> Kind:
+def neat(old: Record, new: Kind, stride: float) -> Kind:
     """`new` with round numbers where it differs from `old`: a tiny part of a step is left out, too little to be seen.
 
     `stride` is a step of a movement, in scene units.
@@ -43,6 +43,10 @@ def neat(old: Element, new: Kind, stride: float) -> Kind:
 
 def rounded(field: Field, before: Any, after: Any, stride: float) -> Any:
     """The value of a field that was edited."""
+    if isinstance(before, Record) and isinstance(after, Record):
+        return neat(before, after, stride)
+    if isinstance(field, Factor):
+        return round(after, decimals(after) + DIGITS - 1)
     if isinstance(field, Point):
         places = decimals(stride) + PLACES
         return tuple(b if a == b else round(b, places) for a, b in zip(before, after, strict=True))

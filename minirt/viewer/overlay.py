@@ -76,6 +76,8 @@ def bracketed(written: str, part: int | None) -> str:
     if part is None:
         return f"[{written}]"
     parts = written.split(",")
+    if part >= len(parts):  # left out, because it is at its default
+        return f"[{written}]"
     return ",".join([*parts[:part], f"[{parts[part]}]", *parts[part + 1 :]])
 
 

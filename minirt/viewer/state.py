@@ -13,7 +13,7 @@ from minirt.fields import Direction, Point, Triple
 from minirt.scene import Camera, Scene
 from minirt.viewer.measure import size_of
 from minirt.viewer.neat import neat, nice
-from minirt.viewer.values import Value, values
+from minirt.viewer.values import Value, grows, values
 
 STRIDE = 1 / 40  # of the scene's size: one step of a movement, about
 MERGE = 0.5  # seconds; changes of the same kind that follow each other faster are undone together
@@ -61,7 +61,7 @@ class State:
     @property
     def active(self) -> Value | None:
         """What grows and shrinks of the selected element, if anything."""
-        known = values(type(self.element))
+        known = values(self.element)
         return known[self.value % len(known)] if known else None
 
     @property
@@ -129,4 +129,4 @@ def place_of(element: Element) -> Triple | None:
 
 def can_edit(kind: type[Element]) -> bool:
     """Whether any key does anything to it."""
-    return bool(values(kind) or named(kind, Point) or named(kind, Direction))
+    return any(map(grows, fields_of(kind))) or bool(named(kind, Point) or named(kind, Direction))
