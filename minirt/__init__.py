@@ -84,14 +84,15 @@ def __getattr__(name: str) -> Any:
     return getattr(import_module(HOMES[name]), name)
 
 
-def load(path: str | os.PathLike[str], lenient: bool = False) -> Scene:
+def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Scene:
     """Read a scene file. SceneError, with all of its problems, where the file is not a scene.
 
     `lenient` reads what older files have: several `L`, blanks around commas, colours with decimals and the like.
+    `left_handed` mirrors its pictures, as programs do whose coordinates are left-handed.
     """
     from minirt.scene import load as read
 
-    return read(path, lenient).scene
+    return read(path, lenient, left_handed).scene
 
 
 def size_of(scene: Scene) -> tuple[int, int]:

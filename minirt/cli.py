@@ -71,6 +71,7 @@ def arguments() -> Arguments:
         help="with -o: N pictures from all around the scene; spin.gif is one file, spin.png is spin-0001.png, ...",
     )
     add("--fallback", metavar="FILE", help="render to FILE where no window can be opened")
+    add("--left-handed", action="store_true", help="mirror the picture, for scenes of programs with such coordinates")
     add = parser.add_argument_group("window").add_argument
     add("--keys", choices=("auto", "qwerty", "azerty", "qwertz"), default="auto", help="the layout of the keyboard")
     add("--watch", action=argparse.BooleanOptionalAction, default=True, help="read the scene again when it changes")
@@ -125,7 +126,7 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
     )
     mode = next((mode for wanted, mode in modes if wanted), window)
     # A picture may go to standard output; behind a window it is free, and a session without errors leaves none.
-    scene = read(asked.scene[0], asked.lenient, sys.stdout if mode is window else sys.stderr)
+    scene = read(asked.scene[0], asked, sys.stdout if mode is window else sys.stderr)
     return mode(scene, asked)
 
 
@@ -143,11 +144,11 @@ def keys() -> str:
     return keys_text()
 
 
-def read(path: str, lenient: bool, told: TextIO) -> Scene:
+def read(path: str, asked: argparse.Namespace, told: TextIO) -> Scene:
     """The scene in a file; what was tolerated is told there."""
     from minirt.scene import load
 
-    scene, notices = load(path, lenient)
+    scene, notices = load(path, asked.lenient, asked.left_handed)
     for notice in notices:
         print(f"notice: {notice}", file=told, flush=True)
     return scene

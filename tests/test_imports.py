@@ -10,25 +10,28 @@ import pytest
 import minirt
 
 PACKAGE = Path(minirt.__file__).parent
-LOW = {"errors", "fields", "element", "lanes", "shapes"}
+LOW = {"errors", "fields", "element", "lanes", "materials", "shapes"}
 
 # For each part what it may import of ours. A part is a folder or a file of the package.
 MAY: dict[str, set[str]] = {
     "errors": set(),
     "atomic": set(),
     "garbage": set(),
+    "regular": {"errors"},
     "lanes": set(),
     "fields": {"errors"},
     "element": {"errors", "fields"},
-    "shapes": {"lanes", "fields", "element"},
+    "materials": {"errors", "fields", "element", "regular"},
+    "shapes": {"lanes", "fields", "element", "materials"},
     "image": {"errors", "atomic"},
     "movie": {"errors", "atomic", "image"},
-    "scene": {"errors", "fields", "element", "shapes", "atomic"},
+    "scene": {"errors", "fields", "element", "materials", "shapes", "atomic", "regular"},
     "kernel": {"lanes", "shapes"},
     "rendering": LOW | {"garbage", "kernel", "scene"},
     "mlx": {"errors"},
     "viewer": {
         "errors",
+        "regular",
         "atomic",
         "garbage",
         "fields",

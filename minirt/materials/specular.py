@@ -4,8 +4,8 @@ The image of a lamp in a surface that is not quite smooth. Every lamp that reach
 times cos(a)^`exponent`, whatever the colour of the surface. `a` is the angle between the mirrored direction of the
 light and that to the eye (Phong 1975, Illumination for Computer Generated Pictures), or with `blinn` that between the
 normal and the direction half-way from the lamp to the eye (Blinn 1977, Models of Light Reflection for Computer
-Synthesized Pictures). The greater the exponent, the smaller the highlight; with `blinn` one of the same size takes about
-four times the exponent.
+Synthesized Pictures). The greater the exponent, the smaller the highlight; with `blinn` one of the same size takes
+about four times the exponent.
 
     sp 0,0,20 8 200,30,30 specular:0.6,50
 """

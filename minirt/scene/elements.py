@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from minirt.element import Element
-from minirt.fields import Colour, Direction, Paint, Point, Real, Triple, Whole, declare
+from minirt.fields import Colour, Direction, Paint, Point, Real, Triple, Whole, declare, unit
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,10 @@ class Ambient(Element):
 
 @dataclass(frozen=True)
 class Camera(Element):
-    """`C x,y,z dx,dy,dz fov [roll:degrees]`: the eye."""
+    """`C x,y,z dx,dy,dz fov [roll:degrees]`: the eye.
+
+    `left_handed` mirrors the picture, as programs do whose coordinates are left-handed; a file does not say that.
+    """
 
     code, title, plural, once, required = "C", "camera", "cameras", True, True
     position: Triple = declare(Point, "the eye")
@@ -45,6 +48,15 @@ class Camera(Element):
     roll: float = declare(
         Real, "turn about the direction, clockwise", unit="degree", low=-360.0, high=360.0, keyed=True, default=0.0
     )
+    left_handed: bool = field(default=False, kw_only=True)
+
+    @classmethod
+    def look_at(cls, eye: Triple, target: Triple, *, fov: float = 60.0, roll: float = 0.0) -> Camera:
+        """The camera at `eye` that has `target` in the middle of its picture; ValueError where both are the same."""
+        x, y, z = (there - here for here, there in zip(eye, target, strict=True))
+        if not any((x, y, z)):
+            raise ValueError("camera eye and target must be two places")
+        return cls(eye, unit((x, y, z)), fov, roll)
 
 
 @dataclass(frozen=True)

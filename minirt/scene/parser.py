@@ -32,9 +32,12 @@ class Reading(NamedTuple):
     notices: tuple[Problem, ...]
 
 
-def load(path: str | os.PathLike[str], lenient: bool = False) -> Reading:
-    """Reads a scene file; SceneError with all that is wrong in it."""
-    return parse(files.read(path), path, lenient)
+def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Reading:
+    """Reads a scene file; SceneError with all that is wrong in it. `left_handed` mirrors its pictures."""
+    scene, notices = parse(files.read(path), path, lenient)
+    if left_handed:
+        scene = scene.replace(scene.camera, left_handed=True)
+    return Reading(scene, notices)
 
 
 def parse(text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = False) -> Reading:

@@ -15,7 +15,7 @@ from minirt.scene import Camera
 from minirt.scene.view import mix, view
 from minirt.viewer.lens import Lens, lens, minus
 from minirt.viewer.measure import ball, middle_of
-from minirt.viewer.motion import WORLD, limited, looked, orbited, rotated, translated
+from minirt.viewer.motion import WORLD, handedness, limited, looked, orbited, rotated, translated
 from minirt.viewer.state import State, named
 
 MIDDLE = 0.5  # of a pixel
@@ -76,7 +76,9 @@ def turn(state: State, held: Grip, x: int, y: int) -> State:
     if axis:
         return state.put(rotated(held.element, axis, right), "drag", 0.0, lasting=True)
     across, up, _ = view(held.camera)
-    return state.put(rotated(rotated(held.element, up, right), across, down), "drag", 0.0, lasting=True)
+    hand = handedness(held.camera)
+    turned = rotated(rotated(held.element, up, right * hand), across, down * hand)
+    return state.put(turned, "drag", 0.0, lasting=True)
 
 
 def look(state: State, held: Grip, x: int, y: int) -> State:

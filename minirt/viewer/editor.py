@@ -15,7 +15,7 @@ from minirt.fields import Direction, Point
 from minirt.scene import Camera
 from minirt.scene.view import view
 from minirt.viewer import framing, history, selection, structure
-from minirt.viewer.motion import WORLD, looked, rolled, rotated, translated
+from minirt.viewer.motion import WORLD, handedness, looked, rolled, rotated, translated
 from minirt.viewer.state import Frame, State, named
 from minirt.viewer.values import values
 
@@ -59,8 +59,8 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
     if world:
         return state.put(rotated(element, world, angle), "turn", now)
     # Seen from the camera the front goes right, up or clockwise: only up is against the right-handed turn about right.
-    about = view(state.scene.camera)[axis]
-    return state.put(rotated(element, about, -angle if axis == RIGHT else angle), "turn", now)
+    about, turned = view(state.scene.camera)[axis], angle * handedness(state.scene.camera)
+    return state.put(rotated(element, about, -turned if axis == RIGHT else turned), "turn", now)
 
 
 def resize(sign: float, state: State, amount: float, now: float) -> State:

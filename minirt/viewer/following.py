@@ -52,7 +52,7 @@ def file_changed(session: Session) -> None:
 def read(session: Session, keep_camera: bool = False) -> None:
     """Show what the file holds. `keep_camera`: unless the file has another one than before. SceneError."""
     seen = signature(session.path)
-    scene = load(session.path, session.lenient).scene
+    scene = load(session.path, session.lenient, session.state.scene.camera.left_handed).scene
     session.disk.accept(seen)
     session.mouse.let_go()
     session.state = followed(session.state, scene, session.saved if keep_camera else None)
@@ -77,7 +77,7 @@ def followed(old: State, scene: Scene, saved: Scene | None) -> State:
 
 def open_another(session: Session, path: Path) -> None:
     """Show another file; changes that were not saved are kept beside the old one. SceneError."""
-    scene = load(path, session.lenient).scene
+    scene = load(path, session.lenient, session.state.scene.camera.left_handed).scene
     kept = ""
     if differ(session.state.scene, session.saved):
         kept = f"; the changes that were not saved are in {recover(session.state.scene, session.path)}"

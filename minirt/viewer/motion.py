@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import atan2, cos, fmod, fsum, hypot, pi, radians, sin
 
 from minirt.element import Element
 from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit
 from minirt.scene import Camera
-from minirt.scene.view import mix, view
+from minirt.scene.view import mix, upright, view
 from minirt.viewer.state import Frame, named
 
 WORLD: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
@@ -66,8 +65,8 @@ def looked(camera: Camera, right: float, up: float) -> Camera:
     heading, so that the way back is the way that led there.
     """
     x, y, z = camera.direction
-    (a, _, b), _, _ = view(replace(camera, roll=0.0))
-    heading = atan2(-a, b) + radians(right)
+    (a, _, b), _ = upright(x, y, z)
+    heading = atan2(-a, b) + radians(right) * handedness(camera)
     height = clamp(atan2(y, hypot(x, z)) + radians(up), -pi / 2, pi / 2)
     direction = cos(height) * cos(heading), sin(height), cos(height) * sin(heading)
     return camera.replace(direction=unit(direction))
@@ -85,4 +84,9 @@ def orbited(camera: Camera, pivot: Triple, right: float, up: float) -> Camera:
 
 def rolled(camera: Camera, degrees: float) -> Camera:
     """The camera turned about its direction, clockwise."""
-    return camera.replace(roll=fmod(camera.roll + degrees, 360.0))
+    return camera.replace(roll=fmod(camera.roll + degrees * handedness(camera), 360.0))
+
+
+def handedness(camera: Camera) -> float:
+    """-1 where the picture is mirrored: what turns to the right or clockwise in it does the opposite in the scene."""
+    return -1.0 if camera.left_handed else 1.0

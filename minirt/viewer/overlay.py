@@ -63,11 +63,10 @@ def line(state: State) -> str:
     element, active = state.element, state.active
     words = [element.code]
     for field in fields_of(type(element)):
-        written = spelling(field, element)
         if active and field == active.field:
-            words.append(bracketed(written, active.part))
+            words.append(bracketed(spelling(field, element), active.part))
         elif not field.keyed or getattr(element, field.name) != field.default:
-            words.append(written)
+            words.append(spelling(field, element))
     return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", " ".join(words))
 
 
