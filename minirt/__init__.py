@@ -16,47 +16,65 @@ from minirt.errors import MiniRTError, MlxError, RenderError, ReplayError, Scene
 
 if TYPE_CHECKING:
     from minirt.image import Image
+    from minirt.materials import Bump, Checker, Glass, Specular
+    from minirt.movie import save_movie
     from minirt.rendering import Renderer
     from minirt.rendering.rays import Hits, trace
-    from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+    from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
     from minirt.shapes.cylinder import Cylinder
     from minirt.shapes.plane import Plane
     from minirt.shapes.sphere import Sphere
+    from minirt.viewer import view
 
 __version__ = "0.1.0"
 DEFAULT_SIZE = (1280, 720)  # pixels; of a scene that does not name a size
 
 __all__ = [
     "Ambient",
+    "Background",
+    "Bump",
     "Camera",
+    "Checker",
     "Cylinder",
     "FurtherLight",
+    "Glass",
     "Hits",
     "Image",
     "Light",
     "MiniRTError",
     "MlxError",
+    "ParallelLight",
     "Plane",
     "RenderError",
     "ReplayError",
     "Scene",
     "SceneError",
+    "Specular",
     "Sphere",
+    "SpotLight",
     "load",
     "render",
+    "save_movie",
     "size_of",
     "trace",
+    "view",
 ]
 
 
 # What is imported only when it is used, so that `miniRT --help` need not wait for it.
 HOMES = {
     "Image": "minirt.image",
-    **dict.fromkeys(("Ambient", "Camera", "FurtherLight", "Light", "Scene"), "minirt.scene"),
+    **dict.fromkeys(("Bump", "Checker", "Glass", "Specular"), "minirt.materials"),
+    **dict.fromkeys(
+        ("Ambient", "Background", "Camera", "FurtherLight", "Light", "ParallelLight", "Scene", "SpotLight"),
+        "minirt.scene",
+    ),
     "Cylinder": "minirt.shapes.cylinder",
     "Plane": "minirt.shapes.plane",
     "Sphere": "minirt.shapes.sphere",
     **dict.fromkeys(("Hits", "trace"), "minirt.rendering.rays"),
+    "save_movie": "minirt.movie",
+    "view": "minirt.viewer",
 }
 
 
@@ -66,14 +84,15 @@ def __getattr__(name: str) -> Any:
     return getattr(import_module(HOMES[name]), name)
 
 
-def load(path: str | os.PathLike[str], lenient: bool = False) -> Scene:
+def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Scene:
     """Read a scene file. SceneError, with all of its problems, where the file is not a scene.
 
     `lenient` reads what older files have: several `L`, blanks around commas, colours with decimals and the like.
+    `left_handed` mirrors its pictures, as programs do whose coordinates are left-handed.
     """
     from minirt.scene import load as read
 
-    return read(path, lenient).scene
+    return read(path, lenient, left_handed).scene
 
 
 def size_of(scene: Scene) -> tuple[int, int]:

@@ -10,7 +10,7 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NoReturn, TextIO
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from minirt.errors import MiniRTError, MlxError, ReplayError
 from minirt.garbage import uncollected
@@ -64,10 +64,18 @@ def arguments() -> Arguments:
         metavar="N",
         help=f"rays for each pixel ({SAMPLES}); in the window at edges, when nothing moves ({WINDOW_SAMPLES})",
     )
+    add(
+        "--turntable",
+        type=lambda text: whole(text, 1, 3600),
+        metavar="N",
+        help="with -o: N pictures from all around the scene; spin.gif is one file, spin.png is spin-0001.png, ...",
+    )
     add("--fallback", metavar="FILE", help="render to FILE where no window can be opened")
+    add("--left-handed", action="store_true", help="mirror the picture, for scenes of programs with such coordinates")
     add = parser.add_argument_group("window").add_argument
     add("--keys", choices=("auto", "qwerty", "azerty", "qwertz"), default="auto", help="the layout of the keyboard")
-    add("--replay", metavar="KEYS.txt", help="play recorded keys without a window; -o takes the last frame")
+    add("--watch", action=argparse.BooleanOptionalAction, default=True, help="read the scene again when it changes")
+    add("--replay", metavar="KEYS.txt", help="play recorded keys without a window; -o takes the last frame, a .gif all")
     add = parser.add_argument_group("inspect").add_argument
     add("--check", action="store_true", help="read the scene, report what is wrong with it, make no picture")
     add("--lenient", action="store_true", help="read what older scenes have: several L, blanks around commas, ...")
@@ -109,16 +117,19 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
         from minirt.image import format_of
 
         format_of(asked.output)  # before the work, not after it
+    if asked.turntable and asked.output in (None, "-"):
+        parser.error("--turntable needs the name of a file: -o spin.gif")
     modes = (
         (asked.check, check),
         (asked.bench, bench),
         (asked.report, report),
         (asked.replay, replay),
+        (asked.turntable, turntable),
         (asked.output, headless),
     )
     mode = next((mode for wanted, mode in modes if wanted), window)
     # A picture may go to standard output; behind a window it is free, and a session without errors leaves none.
-    scene = read(asked.scene[0], asked.lenient, sys.stdout if mode is window else sys.stderr)
+    scene = read(asked.scene[0], asked, sys.stdout if mode is window else sys.stderr)
     return mode(scene, asked)
 
 
@@ -136,11 +147,11 @@ def keys() -> str:
     return keys_text()
 
 
-def read(path: str, lenient: bool, told: TextIO) -> Scene:
+def read(path: str, asked: argparse.Namespace, told: TextIO) -> Scene:
     """The scene in a file; what was tolerated is told there."""
     from minirt.scene import load
 
-    scene, notices = load(path, lenient)
+    scene, notices = load(path, asked.lenient, asked.left_handed)
     for notice in notices:
         print(f"notice: {notice}", file=told, flush=True)
     return scene
@@ -204,6 +215,24 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
     return image
 
 
+def turntable(scene: Scene, asked: argparse.Namespace) -> int:
+    """Write pictures of the scene from all around it."""
+    import minirt
+    from minirt.movie import with_progress
+    from minirt.viewer.film import turntable as views
+
+    width, height = asked.size or minirt.size_of(scene)
+    made = (
+        minirt.render(
+            seen, width, height, samples=asked.samples or SAMPLES, threads=asked.threads, precision=asked.precision
+        )
+        for seen in with_progress(views(scene, asked.turntable), asked.turntable, "picture")
+    )
+    with uncollected():
+        minirt.save_movie(made, asked.output)
+    return OK
+
+
 def write(image: Image, output: str) -> None:
     """Put a picture into a file or onto standard output."""
     if output == "-":
@@ -216,6 +245,7 @@ def write(image: Image, output: str) -> None:
 def replay(scene: Scene, asked: argparse.Namespace) -> int:
     """Play recorded keys; the last frame goes to the output, if there is one."""
     import minirt
+    from minirt.viewer.film import FPS, film
     from minirt.viewer.replay import replay as play
 
     try:
@@ -223,17 +253,19 @@ def replay(scene: Scene, asked: argparse.Namespace) -> int:
             lines = file.read().split("\n")
     except (OSError, UnicodeDecodeError) as error:
         raise ReplayError(f"{asked.replay}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    pixels = play(
-        scene,
-        lines,
-        file=asked.replay,
-        renderer=minirt.renderer(asked.threads, asked.precision),
-        size=asked.size or minirt.size_of(scene),
-        path=asked.scene[0],
-        keys="qwerty" if asked.keys == "auto" else asked.keys,  # not the user's: a replay is the same everywhere
-        lenient=asked.lenient,
-        samples=asked.samples or SAMPLES,
-    )
+    how: dict[str, Any] = {
+        "file": asked.replay,
+        "renderer": minirt.renderer(asked.threads, asked.precision),
+        "size": asked.size or minirt.size_of(scene),
+        "path": asked.scene[0],
+        "keys": "qwerty" if asked.keys == "auto" else asked.keys,  # not the user's: a replay is the same everywhere
+        "lenient": asked.lenient,
+        "samples": asked.samples or SAMPLES,
+    }
+    if asked.output and asked.output.lower().endswith(".gif"):
+        minirt.save_movie(film(scene, lines, **how), asked.output, FPS)
+        return OK
+    pixels = play(scene, lines, **how)
     if asked.output:
         write(minirt.Image.from_bgra(pixels), asked.output)
     return OK
@@ -252,6 +284,7 @@ def window(scene: Scene, asked: argparse.Namespace) -> int:
             keys=asked.keys,
             lenient=asked.lenient,
             samples=asked.samples or WINDOW_SAMPLES,
+            watch=asked.watch,
             renderer=minirt.renderer(asked.threads, asked.precision),
         )
     except MlxError as error:

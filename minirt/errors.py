@@ -3,17 +3,20 @@
     MiniRTError
     ├── SceneError     a scene file cannot be read, used or written: every problem found in it
     ├── RenderError    a picture cannot be made or written
+    ├── FileError      a file that something else names, a picture, cannot be used
     ├── ReplayError    a file of recorded keys cannot be played
     └── MlxError       no window can be opened
 
     ValueError
-    └── FieldError     a value that a field of a scene element cannot take; the parser makes a Problem of it
+    ├── FieldError     a value that a field of a scene element cannot take; the parser makes a Problem of it
+    └── ElementError   fields of a scene element that do not go together
 
 Only `minirt.cli` prints them.
 """
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 
 
@@ -70,6 +73,14 @@ class RenderError(MiniRTError):
     """A picture that cannot be made or written."""
 
 
+class FileError(MiniRTError):
+    """A file that cannot be used; `reason` is without its name."""
+
+    def __init__(self, path: str | os.PathLike[str], reason: str) -> None:
+        self.reason = reason
+        super().__init__(f"{printable(os.fspath(path))}: {reason}")
+
+
 class ReplayError(MiniRTError):
     """A file of recorded keys that cannot be played."""
 
@@ -84,3 +95,7 @@ class FieldError(ValueError):
     def __init__(self, message: str, part: int | None = None) -> None:
         super().__init__(message)
         self.part = part
+
+
+class ElementError(ValueError):
+    """Fields of an element that do not go together."""

@@ -10,27 +10,43 @@ import pytest
 import minirt
 
 PACKAGE = Path(minirt.__file__).parent
-LOW = {"errors", "fields", "element", "lanes", "shapes"}
+LOW = {"errors", "fields", "element", "lanes", "materials", "shapes"}
 
 # For each part what it may import of ours. A part is a folder or a file of the package.
 MAY: dict[str, set[str]] = {
     "errors": set(),
     "atomic": set(),
     "garbage": set(),
+    "regular": {"errors"},
     "lanes": set(),
     "fields": {"errors"},
     "element": {"errors", "fields"},
-    "shapes": {"lanes", "fields", "element"},
+    "materials": {"errors", "fields", "element", "regular"},
+    "shapes": {"lanes", "fields", "element", "materials"},
     "image": {"errors", "atomic"},
-    "scene": {"errors", "fields", "element", "shapes", "atomic"},
+    "movie": {"errors", "atomic", "image"},
+    "scene": {"errors", "fields", "element", "materials", "shapes", "atomic", "regular"},
     "kernel": {"lanes", "shapes"},
     "rendering": LOW | {"garbage", "kernel", "scene"},
     "mlx": {"errors"},
-    "viewer": {"errors", "garbage", "fields", "element", "shapes", "scene", "rendering", "mlx", "image", "__init__"},
+    "viewer": {
+        "errors",
+        "regular",
+        "atomic",
+        "garbage",
+        "fields",
+        "element",
+        "shapes",
+        "scene",
+        "rendering",
+        "mlx",
+        "image",
+        "__init__",
+    },
     "timing": set(),
     "bench": {"__init__", "rendering", "scene", "timing"},
     "report": LOW | {"__init__", "atomic", "image", "kernel", "rendering", "scene", "timing"},
-    "cli": {"__init__", "errors", "garbage", "image", "scene", "viewer", "bench", "rendering", "report"},
+    "cli": {"__init__", "movie", "errors", "garbage", "image", "scene", "viewer", "bench", "rendering", "report"},
     "__main__": {"cli"},
     "__init__": LOW | {"image", "scene", "rendering"},
 }

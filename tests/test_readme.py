@@ -6,7 +6,9 @@ import re
 from pathlib import Path
 
 import pytest
+from PIL import Image as pillow  # noqa: N813
 
+import minirt
 from minirt.cli import main
 from minirt.scene import format_table
 from minirt.viewer import keys_markdown
@@ -40,6 +42,31 @@ def test_the_lines_of_python_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     exec(lines, names)
     assert (tmp_path / "demo.png").read_bytes().startswith(b"\x89PNG")
     assert names["scene"].spheres[0].diameter == 3  # type: ignore[attr-defined]
+
+
+def test_the_animation_and_the_window(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (lines,) = (block for block in blocks("python") if "minirt.save_movie" in block)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("minirt.view", lambda scene: scene, raising=False)
+    scene = minirt.load(ROOT / "scenes/demo.rt")
+    assert scene.spheres[1].colour == (255, 200, 50)  # the golden one
+    names = {"minirt": minirt, "scene": scene}
+    exec(lines, names)
+    assert (tmp_path / "jump.gif").read_bytes().startswith(b"GIF89a")
+    assert names["scene"] is scene
+
+
+def test_the_moving_picture_is_made_by_the_keys_beside_it(tmp_path: Path) -> None:
+    keys = (ROOT / "assets/demo-keys.txt").read_text().splitlines()
+    (command,) = re.findall(r"`miniRT (.*? -o assets/demo\.gif)`", README)
+    assert keys[1].split(maxsplit=1)[1] == f"miniRT {command}"
+    assert (ROOT / "assets/demo.gif").stat().st_size < 1.5e6
+    arguments = command.replace("assets/demo.gif", str(tmp_path / "demo.gif")).split()
+    full = [str(ROOT / each) if each.startswith(("scenes/", "assets/")) else each for each in arguments]
+    assert main(full) == 0
+    with pillow.open(ROOT / "assets/demo.gif") as kept, pillow.open(tmp_path / "demo.gif") as made:
+        assert kept.size == made.size
+        assert abs(kept.n_frames - made.n_frames) <= 3
 
 
 def test_the_scene_is_read(tmp_path: Path) -> None:

@@ -3,9 +3,10 @@ the documentation are made from the declaration.
 """
 
 from minirt.errors import FieldError
-from minirt.fields.field import Field, Repair, declare
+from minirt.fields.field import Field, PictureFile, Repair, declare
 from minirt.fields.numerals import number, spelled, whole
-from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Length, Real, Whole, clamp
+from minirt.fields.pictures import Paint, Picture
+from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Factor, Flag, Length, Real, Whole, clamp
 from minirt.fields.triples import Colour, Direction, Point, Three, Triple, unit
 
 __all__ = [
@@ -13,9 +14,14 @@ __all__ = [
     "LEAST_LENGTH",
     "Colour",
     "Direction",
+    "Factor",
     "Field",
     "FieldError",
+    "Flag",
     "Length",
+    "Paint",
+    "Picture",
+    "PictureFile",
     "Point",
     "Real",
     "Repair",

@@ -1,11 +1,11 @@
-"""Fields of one number: ratios, angles, lengths, sizes in pixels."""
+"""Fields of one number: ratios, angles, lengths, sizes in pixels; and of one word."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from minirt.errors import FieldError
+from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field
 from minirt.fields.numerals import PLAIN, number, numbers, spelled, whole, wholes
 
@@ -93,6 +93,17 @@ class Length(Scalar):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Factor(Real):
+    """A number in [low, high], above 0; a key press multiplies it by `step`."""
+
+    low: float = 1.0
+    step: float = 1.1
+
+    def nudge(self, value: float, steps: float) -> float:
+        return clamp(value * self.step ** clamp(steps, -1000, 1000), self.low, self.high)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Whole(Scalar):
     """A whole number in [low, high]."""
 
@@ -113,3 +124,21 @@ class Whole(Scalar):
     @property
     def range(self) -> str:
         return f"[{self.low}, {self.high}]"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Flag(Field):
+    """Whether a word, which is its name, is there."""
+
+    default: bool = False
+
+    def parse(self, text: str) -> bool:
+        if text != self.name:
+            raise FieldError(f"must be the word '{self.name}' or be left out, got {quoted(text)}")
+        return True
+
+    def format(self, value: bool) -> str:
+        return self.name
+
+    def check(self, value: bool) -> bool:
+        return bool(value)

@@ -21,7 +21,8 @@ SLACK = 1e-3  # how far a direction may be off unit length without a word
 class Three(Field):
     """Three components with commas between them; `names` are what they are called in messages."""
 
-    plain = ",".join([PLAIN] * 3)
+    width = 3
+    plain = ",".join([PLAIN] * width)
 
     names: str = "x,y,z"
 

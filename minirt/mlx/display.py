@@ -9,6 +9,8 @@ from minirt.mlx.events import Button, Event
 from minirt.mlx.handles import Bound, Window
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from minirt.mlx.backend import Backend
     from minirt.mlx.keys import Modifier
 
@@ -157,6 +159,12 @@ class Display:
         """Text was typed; control characters are not text."""
         if window.is_open and text.isprintable():
             self.call(window.text_hook, text)
+
+    def drop(self, window: Window, files: Iterable[str]) -> None:
+        """Files were dropped on the window."""
+        for file in files:
+            if window.is_open:
+                self.call(window.drop_hook, file)
 
     def move(self, window: Window, x: int, y: int) -> None:
         """The pointer is at x, y from the top left corner; outside, it is taken to the border."""

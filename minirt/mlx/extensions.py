@@ -37,6 +37,11 @@ class Extensions:
         win.text_hook = None if f is None else (f, param)
         return 0
 
+    def mlx_drop_hook(self, win: Window, f: Hook | None, param: object = None) -> int:
+        """f(file, param), for each file that is dropped on the window."""
+        win.drop_hook = None if f is None else (f, param)
+        return 0
+
     def mlx_get_modifiers(self, win: Window) -> Modifier:
         """Which modifiers are held, as of the event that a hook is called for."""
         return win.keyboard.modifiers
@@ -44,6 +49,10 @@ class Extensions:
     def mlx_get_window_size(self, win: Window) -> tuple[int, int, int]:
         """(0, width, height): the size that the next drawing call draws on."""
         return 0, win.width, win.height
+
+    def mlx_get_window_scale(self, win: Window) -> float:
+        """How many pixels are as wide as one of a usual screen: 2.0 on many a laptop."""
+        return win.scale
 
     def mlx_set_window_title(self, win: Window, title: str) -> int:
         win.title = title

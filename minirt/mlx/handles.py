@@ -52,8 +52,10 @@ class Window:
     hooks: dict[int, Bound] = field(default_factory=dict)
     text_hook: Bound | None = None
     resize_hook: Bound | None = None
+    drop_hook: Bound | None = None
     is_open: bool = True
     pointer: tuple[int, int] = (0, 0)
+    scale: float = 1.0  # of its screen: 2 where dots are half as large as usual
 
     # Between the window and its back end:
     visible: bool = True

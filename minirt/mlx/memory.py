@@ -49,6 +49,7 @@ class Memory(Backend):
         self.patience = patience
         self.clipboard_text = ""
         self.pointer_shown = True
+        self.after_tick: Callable[[], object] = lambda: None  # called whenever simulated time has gone by
         self._script: deque[Callable[[], object]] = deque()
         self._display: Display | None = None
         self._stir = threading.Event()
@@ -93,6 +94,10 @@ class Memory(Backend):
     def scroll(self, up: int, x: int, y: int, window: Window | None = None, right: int = 0) -> None:
         """Turn the wheel by so many steps; negative ones go down and left."""
         self.do(lambda: self.display.scroll(self._at(window), right, up, x, y))
+
+    def drop(self, *files: str, window: Window | None = None) -> None:
+        """Drop files on the window."""
+        self.do(lambda: self.display.drop(self._at(window), files))
 
     def enter(self, inside: bool, window: Window | None = None) -> None:
         """The pointer comes into the window, or leaves it."""
@@ -185,6 +190,7 @@ class Memory(Backend):
             if not self.display.over:
                 self._now += seconds / ticks
                 self.display.turn(tick=True)
+                self.after_tick()
 
     def _await_wake(self) -> None:
         deadline = time.monotonic() + self.patience

@@ -9,7 +9,7 @@ import numpy as np
 from minirt.kernel.traced import Traced
 from minirt.rendering.flats import same_side
 from minirt.rendering.tables import Tables
-from minirt.scene import Scene
+from minirt.scene import Light, Scene
 from minirt.shapes import KINDS, Shape
 
 
@@ -31,7 +31,7 @@ def notes(scene: Scene, tables: Tables, traced: Traced) -> Iterator[str]:
             yield f"light {number} has brightness 0"
         elif not any(light.colour):
             yield f"light {number} is black"
-        else:
+        elif isinstance(light, Light):
             idle = same_side(tables.planes, np.array(scene.camera.position), np.array(light.position))
             for index in tables.flat[idle].tolist():
                 yield f"{name(tables, index)} hides nothing from light {number}"

@@ -15,17 +15,17 @@ from minirt.rendering.notes import notes
 from minirt.rendering.sight import Lists, grid_for, seen_by_eye, seen_by_lamp, spread_for
 from minirt.rendering.single import in_single
 from minirt.rendering.tables import Tables
-from minirt.scene import Ambient, Light, Scene
+from minirt.scene import Ambient, Lamp, Light, Scene
 
 
-def light_of(source: Ambient | Light) -> np.ndarray:
+def light_of(source: Ambient | Lamp) -> np.ndarray:
     """The light of a source at full incidence: red, green, blue."""
     return np.divide(source.colour, 255) * source.brightness
 
 
 def light_numbers(scene: Scene) -> np.ndarray:
-    """Place and light of every lamp that shines."""
-    lamps = [(*lamp.position, *light) for lamp in scene.lights if (light := light_of(lamp)).any()]
+    """Place and light of every point light that shines."""
+    lamps = [(*lamp.position, *light) for lamp in scene.of(Light) if (light := light_of(lamp)).any()]
     return np.array(lamps, np.float64).reshape(len(lamps), 6)
 
 

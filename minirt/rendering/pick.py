@@ -1,4 +1,5 @@
-"""Which shape a pixel shows: the formulas of the kernel, interpreted, for one ray and all shapes of a kind at once."""
+"""Which shape a pixel shows, and where: the formulas of the kernel, interpreted, for one ray and all shapes of a kind
+at once."""
 
 from __future__ import annotations
 
@@ -6,22 +7,30 @@ from typing import Any
 
 import numpy as np
 
+from minirt.fields import Triple
 from minirt.kernel import lists
 from minirt.kernel.frame import TILE, tiles, towards
+from minirt.kernel.rows import kind_of
 from minirt.kernel.trace import NEARBY, nearest
 from minirt.lanes import Vec, lane, splat, unit
 from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing import Packing
-from minirt.scene import Scene
+from minirt.rendering.tables import Tables
+from minirt.scene import Camera, Scene
 from minirt.shapes import KINDS, Shape
 
 
-def pick(scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
-    """The shape in the middle of pixel x, y of a picture of that size, or None where there is none."""
+def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: Tables | None = None) -> Shape | None:
+    """The shape in the middle of pixel x, y of a picture of that size, or None where there is none.
+
+    `tables` are brought up to date; those of the last picture save the time of making them.
+    """
+    tables = tables or Tables()
+    tables.update(scene.shapes)
     camera = pixel_rays(camera_numbers(scene.camera, width, height), width, height)
     origin, direction = Vec(*camera[:3]), unit(towards(camera, x + 0.5, y + 0.5))
     with np.errstate(all="ignore"):
-        shapes = in_front(scene.shapes, origin, direction)
+        shapes = in_front(tables, origin, direction)
         if len(shapes) < 2:
             return shapes[0] if shapes else None
         # Surfaces that may coincide: the kernel has a rule for them.
@@ -31,24 +40,39 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
     return shapes[int(lane(owner, 0))]
 
 
-def in_front(shapes: tuple[Shape, ...], origin: Vec, direction: Vec) -> list[Shape]:
+def place(shape: Shape, camera: Camera, width: int, height: int, x: int, y: int) -> Triple | None:
+    """Where in the scene the middle of pixel x, y is on a shape; None where it is not on it."""
+    hit, t, origin, direction = met(shape, camera, width, height, x, y)
+    point = origin + float(t) * direction
+    return (float(point.x), float(point.y), float(point.z)) if hit else None
+
+
+def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Whether the middles of pixels x, y show a shape where nothing is in front of it."""
+    return np.broadcast_to(met(shape, camera, width, height, x, y)[0], x.shape)
+
+
+def met(shape: Shape, camera: Camera, width: int, height: int, x: Any, y: Any) -> tuple[Any, Any, Vec, Vec]:
+    """Whether and where the rays of pixels meet a shape, their origin and their directions."""
+    numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
+    kind = next(kind for kind in KINDS if kind.element is type(shape))
+    with np.errstate(all="ignore"):
+        origin, direction = Vec(*numbers[:3]), unit(towards(numbers, x + 0.5, y + 0.5))
+        return *kind.intersect(shape.pack(), origin, direction), origin, direction
+
+
+def in_front(tables: Tables, origin: Vec, direction: Vec) -> list[Shape]:
     """Of the shapes that a ray hits the nearest, and those so close to it that they may be in the same place."""
-    distance = np.full(len(shapes), np.inf)
-    for kind in KINDS:
-        places = [place for place, shape in enumerate(shapes) if type(shape) is kind.element]
-        if places:
-            hit, t = kind.intersect(columns([shapes[place].pack() for place in places]), origin, direction)
-            distance[places] = np.where(hit, t, np.inf)
+    distance = np.full(len(tables.shapes), np.inf)
+    for group, rows in enumerate(tables.rows):
+        hit, t = kind_of(rows.dtype.names).intersect(columns(rows), origin, direction)
+        distance[tables.places[:, 0] == group] = np.where(hit, t, np.inf)
     least = distance.min(initial=np.inf)
-    return [shapes[place] for place in np.flatnonzero(np.isfinite(distance) & (distance <= least * (1 + 2 * NEARBY)))]
+    near = np.flatnonzero(np.isfinite(distance) & (distance <= least * (1 + 2 * NEARBY)))
+    return [tables.shapes[index] for index in near]
 
 
-def columns(packed: list[Any]) -> Any:
-    """Many packed shapes of a kind as one whose numbers are arrays."""
-    parts: list[Any] = []
-    for part in zip(*packed, strict=True):
-        if isinstance(part[0], Vec):
-            parts.append(Vec(*(np.array([getattr(v, axis) for v in part]) for axis in "xyz")))
-        else:
-            parts.append(np.array(part))
-    return type(packed[0])(*parts)
+def columns(rows: Any) -> Any:
+    """All packed shapes of a kind as one whose numbers are arrays."""
+    parts = (rows[name] for name in rows.dtype.names)
+    return kind_of(rows.dtype.names).packed(*(Vec(*part.T) if part.ndim > 1 else part for part in parts))

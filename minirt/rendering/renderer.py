@@ -22,10 +22,12 @@ from minirt.rendering.cores import usable_cores
 from minirt.rendering.helper import Helper
 from minirt.rendering.workers import Workers
 from minirt.scene import Scene
+from minirt.shapes import Shape
 
 PRECISIONS = ("double", "single")
 NO_LINEAR = np.zeros((0, 0, 3))
 ALL_PACKETS = np.zeros((0, 0), np.uint8)
+PATIENCE = 0.05  # seconds that somebody who clicks waits for a picture
 GOLDEN = (5**0.5 - 1) / 2
 
 
@@ -71,6 +73,11 @@ class Renderer:
     def kernel(self) -> Any:
         """The compiled code, and the compiler where it is not there yet."""
         return import_module("minirt.kernel.jit")
+
+    @property
+    def about(self) -> list[str]:
+        """How the last picture was made, and what it does without, in words."""
+        return [f"{self.threads} threads, {self.precision} precision", *self.packing.notes]
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether the kernel for the kinds of shapes of this scene is there."""
@@ -173,6 +180,18 @@ class Renderer:
         ]
         self.workers.run([partial(draw, *each) for each in own], self.cancel)
         self.not_finite = int(sum(each.memory[-1, 1] for each in own))
+
+    def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
+        """What a pixel of a picture shows, see `minirt.rendering.pick`; a picture that is being made gives way."""
+        while not self.busy.acquire(timeout=PATIENCE):
+            self.cancel()
+        try:
+            found: Shape | None = import_module("minirt.rendering.pick").pick(
+                scene, width, height, x, y, self.packing.tables
+            )
+        finally:
+            self.busy.release()
+        return found
 
     def cancel(self) -> None:
         """From any thread: the picture that is being made ends soon, half-made."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -36,40 +37,69 @@ class Tables:
         """Bring the arrays up to date; whether anything changed."""
         if shapes is self.shapes:
             return False
-        changed = differing(self.shapes, shapes)
-        if len(shapes) != len(self.shapes) or any(type(shapes[i]) is not type(self.shapes[i]) for i in changed):
-            self.lay_out(shapes)
-            changed = list(range(len(shapes)))
+        others = len(shapes) != len(self.shapes)
+        changed = [] if others else differing(self.shapes, shapes)
+        if others or any(type(shapes[i]) is not type(self.shapes[i]) for i in changed):
+            others, changed = True, self.make_room(shapes)
         self.shapes = shapes
         indices = np.array(changed, np.int64)
         for group in range(len(self.rows)):
             mine = indices[self.places[indices, 0] == group]
             for start in range(0, len(mine), PIECE):
                 self.write(group, mine[start : start + PIECE])
-        return bool(changed)
+        return others or bool(changed)
+
+    def make_room(self, shapes: tuple[Shape, ...]) -> list[int]:
+        """Room for other shapes; what stays in the same order keeps its numbers. Returns the indices of the others."""
+        start, behind = alike(self.shapes, shapes)
+        new = shapes[start : len(shapes) - behind]
+        gone = len(self.shapes) - behind
+        groups = self.places[:, 0]
+        if len(new) <= PIECE and all(type(shape) in self.numbers for shape in new):
+            middle = np.array([self.numbers[type(shape)] for shape in new], np.int64)
+            groups = np.concatenate([groups[:start], middle, groups[gone:]])
+            if len(np.unique(groups)) == len(self.numbers):
+                self.splice(groups, start, gone, len(new))
+                return list(range(start, start + len(new)))
+        self.lay_out(shapes)
+        return list(range(len(shapes)))
 
     def lay_out(self, shapes: tuple[Shape, ...]) -> None:
         """Make room for as many shapes of the same kinds."""
         kinds = [type(shape) for shape in shapes]
         present = set(kinds)
         used = [kind for kind in KINDS if kind.element in present]
-        number = {kind.element: group for group, kind in enumerate(used)}
-        groups = np.fromiter((number[kind] for kind in kinds), np.int64, len(kinds))
         examples = [shapes[kinds.index(kind.element)] for kind in used]
-        members = [np.flatnonzero(groups == group) for group in range(len(used))]
-        self.rows = tuple(np.zeros(len(mine), row_type(kind)) for kind, mine in zip(used, members, strict=True))
-        self.places = np.zeros((len(kinds), 2), np.int64)
-        self.places[:, 0] = groups
-        for mine in members:
-            self.places[mine, 1] = np.arange(len(mine))
-        self.looks = np.zeros((len(kinds), 4))
-        self.boxes = np.zeros((len(kinds), 4))
-        self.flat = np.flatnonzero(np.array([each.flat() is not None for each in examples], bool)[groups])
-        self.planes = np.zeros((len(self.flat), 5))
-        counts = np.array([0 if each.flat() else len(each.balls() or EVERYWHERE) for each in examples], np.int64)
-        self.first = np.concatenate([[0], np.cumsum(counts[groups])])
-        self.balls = np.zeros((self.first[-1], 4))
+        self.numbers = {kind.element: group for group, kind in enumerate(used)}
+        self.rows = tuple(np.zeros(0, row_type(kind)) for kind in used)
+        self.is_flat = np.array([each.flat() is not None for each in examples], bool)
+        self.counts = np.array([0 if each.flat() else len(each.balls() or EVERYWHERE) for each in examples], np.int64)
+        self.places = np.zeros((0, 2), np.int64)
+        self.looks, self.boxes = np.zeros((0, 4)), np.zeros((0, 4))
+        self.planes, self.balls, self.first = np.zeros((0, 5)), np.zeros((0, 4)), np.zeros(1, np.int64)
+        self.splice(np.fromiter((self.numbers[kind] for kind in kinds), np.int64, len(kinds)), 0, 0, len(kinds))
         self.shapes = shapes
+
+    def splice(self, groups: np.ndarray, start: int, gone: int, count: int) -> None:
+        """Let `count` shapes take the places of those from index `start` to `gone`; `groups` are those of all shapes
+        then."""
+        before, behind = self.places[:start, 0], self.places[:gone, 0]
+        new = groups[start : start + count]
+        self.rows = tuple(
+            spliced(rows, np.sum(before == group), np.sum(behind == group), np.sum(new == group))
+            for group, rows in enumerate(self.rows)
+        )
+        flat = [np.sum(self.is_flat[part]) for part in (before, behind, new)]
+        self.planes = spliced(self.planes, *flat)
+        self.balls = spliced(self.balls, self.first[start], self.first[gone], self.counts[new].sum())
+        self.looks = spliced(self.looks, start, gone, count)
+        self.boxes = spliced(self.boxes, start, gone, count)
+        self.places = np.zeros((len(groups), 2), np.int64)
+        self.places[:, 0] = groups
+        for group, rows in enumerate(self.rows):
+            self.places[groups == group, 1] = np.arange(len(rows))
+        self.flat = np.flatnonzero(self.is_flat[groups])
+        self.first = np.concatenate([[0], np.cumsum(self.counts[groups])])
 
     def write(self, group: int, indices: np.ndarray) -> None:
         """Put some shapes of one kind into the arrays."""
@@ -95,14 +125,30 @@ class Tables:
             self.balls[(self.first[indices, None] + np.arange(count)).ravel()] = balls
 
 
-def differing(old: tuple[Any, ...], new: tuple[Any, ...]) -> list[int]:
-    """Where two tuples hold different objects that are not equal either, as far as the shorter one goes."""
+def differing(old: tuple[Any, ...], new: tuple[Any, ...], most: float = inf) -> list[int]:
+    """Where two tuples hold different objects that are not equal either, as far as the shorter one goes; from `most`
+    such places on the rest is not looked at."""
     found: list[int] = []
     for start in range(0, min(len(old), len(new)), PIECE):
         one, other = old[start : start + PIECE], new[start : start + PIECE]
         if one != other:  # the same objects are equal at the speed of C
             found += [at for at, (a, b) in enumerate(zip(one, other, strict=False), start) if a is not b]
+            if len(found) >= most:
+                break
     return found
+
+
+def alike(old: tuple[Any, ...], new: tuple[Any, ...]) -> tuple[int, int]:
+    """How many entries two tuples share at their beginning, and how many of the rest at their end."""
+    shorter = min(len(old), len(new))
+    front = next(iter(differing(old, new, most=1)), shorter)
+    back = next(iter(differing(old[front:][::-1], new[front:][::-1], most=1)), shorter - front)
+    return front, back
+
+
+def spliced(array: np.ndarray, start: int, end: int, count: int) -> np.ndarray:
+    """The array with so many rows of zeros in the place of those from `start` to `end`."""
+    return np.concatenate([array[:start], np.zeros((count, *array.shape[1:]), array.dtype), array[end:]])
 
 
 def numbers(packed: list[Any]) -> np.ndarray:

@@ -1,6 +1,7 @@
 """What a scene is: its elements, how they are read from a file and written to one, and how they are edited."""
 
-from minirt.scene.elements import Ambient, Camera, FurtherLight, Light, Resolution
+from minirt.scene.elements import Ambient, Background, Camera, Resolution
+from minirt.scene.lights import FurtherLight, Lamp, Light, ParallelLight, SpotLight
 from minirt.scene.pages import Item
 from minirt.scene.parser import Reading, load, parse
 from minirt.scene.rewriting import describe
@@ -10,13 +11,17 @@ from minirt.scene.writer import dump, save
 
 __all__ = [
     "Ambient",
+    "Background",
     "Camera",
     "FurtherLight",
     "Item",
+    "Lamp",
     "Light",
+    "ParallelLight",
     "Reading",
     "Resolution",
     "Scene",
+    "SpotLight",
     "describe",
     "dump",
     "format_table",

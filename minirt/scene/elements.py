@@ -1,13 +1,11 @@
-"""The elements of a scene that are not shapes: ambient light, camera, lights, window size."""
+"""The elements of a scene that are neither shapes nor lamps: window size, ambient light, camera, background."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from minirt.element import Element
-from minirt.fields import Colour, Direction, Point, Real, Triple, Whole, declare
-
-WHITE = (255, 255, 255)
+from minirt.fields import Colour, Direction, Paint, Point, Real, Triple, Whole, declare, unit
 
 
 @dataclass(frozen=True)
@@ -30,7 +28,10 @@ class Ambient(Element):
 
 @dataclass(frozen=True)
 class Camera(Element):
-    """`C x,y,z dx,dy,dz fov [roll:degrees]`: the eye."""
+    """`C x,y,z dx,dy,dz fov [roll:degrees]`: the eye.
+
+    `left_handed` mirrors the picture, as programs do whose coordinates are left-handed; a file does not say that.
+    """
 
     code, title, plural, once, required = "C", "camera", "cameras", True, True
     position: Triple = declare(Point, "the eye")
@@ -47,20 +48,25 @@ class Camera(Element):
     roll: float = declare(
         Real, "turn about the direction, clockwise", unit="degree", low=-360.0, high=360.0, keyed=True, default=0.0
     )
+    left_handed: bool = field(default=False, kw_only=True)
+
+    @classmethod
+    def look_at(cls, eye: Triple, target: Triple, *, fov: float = 60.0, roll: float = 0.0) -> Camera:
+        """The camera at `eye` that has `target` in the middle of its picture; ValueError where both are the same."""
+        x, y, z = (there - here for here, there in zip(eye, target, strict=True))
+        if not any((x, y, z)):
+            raise ValueError("camera eye and target must be two places")
+        return cls(eye, unit((x, y, z)), fov, roll)
 
 
 @dataclass(frozen=True)
-class Light(Element):
-    """`L x,y,z ratio [R,G,B]`: the point light of the mandatory format."""
+class Background(Element):
+    """`bg R,G,B` or `bg file`: what rays see that meet nothing, black where there is none.
 
-    code, title, plural, once = "L", "light", "lights", True
-    position: Triple = declare(Point, "where it stands")
-    brightness: float = declare(Real, "brightness", unit="ratio", low=0.0, high=1.0, step=0.05)
-    colour: Triple = declare(Colour, "colour", default=WHITE)
+    A picture is wrapped around the scene as an infinitely large sphere: its middle is seen along +z, its upper border
+    along +y, and what is to the right of its middle is on the right of a camera that looks along +z (equirectangular
+    projection: columns are equal angles of longitude, rows of latitude).
+    """
 
-
-@dataclass(frozen=True)
-class FurtherLight(Light):
-    """`l x,y,z ratio [R,G,B]`: any number of further point lights."""
-
-    code, title, plural, once = "l", "further light", "further_lights", False
+    code, title, plural, once = "bg", "background", "backgrounds", True
+    paint: Triple | str = declare(Paint, "colour, or a picture of the whole sky")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-import stat
 from pathlib import Path
 
-from minirt.errors import Problem, SceneError
+from minirt import regular
+from minirt.errors import FileError, Problem, SceneError
 
 SUFFIX = ".rt"
 LARGEST = 64 * 2**20  # bytes
@@ -21,11 +21,6 @@ def refused(path: str | os.PathLike[str], message: str) -> SceneError:
     return SceneError((Problem(os.fspath(path), 0, 0, "", message),))
 
 
-def reason(error: OSError | ValueError) -> str:
-    """Why the system does not do something with a file; a ValueError is about a path that no file can have."""
-    return str(error.strerror).lower() if isinstance(error, OSError) else "no file can have this name"
-
-
 def check_name(path: str | os.PathLike[str]) -> None:
     """SceneError where `path` does not end in `.rt`, or in nothing else."""
     name = Path(path).name
@@ -33,38 +28,13 @@ def check_name(path: str | os.PathLike[str]) -> None:
         raise refused(path, f"the name of a scene file ends in '{SUFFIX}'")
 
 
-def check_size(path: str | os.PathLike[str], size: int) -> None:
-    """SceneError where a file has more bytes than a scene may have."""
-    if size > LARGEST:
-        raise refused(path, f"larger than {LARGEST // 2**20} MiB")
-
-
 def read(path: str | os.PathLike[str]) -> bytes:
-    """The bytes of a scene file.
-
-    What is not a regular file is refused before it is opened, and opening does not wait, so that a FIFO or a device
-    that takes the file's place in between cannot hang the program.
-    """
+    """The bytes of a scene file."""
     check_name(path)
     try:
-        check_kind(path, Path(path).stat())
-        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-        with os.fdopen(descriptor, "rb") as file:
-            check_kind(path, os.fstat(descriptor))
-            data = file.read(LARGEST + 1)
-    except (OSError, ValueError) as error:
-        raise refused(path, f"cannot be read: {reason(error)}") from None
-    check_size(path, len(data))
-    return data
-
-
-def check_kind(path: str | os.PathLike[str], status: os.stat_result) -> None:
-    """SceneError where a file is something else than a regular file of at most the largest size."""
-    if stat.S_ISDIR(status.st_mode):
-        raise refused(path, "is a folder")
-    if not stat.S_ISREG(status.st_mode):
-        raise refused(path, "is not a regular file")
-    check_size(path, status.st_size)
+        return regular.read(path, LARGEST)
+    except FileError as error:
+        raise refused(path, error.reason) from None
 
 
 def decode(data: bytes, file: str) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from minirt.errors import Problem
 from minirt.scene.lines import Line
 
@@ -16,6 +18,11 @@ class Log:
         self.lenient = lenient
         self.errors: list[Problem] = []
         self.notices: list[Problem] = []
+
+    @property
+    def folder(self) -> Path:
+        """Where the ways to the files begin that the scene names."""
+        return Path(self.file).parent
 
     @property
     def full(self) -> bool:

@@ -7,16 +7,17 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.element import Element, pattern
 from minirt.errors import Problem, SceneError
 from minirt.scene import files, plain
-from minirt.scene.elements import Ambient, FurtherLight, Light
+from minirt.scene.elements import Ambient
+from minirt.scene.lights import FurtherLight, Light
 from minirt.scene.lines import Line, Word, line_from
 from minirt.scene.log import Log
 from minirt.scene.pages import Item
-from minirt.scene.reading import assign, cut, fill, identify
+from minirt.scene.reading import Slot, assign, cut, fill, identify, look_for_pictures
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.scene import Scene
 from minirt.scene.spelling import nearest_element
@@ -31,9 +32,12 @@ class Reading(NamedTuple):
     notices: tuple[Problem, ...]
 
 
-def load(path: str | os.PathLike[str], lenient: bool = False) -> Reading:
-    """Reads a scene file; SceneError with all that is wrong in it."""
-    return parse(files.read(path), path, lenient)
+def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Reading:
+    """Reads a scene file; SceneError with all that is wrong in it. `left_handed` mirrors its pictures."""
+    scene, notices = parse(files.read(path), path, lenient)
+    if left_handed:
+        scene = scene.replace(scene.camera, left_handed=True)
+    return Reading(scene, notices)
 
 
 def parse(text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = False) -> Reading:
@@ -111,7 +115,23 @@ def read_element(code: str, words: list[Word], first: int, line: Line, log: Log)
             kind = FurtherLight
     slots = assign(kind, words, line, log)
     values = fill(kind, slots, line, log) if slots else None
-    return kind(**values, source=line.source) if values and len(log.errors) == errors else None
+    if slots is None or values is None:
+        return None
+    look_for_pictures(kind, slots, values, line, log)
+    return assemble(kind, slots, values, line, log) if len(log.errors) == errors else None
+
+
+def assemble(kind: type[Element], slots: list[Slot], values: dict[str, Any], line: Line, log: Log) -> Element | None:
+    """The element with those values, None where they do not go together."""
+    (element,) = kind.checked(1, {"source": [line.source], **{name: [value] for name, value in values.items()}})
+    conflict = element.conflict()
+    if conflict is None:
+        return element
+    name, message = conflict
+    slot = next(slot for slot in slots if slot.field.name == name)
+    column, length = slot.place(None)
+    log.error(line, column, f"{kind.title} {name} {message}", length)
+    return None
 
 
 def look_for_missing(seen: dict[str, int], line: Line, log: Log) -> None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Sequence
-from itertools import repeat
 
 from minirt.element import Element, fields_of
 from minirt.scene.registry import ELEMENTS
@@ -24,7 +23,7 @@ KINDS = {
 def pattern(kind: type[Element]) -> str:
     """The regular expression of an element's plain lines without blanks around, in a group that is named like it."""
     fields = "".join(f"[ \\t]+{field.plain}" for field in fields_of(kind) if not field.keyed)
-    return f"(?P<{kind.code}>{kind.code}{fields})"
+    return f"(?P<{kind.code}>(?:{'|'.join((kind.code, *kind.aliases))}){fields})"
 
 
 LINE = re.compile(rf"[ \t]*(?:{'|'.join(map(pattern, KINDS.values()))})[ \t]*(?:#[^\r\n\0]*)?\r?")
@@ -57,6 +56,8 @@ def alike(kind: type[Element], texts: list[str], sources: list[str]) -> Sequence
     words, width = " ".join(texts).split(), 1 + len(placed)
     columns = {field.name: field.column(words[at::width]) for at, field in enumerate(placed, 1)}
     rows = zip(*columns.values(), strict=True)
-    left_out = {field.name: repeat(field.default) for field in fields_of(kind) if field.keyed}
-    elements = kind.checked(len(sources), {"source": sources, **columns, **left_out})
-    return [None if None in row else element for row, element in zip(rows, elements, strict=True)]
+    elements = kind.checked(len(sources), {"source": sources, **columns})
+    good = [None if None in row else element for row, element in zip(rows, elements, strict=True)]
+    if kind.conflict is not Element.conflict:
+        good = [None if element is None or element.conflict() else element for element in good]
+    return good

@@ -8,12 +8,12 @@ import re
 from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_of, once_per_kind, pattern
-from minirt.errors import FieldError, quoted
+from minirt.errors import FieldError, FileError, quoted
 from minirt.fields import Colour, Field
 from minirt.fields.numerals import named
 from minirt.scene.lines import Line, Word, joined, words
 from minirt.scene.log import Log
-from minirt.scene.registry import ELEMENTS
+from minirt.scene.registry import ELEMENTS, SPELLINGS
 from minirt.scene.spelling import GLUED, NUMERIC, hint, nearest, nearest_element
 
 SLASHES = re.compile(r"(?<![^ \t])//")
@@ -27,15 +27,38 @@ class Slot(NamedTuple):
 
     field: Field
     word: Word
-    start: int = 0  # index of the value in the word: behind `name:`
+    start: int = 0  # index of the value in the word: behind `key:`
+    bare: bool = False  # whether the word is the key alone
+
+    @property
+    def text(self) -> str:
+        """What spells the value."""
+        return self.field.bare if self.bare else self.word.text[self.start :]
+
+    def place(self, part: int | None) -> tuple[int, int]:
+        """Column and length of a component of the value, or of it all."""
+        return self.word.place(part, self.start)
+
+
+class Table(NamedTuple):
+    """The fields of an element as a line has them."""
+
+    placed: tuple[Field, ...]
+    keyed: dict[str, Field]  # by all keys
+    needed: int  # how many of those with a place must be given
 
 
 @once_per_kind
-def table(kind: type[Element]) -> tuple[tuple[Field, ...], dict[str, Field], int]:
-    """The fields that are known by their place and by their key, and how many of the former must be given."""
+def table(kind: type[Element]) -> Table:
+    """The fields of a kind of element."""
     placed = tuple(field for field in fields_of(kind) if not field.keyed)
-    keyed = {field.name: field for field in fields_of(kind) if field.keyed}
-    return placed, keyed, sum(field.default is None for field in placed)
+    keyed = {key: field for field in fields_of(kind) if field.keyed for key in field.keys}
+    return Table(placed, keyed, sum(field.required for field in placed))
+
+
+def is_attribute(raw: str, keyed: dict[str, Field]) -> bool:
+    """Whether a word begins with a key, or is one that may stand alone."""
+    return bool(KEY.match(raw)) or (raw in keyed and bool(keyed[raw].bare))
 
 
 def cut(line: Line, log: Log) -> list[Word] | None:
@@ -67,12 +90,12 @@ def cut(line: Line, log: Log) -> list[Word] | None:
 
 
 def identify(word: Word, line: Line, log: Log) -> str | None:
-    """The identifier that `word` is. None where it is none; `log` then says what it may mean."""
+    """The identifier that `word` is or stands for. None where it is none; `log` then says what it may mean."""
     code = word.raw
-    if code in ELEMENTS:
-        return code
+    if code in SPELLINGS:
+        return SPELLINGS[code].code
     glued = GLUED.match(code)
-    if glued and glued[1] in ELEMENTS:
+    if glued and glued[1] in SPELLINGS:
         log.error(line, word.column + len(glued[1]), f"a blank is missing after '{glued[1]}'")
     elif NUMERIC.match(code):
         known = ", ".join(ELEMENTS)
@@ -85,19 +108,18 @@ def identify(word: Word, line: Line, log: Log) -> str | None:
 
 def assign(kind: type[Element], line_words: list[Word], line: Line, log: Log) -> list[Slot] | None:
     """Which of the words is the value of which field; None where there are too few or too many."""
-    placed, _, needed = table(kind)
-    given, keys = line_words[1:], []
-    if ":" in line.text:
-        first = next((index for index, word in enumerate(given) if KEY.match(word.raw)), len(given))
-        given, keys = given[:first], given[first:]
+    placed, keyed, needed = table(kind)
+    given = line_words[1:]
+    first = next((index for index, word in enumerate(given) if is_attribute(word.raw, keyed)), len(given))
+    given, keys = given[:first], given[first:]
     hex_colour = HEX_COLOUR.match(line.text, line.end)
     if len(given) < len(placed) and isinstance(placed[len(given)], Colour) and hex_colour:
-        name = f"{kind.title} {placed[len(given)].name}"
+        name = f"{kind.title} {placed[len(given)].title}"
         message = f"{name} must be R,G,B, got {quoted(hex_colour[0])}: '#' begins a comment"
         log.error(line, line.end + 1, message, len(hex_colour[0]))
         return None
     if len(given) < needed:
-        missing = " and ".join(field.name for field in placed[len(given) : needed])
+        missing = " and ".join(field.title for field in placed[len(given) : needed])
         verb = "is" if needed - len(given) == 1 else "are"
         column = line_words[len(given)].end
         log.error(line, column, f"{kind.title} {missing} {verb} missing: expected '{pattern(kind)}'")
@@ -115,35 +137,38 @@ def blame(kind: type[Element], slots: list[Slot], extra: Word, line: Line, log: 
     fill(kind, slots, line, log)
     del log.errors[before + 1 :]  # behind the first all fields may be off by one
     if len(log.errors) == before:
-        why = " (one element a line)" if extra.raw in ELEMENTS else f": expected '{pattern(kind)}'"
+        why = " (one element a line)" if extra.raw in SPELLINGS else f": expected '{pattern(kind)}'"
         log.error(line, extra.column, f"{kind.title} has no further field {quoted(extra.raw)}{why}", len(extra.raw))
 
 
 def attributes(kind: type[Element], keys: list[Word], line: Line, log: Log) -> list[Slot]:
-    """The words `name:value` behind the other fields, those left out that are wrong."""
-    _, keyed, _ = table(kind)
+    """The words `key:value` behind the other fields, those left out that are wrong."""
+    keyed = table(kind).keyed
     slots: dict[str, Slot] = {}
     for word in keys:
-        key = KEY.match(word.raw)
-        name = key[1] if key else ""
-        if key is None:
+        match = KEY.match(word.raw)
+        key = match[1] if match else word.raw
+        field = keyed.get(key)
+        if not is_attribute(word.raw, keyed):
             log.error(line, word.column, f"only attributes 'name:value' follow an attribute, got {quoted(word.raw)}")
-        elif name in slots:
-            log.error(line, word.column, f"{kind.title} has '{name}' twice", len(name))
-        elif name in keyed:
-            slots[name] = Slot(keyed[name], word, key.end())
+        elif field is None:
+            log.error(line, word.column, unknown_key(kind, key), len(key))
+        elif field.name in slots:
+            log.error(line, word.column, f"{kind.title} has '{field.keys[0]}' twice", len(key))
         else:
-            log.error(line, word.column, unknown_key(kind, name), len(name))
+            slots[field.name] = Slot(field, word, match.end() if match else 0, bare=match is None)
     return list(slots.values())
 
 
-def unknown_key(kind: type[Element], name: str) -> str:
+def unknown_key(kind: type[Element], key: str) -> str:
     """What is wrong with an attribute that the element does not have."""
-    owners = [other.title for other in ELEMENTS.values() if name in table(other)[1]]
+    keyed = {other.title: table(other).keyed for other in ELEMENTS.values()}
+    owners = dict.fromkeys(keys[key].sort or title for title, keys in keyed.items() if key in keys)
     if owners:
-        return f"{kind.title} has no attribute '{name}': it belongs to {', '.join(owners)}"
-    known = [key for other in ELEMENTS.values() for key in table(other)[1]]
-    return f"unknown attribute {quoted(name)}{hint(nearest(name, known))}"
+        return f"{kind.title} has no attribute '{key}': it belongs to {', '.join(owners)}"
+    own = list(table(kind).keyed)
+    others = [each for keys in keyed.values() for each in keys]
+    return f"unknown attribute {quoted(key)}{hint(nearest(key, own) or nearest(key, others))}"
 
 
 def fill(kind: type[Element], slots: list[Slot], line: Line, log: Log) -> dict[str, Any] | None:
@@ -154,15 +179,14 @@ def fill(kind: type[Element], slots: list[Slot], line: Line, log: Log) -> dict[s
 
 def value_of(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
     """The value of one field, None where it is wrong."""
-    field, word, start = slot
-    text = word.text[start:]
+    field, word, text = slot.field, slot.word, slot.text
     try:
         value = field.parse(text)
         checked = field.check(value)
         remark = field.remark(value)
     except FieldError as error:
-        column, length = word.place(error.part, start)
-        message = f"{kind.title} {field.name} {error}"
+        column, length = slot.place(error.part)
+        message = f"{kind.title} {field.title} {error}"
         # Of four components with blanks between them the last may as well be the next field.
         repaired = repair(field, text) if word.raw == word.text or text.count(",") == 2 else None
         if repaired is None:
@@ -171,8 +195,23 @@ def value_of(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
         checked, deeds = repaired
         return checked if log.tolerate(line, column, message, deeds, length) else None
     if remark:
-        log.notice(line, word.column + start, f"{kind.title} {field.name} {remark}", len(word.raw) - start)
+        column, length = slot.place(None)
+        log.notice(line, column, f"{kind.title} {field.title} {remark}", length)
     return checked
+
+
+def look_for_pictures(kind: type[Element], slots: list[Slot], values: dict[str, Any], line: Line, log: Log) -> None:
+    """Finds out which picture files of a line are of no use."""
+    for slot in slots:
+        for name, heights, part in slot.field.pictures(values[slot.field.name]):
+            from minirt.materials import pictures  # numpy, which few scenes need this early
+
+            try:
+                (pictures.heights if heights else pictures.picture)(log.folder / name)
+            except FileError as error:
+                column, length = slot.place(part)
+                message = f"must be a picture file, got {quoted(name)}: {error.reason}"
+                log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
 
 
 def repair(field: Field, text: str) -> tuple[Any, str] | None:

@@ -9,7 +9,7 @@ from minirt.fields import Field
 from minirt.scene.lines import Word, line_from
 from minirt.scene.log import Log
 from minirt.scene.reading import Slot, assign, cut, fill, identify
-from minirt.scene.registry import ELEMENTS
+from minirt.scene.registry import ELEMENTS, SPELLINGS
 
 
 def describe(element: Element) -> str:
@@ -22,7 +22,7 @@ def describe(element: Element) -> str:
 def spelling(field: Field, element: Element) -> str:
     """A field of the element as it is written in a line."""
     value = field.format(getattr(element, field.name))
-    return f"{field.name}:{value}" if field.keyed else value
+    return f"{field.keys[0]}:{value}" if field.keyed else value
 
 
 def line_of(element: Element) -> str:
@@ -61,7 +61,8 @@ def changed(text: str, element: Element, words: list[Word], slots: list[Slot], v
     for slot in by_column:
         if not slot.field.keyed:
             text = respelled(text, slot, element, values)
-    return replaced(text, words[0].column, words[0].end, element.code)
+    code = words[0].raw if SPELLINGS[words[0].raw] is type(element) else element.code
+    return replaced(text, words[0].column, words[0].end, code)
 
 
 def inserted(text: str, column: int, new: str) -> str:
@@ -74,6 +75,10 @@ def respelled(text: str, slot: Slot, element: Element, values: dict[str, Any]) -
     value = getattr(element, slot.field.name)
     if value == values[slot.field.name]:
         return text
+    if value is None:
+        return text[: slot.word.column - 1].rstrip(" \t") + text[slot.word.end - 1 :]
+    if slot.bare:
+        return replaced(text, slot.word.column, slot.word.end, spelling(slot.field, element))
     return replaced(text, slot.word.column + slot.start, slot.word.end, slot.field.format(value))
 
 

@@ -12,7 +12,8 @@ from typing import Any
 
 from minirt.element import Element
 from minirt.scene.chained import Chained
-from minirt.scene.elements import Ambient, Camera, Light, Resolution
+from minirt.scene.elements import Ambient, Background, Camera, Resolution
+from minirt.scene.lights import Lamp
 from minirt.scene.pages import Item, Page, paged, repaged
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
@@ -57,9 +58,9 @@ class Scene:
         return self.of(Shape)
 
     @cached_property
-    def lights(self) -> tuple[Light, ...]:
-        """The point lights, in the order of the file."""
-        return self.of(Light)
+    def lights(self) -> tuple[Lamp, ...]:
+        """The lamps, in the order of the file."""
+        return self.of(Lamp)
 
     @cached_property
     def camera(self) -> Camera:
@@ -73,9 +74,18 @@ class Scene:
         return next(iter(self.of(Ambient)), None)
 
     @cached_property
+    def background(self) -> Background | None:
+        """What rays see that meet nothing, if it is not black."""
+        return next(iter(self.of(Background)), None)
+
+    @cached_property
     def resolution(self) -> Resolution | None:
         """The size of the picture, if the file names one."""
         return next(iter(self.of(Resolution)), None)
+
+    def beside(self, name: str) -> Path:
+        """Where a file is that an element names: the way begins at the folder of the scene's own file."""
+        return self.file.parent / name if self.file else Path(name)
 
     def of(self, sort: type[Any]) -> tuple[Any, ...]:
         """The elements of that type or of one that is derived from it, in the order of the file."""

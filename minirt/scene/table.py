@@ -4,30 +4,50 @@ from __future__ import annotations
 
 from minirt.element import Element, fields_of, pattern
 from minirt.fields import Field
+from minirt.materials import Compound
 from minirt.scene.registry import ELEMENTS
 
 
 def format_table() -> str:
-    """Every element that a scene file may hold, as a Markdown table."""
-    return "\n".join(["| line | element | fields |", "|---|---|---|", *map(row, ELEMENTS.values()), ""])
+    """Every element that a scene file may hold, and the attributes that all of a sort have, as Markdown tables."""
+    shared = {field.name: field for kind in ELEMENTS.values() for field in fields_of(kind) if field.sort}
+    elements = ["| line | element | fields |", "|---|---|---|", *map(row, ELEMENTS.values()), ""]
+    attributes = ["| attribute | of | meaning |", "|---|---|---|", *map(attribute_row, shared.values()), ""]
+    return "\n".join(elements + attributes)
 
 
 def row(kind: type[Element]) -> str:
     """The line of one element."""
-    return f"| `{pattern(kind)}` | {name(kind)} | {'<br>'.join(map(meaning, fields_of(kind)))} |"
+    own = (field for field in fields_of(kind) if not field.sort)
+    return f"| `{pattern(kind)}` | {name(kind)} | {'<br>'.join(map(meaning, own))} |"
+
+
+def attribute_row(field: Field) -> str:
+    """The line of one attribute."""
+    parts = fields_of(field.record) if isinstance(field, Compound) else ()
+    told = "<br>".join([described(field), *map(meaning, parts)])
+    alone = f", or `{field.keys[0]}` for `{field.keys[0]}:{field.bare}`" if field.bare else ""
+    aliases = ", ".join(f"`{alias}:`" for alias in field.aliases)
+    return f"| `{field.notation}`{alone}; also {aliases} | {field.sort} | {told} |"
 
 
 def name(kind: type[Element]) -> str:
-    """What the element is called, and how many of it there may be."""
+    """What the element is called, how many of it there may be and what else its line may begin with."""
     if kind.once:
         return f"{kind.title} ({'exactly one' if kind.required else 'at most one'})"
-    return kind.title
+    return f"{kind.title} (also {', '.join(f'`{alias}`' for alias in kind.aliases)})" if kind.aliases else kind.title
 
 
 def meaning(field: Field) -> str:
-    """A field with its range, unit and default."""
-    doc = "" if field.doc == field.name == field.notation else f" {field.doc},"
-    limits = field.range if field.range.startswith(">") else f"in {field.range}"
-    unit = f", unit: {field.unit}" if field.unit else ""
-    left_out = f", {field.format(field.default)} when left out" if field.default is not None else ""
-    return f"`{field.notation}`{doc} {limits}{unit}{left_out}"
+    """A field with all that is to know of it."""
+    return f"`{field.notation}` {described(field)}"
+
+
+def described(field: Field) -> str:
+    """What it is, its range, unit and default."""
+    limits = field.range if field.range.startswith(">") or not field.range else f"in {field.range}"
+    unit = f"unit: {field.unit}" if field.unit else ""
+    known = field.default is not None and field.default is not False
+    left_out = f"{field.format(field.default)} when left out" if known else ""
+    doc = "" if field.doc == field.name == field.notation else field.doc
+    return ", ".join(filter(None, (doc, limits, unit, left_out)))

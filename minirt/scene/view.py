@@ -12,13 +12,16 @@ def view(camera: Camera) -> tuple[Triple, Triple, Triple]:
     """Unit vectors right, up and forward of the picture, perpendicular to each other.
 
     `right` is forward x (0,1,0). Straight up and straight down, where that is zero, right is +x, which makes up +z and
-    -z. A roll then turns right and up about forward, clockwise as the camera sees it.
+    -z. A roll then turns right and up about forward, clockwise as the camera sees it. In the mirrored picture of a
+    left-handed camera right is the opposite of all that.
     """
     x, y, z = camera.direction
     right, up = upright(x, y, z)
     if camera.roll:
         c, s = cos(radians(camera.roll)), sin(radians(camera.roll))
         right, up = mix(c, right, -s, up), mix(s, right, c, up)
+    if camera.left_handed:
+        right = mix(-1.0, right, 0.0, right)
     return right, up, (x, y, z)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 
-from minirt import atomic
+from minirt import atomic, regular
 from minirt.scene import files, plain
 from minirt.scene.lines import BOM
 from minirt.scene.pages import Item
@@ -36,4 +36,4 @@ def save(scene: Scene, path: str | os.PathLike[str]) -> None:
     try:
         atomic.write(path, data)
     except (OSError, ValueError) as error:
-        raise files.refused(path, f"cannot be written: {files.reason(error)}") from None
+        raise files.refused(path, f"cannot be written: {regular.reason(error)}") from None

@@ -17,20 +17,31 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple, NewType
 
 from minirt.element import Element
-from minirt.fields import Triple
+from minirt.fields import Triple, declare
 from minirt.lanes import Vec
+from minirt.materials import Bump, Checker, Compound, Glass, Mirror, NormalMap, Specular, Texture
 
 Box = tuple[Triple, Triple]  # least and greatest corner
 Ball = tuple[Triple, float]  # centre and radius
 Place = NewType("Place", Vec)  # in a packed shape: a point, where other Vecs are directions
 
 
-@dataclass(frozen=True)
+SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
+
+
+@dataclass(frozen=True, kw_only=True)
 class Shape(Element):
-    """A surface that rays can hit; the last field of every shape is its colour."""
+    """A surface that rays can hit; the last field of every shape is its colour, and all have these attributes."""
 
     if TYPE_CHECKING:
         colour: Triple
+    specular: Specular | None = declare(Compound, "highlight", record=Specular, aliases=("spc",), **SHARED)
+    mirror: float | None = declare(Mirror, "share of mirrored light", aliases=("mir",), **SHARED)
+    glass: Glass | None = declare(Compound, "refracted light", record=Glass, aliases=("ref",), **SHARED)
+    checker: Checker | None = declare(Compound, "checkerboard", record=Checker, aliases=("pat",), bare="1", **SHARED)
+    texture: str | None = declare(Texture, "picture in the place of the colour", aliases=("txm", "tx"), **SHARED)
+    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)
+    normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **SHARED)
 
     @abstractmethod
     def pack(self) -> Any:

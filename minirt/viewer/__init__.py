@@ -4,7 +4,7 @@ Importing this loads neither the window library nor the compiler.
 """
 
 from minirt.viewer.bindings import keys_markdown, keys_text
-from minirt.viewer.desktop import run
+from minirt.viewer.desktop import run, view
 from minirt.viewer.replay import replay
 
-__all__ = ["keys_markdown", "keys_text", "replay", "run"]
+__all__ = ["keys_markdown", "keys_text", "replay", "run", "view"]

@@ -7,13 +7,26 @@ on macOS.
 from __future__ import annotations
 
 import sys
+from enum import IntEnum
 from typing import NamedTuple
 
 from minirt.mlx import Button, Key, Modifier
 
-MOUSE = {
+
+class Drag(IntEnum):
+    """A button that is held while the pointer moves."""
+
+    LEFT = 0x100 + Button.LEFT
+    MIDDLE = 0x100 + Button.MIDDLE
+    RIGHT = 0x100 + Button.RIGHT
+
+
+MOUSE: dict[str, Button | Drag] = {
     "left click": Button.LEFT,
     "right click": Button.RIGHT,
+    "left drag": Drag.LEFT,
+    "middle drag": Drag.MIDDLE,
+    "right drag": Drag.RIGHT,
     "wheel up": Button.WHEEL_UP,
     "wheel down": Button.WHEEL_DOWN,
 }
@@ -25,7 +38,7 @@ SHOWN = {"Ctrl": "Cmd"} if sys.platform == "darwin" else {}
 class Chord(NamedTuple):
     """A key with the modifiers that are held with it, typed text, or a button of the mouse."""
 
-    code: Key | Button | str
+    code: Key | Button | Drag | str
     modifiers: Modifier = Modifier.NONE
 
 
@@ -36,14 +49,14 @@ def key_named(name: str) -> Key | None:
 
 def chord(spelling: str) -> Chord:
     """What a spelling means; ValueError with the part that is unknown."""
-    if spelling in MOUSE:
-        return Chord(MOUSE[spelling])
     *held, name = spelling.split("+") if len(spelling) > 1 else [spelling]
     modifiers = Modifier.NONE
     for word in held:
         if word not in MODIFIERS:
             raise ValueError(word)
         modifiers |= MODIFIERS[word]
+    if name in MOUSE:
+        return Chord(MOUSE[name], modifiers)
     key = key_named(name)
     if key is not None:
         return Chord(key, modifiers)

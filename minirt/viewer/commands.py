@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from minirt.scene import describe, load, save
+from minirt.scene import describe
 from minirt.viewer.files import save_copy
-from minirt.viewer.state import Moment, opened
+from minirt.viewer.following import reload, save_scene
+from minirt.viewer.overlay import Level
 
 if TYPE_CHECKING:
     from minirt.viewer.session import Session
-
-
-def save_scene(session: Session) -> None:
-    """Write the scene into its file. SceneError."""
-    save(session.state.scene, session.path)
-    session.saved = session.state.scene
-    session.state = session.state.say(f"saved: {session.path}")
 
 
 def save_a_copy(session: Session) -> None:
@@ -32,21 +25,6 @@ def screenshot(session: Session) -> None:
     session.take_screenshot()
 
 
-def reload(session: Session) -> None:
-    """Read the file again; what was there before can be had back by undo. SceneError."""
-    scene = load(session.path, session.lenient).scene
-    old, new = session.state, opened(scene)
-    same = old.selected < len(scene.elements) and type(scene.elements[old.selected]) is type(old.element)
-    session.state = replace(
-        new,
-        selected=old.selected if same else new.selected,
-        frame=old.frame,
-        past=(*old.past, Moment(old.scene, old.selected)),
-        message=f"read again: {session.path}",
-    )
-    session.saved = scene
-
-
 def copy_camera(session: Session) -> None:
     """Put the camera's line on the clipboard."""
     line = describe(session.state.scene.camera)
@@ -55,7 +33,11 @@ def copy_camera(session: Session) -> None:
 
 
 def toggle_hud(session: Session) -> None:
-    session.screen.hud = not session.screen.hud
+    session.screen.level = Level((session.screen.level + 1) % len(Level))
+
+
+def toggle_icons(session: Session) -> None:
+    session.screen.marks.icons = not session.screen.marks.icons
 
 
 def toggle_help(session: Session) -> None:
@@ -78,6 +60,7 @@ COMMANDS: dict[str, Callable[[Session], None]] = {
     "reload": reload,
     "copy camera": copy_camera,
     "toggle HUD": toggle_hud,
+    "toggle icons": toggle_icons,
     "toggle help": toggle_help,
     "toggle full screen": toggle_full_screen,
     "quit": quit,

@@ -10,25 +10,28 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from minirt.fields import Direction, Point, Triple
+from minirt.errors import ElementError
+from minirt.fields import Direction, Point
 from minirt.scene import Camera
 from minirt.scene.view import view
 from minirt.viewer import framing, history, selection, structure
-from minirt.viewer.motion import looked, rolled, rotated, translated
-from minirt.viewer.state import Frame, State, named, values
+from minirt.viewer.motion import WORLD, handedness, looked, rolled, rotated, translated
+from minirt.viewer.state import Frame, State, named
+from minirt.viewer.values import values
 
 Edit = Callable[[State, float, float], State]  # (state, amount, now)
 
-STRIDE = 1 / 40  # of the scene's size: one step of a movement
 ANGLE = 5.0  # degrees: one step of a turn
 
 RIGHT, UP, FORWARD = range(3)  # of view()
-WORLD: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
 
 
 def apply(state: State, action: str, amount: float = 1.0, now: float = 0.0) -> State:
     """The state after an action; KeyError where there is no such one."""
-    return EDITS[action](state.say(""), amount, now)
+    try:
+        return EDITS[action](state.say(""), amount, now)
+    except ElementError as error:
+        return state.say(str(error))
 
 
 def move(way: int, sign: float, state: State, amount: float, now: float) -> State:
@@ -38,7 +41,7 @@ def move(way: int, sign: float, state: State, amount: float, now: float) -> Stat
         return state.say(f"{element.title} has no place to move from")
     frame = Frame.VIEW if isinstance(element, Camera) else state.frame
     axis = WORLD.get(frame) or view(state.scene.camera)[way]
-    moved, met = translated(element, axis, sign * amount * STRIDE * state.size)
+    moved, met = translated(element, axis, sign * amount * state.stride)
     state = state.put(moved, "move", now)
     return state.say("the end of the range: no further") if met else state
 
@@ -50,32 +53,35 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
         if axis == FORWARD:
             return state.put(rolled(element, angle), "roll", now)
         return state.put(looked(element, angle * (axis == UP), angle * (axis == RIGHT)), "turn", now)
-    if not named(type(element), Direction):
+    if not named(type(element), Direction) and len(named(type(element), Point)) < 2:
         return state.say(f"{element.title} looks the same from all sides: nothing to turn")
     world = WORLD.get(state.frame)
     if world:
         return state.put(rotated(element, world, angle), "turn", now)
     # Seen from the camera the front goes right, up or clockwise: only up is against the right-handed turn about right.
-    about = view(state.scene.camera)[axis]
-    return state.put(rotated(element, about, -angle if axis == RIGHT else angle), "turn", now)
+    about, turned = view(state.scene.camera)[axis], angle * handedness(state.scene.camera)
+    return state.put(rotated(element, about, -turned if axis == RIGHT else turned), "turn", now)
 
 
 def resize(sign: float, state: State, amount: float, now: float) -> State:
     """Change the active value of the selected element."""
-    field = state.active
-    if field is None:
+    active = state.active
+    if active is None:
         return state.say(f"{state.element.title} has no size")
-    old = getattr(state.element, field.name)
-    new = field.nudge(old, sign * amount)
-    if new == old:
-        limits = f" ({field.range})" if field.range else ""
-        return state.say(f"{field.name} cannot go further{limits}")
-    return state.put(state.element.replace(**{field.name: new}), f"value {field.name}", now)
+    changed = state.put(
+        state.element.replace(**{active.field.name: active.nudged(state.element, sign * amount)}),
+        f"value {active.name}",
+        now,
+    )
+    if changed is state:
+        limits = f" ({active.range})" if active.range else ""
+        return state.say(f"{active.name} cannot go further{limits}")
+    return changed
 
 
 def next_value(state: State, _amount: float, _now: float) -> State:
     """Let the next value be the active one."""
-    known = values(type(state.element))
+    known = values(state.element)
     if not known:
         return state.say(f"{state.element.title} has no value to change")
     return replace(state, value=(state.value + 1) % len(known), recent=None)
@@ -112,6 +118,8 @@ EDITS: dict[str, Edit] = {
     "reset camera": framing.reset_camera,
     "undo": history.undo,
     "redo": history.redo,
+    "add": partial(structure.add, 1),
+    "add previous": partial(structure.add, -1),
     "duplicate": structure.duplicate,
     "delete": structure.delete,
 }

@@ -6,9 +6,12 @@ import tempfile
 from itertools import count
 from pathlib import Path
 
+from minirt import atomic
 from minirt.errors import MiniRTError, SceneError
 from minirt.image import Image
+from minirt.regular import reason
 from minirt.scene import Camera, Scene, save
+from minirt.scene.files import refused
 from minirt.viewer.painter import Pixels
 
 
@@ -31,9 +34,21 @@ def save_picture(pixels: Pixels, path: Path) -> Path:
     return picture
 
 
+def keep(path: Path) -> Path:
+    """Copy the file as it is beside itself; returns where. SceneError."""
+    copy = numbered(path, ".rt")
+    try:
+        atomic.write(copy, path.read_bytes())
+    except OSError as error:
+        raise refused(copy, f"cannot be written: {reason(error)}") from None
+    return copy
+
+
 def recover(scene: Scene, path: Path) -> Path:
     """Write unsaved changes beside the file, or where that is not possible into a new folder; returns where."""
     copy = path.with_name(f"{path.stem}.recovered.rt")
+    if copy.exists():  # it may hold what somebody still needs
+        copy = numbered(copy, ".rt")
     try:
         save(scene, copy)
     except SceneError:

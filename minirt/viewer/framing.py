@@ -27,7 +27,7 @@ def look_at(state: State, _amount: float, now: float) -> State:
     distance = ROOM * (radius or POINT * state.size) / sin(half)
     _, _, forward = view(camera)
     moved = camera.replace(position=limited(mix(1.0, centre, -distance, forward)))
-    return state.change(state.scene.replace(camera, moved), "", now)
+    return state.put_camera(moved, "", now)
 
 
 def reset_camera(state: State, _amount: float, now: float) -> State:

@@ -33,15 +33,27 @@ def sample(things: Sequence[Thing]) -> Sequence[Thing]:
     return things[:: max(1, -(-len(things) // SAMPLE))]
 
 
+def balls(scene: Scene) -> list[Ball]:
+    """What is where in a scene: its shapes with an end or, where there are none, everything that has a place."""
+    bounded: list[Element] = [each for each in sample(scene.shapes) if each.bounds() is not None]
+    things = bounded or [each for each in sample(scene.elements) if not isinstance(each, Camera)]
+    return list(filter(None, map(ball, things)))
+
+
 def size_of(scene: Scene) -> float:
     """The distance from the camera that is usual for the things in a scene.
 
-    The median, since one far or huge thing (a sky, a sun) says nothing of the others. Shapes with an end count; where
-    there are none, everything that has a place.
+    The median, since one far or huge thing (a sky, a sun) says nothing of the others.
     """
-    bounded: list[Element] = [each for each in sample(scene.shapes) if each.bounds() is not None]
-    things = bounded or [each for each in sample(scene.elements) if not isinstance(each, Camera)]
-    balls = filter(None, map(ball, things))
-    reaches = [max(dist(scene.camera.position, centre), radius) for centre, radius in balls]
+    reaches = [max(dist(scene.camera.position, centre), radius) for centre, radius in balls(scene)]
     usual = median(reach for reach in reaches if reach > 0) if any(reaches) else 1.0
     return clamp(usual, LEAST_LENGTH, FARTHEST)
+
+
+def middle_of(scene: Scene) -> Triple:
+    """The usual place of the things in a scene: of each coordinate the median, for the same reason."""
+    centres = [centre for centre, _ in balls(scene)]
+    if not centres:
+        return 0.0, 0.0, 0.0
+    x, y, z = (median(each) for each in zip(*centres, strict=True))
+    return x, y, z

@@ -46,6 +46,12 @@ class Pace:
         if not job.urgent:
             self._chosen, self._doubts, self._patience = job.divisor, 0, PATIENCE
 
+    @property
+    def rate(self) -> float:
+        """Rays from the eye a second, 0 where nothing is known."""
+        cost = median_low(self._costs) if self._costs else 0.0
+        return 1 / cost if cost else 0.0
+
     def learn_showing(self, seconds: float) -> None:
         """A picture was brought to the window in that time."""
         self._showings.append(seconds)

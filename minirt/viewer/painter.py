@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Protocol, TypeAlias
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.scene import Scene
+from minirt.shapes import Shape
 
 Pixels: TypeAlias = NDArray[np.uint8]  # (h, w, 4) BGRA
 Wanted: TypeAlias = Callable[[], bool]  # whether somebody still waits for a picture
@@ -28,6 +29,13 @@ class Renderer(Protocol):
 
     def preview(self, scene: Scene, width: int, height: int) -> Pixels | None:
         """A coarse picture, of at most that size, of what nothing is prepared for; None where that would take long."""
+
+    def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
+        """What is seen in a pixel of a picture of that size."""
+
+    @property
+    def about(self) -> Sequence[str]:
+        """How the last picture was made, in words."""
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether `render` would begin at once."""
@@ -93,6 +101,7 @@ class Outcome:
     error: Exception | None = None
     seconds: float = 0.0  # of rendering; 0 where time is not real
     preview: bool = False  # another picture follows when the kernel is there
+    about: tuple[str, ...] = ()  # how it was made, in words
 
 
 class Painter:
@@ -137,7 +146,7 @@ def paint(renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: W
         done = make(job.scene, pixels, job.samples, is_wanted=is_wanted)
     except Exception as error:  # whatever it is, it is raised where the program is run, not here
         return Outcome(job, error=error)
-    return Outcome(job, pixels if done else None)
+    return Outcome(job, pixels if done else None, about=() if job.urgent else tuple(renderer.about))
 
 
 def preview(renderer: Renderer, job: Job) -> Outcome:

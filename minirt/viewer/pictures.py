@@ -48,8 +48,13 @@ class Pictures:
             if outcome.pixels is not None:
                 self.latest = outcome
             elif outcome.job is self._requested:
-                self._requested = None  # cancelled, and there is no other
+                self._request(outcome.job)  # cancelled, and there is no other
         return errors
+
+    @property
+    def settled(self) -> bool:
+        """Whether the latest picture is of what was asked for last, and nothing moves."""
+        return self._answered is not None and not self._answered.job.urgent
 
     @property
     def _answered(self) -> Outcome | None:

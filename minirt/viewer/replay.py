@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
-from minirt.rendering import pick
 from minirt.scene import Scene
 from minirt.viewer.painter import Painter, Pixels, Renderer
 from minirt.viewer.script import record
@@ -52,16 +51,18 @@ def play(
     keys: str = "qwerty",
     lenient: bool = False,
     samples: int = 1,
+    watch: Callable[[Session], object] = lambda _: None,
 ) -> Session:
-    """Like `replay`; returns the session as it is at the end."""
+    """Like `replay`; returns the session as it is at the end. `watch` sees it sixty times a simulated second."""
     memory = Memory()
     record(lines, file, memory)
     m = Mlx(memory)
     display = m.mlx_init()
     session = Session(
-        m, display, scene, path=Path(path), size=size, painter=partial(Painter, renderer), pick=pick, keys=keys,
-        lenient=lenient, samples=samples,
+        m, display, scene, path=Path(path), size=size, painter=partial(Painter, renderer), pick=renderer.pick,
+        keys=keys, lenient=lenient, samples=samples,
     )  # fmt: skip
+    memory.after_tick = lambda: watch(session)
     try:
         memory.play()
     finally:

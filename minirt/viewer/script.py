@@ -3,9 +3,10 @@
 Places and sizes are in pixels.
 
     press KEY              Tab, a, F5, +, Ctrl+Shift+S       click x,y [right]
-    hold KEY seconds       down KEY, up KEY                  move x,y
+    hold KEY seconds       down KEY, up KEY                  drag x,y x,y [right|middle]
     text CHARACTERS        wait seconds                      wheel up|down [count]
-    resize WxH             hide, show                        close
+    resize WxH             hide, show, close                 move x,y
+    drop FILE
 """
 
 from __future__ import annotations
@@ -15,6 +16,9 @@ from collections.abc import Callable, Iterable
 from minirt.mlx import Button
 from minirt.mlx.memory import Memory
 from minirt.viewer.script_line import HANDS, Line
+
+DRAGGED = {"left": Button.LEFT, "middle": Button.MIDDLE, "right": Button.RIGHT}
+STEPS, DRAG = 12, 0.4  # movements and seconds of a drag
 
 
 def record(lines: Iterable[str], file: str, memory: Memory) -> None:
@@ -66,9 +70,25 @@ def click(line: Line, memory: Memory) -> None:
     memory.click(*line.place(), Button.RIGHT if right else Button.LEFT)
 
 
+def drag(line: Line, memory: Memory) -> None:
+    """From a pixel to another, straight."""
+    name = line.choice(3, DRAGGED, "button") if len(line.words) > 3 else "left"
+    (x, y), (to_x, to_y) = line.place(1), line.place(2)
+    memory.button_press(DRAGGED[name], x, y)
+    for step in range(1, STEPS + 1):
+        memory.motion(x + (to_x - x) * step // STEPS, y + (to_y - y) * step // STEPS)
+        memory.wait(DRAG / STEPS)
+    memory.button_release(DRAGGED[name], to_x, to_y)
+
+
 def wheel(line: Line, memory: Memory) -> None:
     sign = 1 if line.choice(1, ["up", "down"], "way") == "up" else -1
     memory.scroll(sign * line.count(2), 0, 0)
+
+
+def drop(line: Line, memory: Memory) -> None:
+    """A file; its name may have blanks in it."""
+    memory.drop(" ".join(line.words[1:]))
 
 
 Command = tuple[Callable[[Line, Memory], None], str, int, int]  # with its usage, and how many words follow it
@@ -81,6 +101,8 @@ COMMANDS: dict[str, Command] = {
     "text": (typed, "text CHARACTERS", 1, 100),
     "wait": (lambda line, memory: memory.wait(line.seconds(1)), "wait seconds", 1, 1),
     "click": (click, "click x,y [right]", 1, 2),
+    "drag": (drag, "drag x,y x,y [right|middle]", 2, 3),
+    "drop": (drop, "drop FILE", 1, 100),
     "move": (lambda line, memory: memory.motion(*line.place()), "move x,y", 1, 1),
     "wheel": (wheel, "wheel up|down [count]", 1, 2),
     "resize": (lambda line, memory: memory.resize(*line.size()), "resize WxH", 1, 1),

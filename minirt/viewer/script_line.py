@@ -81,19 +81,19 @@ class Line:
             self.fail(index, f"expected a count from 1 to {MOST}, got {quoted(word)}")
         return int(word)
 
-    def place(self) -> tuple[int, int]:
+    def place(self, index: int = 1) -> tuple[int, int]:
         """A pixel: x,y."""
-        return self.pair(PLACE, 0, "x,y")
+        return self.pair(PLACE, 0, "x,y", index)
 
     def size(self) -> tuple[int, int]:
         """A size in pixels: WxH."""
         return self.pair(SIZE, 1, "WxH")
 
-    def pair(self, pattern: re.Pattern[str], low: int, what: str) -> tuple[int, int]:
+    def pair(self, pattern: re.Pattern[str], low: int, what: str, index: int = 1) -> tuple[int, int]:
         """Two numbers of pixels."""
-        match = pattern.fullmatch(self.words[1])
+        match = pattern.fullmatch(self.words[index])
         if not match or not all(low <= int(part) <= LARGEST for part in match.groups()):
-            self.fail(1, f"expected {what}, each from {low} to {LARGEST}, got {quoted(self.words[1])}")
+            self.fail(index, f"expected {what}, each from {low} to {LARGEST}, got {quoted(self.words[index])}")
         return int(match[1]), int(match[2])
 
 

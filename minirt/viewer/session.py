@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,13 +11,15 @@ from minirt.errors import MiniRTError, RenderError
 from minirt.mlx import Event, Mlx, Modifier
 from minirt.scene import Scene
 from minirt.shapes import Shape
-from minirt.viewer import selection
+from minirt.viewer import following
 from minirt.viewer.bindings import Binding
 from minirt.viewer.commands import COMMANDS
+from minirt.viewer.disk import Disk
 from minirt.viewer.editor import EDITS, apply
 from minirt.viewer.files import save_picture, summary
 from minirt.viewer.held import Held
 from minirt.viewer.keymap import Keymap
+from minirt.viewer.mouse import Mouse
 from minirt.viewer.painter import Painter, Pixels
 from minirt.viewer.pictures import Pictures
 from minirt.viewer.screen import Screen
@@ -46,8 +49,9 @@ class Session:
         keys: str = "auto",
         lenient: bool = False,
         samples: int = 1,
+        watch: bool = False,
     ) -> None:
-        """`samples`: rays for each pixel of a picture that does not move."""
+        """`samples`: rays for each pixel of a picture that does not move. `watch`: read the file when it changes."""
         self.m = m
         self.mlx = mlx
         self.path = path
@@ -55,6 +59,8 @@ class Session:
         self.pick = pick
         self.state = opened(scene)
         self.saved = scene  # what the file holds
+        self.disk = Disk(path)
+        self.watched = watch
         self.keymap = Keymap(keys)
         self.held = Held()
         self.wants_screenshot = False
@@ -62,18 +68,24 @@ class Session:
         self.win = m.mlx_new_window(mlx, *size, f"miniRT - {path.name}", resizable=True)
         self.pictures = Pictures(painter(lambda: m.mlx_wake(mlx)), self.win, samples)
         self.screen = Screen(m, self.win, self.keymap.layout)
+        self.mouse = Mouse(self)
         hooks: dict[Event, Callable[..., None]] = {
             Event.EXPOSE: self.update,
             Event.KEY_PRESS: self.on_press,
             Event.KEY_RELEASE: self.on_release,
-            Event.BUTTON_PRESS: self.on_button,
+            Event.BUTTON_PRESS: self.mouse.press,
+            Event.BUTTON_RELEASE: lambda button, _x, _y: self.mouse.release(button),
+            Event.MOTION_NOTIFY: self.mouse.motion,
+            Event.FOCUS_OUT: self.mouse.let_go,
             Event.DESTROY_NOTIFY: self.quit,
         }
         for event, hook in hooks.items():
             m.mlx_hook(self.win, event, 0, without_parameter(hook), None)
         m.mlx_text_hook(self.win, without_parameter(self.on_press))
+        m.mlx_drop_hook(self.win, without_parameter(self.on_drop))
         m.mlx_resize_hook(self.win, without_parameter(lambda _width, _height: self.update()))
         m.mlx_wake_hook(mlx, without_parameter(self.on_wake))
+        self.watch()
 
     # --- events ---
 
@@ -96,29 +108,31 @@ class Session:
         self.tick_while_held()
         self.update()
 
-    def on_button(self, button: int, x: int, y: int) -> None:
-        binding = self.keymap.find(button, self.modifiers)
-        if binding and binding.action == "select at pointer":
-            self.show(selection.picked(self.state, self.pick(self.state.scene, self.win.width, self.win.height, x, y)))
-        elif binding:
-            self.act(binding, self.step)
-
     def on_tick(self) -> None:
         """A sixtieth of a second with a key held."""
         self.go_on(self.held.advance(self.now))
 
     def on_wake(self) -> None:
-        """The painter has something to tell."""
+        """The painter has something to tell, or whoever watches the file."""
+        if self.news.is_set():
+            self.news.clear()
+            following.file_changed(self)
         for error in self.pictures.collect():
             self.complain(error)
         self.guarded(Session.take_screenshot)
         self.draw()
         self.update()
 
+    def on_drop(self, file: str) -> None:
+        """A file was dropped on the window."""
+        self.guarded(lambda session: following.open_another(session, Path(file)))
+        self.show(self.state)
+
     # --- what they lead to ---
 
     def act(self, binding: Binding, step: float) -> None:
         """Do what a row of the table says."""
+        self.mouse.let_go()
         if binding.action in EDITS:
             self.show(apply(self.state, binding.action, step if binding.fine else 1.0, self.now))
             return
@@ -150,7 +164,8 @@ class Session:
     def draw(self) -> None:
         """Show it now, and let the pace know how long that takes."""
         start = self.now
-        if self.screen.draw(self.state, self.pictures.latest, self.pictures.painter.compiling):
+        pictures = self.pictures
+        if self.screen.draw(self.state, pictures.latest, pictures.painter.compiling, pictures.pace.rate):
             self.m.mlx_sync(self.mlx, self.m.SYNC_WIN_FLUSH, self.win)
             self.pictures.pace.learn_showing(self.now - start)
 
@@ -172,6 +187,17 @@ class Session:
         if not isinstance(error, MiniRTError):
             raise RenderError(f"the picture cannot be made: {type(error).__name__}: {error}") from error
         self.state = self.state.say(summary(error))
+
+    def watch(self) -> None:
+        """Let the loop know when the file is changed by others, where that is wanted."""
+        self.news = threading.Event()
+        if self.watched:
+            self.disk.watch(self.tell)
+
+    def tell(self) -> None:
+        """From any thread: the file has changed."""
+        self.news.set()
+        self.m.mlx_wake(self.mlx)
 
     def quit(self) -> None:
         self.m.mlx_loop_exit(self.mlx)

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from minirt.element import Element, fields_of
 from minirt.scene.registry import ELEMENTS
+from minirt.viewer import history
+from minirt.viewer.adding import kinds, made
 from minirt.viewer.state import State, index_of
+
+ADDED = "add"  # the kind of change
 
 
 def duplicate(state: State, _amount: float, now: float) -> State:
@@ -33,3 +39,20 @@ def delete(state: State, _amount: float, now: float) -> State:
     scene = state.scene.edit(state.selected)
     state = state.change(scene, "", now, index_of(scene, scene.camera))
     return state.select(state.selected).say(f"deleted the {element.title}")
+
+
+def add(way: int, state: State, _amount: float, now: float) -> State:
+    """An element in front of the camera, selected; again, before anything is done to it, one of the next kind instead.
+
+    The kind is that of the last one that was added.
+    """
+    again = state.recent is not None and state.recent[0] == ADDED
+    before = history.undo(state) if again else state
+    known = kinds(before.scene)
+    turns = ((state.kind + way * (again + ahead)) % len(known) for ahead in range(len(known)))
+    found = ((number, made(known[number], before)) for number in turns)
+    number, element = next((number, element) for number, element in found if element)
+    last = len(before.scene.elements) - 1
+    scene = before.scene.edit(last, before.scene.elements[last], element)
+    added = replace(replace(before, value=0).change(scene, ADDED, now, last + 1, lasting=True), kind=number)
+    return added.say(f"a new {element.title}; again for another kind: {number + 1} of {len(known)}")

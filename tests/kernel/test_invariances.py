@@ -21,6 +21,8 @@ def changed(scene: Scene, point: Any = None, length: Any = None, direction: Any 
     def change(element: Element) -> Element:
         changes = {}
         for each in fields_of(type(element)):
+            if getattr(element, each.name) is None:
+                continue
             for kind, function in ((Point, point), (Length, length), (Direction, direction)):
                 if function and isinstance(each, kind):
                     changes[each.name] = function(getattr(element, each.name))

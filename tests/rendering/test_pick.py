@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pytest
 
-from minirt.rendering import pick
+from minirt.rendering import Renderer, pick
+from minirt.rendering.pick import place
 from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.plane import Plane
@@ -48,6 +51,26 @@ def test_in_random_scenes(seed: int) -> None:
 def test_of_coincident_surfaces_the_one_that_is_seen_is_hit(name: str) -> None:
     assert_picks(Scene((EYE, *SAME[name])))
     assert_picks(Scene((EYE, *reversed(SAME[name]))))
+
+
+def test_where_on_a_shape() -> None:
+    camera = Camera((0, 0, 0), (0, 0, 1), 90)
+    ball = Sphere((0, 0, 5), 2, (1, 2, 3))
+    assert place(ball, camera, 101, 101, 50, 50) == pytest.approx((0, 0, 4))
+    assert place(ball, camera, 101, 101, 0, 0) is None
+    x, y, z = place(Plane((0, -1, 0), (0, 1, 0), (1, 2, 3)), camera, 100, 100, 75, 99)
+    assert (x / z, y, y / z) == pytest.approx((-0.51, -1, -0.99))  # x goes to the left where one looks along z
+
+
+def test_who_clicks_does_not_wait_for_a_long_picture() -> None:
+    scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Sphere((0, 0, 5), 1, (1, 2, 3))))
+    renderer = Renderer()
+    renderer.busy.acquire()
+    cancelled = threading.Event()
+    renderer.cancel = lambda: (cancelled.set(), renderer.busy.release())  # type: ignore[method-assign]
+    assert renderer.pick(scene, 11, 11, 5, 5) is scene.shapes[0]
+    assert cancelled.is_set()
+    assert not renderer.busy.locked()
 
 
 def test_where_nothing_is_nothing_is_hit() -> None:

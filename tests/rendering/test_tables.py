@@ -44,6 +44,46 @@ def test_many_shapes_at_once_are_the_same_numbers_as_each() -> None:
     assert not keeper.update((*mixed,))
 
 
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda s: (*s, s[0].replace(colour=(1, 1, 1))),
+        lambda s: (s[1].replace(colour=(1, 1, 1)), *s),
+        lambda s: (*s[:9], *s[10:]),
+        lambda s: s[3:],
+        lambda s: s[:-4],
+        lambda s: (*s[:5], *SHAPES, *s[7:]),
+        lambda s: (*s[:5], s[6], s[5], *s[7:]),
+    ],
+)
+def test_shapes_that_come_and_go_leave_the_numbers_of_the_others(edit, monkeypatch) -> None:
+    before = tuple(shape.replace(colour=(i % 256, 7, 9)) for i, shape in enumerate(SHAPES * 5))
+    after = edit(before)
+    keeper, fresh = Tables(), Tables()
+    keeper.update(before)
+    fresh.update(after)
+    written = []
+    write = keeper.write
+    monkeypatch.setattr(keeper, "write", lambda group, indices: (written.extend(indices), write(group, indices)))
+    assert keeper.update(after)
+    assert len(written) <= len(SHAPES)
+    for name in ("places", "looks", "boxes", "first", "balls", "flat", "planes"):
+        assert np.array_equal(getattr(keeper, name), getattr(fresh, name)), name
+    for kept, made in zip(keeper.rows, fresh.rows, strict=True):
+        assert np.array_equal(kept, made)
+    assert keeper.shapes == after
+
+
+def test_a_kind_that_comes_or_goes_lays_everything_out_anew() -> None:
+    keeper = Tables()
+    for shapes in (MANY[:3], SHAPES, MANY[:2], (), SHAPES):
+        assert keeper.update(tuple(shapes))
+        assert [len(rows) for rows in keeper.rows] == [
+            sum(type(each) is kind for each in shapes) for kind in keeper.numbers
+        ]
+        assert sum(map(len, keeper.rows)) == len(shapes)
+
+
 def test_extents_of_several() -> None:
     shapes = [Cylinder((1, -7, 3), (0, 1, 0), 4, 6, (0, 0, 0)), Cylinder((1, -7, 3), (1, 0, 0), 4, 40, (0, 0, 0))]
     keeper = Tables()

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
 from hypothesis import strategies as st
 
-from minirt.element import Element, fields_of
-from minirt.fields import FARTHEST, Colour, Direction, Field, Length, Point, Real, Whole
+import minirt
+from minirt.element import Record, fields_of
+from minirt.fields import FARTHEST, Colour, Direction, Field, Flag, Length, Paint, Picture, Point, Real, Whole
+from minirt.materials import Compound
 from minirt.scene import Camera, Scene, describe
 from minirt.scene.registry import ELEMENTS
 
+Known = TypeVar("Known", bound=Record)
+
+PICTURES = [str(path) for path in sorted((Path(minirt.__file__).parent.parent / "assets").glob("*.png"))[:2]]
 BLANKS = st.text(" \t", min_size=1, max_size=3)
 INDENTS = st.text(" \t", max_size=2)
 COMMENTS = st.one_of(
@@ -18,37 +27,42 @@ COMMENTS = st.one_of(
 ENDS = st.sampled_from(["", "\r"])
 
 
+COORDINATE = st.floats(-FARTHEST, FARTHEST, allow_nan=False)
+COLOUR = st.tuples(*[st.integers(0, 255)] * 3)
+VALUES: dict[type[Field], Callable[[Any], st.SearchStrategy[object]]] = {
+    Compound: lambda field: built(field.record),
+    Picture: lambda _: st.sampled_from(PICTURES),
+    Flag: lambda _: st.booleans(),
+    Real: lambda field: st.floats(field.low, field.high),
+    Length: lambda _: st.floats(0, FARTHEST, exclude_min=True),
+    Whole: lambda field: st.integers(field.low, field.high),
+    Point: lambda _: st.tuples(*[COORDINATE] * 3),
+    Direction: lambda _: st.tuples(*[st.floats(-1, 1)] * 3).filter(any),
+    Paint: lambda _: COLOUR | st.sampled_from(PICTURES),
+    Colour: lambda _: COLOUR,
+}
+
+
 def values(field: Field) -> st.SearchStrategy[object]:
     """Random values of a field."""
-    coordinate = st.floats(-FARTHEST, FARTHEST, allow_nan=False)
-    if isinstance(field, Real):
-        return st.floats(field.low, field.high)
-    if isinstance(field, Length):
-        return st.floats(0, FARTHEST, exclude_min=True)
-    if isinstance(field, Whole):
-        return st.integers(field.low, field.high)
-    if isinstance(field, Point):
-        return st.tuples(coordinate, coordinate, coordinate)
-    if isinstance(field, Direction):
-        component = st.floats(-1, 1)
-        return st.tuples(component, component, component).filter(any)
-    assert isinstance(field, Colour)
-    return st.tuples(*[st.integers(0, 255)] * 3)
+    return next(make(field) for sort, make in VALUES.items() if isinstance(field, sort))
 
 
-def elements(kind: type[Element]) -> st.SearchStrategy[Element]:
-    """Random elements of a kind."""
-    return st.builds(kind, **{field.name: values(field) for field in fields_of(kind)})
+def built(kind: type[Known]) -> st.SearchStrategy[Known]:
+    """Random records or elements of a kind, whose attributes may be absent."""
+    known = {field.name: values(field) for field in fields_of(kind)}
+    absent = [field.name for field in fields_of(kind) if field.keyed and field.default is None]
+    return st.builds(kind, **{**known, **{name: st.none() | known[name] for name in absent}})
 
 
-ANY = [elements(kind) for kind in ELEMENTS.values() if not kind.once]
-ONCE = [elements(kind) for kind in ELEMENTS.values() if kind.once and not kind.required]
+ANY = [built(kind) for kind in ELEMENTS.values() if not kind.once]
+ONCE = [built(kind) for kind in ELEMENTS.values() if kind.once and not kind.required]
 
 
 @st.composite
 def scenes(draw: st.DrawFn) -> Scene:
     """Random scenes whose elements have no source."""
-    items = [draw(elements(kind)) for kind in ELEMENTS.values() if kind.required]
+    items = [draw(built(kind)) for kind in ELEMENTS.values() if kind.required]
     items += [draw(each) for each in ONCE if draw(st.booleans())]
     return Scene(draw(st.permutations(items + draw(st.lists(st.one_of(ANY), max_size=5)))))
 

@@ -124,4 +124,4 @@ def test_a_key_press(field: Field, value: Any, steps: float, after: Any) -> None
 def test_the_table_of_an_element_has_names_and_defaults() -> None:
     assert [field.name for field in fields_of(Camera)] == ["position", "direction", "fov", "roll"]
     assert [field.keyed for field in fields_of(Camera)] == [False, False, False, True]
-    assert [field.default for field in fields_of(Light)] == [None, None, (255, 255, 255)]
+    assert [field.default for field in fields_of(Light)] == [None, None, (255, 255, 255), None]

@@ -12,18 +12,35 @@ def test_the_pattern_of_a_line_is_that_of_the_format() -> None:
     assert pattern(ELEMENTS["C"]) == "C x,y,z dx,dy,dz fov [roll:degree]"
     assert pattern(ELEMENTS["cy"]) == "cy x,y,z ax,ay,az diameter height R,G,B"
     assert pattern(ELEMENTS["pl"]) == "pl x,y,z nx,ny,nz R,G,B"
-    assert pattern(ELEMENTS["L"]) == "L x,y,z brightness [R,G,B]"
+    assert pattern(ELEMENTS["L"]) == "L x,y,z brightness [R,G,B] [fade:distance]"
     assert len(pattern(ELEMENTS["C"]).split()) == len(CAMERA.split()) + 1
     assert len(pattern(ELEMENTS["cy"]).split()) == len(CYLINDER.split())
 
 
 def test_the_table_has_a_row_for_every_element_and_every_field_in_it() -> None:
-    head, rule, *rows = format_table().splitlines()
+    head, rule, *rows = format_table().partition("\n\n")[0].splitlines()
     assert (head, rule) == ("| line | element | fields |", "|---|---|---|")
     for kind, row in zip(ELEMENTS.values(), rows, strict=True):
         assert row.startswith(f"| `{pattern(kind)}` | {kind.title}")
-        assert row.count("`") == 2 + 2 * len(fields_of(kind))
+        assert row.count("`") == 2 + 2 * len([field for field in fields_of(kind) if not field.sort])
         assert row.replace("\\|", "").count("|") == 4
+
+
+def test_a_second_table_has_the_attributes_of_all_shapes() -> None:
+    head, rule, *rows = format_table().partition("\n\n")[2].splitlines()
+    assert (head, rule) == ("| attribute | of | meaning |", "|---|---|---|")
+    shared = [field for field in fields_of(ELEMENTS["sp"]) if field.sort]
+    assert len(shared) == len(rows) == 7
+    for field, row in zip(shared, rows, strict=True):
+        assert row.startswith(f"| `{field.notation}`")
+        assert all(f"`{alias}:`" in row for alias in field.aliases)
+        assert "| shapes |" in row
+        assert row.count("|") == 4
+    assert rows[0] == (
+        "| `specular:share,exponent[,blinn]`; also `spc:` | shapes | highlight<br>`share` share of the light, in [0, 1]"
+        "<br>`exponent` how smooth, in [1, 1000000]<br>`blinn` from the halfway direction |"
+    )
+    assert "| `checker:size[,R,G,B]`, or `checker` for `checker:1`; also `pat:` |" in rows[3]
 
 
 def test_the_row_of_the_camera() -> None:

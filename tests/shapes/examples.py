@@ -29,7 +29,8 @@ def value(field: Field, random: Random, size: float, offset: float) -> object:
 
 def example(kind: Kind, random: Random, size: float = 1.0, offset: float = 0.0) -> Shape:
     """A random shape of a kind."""
-    return kind.element(**{each.name: value(each, random, size, offset) for each in fields_of(kind.element)})
+    placed = (each for each in fields_of(kind.element) if not each.keyed)
+    return kind.element(**{each.name: value(each, random, size, offset) for each in placed})
 
 
 def place(shape: Shape) -> Array:

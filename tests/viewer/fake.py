@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from minirt.rendering import pick
 from minirt.scene import Scene, dump, parse
 from minirt.viewer.painter import Wanted
 from minirt.viewer.replay import play
@@ -63,6 +64,9 @@ class FakeRenderer:
     def stop(self) -> None:
         if self.stops:
             self.gate.set()
+
+    about: tuple[str, ...] = ()
+    pick = staticmethod(pick)
 
     def preview(self, scene: Scene, width: int, height: int) -> NDArray[np.uint8] | None:
         if not self.previews:

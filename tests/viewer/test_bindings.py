@@ -10,6 +10,7 @@ from minirt.mlx import Button, Key, Modifier
 from minirt.viewer.bindings import BINDINGS, keys_markdown, keys_text
 from minirt.viewer.chords import Chord, chord, shown
 from minirt.viewer.commands import COMMANDS
+from minirt.viewer.dragging import DRAGS
 from minirt.viewer.editor import EDITS
 from minirt.viewer.keymap import Keymap, chords
 from minirt.viewer.layouts import LAYOUTS, detect
@@ -24,7 +25,7 @@ def test_no_key_is_bound_twice(layout):
 
 
 def test_every_row_does_something_and_everything_has_a_row():
-    known = {*EDITS, *COMMANDS, "select at pointer"}
+    known = {*EDITS, *COMMANDS, *DRAGS, "select at pointer"}
     assert set(ACTIONS) == known
     assert len(ACTIONS) == len(set(ACTIONS))
     assert not set(EDITS) & set(COMMANDS)

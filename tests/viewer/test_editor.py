@@ -11,9 +11,9 @@ from minirt.scene import Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from minirt.viewer.editor import ANGLE, EDITS, STRIDE, apply
+from minirt.viewer.editor import ANGLE, EDITS, apply
 from minirt.viewer.motion import looked, turned
-from minirt.viewer.state import State, opened
+from minirt.viewer.state import STRIDE, State, opened
 from tests.viewer.fake import scene
 
 RED = (255, 0, 0)
@@ -124,10 +124,11 @@ def test_a_plane_has_no_size_but_a_colour():
 def test_values_take_turns():
     state = selecting(Cylinder)
     names = []
-    for _ in range(4):
+    for _ in range(7):
         names.append(state.active.name)
         state = after(state, "next value")
-    assert names == ["diameter", "height", "colour", "diameter"]
+    colours = ["colour", "colour: red", "colour: green", "colour: blue"]
+    assert names == ["diameter", "height", *colours, "diameter"]
     assert after(selecting(Cylinder), "next value", "grow").element.height == pytest.approx(4 * 1.05)
     assert after(selecting(Camera), "grow").element.fov == 92
     assert after(selecting(Light), "grow").element.brightness == pytest.approx(0.55)

@@ -65,7 +65,7 @@ def test_ctrl_c(compiling):
 
 
 def test_a_preview_comes_first_and_then_the_picture(compiling):
-    compiling.key("i")
+    compiling.key("i", "i")
     between = slice(80, SIZE[1] - 60)  # the words above and below
     until(lambda: bool(compiling.desktop.screenshot(compiling.window)[between].any()), "the preview")
     preview = compiling.desktop.screenshot(compiling.window)
@@ -78,7 +78,7 @@ def test_a_preview_comes_first_and_then_the_picture(compiling):
 
 
 def test_keys_work(compiling):
-    compiling.key("i", "Tab", "Tab", "Delete", "ctrl+s")
+    compiling.key("i", "i", "Tab", "Tab", "Delete", "ctrl+s")
     until(lambda: compiling.path.read_text() != TEXT, "the saved scene")
     compiling.key("Tab")
     compiling.shows(picture(compiling.path))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.viewer.editor import apply
-from minirt.viewer.overlay import draw_help, draw_hud, draw_message, line, status
+from minirt.viewer.overlay import Level, draw_help, draw_hud, draw_message, letters, line, status
 from minirt.viewer.painter import Job, Outcome
 from minirt.viewer.state import opened
 from tests.viewer.fake import scene
@@ -46,29 +46,32 @@ def test_status():
 
 def test_the_hud_leaves_the_middle_free():
     pixels = blank()
-    draw_hud(pixels, opened(scene()), Outcome(Job(scene(), 640, 480)))
+    shown = Outcome(Job(scene(), 640, 480), about=("two threads", "without three planes"))
+    taken = draw_hud(pixels, opened(scene()), shown, Level.ALL, 2e8, 16)
     changed = (pixels != 255).any(axis=(1, 2))
     assert changed[:60].any()
     assert changed[-60:].any()
-    assert not changed[80:-80].any()
+    assert not changed[80:-90].any()
+    assert not changed[240 : -10 - taken].any()
+    assert changed[-10 - taken : -5 - taken].any()
 
 
 def test_a_message_is_wrapped_and_stands_above_the_status():
     pixels = blank(300, 200)
-    draw_message(pixels, "a very long message " * 10)
+    draw_message(pixels, "a very long message " * 10, 27, 16)
     changed = (pixels != 255).any(axis=2)
     assert changed[:-30].any()
     assert not changed[-30:].any()
     assert not changed[:, -5:].any()
     pixels = blank()
-    draw_message(pixels, "")
+    draw_message(pixels, "", 0, 16)
     assert (pixels == 255).all()
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 720), (640, 480), (200, 100), (1, 1)])
 def test_help_fits(width, height):
     pixels = blank(width, height)
-    draw_help(pixels, "qwerty")
+    draw_help(pixels, "qwerty", letters(width, height, 1.0))
     assert pixels[..., :3].min() == 255 // 4  # darkened, with letters that are lighter
     if width >= 640:
         border = np.concatenate([pixels[-5:].reshape(-1, 4), pixels[:, -5:].reshape(-1, 4)])

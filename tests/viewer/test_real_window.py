@@ -87,7 +87,7 @@ def picture(path: Path, size: tuple[int, int] = SIZE, passes: tuple[int, ...] = 
 
 
 def test_the_window_shows_the_refined_picture(viewer):
-    viewer.key("i")
+    viewer.key("i", "i")
     refined = picture(viewer.path)
     viewer.shows(refined)
     plain = minirt.render(minirt.load(viewer.path), *SIZE).array
@@ -101,7 +101,7 @@ def test_the_window_shows_the_refined_picture(viewer):
 
 def test_with_one_sample_it_is_the_picture_that_is_rendered_without_a_window(desktop, tmp_path):
     with viewing(desktop, tmp_path / "scene.rt", more=("--samples", "1")) as viewer:
-        viewer.key("i")
+        viewer.key("i", "i")
         viewer.shows(minirt.render(minirt.load(viewer.path), *SIZE).array)
         viewer.desktop.run("sleep", "0.5")
         viewer.shows(picture(viewer.path, passes=()))
@@ -120,14 +120,14 @@ def test_the_close_button(viewer):
 
 
 def test_ctrl_c_in_the_terminal(viewer):
-    viewer.key("i")
+    viewer.key("i", "i")
     viewer.shows(picture(viewer.path))
     os.kill(viewer.process.pid, signal.SIGINT)
     assert viewer.end() == (130, "", "")
 
 
 def test_keys_edit_and_save_the_scene(viewer):
-    viewer.key("i")
+    viewer.key("i", "i")
     viewer.key("Tab", "Tab", "e", "plus", "ctrl+s")  # to the light, to the sphere
     until(lambda: viewer.path.read_text() != TEXT, "the saved scene")
     scene = minirt.load(viewer.path)
@@ -149,7 +149,7 @@ def test_unsaved_changes_are_kept(viewer):
 
 
 def test_thirty_sizes(viewer):
-    viewer.key("i")
+    viewer.key("i", "i")
     for n in range(30):
         viewer.desktop.run("xdotool", "windowsize", str(viewer.window), str(200 + 13 * n), str(400 - 7 * n))
     viewer.desktop.resize(viewer.window, 333, 222)
@@ -159,7 +159,7 @@ def test_thirty_sizes(viewer):
 
 
 def test_hiding_and_covering_lose_nothing(viewer, desktop, tmp_path):
-    viewer.key("i")
+    viewer.key("i", "i")
     still = picture(viewer.path)
     viewer.shows(still)
     desktop.minimise(viewer.window)
@@ -177,7 +177,7 @@ def test_hiding_and_covering_lose_nothing(viewer, desktop, tmp_path):
 
 
 def test_an_idle_window_costs_no_time(viewer):
-    viewer.key("i")
+    viewer.key("i", "i")
     viewer.shows(picture(viewer.path))
 
     def used() -> float:
@@ -192,7 +192,7 @@ def test_an_idle_window_costs_no_time(viewer):
 
 
 def test_a_held_key_moves_until_it_is_let_go(viewer):
-    viewer.key("i")
+    viewer.key("i", "i")
     still = picture(viewer.path)
     viewer.shows(still)
     viewer.desktop.activate(viewer.window)
@@ -213,7 +213,7 @@ def test_a_held_key_moves_until_it_is_let_go(viewer):
 
 def test_full_screen_and_back(viewer):
     """Each change may open another window of the window system."""
-    viewer.key("i")
+    viewer.key("i", "i")
     for size in ((2560, 1600), SIZE):
         viewer.key("F11")
         viewer = viewer._replace(window=resized(viewer.desktop, size))
@@ -236,7 +236,7 @@ def resized(desktop: Desktop, size: tuple[int, int]) -> int:
 
 
 def test_the_camera_is_copied_and_a_click_selects(viewer):
-    viewer.key("i")
+    viewer.key("i", "i")
     still = picture(viewer.path)
     viewer.shows(still)
     viewer.key("ctrl+c")

@@ -13,6 +13,7 @@ from minirt.errors import RenderError
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
 from minirt.viewer.background import BackgroundPainter
+from minirt.viewer.overlay import Level
 from minirt.viewer.pace import LONGEST
 from minirt.viewer.painter import Job, Outcome, Painter, paint
 from minirt.viewer.session import Session
@@ -73,6 +74,12 @@ class Bench:
 
     def finish(self, seconds: float) -> None:
         self.painter.finish(seconds)
+        self.memory.play()
+
+    def bare(self) -> None:
+        """Show nothing but the picture."""
+        self.session.screen.level = Level.NOTHING
+        self.session.draw()
         self.memory.play()
 
     def tap(self, *keys: Key) -> None:
@@ -154,7 +161,7 @@ def test_quick_pictures_stay_fine():
 
 def test_what_does_not_move_is_refined_pass_by_pass_and_then_nothing_is_rendered():
     bench = Bench(samples=16)
-    bench.tap(Key.I)
+    bench.bare()
     for marked in (0, 4, 16):
         bench.finish(0.001)
         shown = bench.memory.screenshot()
@@ -217,7 +224,7 @@ def test_no_picture_is_shown_half_made():
     renderer = FakeRenderer()
     renderer.gate.clear()
     bench = Bench(partial(BackgroundPainter, renderer), samples=16)
-    bench.tap(Key.I)
+    bench.bare()
     renderer.gate.set()
     for n in range(1, 6):
         until(lambda n=n: len(renderer.rendered) == n, "a picture", 5)
@@ -278,7 +285,7 @@ def test_without_news_nothing_is_drawn():
 def test_a_coarse_picture_is_stretched_over_the_window():
     bench = Bench()
     bench.finish(LONGEST * 100)
-    bench.tap(Key.I)
+    bench.bare()
     bench.tap(Key.D)
     bench.finish(LONGEST)
     assert bench.session.pictures.latest.pixels.shape == (6, 8, 4)
@@ -306,7 +313,7 @@ def test_of_many_sizes_the_last_is_rendered():
 
 def test_the_old_picture_is_stretched_until_the_new_one_comes():
     bench = Bench()
-    bench.tap(Key.I)
+    bench.bare()
     bench.finish(0.001)
     bench.memory.resize(30, 20)
     bench.memory.play()
@@ -347,7 +354,7 @@ def test_a_picture_that_was_cancelled_by_nobody_is_asked_for_again():
 
 def test_compiling_is_shown():
     bench = Bench()
-    bench.tap(Key.I)
+    bench.bare()
     dark = bench.memory.screenshot()
     bench.painter.compiling = True
     bench.painter.notify()

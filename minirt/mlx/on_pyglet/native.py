@@ -51,6 +51,7 @@ class NativeWindow:
         self._wheel = [0.0, 0.0]  # parts of steps that touch pads send
         self.pyglet = pyglet.window.Window(
             window.width, window.height, caption=window.title, resizable=window.resizable,
+            file_drops=True,
             vsync=False,  # a hidden window may be flipped once a second: never wait for it
         )  # fmt: skip
         self.pyglet.push_handlers(self)
@@ -116,6 +117,10 @@ class NativeWindow:
         self._display.scroll(self._window, steps[0], steps[1], *self._from_top(x, y))
         self._changed()
 
+    def on_file_drop(self, _x: int, _y: int, paths: list[str]) -> None:
+        self._display.drop(self._window, paths)
+        self._changed()
+
     def on_mouse_enter(self, x: float, y: float) -> None:
         self._display.move(self._window, *self._from_top(x, y))
         self._window.deliver(Event.ENTER_NOTIFY)
@@ -148,6 +153,7 @@ class NativeWindow:
         self._changed()
 
     def on_resize(self, _width: int, _height: int) -> None:
+        self._window.scale = self._scale()
         self._display.resize(self._window, *self._framebuffer())
         self._changed()
         if sys.platform in ("win32", "darwin") and self._window.announced:
@@ -176,6 +182,11 @@ class NativeWindow:
     def _framebuffer(self) -> tuple[int, int]:
         width, height = self.pyglet.get_framebuffer_size()
         return max(int(width), 1), max(int(height), 1)
+
+    def _scale(self) -> float:
+        """Where the platform counts in units that are larger than pixels, or says how fine its screen is."""
+        finer = self.pyglet.get_framebuffer_size()[0] / self.pyglet.get_size()[0]
+        return max(1.0, float(finer), float(self.pyglet.scale))
 
     def _forget_keys(self, keys: list[int] | None = None) -> None:
         """On X11 pyglet swallows the press of a key whose release it never saw."""

@@ -1,0 +1,24 @@
+"""Checkerboard: `checker:size[,R,G,B]`, in short `pat:`; `checker` alone is `checker:1`.
+
+Squares whose sides are `size` long, in the surface's own coordinates u and v, have in turn the colour of the surface
+(or its texture) and the second colour, black when left out. The square with 0 <= u < size and 0 <= v < size has the
+colour of the surface.
+
+    pl 0,-1,0 0,1,0 255,255,255 checker:2,40,40,60
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from minirt.element import Record
+from minirt.fields import Colour, Length, Triple, declare
+
+
+@dataclass(frozen=True)
+class Checker(Record):
+    """What `checker:` says."""
+
+    title = "checker"
+    size: float = declare(Length, "side of a square, in u and v", unit="")
+    colour: Triple = declare(Colour, "the second colour", default=(0, 0, 0))

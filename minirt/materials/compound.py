@@ -1,0 +1,67 @@
+"""An attribute of several values with commas between them: `specular:0.5,30,blinn`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from minirt.element import Record, fields_of
+from minirt.errors import FieldError, quoted
+from minirt.fields import Field, PictureFile
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compound(Field):
+    """A record, whose fields follow each other; those at the end may be left out where they have a default."""
+
+    record: type[Record]
+
+    def parse(self, text: str) -> Record:
+        words, start, values = text.split(","), 0, {}
+        for field in fields_of(self.record):
+            mine = words[start : start + field.width]
+            if not mine and not field.required:
+                break
+            if len(mine) < field.width:
+                raise FieldError(f"must be {self.pattern}, got {quoted(text)}")
+            try:
+                values[field.name] = field.check(field.parse(",".join(mine)))
+            except FieldError as error:
+                raise FieldError(f"{field.title} {error}", start + (error.part or 0)) from None
+            start += field.width
+        if start < len(words):
+            raise FieldError(f"must be {self.pattern}, got {quoted(text)}", start)
+        return self.record(**values)
+
+    def format(self, value: Record) -> str:
+        spelled: list[str] = []
+        for field in reversed(fields_of(self.record)):
+            own = getattr(value, field.name)
+            if spelled or field.required or own != field.default:
+                spelled.insert(0, field.format(own))
+        return ",".join(spelled)
+
+    def check(self, value: Any) -> Record:
+        if not isinstance(value, self.record):
+            raise FieldError(f"must be a {self.record.__name__}, got {value!r}")
+        return value
+
+    def pictures(self, value: Record) -> Iterator[PictureFile]:
+        start = 0
+        for field in fields_of(self.record):
+            for each in field.pictures(getattr(value, field.name)):
+                yield each._replace(part=start + (each.part or 0))
+            start += field.width
+
+    @property
+    def pattern(self) -> str:
+        """How its value is written: `share,exponent[,blinn]`."""
+        fields = fields_of(self.record)
+        first, *rest = (field.placeholder or field.notation for field in fields)
+        optional = [not field.required for field in fields[1:]]
+        return first + "".join(f"[,{each}]" if left else f",{each}" for each, left in zip(rest, optional, strict=True))
+
+    @property
+    def notation(self) -> str:
+        return f"{self.keys[0]}:{self.pattern}"

@@ -1,0 +1,75 @@
+"""Lamps: all light that comes from somewhere. `Scene.lights` are these, in the order of the file.
+
+A lamp gives a surface its colour times its brightness, less the more obliquely it shines on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from minirt.element import Element
+from minirt.fields import Colour, Direction, Length, Point, Real, Triple, declare
+
+RATIO: dict[str, Any] = {"unit": "ratio", "low": 0.0, "high": 1.0, "step": 0.05}
+WHITE = (255, 255, 255)
+DOWN = (0.0, -1.0, 0.0)
+FADE = "less light with the distance, none at this one"
+
+
+@dataclass(frozen=True)
+class Lamp(Element):
+    """What all of them have."""
+
+    if TYPE_CHECKING:
+        brightness: float
+        colour: Triple
+
+
+@dataclass(frozen=True)
+class Light(Lamp):
+    """`L x,y,z ratio [R,G,B]`: the point light of the mandatory format.
+
+    With `fade` its light is multiplied by 1 - distance/fade, and by 0 beyond.
+    """
+
+    code, title, plural, once = "L", "light", "lights", True
+    position: Triple = declare(Point, "where it stands")
+    brightness: float = declare(Real, "brightness", **RATIO)
+    colour: Triple = declare(Colour, "colour", default=WHITE)
+    fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance")
+
+
+@dataclass(frozen=True)
+class FurtherLight(Light):
+    """`l x,y,z ratio [R,G,B]`: any number of further point lights."""
+
+    code, title, plural, once = "l", "further light", "further_lights", False
+
+
+@dataclass(frozen=True)
+class ParallelLight(Lamp):
+    """`dl dx,dy,dz ratio [R,G,B]`: light from infinitely far away, like that of the sun, which goes along dx,dy,dz."""
+
+    code, title, plural = "dl", "parallel light", "parallel_lights"
+    direction: Triple = declare(Direction, "where its light goes", instead=DOWN)
+    brightness: float = declare(Real, "brightness", **RATIO)
+    colour: Triple = declare(Colour, "colour", default=WHITE)
+
+
+@dataclass(frozen=True)
+class SpotLight(Lamp):
+    """`sl x,y,z dx,dy,dz angle ratio [R,G,B]`: light within a cone.
+
+    `angle` is the full opening angle. In the outer `rim` of the half of it, a tenth when left out, the light goes from
+    all to nothing along 3 t^2 - 2 t^3; with 0 the cone has a sharp edge. `fade` is that of a point light.
+    """
+
+    code, title, plural = "sl", "spot light", "spot_lights"
+    position: Triple = declare(Point, "where it stands")
+    direction: Triple = declare(Direction, "where it shines", instead=DOWN)
+    angle: float = declare(Real, "full opening angle", unit="degree", low=0.0, high=180.0, step=2.0)
+    brightness: float = declare(Real, "brightness", **RATIO)
+    colour: Triple = declare(Colour, "colour", default=WHITE)
+    rim: float = declare(Real, "outer share in which it fades", keyed=True, default=0.1, **RATIO)
+    fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance")

@@ -1,0 +1,90 @@
+"""New elements: one of every kind that a scene file knows, made from the table of its fields alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import cos, pi, sin
+from typing import Any
+
+from minirt.element import Element, fields_of
+from minirt.fields import FARTHEST, Colour, Direction, Field, Length, Point, Real, Triple
+from minirt.scene import Scene
+from minirt.scene.registry import ELEMENTS
+from minirt.scene.view import mix, view
+from minirt.shapes import Shape
+from minirt.viewer.motion import limited
+from minirt.viewer.neat import decimals, nice
+from minirt.viewer.state import State, can_edit
+
+AWAY = 1 / 2  # of the scene's size: how far in front of the camera
+LARGE = 1 / 8  # of the scene's size: what is added
+SMALLER = (1.0, 1 / 2, 1 / 4)  # what a length may be of the one before it, where a kind asks for that
+GREY = (200, 200, 200)
+
+
+def kinds(scene: Scene) -> list[type[Element]]:
+    """What can be added to a scene: shapes first, and of what may be there once only what is missing."""
+    missing = [kind for kind in ELEMENTS.values() if can_edit(kind) and not (kind.once and has(scene, kind))]
+    return sorted(missing, key=lambda kind: not issubclass(kind, Shape))
+
+
+def has(scene: Scene, kind: type[Element]) -> bool:
+    """Whether there is an element of just that kind."""
+    return any(type(each) is kind for each in scene.of(kind))
+
+
+def made(kind: type[Element], state: State) -> Element | None:
+    """An element of that kind in front of the camera; None where no choice of its lengths makes one."""
+    for ratio in SMALLER:
+        try:
+            return kind(**dict(chosen(kind, state, ratio)))
+        except ValueError:
+            continue
+    return None
+
+
+def chosen(kind: type[Element], state: State, ratio: float) -> Iterator[tuple[str, Any]]:
+    """The fields that must be given; each length has that ratio to the one before it."""
+    fields = [field for field in fields_of(kind) if field.required]
+    places = iter(corners(state, sum(isinstance(field, Point) for field in fields)))
+    length = nice(LARGE * state.size)
+    for field in fields:
+        if isinstance(field, Point):
+            yield field.name, next(places)
+        elif isinstance(field, Length):
+            yield field.name, length
+            length *= ratio
+        else:
+            yield field.name, usual(field, state)
+
+
+def corners(state: State, count: int) -> list[Triple]:
+    """The place in front of the camera, or so many places around it in the plane of the view.
+
+    A little below the middle of the picture, so that a plane is not seen from its edge.
+    """
+    camera = state.scene.camera
+    right, up, forward = view(camera)
+    size = LARGE * state.size
+    middle = mix(1.0, mix(1.0, camera.position, AWAY * state.size, forward), -size / 2, up)
+    radius = size if count > 1 else 0.0
+    turns = [pi / 2 + 2 * pi * corner / max(count, 1) for corner in range(count)]
+    around = [mix(radius * cos(turn), right, radius * sin(turn), up) for turn in turns]
+    return [round_place(limited(mix(1.0, middle, 1.0, each)), state.stride) for each in around]
+
+
+def round_place(place: Triple, stride: float) -> Triple:
+    """The place with as many decimals as a tenth of a step has."""
+    x, y, z = (round(part, decimals(stride) + 1) for part in place)
+    return x, y, z
+
+
+def usual(field: Field, state: State) -> Any:
+    """A value of any other field."""
+    if isinstance(field, Direction):
+        return field.instead
+    if isinstance(field, Colour):
+        return GREY
+    if isinstance(field, Real):
+        return (field.low + field.high) / 2 if field.high < FARTHEST else nice(LARGE * state.size)
+    return field.check(0)

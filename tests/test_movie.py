@@ -1,0 +1,98 @@
+"""Moving pictures: what is in the files, and that there is none where something goes wrong."""
+
+from __future__ import annotations
+
+import io
+import sys
+from math import dist
+
+import numpy as np
+import pytest
+from PIL import Image as pillow  # noqa: N813
+
+import minirt
+from minirt.errors import RenderError
+from minirt.movie import save_movie, with_progress
+from minirt.viewer.film import FPS as FILM
+from minirt.viewer.film import TICKS, film, turntable
+from minirt.viewer.lens import lens
+from minirt.viewer.measure import middle_of
+from tests.viewer.fake import FakeRenderer, scene
+
+COLOURS = [(250, 0, 0), (0, 250, 0), (0, 0, 250)]
+
+
+def plain(colour) -> minirt.Image:
+    return minirt.Image(np.full((6, 8, 3), colour, np.uint8))
+
+
+def test_a_gif_has_all_pictures_and_plays_for_ever(tmp_path):
+    (path,) = save_movie(map(plain, COLOURS), tmp_path / "a.gif", fps=10)
+    with pillow.open(path) as found:
+        assert (found.n_frames, found.info["duration"], found.info["loop"], found.size) == (3, 100, 0, (8, 6))
+        for number, colour in enumerate(COLOURS):
+            found.seek(number)
+            shown = np.asarray(found.convert("RGB")).astype(int)
+            assert np.abs(shown - colour).max() <= 4
+
+
+def test_other_files_are_numbered(tmp_path):
+    written = save_movie(map(plain, COLOURS), tmp_path / "a b.png")
+    assert [path.name for path in written] == ["a b-0001.png", "a b-0002.png", "a b-0003.png"]
+    assert np.array_equal(np.asarray(pillow.open(written[1])), plain(COLOURS[1]).array)
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.png"])
+def test_what_ends_early_leaves_no_half_file(tmp_path, name):
+    def pictures():
+        yield plain(COLOURS[0])
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        save_movie(pictures(), tmp_path / name)
+    assert [file.name for file in tmp_path.iterdir()] == ([] if name == "a.gif" else ["a-0001.png"])
+
+
+def test_errors(tmp_path):
+    for name in ("a.gif", "a.png"):
+        with pytest.raises(RenderError, match="needs a picture"):
+            save_movie([], tmp_path / name)
+        with pytest.raises(RenderError, match="cannot write"):
+            save_movie([plain(COLOURS[0])], tmp_path / "none" / name)
+
+
+def test_a_turntable_goes_once_round():
+    start = scene()
+    middle = middle_of(start)
+    views = list(turntable(start, 8))
+    assert views[0] is start
+    cameras = [view.camera for view in views]
+    assert len({camera.position for camera in cameras}) == 8
+    for camera in cameras:
+        assert dist(camera.position, middle) == pytest.approx(dist(start.camera.position, middle))
+        assert camera.position[1] == start.camera.position[1]
+        assert lens(camera, 64, 48).pixel(middle) == pytest.approx(lens(start.camera, 64, 48).pixel(middle))
+    opposite = cameras[4].position
+    assert [opposite[0] + 0, opposite[2] + 10] == pytest.approx([2 * middle[0], 2 * middle[2]])
+    assert dist(cameras[7].position, cameras[0].position) == pytest.approx(
+        dist(cameras[1].position, cameras[0].position)
+    )
+
+
+def test_a_film_has_a_picture_for_each_part_of_the_time():
+    lines = ["wait 1", "move 20,20", "hold d 0.5"]
+    frames = film(scene(), lines, renderer=FakeRenderer(), size=(64, 48), path="scene.rt")
+    assert abs(len(frames) - 1.5 * FILM) <= 2
+    assert TICKS % FILM == 0
+    assert np.array_equal(frames[0].array, frames[3].array)
+    assert (frames[-3].array[20:40, 20:32] == 255).all(axis=2).any()  # the pointer
+    assert not np.array_equal(frames[-3].array, frames[-2].array)  # the camera moves
+
+
+def test_progress_is_told_to_a_terminal_alone(monkeypatch):
+    for terminal, said in ((True, "\rpicture 1 of 2\rpicture 2 of 2\n"), (False, "")):
+        told = io.StringIO()
+        told.isatty = lambda terminal=terminal: terminal
+        monkeypatch.setattr(sys, "stderr", told)
+        assert list(with_progress("ab", 2, "picture")) == ["a", "b"]
+        assert told.getvalue() == said

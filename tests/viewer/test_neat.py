@@ -1,0 +1,80 @@
+"""Edited numbers are short, and what was not edited stays as it is."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from minirt.scene import describe, dump
+from minirt.viewer.editor import apply
+from minirt.viewer.neat import decimals, nice
+from minirt.viewer.state import opened
+from tests.viewer.fake import TEXT, played, scene
+
+WILD = "# by hand\nA 0.2 255,255,255\n\tC  0.123456789012345,0,10   0,0,-1 90  # eye\nL 5,5,5 0.5\n\n" + "\n".join(
+    f"sp   {i}.000,{i / 3!r},-{i}e0 1.50\t{i},0,0   # no. {i}" for i in range(20)
+)
+
+
+@given(st.floats(1e-11, 1e17))
+def test_a_nice_length_is_round_and_hardly_smaller(length):
+    found = nice(length)
+    assert found <= length * (1 + 1e-8)
+    assert length < found * 2.5 * (1 + 1e-8)
+    assert f"{found:.0e}" in (f"{digit}e{-decimals(found):+03d}" for digit in (1, 2, 5))
+
+
+@pytest.mark.parametrize("action", ["right", "up", "forward", "grow", "turn left"])
+def test_steps_there_and_back_lead_where_they_began(action):
+    back = {"right": "left", "up": "down", "forward": "back", "grow": "shrink", "turn left": "turn right"}[action]
+    state = opened(scene())
+    for start in (state, apply(state, "select next"), apply(apply(state, "select next"), "select next")):
+        there = start
+        for _ in range(7):
+            there = apply(there, action)
+        for _ in range(7):
+            there = apply(there, back)
+        if action == "turn left":
+            assert there.element == start.element or describe(there.element) != describe(start.element)
+        else:
+            assert describe(there.element) == describe(start.element)
+
+
+def test_no_number_is_longer_than_it_has_to_be():
+    actions = ["right", "up", "forward", "grow", "grow", "shrink", "next value", "grow", "next value", "grow"]
+    for first in range(6):
+        state = opened(scene())
+        for _ in range(first):
+            state = apply(state, "select next")
+        for amount in (1.0, 0.1, 0.1333333):
+            for action in actions:
+                state = apply(state, action, amount)
+        for number in re.findall(r"[-.0-9]+", describe(state.element)):
+            assert len(number.strip("-").replace(".", "").strip("0")) <= 9, describe(state.element)
+
+
+@pytest.mark.parametrize("drag", ["press d", "hold e 0.31", "wheel up 3", "drag 32,30 40,20", "press V"])
+def test_saving_after_an_edit_of_one_element_changes_one_line(tmp_path, drag):
+    path = tmp_path / "wild.rt"
+    path.write_text(WILD)
+    session = played("press Tab", "press Tab", "press Tab", drag, "press Ctrl+S", text=WILD, path=path)
+    old, new = WILD.split("\n"), path.read_text().split("\n")
+    different = [(a, b) for a, b in zip(old, new, strict=True) if a != b]
+    assert len(different) == (drag != "press V")
+    for before, after in different:
+        assert before.split()[-3:] == after.split()[-3:]  # its comment
+    assert dump(session.state.scene) == path.read_text()
+
+
+def test_what_did_not_move_keeps_all_its_digits():
+    text = TEXT.replace("sp 0,0,0 2", "sp 0.1234567890123,0.98765432109876,0 2.0000000001")
+    state = apply(apply(opened(scene(text)), "select next"), "select next")
+    while state.frame.name != "X":
+        state = apply(state, "next frame")
+    x, y, z = apply(state, "right").element.centre
+    assert (y, z) == (0.98765432109876, 0)
+    assert len(str(x)) < 12
+    assert apply(state, "right").element.diameter == 2.0000000001

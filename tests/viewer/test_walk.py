@@ -1,0 +1,209 @@
+"""A person at a real window: every step has the picture that the same keys have without a window."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+
+import minirt
+from minirt.scene import Scene, dump, load, parse
+from minirt.viewer.replay import play
+from minirt.viewer.state import State
+from tests.viewer.hands import do
+from tests.viewer.test_real_window import SIZE, TEXT, Viewer, resized, viewing
+from tests.windows import until
+
+pytestmark = pytest.mark.window
+
+STEPS = (
+    "click 160,130",  # the sphere
+    "drag 160,130 200,110",
+    "press e",
+    "wheel up 3",
+    "press X",
+    "drag 200,100 170,130",
+    "press V",
+    "press -",
+    "click 230,130",
+    "down Shift",
+    "drag 235,130 250,160",
+    "up Shift",
+    "press Right",
+    "press V",
+    "press +",
+    "drag 20,30 80,60 right",
+    "drag 20,30 30,20 middle",
+    "drag 20,20 30,25",
+    "press N",
+    "press N",
+    "press Shift+N",
+    "press d",
+    "press Ctrl+D",
+    "press a",
+    "press L",
+    "press q",
+    "press F",
+    "press Shift+Tab",
+    "press Delete",
+    "press C",
+    "press .",
+    "press Ctrl+Z",
+    "press Ctrl+Y",
+)
+
+
+MESSAGE = 60  # rows that it may take
+
+
+class Twin:
+    """The viewer on the screen and, with the same lines, the one in memory."""
+
+    def __init__(self, viewer: Viewer, folder: Path) -> None:
+        self.viewer = viewer
+        self.path = folder / "twin.rt"
+        self.path.write_text(TEXT)
+        self.lines: list[str] = []
+
+    def do(self, *lines: str) -> None:
+        do(self.viewer.desktop, self.viewer.window, *lines)
+        self.lines += lines
+
+    def state(self) -> State:
+        start = parse(TEXT, self.path).scene
+        return play(start, self.lines, renderer=minirt.renderer(None), size=SIZE, path=self.path).state
+
+    def agree(self) -> None:
+        """Wait until the window shows what the twin has, but for where a message is."""
+        state = self.state()
+        shown = slice(0, -MESSAGE if state.message else None)
+        picture, viewer = still(state.scene)[shown], self.viewer
+        until(lambda: np.array_equal(viewer.desktop.screenshot(viewer.window)[shown], picture), self.lines[-1])
+
+
+def still(scene: Scene, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
+    """The picture of a scene as the window refines it when nothing moves."""
+    renderer = minirt.renderer(None)
+    pixels = np.zeros((size[1], size[0], 4), np.uint8)
+    renderer.render(scene, pixels)
+    for samples in (4, 16):
+        renderer.refine(scene, pixels, samples)
+    return pixels[..., 2::-1]
+
+
+def test_a_walk(desktop, tmp_path):
+    (tmp_path / "twin").mkdir()
+    with viewing(desktop, tmp_path / "scene.rt") as viewer:
+        twin = Twin(viewer, tmp_path / "twin")
+        viewer.key("i", "i")
+        viewer.shows(still(load(viewer.path).scene))
+        for step in STEPS:
+            twin.do(step)
+            if not step.startswith(("down", "up", "press V", "press X")):
+                twin.agree()
+        edited = twin.state().scene
+
+        twin.do("press Ctrl+S")
+        until(lambda: viewer.path.read_text() == dump(edited), "the saved file")
+        before, after = TEXT.splitlines(), viewer.path.read_text().splitlines()
+        assert before[0] == after[0]
+        twin.do("press Tab", *["press Ctrl+Z"] * 40)
+        assert twin.state().scene.items == parse(TEXT).scene.items
+        twin.agree()
+        twin.do(*["press Ctrl+Shift+Z"] * 40)
+        assert twin.state().scene.items == edited.items
+        twin.agree()
+
+        shot = viewer.path.with_name("scene-1.png")
+        viewer.key("p")
+        until(lambda: shot.exists() and shot.stat().st_size > 0, "the picture's file")
+        assert np.array_equal(np.asarray(Image.open(shot)), still(edited))
+        viewer.key("Tab")
+        viewer.shows(still(edited))
+        viewer.key("h")
+        until(lambda: desktop.screenshot(viewer.window).mean() < still(edited).mean() / 2, "the help")
+        viewer.key("h")
+        viewer.shows(still(edited))
+        again = viewer
+        for size in ((2560, 1600), SIZE):
+            again.key("F11")
+            again = again._replace(window=resized(desktop, size))
+        again.shows(still(edited))
+        follow(again, edited)
+        again.key("Escape")
+        assert again.end() == (0, "", "")
+
+
+def follow(viewer: Viewer, edited: Scene) -> None:
+    """Another program writes the file: well, then badly, then well again."""
+
+    def write(text: str) -> None:
+        viewer.path.with_name("new").write_text(text)
+        viewer.path.with_name("new").replace(viewer.path)
+
+    other = dump(edited).replace("A 0.2", "A 0.7")
+    write(other)
+    brighter = still(parse(other).scene)
+    viewer.shows(brighter)
+    write("A 0.2\n")
+    until(lambda: not np.array_equal(viewer.desktop.screenshot(viewer.window), brighter), "the banner")
+    half = slice(0, SIZE[1] // 2)  # above the banner
+    assert np.array_equal(viewer.desktop.screenshot(viewer.window)[half], brighter[half])
+    write(TEXT)
+    viewer.shows(still(parse(TEXT).scene))
+
+
+LETTERS = {
+    "qwerty": ("us", ["a", "d", "d", "w", "w", "w", "s", "q", "e", "e"]),
+    "azerty": ("fr", ["q", "d", "d", "z", "z", "z", "s", "a", "e", "e"]),
+    "qwertz": ("de", ["a", "d", "d", "w", "w", "w", "s", "q", "e", "e"]),
+}
+TYPED = [".", ".", ".", ",", "+", "+", "+", "-"]
+CHORDS = ["Ctrl+Z", "Ctrl+Z", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z", "Tab", "Tab", "v", "Shift+N", "n", "e"]
+
+
+@pytest.mark.parametrize("keys", LETTERS)
+def test_the_keys_of_a_layout(desktop, tmp_path, keys):
+    layout, letters = LETTERS[keys]
+    desktop.run("setxkbmap", layout)
+    try:
+        (tmp_path / "twin").mkdir()
+        with viewing(desktop, tmp_path / "scene.rt", more=("--keys", keys)) as viewer:
+            viewer.key("i", "i")
+            viewer.shows(still(load(viewer.path).scene))
+            twin = Twin(viewer, tmp_path / "twin")
+            for line in [f"press {key}" for key in (*letters, *TYPED, *CHORDS)]:
+                twin.do(line)
+            start = parse(TEXT, twin.path).scene
+            played = play(
+                start, twin.lines, renderer=minirt.renderer(None), size=SIZE, path=twin.path, keys=keys
+            ).state.scene
+            viewer.shows(still(played))
+            twin.do("press ?")
+            until(lambda: desktop.screenshot(viewer.window).mean() < still(played).mean() / 2, "the help")
+            twin.do("press ?", "press Ctrl+S")
+            until(lambda: viewer.path.read_text() == dump(played), "the saved file")
+            viewer.key("Escape")
+            assert viewer.end() == (0, "", "")
+    finally:
+        desktop.run("setxkbmap", "us")
+
+
+def test_the_window_idles_while_it_watches(desktop, tmp_path):
+    with viewing(desktop, tmp_path / "scene.rt") as viewer:
+        viewer.key("i", "i")
+        viewer.shows(still(load(viewer.path).scene))
+
+        def used() -> float:
+            fields = Path(f"/proc/{viewer.process.pid}/stat").read_text().rpartition(")")[2].split()
+            return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+        before = used()
+        desktop.run("sleep", "5")
+        assert used() - before <= 0.03
+        viewer.key("Escape")
+        assert viewer.end() == (0, "", "")
