@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -13,9 +15,11 @@ from minirt.rendering.tables import extent
 from minirt.scene import Camera, Scene
 from minirt.shapes import KINDS, Kind, Shape
 from tests.oracle.body import body, normals
+from tests.shapes.ways import on_arrays, surfaces
 from tests.stability.common import common
-from tests.stability.regime import Array, U, posed, size
+from tests.stability.regime import Array, Regime, U, posed, size
 
+Way = Callable[[Shape, Array, Array], tuple[Array, Array, Array]]
 EYE = Camera((0, 0, 0), (0, 0, 1), 60)
 REGIMES = [(kind, regime) for kind in KINDS for regime in common(kind)]
 
@@ -33,19 +37,32 @@ def off(shape: Shape, point: Array, normal: Array) -> tuple[float, float]:
     return float(found[best][0]), errors[best]
 
 
+def interpreted(shape: Shape, origins: Array, directions: Array) -> tuple[Array, Array, Array]:
+    """Distances, points and normals of rays, by the formulas as they stand."""
+    t = on_arrays([shape], origins[None], directions[None])[0]
+    on, out = surfaces([shape], (origins + np.where(np.isfinite(t), t, 0.0)[:, None] * directions)[None])
+    return t, on[0], out[0]
+
+
+def traced(shape: Shape, origins: Array, directions: Array) -> tuple[Array, Array, Array]:
+    """The same, by the library."""
+    hits = minirt.trace(Scene((EYE, shape)), origins, directions)
+    return hits.distance, hits.point, hits.normal
+
+
+@pytest.mark.parametrize("way", [interpreted, traced])
 @pytest.mark.parametrize(
     ("kind", "regime"), REGIMES, ids=lambda each: each.element.title if isinstance(each, Kind) else each.name
 )
-def test_hits_are_on_the_surface_and_normals_point_outwards(kind: Kind, regime: object) -> None:
+def test_hits_are_on_the_surface_and_normals_point_outwards(kind: Kind, regime: Regime, way: Way) -> None:
     rays = posed(regime).rays
     for shape, origins, directions in zip(rays.shapes, rays.origins, rays.directions, strict=True):
-        hits = minirt.trace(Scene((EYE, shape)), origins, directions)
-        for i in np.flatnonzero(hits.owner == 0)[::3]:
-            point = hits.point[i]
-            coordinates = np.abs(point).max() + extent(shape)
-            distance, error = off(shape, point, hits.normal[i])
+        distances, points, found = way(shape, origins, directions)
+        for i in np.flatnonzero(np.isfinite(distances))[::3]:
+            coordinates = np.abs(points[i]).max() + extent(shape)
+            distance, error = off(shape, points[i], found[i])
             # Rays leave from ROUNDING roundings above the point, which must be above the surface.
             assert distance <= ROUNDING / 2 * U * coordinates
             assert error <= 16 * U * (1 + coordinates / least(shape))
-            moved = np.linalg.norm(point - origins[i] - hits.distance[i] * directions[i])
-            assert moved <= 64 * U * (hits.distance[i] + np.abs(origins[i]).max() + size(shape) + coordinates)
+            moved = np.linalg.norm(points[i] - origins[i] - distances[i] * directions[i])
+            assert moved <= 64 * U * (distances[i] + np.abs(origins[i]).max() + size(shape) + coordinates)
