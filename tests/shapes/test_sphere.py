@@ -37,10 +37,11 @@ def test_answers_known_by_hand(way: Intersect) -> None:
         ((0, 0, 4), (0, 0, -1)),  # from inside, the near wall
         ((0, 0, 4), (0, 0, 1)),  # from inside, the far wall
         ((1.8, 0, 0), (0, 0, 1)),  # 1.8 off the axis: 2.4 before the centre
+        ((3, 0, 0), (0, 0, 1)),  # touching it
         ((3.1, 0, 0), (0, 0, 1)),  # past it
         ((0, 0, 9), (0, 0, 1)),  # away from it
     ]
-    assert shoot(way, BALL, *rays) == pytest.approx([2, np.inf, 3, 2, 4, 2.6, np.inf, np.inf], rel=4e-16)
+    assert shoot(way, BALL, *rays) == pytest.approx([2, np.inf, 3, 2, 4, 2.6, 5, np.inf, np.inf], rel=4e-16)
 
 
 def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(way: Intersect) -> None:
