@@ -32,7 +32,7 @@ class Regime(NamedTuple):
     name: str
     make: Callable[[], Rays]
     tolerance: float = 1e-13
-    slack: float = 16.0
+    slack: float = 64.0
     blur: float = 1e-13
 
 

@@ -33,7 +33,7 @@ def near_the_surface(seed: int) -> Rays:
 
 
 def to_the_horizon(seed: int) -> Rays:
-    """From 1 mm to 2 m above a sphere of diameter 1e9: past its horizon and, by a hundredth of its dip or more, below."""
+    """From 0.001 to 2 above a sphere of diameter 1e9, past its horizon and below: by a hundredth of its dip or more."""
     random = np.random.default_rng(seed)
     up = ways(random, COUNT, RAYS)
     height = log(random, 1e-3, 2.0, COUNT, RAYS, 1)
