@@ -17,7 +17,7 @@ from minirt.lanes.verbs import Mask
 from minirt.shapes.exact import power
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
-CLOSE = 2.0**-9  # to the surface: |f|^2 / radius^2 - 1
+CLOSE = 2.0**-6  # to the surface: |f|^2 / radius^2 - 1
 ROUNDING = 16  # of the same, in unit roundoffs, and more
 
 
@@ -72,7 +72,7 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, 
         close = hit & close
         product = chord
         if rarely(close):
-            product = where(close, power(origin, sphere.centre, sphere.radius), product)
+            product = power(origin, sphere.centre, sphere.radius)
             chord = where(close, approach * approach - product, chord)
         half = sqrt(chord)
         near = approach - half

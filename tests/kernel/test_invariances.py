@@ -12,6 +12,7 @@ from minirt.fields import Direction, Length, Point
 from minirt.kernel import shade
 from minirt.lanes import splat
 from minirt.scene import FurtherLight, Scene
+from tests import reference
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SECOND, SHAPES, interpreted, linear
 
 
@@ -35,7 +36,7 @@ def scaled(scene: Scene, factor: float) -> Scene:
     return changed(scene, lambda p: tuple(factor * x for x in p), lambda length: factor * length)
 
 
-@pytest.mark.parametrize("power", [-30, -20, -10, -1, 1, 10, 20, 30])
+@pytest.mark.parametrize("power", [-40, -30, -20, -10, -1, 1, 10, 20, 30, 40])
 def test_a_scene_scaled_by_a_power_of_two_gives_the_same_bits(power: int) -> None:
     assert np.array_equal(linear(scaled(ALL, 2.0**power), 60, 40), linear(ALL, 60, 40))
 
@@ -69,6 +70,24 @@ def test_a_scene_turned_with_its_camera_gives_the_same_picture() -> None:
     for turn in (lambda v: (v[2], v[1], -v[0]), lambda v: (-v[0], v[1], -v[2])):
         difference = np.abs(linear(changed(ALL, turn, None, turn), 60, 40) - linear(ALL, 60, 40)).max(axis=-1)
         assert np.quantile(difference, 0.995) <= 1e-12
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_scene_turned_with_its_camera_by_any_angle_differs_at_edges_only(seed: int) -> None:
+    turn = rotation(np.random.default_rng(seed))
+    turned = changed(ALL, lambda p: tuple(turn @ p), None, lambda d: tuple((turn @ d).clip(-1, 1)))
+    right, up, _ = reference.camera_frame(turned.camera)
+    wanted = turn @ reference.camera_frame(ALL.camera)[0]  # where the turned camera's right is, without its roll
+    turned = turned.replace(turned.camera, roll=float(np.degrees(np.arctan2(-wanted @ up, wanted @ right))))
+    difference = np.abs(linear(turned, 60, 40) - linear(ALL, 60, 40)).max(axis=-1)
+    assert (difference[interior(ALL, 60, 40)] <= 1e-12).all()
+    assert np.quantile(difference, 0.995) <= 1e-12
+
+
+def rotation(random: np.random.Generator) -> np.ndarray:
+    """About any axis, by any angle."""
+    turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+    return turn * np.linalg.det(turn)
 
 
 def test_a_lamp_without_light_is_no_lamp() -> None:

@@ -67,16 +67,5 @@ def assert_near(t: Array, right: Answers, tolerance: float) -> None:
     assert errors.max() <= tolerance
 
 
-def assert_between(t: Array, right: Answers, tolerance: float) -> None:
-    """The verdicts are right and t lies between those for a shape thicker and one thinner by the slack, but for the
-    relative `tolerance`."""
-    assert_verdicts(t, right)
-    sure = np.isfinite(t) & np.isfinite(right.thicker) & np.isfinite(right.thinner)
-    assert sure.sum() > 50, "too few of these rays hit"
-    low = np.minimum(right.thicker, right.thinner)[sure] * (1 - tolerance)
-    high = np.maximum(right.thicker, right.thinner)[sure] * (1 + tolerance)
-    assert ((low <= t[sure]) & (t[sure] <= high)).all()
-
-
 def errors_of(intersect: Intersect, rays: Rays, right: Answers) -> Array:
     return relative_errors(intersect(*rays), right)

@@ -1,4 +1,4 @@
-"""The sphere's formulas, against answers known by hand and against 60 digits."""
+"""The sphere's formulas, against answers known by hand; where they are hard is in `tests.stability`."""
 
 from __future__ import annotations
 
@@ -8,18 +8,12 @@ import pytest
 from minirt.shapes import sphere as module
 from minirt.shapes.sphere import Sphere
 from tests.shapes import mutants
-from tests.shapes.checks import U, assert_between, assert_near, assert_verdicts, errors_of, posed
-from tests.shapes.regimes import GREY, RAYS, Rays, aimed, inside, just_above, sphere, tangent, ways
+from tests.shapes.checks import U, assert_near, assert_verdicts, errors_of, posed
+from tests.shapes.regimes import GREY, RAYS, aimed, just_above, sphere, ways
 from tests.shapes.ways import Intersect, on_arrays, surfaces
 
 BALL = Sphere((0, 0, 5), 6, GREY)  # radius 3: its edge is seen from the origin along a 3-4-5 triangle
 BENIGN = posed(aimed, sphere, 1)
-FAR = [
-    posed(aimed, sphere, 2, 1.0, (1e2, 1e6)),
-    posed(aimed, sphere, 3, 1.0, (3.0, 20.0), 1e8),
-    posed(aimed, sphere, 4, 1e-6, (1e11, 1e12)),  # 1e-6 across, 1e5 to 1e6 away
-    posed(aimed, sphere, 5, 1.0, (9e3, 1e4)),
-]
 
 
 def shoot(way: Intersect, shape: Sphere, *rays: tuple[tuple[float, ...], tuple[float, ...]]) -> list[float]:
@@ -37,10 +31,11 @@ def test_answers_known_by_hand(way: Intersect) -> None:
         ((0, 0, 4), (0, 0, -1)),  # from inside, the near wall
         ((0, 0, 4), (0, 0, 1)),  # from inside, the far wall
         ((1.8, 0, 0), (0, 0, 1)),  # 1.8 off the axis: 2.4 before the centre
+        ((3, 0, 0), (0, 0, 1)),  # touching it
         ((3.1, 0, 0), (0, 0, 1)),  # past it
         ((0, 0, 9), (0, 0, 1)),  # away from it
     ]
-    assert shoot(way, BALL, *rays) == pytest.approx([2, np.inf, 3, 2, 4, 2.6, np.inf, np.inf], rel=4e-16)
+    assert shoot(way, BALL, *rays) == pytest.approx([2, np.inf, 3, 2, 4, 2.6, 5, np.inf, np.inf], rel=4e-16)
 
 
 def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(way: Intersect) -> None:
@@ -56,33 +51,10 @@ def test_benign_rays(way: Intersect) -> None:
     assert np.sqrt((errors**2).mean()) <= 1e-15
 
 
-@pytest.mark.parametrize("rays", FAR, ids=["far", "offset", "tiny", "1e4"])
-def test_small_and_far_away(way: Intersect, rays: tuple[Rays, object]) -> None:
-    assert_near(way(*rays[0]), rays[1], 1e-13)
-
-
-@pytest.mark.parametrize("height", [1e-6, 1e-3, 1.7])
-def test_just_above_a_huge_sphere(way: Intersect, height: float) -> None:
-    rays, right = posed(just_above, 9, height)
-    assert errors_of(way, rays, right).max() <= 1e-9
-
-
 def test_without_the_power_the_little_above_a_huge_sphere_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "CLOSE", 0.0)
     rays, right = posed(just_above, 9, 1e-3)
     assert errors_of(on_arrays, rays, right).max() > 1e-6
-
-
-def test_from_inside(way: Intersect) -> None:
-    rays, right = posed(inside, sphere, 6)
-    assert_near(way(*rays), right, 1e-13)
-    assert np.isfinite(way(*rays)).all()
-
-
-def test_tangents(way: Intersect) -> None:
-    rays, right = posed(tangent, 7)
-    assert_between(way(*rays), right, 1e-13)
-    assert errors_of(way, rays, right).max() <= 1e-6
 
 
 def test_nan_is_a_miss(way: Intersect) -> None:
@@ -99,17 +71,13 @@ def test_the_surface_is_the_nearest_point_and_the_normal_points_outwards() -> No
         assert np.abs(np.linalg.norm(on[0] - np.array(ball.centre), axis=-1) - ball.diameter / 2).max() <= 8 * U * 5
 
 
-@pytest.mark.parametrize("rays", FAR[:3], ids=["far", "offset", "tiny"])
-def test_the_schoolbook_formula_does_not_pass(rays: tuple[Rays, object]) -> None:
-    if rays is FAR[1]:  # far from the origin of the scene is not far from the eye: there it is as good
-        assert_near(mutants.way(mutants.from_the_origin)(*rays[0]), rays[1], 1e-13)
-    else:
-        with pytest.raises(AssertionError):
-            assert_near(mutants.way(mutants.from_the_origin)(*rays[0]), rays[1], 1e-13)
-
-
 def test_a_formula_that_accepts_nan_does_not_pass() -> None:
     with pytest.raises(AssertionError):
         test_nan_is_a_miss(mutants.way(mutants.accepts_nan))
     with pytest.raises(AssertionError):
         assert_verdicts(mutants.way(lambda *ray: (mutants.accepts_nan(*ray)[0] | True, 1.0))(*BENIGN[0]), BENIGN[1])
+
+
+def test_its_box_and_its_ball() -> None:
+    assert BALL.bounds() == ((-3, -3, 2), (3, 3, 8))
+    assert BALL.balls() == (((0, 0, 5), 3),)

@@ -28,6 +28,13 @@ def needle(seed: int) -> Rays:
     return Rays(shapes, origins, given.unit(on + 1e-3 * random.uniform(-0.5, 0.5, (COUNT, RAYS, 3)) - origins))
 
 
+def short_axis(seed: int) -> Rays:
+    """Rays at cylinders whose axis is written 6e-8 too short, as one with seven digits is."""
+    rays = given.aimed(given.cylinder, seed, count=COUNT)
+    shortened = [shape.replace(axis=tuple((1 - 6e-8) * x for x in shape.axis)) for shape in rays.shapes]
+    return rays._replace(shapes=shortened)
+
+
 REGIMES = [
     Regime("exactly along the axis", partial(given.along_axis, 11, None, count=COUNT)),
     Regime("exactly along the axis, a scene at 1e8", partial(given.along_axis, 12, None, 1e8, COUNT)),
@@ -38,6 +45,7 @@ REGIMES = [
     # 1e-8 off the axis, an axis that is exact to 2^-53 leaves 1e-8 of the angle, and so of t.
     Regime("inside a tube of height 1e9", partial(given.inside_tube, 17, 1e9, COUNT), 3e-8),
     Regime("across a tube from its wall", partial(given.from_the_wall, 18, COUNT)),
+    Regime("an axis off unit length by 6e-8", partial(short_axis, 21)),
     Regime("a height of 1e-9", partial(flat, 19, 1e-9)),
     Regime("a needle", partial(needle, 20), blur=1e-6),
 ]

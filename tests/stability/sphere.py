@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes.sphere import Sphere
-from tests.shapes.regimes import GREY, RAYS, Rays, just_above, ways
+from tests.shapes.regimes import GREY, RAYS, Rays, across, just_above, log, unit, ways
 from tests.stability.common import COUNT
 from tests.stability.regime import Regime
 
@@ -18,6 +18,28 @@ def just_inside(seed: int) -> Rays:
     out = ways(random, COUNT, RAYS)
     shapes = [Sphere((0, 0, 0), 1e9, GREY)] * COUNT
     return Rays(shapes, (5e8 - random.uniform(1e-6, 500, (COUNT, RAYS, 1))) * out, ways(random, COUNT, RAYS))
+
+
+def near_the_surface(seed: int) -> Rays:
+    """From a billionth of the radius to all of it above the surface, downwards, and as far below it."""
+    random = np.random.default_rng(seed)
+    count = 4 * COUNT
+    out = ways(random, count, RAYS)
+    height = log(random, 1e-9, 1.0, count, RAYS, 1) * random.choice([-1.0, 1.0], (count, RAYS, 1))
+    down = unit(across(random, out, count, RAYS) - random.uniform(0.1, 10, (count, RAYS, 1)) * out)
+    directions = np.where(height > 0, down, ways(random, count, RAYS))
+    centre = ways(random)
+    return Rays([Sphere(tuple(centre), 2.0, GREY)] * count, centre + (1 + height) * out, directions)
+
+
+def to_the_horizon(seed: int) -> Rays:
+    """From 0.001 to 2 above a sphere of diameter 1e9, past its horizon and below: by a hundredth of its dip or more."""
+    random = np.random.default_rng(seed)
+    up = ways(random, COUNT, RAYS)
+    height = log(random, 1e-3, 2.0, COUNT, RAYS, 1)
+    dip = np.sqrt(2 * height / 5e8) * random.choice([0.5, 0.99, 1.01, 1.1, 3.0], (COUNT, RAYS, 1))
+    shapes = [Sphere((0, 0, 0), 1e9, GREY)] * COUNT
+    return Rays(shapes, (5e8 + height) * up, unit(across(random, up, COUNT, RAYS) - dip * up))
 
 
 def in_the_centre(seed: int) -> Rays:
@@ -34,5 +56,8 @@ REGIMES = [
         for height in (1e-6, 1e-3, 1.7)
     ),
     Regime("from inside a diameter of 1e9", partial(just_inside, 12), 1e-9, 0.0),
+    Regime("from 1e-9 to 1 radius off the surface", partial(near_the_surface, 14), 3e-14, 0.0),
+    # There the angle below the horizon is 1e-8 of a direction that is exact to 2^-53.
+    Regime("to the horizon of a diameter of 1e9", partial(to_the_horizon, 15), 1e-8, 0.0),
     Regime("from the centre", partial(in_the_centre, 13), 4e-16, 0.0),
 ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from minirt.shapes import Kind
+from minirt.shapes import KINDS, Kind
 from tests.stability.regime import Regime, posed
 from tests.stability.table import REGIMES
 from tests.stability.ways import WAYS
@@ -28,3 +28,13 @@ def test_hits_are_exact(kind: Kind, regime: Regime, way: str) -> None:
 @pytest.mark.parametrize(("kind", "regime"), REGIMES, ids=label)
 def test_a_regime_has_rays_that_hit(kind: Kind, regime: Regime) -> None:
     assert np.isfinite(posed(regime).t).sum() >= 20
+
+
+@pytest.mark.parametrize("way", ["arrays", "compiled"])
+@pytest.mark.parametrize("kind", KINDS, ids=label)
+def test_usual_rays_are_exact_to_a_few_roundings(kind: Kind, way: str) -> None:
+    right = posed(next(regime for other, regime in REGIMES if (other, regime.name) == (kind, "usual")))
+    t = WAYS[way][0](*right.rays)
+    hit = np.isfinite(right.t)
+    errors = np.abs(t[hit] - right.t[hit]) / right.t[hit]
+    assert np.sqrt((errors**2).mean()) <= 1e-15

@@ -1,0 +1,94 @@
+"""Changes the formulas, one place at a time, and lists the changes that no test notices.
+
+    python -m tests.stability.mutation [sphere cylinder ...]
+
+The interpreted tests run once, so that all is imported and all right answers are known; then each change gets a copy of
+this process (POSIX only) in which the functions have the changed code and the tests run again until one fails. A change
+that they let pass, and that is no other way to write the same, calls for a test.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from importlib import import_module
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any
+
+import pytest
+
+import minirt.shapes
+from minirt.rendering.cores import usable_cores
+from tests.stability.mutations import Change, changes
+
+FOLDER = Path(minirt.shapes.__file__).parent
+FILES = ("quadric", "exact", "basis", "sphere", "plane", "cylinder")
+TESTS = ("tests/stability/test_regimes.py", "tests/stability/test_surfaces.py", "tests/shapes", "tests/stability")
+THREADED = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
+OPTIONS = ("-x", "-q", "-p", "no:cacheprovider", "-k", THREADED)  # what starts threads does not survive a fork
+SECONDS = 120  # a change may make a loop endless
+
+
+def main(names: list[str]) -> int:
+    """Print the survivors, and return whether there are any."""
+    if pytest.main([*TESTS, *OPTIONS]) != 0:
+        raise SystemExit("the tests fail without any change")
+    work = [(name, change) for name in names or FILES for change in changes((FOLDER / f"{name}.py").read_text())]
+    running: dict[int, tuple[str, Change]] = {}
+    survivors, started = 0, time.monotonic()
+    for each in work:
+        if len(running) >= usable_cores():
+            survivors += ended(running)
+        running[tried(*each)] = each
+    while running:
+        survivors += ended(running)
+    print(f"{survivors} of {len(work)} changes pass all tests; {time.monotonic() - started:.0f} s")
+    return survivors > 0
+
+
+def tried(name: str, change: Change) -> int:
+    """The number of a process that runs the tests with a change; it ends with 0 if they all pass."""
+    process = os.fork()
+    if process:
+        return process
+    try:
+        signal.alarm(SECONDS)
+        nothing = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nothing, 1)
+        os.dup2(nothing, 2)
+        put(import_module(f"minirt.shapes.{name}"), change)
+        os._exit(int(pytest.main([*TESTS, *OPTIONS])))
+    finally:
+        os._exit(1)
+
+
+def ended(running: dict[int, tuple[str, Change]]) -> bool:
+    """Wait for the next process to end: whether its change has passed all tests."""
+    process, status = os.wait()
+    name, change = running.pop(process)
+    if status == 0:
+        print(f"minirt/shapes/{name}.py:{change.line}: {change.before}  ->  {change.after}", flush=True)
+    return status == 0
+
+
+def put(module: ModuleType, change: Change) -> None:
+    """Give the functions and constants of a module what they are after a change."""
+    changed: dict[str, Any] = {"__name__": module.__name__}
+    exec(compile(change.tree, str(module.__file__), "exec"), changed)
+    for name, new in changed.items():
+        old = getattr(module, name)
+        if isinstance(new, (int, float)):
+            setattr(module, name, new)
+        elif isinstance(new, FunctionType) and new.__module__ == module.__name__:
+            old.__code__ = new.__code__
+        elif isinstance(new, type) and new.__module__ == module.__name__:
+            for method, value in vars(new).items():
+                if isinstance(value, FunctionType) and value.__code__.co_filename == module.__file__:
+                    vars(old)[method].__code__ = value.__code__
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
