@@ -22,7 +22,7 @@ from typing import Any
 from mpmath import mpf
 
 from minirt.shapes import Shape
-from tests.oracle import cylinder, plane, sphere  # noqa: F401  they register their bodies
+from tests.oracle import cone, cylinder, hyperboloid, paraboloid, plane, sphere  # noqa: F401  they register their bodies
 from tests.oracle.body import Body, body, crossings
 from tests.oracle.body import inside as inside_of
 from tests.oracle.body import normal as normal_of

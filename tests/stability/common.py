@@ -91,5 +91,3 @@ def common(kind: Kind) -> list[Regime]:
             Regime("beside the surface", partial(leaving, kind, 9), tolerance=1e-13, blur=np.inf),
         ]
     return regimes
-
-
