@@ -23,9 +23,8 @@ from mpmath import mpf
 
 from minirt.shapes import Shape
 from tests.oracle import cone, cylinder, hyperboloid, paraboloid, plane, sphere  # noqa: F401  they register their bodies
-from tests.oracle.body import Body, body, crossings
+from tests.oracle.body import Body, body, crossings, normals
 from tests.oracle.body import inside as inside_of
-from tests.oracle.body import normal as normal_of
 from tests.oracle.vectors import Vector, dot, exact
 
 __all__ = ["Body", "body", "dot", "exact", "inside", "nearest", "normal"]
@@ -42,8 +41,8 @@ def nearest(shape: Shape, origin: Sequence[Any], direction: Sequence[Any], swell
 
 
 def normal(shape: Shape, point: Sequence[Any]) -> Vector:
-    """The outward unit normal at a point on or near the surface."""
-    return normal_of(body(shape), list(point))
+    """The outward unit normal at a point of the surface, or of the wall to which a point beside it is nearest."""
+    return normals(body(shape), list(point))[0][1]
 
 
 def inside(shape: Shape, point: Sequence[Any]) -> bool:

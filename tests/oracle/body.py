@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import singledispatch
 from typing import Any, NamedTuple
 
-from mpmath import fabs, mpf
+from mpmath import fabs, mpf, sqrt
 
 from minirt.shapes import Shape
 from tests.oracle.polynomial import Polynomial
@@ -52,12 +52,11 @@ def inside(each: Body, point: Vector) -> bool:
     return each.solid and all(wall(p) < 0 for wall in each.walls) and all(clip(p) <= 0 for clip in each.clips)
 
 
-def normal(each: Body, point: Vector) -> Vector:
-    """The outward unit normal at a point of the surface, or of the wall to which a point beside it is nearest."""
+def normals(each: Body, point: Vector) -> list[tuple[mpf, Vector]]:
+    """The distance of a point from each wall, to first order, and the outward unit normal there; the nearest first."""
     p = exact(point)
-    gradients = [(wall, gradient(wall, p)) for wall in each.walls]
-    distances = [fabs(wall(p)) / dot(slope, slope) ** 0.5 for wall, slope in gradients]
-    return unit(gradients[distances.index(min(distances))][1])
+    slopes = [(fabs(wall(p)), gradient(wall, p)) for wall in each.walls]
+    return sorted(((height / sqrt(dot(slope, slope)), unit(slope)) for height, slope in slopes), key=lambda w: w[0])
 
 
 def gradient(wall: Implicit, point: Vector) -> Vector:

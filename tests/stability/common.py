@@ -17,14 +17,19 @@ COUNT = 8  # shapes of a regime
 
 
 def towards(
-    kind: Kind, seed: int, far: tuple[float, float] = (3.0, 20.0), size: float = 1.0, offset: float = 0.0
+    kind: Kind,
+    seed: int,
+    far: tuple[float, float] = (3.0, 20.0),
+    size: float = 1.0,
+    offset: float = 0.0,
+    count: int = COUNT,
 ) -> Rays:
     """From `far` sizes away at places in and around shapes of a `size`, in a scene at `offset`."""
     random = np.random.default_rng(seed)
-    shapes = [example(kind, random, size, offset) for _ in range(COUNT)]
+    shapes = [example(kind, random, size, offset) for _ in range(count)]
     middles = places(shapes)
-    origins = middles + size * log(random, *far, COUNT, RAYS, 1) * ways(random, COUNT, RAYS)
-    targets = middles + size * random.uniform(-0.6, 0.6, (COUNT, RAYS, 3))
+    origins = middles + size * log(random, *far, count, RAYS, 1) * ways(random, count, RAYS)
+    targets = middles + size * random.uniform(-0.6, 0.6, (count, RAYS, 3))
     return Rays(shapes, origins, unit(targets - origins))
 
 

@@ -58,7 +58,7 @@ class Right:
         """What is wrong with the answers t for every n-th ray of a shape, infinity for a miss."""
         right = self.t[:, ::every]
         with np.errstate(invalid="ignore"):
-            exact = (t == right) | (np.abs(t - right) <= self.regime.tolerance * right)
+            exact = (t == right) | (np.isfinite(right) & (np.abs(t - right) <= self.regime.tolerance * right))
         found = (self.verdict(i, j * every, t[i, j]) for i, j in np.argwhere(~exact).tolist())
         return [each for each in found if each]
 
