@@ -4,9 +4,10 @@ the documentation are made from the declaration.
 
 from minirt.errors import FieldError
 from minirt.fields.field import Field, Repair, declare
+from minirt.fields.frames import upright
 from minirt.fields.numerals import number, spelled, whole
 from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Length, Real, Whole, clamp
-from minirt.fields.triples import Colour, Direction, Point, Three, Triple, unit
+from minirt.fields.triples import Colour, Direction, Lengths, Point, Three, Triple, unit
 
 __all__ = [
     "FARTHEST",
@@ -16,6 +17,7 @@ __all__ = [
     "Field",
     "FieldError",
     "Length",
+    "Lengths",
     "Point",
     "Real",
     "Repair",
@@ -27,5 +29,6 @@ __all__ = [
     "number",
     "spelled",
     "unit",
+    "upright",
     "whole",
 ]

@@ -1,6 +1,6 @@
 """The shapes. `KINDS` is the one list of them: a new shape is a file beside these and a line here."""
 
-from minirt.shapes import cone, cylinder, hyperboloid, paraboloid, plane, sphere
+from minirt.shapes import box, cone, cylinder, disc, hyperboloid, paraboloid, plane, sphere, square, triangle
 from minirt.shapes.shape import Ball, Box, Kind, Shape
 
 KINDS = (
@@ -10,6 +10,10 @@ KINDS = (
     Kind(cone.Cone, cone.PackedCone, cone.intersect, cone.surface),
     Kind(paraboloid.Paraboloid, paraboloid.PackedParaboloid, paraboloid.intersect, paraboloid.surface),
     Kind(hyperboloid.Hyperboloid, hyperboloid.PackedHyperboloid, hyperboloid.intersect, hyperboloid.surface),
+    Kind(triangle.Triangle, triangle.PackedTriangle, triangle.intersect, triangle.surface),
+    Kind(square.Square, square.PackedSquare, square.intersect, square.surface),
+    Kind(disc.Disc, disc.PackedDisc, disc.intersect, disc.surface),
+    Kind(box.Box, box.PackedBox, box.intersect, box.surface),
 )
 
 __all__ = ["KINDS", "Ball", "Box", "Kind", "Shape"]

@@ -68,9 +68,14 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     approach = -dot(f, direction)  # t is counted from the closest approach to the apex
     p = to_basis(cone.u, cone.v, cone.w, f + approach * direction)
     d = to_basis(cone.u, cone.v, cone.w, direction)
+    across = d.x * d.x + d.y * d.y
     rise = cone.slope * d.z
+    a = across - rise * rise
+    # A flat ray goes on from its closest approach to the axis: far from the apex a thin cone is thin against p.
+    further = where(a > 0.0, -(p.x * d.x + p.y * d.y) / across, 0.0)
+    p = p + further * d
+    approach = approach + further
     reach = cone.slope * p.z
-    a = d.x * d.x + d.y * d.y - rise * rise
     side = copysign(1.0, a)
     steep = side < 0.0
     b = p.x * d.x + p.y * d.y - reach * rise

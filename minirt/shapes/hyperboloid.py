@@ -114,22 +114,32 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
 
 
 def surface(hyperboloid: PackedHyperboloid, point: Vec) -> tuple[Vec, Vec]:
-    """`point` moved onto the side or a cap, whichever it is nearer to, and the outward normal there.
-
-    The distance to the side is, to first order, its function by the length of its gradient (Taubin 1991).
-    """
+    """`point` moved onto the side or a cap, whichever it is nearer to, and the outward normal there."""
     p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, point - hyperboloid.centre)
+    above, out = from_side(hyperboloid, p)
+    over = fabs(p.z) - hyperboloid.half
+    side = above >= over
+    foot = p - above * out
+    above, out = from_side(hyperboloid, foot)
+    foot = foot - above * out
+    _, out = from_side(hyperboloid, foot)
+    flat = splat(0.0, over)
+    cap = Vec(flat, flat, copysign(1.0, p.z))
+    return (
+        hyperboloid.centre + from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, where(side, foot, p - over * cap)),
+        from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, where(side, out, cap)),
+    )
+
+
+def from_side(hyperboloid: PackedHyperboloid, p: Vec) -> tuple[Number, Vec]:
+    """How far outside of the side a point is, and the direction away from it.
+
+    That is, to first order, the value of the side's function by the length of its gradient (Taubin 1991): what is left
+    after one step is the square of it, in sizes of the hyperboloid, after two steps its fourth power.
+    """
     reach = hyperboloid.slope * p.z
     squared = p.x * p.x + p.y * p.y
     down = hyperboloid.slope * reach
     per_gradient = inverse_root(squared + down * down)  # of half of the gradient
-    off = 0.5 * (squared - reach * reach - hyperboloid.waist * hyperboloid.waist) * per_gradient
-    above = fabs(p.z) - hyperboloid.half
-    side = off >= above
-    flat = splat(0.0, off)
-    out = where(side, per_gradient * Vec(p.x, p.y, -down), Vec(flat, flat, copysign(1.0, p.z)))
-    on = p - where(side, off, above) * out
-    return (
-        hyperboloid.centre + from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, on),
-        from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, out),
-    )
+    above = 0.5 * (squared - reach * reach - hyperboloid.waist * hyperboloid.waist) * per_gradient
+    return above, per_gradient * Vec(p.x, p.y, -down)

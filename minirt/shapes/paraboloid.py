@@ -94,19 +94,30 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
 
 
 def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:
-    """`point` moved onto the side or the cap, whichever it is nearer to, and the outward normal there.
-
-    The distance to the side is, to first order, its function by the length of its gradient (Taubin 1991).
-    """
+    """`point` moved onto the side or the cap, whichever it is nearer to, and the outward normal there."""
     p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, point - paraboloid.vertex)
+    above, out = from_side(paraboloid, p)
+    over = p.z - paraboloid.height
+    side = above >= over
+    foot = p - above * out
+    above, out = from_side(paraboloid, foot)
+    foot = foot - above * out
+    _, out = from_side(paraboloid, foot)
+    flat = splat(0.0, over)
+    cap = Vec(flat, flat, flat + 1.0)
+    return (
+        paraboloid.vertex + from_basis(paraboloid.u, paraboloid.v, paraboloid.w, where(side, foot, p - over * cap)),
+        from_basis(paraboloid.u, paraboloid.v, paraboloid.w, where(side, out, cap)),
+    )
+
+
+def from_side(paraboloid: PackedParaboloid, p: Vec) -> tuple[Number, Vec]:
+    """How far outside of the side a point is, and the direction away from it.
+
+    That is, to first order, the value of the side's function by the length of its gradient (Taubin 1991): what is left
+    after one step is the square of it, in sizes of the paraboloid, after two steps its fourth power.
+    """
     squared = p.x * p.x + p.y * p.y
     per_gradient = inverse_root(squared + paraboloid.focal * paraboloid.focal)  # of half of the gradient
-    off = 0.5 * (squared - 2.0 * paraboloid.focal * p.z) * per_gradient
-    side = off >= p.z - paraboloid.height
-    flat = splat(0.0, off)
-    out = where(side, per_gradient * Vec(p.x, p.y, flat - paraboloid.focal), Vec(flat, flat, flat + 1.0))
-    on = p - where(side, off, p.z - paraboloid.height) * out
-    return (
-        paraboloid.vertex + from_basis(paraboloid.u, paraboloid.v, paraboloid.w, on),
-        from_basis(paraboloid.u, paraboloid.v, paraboloid.w, out),
-    )
+    above = 0.5 * (squared - 2.0 * paraboloid.focal * p.z) * per_gradient
+    return above, per_gradient * Vec(p.x, p.y, splat(-paraboloid.focal, above))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from hypothesis import reject
 from hypothesis import strategies as st
 
 from minirt.element import Element, fields_of
-from minirt.fields import FARTHEST, Colour, Direction, Field, Length, Point, Real, Whole
+from minirt.errors import ElementError
+from minirt.fields import FARTHEST, Colour, Direction, Field, Length, Lengths, Point, Real, Whole
 from minirt.scene import Camera, Scene, describe
 from minirt.scene.registry import ELEMENTS
 
@@ -23,8 +25,9 @@ def values(field: Field) -> st.SearchStrategy[object]:
     coordinate = st.floats(-FARTHEST, FARTHEST, allow_nan=False)
     if isinstance(field, Real):
         return st.floats(field.low, field.high)
-    if isinstance(field, Length):
-        return st.floats(0, FARTHEST, exclude_min=True)
+    if isinstance(field, (Length, Lengths)):
+        size = st.floats(0, FARTHEST, exclude_min=True)
+        return size if isinstance(field, Length) else st.tuples(size, size, size)
     if isinstance(field, Whole):
         return st.integers(field.low, field.high)
     if isinstance(field, Point):
@@ -36,9 +39,14 @@ def values(field: Field) -> st.SearchStrategy[object]:
     return st.tuples(*[st.integers(0, 255)] * 3)
 
 
-def elements(kind: type[Element]) -> st.SearchStrategy[Element]:
+@st.composite
+def elements(draw: st.DrawFn, kind: type[Element]) -> Element:
     """Random elements of a kind."""
-    return st.builds(kind, **{field.name: values(field) for field in fields_of(kind)})
+    drawn = {field.name: draw(values(field)) for field in fields_of(kind)}
+    try:
+        return kind(**drawn)
+    except ElementError:
+        reject()
 
 
 ANY = [elements(kind) for kind in ELEMENTS.values() if not kind.once]
