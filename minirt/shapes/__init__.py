@@ -1,6 +1,6 @@
 """The shapes. `KINDS` is the one list of them: a new shape is a file beside these and a line here."""
 
-from minirt.shapes import box, cone, cylinder, disc, hyperboloid, paraboloid, plane, sphere, square, triangle
+from minirt.shapes import box, cone, cylinder, disc, hyperboloid, paraboloid, plane, sphere, square, torus, triangle
 from minirt.shapes.shape import Ball, Box, Kind, Shape
 
 KINDS = (
@@ -14,6 +14,7 @@ KINDS = (
     Kind(square.Square, square.PackedSquare, square.intersect, square.surface),
     Kind(disc.Disc, disc.PackedDisc, disc.intersect, disc.surface),
     Kind(box.Box, box.PackedBox, box.intersect, box.surface),
+    Kind(torus.Torus, torus.PackedTorus, torus.intersect, torus.surface),
 )
 
 __all__ = ["KINDS", "Ball", "Box", "Kind", "Shape"]

@@ -32,6 +32,7 @@ from tests.oracle import (  # noqa: F401  they register their bodies
     plane,
     sphere,
     square,
+    torus,
     triangle,
 )
 from tests.oracle.body import Body, body, crossings, normals
