@@ -4,10 +4,11 @@ the documentation are made from the declaration.
 
 from minirt.errors import FieldError
 from minirt.fields.field import Field, PictureFile, Repair, declare
+from minirt.fields.frames import upright
 from minirt.fields.numerals import number, spelled, whole
 from minirt.fields.pictures import Paint, Picture
 from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Factor, Flag, Length, Real, Whole, clamp
-from minirt.fields.triples import Colour, Direction, Point, Three, Triple, unit
+from minirt.fields.triples import Colour, Direction, Lengths, Point, Three, Triple, unit
 
 __all__ = [
     "FARTHEST",
@@ -19,6 +20,7 @@ __all__ = [
     "FieldError",
     "Flag",
     "Length",
+    "Lengths",
     "Paint",
     "Picture",
     "PictureFile",
@@ -33,5 +35,6 @@ __all__ = [
     "number",
     "spelled",
     "unit",
+    "upright",
     "whole",
 ]

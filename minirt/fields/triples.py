@@ -10,7 +10,7 @@ from typing import Any
 from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field, Repair
 from minirt.fields.numerals import PLAIN, number, numbers, spelled, whole, wholes
-from minirt.fields.scalars import FARTHEST, clamp
+from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, clamp
 
 Triple = tuple[float, float, float]
 
@@ -97,6 +97,37 @@ class Point(Three):
     @property
     def range(self) -> str:
         return f"[-{FARTHEST:g}, {FARTHEST:g}]"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lengths(Three):
+    """Three sizes greater than 0; a key press multiplies all of them by `step`."""
+
+    unit: str = "scene unit"
+    step: float = 1.05
+
+    def check(self, value: Triple) -> Triple:
+        self.within(value, -FARTHEST, FARTHEST)
+        part = next((part for part, size in enumerate(value) if not size > 0), None)
+        if part is not None:
+            raise FieldError(f"{self.names[2 * part]} must be > 0, got {spelled(value[part])}", part)
+        x, y, z = value
+        return float(x), float(y), float(z)
+
+    def nudge(self, value: Triple, steps: float) -> Triple:
+        factor = self.step ** clamp(steps, -10_000, 10_000)
+        least, greatest = min(value), max(value)
+        factor = clamp(factor, min(1.0, LEAST_LENGTH / least), max(1.0, FARTHEST / greatest))
+        x, y, z = (min(size * factor, FARTHEST) for size in value)
+        return x, y, z
+
+    @property
+    def notation(self) -> str:
+        return self.names
+
+    @property
+    def range(self) -> str:
+        return "> 0"
 
 
 @dataclass(frozen=True, kw_only=True)

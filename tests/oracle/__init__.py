@@ -22,7 +22,19 @@ from typing import Any
 from mpmath import mpf
 
 from minirt.shapes import Shape
-from tests.oracle import cylinder, plane, sphere  # noqa: F401  they register their bodies
+from tests.oracle import (  # noqa: F401  they register their bodies
+    box,
+    cone,
+    cylinder,
+    disc,
+    hyperboloid,
+    paraboloid,
+    plane,
+    sphere,
+    square,
+    torus,
+    triangle,
+)
 from tests.oracle.body import Body, body, crossings, normals
 from tests.oracle.body import inside as inside_of
 from tests.oracle.vectors import Vector, dot, exact

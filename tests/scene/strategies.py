@@ -6,11 +6,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
+from hypothesis import reject
 from hypothesis import strategies as st
 
 import minirt
 from minirt.element import Record, fields_of
-from minirt.fields import FARTHEST, Colour, Direction, Field, Flag, Length, Paint, Picture, Point, Real, Whole
+from minirt.errors import ElementError
+from minirt.fields import FARTHEST, Colour, Direction, Field, Flag, Length, Lengths, Paint, Picture, Point, Real, Whole
 from minirt.materials import Compound
 from minirt.scene import Camera, Scene, describe
 from minirt.scene.registry import ELEMENTS
@@ -35,6 +37,7 @@ VALUES: dict[type[Field], Callable[[Any], st.SearchStrategy[object]]] = {
     Flag: lambda _: st.booleans(),
     Real: lambda field: st.floats(field.low, field.high),
     Length: lambda _: st.floats(0, FARTHEST, exclude_min=True),
+    Lengths: lambda _: st.tuples(*[st.floats(0, FARTHEST, exclude_min=True)] * 3),
     Whole: lambda field: st.integers(field.low, field.high),
     Point: lambda _: st.tuples(*[COORDINATE] * 3),
     Direction: lambda _: st.tuples(*[st.floats(-1, 1)] * 3).filter(any),
@@ -48,11 +51,16 @@ def values(field: Field) -> st.SearchStrategy[object]:
     return next(make(field) for sort, make in VALUES.items() if isinstance(field, sort))
 
 
-def built(kind: type[Known]) -> st.SearchStrategy[Known]:
+@st.composite
+def built(draw: st.DrawFn, kind: type[Known]) -> Known:
     """Random records or elements of a kind, whose attributes may be absent."""
     known = {field.name: values(field) for field in fields_of(kind)}
     absent = [field.name for field in fields_of(kind) if field.keyed and field.default is None]
-    return st.builds(kind, **{**known, **{name: st.none() | known[name] for name in absent}})
+    chosen = {**known, **{name: st.none() | known[name] for name in absent}}
+    try:
+        return kind(**{name: draw(value) for name, value in chosen.items()})
+    except ElementError:
+        reject()
 
 
 ANY = [built(kind) for kind in ELEMENTS.values() if not kind.once]

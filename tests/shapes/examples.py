@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
 
 from minirt.element import fields_of
-from minirt.fields import Colour, Direction, Field, Length, Point
+from minirt.errors import ElementError
+from minirt.fields import Colour, Direction, Field, Length, Lengths, Point
 from minirt.kernel.trace import ROUNDING
 from minirt.rendering.tables import extent
 from minirt.shapes import Kind, Shape
@@ -15,27 +17,38 @@ from tests.shapes.regimes import Array, Random, log, unit, ways
 from tests.shapes.ways import compiled, surfaces
 
 
-def value(field: Field, random: Random, size: float, offset: float) -> object:
-    """A random value of a field, of a shape of about this size at about this distance from the origin."""
+def value(field: Field, random: Random, size: float, middle: Array) -> object:
+    """A random value of a field, of a shape of about this size near a point."""
     if isinstance(field, Point):
-        return tuple(offset * ways(random) + size * random.normal(size=3))
+        return tuple(middle + size * random.normal(size=3))
     if isinstance(field, Direction):
         return tuple(ways(random).clip(-1, 1))
     if isinstance(field, Length):
         return size * log(random, 0.2, 5)
+    if isinstance(field, Lengths):
+        return tuple(size * log(random, 0.2, 5, 3))
     assert isinstance(field, Colour)
     return tuple(random.integers(0, 256, 3))
 
 
 def example(kind: Kind, random: Random, size: float = 1.0, offset: float = 0.0) -> Shape:
-    """A random shape of a kind."""
-    placed = (each for each in fields_of(kind.element) if not each.keyed)
-    return kind.element(**{each.name: value(each, random, size, offset) for each in placed})
+    """A random shape of a kind, of about this size at this distance from the origin."""
+    middle = offset * ways(random)
+    placed = [each for each in fields_of(kind.element) if not each.keyed]
+    while True:
+        with suppress(ElementError):  # of fields that do not go together
+            return kind.element(**{each.name: value(each, random, size, middle) for each in placed})
 
 
 def place(shape: Shape) -> Array:
-    """The point that a shape is given by."""
+    """The middle of a shape, or a point of one without end."""
+    balls = shape.balls()
+    if balls:
+        return np.mean([centre for centre, _ in balls], axis=0)
     return np.array(next(getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)))
+
+
+CONCAVE = {"hyperboloid", "torus"}  # titles of shapes from which a way straight out may lead back in
 
 
 class Hits(NamedTuple):

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from minirt.element import fields_of, pattern
-from minirt.fields import Colour, Point
+from minirt.fields import Colour, Lengths, Point
 from minirt.kernel.rows import row_type
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Kind, Shape
 from tests.shapes.checks import U
-from tests.shapes.examples import example, hits, offsets
-from tests.shapes.regimes import ways
+from tests.shapes.examples import CONCAVE, example, hits, offsets, place
+from tests.shapes.regimes import unit, ways
 from tests.shapes.ways import WAYS, kind_of, surfaces, table
 
 SIZES = [(1e-4, 0.0), (1.0, 0.0), (1.0, 1e8), (1e8, 0.0)]
@@ -83,12 +83,13 @@ def test_its_surface_is_a_unit_normal_and_stays_where_it_is(kind: Kind, size: fl
 @pytest.mark.parametrize(("size", "offset"), SIZES)
 def test_its_normals_point_outwards(kind: Kind, size: float, offset: float) -> None:
     seen = hits(kind, 2, size, offset)
-    # One step out of the surface: from there the way back hits it at once, the way on never does.
+    # One step out of the surface: from there the way on never hits it, and where that is so the way back at once.
     step = 1e-2 * size * np.ones((*seen.hit.shape, 1))
     outside = seen.points + step * seen.normals
     back, on = (WAYS["compiled"](seen.shapes, outside, sign * seen.normals)[seen.hit] for sign in (-1, 1))
-    assert np.abs(back - 1e-2 * size).max() <= 64 * U * (size + offset) * 20
-    assert np.isinf(on).all()
+    free = np.isinf(on)
+    assert free.mean() > 0.5 if kind.element.title in CONCAVE else free.all()
+    assert np.abs(back[free] - 1e-2 * size).max() <= 64 * U * (size + offset) * 20
 
 
 @pytest.mark.parametrize(("size", "offset"), SIZES)
@@ -121,8 +122,8 @@ def test_nothing_sticks_out_of_the_hull_of_its_balls(kind: Kind, size: float, of
 def test_the_three_ways_agree(kind: Kind) -> None:
     random = np.random.default_rng(5)
     shapes = [example(kind, random) for _ in range(20)]
-    origins, directions = random.normal(size=(2, 20, 16, 3)) * 5
-    directions /= np.linalg.norm(directions, axis=-1, keepdims=True)
+    origins, aside = random.normal(size=(2, 20, 16, 3)) * [[[[5.0]]], [[[0.5]]]]
+    directions = unit(np.stack([place(shape) for shape in shapes])[:, None] + aside - origins)
     numbers, arrays, compiled = (way(shapes, origins, directions) for way in WAYS.values())
     assert np.array_equal(numbers, arrays)
     assert np.array_equal(np.isinf(numbers), np.isinf(compiled))
@@ -146,7 +147,7 @@ def scaled(shape: Shape, scale: float) -> Shape:
     changes = {}
     for each in fields_of(type(shape)):
         value = getattr(shape, each.name)
-        if isinstance(each, Point):
+        if isinstance(each, (Point, Lengths)):
             changes[each.name] = tuple(scale * x for x in value)
         elif isinstance(value, float):
             changes[each.name] = scale * value

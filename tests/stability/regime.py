@@ -11,7 +11,7 @@ from mpmath import mpf
 from numpy.typing import NDArray
 
 from minirt.element import fields_of
-from minirt.fields import Length, Point
+from minirt.fields import Length, Lengths, Point
 from minirt.shapes import Shape
 from tests import oracle
 from tests.shapes.regimes import Rays
@@ -26,7 +26,8 @@ class Regime(NamedTuple):
     An answer passes that is exact within the relative `tolerance`. Where the surface ends or turns away from the ray an
     exact answer is of no use, as rounding the ray's own numbers changes it: there it passes if it lies between those
     for a shape thicker and one thinner by `slack` roundings of t, of the distance between origin and shape and of the
-    shape's size, and if it is exact within `blur` where all three hit.
+    shape's size, and, where all three hit, if it is
+    one of those within `blur`.
     """
 
     name: str
@@ -70,7 +71,7 @@ class Right:
             fine = len(hits) < 3
         else:
             fine = bool(hits) and min(hits) * (1 - U) <= t <= max(hits) * (1 + self.regime.blur)
-            fine &= len(hits) < 3 or abs(t - sides[0]) <= self.regime.blur * sides[0]
+            fine &= len(hits) < 3 or min(abs(t - side) / side for side in sides) <= self.regime.blur
         if fine:
             return ""
         ray = f"{self.rays.origins[i, j].tolist()}, {self.rays.directions[i, j].tolist()}"
@@ -90,6 +91,6 @@ def points(shape: Shape) -> list[Array]:
 
 def size(shape: Shape) -> float:
     """The lengths that a shape is given by, in all, and the distances between its points."""
-    lengths = [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Length)]
+    lengths = [np.sum(getattr(shape, e.name)) for e in fields_of(type(shape)) if isinstance(e, (Length, Lengths))]
     first, *others = points(shape)
     return float(sum(lengths) + sum(np.linalg.norm(other - first) for other in others))

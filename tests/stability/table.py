@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from minirt.shapes import KINDS, Kind
-from tests.stability import cylinder, plane, sphere
+from tests.stability import cone, cylinder, hyperboloid, paraboloid, plane, sphere
 from tests.stability.common import common
 from tests.stability.regime import Regime
 
-OWN = {"sphere": sphere.REGIMES, "plane": plane.REGIMES, "cylinder": cylinder.REGIMES}
+OWN = {
+    "sphere": sphere.REGIMES,
+    "plane": plane.REGIMES,
+    "cylinder": cylinder.REGIMES,
+    "cone": cone.REGIMES,
+    "paraboloid": paraboloid.REGIMES,
+    "hyperboloid": hyperboloid.REGIMES,
+}
 REGIMES: list[tuple[Kind, Regime]] = [
     (kind, regime) for kind in KINDS for regime in [*common(kind), *OWN.get(kind.element.title, [])]
 ]

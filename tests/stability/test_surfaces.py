@@ -9,7 +9,7 @@ import pytest
 
 import minirt
 from minirt.element import fields_of
-from minirt.fields import Length
+from minirt.fields import Length, Lengths
 from minirt.kernel.trace import ROUNDING
 from minirt.rendering.tables import extent
 from minirt.scene import Camera, Scene
@@ -26,7 +26,8 @@ REGIMES = [(kind, regime) for kind in KINDS for regime in common(kind)]
 
 def least(shape: Shape) -> float:
     """The least length of a shape, to which a normal's turn over its surface is in proportion."""
-    return min((getattr(shape, e.name) for e in fields_of(type(shape)) if isinstance(e, Length)), default=np.inf)
+    lengths = [np.min(getattr(shape, e.name)) for e in fields_of(type(shape)) if isinstance(e, (Length, Lengths))]
+    return min(lengths, default=np.inf)
 
 
 def off(shape: Shape, point: Array, normal: Array) -> tuple[float, float]:

@@ -1,0 +1,110 @@
+"""Box: `bo x,y,z ax,ay,az w,h,d R,G,B`.
+
+A solid block. `x,y,z` is its centre, `ax,ay,az` its own y axis, and `w,h,d` are its sizes along its own x, y and z
+axes. These are those of the scene, turned no further than it takes to bring y to the axis, or to its opposite.
+
+    bo 0,1,20  0,1,0  4,2,6  160,160,170    an upright block four wide, two high and six deep
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import NamedTuple
+
+from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
+from minirt.lanes import Vec, copysign, dot, fabs, maximum, minimum, splat, where
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.extents import along, box_of_points
+from minirt.shapes.shape import Ball, Place, Shape
+from minirt.shapes.shape import Box as Corners
+
+
+@dataclass(frozen=True)
+class Box(Shape):
+    """A line `bo` of a scene file."""
+
+    code, title, plural = "bo", "box", "boxes"
+    centre: Triple = declare(Point, "centre")
+    axis: Triple = declare(Direction, "its own y axis")
+    sizes: Triple = declare(Lengths, "sizes along its own x, y and z axes", names="w,h,d")
+    colour: Triple = declare(Colour, "colour")
+
+    def axes(self) -> tuple[Vec, Vec, Vec]:
+        """Its own x, y and z axes."""
+        x, y, z = self.axis
+        u, v, _ = basis((z, x, y))  # of the axes z, x and y in the place of x, y and z
+        return Vec(v.y, v.z, v.x), Vec(x, y, z), Vec(u.y, u.z, u.x)
+
+    def pack(self) -> PackedBox:
+        x, y, z = self.axes()
+        width, height, depth = self.sizes
+        return PackedBox(Place(Vec(*self.centre)), x, y, z, Vec(width / 2, height / 2, depth / 2))
+
+    def corners(self) -> list[Triple]:
+        found = [self.centre]
+        for axis, size in zip(self.axes(), self.sizes, strict=True):
+            way = axis.x, axis.y, axis.z
+            found = [along(corner, way, sign * size / 2) for corner, sign in product(found, (-1, 1))]
+        return found
+
+    def balls(self) -> tuple[Ball, ...]:
+        return tuple((corner, 0.0) for corner in self.corners())
+
+    def bounds(self) -> Corners:
+        return box_of_points(*self.corners())
+
+
+class PackedBox(NamedTuple):
+    """What the kernel keeps of a box: a frame of its own in which it stands upright at the origin."""
+
+    centre: Place
+    u: Vec
+    v: Vec
+    w: Vec
+    half: Vec  # of the sizes
+
+
+def intersect(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the box.
+
+    Between each pair of faces the ray is for an interval of t; it is in the box where all three overlap (Kay and
+    Kajiya, Ray Tracing Complex Scenes, 1986).
+    """
+    f = origin - box.centre
+    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
+    p = to_basis(box.u, box.v, box.w, f + approach * direction)
+    d = to_basis(box.u, box.v, box.w, direction)
+    enter_x, leave_x = between(p.x, d.x, box.half.x)
+    enter_y, leave_y = between(p.y, d.y, box.half.y)
+    enter_z, leave_z = between(p.z, d.z, box.half.z)
+    enter = maximum(maximum(enter_x, enter_y), enter_z)
+    leave = minimum(minimum(leave_x, leave_y), leave_z)
+    near = approach + enter
+    t = where(near > 0.0, near, approach + leave)
+    return (enter <= leave) & (t > 0.0), t
+
+
+def between(p: Number, d: Number, half: Number) -> tuple[Number, Number]:
+    """For which t the coordinate p + t d lies between -half and half."""
+    per_step = 1.0 / d
+    one = (-half - p) * per_step
+    other = (half - p) * per_step
+    return minimum(one, other), maximum(one, other)
+
+
+def surface(box: PackedBox, point: Vec) -> tuple[Vec, Vec]:
+    """`point` moved onto the face that it is nearest to, and the outward normal there."""
+    p = to_basis(box.u, box.v, box.w, point - box.centre)
+    x, y, z = fabs(p.x) - box.half.x, fabs(p.y) - box.half.y, fabs(p.z) - box.half.z
+    by_x, by_y = (x >= y) & (x >= z), y >= z  # where it is not by x
+    flat = splat(0.0, p.x)
+    out = where(
+        by_x,
+        Vec(copysign(1.0, p.x), flat, flat),
+        where(by_y, Vec(flat, copysign(1.0, p.y), flat), Vec(flat, flat, copysign(1.0, p.z))),
+    )
+    on = p - where(by_x, x, where(by_y, y, z)) * out
+    return box.centre + from_basis(box.u, box.v, box.w, on), from_basis(box.u, box.v, box.w, out)

@@ -1,0 +1,67 @@
+"""Disc: `di x,y,z nx,ny,nz diameter R,G,B`.
+
+A flat disc, seen from both sides. `x,y,z` is its centre and `nx,ny,nz` its normal.
+
+    di 0,0,20  0,1,0  6  200,120,120    a table top six units across, seen edge on
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from minirt.fields import Colour, Direction, Length, Point, Triple, declare
+from minirt.lanes import Vec, dot, fabs, unit_roundoff
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+from minirt.shapes.extents import box_of_disc
+from minirt.shapes.plane import PARALLEL
+from minirt.shapes.shape import Ball, Box, Place, Shape
+
+
+@dataclass(frozen=True)
+class Disc(Shape):
+    """A line `di` of a scene file."""
+
+    code, title, plural = "di", "disc", "discs"
+    centre: Triple = declare(Point, "centre")
+    normal: Triple = declare(Direction, "normal")
+    diameter: float = declare(Length, "diameter")
+    colour: Triple = declare(Colour, "colour")
+
+    def pack(self) -> PackedDisc:
+        return PackedDisc(Place(Vec(*self.centre)), Vec(*self.normal), self.diameter / 2)
+
+    def balls(self) -> tuple[Ball, ...]:
+        return ((self.centre, self.diameter / 2),)
+
+    def bounds(self) -> Box:
+        return box_of_disc(self.centre, self.normal, self.diameter / 2)
+
+
+class PackedDisc(NamedTuple):
+    """What the kernel keeps of a disc."""
+
+    centre: Place
+    normal: Vec
+    radius: float
+
+
+def intersect(disc: PackedDisc, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the disc; a ray along it, within rounding, does not."""
+    f = origin - disc.centre
+    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
+    g = f + approach * direction
+    slope = dot(disc.normal, direction)
+    further = -dot(disc.normal, g) / slope
+    t = approach + further
+    # From the centre to the hit: the closest approach is at a right angle to the rest of the way.
+    squared = dot(g, g) + further * further
+    hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0)
+    return hit & (squared <= disc.radius * disc.radius), t
+
+
+def surface(disc: PackedDisc, point: Vec) -> tuple[Vec, Vec]:
+    """The point of the disc's plane nearest to `point`, and the normal."""
+    height = dot(disc.normal, point - disc.centre)
+    return point - height * disc.normal, disc.normal

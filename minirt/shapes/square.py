@@ -1,0 +1,79 @@
+"""Square: `sq x,y,z nx,ny,nz side R,G,B`.
+
+A flat square, seen from both sides. `x,y,z` is its centre and `nx,ny,nz` its normal. It stands upright: one pair of
+edges is horizontal; on a floor and a ceiling the edges are along x and z.
+
+    sq 0,2,20  0,0,-1  4  200,200,120    a board four units wide and high that faces the origin
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from minirt.fields import Colour, Direction, Length, Point, Triple, declare, upright
+from minirt.lanes import Vec, dot, fabs, unit_roundoff
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+from minirt.shapes.extents import along, box_of_points
+from minirt.shapes.plane import PARALLEL
+from minirt.shapes.shape import Ball, Box, Place, Shape
+
+
+@dataclass(frozen=True)
+class Square(Shape):
+    """A line `sq` of a scene file."""
+
+    code, title, plural = "sq", "square", "squares"
+    centre: Triple = declare(Point, "centre")
+    normal: Triple = declare(Direction, "normal")
+    side: float = declare(Length, "side")
+    colour: Triple = declare(Colour, "colour")
+
+    def axes(self) -> tuple[Triple, Triple]:
+        """Right and up for somebody who faces the square."""
+        x, y, z = self.normal
+        return upright(-x, -y, -z)
+
+    def pack(self) -> PackedSquare:
+        right, up = self.axes()
+        return PackedSquare(Place(Vec(*self.centre)), Vec(*right), Vec(*up), Vec(*self.normal), self.side / 2)
+
+    def corners(self) -> tuple[Triple, ...]:
+        (right, up), half = self.axes(), self.side / 2
+        return tuple(along(along(self.centre, right, x), up, y) for x in (-half, half) for y in (-half, half))
+
+    def balls(self) -> tuple[Ball, ...]:
+        return tuple((corner, 0.0) for corner in self.corners())
+
+    def bounds(self) -> Box:
+        return box_of_points(*self.corners())
+
+
+class PackedSquare(NamedTuple):
+    """What the kernel keeps of a square."""
+
+    centre: Place
+    right: Vec
+    up: Vec
+    normal: Vec
+    half: float  # of a side
+
+
+def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the square; a ray along it, within rounding, does not."""
+    f = origin - square.centre
+    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
+    g = f + approach * direction
+    slope = dot(square.normal, direction)
+    further = -dot(square.normal, g) / slope
+    p = g + further * direction
+    t = approach + further
+    hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0)
+    return hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half), t
+
+
+def surface(square: PackedSquare, point: Vec) -> tuple[Vec, Vec]:
+    """The point of the square's plane nearest to `point`, and the normal."""
+    height = dot(square.normal, point - square.centre)
+    return point - height * square.normal, square.normal

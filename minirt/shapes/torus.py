@@ -1,0 +1,203 @@
+"""Torus: `to x,y,z ax,ay,az diameter tube R,G,B`.
+
+A solid ring about the axis `ax,ay,az`. `x,y,z` is its centre, `diameter` that of the circle in the middle of the tube,
+`tube` that of the tube itself. A tube as wide as the diameter leaves no hole.
+
+    to 0,0,20  0,1,0  6  2  220,150,180    a ring eight units across that lies flat, two units thick
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, pi, sin
+from typing import NamedTuple
+
+from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
+from minirt.lanes import Vec, any, copysign, dot, fabs, maximum, minimum, splat, sqrt, unit_roundoff, where
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.extents import along, box_of_disc
+from minirt.shapes.shape import Ball, Box, Place, Shape
+
+STEPS = 100  # at most, towards a root; most take less than ten
+CORNERS = 8  # of a polygon around the circle in the middle of the tube
+
+
+@dataclass(frozen=True)
+class Torus(Shape):
+    """A line `to` of a scene file."""
+
+    code, title, plural = "to", "torus", "tori"
+    centre: Triple = declare(Point, "centre")
+    axis: Triple = declare(Direction, "axis")
+    diameter: float = declare(Length, "diameter of the circle in the middle of the tube")
+    tube: float = declare(Length, "diameter of the tube, at most that of the circle")
+    colour: Triple = declare(Colour, "colour")
+
+    def conflict(self) -> tuple[str, str] | None:
+        if self.tube <= self.diameter:
+            return None
+        return "tube", f"must be at most the diameter, {spelled(self.diameter)}, got {spelled(self.tube)}"
+
+    def pack(self) -> PackedTorus:
+        u, v, w = basis(self.axis)
+        return PackedTorus(Place(Vec(*self.centre)), u, v, w, self.diameter / 2, self.tube / 2)
+
+    def balls(self) -> tuple[Ball, ...]:
+        u, v, _ = basis(self.axis)
+        reach = self.diameter / 2 / cos(pi / CORNERS)
+        turns = [2 * pi * corner / CORNERS for corner in range(CORNERS)]
+        ways = [cos(turn) * u + sin(turn) * v for turn in turns]
+        return tuple((along(self.centre, (way.x, way.y, way.z), reach), self.tube / 2) for way in ways)
+
+    def bounds(self) -> Box:
+        r = self.tube / 2
+        (a, b, c), (x, y, z) = box_of_disc(self.centre, self.axis, self.diameter / 2)
+        return (a - r, b - r, c - r), (x + r, y + r, z + r)
+
+
+class PackedTorus(NamedTuple):
+    """What the kernel keeps of a torus: a frame of its own in which it lies flat around the origin."""
+
+    centre: Place
+    u: Vec
+    v: Vec
+    w: Vec  # the axis
+    ring: float  # radius of the circle in the middle of the tube
+    tube: float  # radius of the tube
+
+
+def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the torus.
+
+    Between the turning points of the torus' polynomial along the ray there is one crossing where their sides differ,
+    and none where they do not: a root is looked for only where there is one, and then until it is exact. On which side
+    a point is, and how far, is asked of its distance from the circle in the middle of the tube, which keeps all digits
+    of a thin tube where the polynomial loses them.
+    """
+    f = origin - torus.centre
+    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
+    g = f + approach * direction
+    rim = torus.ring + torus.tube
+    chord = rim * rim - dot(g, g)
+    hit = chord >= 0.0
+    t = approach
+    if any(hit):
+        p = to_basis(torus.u, torus.v, torus.w, g)
+        d = to_basis(torus.u, torus.v, torus.w, direction)
+        per_height = 1.0 / d.z
+        bottom = (-torus.tube - p.z) * per_height
+        top = (torus.tube - p.z) * per_height
+        half = sqrt(chord)
+        enter = maximum(-half, minimum(bottom, top))
+        leave = minimum(half, maximum(bottom, top))
+        start = -approach  # the ray's origin
+        within = start > enter
+        enter = where(within, start, enter)
+        hit = hit & (enter <= leave)
+        if any(hit):
+            # The sides of the surface at both ends and, as far as the ray comes there, at the turning points between.
+            first, second, third = turning_points(torus, p, d)
+            first = minimum(maximum(first, enter), leave)
+            second = minimum(maximum(second, enter), leave)
+            third = minimum(maximum(third, enter), leave)
+            here = to_basis(torus.u, torus.v, torus.w, f)
+            side_0 = where(within, side(torus, here), 1.0)
+            side_1 = where(first > enter, side(torus, p + first * d), side_0)
+            side_2 = where(second > first, side(torus, p + second * d), side_1)
+            side_3 = where(third > second, side(torus, p + third * d), side_2)
+            # The first two neighbours that differ; behind the last turning point the ray ends outside.
+            by_1, by_2, by_3 = side_0 != side_1, side_1 != side_2, side_2 != side_3
+            low = where(by_1, enter, where(by_2, first, where(by_3, second, third)))
+            high = where(by_1, first, where(by_2, second, where(by_3, third, leave)))
+            from_side = where(by_1, side_0, where(by_2, side_1, where(by_3, side_2, side_3)))
+            hit = hit & (by_1 | by_2 | by_3 | (side_3 < 0.0))
+            if any(hit):
+                t = approach + crossing(torus, p, d, low, high, from_side, hit)
+                hit = hit & (t > 0.0)
+    return hit, t
+
+
+def side(torus: PackedTorus, p: Vec) -> Number:
+    """1 outside of the tube, -1 inside of it."""
+    aside = sqrt(p.x * p.x + p.y * p.y) - torus.ring
+    return where(sqrt(aside * aside + p.z * p.z) > torus.tube, 1.0, -1.0)
+
+
+def turning_points(torus: PackedTorus, p: Vec, d: Vec) -> tuple[Number, Number, Number]:
+    """Where (|q|^2 + ring^2 - tube^2)^2 - 4 ring^2 (q_x^2 + q_y^2) has an extremum along q = p + t d, in ascending
+    order; the same three times where there is one.
+
+    With p the point of the ray closest to the centre, the derivative is 4 (t^3 + b t + c). The root that is largest
+    without its sign is where Newton's steps from beyond end, which never pass it; a quadratic is left for the others.
+    """
+    squared = torus.ring * torus.ring
+    b = dot(p, p) + squared - torus.tube * torus.tube - 2.0 * squared * (d.x * d.x + d.y * d.y)
+    c = -2.0 * squared * (p.x * d.x + p.y * d.y)
+    size = fabs(c)
+    bend = sqrt(maximum(-b, 0.0) * (1.0 / 3.0))
+    # No extremum is farther than sqrt(2) ring, and no root of three than twice the place where the cubic turns.
+    y = torus.ring * splat(1.415, bend)
+    y = where(size <= 2.0 * bend * bend * bend, minimum(y, 2.0 * bend), y)
+    small = 2.0**-30 * torus.ring  # what is left is the square of it
+    for _ in range(STEPS):
+        slope = 3.0 * y * y + b
+        step = where(slope > 0.0, ((y * y + b) * y - size) / slope, 0.0)
+        y = y - step
+        if not any(step > small):
+            break
+    rest = -0.75 * y * y - b
+    half = sqrt(maximum(rest, 0.0))
+    sign = copysign(1.0, -c)
+    far, mean = sign * y, -0.5 * sign * y
+    lone = rest <= 0.0
+    near, middle = where(lone, far, mean - half), where(lone, far, mean + half)
+    forward = sign > 0.0
+    return where(forward, near, far), where(forward, middle, near), where(forward, far, middle)
+
+
+def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from_side: Number, asked: Mask) -> Number:
+    """Where p + t d crosses the surface between two t on different sides of it, of which `from_side` is the first.
+
+    Newton's steps; half of what is left instead where one would lead out of it, or is not half as long as the one
+    before (Press et al., Numerical Recipes, 9.4).
+    """
+    t = 0.5 * (low + high)
+    last = high - low
+    rounding = 2.0 * unit_roundoff(t)
+    for _ in range(STEPS):
+        q = p + t * d
+        rho = sqrt(q.x * q.x + q.y * q.y)
+        aside = rho - torus.ring
+        apart = sqrt(aside * aside + q.z * q.z)
+        height = apart - torus.tube
+        slope = (aside * (q.x * d.x + q.y * d.y) / rho + q.z * d.z) / apart
+        before = height * from_side > 0.0
+        low = where(before, t, low)
+        high = where(before, high, t)
+        step = -height / slope
+        newton = (t + step > low) & (t + step < high) & (2.0 * fabs(step) < last)
+        step = where(newton, step, 0.5 * (low + high) - t)
+        last = fabs(step)
+        t = t + step
+        if not any(asked & (last > rounding * (fabs(t) + torus.tube))):
+            break
+    return t
+
+
+def surface(torus: PackedTorus, point: Vec) -> tuple[Vec, Vec]:
+    """The point of the torus nearest to `point`, and the outward normal there."""
+    p = to_basis(torus.u, torus.v, torus.w, point - torus.centre)
+    rho = sqrt(p.x * p.x + p.y * p.y)
+    pointed = rho == 0.0  # on the axis all ways to the circle are as short
+    per_rho = 1.0 / where(pointed, 1.0, rho)
+    x, y = where(pointed, 1.0, p.x * per_rho), p.y * per_rho
+    aside = rho - torus.ring
+    per_apart = 1.0 / sqrt(aside * aside + p.z * p.z)
+    across, up = aside * per_apart, p.z * per_apart
+    reach = torus.ring + torus.tube * across
+    return (
+        torus.centre + from_basis(torus.u, torus.v, torus.w, Vec(reach * x, reach * y, torus.tube * up)),
+        from_basis(torus.u, torus.v, torus.w, Vec(across * x, across * y, up)),
+    )

@@ -1,0 +1,131 @@
+"""Triangle: `tr x,y,z x,y,z x,y,z R,G,B`.
+
+The flat surface between three corners, seen from both sides. Its normal points to where the corners are seen in
+counter-clockwise order. Triangles that share corners have no gap between them.
+
+    tr -2,0,20  2,0,20  0,3,20  90,160,220    a sail two units up and down
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+from typing import NamedTuple
+
+from minirt.fields import Colour, Point, Triple, declare, unit
+from minirt.lanes import Vec, dot, fabs, maximum, minimum, rounded_product, where
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+from minirt.shapes.extents import box_of_points
+from minirt.shapes.shape import Ball, Box, Place, Shape
+
+FLAT = 16 * 2.0**-53  # of its largest coordinate: a triangle that is no higher is none
+
+
+@dataclass(frozen=True)
+class Triangle(Shape):
+    """A line `tr` of a scene file."""
+
+    code, title, plural, aliases = "tr", "triangle", "triangles", ("tri",)
+    a: Triple = declare(Point, "a corner")
+    b: Triple = declare(Point, "the next corner")
+    c: Triple = declare(Point, "the last corner")
+    colour: Triple = declare(Colour, "colour")
+
+    def edges(self) -> list[Triple]:
+        """From each corner to the next."""
+        pairs = ((self.a, self.b), (self.b, self.c), (self.c, self.a))
+        return [(x - u, y - v, z - w) for (u, v, w), (x, y, z) in pairs]
+
+    def conflict(self) -> tuple[str, str] | None:
+        first, second, _ = edges = self.edges()
+        longest = max(hypot(*edge) for edge in edges)
+        largest = max(abs(part) for corner in (self.a, self.b, self.c) for part in corner)
+        if hypot(*cross(first, second)) > FLAT * largest * longest:
+            return None
+        return "c", "must not lie on a line with a and b"
+
+    def normal(self) -> Triple:
+        """The unit normal. Of a sliver it is exact to a rounding about the longest edge; across, where it is not, there
+        is little of the triangle for an error to matter."""
+        first, second, _ = edges = self.edges()
+        x, y, z = cross(first, second)
+        u, v, w = max(edges, key=lambda edge: hypot(*edge))
+        share = (x * u + y * v + z * w) / (u * u + v * v + w * w)
+        return unit((x - share * u, y - share * v, z - share * w))
+
+    def pack(self) -> PackedTriangle:
+        a, b, c = (Place(Vec(*corner)) for corner in (self.a, self.b, self.c))
+        return PackedTriangle(a, b, c, Vec(*self.normal()))
+
+    def balls(self) -> tuple[Ball, ...]:
+        return (self.a, 0.0), (self.b, 0.0), (self.c, 0.0)
+
+    def bounds(self) -> Box:
+        return box_of_points(self.a, self.b, self.c)
+
+
+def cross(a: Triple, b: Triple) -> Triple:
+    """The vector product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+class PackedTriangle(NamedTuple):
+    """What the kernel keeps of a triangle."""
+
+    a: Place
+    b: Place
+    c: Place
+    normal: Vec
+
+
+def intersect(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the triangle.
+
+    Woop, Benthin and Wald, Watertight Ray/Triangle Intersection (2013): seen along the ray, its origin lies on the same
+    side of all three edges. On which side it is depends on the two ends of an edge alone, each seen in the same way by
+    all triangles that have it, and on a sum that only changes its sign with the order of the ends; nothing here may
+    round in another way for one of them, as a product that is rounded together with what follows would. So a ray
+    towards an edge or a corner between triangles meets at least one of them.
+    """
+    x, y, z = fabs(direction.x), fabs(direction.y), fabs(direction.z)
+    by_x, by_y = (x >= y) & (x >= z), y >= z  # where it is not by x
+    d = turned(by_x, by_y, direction)
+    per_depth = 1.0 / d.z
+    shear = Vec(d.x * per_depth, d.y * per_depth, per_depth)
+    a = sheared(shear, turned(by_x, by_y, triangle.a - origin))
+    b = sheared(shear, turned(by_x, by_y, triangle.b - origin))
+    c = sheared(shear, turned(by_x, by_y, triangle.c - origin))
+    # Twice the areas that the origin has with each edge: by them the hit is the mean of the corners.
+    of_a = twice_the_area(b, c)
+    of_b = twice_the_area(c, a)
+    of_c = twice_the_area(a, b)
+    t = (of_a * a.z + of_b * b.z + of_c * c.z) / (of_a + of_b + of_c)
+    least = minimum(minimum(of_a, of_b), of_c)
+    most = maximum(maximum(of_a, of_b), of_c)
+    return ((least >= 0.0) | (most <= 0.0)) & (t > 0.0), t
+
+
+def turned(by_x: Mask, by_y: Mask, v: Vec) -> Vec:
+    """The vector with its axes turned round until the one that is meant is the last."""
+    return Vec(
+        where(by_x, v.y, where(by_y, v.z, v.x)),
+        where(by_x, v.z, where(by_y, v.x, v.y)),
+        where(by_x, v.x, where(by_y, v.y, v.z)),
+    )
+
+
+def sheared(shear: Vec, v: Vec) -> Vec:
+    """Where a point is seen along the ray, and how far along it."""
+    return Vec(v.x - rounded_product(shear.x, v.z), v.y - rounded_product(shear.y, v.z), v.z * shear.z)
+
+
+def twice_the_area(p: Vec, q: Vec) -> Number:
+    """Of the triangle between two points and the origin, as it is seen; its sign is right, or it is 0."""
+    return rounded_product(p.x, q.y) - rounded_product(p.y, q.x)
+
+
+def surface(triangle: PackedTriangle, point: Vec) -> tuple[Vec, Vec]:
+    """The point of the triangle's plane nearest to `point`, and the normal."""
+    height = dot(triangle.normal, point - triangle.a)
+    return point - height * triangle.normal, triangle.normal

@@ -1,0 +1,22 @@
+"""(p - centre) . normal = 0 within half a side of two planes through the centre: a sheet."""
+
+from typing import Any
+
+from mpmath import mpf
+
+from minirt.shapes.square import Square
+from tests.oracle.body import Body, body
+from tests.oracle.vectors import Vector, cross, dot, exact, minus, unit
+
+
+@body.register
+def _(square: Square, swell: Any = 0) -> Body:
+    centre, normal, half = exact(square.centre), unit(square.normal), mpf(square.side) / 2 + swell
+    level = cross(exact((0, 1, 0)), normal)
+    right = unit(level) if any(level) else exact((1, 0, 0))
+    up = cross(normal, right)
+
+    def within(axis: Vector) -> Any:
+        return lambda p: dot(minus(p, centre), axis) ** 2 - half * abs(half)
+
+    return Body((lambda p: dot(minus(p, centre), normal) - swell,), (within(right), within(up)), solid=False)

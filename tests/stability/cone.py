@@ -1,0 +1,67 @@
+"""Where a cone is hard."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from minirt.shapes.cone import Cone
+from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, across, unit, ways
+from tests.stability.aims import along, at, axis_of, edge
+from tests.stability.common import COUNT
+from tests.stability.regime import Regime
+
+
+def make(random: Random, angle: tuple[float, float] = (20.0, 60.0)) -> Cone:
+    """A cone of about size 1 with a half-angle of so many degrees."""
+    slope = np.tan(np.radians(random.uniform(*angle)))
+    height = random.uniform(0.5, 2) / max(1.0, slope)
+    return Cone(tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1)), 2 * slope * height, height, GREY)
+
+
+def apex(_random: Random, cone: Cone) -> Array:
+    return np.tile(cone.apex, (RAYS, 1))
+
+
+def rim(random: Random, cone: Cone) -> Array:
+    return edge(np.array(cone.apex) + cone.height * axis_of(cone), cone, cone.diameter / 2, random)
+
+
+def generator(random: Random, cone: Cone) -> Array:
+    down = cone.height * axis_of(cone) + cone.diameter / 2 * across(random, axis_of(cone), RAYS)
+    return unit(down) * random.choice([-1.0, 1.0], (RAYS, 1))
+
+
+def anywhere(random: Random, cone: Cone) -> Array:
+    """Places on the side."""
+    share = random.uniform(0.05, 0.95, (RAYS, 1))
+    return np.array(cone.apex) + share * (rim(random, cone) - cone.apex)
+
+
+def at_the_mirror_image(seed: int) -> Rays:
+    """At the other nappe, and past the apex on that side."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
+    for i in range(COUNT):
+        cone = make(random)
+        target = 2 * np.array(cone.apex) - anywhere(random, cone)
+        through = unit(anywhere(random, cone) - target)  # from the mirror image to the cone
+        directions[i] = np.where(random.random((RAYS, 1)) < 0.5, through, ways(random, RAYS))
+        origins[i] = target - random.uniform(0, 9, (RAYS, 1)) * directions[i]
+        shapes.append(cone)
+    return Rays(shapes, origins, directions)
+
+
+NEEDLE, FLAT = (np.degrees(1e-4), np.degrees(1e-4)), (89.94, 89.94)
+
+REGIMES = [
+    Regime("at the apex", partial(at, 11, make, apex, (1e-14, 1e-4)), blur=1e-12),
+    Regime("at the rim", partial(at, 12, make, rim), blur=1e-12),
+    Regime("along a generator", partial(along, 13, make, generator), blur=1e-10),
+    Regime("along a generator, a scene at 1e8", partial(along, 14, make, generator, None, 1e8), blur=1e-10),
+    Regime("nearly along a generator", partial(along, 15, make, generator, (1e-12, 1e-3)), blur=1e-10),
+    Regime("a half-angle of 1e-4", partial(at, 16, partial(make, angle=NEEDLE), anywhere, (1e-6, 1e-5)), blur=1e-6),
+    Regime("a half-angle of 89.94 degrees", partial(at, 17, partial(make, angle=FLAT), anywhere, (1e-3, 1e-1))),
+    Regime("at the mirror image", partial(at_the_mirror_image, 18), blur=1e-10),
+]

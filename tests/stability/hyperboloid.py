@@ -1,0 +1,64 @@
+"""Where a hyperboloid is hard."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from minirt.shapes.hyperboloid import Hyperboloid
+from tests.shapes.regimes import GREY, RAYS, Array, Random, across, unit, ways
+from tests.stability.aims import along, at, axis_of, edge
+from tests.stability.regime import Regime
+
+
+def make(random: Random, waist: float = 0.5) -> Hyperboloid:
+    """A hyperboloid of about size 1 whose waist is such a share of its diameter."""
+    diameter = random.uniform(0.5, 2)
+    point, axis = tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1))
+    return Hyperboloid(point, axis, waist * diameter, diameter, random.uniform(0.5, 2), GREY)
+
+
+def slope(hyperboloid: Hyperboloid) -> float:
+    """How far the side goes outwards for each step along the axis, far away."""
+    return float(np.sqrt(hyperboloid.diameter**2 - hyperboloid.waist**2)) / hyperboloid.height
+
+
+def rim(random: Random, hyperboloid: Hyperboloid) -> Array:
+    middle = np.array(hyperboloid.centre) + hyperboloid.height / 2 * axis_of(hyperboloid)
+    return edge(middle, hyperboloid, hyperboloid.diameter / 2, random)
+
+
+def waist(random: Random, hyperboloid: Hyperboloid) -> Array:
+    return edge(np.array(hyperboloid.centre), hyperboloid, hyperboloid.waist / 2, random)
+
+
+def asymptote(random: Random, hyperboloid: Hyperboloid) -> Array:
+    axis = axis_of(hyperboloid)
+    return unit(axis + slope(hyperboloid) * across(random, axis, RAYS)) * random.choice([-1.0, 1.0], (RAYS, 1))
+
+
+def beside_rulings(seed: int, off: tuple[float, float]) -> object:
+    """Along the straight lines in the surface, a distance in `off` beside them."""
+    rays = along(seed, make, asymptote)
+    random = np.random.default_rng(seed)
+    for shape, origins, directions in zip(rays.shapes, rays.origins, rays.directions, strict=True):
+        axis = axis_of(shape)
+        aside = unit(np.cross(directions, axis))  # such a line leaves the waist at a right angle to its way out
+        start = np.array(shape.centre) + shape.waist / 2 * aside
+        apart = np.exp(random.uniform(*np.log(off), (RAYS, 1))) * random.choice([-1.0, 1.0], (RAYS, 1))
+        origins[:] = start + apart * aside - 5 * directions
+    return rays
+
+
+REGIMES = [
+    Regime("along an asymptote", partial(along, 11, make, asymptote), blur=1e-10),
+    Regime("along an asymptote, a scene at 1e8", partial(along, 12, make, asymptote, None, 1e8), blur=1e-10),
+    Regime("nearly along an asymptote", partial(along, 13, make, asymptote, (1e-12, 1e-3)), blur=1e-10),
+    Regime("along a ruling", partial(beside_rulings, 14, (1e-3, 1e-1))),
+    Regime("closely along a ruling", partial(beside_rulings, 15, (1e-14, 1e-6)), blur=1e-6),
+    Regime("at the rim", partial(at, 16, make, rim), blur=1e-12),
+    Regime("at the waist", partial(at, 17, make, waist)),
+    Regime("a waist of 1e-6 of the diameter", partial(at, 18, partial(make, waist=1e-6), waist, (1e-3, 1e-1))),
+    Regime("a waist as wide as the ends", partial(at, 19, partial(make, waist=1.0), waist, (1e-3, 1e-1))),
+]

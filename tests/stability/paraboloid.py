@@ -1,0 +1,42 @@
+"""Where a paraboloid is hard."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from minirt.shapes.paraboloid import Paraboloid
+from tests.shapes.regimes import GREY, RAYS, Array, Random, ways
+from tests.stability.aims import along, at, axis_of, edge
+from tests.stability.regime import Regime
+
+
+def make(random: Random, height: float = 1.0) -> Paraboloid:
+    """A paraboloid of about size 1, or as much higher."""
+    point, axis = tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1))
+    return Paraboloid(point, axis, random.uniform(0.5, 2), height * random.uniform(0.5, 2), GREY)
+
+
+def vertex(_random: Random, paraboloid: Paraboloid) -> Array:
+    return np.tile(paraboloid.vertex, (RAYS, 1))
+
+
+def rim(random: Random, paraboloid: Paraboloid) -> Array:
+    middle = np.array(paraboloid.vertex) + paraboloid.height * axis_of(paraboloid)
+    return edge(middle, paraboloid, paraboloid.diameter / 2, random)
+
+
+def axis(random: Random, paraboloid: Paraboloid) -> Array:
+    return axis_of(paraboloid) * random.choice([-1.0, 1.0], (RAYS, 1))
+
+
+REGIMES = [
+    Regime("along the axis", partial(along, 11, make, axis), blur=1e-10),
+    Regime("along the axis, a scene at 1e8", partial(along, 12, make, axis, None, 1e8), blur=1e-10),
+    Regime("nearly along the axis", partial(along, 13, make, axis, (1e-12, 1e-3)), blur=1e-10),
+    Regime("at the rim", partial(at, 14, make, rim), blur=1e-12),
+    Regime("at the vertex", partial(at, 15, make, vertex)),
+    Regime("a height of 1e-6", partial(at, 16, partial(make, height=1e-6), rim, (1e-3, 0.3))),
+    Regime("a height of 1e6", partial(at, 17, partial(make, height=1e6), vertex)),
+]
