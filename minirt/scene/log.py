@@ -20,9 +20,9 @@ class Log:
         self.notices: list[Problem] = []
 
     @property
-    def folder(self) -> Path:
-        """Where the ways to the files begin that the scene names."""
-        return Path(self.file).parent
+    def folder(self) -> Path | None:
+        """Where the ways to the files begin that the scene names; None for lines of no file, for which nobody looks."""
+        return Path(self.file).parent if self.file else None
 
     @property
     def full(self) -> bool:

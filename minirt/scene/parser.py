@@ -17,7 +17,7 @@ from minirt.scene.lights import FurtherLight, Light
 from minirt.scene.lines import Line, Word, line_from
 from minirt.scene.log import Log
 from minirt.scene.pages import Item
-from minirt.scene.reading import Slot, assign, cut, fill, identify, look_for_pictures
+from minirt.scene.reading import Slot, assign, cut, fill, identify
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.scene import Scene
 from minirt.scene.spelling import nearest_element
@@ -115,10 +115,7 @@ def read_element(code: str, words: list[Word], first: int, line: Line, log: Log)
             kind = FurtherLight
     slots = assign(kind, words, line, log)
     values = fill(kind, slots, line, log) if slots else None
-    if slots is None or values is None:
-        return None
-    look_for_pictures(kind, slots, values, line, log)
-    return assemble(kind, slots, values, line, log) if len(log.errors) == errors else None
+    return assemble(kind, slots, values, line, log) if slots and values and len(log.errors) == errors else None
 
 
 def assemble(kind: type[Element], slots: list[Slot], values: dict[str, Any], line: Line, log: Log) -> Element | None:

@@ -197,21 +197,22 @@ def value_of(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
     if remark:
         column, length = slot.place(None)
         log.notice(line, column, f"{kind.title} {field.title} {remark}", length)
-    return checked
+    return checked if usable(slot, checked, kind, line, log) else None
 
 
-def look_for_pictures(kind: type[Element], slots: list[Slot], values: dict[str, Any], line: Line, log: Log) -> None:
-    """Finds out which picture files of a line are of no use."""
-    for slot in slots:
-        for name, heights, part in slot.field.pictures(values[slot.field.name]):
-            from minirt.materials import pictures  # numpy, which few scenes need this early
+def usable(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log) -> bool:
+    """Whether the picture files that a value names can be used."""
+    errors = len(log.errors)
+    for name, heights, part in slot.field.pictures(value) if log.folder else ():
+        from minirt.materials import pictures  # with numpy, which few scenes need this early
 
-            try:
-                (pictures.heights if heights else pictures.picture)(log.folder / name)
-            except FileError as error:
-                column, length = slot.place(part)
-                message = f"must be a picture file, got {quoted(name)}: {error.reason}"
-                log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
+        try:
+            (pictures.heights if heights else pictures.picture)(log.folder / name)
+        except FileError as error:
+            column, length = slot.place(part)
+            message = f"must be a picture file, got {quoted(name)}: {error.reason}"
+            log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
+    return len(log.errors) == errors
 
 
 def repair(field: Field, text: str) -> tuple[Any, str] | None:

@@ -1,0 +1,213 @@
+"""Materials, lamps and backgrounds in a scene file: what is read, refused and written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PIL import Image
+
+from minirt.errors import SceneError
+from minirt.materials import Bump, Checker, Glass, Specular
+from minirt.scene import Background, FurtherLight, Light, ParallelLight, Scene, SpotLight, describe, dump, load, parse
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.scene.bad_attributes import BACKGROUNDS, LAMPS, SHAPES, Case
+from tests.scene.examples import AMBIENT, CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, notices, problems, read, scene_with
+
+ABSENT = dict.fromkeys(("specular", "mirror", "glass", "checker", "texture", "bump", "normal_map"))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a picture in it and one in a folder below."""
+    (tmp_path / "below").mkdir()
+    for name in ("a.png", "below/b.png"):
+        Image.new("RGB", (2, 2)).save(tmp_path / name)
+    return tmp_path
+
+
+def attributes(shape: Any) -> dict[str, Any]:
+    """Those of a shape that are not absent."""
+    return {name: value for name in ABSENT if (value := getattr(shape, name)) is not None}
+
+
+@pytest.mark.parametrize(
+    ("words", "values"),
+    [
+        ("", {}),
+        ("specular:0.5,30", {"specular": Specular(0.5, 30.0)}),
+        ("spc:.5,3e1,blinn", {"specular": Specular(0.5, 30.0, blinn=True)}),
+        ("mirror:0.3", {"mirror": 0.3}),
+        ("mir:1", {"mirror": 1.0}),
+        ("mirror:0", {"mirror": 0.0}),
+        ("glass:1.5", {"glass": Glass(1.5, 1.0)}),
+        ("ref:1,0.25", {"glass": Glass(1.0, 0.25)}),
+        ("checker", {"checker": Checker(1.0, (0, 0, 0))}),
+        ("pat", {"checker": Checker(1.0, (0, 0, 0))}),
+        ("checker:2.5", {"checker": Checker(2.5)}),
+        ("pat:2.5,1,2,3", {"checker": Checker(2.5, (1, 2, 3))}),
+        ("mirror:0.3 spc:0.5,30  checker\tglass:2", None),
+        ("checker spc:0.5,30 glass:2 mirror:0.3 # all", None),
+    ],
+)
+@pytest.mark.parametrize("line", [SPHERE, PLANE, CYLINDER])
+def test_every_shape_has_them_in_any_order(line: str, words: str, values: dict[str, Any] | None) -> None:
+    together = {"specular": Specular(0.5, 30.0), "mirror": 0.3, "glass": Glass(2.0), "checker": Checker(1.0)}
+    (plain, shape) = read(line, f"{line} {words}").shapes
+    assert attributes(plain) == {}
+    assert attributes(shape) == (together if values is None else values)
+    assert shape == plain.replace(**attributes(shape))
+    assert hash(shape) == hash(plain.replace(**attributes(shape)))
+    assert notices(f"{line} {words}") == []
+
+
+@pytest.mark.parametrize(("line", "column", "message"), SHAPES + LAMPS + BACKGROUNDS)
+def test_what_is_wrong_is_said_at_its_place(line: str, column: int, message: str) -> None:
+    (problem,) = problems(scene_with(line))
+    assert (problem.line, problem.column, problem.message) == (3, column, message)
+
+
+def test_all_wrong_attributes_of_a_line_are_named_in_one_run() -> None:
+    found = problems(scene_with(f"{SPHERE} mirror:2 zzz:1 glass:0 texture:no.png"))
+    assert [problem.column - len(SPHERE) for problem in found] == [9, 11, 23, 33]
+
+
+def test_a_plane_has_a_normal_and_a_map_of_normals(folder: Path) -> None:
+    (plane,) = parse(scene_with(f"{PLANE} normal:a.png"), folder / "s.rt").scene.planes
+    assert (plane.normal, plane.normal_map) == ((0.0, 1.0, 0.0), "a.png")
+    assert describe(plane) == f"{PLANE} normal:a.png"
+
+
+def test_the_way_to_a_picture_begins_at_the_folder_of_the_scene(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = folder / "s.rt"
+    words = ["texture:a.png", "bump:below/b.png,0.5", "normal:below/../a.png", "bg below/b.png", f"txm:{folder}/a.png"]
+    text = scene_with(*(f"{SPHERE} {each}" for each in words if " " not in each), words[3])
+    path.write_text(text)
+    monkeypatch.chdir("/")
+    scene = load(path).scene
+    a, b, c, d = scene.spheres
+    assert (a.texture, b.bump, c.normal_map) == ("a.png", Bump("below/b.png", 0.5), "below/../a.png")
+    assert d.texture == f"{folder}/a.png"
+    assert scene.background == Background("below/b.png")
+    assert scene.beside("a.png") == folder / "a.png"
+    assert scene.beside(d.texture) == folder / "a.png"
+    assert dump(scene) == text
+    (folder / "below" / "b.png").write_text("no picture")
+    with pytest.raises(SceneError) as caught:
+        load(path)
+    assert [problem.message for problem in caught.value.problems] == [
+        "sphere bump must be a picture file, got 'below/b.png': is not a picture",
+        "background paint must be a picture file, got 'below/b.png': is not a picture",
+    ]
+    assert dump(scene.replace(a, diameter=2.0)) == text.replace("12.6", "2", 1)  # saving needs no pictures
+
+
+def test_a_scene_without_a_file_has_its_pictures_where_the_program_runs(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(folder)
+    scene = read("bg a.png")
+    assert scene.beside("a.png") == Path("a.png")
+
+
+def test_lamps_in_the_order_of_the_file() -> None:
+    scene = read("sl 1,2,3 0,-1,0 40 0.5", "l 0,0,0 1 1,2,3 fade:20", "dl 0,-1,0 0.25 9,8,7", LIGHT)
+    assert scene.lights == (
+        SpotLight((1, 2, 3), (0, -1, 0), 40, 0.5),
+        FurtherLight((0, 0, 0), 1, (1, 2, 3), fade=20.0),
+        ParallelLight((0, -1, 0), 0.25, (9, 8, 7)),
+        Light((-40, 0, 30), 0.7),
+    )
+    spot, further, _, light = scene.lights
+    assert isinstance(spot, SpotLight)
+    assert isinstance(further, Light)
+    assert isinstance(light, Light)
+    assert (spot.rim, spot.fade, further.fade, light.fade) == (0.1, None, 20.0, None)
+    assert [light.brightness for light in scene.lights] == [0.5, 1.0, 0.25, 0.7]
+    assert [light.colour for light in scene.lights] == [(255, 255, 255), (1, 2, 3), (9, 8, 7), (255, 255, 255)]
+
+
+def test_one_background() -> None:
+    assert read().background is None
+    assert read("bg 1,2,3").background == Background((1, 2, 3))
+    (problem,) = problems(scene_with("bg 1,2,3", "bg 1,2,3"))
+    assert (problem.line, problem.message[:19]) == (4, "a second background")
+    assert notices("bg 1.6,2,3", lenient=True)[0][2].startswith("background paint R must be a whole number")
+
+
+@pytest.mark.parametrize(
+    ("before", "changes", "after"),
+    [
+        (SPHERE, {"mirror": 0.5}, f"{SPHERE} mirror:0.5"),
+        (f"{SPHERE}  # ball", {"checker": Checker(2.0)}, f"{SPHERE} checker:2  # ball"),
+        (f"{SPHERE} spc:0.50,30 # a", {"mirror": 0.0}, f"{SPHERE} spc:0.50,30 mirror:0 # a"),
+        (f"{SPHERE} spc:0.50,30 # a", {"specular": Specular(0.5, 40)}, f"{SPHERE} spc:0.5,40 # a"),
+        (f"{SPHERE} spc:0.5,30,blinn", {"specular": Specular(0.5, 30)}, f"{SPHERE} spc:0.5,30"),
+        (f"{SPHERE} glass:1.5 mirror:0.1", {"glass": Glass(1.5, 0.5)}, f"{SPHERE} glass:1.5,0.5 mirror:0.1"),
+        (f"{SPHERE} glass:1.5,1", {"glass": Glass(1.6)}, f"{SPHERE} glass:1.6"),
+        (f"{SPHERE} checker mirror:1 # b", {"checker": Checker(3.0)}, f"{SPHERE} checker:3 mirror:1 # b"),
+        (f"{SPHERE} checker mirror:1 # b", {"diameter": 2.0}, "sp 0,0,20 2 10,0,255 checker mirror:1 # b"),
+        (f"{SPHERE} pat mirror:1 # b", {"checker": None}, f"{SPHERE} mirror:1 # b"),
+        (f"{SPHERE} mirror:0.5   # b", {"mirror": None}, f"{SPHERE}   # b"),
+        (f"{SPHERE} mirror:0.5 checker", {"mirror": None, "checker": None, "glass": Glass(2)}, f"{SPHERE} glass:2"),
+        ("l 0,0,0 1 fade:5", {"colour": (1, 2, 3)}, "l 0,0,0 1 1,2,3 fade:5"),
+        ("l 0,0,0 1", {"fade": 7.0}, "l 0,0,0 1 fade:7"),
+        ("sl 0,0,0 0,-1,0 40 1", {"rim": 0.0}, "sl 0,0,0 0,-1,0 40 1 rim:0"),
+        ("dl 0,-1,0 1 # sun", {"direction": (1.0, 0.0, 0.0)}, "dl 1,0,0 1 # sun"),
+        ("bg 1,2,3", {"paint": (4, 5, 6)}, "bg 4,5,6"),
+    ],
+)
+def test_only_what_changed_is_written(before: str, changes: dict[str, Any], after: str) -> None:
+    scene = read("# one", before, "# two")
+    changed = scene.replace(scene.elements[2], **changes)
+    assert dump(changed) == scene_with("# one", after, "# two")
+    assert parse(dump(changed)).scene.elements == changed.elements
+    assert dump(changed.replace(changed.elements[2], source="")) == scene_with(
+        "# one", describe(changed.elements[2]), "# two"
+    )
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Specular(2, 30), "specular share must be in [0, 1], got 2"),
+        (lambda: Specular(0.5, 0), "specular exponent must be in [1, 1000000], got 0"),
+        (lambda: Glass(0.5), "glass ior must be in [1, 10], got 0.5"),
+        (lambda: Checker(-1), "checker size must be > 0, got -1"),
+        (lambda: Checker(1, (1, 2)), "checker colour must be R,G,B, three numbers, got (1, 2)"),
+        (lambda: Bump("a b"), "bump file must be the name of a picture file, without blanks, commas and #, got 'a b'"),
+        (lambda: Bump("a", 11), "bump strength must be in [-10, 10], got 11"),
+        (
+            lambda: Sphere((0, 0, 0), 1, (0, 0, 0), specular=(0.5, 30)),  # type: ignore[arg-type]
+            "sphere specular must be a Specular, got (0.5, 30)",
+        ),
+        (
+            lambda: Plane((0, 0, 0), (0, 1, 0), (0, 0, 0), normal_map="a#"),
+            "plane normal map must be the name of a picture file, without blanks and #, got 'a#'",
+        ),
+        (
+            lambda: Background("a,b"),
+            "background paint must be the name of a picture file, without blanks, commas and #",
+        ),
+        (lambda: Background((1, 2)), "background paint must be R,G,B, three numbers, got (1, 2)"),  # type: ignore[arg-type]
+    ],
+)
+def test_what_cannot_be_made(make: Any, message: str) -> None:
+    with pytest.raises(ValueError, match=r".") as caught:
+        make()
+    assert str(caught.value).startswith(message)
+
+
+def test_a_shape_without_attributes_keeps_none() -> None:
+    shapes = read(f"{SPHERE} mirror:0.5", SPHERE, f"{SPHERE} # careful ,", " \tsp 0,0,20 1e1 1,2,3").spheres
+    assert [set(vars(shape)) & set(ABSENT) for shape in shapes] == [{"mirror"}, set(), set(), set()]
+    assert Scene([*read().elements, *shapes]).spheres == shapes
+
+
+def test_the_cases_are_those_of_one_line() -> None:
+    cases: list[Case] = SHAPES + LAMPS + BACKGROUNDS
+    assert len({line for line, _, _ in cases}) == len(cases)
+    assert AMBIENT.startswith("A ")
+    assert CAMERA.startswith("C ")
