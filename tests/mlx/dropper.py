@@ -68,7 +68,7 @@ class Dropper:
         xlib.XSetSelectionOwner(self.display, selection, self.window, 0)
         names = b"".join(each.to_bytes(8, sys.byteorder) for each in self.types)
         self.write(self.window, self.atom("XdndTypeList"), 4, 32, names)
-        first = (self.types + [0, 0, 0])[:3]
+        first = [*self.types, 0, 0, 0][:3]
         self.tell("XdndEnter", VERSION << 24 | (len(self.types) > 3), *first)
         root, child = xlib.XDefaultRootWindow(self.display), c_ulong()
         at_x, at_y = c_int(), c_int()
