@@ -16,6 +16,7 @@ from minirt.rendering.sight import Lists, grid_for, seen_by_eye, seen_by_lamp, s
 from minirt.rendering.single import in_single
 from minirt.rendering.tables import Tables
 from minirt.scene import Ambient, Lamp, Light, Scene
+from minirt.shapes import Shape
 
 
 def light_of(source: Ambient | Lamp) -> np.ndarray:
@@ -40,6 +41,12 @@ class Packing:
         self.known: dict[Hashable, Any] = {}  # what was worked out for the last scene, by what it was worked out from
         self.last: tuple[Scene, int, int, Traced] | None = None
 
+    def tables_of(self, shapes: tuple[Shape, ...]) -> Tables:
+        """The arrays of those shapes; what was worked out for others is forgotten."""
+        if self.tables.update(shapes):
+            self.known, self.last = {}, None
+        return self.tables
+
     def pack(self, scene: Scene, width: int, height: int) -> Traced:
         """The scene, seen in a picture of that size."""
         if self.last and self.last[0] is scene and self.last[1:3] == (width, height):
@@ -53,9 +60,8 @@ class Packing:
     def traced(self, scene: Scene, width: int, height: int) -> Traced:
         """The same in double precision, anew."""
         self.kernel = self.kernel or import_module("minirt.kernel.jit_lists")
-        tables = self.tables
-        before = {} if tables.update(scene.shapes) else self.known
-        self.known = {}
+        tables = self.tables_of(scene.shapes)
+        before, self.known = self.known, {}
 
         def keep(key: Hashable, work: Callable[..., Any], *given: Any) -> Any:
             self.known[key] = before[key] if key in before else work(*given)

@@ -27,7 +27,7 @@ from minirt.shapes import Shape
 PRECISIONS = ("double", "single")
 NO_LINEAR = np.zeros((0, 0, 3))
 ALL_PACKETS = np.zeros((0, 0), np.uint8)
-PATIENCE = 0.05  # seconds that somebody who clicks waits for a picture
+PATIENCE, TRIES = 0.05, 4  # seconds that somebody who clicks waits for a picture, and how often
 GOLDEN = (5**0.5 - 1) / 2
 
 
@@ -77,7 +77,8 @@ class Renderer:
     @property
     def about(self) -> list[str]:
         """How the last picture was made, and what it does without, in words."""
-        return [f"{self.threads} threads, {self.precision} precision", *self.packing.notes]
+        with self.busy:
+            return [f"{self.threads} threads, {self.precision} precision", *self.packing.notes]
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether the kernel for the kinds of shapes of this scene is there."""
@@ -182,16 +183,17 @@ class Renderer:
         self.not_finite = int(sum(each.memory[-1, 1] for each in own))
 
     def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
-        """What a pixel of a picture shows, see `minirt.rendering.pick`; a picture that is being made gives way."""
-        while not self.busy.acquire(timeout=PATIENCE):
+        """What a pixel of a picture shows, see `minirt.rendering.pick`. A picture that is being made gives way; where
+        there is something else to wait for, such as the compiler, this is done without what is known of the scene."""
+        find: Callable[..., Shape | None] = import_module("minirt.rendering.pick").pick
+        for _ in range(TRIES):
+            if self.busy.acquire(timeout=PATIENCE):
+                try:
+                    return find(scene, width, height, x, y, self.packing.tables_of(scene.shapes))
+                finally:
+                    self.busy.release()
             self.cancel()
-        try:
-            found: Shape | None = import_module("minirt.rendering.pick").pick(
-                scene, width, height, x, y, self.packing.tables
-            )
-        finally:
-            self.busy.release()
-        return found
+        return find(scene, width, height, x, y)
 
     def cancel(self) -> None:
         """From any thread: the picture that is being made ends soon, half-made."""

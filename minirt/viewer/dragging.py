@@ -19,6 +19,7 @@ from minirt.viewer.motion import WORLD, handedness, limited, looked, orbited, ro
 from minirt.viewer.state import State, named
 
 MIDDLE = 0.5  # of a pixel
+DRAG = ("drag", 0.0)  # kind and time of its changes: for the undo no time goes by in it
 TURN = 180.0  # degrees: a drag over the shorter side of the picture
 
 
@@ -56,7 +57,7 @@ def move(state: State, held: Grip, x: int, y: int) -> State:
     else:
         way = minus(under(held, x, y, held.point), under(held, held.x, held.y, held.point))
     moved, met = translated(held.element, way, 1.0)
-    state = state.put(moved, "drag", 0.0, lasting=True)
+    state = state.put(moved, *DRAG)
     return state.say("the end of the range: no further") if met else state
 
 
@@ -74,18 +75,17 @@ def turn(state: State, held: Grip, x: int, y: int) -> State:
     right, down = angles(held, x, y)
     axis = WORLD.get(state.frame)
     if axis:
-        return state.put(rotated(held.element, axis, right), "drag", 0.0, lasting=True)
+        return state.put(rotated(held.element, axis, right), *DRAG)
     across, up, _ = view(held.camera)
     hand = handedness(held.camera)
-    turned = rotated(rotated(held.element, up, right * hand), across, down * hand)
-    return state.put(turned, "drag", 0.0, lasting=True)
+    return state.put(rotated(rotated(held.element, up, right * hand), across, down * hand), *DRAG)
 
 
 def look(state: State, held: Grip, x: int, y: int) -> State:
     """Turn the camera so that far things follow the pointer."""
     step = held.camera.fov / held.lens.width
     camera = looked(held.camera, (held.x - x) * step, (y - held.y) * step)
-    return state.put_camera(camera, "drag", 0.0, lasting=True)
+    return state.put_camera(camera, *DRAG)
 
 
 def orbit(state: State, held: Grip, x: int, y: int) -> State:
@@ -94,7 +94,7 @@ def orbit(state: State, held: Grip, x: int, y: int) -> State:
     around = None if isinstance(held.element, Camera) else ball(held.element)
     pivot = around[0] if around else middle_of(state.scene)
     right, down = angles(held, x, y)
-    return state.put_camera(orbited(held.camera, pivot, right, -down), "drag", 0.0, lasting=True)
+    return state.put_camera(orbited(held.camera, pivot, right, -down), *DRAG)
 
 
 def pan(state: State, held: Grip, x: int, y: int) -> State:
@@ -102,9 +102,7 @@ def pan(state: State, held: Grip, x: int, y: int) -> State:
     ahead = mix(1.0, held.camera.position, state.size, held.camera.direction)
     point = held.point or ahead
     way = minus(under(held, held.x, held.y, point), under(held, x, y, point))
-    return state.put_camera(
-        held.camera.replace(position=limited(mix(1.0, held.camera.position, 1.0, way))), "drag", 0.0, lasting=True
-    )
+    return state.put_camera(held.camera.replace(position=limited(mix(1.0, held.camera.position, 1.0, way))), *DRAG)
 
 
 def angles(held: Grip, x: int, y: int) -> tuple[float, float]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from minirt.errors import SceneError
 from minirt.scene import Scene, load, save
+from minirt.viewer.chords import shown
 from minirt.viewer.disk import Disk, signature
 from minirt.viewer.files import differ, keep, recover, summary
 from minirt.viewer.state import MOST, Moment, State, opened
@@ -15,7 +16,7 @@ from minirt.viewer.state import MOST, Moment, State, opened
 if TYPE_CHECKING:
     from minirt.viewer.session import Session
 
-UNSAVED = "{} was changed by another program: Ctrl+R reads it, Ctrl+S saves yours and keeps the other as a copy"
+UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and keeps the other as a copy"
 
 
 def save_scene(session: Session) -> None:
@@ -41,7 +42,7 @@ def file_changed(session: Session) -> None:
     While the file is wrong the last picture stays.
     """
     if differ(session.state.scene, session.saved):
-        session.screen.banner = UNSAVED.format(session.path.name)
+        session.screen.banner = UNSAVED.format(session.path.name, shown("Ctrl+R"), shown("Ctrl+S"))
         return
     try:
         read(session, keep_camera=True)

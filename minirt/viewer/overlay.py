@@ -53,6 +53,8 @@ def draw_hud(pixels: Pixels, state: State, shown: Outcome | None, level: Level, 
     place = f"{state.selected + 1} of {len(state.scene.elements)}    {len(state.past)} to undo"
     write(pixels, MARGIN, wrapped(f"{line(state)}\n{keys}    {place}", width, size), INK, size)
     made = wrapped("\n".join((*shown.about, status(shown, rate))), width, size) if shown else ""
+    room = pixels.shape[0] // 2 // measure(" ", size)[1]  # lines of half of the window
+    made = "\n".join(made.split("\n")[-max(room, 1) :])
     if made:
         write(pixels, -MARGIN, made, INK, size)
     return measure(made, size)[1] + 2 * PADDING if made else 0

@@ -146,7 +146,7 @@ def paint(renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: W
         done = make(job.scene, pixels, job.samples, is_wanted=is_wanted)
     except Exception as error:  # whatever it is, it is raised where the program is run, not here
         return Outcome(job, error=error)
-    return Outcome(job, pixels if done else None, about=() if job.urgent else tuple(renderer.about))
+    return Outcome(job, pixels if done else None, about=tuple(renderer.about) if done and not job.urgent else ())
 
 
 def preview(renderer: Renderer, job: Job) -> Outcome:

@@ -52,11 +52,6 @@ class Pictures:
         return errors
 
     @property
-    def settled(self) -> bool:
-        """Whether the latest picture is of what was asked for last, and nothing moves."""
-        return self._answered is not None and not self._answered.job.urgent
-
-    @property
     def _answered(self) -> Outcome | None:
         """The latest picture, where it is what was asked for last and no preview of it."""
         latest = self.latest

@@ -83,7 +83,7 @@ class Session:
             m.mlx_hook(self.win, event, 0, without_parameter(hook), None)
         m.mlx_text_hook(self.win, without_parameter(self.on_press))
         m.mlx_drop_hook(self.win, without_parameter(self.on_drop))
-        m.mlx_resize_hook(self.win, without_parameter(lambda _width, _height: self.update()))
+        m.mlx_resize_hook(self.win, without_parameter(self.on_resize))
         m.mlx_wake_hook(mlx, without_parameter(self.on_wake))
         self.watch()
 
@@ -121,6 +121,11 @@ class Session:
             self.complain(error)
         self.guarded(Session.take_screenshot)
         self.draw()
+        self.update()
+
+    def on_resize(self, _width: int, _height: int) -> None:
+        """Another picture: what is under the pointer is something else now."""
+        self.mouse.let_go()
         self.update()
 
     def on_drop(self, file: str) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from math import inf
 from operator import indexOf
 from typing import Any
 
@@ -51,7 +50,7 @@ class State:
     kind: int = 0  # index into the kinds that can be added, of the last one that was
     past: tuple[Moment, ...] = field(default=(), repr=False)  # oldest first
     future: tuple[Moment, ...] = field(default=(), repr=False)  # furthest first
-    recent: tuple[str, float] | None = None  # the kind of the last change, and until when more of it is merged with it
+    recent: tuple[str, float] | None = None  # kind and time of the last change, while more may be merged with it
 
     @property
     def element(self) -> Element:
@@ -81,28 +80,26 @@ class State:
         """What follows is undone by itself."""
         return replace(self, recent=None)
 
-    def change(self, scene: Scene, kind: str, now: float, selected: int | None = None, lasting: bool = False) -> State:
-        """Another scene; `kind` tells which changes may be undone together: for a while, or while nothing else happens
-        where that is `lasting`. With no kind that is so for no other."""
-        same = bool(kind) and self.recent is not None and self.recent[0] == kind and now <= self.recent[1]
+    def change(self, scene: Scene, kind: str, now: float, selected: int | None = None) -> State:
+        """Another scene; `kind` tells which changes may be undone together. With none that is so for no other."""
+        same = bool(kind) and self.recent is not None and self.recent[0] == kind and now - self.recent[1] <= MERGE
         past = self.past if same else (*self.past[1 - MOST :], Moment(self.scene.lighten(), self.selected))
         chosen = self.selected if selected is None else selected
-        until = inf if lasting else now + MERGE
-        return replace(self, scene=scene, selected=chosen, past=past, future=(), recent=(kind, until))
+        return replace(self, scene=scene, selected=chosen, past=past, future=(), recent=(kind, now))
 
-    def put(self, element: Element, kind: str, now: float, lasting: bool = False) -> State:
+    def put(self, element: Element, kind: str, now: float) -> State:
         """`element` in the place of the selected one, with round numbers where they are new."""
         element = neat(self.element, element, self.stride)
         if element == self.element:
             return self
-        return self.change(self.scene.edit(self.selected, element), kind, now, lasting=lasting)
+        return self.change(self.scene.edit(self.selected, element), kind, now)
 
-    def put_camera(self, camera: Camera, kind: str, now: float, lasting: bool = False) -> State:
+    def put_camera(self, camera: Camera, kind: str, now: float) -> State:
         """That camera in the place of the scene's, likewise."""
         camera = neat(self.scene.camera, camera, self.stride)
         if camera == self.scene.camera:
             return self
-        return self.change(self.scene.replace(self.scene.camera, camera), kind, now, lasting=lasting)
+        return self.change(self.scene.replace(self.scene.camera, camera), kind, now)
 
 
 def opened(scene: Scene) -> State:

@@ -54,5 +54,5 @@ def add(way: int, state: State, _amount: float, now: float) -> State:
     number, element = next((number, element) for number, element in found if element)
     last = len(before.scene.elements) - 1
     scene = before.scene.edit(last, before.scene.elements[last], element)
-    added = replace(replace(before, value=0).change(scene, ADDED, now, last + 1, lasting=True), kind=number)
+    added = replace(replace(before, value=0).change(scene, ADDED, now, last + 1), kind=number)
     return added.say(f"a new {element.title}; again for another kind: {number + 1} of {len(known)}")

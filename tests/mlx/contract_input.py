@@ -176,3 +176,18 @@ def the_pointer_enters_and_leaves(stage: Stage) -> None:
         user.leave()
 
     stage.play(acts)
+
+
+@scenario(["drop", "/tmp/a scene.rt"], ["drop", "/tmp/caf\u00e9.rt"], ["end"])
+def dropped_files(stage: Stage) -> None:
+    """One by one, under their own names; and no more when nobody asks."""
+    stage.m.mlx_drop_hook(stage.win, lambda file, name: stage.note(name, file), "drop")
+
+    def acts(user: User) -> None:
+        user.drop("/tmp/a scene.rt", "/tmp/caf\u00e9.rt")
+        user.until(lambda: len(stage.log) == 2)
+        user.then(lambda: stage.m.mlx_drop_hook(stage.win, None))
+        user.drop("/tmp/a scene.rt")
+        user.then(lambda: stage.note("end"))
+
+    stage.play(acts)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import threading
 import time
 from typing import TYPE_CHECKING
@@ -70,6 +71,9 @@ class ScreenUser(User):
 
     def click(self, x: int, y: int, button: int = 1) -> None:
         self._desktop.click(self._id, x, y, button)
+
+    def drop(self, *files: str) -> None:
+        self._desktop.run(sys.executable, "-m", "tests.mlx.dropper", str(self._id), "20", "20", "3", *files)
 
     def enter(self) -> None:
         self._desktop.move(self._id, 50, 50)

@@ -41,6 +41,10 @@ class User(ABC):
     def click(self, x: int, y: int, button: int = 1) -> None: ...
 
     @abstractmethod
+    def drop(self, *files: str) -> None:
+        """Drag files from elsewhere to the window and let them go."""
+
+    @abstractmethod
     def enter(self) -> None: ...
 
     @abstractmethod
@@ -114,6 +118,9 @@ class MemoryUser(User):
             self._memory.scroll(0, x, y, self._stage.win, right={6: -1, 7: 1}[button])
         else:
             self._memory.click(x, y, button, self._stage.win)
+
+    def drop(self, *files: str) -> None:
+        self._memory.drop(*files, window=self._stage.win)
 
     def enter(self) -> None:
         self._inside = True

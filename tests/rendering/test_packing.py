@@ -110,6 +110,18 @@ def test_after_an_edit_the_arrays_are_those_of_the_new_scene(edit: Any) -> None:
             assert_same(keeper.pack(scene, 24, 16), scene)
 
 
+def test_who_looks_at_the_arrays_of_another_scene_does_no_harm() -> None:
+    edited = ALL.replace(ALL.spheres[0], centre=(0, 3, 2))
+    keeper = Packing()
+    for scene, other in ((ALL, edited), (edited, ALL), (ALL, edited)):
+        keeper.pack(scene, 24, 16)
+        assert keeper.tables_of(other.shapes).shapes == other.shapes
+        assert keeper.notes == []
+        assert_same(keeper.pack(other, 24, 16), other)
+        keeper.tables_of(scene.shapes)
+        assert_same(keeper.pack(other, 24, 16), other)
+
+
 def test_pictures_follow_edits() -> None:
     # One renderer keeps its arrays from picture to picture; another starts anew.
     scene = ALL

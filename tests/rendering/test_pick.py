@@ -73,6 +73,14 @@ def test_who_clicks_does_not_wait_for_a_long_picture() -> None:
     assert not renderer.busy.locked()
 
 
+def test_who_clicks_does_not_wait_for_the_compiler() -> None:
+    scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Sphere((0, 0, 5), 1, (1, 2, 3))))
+    renderer = Renderer()
+    renderer.busy.acquire()
+    assert renderer.pick(scene, 11, 11, 5, 5) is scene.shapes[0]
+    assert renderer.busy.locked()
+
+
 def test_where_nothing_is_nothing_is_hit() -> None:
     assert pick(Scene((Camera((0, 0, 0), (0, 0, 1), 60),)), 10, 10, 5, 5) is None
     ball, wall = Sphere((0, 0, 5), 1, (1, 2, 3)), Plane((0, 0, -3), (0, 0, 1), (1, 2, 3))

@@ -45,6 +45,8 @@ def command(window: int, text: str) -> list[str]:
             (x, y), (to_x, to_y) = (map(int, place.split(",")) for place in (start, end))
             moves = [*at, str((x + to_x) // 2), str((y + to_y) // 2), "sleep", "0.02", *at, str(to_x), str(to_y)]
             found = [*at, str(x), str(y), "mousedown", number, *moves, "sleep", "0.02", "mouseup", number]
+        case ["wait", seconds]:
+            found = ["sleep", seconds]
         case ["resize", size]:
             found = ["windowsize", str(window), *size.split("x")]
         case _:

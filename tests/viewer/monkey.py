@@ -57,8 +57,10 @@ def lines(chance: random.Random) -> Iterator[str]:
         for _ in range(1 if binding.action in SELDOM else 5)
     ]
 
+    width, height = SIZE
+
     def place() -> str:
-        return f"{chance.randrange(SIZE[0])},{chance.randrange(SIZE[1])}"
+        return f"{chance.randrange(width)},{chance.randrange(height)}"  # beside it is what belongs to others
 
     while True:
         kind = chance.random()
@@ -74,7 +76,8 @@ def lines(chance: random.Random) -> Iterator[str]:
         elif kind < 0.95:
             yield f"wheel {chance.choice(['up', 'down'])} {chance.randint(1, 4)}"
         else:
-            yield f"resize {chance.randint(1, 400)}x{chance.randint(1, 300)}"
+            width, height = chance.randint(1, 400), chance.randint(1, 300)
+            yield from (f"resize {width}x{height}", "wait 0.3")
 
 
 def memory(process: subprocess.Popen[str]) -> int:

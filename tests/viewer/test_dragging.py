@@ -160,6 +160,7 @@ def dragging() -> Bench:
     [
         lambda memory: memory.button_release(1, 40, 20),
         lambda memory: memory.focus(False),
+        lambda memory: memory.resize(80, 60),
         lambda memory: memory.tap(Key.CONTROL_L, Key.Z),
         lambda memory: memory.tap(Key.DELETE),
         lambda memory: memory.button_press(3, 1, 1),

@@ -13,9 +13,11 @@ from minirt.viewer.lens import lens
 from minirt.viewer.marks import AXES, GOLD, blue_first, draw_line
 from minirt.viewer.outline import rims
 from minirt.viewer.overlay import letters
+from minirt.viewer.painter import paint
 from minirt.viewer.state import Frame
 from tests.random_scenes import random_scene
 from tests.viewer.fake import TEXT, colour_of, played
+from tests.viewer.test_session import Bench
 
 WIDTH, HEIGHT = 160, 90
 GOLDEN = np.array(blue_first(GOLD), np.uint8)
@@ -75,8 +77,6 @@ def test_the_selected_shape_has_an_outline_and_the_picture_has_none() -> None:
 
 
 def test_the_outline_is_that_of_the_picture_while_another_is_on_its_way() -> None:
-    from tests.viewer.test_session import Bench
-
     bench = Bench()
     bench.session.pick = lambda scene, *_: scene.spheres[0]
     bench.finish(0.001)
@@ -88,6 +88,26 @@ def test_the_outline_is_that_of_the_picture_while_another_is_on_its_way() -> Non
     assert np.array_equal(bench.memory.screenshot(), before)
     bench.finish(0.001)
     assert not np.array_equal(bench.memory.screenshot(), before)
+
+
+def test_the_outline_is_that_of_the_picture_when_an_older_one_comes() -> None:
+    bench = Bench()
+    bench.session.pick = lambda scene, *_: scene.spheres[0]
+    bench.finish(0.001)
+    bench.memory.resize(WIDTH, HEIGHT)
+    bench.memory.click(80, 45)
+    bench.memory.text("+")
+    bench.memory.play()
+    (older,) = bench.painter.open
+    bench.memory.text("+" * 9)
+    bench.memory.play()
+    bench.painter.outcomes.append(paint(bench.painter.renderer, older))
+    bench.painter.notify()
+    bench.memory.play()
+    assert bench.session.pictures.latest.job is older
+    assert bench.session.state.scene is not older.scene
+    outside, _ = edges(older.scene.spheres[0], older.scene.camera)
+    assert golden(bench.session)[outside][40:].all()
 
 
 @pytest.mark.parametrize(("presses", "frame"), [(1, Frame.X), (2, Frame.Y), (3, Frame.Z)])

@@ -56,6 +56,23 @@ def test_the_hud_leaves_the_middle_free():
     assert changed[-10 - taken : -5 - taken].any()
 
 
+def test_many_notes_leave_half_of_the_window_free():
+    pixels = blank()
+    shown = Outcome(Job(scene(), 640, 480), about=tuple(f"plane {n} hides nothing from light 1" for n in range(99)))
+    draw_hud(pixels, opened(scene()), shown, Level.ALL, 0.0, 16)
+    assert (pixels[80:200] == 255).all()
+    assert (pixels[260:460] != 255).any(axis=(1, 2)).all()
+
+
+def test_a_line_is_one_line():
+    pixels = blank()
+    assert draw_hud(pixels, opened(scene()), Outcome(Job(scene(), 640, 480)), Level.LINE, 0.0, 16) == 0
+    changed = (pixels != 255).any(axis=(1, 2))
+    assert changed[:20].any()
+    assert not changed[40:].any()
+    assert draw_hud(blank(), opened(scene()), None, Level.NOTHING, 0.0, 16) == 0
+
+
 def test_a_message_is_wrapped_and_stands_above_the_status():
     pixels = blank(300, 200)
     draw_message(pixels, "a very long message " * 10, 27, 16)

@@ -11,6 +11,7 @@ from pyglet.window import mouse as pyglet_mouse
 
 from minirt.mlx.events import Button, Event
 from minirt.mlx.keys import Key, Modifier
+from minirt.mlx.on_pyglet.dropping import mend
 from minirt.mlx.on_pyglet.picture import Picture
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ class NativeWindow:
             file_drops=True,
             vsync=False,  # a hidden window may be flipped once a second: never wait for it
         )  # fmt: skip
+        mend(self.pyglet)
         self.pyglet.push_handlers(self)
         self._picture = Picture()
         self.on_resize(window.width, window.height)

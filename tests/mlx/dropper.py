@@ -1,0 +1,95 @@
+"""Drops files on a window of X11, as a file manager does it (XDND, version 5).
+
+python -m tests.mlx.dropper WINDOW x y TYPES FILE...        # TYPES: how many are offered
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from ctypes import POINTER, c_int, c_ulong, cast, create_string_buffer
+from pathlib import Path
+from typing import Any
+
+from pyglet.libs.x11 import xlib
+
+VERSION = 5
+PATIENCE = 10.0  # seconds for the whole of it
+
+
+class Dropper:
+    """A window without a face that owns what is dragged."""
+
+    def __init__(self, target: int, types: int) -> None:
+        self.display = xlib.XOpenDisplay(None)
+        root = xlib.XDefaultRootWindow(self.display)
+        self.window = xlib.XCreateSimpleWindow(self.display, root, 0, 0, 1, 1, 0, 0, 0)
+        self.target = target
+        self.end = time.monotonic() + PATIENCE
+        self.types = [self.atom(f"text/x-test-{n}") for n in range(types - 1)] + [self.atom("text/uri-list")]
+
+    def atom(self, name: str) -> int:
+        return int(xlib.XInternAtom(self.display, name.encode(), 0))
+
+    def tell(self, name: str, *data: int) -> None:
+        """Send a message to the target."""
+        event = xlib.XEvent()
+        event.xclient.type = xlib.ClientMessage
+        event.xclient.display = cast(self.display, POINTER(xlib.Display))
+        event.xclient.window = self.target
+        event.xclient.message_type = self.atom(name)
+        event.xclient.format = 32
+        for index, value in enumerate((self.window, *data)):
+            event.xclient.data.l[index] = value
+        xlib.XSendEvent(self.display, self.target, 0, 0, event)
+        xlib.XFlush(self.display)
+
+    def next(self, kind: int) -> Any:
+        """The next event of that kind."""
+        event = xlib.XEvent()
+        while time.monotonic() < self.end:
+            if xlib.XPending(self.display):
+                xlib.XNextEvent(self.display, event)
+                if event.type == kind:
+                    return event
+            else:
+                time.sleep(0.01)
+        raise TimeoutError(f"no event {kind}")
+
+    def write(self, window: int, name: int, kind: int, bits: int, data: bytes) -> None:
+        """Set a property of a window."""
+        count = len(data) * 8 // (64 if bits == 32 else bits)  # numbers of 32 bits are longs here
+        buffer = cast(create_string_buffer(data), POINTER(xlib.c_ubyte))
+        xlib.XChangeProperty(self.display, window, name, kind, bits, 0, buffer, count)
+
+    def drop(self, x: int, y: int, files: list[str]) -> None:
+        """Drag the files to x, y of the window and let them go."""
+        selection = self.atom("XdndSelection")
+        xlib.XSetSelectionOwner(self.display, selection, self.window, 0)
+        names = b"".join(each.to_bytes(8, sys.byteorder) for each in self.types)
+        self.write(self.window, self.atom("XdndTypeList"), 4, 32, names)
+        first = [*self.types, 0, 0, 0][:3]
+        self.tell("XdndEnter", VERSION << 24 | (len(self.types) > 3), *first)
+        root, child = xlib.XDefaultRootWindow(self.display), c_ulong()
+        at_x, at_y = c_int(), c_int()
+        xlib.XTranslateCoordinates(self.display, self.target, root, x, y, at_x, at_y, child)
+        self.tell("XdndPosition", 0, at_x.value << 16 | at_y.value, 0, self.atom("XdndActionCopy"))
+        status = self.next(xlib.ClientMessage)
+        if not status.xclient.data.l[1] & 1:
+            raise SystemExit("refused")
+        self.tell("XdndDrop", 0, 0)
+        request = self.next(xlib.SelectionRequest).xselectionrequest
+        uris = "".join(f"{Path(file).as_uri()}\r\n" for file in files).encode()
+        self.write(request.requestor, request.property, request.target, 8, uris)
+        answer = xlib.XEvent()
+        answer.xselection.type = xlib.SelectionNotify
+        answer.xselection.requestor, answer.xselection.selection = request.requestor, request.selection
+        answer.xselection.target, answer.xselection.property = request.target, request.property
+        xlib.XSendEvent(self.display, request.requestor, 0, 0, answer)
+        xlib.XSync(self.display, 0)
+        time.sleep(0.2)  # what is written goes when its owner does
+
+
+if __name__ == "__main__":
+    window, x, y, types = map(int, sys.argv[1:5])
+    Dropper(window, types).drop(x, y, sys.argv[5:])
