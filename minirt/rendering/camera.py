@@ -31,11 +31,13 @@ def pixel_rays(camera: np.ndarray, width: int, height: int) -> np.ndarray:
 
 def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:
     """For each sample of a pixel, (k, 3 * width): the directions of the rays of a packet as differences from the one
-    through its upper left corner."""
+    through its upper left corner. `samples` are places in the pixel: (k, 2), or (k, width, 2) where each pixel of a
+    packet has places of its own."""
     count = width(rays)
     lane = np.arange(count)
-    x = lane % (count // DOWN) + samples[:, :1]
-    y = lane // (count // DOWN) + samples[:, 1:]
+    places = samples.reshape(len(samples), -1, 2)
+    x = lane % (count // DOWN) + places[..., 0]
+    y = lane // (count // DOWN) + places[..., 1]
     across, down = rays[6:9], rays[9:]
     differences = x[:, None] * across[:, None] + y[:, None] * down[:, None]
     packed: np.ndarray = differences.reshape(len(samples), 3 * count).astype(rays.dtype)

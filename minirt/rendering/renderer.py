@@ -8,6 +8,7 @@ from functools import cached_property
 from importlib import import_module
 from itertools import takewhile
 from threading import Lock
+from time import perf_counter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,9 +19,12 @@ from minirt.kernel import lists
 from minirt.kernel.frame import CANCELLED, DOWN, TILE
 from minirt.lanes import width
 from minirt.rendering.adaptive import edge_packets
+from minirt.rendering.auto import Auto
 from minirt.rendering.camera import packet_rays
 from minirt.rendering.cores import usable_cores
 from minirt.rendering.helper import Helper
+from minirt.rendering.reached import Reached
+from minirt.rendering.replicates import levels
 from minirt.scene import Scene
 
 PRECISIONS = ("double", "single")
@@ -46,6 +50,7 @@ class Renderer:
         self.precision = precision
         self.next_row = np.zeros(1, np.int64)
         self.known: set[frozenset[type]] = set()  # kinds of shapes that there is a kernel for
+        self.cancels = 0
         self.busy = Lock()
         self.helper = Helper()
 
@@ -149,6 +154,39 @@ class Renderer:
         self.known.add(kinds_of(scene))
         return bool(counter[0] < CANCELLED)
 
+    def reach(
+        self, scene: Scene, pixels: np.ndarray, error: float, seconds: float, linear: np.ndarray | None = None
+    ) -> Reached | None:
+        """Render into `pixels` and `linear`, as `render` does, until the estimated error is as small or as many
+        seconds have passed, see `minirt.rendering.auto`. None where `cancel` ended it early; then they are as before.
+        """
+        with self.busy:
+            height, across, _ = pixels.shape
+            if not scene.shapes or not pixels.size:
+                self.draw(scene, pixels, 1, NO_LINEAR, False, lambda: True)
+                return Reached(0.0, 0, 0.0, 0.0)
+            start, cancels = perf_counter(), self.cancels
+            traced = self.packing.pack(scene, across, height)
+            given = frame_arguments(traced, np.empty_like(pixels))
+
+            def draw(places: np.ndarray, packets: np.ndarray, light: np.ndarray) -> bool:
+                self.next_row = counter = np.zeros(1, np.int64)
+                if self.cancels != cancels:
+                    return False
+                rays = packet_rays(traced.camera, places)
+                self.run(given._replace(next_row=counter, rays=rays, wanted=packets.view(np.uint8), linear=light))
+                return bool(counter[0] < CANCELLED)
+
+            auto = Auto(draw, height, across, width(traced.camera) // DOWN)
+            reached = auto.reach(error, seconds - (perf_counter() - start))
+            self.known.add(kinds_of(scene))
+            if reached:
+                light = auto.halves.light
+                pixels[...] = levels(light)
+                if linear is not None:
+                    linear[...] = light
+            return reached and reached._replace(seconds=perf_counter() - start)
+
     def run(self, given: Frame) -> None:
         """The same frame on all threads, which share its rows; an error of any thread is raised.
 
@@ -169,6 +207,7 @@ class Renderer:
 
     def cancel(self) -> None:
         """From any thread: the picture that is being made ends soon, half-made."""
+        self.cancels += 1  # for a picture between two frames
         self.next_row[0] = CANCELLED
 
 
