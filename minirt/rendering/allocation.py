@@ -15,30 +15,25 @@ from minirt.rendering.replicates import Replicates
 
 FALL = 1.5  # squared error falls as this power of the number of samples
 FASTEST = 2  # doublings in a round, after which more is known
+PRIOR = 4.0
 SEARCH = 24  # halvings of the interval of prices
 
 
-def coefficients(halves: Replicates, doublings: np.ndarray, goal: float) -> np.ndarray:
-    """c for every packet with 2^doublings samples; `goal` is the mean of squares that is wanted."""
-    fallen = 2.0 ** (FALL * doublings)
+def coefficients(halves: Replicates, doublings: np.ndarray, contrast: np.ndarray) -> np.ndarray:
+    """c for every packet with 2^doublings samples and of some class of contrast."""
+    fallen, samples = 2.0 ** (FALL * doublings), 2.0**doublings
     own = 2 * halves.guides * fallen
-    samples = 2.0**doublings
-    seen = (samples * own + beside(own)) / (samples + 1)
-    quiet = seen < goal * halves.judged / halves.judges.size * fallen
-    overlooked = np.zeros(own.shape)
-    for each in np.unique(doublings[quiet]):
-        group = quiet & (doublings == each)
-        overlooked[group] = 2 * halves.judges[group].mean() * 2.0 ** (FALL * each)
-    return seen + overlooked
+    alike = 2 * mean_of_alike(halves.judges, doublings * 100 + contrast) * fallen
+    known: np.ndarray = (samples * own + PRIOR * alike) / (samples + PRIOR)
+    return known
 
 
-def beside(values: np.ndarray) -> np.ndarray:
-    """The mean of the eight neighbours of each; those outside are 0."""
-    rows, columns = values.shape
-    padded = np.pad(values, 1)
-    lines = padded[:, :-2] + padded[:, 1:-1] + padded[:, 2:]
-    around: np.ndarray = (lines[:-2] + lines[1:-1] + lines[2:] - values) / 8
-    return around
+def mean_of_alike(values: np.ndarray, kinds: np.ndarray) -> np.ndarray:
+    """For each value the mean of all of its kind."""
+    _, members, counts = np.unique(kinds.ravel(), return_inverse=True, return_counts=True)
+    means = np.bincount(members, values.ravel()) / counts
+    found: np.ndarray = means[members].reshape(values.shape)
+    return found
 
 
 def allocate(c: np.ndarray, doublings: np.ndarray, share: float, most: int, budget: float) -> np.ndarray:

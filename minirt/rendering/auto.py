@@ -9,6 +9,7 @@ from time import perf_counter
 import numpy as np
 
 from minirt.kernel.frame import DOWN
+from minirt.rendering.adaptive import edge_packets
 from minirt.rendering.allocation import allocate, coefficients
 from minirt.rendering.reached import Reached
 from minirt.rendering.replicates import Replicates
@@ -18,6 +19,7 @@ Draw = Callable[[np.ndarray, np.ndarray, np.ndarray], bool]  # places, packets, 
 
 CLASSES = 8  # of packets, each with shifts of its own: what an edge along a row of pixels meets
 MOST = 15  # doublings of the samples of each half
+LEVELS = (1, 4, 16, 64)
 AIM = 0.95  # of the square of an error: what is aimed at, so that it need not be tried again
 LEAST_SHARE = 0.25  # of the sum of squares, which is left by a round
 SPENT = 0.5  # of the time that is left, by a round
@@ -26,8 +28,9 @@ SPENT = 0.5  # of the time that is left, by a round
 class Auto:
     """A picture in both halves, and how many samples each packet has."""
 
-    def __init__(self, draw: Draw, height: int, width: int, across: int) -> None:
-        self.draw = draw
+    def __init__(self, draw: Draw, pixels: np.ndarray, across: int) -> None:
+        self.draw, self.pixels = draw, pixels
+        height, width, _ = pixels.shape
         self.halves = Replicates(height, width, across)
         self.doublings = np.full(self.halves.packets, -1)  # a packet has 2^doublings samples in each half
         self.shifts = digital_shifts(2, CLASSES, DOWN * across)
@@ -49,7 +52,7 @@ class Auto:
                 break
             budget = SPENT * (end - now) / (now - before) * spent if seconds < inf else inf
             goal = max(AIM * error**2, LEAST_SHARE * squared)
-            c = coefficients(self.halves, self.doublings, goal)
+            c = coefficients(self.halves, self.doublings, self.contrast())
             new = allocate(c, self.doublings, goal / squared, MOST, budget)
             before = now
         return self.reached(perf_counter() - start)
@@ -80,6 +83,12 @@ class Auto:
             if doubling >= 0:
                 self.halves.add(half, wanted)
         return True
+
+    def contrast(self) -> np.ndarray:
+        """For each packet how many of the LEVELS neighbouring pixels differ by."""
+        across = self.halves.across
+        found = [np.concatenate(list(edge_packets(self.pixels, across, least))) for least in LEVELS]
+        return np.sum(found, axis=0, dtype=np.int64)
 
     def price(self, doublings: np.ndarray) -> float:
         """The samples of all packets in a half."""

@@ -167,7 +167,8 @@ class Renderer:
                 return Reached(0.0, 0, 0.0, 0.0)
             start, cancels = perf_counter(), self.cancels
             traced = self.packing.pack(scene, across, height)
-            given = frame_arguments(traced, np.empty_like(pixels))
+            scratch = np.full_like(pixels, 255)
+            given = frame_arguments(traced, scratch)
 
             def draw(places: np.ndarray, packets: np.ndarray, light: np.ndarray) -> bool:
                 self.next_row = counter = np.zeros(1, np.int64)
@@ -177,7 +178,7 @@ class Renderer:
                 self.run(given._replace(next_row=counter, rays=rays, wanted=packets.view(np.uint8), linear=light))
                 return bool(counter[0] < CANCELLED)
 
-            auto = Auto(draw, height, across, width(traced.camera) // DOWN)
+            auto = Auto(draw, scratch, width(traced.camera) // DOWN)
             reached = auto.reach(error, seconds - (perf_counter() - start))
             self.known.add(kinds_of(scene))
             if reached:
