@@ -16,6 +16,8 @@ from minirt.rendering.replicates import Replicates
 FALL = 1.5  # squared error falls as this power of the number of samples
 FASTEST = 2  # doublings in a round, after which more is known
 PRIOR = 4.0
+GOLDEN = (5**0.5 - 1) / 2
+UNSEEN = 1 / 16
 SEARCH = 24  # halvings of the interval of prices
 
 
@@ -23,16 +25,16 @@ def coefficients(halves: Replicates, doublings: np.ndarray, contrast: np.ndarray
     """c for every packet with 2^doublings samples and of some class of contrast."""
     fallen, samples = 2.0 ** (FALL * doublings), 2.0**doublings
     own = 2 * halves.guides * fallen
-    alike = 2 * mean_of_alike(halves.judges, doublings * 100 + contrast) * fallen
+    alike = 2 * mean_of_alike(halves.judges, doublings * 100 + contrast, UNSEEN / samples**2) * fallen
     known: np.ndarray = (samples * own + PRIOR * alike) / (samples + PRIOR)
     return known
 
 
-def mean_of_alike(values: np.ndarray, kinds: np.ndarray) -> np.ndarray:
-    """For each value the mean of all of its kind."""
+def mean_of_alike(values: np.ndarray, kinds: np.ndarray, one_more: np.ndarray) -> np.ndarray:
+    """For each value the mean of all of its kind, as if these had `one_more` in their sum."""
     _, members, counts = np.unique(kinds.ravel(), return_inverse=True, return_counts=True)
     means = np.bincount(members, values.ravel()) / counts
-    found: np.ndarray = means[members].reshape(values.shape)
+    found: np.ndarray = means[members].reshape(values.shape) + one_more / counts[members].reshape(values.shape)
     return found
 
 
@@ -40,7 +42,7 @@ def allocate(c: np.ndarray, doublings: np.ndarray, share: float, most: int, budg
     """Doublings, at most `most`, by which a `share` of the sum of squares is left, or as many as there is a budget for,
     in samples of packets; never fewer than before."""
     with np.errstate(divide="ignore"):
-        ideal = np.log2(c) / (FALL + 1)
+        ideal = np.log2(c) / (FALL + 1) + (np.arange(c.size) * GOLDEN % 1 - 0.5).reshape(c.shape)
     steps = np.arange(most + 1)
     left_after, price_of = 2.0 ** (-FALL * steps), 2.0**steps
     left_now, price_now = float((c * left_after[doublings]).sum()), float(price_of[doublings].sum())
