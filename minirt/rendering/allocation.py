@@ -14,25 +14,26 @@ import numpy as np
 from minirt.rendering.replicates import Replicates
 
 FALL = 1.5  # squared error falls as this power of the number of samples
-FASTEST = 2  # doublings in a round, after which more is known
+FASTEST = 3  # doublings in a round, after which more is known
 PRIOR = 4.0
 GOLDEN = (5**0.5 - 1) / 2
 UNSEEN = 1 / 16
-SEARCH = 24  # halvings of the interval of prices
+SEARCH = 14  # halvings of the interval of prices
 
 
 def coefficients(halves: Replicates, doublings: np.ndarray, contrast: np.ndarray) -> np.ndarray:
     """c for every packet with 2^doublings samples and of some class of contrast."""
     fallen, samples = 2.0 ** (FALL * doublings), 2.0**doublings
     own = 2 * halves.guides * fallen
-    alike = 2 * mean_of_alike(halves.judges, doublings * 100 + contrast, UNSEEN / samples**2) * fallen
+    alike = 2 * mean_of_alike(halves.judges, doublings * 8 + contrast, UNSEEN / samples**2) * fallen
     known: np.ndarray = (samples * own + PRIOR * alike) / (samples + PRIOR)
     return known
 
 
 def mean_of_alike(values: np.ndarray, kinds: np.ndarray, one_more: np.ndarray) -> np.ndarray:
     """For each value the mean of all of its kind, as if these had `one_more` in their sum."""
-    _, members, counts = np.unique(kinds.ravel(), return_inverse=True, return_counts=True)
+    members = kinds.ravel()
+    counts = np.maximum(np.bincount(members), 1)
     means = np.bincount(members, values.ravel()) / counts
     found: np.ndarray = means[members].reshape(values.shape) + one_more / counts[members].reshape(values.shape)
     return found

@@ -20,8 +20,7 @@ Draw = Callable[[np.ndarray, np.ndarray, np.ndarray], bool]  # places, packets, 
 CLASSES = 8  # of packets, each with shifts of its own: what an edge along a row of pixels meets
 MOST = 15  # doublings of the samples of each half
 LEVELS = (1, 4, 16, 64)
-AIM = 0.95  # of the square of an error: what is aimed at, so that it need not be tried again
-LEAST_SHARE = 0.25  # of the sum of squares, which is left by a round
+LEAST_SHARE, MOST_SHARE = 0.25, 0.8  # of the sum of squares that are left by a round
 SPENT = 0.5  # of the time that is left, by a round
 
 
@@ -51,40 +50,44 @@ class Auto:
             if squared <= error**2 or now >= end:
                 break
             budget = SPENT * (end - now) / (now - before) * spent if seconds < inf else inf
-            goal = max(AIM * error**2, LEAST_SHARE * squared)
-            c = coefficients(self.halves, self.doublings, self.contrast())
-            new = allocate(c, self.doublings, goal / squared, MOST, budget)
+            share = min(max(error**2 / squared, LEAST_SHARE), MOST_SHARE)
+            c = coefficients(self.halves, self.doublings, self.contrast)
+            new = allocate(c, self.doublings, share, MOST, budget)
             before = now
         return self.reached(perf_counter() - start)
 
     def grow(self, new: np.ndarray, end: float) -> bool:
         """Add samples until the packets have as many doublings, or it is later than `end`. False when cancelled."""
-        changed = new > self.doublings
-        for doubling in range(self.doublings.min(), new.max()):
-            wanted = (self.doublings <= doubling) & (doubling < new)
-            if not self.double(doubling, wanted):
+        old = self.doublings.copy()
+        for before, after in sorted({*zip(old.ravel().tolist(), new.ravel().tolist(), strict=True)}):
+            wanted = (old == before) & (new == after)
+            if before == after:
+                continue
+            if not self.add(before, after, wanted):
                 return False
-            self.doublings[wanted] += 1
+            self.doublings[wanted] = after
             if perf_counter() > end:
                 break
-        self.halves.compare(changed)
         return True
 
-    def double(self, doubling: int, wanted: np.ndarray) -> bool:
-        """Double the samples of the `wanted` packets, which have 2^doubling, or none where that is -1. False when
-        cancelled."""
-        points = sobol(2**doubling, 2 ** (doubling + 1)) if doubling >= 0 else sobol(0, 1)
-        for half, mean in enumerate(self.halves.means):
-            light = self.halves.scratch if doubling >= 0 else mean
-            for each, shifts in enumerate(self.shifts[half]):
+    def add(self, before: int, after: int, wanted: np.ndarray) -> bool:
+        """Give the `wanted` packets 2^after samples in each half; they have 2^before, or none where that is -1. False
+        when cancelled."""
+        is_first = before < 0
+        points = sobol(0 if is_first else 2**before, 2**after)
+        for light, shifts in zip(self.halves.means if is_first else self.halves.fresh, self.shifts, strict=True):
+            for each in range(CLASSES):
                 packets = wanted & (self.classes == each)
-                if packets.any() and not self.draw(shifted(points, shifts), packets, light):
+                if packets.any() and not self.draw(shifted(points, shifts[each]), packets, light):
                     return False
-            if doubling >= 0:
-                self.halves.add(half, wanted)
+        if is_first:
+            self.halves.compare()
+            self.contrast = self.contrasts()
+        else:
+            self.halves.add(wanted, 1 - 2.0 ** (before - after))
         return True
 
-    def contrast(self) -> np.ndarray:
+    def contrasts(self) -> np.ndarray:
         """For each packet how many of the LEVELS neighbouring pixels differ by."""
         across = self.halves.across
         found = [np.concatenate(list(edge_packets(self.pixels, across, least))) for least in LEVELS]

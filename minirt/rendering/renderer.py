@@ -24,7 +24,6 @@ from minirt.rendering.camera import packet_rays
 from minirt.rendering.cores import usable_cores
 from minirt.rendering.helper import Helper
 from minirt.rendering.reached import Reached
-from minirt.rendering.replicates import levels
 from minirt.scene import Scene
 
 PRECISIONS = ("double", "single")
@@ -182,10 +181,7 @@ class Renderer:
             reached = auto.reach(error, seconds - (perf_counter() - start))
             self.known.add(kinds_of(scene))
             if reached:
-                light = auto.halves.light
-                pixels[...] = levels(light)
-                if linear is not None:
-                    linear[...] = light
+                auto.halves.finish(pixels, NO_LINEAR if linear is None else linear)
             return reached and reached._replace(seconds=perf_counter() - start)
 
     def run(self, given: Frame) -> None:

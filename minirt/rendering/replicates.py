@@ -13,74 +13,74 @@ import numpy as np
 
 from minirt.kernel.frame import DOWN
 
-CHUNK = 2048  # packets compared in one go, which fit a processor's cache
+STRIP, CHUNK = 8, 1024  # rows of packets, and packets, worked on in one go: what they take fits a processor's cache
 
 
 class Replicates:
-    """Two means of the light of every pixel, kept by packets of `across` by DOWN pixels."""
+    """Two means of the light of every pixel, in packets of `across` by DOWN pixels, and how far they differ.
+
+    `means` and `fresh`, what is to be added to them, are (2, h, w, 3), h and w rounded up to whole packets.
+    """
 
     def __init__(self, height: int, width: int, across: int) -> None:
         self.height, self.width, self.across = height, width, across
-        self.packets = -(-height // DOWN), -(-width // across)
-        rows, columns = self.packets
+        self.packets = rows, columns = -(-height // DOWN), -(-width // across)
         self.means = np.zeros((2, rows * DOWN, columns * across, 3))
-        self.scratch = np.zeros(self.means.shape[1:])  # what is rendered before it is added
-        self.guides = np.zeros(self.packets)  # sums of squared errors of the guides of a packet, and of its judges
+        self.fresh = np.zeros(self.means.shape)
+        self.guides = np.zeros(self.packets)  # squared errors of their mean: the sum over the guides of a packet
         self.judges = np.zeros(self.packets)
-        self.judged = 3 * int((np.add.outer(np.arange(height), np.arange(width)) % 2 == 0).sum())  # numbers judged
+        self.judged = 3 * -(-height * width // 2)  # numbers that the judges' sums are of
 
     def by_packet(self, light: np.ndarray) -> np.ndarray:
-        """A view of (h, w, 3) as (rows, DOWN, columns, 3 * across)."""
+        """A view of (2, h, w, 3) as (2, rows, DOWN, columns, 3 * across)."""
         rows, columns = self.packets
-        return light.reshape(rows, DOWN, columns, 3 * self.across)
+        return light.reshape(2, rows, DOWN, columns, 3 * self.across)
 
-    def add(self, half: int, wanted: np.ndarray) -> None:
-        """Put what was rendered into the mean of a half in the `wanted` packets: as many samples as it already has."""
-        mean, more = self.by_packet(self.means[half]), self.by_packet(self.scratch)
-        for row, column in chunks(wanted):
-            mean[row, :, column] = (mean[row, :, column] + more[row, :, column]) / 2
+    def compare(self) -> None:
+        """Find the errors of all packets."""
+        one, other = self.by_packet(self.means).swapaxes(2, 3)
+        for top in range(0, len(one), STRIP):
+            here = slice(top, top + STRIP)
+            self.judges[here], self.guides[here] = squared_errors(one[here], other[here], self.across)
 
-    def compare(self, changed: np.ndarray) -> None:
-        """Work out the errors of the `changed` packets."""
-        one, other = map(self.by_packet, self.means)
-        for row, column in chunks(changed):
-            difference = shown(one[row, :, column]) - shown(other[row, :, column])
-            squares = np.square(difference).reshape(-1, DOWN, self.across, 3) / 4
-            self.judges[row, column] = total(squares[:, 0::2, 0::2]) + total(squares[:, 1::2, 1::2])
-            self.guides[row, column] = total(squares[:, 0::2, 1::2]) + total(squares[:, 1::2, 0::2])
+    def add(self, wanted: np.ndarray, weight: float) -> None:
+        """Add what is fresh in the `wanted` packets, with a weight in [0, 1], and find their errors."""
+        mean, fresh = self.by_packet(self.means), self.by_packet(self.fresh)
+        rows, columns = np.nonzero(wanted)
+        for first in range(0, len(rows), CHUNK):
+            here = rows[first : first + CHUNK], columns[first : first + CHUNK]
+            place = slice(None), here[0], slice(None), here[1]
+            both = mean[place]  # (packets, 2, DOWN, 3 * across)
+            both += (fresh[place] - both) * weight
+            mean[place] = both
+            self.judges[here], self.guides[here] = squared_errors(both[:, 0], both[:, 1], self.across)
 
     @property
     def squared_error(self) -> float:
-        """The expected mean of the squares of the errors of all pixels, as far as they show."""
+        """The expected mean of the squares of the errors of the picture."""
         return float(self.judges.sum()) / self.judged
 
-    @property
-    def light(self) -> np.ndarray:
-        """The mean of both halves (h, w, 3)."""
-        both: np.ndarray = (self.means[0] + self.means[1])[: self.height, : self.width] / 2
-        return both
+    def finish(self, pixels: np.ndarray, linear: np.ndarray) -> None:
+        """Put the mean of both halves into a picture, uint8 (h, w, 4) in the order blue, green, red, alpha, and, where
+        that has rows, into `linear` (h, w, 3)."""
+        pixels[..., 3] = 255
+        for top in range(0, self.height, STRIP * DOWN):
+            here = slice(top, min(top + STRIP * DOWN, self.height))
+            light = (self.means[0, here, : self.width] + self.means[1, here, : self.width]) / 2
+            if len(linear):
+                linear[here] = light
+            pixels[here, :, 2::-1] = np.nan_to_num(shown(light)) * 255 + 0.5
 
 
-def chunks(wanted: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Rows and columns of the packets that are wanted, some at a time."""
-    rows, columns = np.nonzero(wanted)
-    return [(rows[i : i + CHUNK], columns[i : i + CHUNK]) for i in range(0, len(rows), CHUNK)]
+def squared_errors(one: np.ndarray, other: np.ndarray, across: int) -> tuple[np.ndarray, np.ndarray]:
+    """Of the mean of two halves of packets (..., DOWN, 3 * across): the sums over judges and over guides."""
+    differences = shown(one) - shown(other)
+    differences *= differences
+    colour = np.add.outer(np.arange(DOWN), np.repeat(np.arange(across), 3)) % 2
+    judges, guides = (np.einsum("...yx,yx->...", differences, (colour == each) / 4) for each in (0, 1))
+    return np.nan_to_num(judges), np.nan_to_num(guides)
 
 
 def shown(light: np.ndarray) -> np.ndarray:
-    """Light as far as a picture shows it: in [0, 1], what is no number as black."""
-    clamped: np.ndarray = np.fmin(np.fmax(light, 0.0), 1.0)
-    return clamped
-
-
-def total(squares: np.ndarray) -> np.ndarray:
-    """Sums over all but the first axis."""
-    sums: np.ndarray = squares.sum(axis=(1, 2, 3))
-    return sums
-
-
-def levels(light: np.ndarray) -> np.ndarray:
-    """Light (h, w, 3) as a picture, uint8 (h, w, 4) in the order blue, green, red, alpha."""
-    pixels = np.full((*light.shape[:2], 4), 255, np.uint8)
-    pixels[..., 2::-1] = shown(light) * 255 + 0.5
-    return pixels
+    """Light as far as a picture shows it."""
+    return np.clip(light, 0.0, 1.0)
