@@ -10,6 +10,7 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from math import inf
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
 from minirt.errors import MiniRTError, MlxError, ReplayError
@@ -49,6 +50,17 @@ def whole(text: str, low: int, high: int) -> int:
     return int(text)
 
 
+def above_0(text: str) -> float:
+    """A number > 0."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = 0.0
+    if not 0 < number < inf:
+        raise argparse.ArgumentTypeError(f"must be a number > 0, got '{text[:40]}'")
+    return number
+
+
 def arguments() -> Arguments:
     """What the program understands."""
     parser = Arguments(prog="miniRT", description="Show a .rt scene in a window, or render it to a file.")
@@ -60,10 +72,12 @@ def arguments() -> Arguments:
     add("--size", type=size, metavar="WxH", help="size of the picture in pixels")
     add(
         "--samples",
-        type=lambda text: whole(text, 1, 65536),
+        type=lambda text: text if text == "auto" else whole(text, 1, 65536),
         metavar="N",
-        help=f"rays for each pixel ({SAMPLES}); in the window at edges, when nothing moves ({WINDOW_SAMPLES})",
+        help=f"rays for each pixel ({SAMPLES}), or auto, where they are needed; in the window at edges, when nothing moves ({WINDOW_SAMPLES})",
     )
+    add("--error", type=above_0, metavar="E", help="with --samples auto: until the estimated error is E (0.002)")
+    add("--time", type=above_0, metavar="SECONDS", help="with --samples auto: until that time has passed")
     add("--fallback", metavar="FILE", help="render to FILE where no window can be opened")
     add = parser.add_argument_group("window").add_argument
     add("--keys", choices=("auto", "qwerty", "azerty", "qwertz"), default="auto", help="the layout of the keyboard")
@@ -107,6 +121,10 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
         from minirt.image import format_of
 
         format_of(asked.output)  # before the work, not after it
+    if (asked.error or asked.time) and asked.samples != "auto":
+        parser.fail("--error and --time need --samples auto", USAGE)
+    if asked.samples == "auto" and (asked.replay or not asked.output):
+        parser.fail("--samples auto makes one picture: it needs -o, and no --replay", USAGE)
     modes = ((asked.check, check), (asked.bench, bench), (asked.replay, replay), (asked.output, headless))
     mode = next((mode for wanted, mode in modes if wanted), window)
     # A picture may go to standard output; behind a window it is free, and a session without errors leaves none.
@@ -174,7 +192,20 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
         print(f"kernel ready after {perf_counter() - start:.2f} s", file=sys.stderr)
         start = perf_counter()
     samples = asked.samples or SAMPLES
-    image = minirt.render(scene, width, height, samples=samples, threads=asked.threads, precision=asked.precision)
+    if asked.time:
+        renderer.prepare(scene)  # which is not the picture's time
+    image = minirt.render(
+        scene,
+        width,
+        height,
+        samples=samples,
+        error=asked.error,
+        time=asked.time,
+        threads=asked.threads,
+        precision=asked.precision,
+    )
+    if image.reached:
+        print(image.reached, file=sys.stderr)
     if asked.verbose:
         print(
             f"{width}x{height}, {samples} samples a pixel, {renderer.threads} threads, {renderer.precision} "

@@ -6,16 +6,19 @@ from typing import NamedTuple
 
 
 class Reached(NamedTuple):
-    """How good a picture is."""
+    """How good a picture is.
+
+    An error is the root of the mean square, over all pixels and colours, of the difference between the light of the
+    picture and that of one with endlessly many samples, both clamped to [0, 1]: 0.004 is one of 255 levels.
+    """
 
     samples: float  # of a pixel, on average
-    most: int  # samples of a pixel
-    error: float  # estimated: root of the mean square of the differences to the picture with endlessly many samples,
-    # of the light of all pixels and colours, clamped to [0, 1]
+    most: int  # of a pixel
+    error: float  # estimated
     seconds: float  # that it took
 
     def __str__(self) -> str:
         return (
-            f"{self.samples:.1f} samples a pixel (at most {self.most}), "
-            f"estimated error {self.error:.2g}, {self.seconds:.2f} s"
+            f"{self.samples:.1f} samples a pixel on average, {self.most} at most; "
+            f"estimated error {self.error:.2g}; {self.seconds:.2f} s"
         )

@@ -7,6 +7,7 @@ from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from functools import cached_property
 from importlib import import_module
 from itertools import takewhile
+from math import inf
 from threading import Lock
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -19,7 +20,7 @@ from minirt.kernel import lists
 from minirt.kernel.frame import CANCELLED, DOWN, TILE
 from minirt.lanes import width
 from minirt.rendering.adaptive import edge_packets
-from minirt.rendering.auto import Auto
+from minirt.rendering.auto import CLASSES, Auto, Task
 from minirt.rendering.camera import packet_rays
 from minirt.rendering.cores import usable_cores
 from minirt.rendering.helper import Helper
@@ -149,50 +150,53 @@ class Renderer:
             strips = edge_packets(pixels, width(traced.camera) // DOWN)
             found = list(takewhile(lambda _: counter[0] < CANCELLED, strips))
             given = given._replace(wanted=np.concatenate(found) if found else ALL_PACKETS)
-        self.run(given)
+        self.run([given], self.threads)
         self.known.add(kinds_of(scene))
         return bool(counter[0] < CANCELLED)
 
     def reach(
-        self, scene: Scene, pixels: np.ndarray, error: float, seconds: float, linear: np.ndarray | None = None
+        self,
+        scene: Scene,
+        pixels: np.ndarray,
+        error: float = 0.0,
+        seconds: float = inf,
+        linear: np.ndarray | None = None,
     ) -> Reached | None:
-        """Render into `pixels` and `linear`, as `render` does, until the estimated error is as small or as many
-        seconds have passed, see `minirt.rendering.auto`. None where `cancel` ended it early; then they are as before.
+        """Render into `pixels` and `linear`, as `render` does, until the estimated error is as small or as many seconds
+        have passed; see `minirt.rendering.auto`. None where `cancel` ended it early; then both are as before.
         """
         with self.busy:
-            height, across, _ = pixels.shape
+            start, cancels = perf_counter(), self.cancels
             if not scene.shapes or not pixels.size:
                 self.draw(scene, pixels, 1, NO_LINEAR, False, lambda: True)
-                return Reached(0.0, 0, 0.0, 0.0)
-            start, cancels = perf_counter(), self.cancels
-            traced = self.packing.pack(scene, across, height)
-            scratch = np.full_like(pixels, 255)
-            given = frame_arguments(traced, scratch)
+                return Reached(1.0, 1, 0.0, perf_counter() - start)
+            traced = self.packing.pack(scene, pixels.shape[1], pixels.shape[0])
+            given = frame_arguments(traced, np.full_like(pixels, 255))
 
-            def draw(places: np.ndarray, packets: np.ndarray, light: np.ndarray) -> bool:
-                self.next_row = counter = np.zeros(1, np.int64)
+            def draw(tasks: list[Task]) -> bool:
+                self.next_row = counters = np.zeros(len(tasks), np.int64)
                 if self.cancels != cancels:
                     return False
-                rays = packet_rays(traced.camera, places)
-                self.run(given._replace(next_row=counter, rays=rays, wanted=packets.view(np.uint8), linear=light))
-                return bool(counter[0] < CANCELLED)
+                self.run([given.of(task, counters[i:]) for i, task in enumerate(tasks)], -(-self.threads // CLASSES))
+                return bool(counters.max() < CANCELLED)
 
-            auto = Auto(draw, scratch, width(traced.camera) // DOWN)
+            auto = Auto(draw, given.pixels.view(np.uint8).reshape(pixels.shape), width(traced.camera) // DOWN)
             reached = auto.reach(error, seconds - (perf_counter() - start))
-            self.known.add(kinds_of(scene))
             if reached:
                 auto.halves.finish(pixels, NO_LINEAR if linear is None else linear)
+                self.known.add(kinds_of(scene))
             return reached and reached._replace(seconds=perf_counter() - start)
 
-    def run(self, given: Frame) -> None:
-        """The same frame on all threads, which share its rows; an error of any thread is raised.
+    def run(self, frames: list[Frame], threads: int) -> None:
+        """Frames, each on so many threads, which share its rows; an error of any thread is raised.
 
         The caller's thread only waits, so that Ctrl+C reaches it.
         """
-        draw = self.kernel.kernel_for(given.scene)
+        draw = self.kernel.kernel_for(frames[0].scene)
         jobs = [
-            self.workers.submit(draw, *given._replace(memory=memory_for(given.scene), sums=room_for_sums(given.scene)))
-            for _ in range(self.threads)
+            self.workers.submit(draw, *frame._replace(memory=memory_for(frame.scene), sums=room_for_sums(frame.scene)))
+            for frame in frames
+            for _ in range(threads)
         ]
         try:
             for job in wait(jobs, return_when=FIRST_EXCEPTION).done:
@@ -205,7 +209,7 @@ class Renderer:
     def cancel(self) -> None:
         """From any thread: the picture that is being made ends soon, half-made."""
         self.cancels += 1  # for a picture between two frames
-        self.next_row[0] = CANCELLED
+        self.next_row[:] = CANCELLED
 
 
 def kinds_of(scene: Scene) -> frozenset[type]:
@@ -229,6 +233,11 @@ class Frame(NamedTuple):
     memory: np.ndarray
     sums: np.ndarray
     scene: Any
+
+    def of(self, task: Task, counter: np.ndarray) -> Frame:
+        """The frame of a task of `minirt.rendering.auto`."""
+        rays = packet_rays(self.scene.camera, task.places)
+        return self._replace(next_row=counter, rays=rays, wanted=task.packets, linear=task.light)
 
 
 def frame_arguments(

@@ -1,10 +1,10 @@
 """A picture that is made twice, independently, so that the difference tells the error.
 
-Both halves take the mean of as many samples a pixel, at places that were shifted independently; where they differ by d
-the expected square of the error of their mean is d^2 / 4, whatever the error falls like with the number of samples. That
-holds for a packet only as long as its difference did not decide how many samples it got: who stops when the halves happen
-to agree reports too little. So the pixels of a packet take turns, as on a chessboard. One half of them, the guides, decide
-where more samples go; the others, the judges, are shifted independently of them and tell the error.
+Both halves take the mean of as many samples a pixel, at places that were shifted independently. Where they differ by d,
+the expected square of the error of their mean is d^2 / 4, however that falls with the number of samples. This holds only
+where d did not decide how many samples there are: who stops when the halves happen to agree reports too little. So the
+pixels of a packet take turns, as on a chessboard. The black ones, guides, decide where more samples go; the white ones,
+judges, whose shifts know nothing of those of the guides, tell the error.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Replicates:
             here = slice(top, top + STRIP)
             self.judges[here], self.guides[here] = squared_errors(one[here], other[here], self.across)
 
-    def add(self, wanted: np.ndarray, weight: float) -> None:
+    def add(self, wanted: np.ndarray, weights: np.ndarray) -> None:
         """Add what is fresh in the `wanted` packets, with a weight in [0, 1], and find their errors."""
         mean, fresh = self.by_packet(self.means), self.by_packet(self.fresh)
         rows, columns = np.nonzero(wanted)
@@ -51,7 +51,7 @@ class Replicates:
             here = rows[first : first + CHUNK], columns[first : first + CHUNK]
             place = slice(None), here[0], slice(None), here[1]
             both = mean[place]  # (packets, 2, DOWN, 3 * across)
-            both += (fresh[place] - both) * weight
+            both += (fresh[place] - both) * weights[here][:, None, None, None]
             mean[place] = both
             self.judges[here], self.guides[here] = squared_errors(both[:, 0], both[:, 1], self.across)
 
@@ -83,4 +83,5 @@ def squared_errors(one: np.ndarray, other: np.ndarray, across: int) -> tuple[np.
 
 def shown(light: np.ndarray) -> np.ndarray:
     """Light as far as a picture shows it."""
-    return np.clip(light, 0.0, 1.0)
+    clamped: np.ndarray = np.clip(light, 0.0, 1.0)
+    return clamped
