@@ -101,8 +101,8 @@ def render(
     relative to the eye, about twice as fast. RenderError for a size or a number of samples below 1.
 
     With `samples` "auto" each part of the picture gets as many as it needs, until the estimated error is at most
-    `error` (0.002 where neither is given) or `time` seconds have passed; `.reached` of the picture tells which. An error
-    is the root of the mean square of the light of all pixels and colours, clamped to [0, 1].
+    `error` (DEFAULT_ERROR where neither is given) or `time` seconds have passed, not counting those of compiling;
+    `.reached` of the picture tells which. Errors are those of `minirt.rendering.reached`.
     """
     import numpy as np
 
@@ -116,6 +116,8 @@ def render(
     linear = np.zeros((height, width, 3))
     chosen = renderer(threads, precision)
     if samples == "auto":
+        if time is not None:
+            chosen.prepare(scene)
         reached = chosen.reach(scene, pixels, *goal(error, time), linear)
         return Image.from_bgra(pixels, linear, reached)
     if error is not None or time is not None:

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from math import inf
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
+from minirt import DEFAULT_ERROR
 from minirt.errors import MiniRTError, MlxError, ReplayError
 from minirt.garbage import uncollected
 
@@ -74,9 +75,15 @@ def arguments() -> Arguments:
         "--samples",
         type=lambda text: text if text == "auto" else whole(text, 1, 65536),
         metavar="N",
-        help=f"rays for each pixel ({SAMPLES}), or auto, where they are needed; in the window at edges, when nothing moves ({WINDOW_SAMPLES})",
+        help=f"rays for each pixel ({SAMPLES}), or auto: where they are needed; "
+        f"in the window at edges, when nothing moves ({WINDOW_SAMPLES})",
     )
-    add("--error", type=above_0, metavar="E", help="with --samples auto: until the estimated error is E (0.002)")
+    add(
+        "--error",
+        type=above_0,
+        metavar="E",
+        help=f"with --samples auto: until the estimated error is E ({DEFAULT_ERROR})",
+    )
     add("--time", type=above_0, metavar="SECONDS", help="with --samples auto: until that time has passed")
     add("--fallback", metavar="FILE", help="render to FILE where no window can be opened")
     add = parser.add_argument_group("window").add_argument
@@ -192,8 +199,6 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
         print(f"kernel ready after {perf_counter() - start:.2f} s", file=sys.stderr)
         start = perf_counter()
     samples = asked.samples or SAMPLES
-    if asked.time:
-        renderer.prepare(scene)  # which is not the picture's time
     image = minirt.render(
         scene,
         width,

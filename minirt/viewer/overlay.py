@@ -42,12 +42,13 @@ def line(state: State) -> str:
 
 
 def status(shown: Outcome) -> str:
-    """Resolution and time of the picture, and how many samples its pixels have of those that they will."""
+    """Resolution and time of the picture, how many samples its pixels have of those that they will, and its error."""
     job = shown.job
     coarse = " preview" if shown.preview else f" at 1/{job.divisor}" if job.divisor > 1 else ""
     time = f"    {shown.seconds * 1000:.1f} ms" if shown.seconds else ""
     samples = f"{job.samples} of {job.goal} samples" if job.goal > 1 else "1 sample"
-    return f"{job.width}x{job.height}{coarse}{time}    {samples}"
+    error = f"    error {shown.estimate:.1g}" if shown.estimate else ""
+    return f"{job.width}x{job.height}{coarse}{time}    {samples}{error}"
 
 
 def draw_message(pixels: Pixels, text: str) -> None:
