@@ -54,7 +54,7 @@ def whole(text: str, low: int, high: int) -> int:
 def above_0(text: str) -> float:
     """A number > 0."""
     try:
-        number = float(text)
+        number = float(text) if text.isascii() and "_" not in text else 0.0
     except ValueError:
         number = 0.0
     if not 0 < number < inf:

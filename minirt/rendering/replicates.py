@@ -2,9 +2,9 @@
 
 Both halves take the mean of as many samples a pixel, at places that were shifted independently. Where they differ by d,
 the expected square of the error of their mean is d^2 / 4, however that falls with the number of samples. This is so
-only where d did not decide how many samples there are: who stops when the halves happen to agree reports too little. So the
-pixels of a packet take turns, as on a chessboard. The black ones, guides, decide where more samples go; the white ones,
-judges, whose shifts know nothing of those of the guides, tell the error.
+only where d did not decide how many samples there are: who stops when the halves happen to agree reports too little.
+So the pixels of a packet take turns, as on a chessboard. The black ones, guides, decide where more samples go; the
+white ones, judges, whose shifts know nothing of those of the guides, tell the error.
 """
 
 from __future__ import annotations
