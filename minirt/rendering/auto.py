@@ -35,6 +35,7 @@ class Task(NamedTuple):
     places: np.ndarray
     packets: np.ndarray
     light: np.ndarray  # takes their mean, as `linear` of `minirt.kernel.frame`
+    pixels: np.ndarray  # and this the same as colours, uint8 (h, w, 4)
 
 
 Draw = Callable[[list[Task]], bool]  # False when cancelled
@@ -43,10 +44,11 @@ Draw = Callable[[list[Task]], bool]  # False when cancelled
 class Auto:
     """A picture in the making: both halves of it, and how many samples the packets have."""
 
-    def __init__(self, draw: Draw, pixels: np.ndarray, across: int) -> None:
-        """`draw` also puts its light into `pixels`, uint8 (h, w, 4); a packet is `across` wide."""
-        self.draw, self.pixels = draw, pixels
-        self.halves = Replicates(pixels.shape[0], pixels.shape[1], across)
+    def __init__(self, draw: Draw, height: int, width: int, across: int) -> None:
+        """Of a picture in packets that are `across` wide."""
+        self.draw = draw
+        self.halves = Replicates(height, width, across)
+        self.pixels = np.full((2, height, width, 4), 255, np.uint8)  # of what was last drawn in each half
         self.doublings = np.full(self.halves.packets, -1)  # a packet has 2^doublings samples in each half
         self.shifts = digital_shifts(2, CLASSES, DOWN * across)
         rows, columns = map(np.arange, self.halves.packets)
@@ -102,14 +104,14 @@ class Auto:
             for each in range(CLASSES if before < after else 0):
                 packets = (wanted & (self.classes == each)).view(np.uint8)
                 places = [shifted(points, shifts[each]) for shifts in self.shifts]
-                found += map(Task, places, (packets, packets), lights)
+                found += map(Task, places, (packets, packets), lights, self.pixels)
         return found
 
     def contrast(self) -> np.ndarray:
-        """For each packet how many of `CONTRASTS` its pixels and their neighbours differ by."""
+        """For each packet how many of `CONTRASTS` its pixels and their neighbours differ by in the first half."""
         differs = np.zeros(self.halves.packets, np.int64)
         for least in CONTRASTS:
-            differs += np.concatenate(list(edge_packets(self.pixels, self.halves.across, least)))
+            differs += np.concatenate(list(edge_packets(self.pixels[0], self.halves.across, least)))
         return differs
 
     def price(self, doublings: np.ndarray) -> float:

@@ -171,7 +171,7 @@ class Renderer:
                 self.draw(scene, pixels, 1, NO_LINEAR, False, lambda: True)
                 return Reached(1.0, 1, 0.0, perf_counter() - start)
             traced = self.packing.pack(scene, pixels.shape[1], pixels.shape[0])
-            given = frame_arguments(traced, np.full_like(pixels, 255))
+            given = frame_arguments(traced, pixels)
 
             def draw(tasks: list[Task]) -> bool:
                 self.next_row = counters = np.zeros(len(tasks), np.int64)
@@ -180,7 +180,7 @@ class Renderer:
                 self.run([given.of(task, counters[i:]) for i, task in enumerate(tasks)], -(-self.threads // CLASSES))
                 return bool(counters.max() < CANCELLED)
 
-            auto = Auto(draw, given.pixels.view(np.uint8).reshape(pixels.shape), width(traced.camera) // DOWN)
+            auto = Auto(draw, pixels.shape[0], pixels.shape[1], width(traced.camera) // DOWN)
             reached = auto.reach(error, seconds - (perf_counter() - start))
             if reached:
                 auto.halves.finish(pixels, NO_LINEAR if linear is None else linear)
@@ -236,8 +236,13 @@ class Frame(NamedTuple):
 
     def of(self, task: Task, counter: np.ndarray) -> Frame:
         """The frame of a task of `minirt.rendering.auto`."""
-        rays = packet_rays(self.scene.camera, task.places)
-        return self._replace(next_row=counter, rays=rays, wanted=task.packets, linear=task.light)
+        return self._replace(
+            next_row=counter,
+            pixels=as_words(task.pixels),
+            linear=task.light,
+            rays=packet_rays(self.scene.camera, task.places),
+            wanted=task.packets,
+        )
 
 
 def frame_arguments(
@@ -246,7 +251,7 @@ def frame_arguments(
     """A frame of all packets."""
     return Frame(
         next_row=np.zeros(1, np.int64) if counter is None else counter,
-        pixels=pixels.view(np.uint32)[..., 0],
+        pixels=as_words(pixels),
         linear=linear,
         rays=packet_rays(traced.camera, sample_places(samples)),
         wanted=ALL_PACKETS,
@@ -254,6 +259,12 @@ def frame_arguments(
         sums=room_for_sums(traced),
         scene=traced,
     )
+
+
+def as_words(pixels: np.ndarray) -> np.ndarray:
+    """Pixels (h, w, 4) as numbers 0xAARRGGBB (h, w), in the same memory."""
+    words: np.ndarray = pixels.view(np.uint32)[..., 0]
+    return words
 
 
 def room_for_sums(traced: Any) -> np.ndarray:

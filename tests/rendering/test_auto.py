@@ -126,7 +126,7 @@ def test_a_picture_that_is_good_enough_at_once() -> None:
 
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_threads_do_not_change_a_bit(precision: str) -> None:
-    made = [reach(ALL, 0.004, size=(45, 83), renderer=Renderer(threads, precision)) for threads in (1, 2, 13)]
+    made = [reach(ALL, 0.004, size=(45, 83), renderer=Renderer(threads, precision)) for threads in (1, 2, 13, 2, 2)]
     for reached, pixels, linear in made[1:]:
         assert reached[:3] == made[0][0][:3]
         assert np.array_equal(pixels, made[0][1])
@@ -201,7 +201,7 @@ def test_a_cancel_between_two_frames_is_heard(monkeypatch: pytest.MonkeyPatch) -
 
 def test_each_sample_is_made_once_and_both_halves_are_shifted_apart() -> None:
     done: list[Task] = []
-    auto = Auto(lambda tasks: not done.extend(tasks), np.zeros((32, 64, 4), np.uint8), 4)
+    auto = Auto(lambda tasks: not done.extend(tasks), 32, 64, 4)
     assert auto.begin()
     assert auto.grow(np.arange(128).reshape(8, 16) % 4)
     count = np.zeros((2, 8, 16), int)
