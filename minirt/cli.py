@@ -10,10 +10,10 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from math import inf
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
 from minirt import DEFAULT_ERROR
+from minirt.amounts import above_0, size, whole
 from minirt.errors import MiniRTError, MlxError, ReplayError
 from minirt.garbage import uncollected
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from minirt.scene import Scene
 
 OK, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
-LARGEST = 16384  # pixels, of a side
 SAMPLES, WINDOW_SAMPLES = 1, 16  # where none are asked for
 
 
@@ -34,32 +33,6 @@ class Arguments(argparse.ArgumentParser):
 
     def fail(self, message: str, status: int) -> NoReturn:
         self.exit(status, f"Error\n{message}\n{self.format_usage()}")
-
-
-def size(text: str) -> tuple[int, int]:
-    """A size in pixels, written 640x480."""
-    width, _, height = text.partition("x")
-    if not (width.isascii() and width.isdigit() and height.isascii() and height.isdigit()):
-        raise argparse.ArgumentTypeError(f"must be WIDTHxHEIGHT, like 640x480, got '{text}'")
-    return whole(width, 1, LARGEST), whole(height, 1, LARGEST)
-
-
-def whole(text: str, low: int, high: int) -> int:
-    """A whole number in [low, high]."""
-    if not (text.isascii() and text.isdigit() and len(text) < 10 and low <= int(text) <= high):
-        raise argparse.ArgumentTypeError(f"must be a whole number from {low} to {high}, got '{text[:40]}'")
-    return int(text)
-
-
-def above_0(text: str) -> float:
-    """A number > 0."""
-    try:
-        number = float(text) if text.isascii() and "_" not in text else 0.0
-    except ValueError:
-        number = 0.0
-    if not 0 < number < inf:
-        raise argparse.ArgumentTypeError(f"must be a number > 0, got '{text[:40]}'")
-    return number
 
 
 def arguments() -> Arguments:

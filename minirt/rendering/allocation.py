@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from minirt.rendering.frames import GOLDEN
 from minirt.rendering.replicates import Replicates
 
 FALL = 1.5  # squared error falls as this power of the number of samples
@@ -25,7 +26,6 @@ UNSEEN = (
 MOST = 15  # doublings: 65536 samples in both halves
 FASTEST = 3  # doublings in a round
 SEARCH = 14  # halvings of the interval of levels
-GOLDEN = (5**0.5 - 1) / 2
 
 
 def coefficients(halves: Replicates, doublings: np.ndarray, contrast: np.ndarray) -> np.ndarray:

@@ -10,33 +10,24 @@ from itertools import takewhile
 from math import inf
 from threading import Lock
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from minirt.errors import RenderError
 from minirt.garbage import uncollected
 from minirt.kernel import lists
-from minirt.kernel.frame import CANCELLED, DOWN, TILE
+from minirt.kernel.frame import CANCELLED, DOWN
 from minirt.lanes import width
 from minirt.rendering.adaptive import edge_packets
 from minirt.rendering.auto import CLASSES, Auto, Task
-from minirt.rendering.camera import packet_rays
 from minirt.rendering.cores import usable_cores
+from minirt.rendering.frames import ALL_PACKETS, NO_LINEAR, Frame, frame_arguments, memory_for, room_for_sums
 from minirt.rendering.helper import Helper
 from minirt.rendering.reached import Reached
 from minirt.scene import Scene
 
 PRECISIONS = ("double", "single")
-NO_LINEAR = np.zeros((0, 0, 3))
-ALL_PACKETS = np.zeros((0, 0), np.uint8)
-GOLDEN = (5**0.5 - 1) / 2
-
-
-def sample_places(samples: int) -> np.ndarray:
-    """Where in a pixel its samples lie, (samples, 2) in [0, 1): a Fibonacci lattice; one sample lies in the centre."""
-    each = np.arange(samples)
-    return np.stack([(each + 0.5) / samples, (each * GOLDEN + 0.5) % 1.0], axis=1)
 
 
 class Renderer:
@@ -220,58 +211,3 @@ def kinds_of(scene: Scene) -> frozenset[type]:
 def one_of_each(scene: Scene) -> Scene:
     """A small scene with the same kinds of shapes."""
     return Scene((scene.camera, *{type(shape): shape for shape in scene.shapes}.values()))
-
-
-class Frame(NamedTuple):
-    """What `minirt.kernel.frame.frame` is called with."""
-
-    next_row: np.ndarray
-    pixels: np.ndarray
-    linear: np.ndarray
-    rays: np.ndarray
-    wanted: np.ndarray
-    memory: np.ndarray
-    sums: np.ndarray
-    scene: Any
-
-    def of(self, task: Task, counter: np.ndarray) -> Frame:
-        """The frame of a task of `minirt.rendering.auto`."""
-        return self._replace(
-            next_row=counter,
-            pixels=as_words(task.pixels),
-            linear=task.light,
-            rays=packet_rays(self.scene.camera, task.places),
-            wanted=task.packets,
-        )
-
-
-def frame_arguments(
-    traced: Any, pixels: np.ndarray, samples: int = 1, linear: np.ndarray = NO_LINEAR, counter: np.ndarray | None = None
-) -> Frame:
-    """A frame of all packets."""
-    return Frame(
-        next_row=np.zeros(1, np.int64) if counter is None else counter,
-        pixels=as_words(pixels),
-        linear=linear,
-        rays=packet_rays(traced.camera, sample_places(samples)),
-        wanted=ALL_PACKETS,
-        memory=memory_for(traced),
-        sums=room_for_sums(traced),
-        scene=traced,
-    )
-
-
-def as_words(pixels: np.ndarray) -> np.ndarray:
-    """Pixels (h, w, 4) as numbers 0xAARRGGBB (h, w), in the same memory."""
-    words: np.ndarray = pixels.view(np.uint32)[..., 0]
-    return words
-
-
-def room_for_sums(traced: Any) -> np.ndarray:
-    """Room for the light of a tile."""
-    return np.empty(3 * TILE * TILE, traced.camera.dtype)
-
-
-def memory_for(traced: Any) -> np.ndarray:
-    """What a thread remembers from one packet to the next, see `minirt.kernel.trace`: nothing yet."""
-    return np.zeros((len(traced.lights) + 1, 4), traced.lights.dtype)
