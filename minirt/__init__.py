@@ -10,7 +10,8 @@ from __future__ import annotations
 import os
 from functools import cache
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from math import inf
+from typing import TYPE_CHECKING, Any, Literal
 
 from minirt.errors import MiniRTError, MlxError, RenderError, ReplayError, SceneError
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from minirt.viewer import view
 
 __version__ = "0.1.0"
+DEFAULT_ERROR = 0.002  # half a level of 255: what a picture of bytes can show
 DEFAULT_SIZE = (1280, 720)  # pixels; of a scene that does not name a size
 
 __all__ = [
@@ -105,7 +107,9 @@ def render(
     width: int | None = None,
     height: int | None = None,
     *,
-    samples: int = 1,
+    samples: int | Literal["auto"] = 1,
+    error: float | None = None,
+    time: float | None = None,
     threads: int | None = None,
     precision: str = "double",
 ) -> Image:
@@ -114,6 +118,10 @@ def render(
     Without a size the scene's own is used. Safe to call from several threads; the first call for a combination of
     shapes compiles for some seconds, later ones and later programs do not. `precision` "single" computes in float32
     relative to the eye, about twice as fast. RenderError for a size or a number of samples below 1.
+
+    With `samples` "auto" each part of the picture gets as many as it needs, until the estimated error is at most
+    `error` (DEFAULT_ERROR where neither is given) or `time` seconds have passed, not counting those of compiling;
+    `.reached` of the picture tells which. Errors are those of `minirt.rendering.reached`.
     """
     import numpy as np
 
@@ -125,8 +133,26 @@ def render(
         raise RenderError(f"a picture has at least 1x1 pixels, got {width}x{height}")
     pixels = np.empty((height, width, 4), np.uint8)
     linear = np.zeros((height, width, 3))
-    renderer(threads, precision).render(scene, pixels, samples, linear)
+    chosen = renderer(threads, precision)
+    if samples == "auto":
+        if time is not None:
+            chosen.prepare(scene)
+        reached = chosen.reach(scene, pixels, *goal(error, time), linear)
+        return Image.from_bgra(pixels, linear, reached)
+    if error is not None or time is not None:
+        raise RenderError(f"an error or a time needs samples='auto', got {samples}")
+    chosen.render(scene, pixels, samples, linear)
     return Image.from_bgra(pixels, linear)
+
+
+def goal(error: float | None, time: float | None) -> tuple[float, float]:
+    """The error and the time that end a picture, where one of them or neither is given; RenderError unless > 0."""
+    for name, value in (("error", error), ("time", time)):
+        if value is not None and not value > 0:
+            raise RenderError(f"{name} must be > 0, got {value}")
+    if error is None:
+        error = DEFAULT_ERROR if time is None else 0.0
+    return error, inf if time is None else time
 
 
 @cache

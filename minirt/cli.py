@@ -12,6 +12,8 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
+from minirt import DEFAULT_ERROR
+from minirt.amounts import above_0, size, whole
 from minirt.errors import MiniRTError, MlxError, ReplayError
 from minirt.garbage import uncollected
 
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
     from minirt.scene import Scene
 
 OK, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
-LARGEST = 16384  # pixels, of a side
 SAMPLES, WINDOW_SAMPLES = 1, 16  # where none are asked for
 
 
@@ -34,21 +35,6 @@ class Arguments(argparse.ArgumentParser):
         self.exit(status, f"Error\n{message}\n{self.format_usage()}")
 
 
-def size(text: str) -> tuple[int, int]:
-    """A size in pixels, written 640x480."""
-    width, _, height = text.partition("x")
-    if not (width.isascii() and width.isdigit() and height.isascii() and height.isdigit()):
-        raise argparse.ArgumentTypeError(f"must be WIDTHxHEIGHT, like 640x480, got '{text}'")
-    return whole(width, 1, LARGEST), whole(height, 1, LARGEST)
-
-
-def whole(text: str, low: int, high: int) -> int:
-    """A whole number in [low, high]."""
-    if not (text.isascii() and text.isdigit() and len(text) < 10 and low <= int(text) <= high):
-        raise argparse.ArgumentTypeError(f"must be a whole number from {low} to {high}, got '{text[:40]}'")
-    return int(text)
-
-
 def arguments() -> Arguments:
     """What the program understands."""
     parser = Arguments(prog="miniRT", description="Show a .rt scene in a window, or render it to a file.")
@@ -60,9 +46,10 @@ def arguments() -> Arguments:
     add("--size", type=size, metavar="WxH", help="size of the picture in pixels")
     add(
         "--samples",
-        type=lambda text: whole(text, 1, 65536),
+        type=lambda text: text if text == "auto" else whole(text, 1, 65536),
         metavar="N",
-        help=f"rays for each pixel ({SAMPLES}); in the window at edges, when nothing moves ({WINDOW_SAMPLES})",
+        help=f"rays for each pixel ({SAMPLES}), or auto: where they are needed; "
+        f"in the window at edges, when nothing moves ({WINDOW_SAMPLES})",
     )
     add(
         "--turntable",
@@ -70,6 +57,13 @@ def arguments() -> Arguments:
         metavar="N",
         help="with -o: N pictures from all around the scene; spin.gif is one file, spin.png is spin-0001.png, ...",
     )
+    add(
+        "--error",
+        type=above_0,
+        metavar="E",
+        help=f"with --samples auto: until the estimated error is E ({DEFAULT_ERROR})",
+    )
+    add("--time", type=above_0, metavar="SECONDS", help="with --samples auto: until that time has passed")
     add("--fallback", metavar="FILE", help="render to FILE where no window can be opened")
     add("--left-handed", action="store_true", help="mirror the picture, for scenes of programs with such coordinates")
     add = parser.add_argument_group("window").add_argument
@@ -119,6 +113,10 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
         format_of(asked.output)  # before the work, not after it
     if asked.turntable and asked.output in (None, "-"):
         parser.error("--turntable needs the name of a file: -o spin.gif")
+    if (asked.error or asked.time) and asked.samples != "auto":
+        parser.fail("--error and --time need --samples auto", USAGE)
+    if asked.samples == "auto" and (asked.replay or asked.turntable or not asked.output):
+        parser.fail("--samples auto makes one picture: it needs -o, and no --replay or --turntable", USAGE)
     modes = (
         (asked.check, check),
         (asked.bench, bench),
@@ -203,7 +201,18 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
         print(f"kernel ready after {perf_counter() - start:.2f} s", file=sys.stderr)
         start = perf_counter()
     samples = asked.samples or SAMPLES
-    image = minirt.render(scene, width, height, samples=samples, threads=asked.threads, precision=asked.precision)
+    image = minirt.render(
+        scene,
+        width,
+        height,
+        samples=samples,
+        error=asked.error,
+        time=asked.time,
+        threads=asked.threads,
+        precision=asked.precision,
+    )
+    if image.reached:
+        print(image.reached, file=sys.stderr)
     if asked.verbose:
         print(
             f"{width}x{height}, {samples} samples a pixel, {renderer.threads} threads, {renderer.precision} "

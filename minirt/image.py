@@ -17,6 +17,8 @@ from minirt.errors import RenderError
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
+    from minirt.rendering.reached import Reached
+
 
 def format_of(path: str | os.PathLike[str]) -> str:
     """Pillow's name of the format that a file name's extension stands for; RenderError where it can write none."""
@@ -35,11 +37,12 @@ class Image:
 
     array: np.ndarray  # (h, w, 3) uint8, red green blue
     linear: np.ndarray | None = None  # (h, w, 3) float64, the light before it was clamped and rounded
+    reached: Reached | None = None  # samples and estimated error, where an error or a time was asked for
 
     @classmethod
-    def from_bgra(cls, pixels: np.ndarray, linear: np.ndarray | None = None) -> Image:
+    def from_bgra(cls, pixels: np.ndarray, linear: np.ndarray | None = None, reached: Reached | None = None) -> Image:
         """The picture in a framebuffer (h, w, 4) in the order blue, green, red, alpha."""
-        return cls(np.ascontiguousarray(pixels[..., 2::-1]), linear)
+        return cls(np.ascontiguousarray(pixels[..., 2::-1]), linear, reached)
 
     @cached_property
     def pil(self) -> PillowImage:

@@ -15,6 +15,7 @@ LOW = {"errors", "fields", "element", "lanes", "materials", "shapes"}
 # For each part what it may import of ours. A part is a folder or a file of the package.
 MAY: dict[str, set[str]] = {
     "errors": set(),
+    "amounts": set(),
     "atomic": set(),
     "garbage": set(),
     "regular": {"errors"},
@@ -46,7 +47,19 @@ MAY: dict[str, set[str]] = {
     "timing": set(),
     "bench": {"__init__", "rendering", "scene", "timing"},
     "report": LOW | {"__init__", "atomic", "image", "kernel", "rendering", "scene", "timing"},
-    "cli": {"__init__", "movie", "errors", "garbage", "image", "scene", "viewer", "bench", "rendering", "report"},
+    "cli": {
+        "__init__",
+        "amounts",
+        "movie",
+        "errors",
+        "garbage",
+        "image",
+        "scene",
+        "viewer",
+        "bench",
+        "rendering",
+        "report",
+    },
     "__main__": {"cli"},
     "__init__": LOW | {"image", "scene", "rendering"},
 }

@@ -76,6 +76,25 @@ def test_more_samples_are_nearer_to_the_mean_of_the_pixels(scene: minirt.Scene) 
     assert errors[-1] < errors[0] / 5
 
 
+def test_a_picture_says_what_it_reached(scene: minirt.Scene) -> None:
+    image = minirt.render(scene, 96, 54, samples="auto", error=0.004)
+    fine = np.clip(minirt.render(scene, 96, 54, samples=1000).linear, 0, 1)
+    assert image.reached.error <= 0.004
+    assert np.sqrt(((np.clip(image.linear, 0, 1) - fine) ** 2).mean()) < 1.5 * 0.004
+    assert np.array_equal(image.array, to_bytes(image.linear))
+    assert minirt.render(scene, 96, 54, samples="auto").reached.error <= minirt.DEFAULT_ERROR
+    assert minirt.render(scene, 96, 54, samples="auto", time=0.05).reached.samples >= 2
+    assert minirt.render(scene, 96, 54, samples=4).reached is None
+
+
+@pytest.mark.parametrize("goal", [{"error": 0}, {"error": -1.0}, {"time": 0}, {"error": float("nan")}])
+def test_a_goal_that_cannot_be_reached(scene: minirt.Scene, goal: dict[str, float]) -> None:
+    with pytest.raises(minirt.RenderError, match=f"{next(iter(goal))} must be > 0"):
+        minirt.render(scene, 4, 4, samples="auto", **goal)
+    with pytest.raises(minirt.RenderError, match="needs samples='auto', got 4"):
+        minirt.render(scene, 4, 4, samples=4, **goal)
+
+
 def test_threads_do_not_change_the_picture(scene: minirt.Scene) -> None:
     assert np.array_equal(*(minirt.render(scene, 50, 40, threads=n).linear for n in (1, 3)))
 

@@ -18,12 +18,12 @@ STRIP = (
 )  # lines looked at in one go: what they take fits a processor's cache, a third of the time of all at once
 
 
-def edge_packets(pixels: np.ndarray, across: int) -> Iterator[np.ndarray]:
+def edge_packets(pixels: np.ndarray, across: int, least: int = CONTRAST) -> Iterator[np.ndarray]:
     """The packets, so many pixels across, with a pixel at an edge: uint8 (rows, columns), a strip of the picture at a
     time, so that whoever asks may stop in between. `pixels` is C-contiguous uint8 (h, w, 4)."""
     for top in range(0, len(pixels), STRIP):
         seen = pixels[max(top - 1, 0) : top + STRIP + 1]  # with a line above and one below
-        yield packets_of(contrasts(seen)[min(top, 1) :][:STRIP], across)
+        yield packets_of(contrasts(seen, least)[min(top, 1) :][:STRIP], across)
 
 
 def contrasts(pixels: np.ndarray, least: int = CONTRAST) -> np.ndarray:

@@ -32,9 +32,10 @@ def pixel_rays(camera: np.ndarray, width: int, height: int) -> np.ndarray:
 
 def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:
     """For each sample of a pixel, (k, 3 * width): the directions of the rays of a packet as differences from the one
-    through its upper left corner."""
+    through its upper left corner. `samples` are places in the pixel: (k, 2), or (k, width, 2) where each pixel of a
+    packet has places of its own."""
     across_and_down = rays[6:].reshape(2, 3)
-    places = packet_places(width(rays)) + samples[..., None]
+    places = packet_places(width(rays)) + samples.reshape(len(samples), -1, 2).swapaxes(1, 2)
     differences: np.ndarray = across_and_down.T @ places
     return differences.reshape(len(samples), -1).astype(rays.dtype)
 

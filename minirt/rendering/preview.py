@@ -14,8 +14,8 @@ from minirt.kernel.frame import level, towards
 from minirt.kernel.traced import Traced
 from minirt.kernel.whitted import radiance
 from minirt.lanes import Vec, unit
+from minirt.rendering.frames import memory_for
 from minirt.rendering.packing import Packing
-from minirt.rendering.renderer import memory_for
 from minirt.scene import Scene
 
 BUDGET = 0.12  # seconds

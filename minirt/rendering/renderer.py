@@ -3,45 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, cached_property, partial
+from functools import cached_property, partial
 from importlib import import_module
 from itertools import takewhile
+from math import inf
 from threading import Lock
-from typing import Any, NamedTuple
+from time import perf_counter
+from typing import Any
 
 import numpy as np
 
 from minirt.errors import RenderError
 from minirt.garbage import uncollected
 from minirt.kernel import lists
-from minirt.kernel.frame import CANCELLED, DOWN, TILE
+from minirt.kernel.frame import CANCELLED, DOWN
 from minirt.lanes import width
 from minirt.rendering.adaptive import edge_packets
-from minirt.rendering.camera import packet_rays
+from minirt.rendering.auto import CLASSES, Auto, Task
 from minirt.rendering.cores import usable_cores
+from minirt.rendering.frames import ALL_PACKETS, NO_LINEAR, Frame, frame_arguments, memory_for, room_for_sums
 from minirt.rendering.helper import Helper
+from minirt.rendering.reached import Reached
 from minirt.rendering.workers import Workers
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
 PRECISIONS = ("double", "single")
-NO_LINEAR = np.zeros((0, 0, 3))
-ALL_PACKETS = np.zeros((0, 0), np.uint8)
 PATIENCE, TRIES = 0.05, 4  # seconds that somebody who clicks waits for a picture, and how often
-GOLDEN = (5**0.5 - 1) / 2
-
-
-@cache
-def sample_places(samples: int) -> np.ndarray:
-    """Where in a pixel its samples lie, (samples, 2): a Fibonacci lattice whose middle is the middle of the pixel.
-
-    With its middle elsewhere the whole picture would be moved: of 4 samples by a fourteenth of a pixel, which was a
-    seventh of their error.
-    """
-    each = np.arange(samples)
-    lattice = np.stack([(each + 0.5) / samples, (each * GOLDEN + 0.5) % 1.0], axis=1)
-    centred: np.ndarray = lattice - lattice.mean(axis=0) + 0.5
-    return centred
 
 
 class Renderer:
@@ -56,6 +44,7 @@ class Renderer:
         self.next_row = np.zeros(1, np.int64)
         self.known: set[frozenset[type]] = set()  # kinds of shapes that there is a kernel for
         self.not_finite = 0  # rays of the last picture whose light was infinite or NaN, and is 0 in it
+        self.cancels = 0
         self.busy = Lock()
         self.helper = Helper()
 
@@ -154,6 +143,7 @@ class Renderer:
         if samples < 1:
             raise RenderError(f"a pixel needs at least 1 sample, got {samples}")
         height, across, _ = pixels.shape
+        self.not_finite = 0
         if not scene.shapes or not pixels.size:
             pixels[...] = (0, 0, 0, 255)
             return True
@@ -166,21 +156,57 @@ class Renderer:
             strips = edge_packets(pixels, width(traced.camera) // DOWN)
             found = list(takewhile(lambda _: counter[0] < CANCELLED, strips))
             given = given._replace(wanted=np.concatenate(found) if found else ALL_PACKETS)
-        self.run(given)
+        self.run([given], self.threads)
         self.known.add(kinds_of(scene))
         return bool(counter[0] < CANCELLED)
 
-    def run(self, given: Frame) -> None:
-        """The same frame on all threads, which share its rows; an error of any thread is raised.
+    def reach(
+        self,
+        scene: Scene,
+        pixels: np.ndarray,
+        error: float = 0.0,
+        seconds: float = inf,
+        linear: np.ndarray | None = None,
+    ) -> Reached | None:
+        """Render into `pixels` and `linear`, as `render` does, until the estimated error is as small or as many seconds
+        have passed; see `minirt.rendering.auto`. None where `cancel` ended it early; then both are as before.
+        """
+        with self.busy:
+            start, cancels = perf_counter(), self.cancels
+            if not scene.shapes or not pixels.size:
+                self.draw(scene, pixels, 1, NO_LINEAR, False, lambda: True)
+                return Reached(1.0, 1, 0.0, perf_counter() - start)
+            traced = self.packing.pack(scene, pixels.shape[1], pixels.shape[0])
+            given = frame_arguments(traced, pixels)
+            self.not_finite = 0
+
+            def draw(tasks: list[Task]) -> bool:
+                self.next_row = counters = np.zeros(len(tasks), np.int64)
+                if self.cancels != cancels:
+                    return False
+                self.run([given.of(task, counters[i:]) for i, task in enumerate(tasks)], -(-self.threads // CLASSES))
+                return bool(counters.max() < CANCELLED)
+
+            auto = Auto(draw, pixels.shape[0], pixels.shape[1], width(traced.camera) // DOWN)
+            reached = auto.reach(error, seconds - (perf_counter() - start))
+            if reached:
+                auto.halves.finish(pixels, NO_LINEAR if linear is None else linear)
+                self.known.add(kinds_of(scene))
+            return reached and reached._replace(seconds=perf_counter() - start)
+
+    def run(self, frames: list[Frame], threads: int) -> None:
+        """Frames, each on so many threads, which share its rows; an error of any thread is raised.
 
         The caller's thread only waits, so that Ctrl+C reaches it.
         """
-        draw = self.kernel.kernel_for(given.scene)
+        draw = self.kernel.kernel_for(frames[0].scene)
         own = [
-            given._replace(memory=memory_for(given.scene), sums=room_for_sums(given.scene)) for _ in range(self.threads)
+            frame._replace(memory=memory_for(frame.scene), sums=room_for_sums(frame.scene))
+            for frame in frames
+            for _ in range(threads)
         ]
         self.workers.run([partial(draw, *each) for each in own], self.cancel)
-        self.not_finite = int(sum(each.memory[-1, 1] for each in own))
+        self.not_finite += int(sum(each.memory[-1, 1] for each in own))
 
     def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
         """What a pixel of a picture shows, see `minirt.rendering.pick`. A picture that is being made gives way; where
@@ -197,7 +223,8 @@ class Renderer:
 
     def cancel(self) -> None:
         """From any thread: the picture that is being made ends soon, half-made."""
-        self.next_row[0] = CANCELLED
+        self.cancels += 1  # for a picture between two frames
+        self.next_row[:] = CANCELLED
 
 
 def kinds_of(scene: Scene) -> frozenset[type]:
@@ -208,42 +235,3 @@ def kinds_of(scene: Scene) -> frozenset[type]:
 def one_of_each(scene: Scene) -> Scene:
     """A small scene with the same kinds of shapes."""
     return Scene((scene.camera, *{type(shape): shape for shape in scene.shapes}.values()))
-
-
-class Frame(NamedTuple):
-    """What `minirt.kernel.frame.frame` is called with."""
-
-    next_row: np.ndarray
-    pixels: np.ndarray
-    linear: np.ndarray
-    rays: np.ndarray
-    wanted: np.ndarray
-    memory: np.ndarray
-    sums: np.ndarray
-    scene: Any
-
-
-def frame_arguments(
-    traced: Any, pixels: np.ndarray, samples: int = 1, linear: np.ndarray = NO_LINEAR, counter: np.ndarray | None = None
-) -> Frame:
-    """A frame of all packets."""
-    return Frame(
-        next_row=np.zeros(1, np.int64) if counter is None else counter,
-        pixels=pixels.view(np.uint32).reshape(pixels.shape[:2]),
-        linear=linear,
-        rays=packet_rays(traced.camera, sample_places(samples)),
-        wanted=ALL_PACKETS,
-        memory=memory_for(traced),
-        sums=room_for_sums(traced),
-        scene=traced,
-    )
-
-
-def room_for_sums(traced: Any) -> np.ndarray:
-    """Room for the light of a tile."""
-    return np.empty(3 * TILE * TILE, traced.camera.dtype)
-
-
-def memory_for(traced: Any) -> np.ndarray:
-    """What a thread remembers from one packet to the next, see `minirt.kernel.trace`: nothing yet."""
-    return np.zeros((len(traced.lights) + 1, 4), traced.lights.dtype)

@@ -9,7 +9,7 @@ import numpy as np
 
 from minirt.rendering import Renderer
 from minirt.rendering.camera import packet_rays
-from minirt.rendering.renderer import frame_arguments, sample_places
+from minirt.rendering.frames import frame_arguments, sample_places
 from minirt.report.metrics import Picture, rmse, shown
 from minirt.scene import Scene
 
@@ -58,7 +58,7 @@ def half(
         traced = renderer.packing.pack(scene, width, height)
         given = frame_arguments(traced, pixels, linear=linear)._replace(rays=packet_rays(traced.camera, some))
         renderer.next_row = given.next_row  # so that it can be cancelled
-        renderer.run(given)
+        renderer.run([given], renderer.threads)
         total += linear * len(some)
         step()
     return total / len(places)

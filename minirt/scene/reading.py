@@ -202,8 +202,10 @@ def value_of(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
 
 def usable(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log) -> bool:
     """Whether the picture files that a value names can be used."""
+    if log.folder is None:
+        return True
     errors = len(log.errors)
-    for name, heights, part in slot.field.pictures(value) if log.folder else ():
+    for name, heights, part in slot.field.pictures(value):
         from minirt.materials import pictures  # with numpy, which few scenes need this early
 
         try:

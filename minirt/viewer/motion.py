@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import atan2, cos, fmod, fsum, hypot, pi, radians, sin
 
 from minirt.element import Element
-from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit
+from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit, upright
 from minirt.scene import Camera
-from minirt.scene.view import mix, upright, view
+from minirt.scene.view import mix, view
 from minirt.viewer.state import Frame, named
 
 WORLD: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}

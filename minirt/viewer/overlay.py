@@ -83,13 +83,14 @@ def bracketed(written: str, part: int | None) -> str:
 
 
 def status(shown: Outcome, rate: float = 0.0) -> str:
-    """Resolution and time of the picture, and how many samples its pixels have of those that they will."""
+    """Resolution and time of the picture, how many samples its pixels have of those that they will, and its error."""
     job = shown.job
     coarse = " preview" if shown.preview else f" at 1/{job.divisor}" if job.divisor > 1 else ""
     time = f"    {shown.seconds * 1000:.1f} ms" if shown.seconds else ""
     samples = f"{job.samples} of {job.goal} samples" if job.goal > 1 else "1 sample"
     rays = f"    {rate / 1e6:.3g} million rays a second" if rate else ""
-    return f"{job.width}x{job.height}{coarse}{time}    {samples}{rays}"
+    error = f"    error {shown.estimate:.1g}" if shown.estimate else ""
+    return f"{job.width}x{job.height}{coarse}{time}    {samples}{error}{rays}"
 
 
 def draw_message(pixels: Pixels, text: str, taken: int, size: int) -> None:

@@ -9,6 +9,7 @@ from typing import Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from minirt.rendering.passes import estimated_error
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
@@ -62,6 +63,7 @@ class Job:
     samples: int = 1  # of a pixel
     goal: int = 1  # samples of the last picture, when nothing moves any more
     base: Pixels | None = field(default=None, compare=False, repr=False)  # the same picture with fewer samples
+    fewer: int = 1  # samples of that
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -85,7 +87,8 @@ class Job:
         """The next better one, where that became `pixels`: in full resolution, or with more samples."""
         if self.divisor > 1:
             return replace(self, divisor=1, urgent=False)
-        return replace(self, urgent=False, samples=min(MORE * self.samples, self.goal), base=pixels)
+        samples = min(MORE * self.samples, self.goal)
+        return replace(self, urgent=False, samples=samples, base=pixels, fewer=self.samples)
 
     def outlives(self, newer: Job) -> bool:
         """Whether it should be finished although a newer one waits."""
@@ -100,6 +103,7 @@ class Outcome:
     pixels: Pixels | None = None
     error: Exception | None = None
     seconds: float = 0.0  # of rendering; 0 where time is not real
+    estimate: float | None = None  # of the error, where a picture was refined: see `minirt.rendering.passes`
     preview: bool = False  # another picture follows when the kernel is there
     about: tuple[str, ...] = ()  # how it was made, in words
 
@@ -146,7 +150,11 @@ def paint(renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: W
         done = make(job.scene, pixels, job.samples, is_wanted=is_wanted)
     except Exception as error:  # whatever it is, it is raised where the program is run, not here
         return Outcome(job, error=error)
-    return Outcome(job, pixels if done else None, about=tuple(renderer.about) if done and not job.urgent else ())
+    if not done:
+        return Outcome(job)
+    about = () if job.urgent else tuple(renderer.about)
+    estimate = None if base is None else estimated_error(base, pixels, job.fewer, job.samples)
+    return Outcome(job, pixels, estimate=estimate, about=about)
 
 
 def preview(renderer: Renderer, job: Job) -> Outcome:

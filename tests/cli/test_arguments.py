@@ -23,6 +23,15 @@ BAD_ARGUMENTS = [
         for size in ("4x4x4", "4.5x4", "\uff14x4", "16385x4", "1_0x4", "99999999999x4")
     ),
     *(["ball.rt", "-o", "x.png", "--samples", samples] for samples in ("0", "-1", "x", "1.5", "65537", "\u00b2")),
+    *(
+        ["ball.rt", "-o", "x.png", "--samples", "auto", "--error", error]
+        for error in ("0", "-1", "x", "nan", "inf", "1_0")
+    ),
+    ["ball.rt", "-o", "x.png", "--samples", "auto", "--time", "0"],
+    ["ball.rt", "-o", "x.png", "--error", "0.01"],
+    ["ball.rt", "-o", "x.png", "--samples", "4", "--time", "1"],
+    ["ball.rt", "--samples", "auto"],
+    ["ball.rt", "--replay", "keys.txt", "-o", "x.png", "--samples", "auto"],
     ["ball.rt", "--threads", "0"],
     ["ball.rt", "--keys", "dvorak"],
 ]

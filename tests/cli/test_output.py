@@ -102,6 +102,23 @@ def test_size_and_samples(run: Run) -> None:
     assert not np.array_equal(pixels(ended.out), rendered(20, 10))
 
 
+@pytest.mark.parametrize("goal", [("--error", "0.01"), ("--time", "0.1"), ("--error", "0.01", "--time", "5"), ()])
+def test_as_many_samples_as_an_error_or_a_time_asks_for(run: Run, goal: tuple[str, ...]) -> None:
+    ended = run("ball.rt", "-o", "-", "--size", "80x60", "--samples", "auto", *goal)
+    assert ended.status == 0
+    told = re.fullmatch(
+        r"([0-9.]+) samples a pixel on average, ([0-9]+) at most; estimated error ([0-9.e-]+); ([0-9.]+) s\n", ended.err
+    )
+    assert told
+    mean, most, error, _ = map(float, told.groups())
+    assert 2 <= mean <= most
+    assert error <= (0.01 if "--error" in goal else 0.0021 if not goal else 1)
+    if "--time" not in goal:
+        wanted = {"error": float(goal[1])} if goal else {}
+        image = minirt.render(minirt.load("ball.rt"), 80, 60, samples="auto", **wanted)
+        assert np.array_equal(pixels(ended.out), image.array)
+
+
 def test_the_scene_may_name_the_size(run: Run, folder: Path) -> None:
     (folder / "sized.rt").write_text("R 33 21\n" + SCENE)
     assert pixels(run("sized.rt", "-o", "-").out).shape == (21, 33, 3)

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from minirt.kernel import frame
 from minirt.rendering import Renderer
 from minirt.rendering.camera import packet_rays
+from minirt.rendering.frames import ALL_PACKETS, memory_for, room_for_sums, sample_places
 from minirt.rendering.packing import Packing
-from minirt.rendering.renderer import ALL_PACKETS, memory_for, room_for_sums, sample_places
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane

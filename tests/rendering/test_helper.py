@@ -17,9 +17,9 @@ import pytest
 import minirt
 from minirt.errors import RenderError
 from minirt.rendering import helper
+from minirt.rendering.frames import frame_arguments
 from minirt.rendering.helper import Helper
 from minirt.rendering.packing import Packing
-from minirt.rendering.renderer import frame_arguments
 from minirt.scene import Camera, Scene
 from minirt.shapes.sphere import Sphere
 

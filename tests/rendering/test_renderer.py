@@ -15,7 +15,8 @@ import minirt
 from minirt.errors import RenderError
 from minirt.kernel.frame import CANCELLED
 from minirt.rendering import Renderer
-from minirt.rendering.renderer import kinds_of, sample_places
+from minirt.rendering.frames import sample_places
+from minirt.rendering.renderer import kinds_of
 from minirt.scene import Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, SHAPES, TWO, picture
 
