@@ -72,7 +72,7 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, 
         close = hit & close
         product = chord
         if rarely(close):
-            product = power(origin, sphere.centre, sphere.radius)
+            product = where(close, power(origin, sphere.centre, sphere.radius), product)
             chord = where(close, approach * approach - product, chord)
         half = sqrt(chord)
         near = approach - half
