@@ -247,7 +247,7 @@ def needs(scene: Scene) -> frozenset[Hashable]:
 
 def small(scene: Scene) -> Scene:
     """A scene of few shapes that needs the same."""
-    shapes = {(type(shape), *dressed(shape)): shape for shape in scene.shapes}
-    more = scene.shapes[: SMALL + 1]
+    shapes = list({(type(shape), *dressed(shape)): shape for shape in scene.shapes}.values())
+    more = min(len(scene.shapes), SMALL + 1) - len(shapes)
     sky = (scene.background,) if scene.background else ()
-    return Scene((scene.camera, *sky, *scene.lights, *shapes.values(), *more), scene.file)
+    return Scene((scene.camera, *sky, *scene.lights, *shapes, *shapes[:1] * more), scene.file)
