@@ -240,9 +240,10 @@ class Renderer:
 
 
 def needs(scene: Scene) -> frozenset[Hashable]:
-    """What there is a kernel of its own for: the kinds of shapes and the features of a scene, and whether it is large
-    enough for cells around its lamps."""
-    return traits(scene) | {len(scene.shapes) > SMALL}
+    """What there is a kernel of its own for: the kinds of shapes and the features of a scene, and for parallel light
+    whether there are so many shapes that a tree is used."""
+    found = traits(scene)
+    return found | {"tree"} if "parallel" in found and len(scene.shapes) > SMALL else found
 
 
 def small(scene: Scene) -> Scene:
