@@ -2,6 +2,8 @@
 
 A solid hyperboloid of one sheet about the axis `ax,ay,az`, with a cap at both ends. `x,y,z` is its centre; it is
 `waist` wide there and `diameter` wide at the ends, `height` apart. The waist may be as wide as the ends: a cylinder.
+A picture lies once around the side, of an upright one with its middle towards -z, and once on the square around each
+cap.
 
     hy 0,0,20  0,1,0  2  4  6  180,140,220    a cooling tower six units high
 """
@@ -13,13 +15,14 @@ from math import sqrt as root
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
-from minirt.lanes import Vec, any, copysign, dot, fabs, inverse_root, maximum, minimum, splat, where
+from minirt.lanes import Vec, any, copysign, dot, fabs, inverse_root, maximum, minimum, splat, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import along, box_of_boxes, box_of_disc
 from minirt.shapes.quadric import below_zero
 from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.wrap import is_side, wrapped
 
 
 @dataclass(frozen=True)
@@ -143,3 +146,16 @@ def from_side(hyperboloid: PackedHyperboloid, p: Vec) -> tuple[Number, Vec]:
     per_gradient = inverse_root(squared + down * down)  # of half of the gradient
     above = 0.5 * (squared - reach * reach - hyperboloid.waist * hyperboloid.waist) * per_gradient
     return above, per_gradient * Vec(p.x, p.y, -down)
+
+
+def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """Around the side and up it, in equal heights."""
+    u, v, w = hyperboloid.u, hyperboloid.v, hyperboloid.w
+    p = to_basis(u, v, w, point - hyperboloid.centre)
+    tall = 2.0 * hyperboloid.half
+    squared = p.x * p.x + p.y * p.y
+    widening = hyperboloid.slope * hyperboloid.slope * p.z / squared  # by height, along p.x and p.y
+    rise = tall * Vec(widening * p.x, widening * p.y, splat(1.0, p.z))
+    reach = hyperboloid.slope * hyperboloid.half
+    radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * splat(reach, p.z))
+    return wrapped(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), 0.5 + p.z / tall, rise, radius)

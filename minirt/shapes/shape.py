@@ -1,12 +1,17 @@
 """What every shape's file provides, and what its formulas mean.
 
 A file of a shape holds its manual page, its line in a scene file (a frozen dataclass), what the kernel keeps of it
-(a NamedTuple of numbers and Vecs, made by `pack`) and two formulas:
+(a NamedTuple of numbers and Vecs, made by `pack`) and three formulas:
 
     intersect(shape, origin, direction)   the distance t along the unit `direction` at which the ray enters or, from
                                           inside, leaves the shape: the least t > 0, or infinity
     surface(shape, point)                 a point within rounding of the surface: that point put onto the surface, and
                                           the unit normal there, outward where there is an outside
+    mapping(shape, point, normal)         where a picture has this point of the surface with this normal: u to the right
+                                          and v upwards, 0 to 1 across a picture; and the tangents dP/du and dP/dv
+
+The tangents and the normal are right-handed, so that nobody outside sees a picture mirrored. At poles and apexes, where
+a picture is gathered to a point, tangents may be zero.
 """
 
 from __future__ import annotations
@@ -68,3 +73,4 @@ class Kind(NamedTuple):
     packed: type[Any]
     intersect: Callable[..., Any]
     surface: Callable[..., Any]
+    mapping: Callable[..., Any]
