@@ -7,7 +7,8 @@
     └── MlxError       no window can be opened
 
     ValueError
-    └── FieldError     a value that a field of a scene element cannot take; the parser makes a Problem of it
+    ├── FieldError     a value that a field of a scene element cannot take; the parser makes a Problem of it
+    └── ElementError   fields of a scene element that do not go together
 
 Only `minirt.cli` prints them.
 """
@@ -84,3 +85,7 @@ class FieldError(ValueError):
     def __init__(self, message: str, part: int | None = None) -> None:
         super().__init__(message)
         self.part = part
+
+
+class ElementError(ValueError):
+    """Fields of an element that do not go together."""

@@ -7,16 +7,16 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from minirt.element import Element, pattern
+from minirt.element import Element, fields_of, pattern
 from minirt.errors import Problem, SceneError
 from minirt.scene import files, plain
 from minirt.scene.elements import Ambient, FurtherLight, Light
 from minirt.scene.lines import Line, Word, line_from
 from minirt.scene.log import Log
 from minirt.scene.pages import Item
-from minirt.scene.reading import assign, cut, fill, identify
+from minirt.scene.reading import Slot, assign, cut, fill, identify
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.scene import Scene
 from minirt.scene.spelling import nearest_element
@@ -111,7 +111,21 @@ def read_element(code: str, words: list[Word], first: int, line: Line, log: Log)
             kind = FurtherLight
     slots = assign(kind, words, line, log)
     values = fill(kind, slots, line, log) if slots else None
-    return kind(**values, source=line.source) if values and len(log.errors) == errors else None
+    return assemble(kind, slots, values, line, log) if slots and values and len(log.errors) == errors else None
+
+
+def assemble(kind: type[Element], slots: list[Slot], values: dict[str, Any], line: Line, log: Log) -> Element | None:
+    """The element with those values, None where they do not go together."""
+    columns = {field.name: [values.get(field.name, field.default)] for field in fields_of(kind)}
+    (element,) = kind.checked(1, {"source": [line.source], **columns})
+    conflict = element.conflict()
+    if conflict is None:
+        return element
+    name, message = conflict
+    slot = next(slot for slot in slots if slot.field.name == name)
+    column, length = slot.word.place(None, slot.start)
+    log.error(line, column, f"{kind.title} {name} {message}", length)
+    return None
 
 
 def look_for_missing(seen: dict[str, int], line: Line, log: Log) -> None:

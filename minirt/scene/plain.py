@@ -24,7 +24,7 @@ KINDS = {
 def pattern(kind: type[Element]) -> str:
     """The regular expression of an element's plain lines without blanks around, in a group that is named like it."""
     fields = "".join(f"[ \\t]+{field.plain}" for field in fields_of(kind) if not field.keyed)
-    return f"(?P<{kind.code}>{kind.code}{fields})"
+    return f"(?P<{kind.code}>(?:{'|'.join((kind.code, *kind.aliases))}){fields})"
 
 
 LINE = re.compile(rf"[ \t]*(?:{'|'.join(map(pattern, KINDS.values()))})[ \t]*(?:#[^\r\n\0]*)?\r?")
@@ -59,4 +59,7 @@ def alike(kind: type[Element], texts: list[str], sources: list[str]) -> Sequence
     rows = zip(*columns.values(), strict=True)
     left_out = {field.name: repeat(field.default) for field in fields_of(kind) if field.keyed}
     elements = kind.checked(len(sources), {"source": sources, **columns, **left_out})
-    return [None if None in row else element for row, element in zip(rows, elements, strict=True)]
+    good = [None if None in row else element for row, element in zip(rows, elements, strict=True)]
+    if kind.conflict is not Element.conflict:
+        good = [None if element is None or element.conflict() else element for element in good]
+    return good

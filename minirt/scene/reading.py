@@ -13,7 +13,7 @@ from minirt.fields import Colour, Field
 from minirt.fields.numerals import named
 from minirt.scene.lines import Line, Word, joined, words
 from minirt.scene.log import Log
-from minirt.scene.registry import ELEMENTS
+from minirt.scene.registry import ELEMENTS, SPELLINGS
 from minirt.scene.spelling import GLUED, NUMERIC, hint, nearest, nearest_element
 
 SLASHES = re.compile(r"(?<![^ \t])//")
@@ -67,12 +67,12 @@ def cut(line: Line, log: Log) -> list[Word] | None:
 
 
 def identify(word: Word, line: Line, log: Log) -> str | None:
-    """The identifier that `word` is. None where it is none; `log` then says what it may mean."""
+    """The identifier that `word` is or stands for. None where it is none; `log` then says what it may mean."""
     code = word.raw
-    if code in ELEMENTS:
-        return code
+    if code in SPELLINGS:
+        return SPELLINGS[code].code
     glued = GLUED.match(code)
-    if glued and glued[1] in ELEMENTS:
+    if glued and glued[1] in SPELLINGS:
         log.error(line, word.column + len(glued[1]), f"a blank is missing after '{glued[1]}'")
     elif NUMERIC.match(code):
         known = ", ".join(ELEMENTS)
@@ -115,7 +115,7 @@ def blame(kind: type[Element], slots: list[Slot], extra: Word, line: Line, log: 
     fill(kind, slots, line, log)
     del log.errors[before + 1 :]  # behind the first all fields may be off by one
     if len(log.errors) == before:
-        why = " (one element a line)" if extra.raw in ELEMENTS else f": expected '{pattern(kind)}'"
+        why = " (one element a line)" if extra.raw in SPELLINGS else f": expected '{pattern(kind)}'"
         log.error(line, extra.column, f"{kind.title} has no further field {quoted(extra.raw)}{why}", len(extra.raw))
 
 

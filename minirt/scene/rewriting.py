@@ -9,7 +9,7 @@ from minirt.fields import Field
 from minirt.scene.lines import Word, line_from
 from minirt.scene.log import Log
 from minirt.scene.reading import Slot, assign, cut, fill, identify
-from minirt.scene.registry import ELEMENTS
+from minirt.scene.registry import ELEMENTS, SPELLINGS
 
 
 def describe(element: Element) -> str:
@@ -61,7 +61,8 @@ def changed(text: str, element: Element, words: list[Word], slots: list[Slot], v
     for slot in by_column:
         if not slot.field.keyed:
             text = respelled(text, slot, element, values)
-    return replaced(text, words[0].column, words[0].end, element.code)
+    code = words[0].raw if SPELLINGS[words[0].raw] is type(element) else element.code
+    return replaced(text, words[0].column, words[0].end, code)
 
 
 def inserted(text: str, column: int, new: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 
-from minirt.scene.registry import ELEMENTS
+from minirt.scene.registry import ELEMENTS, SPELLINGS
 
 LOOKALIKES = str.maketrans("1I0", "llo")
 GLUED = re.compile(r"([A-Za-z]+)[-+.0-9]")
@@ -24,8 +24,8 @@ def nearest(word: str, known: list[str]) -> str:
 def nearest_element(word: str) -> str:
     """The identifier of the element that `word` may mean: an identifier misspelled, or the element's name."""
     glued = GLUED.match(word)
-    if glued and glued[1] in ELEMENTS:
-        return glued[1]
+    if glued and glued[1] in SPELLINGS:
+        return SPELLINGS[glued[1]].code
     names = {name: kind.code for kind in ELEMENTS.values() for name in (kind.title, kind.plural)}
     return nearest(word, list(ELEMENTS)) or names.get(nearest(word, list(names)), "")
 

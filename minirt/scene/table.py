@@ -18,10 +18,10 @@ def row(kind: type[Element]) -> str:
 
 
 def name(kind: type[Element]) -> str:
-    """What the element is called, and how many of it there may be."""
+    """What the element is called, how many of it there may be and what else its line may begin with."""
     if kind.once:
         return f"{kind.title} ({'exactly one' if kind.required else 'at most one'})"
-    return kind.title
+    return f"{kind.title} (also {', '.join(f'`{alias}`' for alias in kind.aliases)})" if kind.aliases else kind.title
 
 
 def meaning(field: Field) -> str:

@@ -8,7 +8,6 @@ A solid tube with both caps about the axis `ax,ay,az`; `x,y,z` is its centre, ha
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import hypot
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
@@ -16,6 +15,7 @@ from minirt.lanes import Vec, any, copysign, dot, fabs, maximum, minimum, splat,
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.extents import along, box_of_boxes, box_of_disc
 from minirt.shapes.quadric import below_zero
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
@@ -35,21 +35,14 @@ class Cylinder(Shape):
         u, v, w = basis(self.axis)
         return PackedCylinder(Place(Vec(*self.centre)), u, v, w, self.diameter / 2, self.height / 2)
 
+    def ends(self) -> tuple[Triple, Triple]:
+        return along(self.centre, self.axis, self.height / 2), along(self.centre, self.axis, -self.height / 2)
+
     def balls(self) -> tuple[Ball, ...]:
-        (x, y, z), (u, v, w), half = self.centre, self.axis, self.height / 2
-        ends = ((x + side * u, y + side * v, z + side * w) for side in (half, -half))
-        return tuple((end, self.diameter / 2) for end in ends)
+        return tuple((end, self.diameter / 2) for end in self.ends())
 
     def bounds(self) -> Box:
-        # A disc of radius r reaches r * sqrt(1 - w_i^2) along axis i; 1 is the sum of the squares of all three.
-        u, v, w = self.axis
-        across = hypot(v, w), hypot(w, u), hypot(u, v)
-        reach = [
-            self.height / 2 * abs(along) + self.diameter / 2 * aside
-            for along, aside in zip(self.axis, across, strict=True)
-        ]
-        (x, y, z), (i, j, k) = self.centre, reach
-        return (x - i, y - j, z - k), (x + i, y + j, z + k)
+        return box_of_boxes(*(box_of_disc(end, self.axis, self.diameter / 2) for end in self.ends()))
 
 
 class PackedCylinder(NamedTuple):

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+from minirt.errors import ElementError
 from minirt.fields import Direction, Point, Triple
 from minirt.scene import Camera
 from minirt.scene.view import view
@@ -28,7 +29,10 @@ WORLD: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0)
 
 def apply(state: State, action: str, amount: float = 1.0, now: float = 0.0) -> State:
     """The state after an action; KeyError where there is no such one."""
-    return EDITS[action](state.say(""), amount, now)
+    try:
+        return EDITS[action](state.say(""), amount, now)
+    except ElementError as error:
+        return state.say(str(error))
 
 
 def move(way: int, sign: float, state: State, amount: float, now: float) -> State:
@@ -50,7 +54,7 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
         if axis == FORWARD:
             return state.put(rolled(element, angle), "roll", now)
         return state.put(looked(element, angle * (axis == UP), angle * (axis == RIGHT)), "turn", now)
-    if not named(type(element), Direction):
+    if not named(type(element), Direction) and len(named(type(element), Point)) < 2:
         return state.say(f"{element.title} looks the same from all sides: nothing to turn")
     world = WORLD.get(state.frame)
     if world:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import atan2, cos, fmod, hypot, pi, radians, sin
+from math import atan2, cos, fmod, fsum, hypot, pi, radians, sin
 
 from minirt.element import Element
 from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit
@@ -13,15 +13,15 @@ from minirt.viewer.state import named
 
 
 def translated(element: Element, axis: Triple, distance: float) -> tuple[Element, bool]:
-    """All points moved along `axis`, at most to the end of the range, and whether that end was met."""
-    changes = {}
-    met = False
-    for name in named(type(element), Point):
-        moved = mix(1.0, getattr(element, name), distance, axis)
-        kept = limited(moved)
-        met |= kept != moved
-        changes[name] = kept
-    return element.replace(**changes), met
+    """All points moved alike along `axis`, at most until one is at the end of the range, and whether that was met."""
+    points = {name: getattr(element, name) for name in named(type(element), Point)}
+    way = [distance * part for part in axis]
+    kept = [
+        clamp(part, -FARTHEST - min(coordinates), FARTHEST - max(coordinates))
+        for part, coordinates in zip(way, zip(*points.values(), strict=True), strict=True)
+    ]
+    moved = {name: limited(mix(1.0, point, 1.0, (kept[0], kept[1], kept[2]))) for name, point in points.items()}
+    return element.replace(**moved), kept != way
 
 
 def limited(point: Triple) -> Triple:
@@ -31,18 +31,30 @@ def limited(point: Triple) -> Triple:
 
 
 def rotated(element: Element, axis: Triple, degrees: float) -> Element:
-    """All directions turned about the unit vector `axis`, right-handed."""
-    names = named(type(element), Direction)
-    return element.replace(**{name: turned(getattr(element, name), axis, degrees) for name in names})
+    """All directions turned about the unit vector `axis`, right-handed, and several points about their middle."""
+    directions = {name: getattr(element, name) for name in named(type(element), Direction)}
+    changes = {name: turned(direction, axis, degrees) for name, direction in directions.items()}
+    points = {name: getattr(element, name) for name in named(type(element), Point)}
+    if len(points) > 1:
+        x, y, z = (fsum(part) / len(points) for part in zip(*points.values(), strict=True))
+        for name, point in points.items():
+            about = rodrigues(mix(1.0, point, -1.0, (x, y, z)), axis, degrees)
+            changes[name] = limited(mix(1.0, (x, y, z), 1.0, about))
+    return element.replace(**changes)
 
 
 def turned(vector: Triple, axis: Triple, degrees: float) -> Triple:
-    """A unit vector turned about the unit vector `axis` (Rodrigues), at unit length again."""
+    """A unit vector turned about the unit vector `axis`, at unit length again."""
+    return unit(rodrigues(vector, axis, degrees))
+
+
+def rodrigues(vector: Triple, axis: Triple, degrees: float) -> Triple:
+    """A vector turned about the unit vector `axis` (Rodrigues, 1840)."""
     c, s = cos(radians(degrees)), sin(radians(degrees))
     (x, y, z), (a, b, d) = vector, axis
     cross = b * z - d * y, d * x - a * z, a * y - b * x
     along = (x * a + y * b + z * d) * (1 - c)
-    return unit(mix(1.0, mix(c, vector, s, cross), along, axis))
+    return mix(1.0, mix(c, vector, s, cross), along, axis)
 
 
 def looked(camera: Camera, right: float, up: float) -> Camera:

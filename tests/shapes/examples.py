@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
 
 from minirt.element import fields_of
+from minirt.errors import ElementError
 from minirt.fields import Colour, Direction, Field, Length, Point
 from minirt.kernel.trace import ROUNDING
 from minirt.rendering.tables import extent
@@ -29,12 +31,20 @@ def value(field: Field, random: Random, size: float, offset: float) -> object:
 
 def example(kind: Kind, random: Random, size: float = 1.0, offset: float = 0.0) -> Shape:
     """A random shape of a kind."""
-    return kind.element(**{each.name: value(each, random, size, offset) for each in fields_of(kind.element)})
+    while True:
+        with suppress(ElementError):  # of fields that do not go together
+            return kind.element(**{each.name: value(each, random, size, offset) for each in fields_of(kind.element)})
 
 
 def place(shape: Shape) -> Array:
-    """The point that a shape is given by."""
+    """The middle of a shape, or a point of one without end."""
+    balls = shape.balls()
+    if balls:
+        return np.mean([centre for centre, _ in balls], axis=0)
     return np.array(next(getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)))
+
+
+CONCAVE = {"hyperboloid", "torus"}  # titles of shapes from which a way straight out may lead back in
 
 
 class Hits(NamedTuple):

@@ -16,7 +16,7 @@ from minirt.kernel.rows import row_type
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Kind, Shape
 from tests.shapes.checks import U
-from tests.shapes.examples import example, hits, offsets
+from tests.shapes.examples import CONCAVE, example, hits, offsets
 from tests.shapes.regimes import ways
 from tests.shapes.ways import WAYS, kind_of, surfaces, table
 
@@ -83,12 +83,13 @@ def test_its_surface_is_a_unit_normal_and_stays_where_it_is(kind: Kind, size: fl
 @pytest.mark.parametrize(("size", "offset"), SIZES)
 def test_its_normals_point_outwards(kind: Kind, size: float, offset: float) -> None:
     seen = hits(kind, 2, size, offset)
-    # One step out of the surface: from there the way back hits it at once, the way on never does.
+    # One step out of the surface: from there the way on never hits it, and where that is so the way back at once.
     step = 1e-2 * size * np.ones((*seen.hit.shape, 1))
     outside = seen.points + step * seen.normals
     back, on = (WAYS["compiled"](seen.shapes, outside, sign * seen.normals)[seen.hit] for sign in (-1, 1))
-    assert np.abs(back - 1e-2 * size).max() <= 64 * U * (size + offset) * 20
-    assert np.isinf(on).all()
+    free = np.isinf(on)
+    assert free.mean() > 0.5 if kind.element.title in CONCAVE else free.all()
+    assert np.abs(back[free] - 1e-2 * size).max() <= 64 * U * (size + offset) * 20
 
 
 @pytest.mark.parametrize(("size", "offset"), SIZES)

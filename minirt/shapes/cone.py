@@ -1,0 +1,112 @@
+"""Cone: `co x,y,z ax,ay,az diameter height R,G,B`.
+
+A solid cone with a cap on its base. `x,y,z` is the apex; the axis `ax,ay,az` runs from there to the base, whose
+`diameter` it has at the distance `height`.
+
+    co 0,3,20  0,-1,0  2  3  240,160,40    a tent three units high that stands on y = 0
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import NamedTuple
+
+from minirt.fields import Colour, Direction, Length, Point, Triple, declare
+from minirt.lanes import Vec, any, copysign, dot, inverse_root, maximum, minimum, splat, sqrt, where
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.extents import along, box_of_boxes, box_of_disc
+from minirt.shapes.quadric import below_zero
+from minirt.shapes.shape import Ball, Box, Place, Shape
+
+
+@dataclass(frozen=True)
+class Cone(Shape):
+    """A line `co` of a scene file."""
+
+    code, title, plural, aliases = "co", "cone", "cones", ("cn", "cone")
+    apex: Triple = declare(Point, "apex")
+    axis: Triple = declare(Direction, "axis, from the apex to the base")
+    diameter: float = declare(Length, "diameter of the base")
+    height: float = declare(Length, "height")
+    colour: Triple = declare(Colour, "colour")
+
+    def pack(self) -> PackedCone:
+        u, v, w = basis(self.axis)
+        return PackedCone(Place(Vec(*self.apex)), u, v, w, self.diameter / 2 / self.height, self.height)
+
+    def balls(self) -> tuple[Ball, ...]:
+        return (self.apex, 0.0), (along(self.apex, self.axis, self.height), self.diameter / 2)
+
+    def bounds(self) -> Box:
+        base = box_of_disc(along(self.apex, self.axis, self.height), self.axis, self.diameter / 2)
+        return box_of_boxes((self.apex, self.apex), base)
+
+
+class PackedCone(NamedTuple):
+    """What the kernel keeps of a cone: a frame of its own in which the apex is the origin and the base above it."""
+
+    apex: Place
+    u: Vec
+    v: Vec
+    w: Vec  # the axis
+    slope: float  # radius by height
+    height: float
+
+
+def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the cone.
+
+    x^2 + y^2 <= slope^2 z^2 holds in two nappes, the cone and its mirror image. A ray that is flatter than the side is
+    within one of them for an interval of t; a steeper one is in both, but for an interval between, and in the cone
+    before or behind that, whichever is farther up the axis. What remains is cut to the heights between apex and base:
+    as with the cylinder there is no crack at the rim, and none at the apex.
+    """
+    f = origin - cone.apex
+    approach = -dot(f, direction)  # t is counted from the closest approach to the apex
+    p = to_basis(cone.u, cone.v, cone.w, f + approach * direction)
+    d = to_basis(cone.u, cone.v, cone.w, direction)
+    rise = cone.slope * d.z
+    reach = cone.slope * p.z
+    a = d.x * d.x + d.y * d.y - rise * rise
+    side = copysign(1.0, a)
+    steep = side < 0.0
+    b = p.x * d.x + p.y * d.y - reach * rise
+    met, low, high = below_zero(side * a, side * b, side * (p.x * p.x + p.y * p.y - reach * reach))
+    hit = met | steep
+    t = approach
+    if any(hit):
+        per_height = 1.0 / d.z
+        tip = -p.z * per_height
+        base = (cone.height - p.z) * per_height
+        rising = d.z > 0.0
+        middle = -b / a  # of the interval outside, all of it where rounding left none
+        enter = where(steep, where(rising, where(met, high, middle), -inf), low)
+        leave = where(steep, where(rising, inf, where(met, low, middle)), high)
+        enter = maximum(minimum(tip, base), enter)
+        leave = minimum(maximum(tip, base), leave)
+        near = approach + enter
+        t = where(near > 0.0, near, approach + leave)
+        hit = hit & (enter <= leave) & (t > 0.0)
+    return hit, t
+
+
+def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
+    """`point` moved onto the side or the base, whichever it is nearer to, and the outward normal there; at the apex
+    that is against the axis."""
+    p = to_basis(cone.u, cone.v, cone.w, point - cone.apex)
+    rho = sqrt(p.x * p.x + p.y * p.y)
+    cosine = inverse_root(splat(1.0, rho) + cone.slope * cone.slope)  # of the angle between axis and side
+    sine = cone.slope * cosine
+    off = rho * cosine - p.z * sine
+    on_side = off >= p.z - cone.height
+    flat = splat(0.0, rho)
+    pointed = rho == 0.0
+    per_rho = where(pointed, 0.0, 1.0 / rho)
+    aside = where(on_side & ~pointed, cosine, flat)
+    up = where(on_side, where(pointed, -1.0, -sine), 1.0)
+    out = Vec(p.x * per_rho * aside, p.y * per_rho * aside, up)
+    on = p - where(on_side, off, p.z - cone.height) * out
+    return cone.apex + from_basis(cone.u, cone.v, cone.w, on), from_basis(cone.u, cone.v, cone.w, out)

@@ -1,0 +1,135 @@
+"""Hyperboloid: `hy x,y,z ax,ay,az waist diameter height R,G,B`.
+
+A solid hyperboloid of one sheet about the axis `ax,ay,az`, with a cap at both ends. `x,y,z` is its centre; it is
+`waist` wide there and `diameter` wide at the ends, `height` apart. The waist may be as wide as the ends: a cylinder.
+
+    hy 0,0,20  0,1,0  2  4  6  180,140,220    a cooling tower six units high
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt as root
+from typing import NamedTuple
+
+from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
+from minirt.lanes import Vec, any, copysign, dot, fabs, inverse_root, maximum, minimum, splat, where
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.extents import along, box_of_boxes, box_of_disc
+from minirt.shapes.quadric import below_zero
+from minirt.shapes.shape import Ball, Box, Place, Shape
+
+
+@dataclass(frozen=True)
+class Hyperboloid(Shape):
+    """A line `hy` of a scene file."""
+
+    code, title, plural = "hy", "hyperboloid", "hyperboloids"
+    centre: Triple = declare(Point, "centre, half-way up")
+    axis: Triple = declare(Direction, "axis")
+    waist: float = declare(Length, "diameter at the centre, at most that of the ends")
+    diameter: float = declare(Length, "diameter of the ends")
+    height: float = declare(Length, "height")
+    colour: Triple = declare(Colour, "colour")
+
+    def conflict(self) -> tuple[str, str] | None:
+        if self.waist <= self.diameter:
+            return None
+        return "waist", f"must be at most the diameter, {spelled(self.diameter)}, got {spelled(self.waist)}"
+
+    def pack(self) -> PackedHyperboloid:
+        u, v, w = basis(self.axis)
+        spread = root(self.diameter - self.waist) * root(self.diameter + self.waist)
+        return PackedHyperboloid(
+            Place(Vec(*self.centre)), u, v, w, self.waist / 2, spread / self.height, self.height / 2
+        )
+
+    def ends(self) -> tuple[Triple, Triple]:
+        return along(self.centre, self.axis, -self.height / 2), along(self.centre, self.axis, self.height / 2)
+
+    def balls(self) -> tuple[Ball, ...]:
+        return tuple((end, self.diameter / 2) for end in self.ends())
+
+    def bounds(self) -> Box:
+        return box_of_boxes(*(box_of_disc(end, self.axis, self.diameter / 2) for end in self.ends()))
+
+
+class PackedHyperboloid(NamedTuple):
+    """What the kernel keeps of a hyperboloid: a frame of its own in which it stands upright at the origin."""
+
+    centre: Place
+    u: Vec
+    v: Vec
+    w: Vec  # the axis
+    waist: float  # its radius
+    slope: float  # x^2 + y^2 = waist^2 + slope^2 z^2 on the side
+    half: float  # of the height
+
+
+def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the hyperboloid.
+
+    x^2 + y^2 <= waist^2 + slope^2 z^2 holds for an interval of t where the ray is flatter than the side far away, and
+    outside of one, perhaps empty, where it is steeper. Cut to the heights between the caps that leaves up to two
+    stretches within the solid; the first end of a stretch with t > 0 is hit.
+    """
+    f = origin - hyperboloid.centre
+    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
+    p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, f + approach * direction)
+    d = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, direction)
+    rise = hyperboloid.slope * d.z
+    reach = hyperboloid.slope * p.z
+    a = d.x * d.x + d.y * d.y - rise * rise
+    side = copysign(1.0, a)
+    steep = side < 0.0
+    met, low, high = below_zero(
+        side * a,
+        side * (p.x * d.x + p.y * d.y - reach * rise),
+        side * (p.x * p.x + p.y * p.y - reach * reach - hyperboloid.waist * hyperboloid.waist),
+    )
+    hit = met | steep
+    t = approach
+    if any(hit):
+        per_height = 1.0 / d.z
+        bottom = (-hyperboloid.half - p.z) * per_height
+        top = (hyperboloid.half - p.z) * per_height
+        first = minimum(bottom, top)
+        last = maximum(bottom, top)
+        split = steep & met
+        enter = where(steep, first, maximum(first, low))
+        leave = where(steep & ~met, last, minimum(last, where(steep, low, high)))
+        near = approach + enter
+        far = approach + leave
+        t = where(near > 0.0, near, far)
+        one = hit & (enter <= leave) & (far > 0.0)
+        again = maximum(first, high)
+        near = approach + again
+        far = approach + last
+        two = split & ~one & (again <= last) & (far > 0.0)
+        t = where(two, where(near > 0.0, near, far), t)
+        hit = one | two
+    return hit, t
+
+
+def surface(hyperboloid: PackedHyperboloid, point: Vec) -> tuple[Vec, Vec]:
+    """`point` moved onto the side or a cap, whichever it is nearer to, and the outward normal there.
+
+    The distance to the side is, to first order, its function by the length of its gradient (Taubin 1991).
+    """
+    p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, point - hyperboloid.centre)
+    reach = hyperboloid.slope * p.z
+    squared = p.x * p.x + p.y * p.y
+    down = hyperboloid.slope * reach
+    per_gradient = inverse_root(squared + down * down)  # of half of the gradient
+    off = 0.5 * (squared - reach * reach - hyperboloid.waist * hyperboloid.waist) * per_gradient
+    above = fabs(p.z) - hyperboloid.half
+    side = off >= above
+    flat = splat(0.0, off)
+    out = where(side, per_gradient * Vec(p.x, p.y, -down), Vec(flat, flat, copysign(1.0, p.z)))
+    on = p - where(side, off, above) * out
+    return (
+        hyperboloid.centre + from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, on),
+        from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, out),
+    )

@@ -1,0 +1,112 @@
+"""Paraboloid: `pa x,y,z ax,ay,az diameter height R,G,B`.
+
+A solid paraboloid of revolution with a cap. `x,y,z` is the vertex; it opens along the axis `ax,ay,az` and has its
+`diameter` at the distance `height`, where the cap closes it.
+
+    pa 0,0,20  0,1,0  4  3  120,200,160    a bowl, filled to the brim, whose rim is three units above its bottom
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from minirt.fields import Colour, Direction, Length, Point, Triple, declare
+from minirt.lanes import Vec, any, dot, inverse_root, maximum, minimum, splat, where
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.extents import across, along, box_of_boxes, box_of_disc
+from minirt.shapes.quadric import below_zero
+from minirt.shapes.shape import Ball, Box, Place, Shape
+
+
+@dataclass(frozen=True)
+class Paraboloid(Shape):
+    """A line `pa` of a scene file."""
+
+    code, title, plural = "pa", "paraboloid", "paraboloids"
+    vertex: Triple = declare(Point, "vertex")
+    axis: Triple = declare(Direction, "axis, along which it opens")
+    diameter: float = declare(Length, "diameter of the rim")
+    height: float = declare(Length, "height")
+    colour: Triple = declare(Colour, "colour")
+
+    def pack(self) -> PackedParaboloid:
+        u, v, w = basis(self.axis)
+        radius = self.diameter / 2
+        return PackedParaboloid(Place(Vec(*self.vertex)), u, v, w, radius * (radius / self.height) / 2, self.height)
+
+    def balls(self) -> tuple[Ball, ...]:
+        # Below its vertex a paraboloid reaches less far in any direction than a ball of half the radius of its rim.
+        return (self.vertex, self.diameter / 4), (along(self.vertex, self.axis, self.height), self.diameter / 2)
+
+    def bounds(self) -> Box:
+        rim = box_of_disc(along(self.vertex, self.axis, self.height), self.axis, self.diameter / 2)
+        bulges = []
+        for i, (w, s) in enumerate(zip(self.axis, across(self.axis), strict=True)):
+            # The outermost point along x, y or z lies below the rim if the surface is turned so far there.
+            share = self.diameter / 2 * s / (2 * self.height * abs(w)) if w else 1.0
+            if share < 1:
+                bulge = list(self.vertex)
+                bulge[i] -= self.diameter / 4 * s * share * (1 if w > 0 else -1)
+                bulges.append((bulge[0], bulge[1], bulge[2]))
+        return box_of_boxes((self.vertex, self.vertex), rim, *((bulge, bulge) for bulge in bulges))
+
+
+class PackedParaboloid(NamedTuple):
+    """What the kernel keeps of a paraboloid: a frame of its own in which the vertex is the origin and the cap above."""
+
+    vertex: Place
+    u: Vec
+    v: Vec
+    w: Vec  # the axis
+    focal: float  # x^2 + y^2 = 2 focal z on the side: the radius of curvature of the vertex
+    height: float
+
+
+def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the paraboloid.
+
+    As with the cylinder it is inside for an interval of t, here that of x^2 + y^2 <= 2 focal z, cut to the heights
+    below the cap. Of a ray along the axis one end of the interval is infinite, and the other exact.
+    """
+    f = origin - paraboloid.vertex
+    approach = -dot(f, direction)  # t is counted from the closest approach to the vertex
+    p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, f + approach * direction)
+    d = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, direction)
+    hit, enter, leave = below_zero(
+        d.x * d.x + d.y * d.y,
+        p.x * d.x + p.y * d.y - paraboloid.focal * d.z,
+        p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z,
+    )
+    t = approach
+    if any(hit):
+        per_height = 1.0 / d.z
+        vertex = -p.z * per_height
+        cap = (paraboloid.height - p.z) * per_height
+        enter = maximum(enter, minimum(vertex, cap))
+        leave = minimum(leave, maximum(vertex, cap))
+        near = approach + enter
+        t = where(near > 0.0, near, approach + leave)
+        hit = hit & (enter <= leave) & (t > 0.0)
+    return hit, t
+
+
+def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:
+    """`point` moved onto the side or the cap, whichever it is nearer to, and the outward normal there.
+
+    The distance to the side is, to first order, its function by the length of its gradient (Taubin 1991).
+    """
+    p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, point - paraboloid.vertex)
+    squared = p.x * p.x + p.y * p.y
+    per_gradient = inverse_root(squared + paraboloid.focal * paraboloid.focal)  # of half of the gradient
+    off = 0.5 * (squared - 2.0 * paraboloid.focal * p.z) * per_gradient
+    side = off >= p.z - paraboloid.height
+    flat = splat(0.0, off)
+    out = where(side, per_gradient * Vec(p.x, p.y, flat - paraboloid.focal), Vec(flat, flat, flat + 1.0))
+    on = p - where(side, off, p.z - paraboloid.height) * out
+    return (
+        paraboloid.vertex + from_basis(paraboloid.u, paraboloid.v, paraboloid.w, on),
+        from_basis(paraboloid.u, paraboloid.v, paraboloid.w, out),
+    )

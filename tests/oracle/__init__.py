@@ -1,0 +1,50 @@
+"""Where a ray meets a shape and how the shape lies there, to 60 digits, by other means than the program's.
+
+A shape is given here by implicit functions: polynomials of the coordinates of a point in the scene, which are <= 0
+inside (`Body`). Along a ray each is a polynomial in t, which is expanded by calling the function with the ray's
+coordinates, and its roots are found between its turning points. No formula is solved for t by hand.
+
+The numbers of scene, ray and shape are taken as they are, to the last bit; only axes and normals, which a scene means
+to have unit length, are scaled to it. t counts in lengths of `direction`, which may be any but 0.
+
+For another shape add a file beside these, as short as `sphere.py`, and a line here: the function it registers with
+`body` takes the shape and a `swell` by which its surface is moved outwards, and returns
+
+    Body((F,))                         a solid without edges
+    Body((F, G, H))                    a solid that several surfaces bound, as a cylinder by its side and caps
+    Body((F,), clips=(G, H))           a surface of which only a part is there, but which has an inside
+    Body((F,), clips=(G, H), solid=False)    a sheet, seen from both sides: G and H <= 0 are its extent
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+from mpmath import mpf
+
+from minirt.shapes import Shape
+from tests.oracle import cone, cylinder, hyperboloid, paraboloid, plane, sphere  # noqa: F401  they register their bodies
+from tests.oracle.body import Body, body, crossings, normals
+from tests.oracle.body import inside as inside_of
+from tests.oracle.vectors import Vector, dot, exact
+
+__all__ = ["Body", "body", "dot", "exact", "inside", "nearest", "normal"]
+
+
+def nearest(shape: Shape, origin: Sequence[Any], direction: Sequence[Any], swell: Any = 0) -> mpf | None:
+    """The least t > 0 at which origin + t direction lies on the surface, or None.
+
+    What a formula may answer lies between the answers for a shape a little larger (`swell` > 0) and one a little
+    smaller.
+    """
+    found = crossings(body(shape, mpf(swell)), list(origin), list(direction))
+    return next((t for t in found if t > 0), None)
+
+
+def normal(shape: Shape, point: Sequence[Any]) -> Vector:
+    """The outward unit normal at a point of the surface, or of the wall to which a point beside it is nearest."""
+    return normals(body(shape), list(point))[0][1]
+
+
+def inside(shape: Shape, point: Sequence[Any]) -> bool:
+    """Whether a point is inside of a solid."""
+    return inside_of(body(shape), list(point))

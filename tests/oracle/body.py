@@ -1,0 +1,69 @@
+"""Shapes as sets of points, and what a ray sees of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import singledispatch
+from typing import Any, NamedTuple
+
+from mpmath import fabs, mpf, sqrt
+
+from minirt.shapes import Shape
+from tests.oracle.polynomial import Polynomial
+from tests.oracle.vectors import Vector, dot, exact, unit
+
+Implicit = Callable[[Vector], Any]  # a polynomial of the coordinates of a point, made by + - * ** and vector functions
+
+
+class Body(NamedTuple):
+    """What an implicit surface F = 0 encloses or is.
+
+    A solid is where all `walls` are <= 0, and its surface is where one of them is 0. A sheet, which has no inside, is
+    where its one wall is 0. Both are cut off where one of the `clips` is > 0, which leaves no surface there. Outwards
+    is where the wall grows.
+    """
+
+    walls: tuple[Implicit, ...]
+    clips: tuple[Implicit, ...] = ()
+    solid: bool = True
+
+
+@singledispatch
+def body(shape: Shape, swell: Any = 0) -> Body:
+    """The body of a shape, its surface moved outwards by `swell`, and its edges, where it ends."""
+    raise TypeError(f"the oracle knows no {shape.title}")
+
+
+def crossings(each: Body, origin: Vector, direction: Vector) -> list[mpf]:
+    """All t at which the line origin + t direction meets the surface, in ascending order."""
+    ray = [Polynomial(o, d) for o, d in zip(exact(origin), exact(direction), strict=True)]
+    walls = [as_polynomial(wall(ray)) for wall in each.walls]
+    clips = [as_polynomial(clip(ray)) for clip in each.clips]
+    found = []
+    for wall in walls:
+        others = [*clips, *(other for other in walls if other is not wall and each.solid)]
+        found += [t for t in wall.roots() if all(other(t) <= 0 for other in others)]
+    return sorted(found)
+
+
+def inside(each: Body, point: Vector) -> bool:
+    """Whether a point is inside; the surface and what is cut off are not, and a sheet has no inside."""
+    p = exact(point)
+    return each.solid and all(wall(p) < 0 for wall in each.walls) and all(clip(p) <= 0 for clip in each.clips)
+
+
+def normals(each: Body, point: Vector) -> list[tuple[mpf, Vector]]:
+    """The distance of a point from each wall, to first order, and the outward unit normal there; the nearest first."""
+    p = exact(point)
+    slopes = [(fabs(wall(p)), gradient(wall, p)) for wall in each.walls]
+    return sorted(((height / sqrt(dot(slope, slope)), unit(slope)) for height, slope in slopes), key=lambda w: w[0])
+
+
+def gradient(wall: Implicit, point: Vector) -> Vector:
+    """The slope of a wall along each axis: the coefficient of t of the polynomial along it."""
+    axes = ([Polynomial(x, int(i == axis)) for i, x in enumerate(point)] for axis in range(3))
+    return [([*as_polynomial(wall(line)).coefficients, mpf(0)])[1] for line in axes]
+
+
+def as_polynomial(value: Any) -> Polynomial:
+    return value if isinstance(value, Polynomial) else Polynomial(value)

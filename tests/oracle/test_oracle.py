@@ -1,0 +1,135 @@
+"""The oracle itself, where the answer is known by hand."""
+
+from __future__ import annotations
+
+from math import inf
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import mpf, sqrt
+
+from minirt.shapes import KINDS
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests import oracle
+from tests.oracle.body import Body, body, crossings, inside, normals
+from tests.oracle.polynomial import Polynomial
+from tests.oracle.vectors import dot
+
+GREY = (9, 9, 9)
+BALL = Sphere((0, 0, 5), 6, GREY)
+TUBE = Cylinder((0, 0, 5), (0, 1, 0), 6, 4, GREY)
+FLOOR = Plane((7, -2, 9), (0, 0.5, 0), GREY)
+RING = Body((lambda p: (dot(p, p) + 9 - 1) ** 2 - 36 * (p[0] ** 2 + p[2] ** 2),))  # radii 3 and 1, about y
+SQUARE = Body((lambda p: p[1],), (lambda p: p[0] ** 2 - 1, lambda p: p[2] ** 2 - 1), solid=False)
+PIPE = Body((lambda p: p[0] ** 2 + p[2] ** 2 - 1,), (lambda p: p[1] ** 2 - 4,))  # open at both ends
+
+numbers = st.floats(-1e6, 1e6).map(lambda x: mpf(round(x, 3)))
+
+
+def product(roots: list[mpf], factor: mpf) -> Polynomial:
+    made = Polynomial(factor)
+    for root in roots:
+        made = made * Polynomial(-root, 1)
+    return made
+
+
+@settings(deadline=None, derandomize=True, max_examples=150)
+@given(st.lists(numbers, min_size=1, max_size=5, unique=True), st.sampled_from([1, -3e-30, 7e20]))
+def test_the_roots_of_a_polynomial(roots: list[mpf], factor: float) -> None:
+    found = product(roots, mpf(factor)).roots()
+    assert len(found) == len(roots)
+    for one, other in zip(found, sorted(roots), strict=True):
+        assert abs(one - other) <= abs(other) * mpf("1e-35")
+
+
+def test_roots_that_are_hard() -> None:
+    close = [mpf(1), 1 + mpf("1e-20"), mpf(5)]
+    assert max(abs(x - y) for x, y in zip(product(close, mpf(1)).roots(), close, strict=True)) < mpf("1e-38")
+    assert Polynomial(4, -4, 1).roots() == [2]  # a double root
+    assert Polynomial(0, 0, 0, 1).roots() == [0]
+    assert Polynomial(1, 0, 1).roots() == Polynomial(1).roots() == Polynomial(0).roots() == []
+    assert Polynomial(-1, 0, 0, 1, 0).roots() == [1]  # one turn only, and a coefficient that is 0
+    small, _ = Polynomial(1, -1, mpf("1e-90")).roots()
+    assert abs(small - 1) < mpf("1e-55")
+
+
+def test_algebra() -> None:
+    t = Polynomial(0, 1)
+    made = 2 - (t - 3) ** 2 * (1 + t) * 5
+    assert [made(x) for x in (0, 1, 3)] == [-43, -38, 2]
+    assert (-made).derivative()(1) == -20 * 2 + 20
+
+
+@pytest.mark.parametrize(
+    ("shape", "origin", "direction", "t"),
+    [
+        (BALL, (1.8, 0, 0), (0, 0, 1), 2.6),
+        (BALL, (0, 0, 4), (0, 0, -1), 2),
+        (BALL, (0, 0, 4), (0, 0, 2), 2),  # half of the distance, for a direction of twice the length
+        (BALL, (3.1, 0, 0), (0, 0, 1), inf),
+        (BALL, (0, 0, 9), (0, 0, 1), inf),
+        (BALL, (0, 0, 2), (0, 0, -1), inf),  # on the surface
+        (BALL, (3, 0, 0), (0, 0, 1), 5),  # along it
+        (TUBE, (0, 9, 5), (0, -1, 0), 7),
+        (TUBE, (2.9, 9, 5), (0, -1, 0), 7),
+        (TUBE, (3.1, 9, 5), (0, -1, 0), inf),
+        (TUBE, (0, 2.1, 0), (0, 0, 1), inf),
+        (TUBE, (0, 5, 5), (0.6, -0.8, 0), 3.75),
+        (TUBE, (0, 0, 5), (0.8, 0.6, 0), 10 / 3),
+        (FLOOR, (0, -5, 0), (0, 1, 0), 3),
+        (FLOOR, (0, 1, 0), (0.8, -0.6, 0), 5),
+        (FLOOR, (0, 1, 0), (1, 0, 0), inf),
+    ],
+)
+def test_the_nearest_hit(shape: object, origin: tuple[float], direction: tuple[float], t: float) -> None:
+    found = oracle.nearest(shape, origin, direction)
+    assert float(inf if found is None else found) == pytest.approx(t, rel=1e-15)
+
+
+def test_many_walls_and_many_roots() -> None:
+    assert crossings(RING, [-9, 0, 0], [1, 0, 0]) == pytest.approx([5, 7, 11, 13])
+    assert crossings(RING, [0, 9, 0], [0, -1, 0]) == []
+    assert crossings(SQUARE, [0.5, 3, 0], [0, -1, 0]) == [3]
+    assert crossings(SQUARE, [1.5, 3, 0], [0, -1, 0]) == []
+    assert crossings(PIPE, [0, 0, -3], [0, 0, 1]) == [2, 4]
+    assert crossings(PIPE, [0, 9, 0], [0, -1, 0]) == []
+    assert crossings(PIPE, [-3, 4.5, 0], [0.75, -0.75, 0]) == pytest.approx([16 / 3])  # over the rim, at the far wall
+
+
+def test_what_is_thicker_by_a_little_is_hit_a_little_earlier() -> None:
+    for shape, way in ((BALL, (0, 0, 1)), (TUBE, (0, 0, 1)), (TUBE, (0, 1, 0))):
+        origin = [c - 9 * d for c, d in zip(shape.centre, way, strict=True)]
+        plain, thick = oracle.nearest(shape, origin, way), oracle.nearest(shape, origin, way, 1e-20)
+        assert abs(plain - thick - mpf(1e-20)) < mpf("1e-40")
+
+
+def test_inside() -> None:
+    assert oracle.inside(BALL, (0, 0, 2.1))
+    assert not oracle.inside(BALL, (0, 0, 1.9))
+    assert not oracle.inside(BALL, (0, 0, 2))
+    assert oracle.inside(TUBE, (0, 1.9, 3))
+    assert not oracle.inside(TUBE, (0, 2.1, 3))
+    assert not oracle.inside(FLOOR, (0, -9, 0))
+    assert inside(RING, [3.9, 0, 0])
+    assert not inside(RING, [0, 0, 0])
+    assert inside(PIPE, [0, 1.9, 0])
+    assert not inside(PIPE, [0, 2.1, 0])
+
+
+def test_normals_point_outwards() -> None:
+    assert oracle.normal(BALL, (3, 0, 5)) == [1, 0, 0]
+    assert oracle.normal(TUBE, (3, 1, 5)) == [1, 0, 0]
+    assert oracle.normal(TUBE, (1, -2.001, 5)) == [0, -1, 0]
+    assert oracle.normal(FLOOR, (1, 1, 1)) == [0, 1, 0]
+    assert normals(RING, [4, 0, 0]) == [(0, [1, 0, 0])]
+    assert normals(RING, [2, 0, 0]) == [(0, [-1, 0, 0])]
+    on = [3 + 1 / sqrt(mpf(2)), 1 / sqrt(mpf(2)), 0]
+    assert [float(x) for x in normals(RING, on)[0][1]] == pytest.approx([0.5**0.5, 0.5**0.5, 0])
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+def test_it_knows_every_shape(kind: object) -> None:
+    assert kind.element in body.registry

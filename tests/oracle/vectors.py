@@ -1,0 +1,37 @@
+"""Vectors whose components are numbers of many digits, or polynomials."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from mpmath import mp, mpf, sqrt
+
+Vector = list[Any]
+
+mp.dps = 60
+
+
+def exact(numbers: Iterable[Any]) -> Vector:
+    """Floating-point numbers as they are, to the last bit."""
+    return [number if isinstance(number, mpf) else mpf(float(number)) for number in numbers]
+
+
+def unit(numbers: Iterable[Any]) -> Vector:
+    """Of a direction, which a scene means to have length 1."""
+    v = exact(numbers)
+    length = sqrt(dot(v, v))
+    return [x / length for x in v]
+
+
+def minus(a: Vector, b: Vector) -> Vector:
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
+def dot(a: Vector, b: Vector) -> Any:
+    x, y, z = (p * q for p, q in zip(a, b, strict=True))
+    return x + y + z
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

@@ -1,0 +1,98 @@
+"""Regimes of every shape, made from the table of its fields. Lengths are in sizes of the shape."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from minirt.shapes import Kind, Shape
+from tests import oracle
+from tests.oracle.body import body
+from tests.shapes.examples import example, place
+from tests.shapes.regimes import RAYS, Array, Rays, log, unit, ways
+from tests.stability.regime import Regime
+
+COUNT = 8  # shapes of a regime
+
+
+def towards(
+    kind: Kind,
+    seed: int,
+    far: tuple[float, float] = (3.0, 20.0),
+    size: float = 1.0,
+    offset: float = 0.0,
+    count: int = COUNT,
+) -> Rays:
+    """From `far` sizes away at places in and around shapes of a `size`, in a scene at `offset`."""
+    random = np.random.default_rng(seed)
+    shapes = [example(kind, random, size, offset) for _ in range(count)]
+    middles = places(shapes)
+    origins = middles + size * log(random, *far, count, RAYS, 1) * ways(random, count, RAYS)
+    targets = middles + size * random.uniform(-0.6, 0.6, (count, RAYS, 3))
+    return Rays(shapes, origins, unit(targets - origins))
+
+
+def touching(kind: Kind, seed: int) -> Rays:
+    """Along the surface, from 1e-16 to 1e-4 sizes above and below it."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
+    for i in range(COUNT):
+        shape = example(kind, random)
+        on, out = on_surface(shape, random)
+        sign = random.choice([-1.0, 1.0], (RAYS, 1))
+        directions[i] = unit(np.cross(out, ways(random, RAYS)))
+        touch = on + sign * log(random, 1e-16, 1e-4, RAYS, 1) * out
+        origins[i] = touch - random.uniform(3, 20, (RAYS, 1)) * directions[i]
+        shapes.append(shape)
+    return Rays(shapes, origins, directions)
+
+
+def leaving(kind: Kind, seed: int, height: tuple[float, float] = (1e-12, 1e-3)) -> Rays:
+    """From closely above the surface and below it, in all directions."""
+    random = np.random.default_rng(seed)
+    shapes, origins = [], np.empty((COUNT, RAYS, 3))
+    for i in range(COUNT):
+        shape = example(kind, random)
+        on, out = on_surface(shape, random)
+        origins[i] = on + random.choice([-1.0, 1.0], (RAYS, 1)) * log(random, *height, RAYS, 1) * out
+        shapes.append(shape)
+    return Rays(shapes, origins, ways(random, COUNT, RAYS))
+
+
+def on_surface(shape: Shape, random: np.random.Generator) -> tuple[Array, Array]:
+    """Points of the surface of a shape of size 1 and the normals there, (RAYS, 3) each."""
+    found = []
+    while len(found) < RAYS:
+        origin = place(shape) + log(random, 0.1, 10) * ways(random)
+        direction = unit(place(shape) + random.uniform(-0.6, 0.6, 3) - origin)
+        t = oracle.nearest(shape, origin, direction)
+        if t is not None:
+            point = origin + float(t) * direction
+            found.append((point, [float(x) for x in oracle.normal(shape, point)]))
+    on, out = np.array(found).swapaxes(0, 1)
+    return on, out
+
+
+def places(shapes: list[Shape]) -> Array:
+    return np.stack([place(shape) for shape in shapes])[:, None]
+
+
+def common(kind: Kind) -> list[Regime]:
+    """Of a kind of shape."""
+    made = partial(towards, kind)
+    regimes = [
+        Regime("usual", partial(made, 1)),
+        Regime("a million sizes away", partial(made, 2, (1e2, 1e6))),
+        Regime("a scene at 1e8", partial(made, 3, offset=1e8)),
+        Regime("a size of 1e-6, seen from 1e6", partial(made, 4, (1e11, 1e12), 1e-6)),
+        Regime("a size of 1e-12", partial(made, 5, size=1e-12)),
+        Regime("a size of 1e12", partial(made, 6, size=1e12)),
+        Regime("from the middle", partial(made, 7, (1e-9, 0.1))),
+    ]
+    if body(example(kind, np.random.default_rng(1))).solid:
+        regimes += [
+            Regime("along the surface", partial(touching, kind, 8), blur=1e-6),
+            Regime("beside the surface", partial(leaving, kind, 9), tolerance=1e-13, blur=np.inf),
+        ]
+    return regimes

@@ -1,0 +1,43 @@
+"""Where a cylinder is hard."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from minirt.shapes.cylinder import Cylinder
+from tests.shapes import regimes as given
+from tests.shapes.regimes import GREY, RAYS, Rays, ways
+from tests.stability.common import COUNT
+from tests.stability.regime import Regime
+
+
+def flat(seed: int, height: float) -> Rays:
+    """At cylinders that are next to flat, from above and below."""
+    return given.disc(seed, height, COUNT)
+
+
+def needle(seed: int) -> Rays:
+    """At needles: a height of 1e9 and a diameter of 1e-3."""
+    random = np.random.default_rng(seed)
+    shapes = [Cylinder(tuple(ways(random)), tuple(ways(random).clip(-1, 1)), 1e-3, 1e9, GREY) for _ in range(COUNT)]
+    axes = np.array([shape.axis for shape in shapes])[:, None]
+    on = np.array([shape.centre for shape in shapes])[:, None] + random.uniform(-9, 9, (COUNT, RAYS, 1)) * axes
+    origins = on + 5 * ways(random, COUNT, RAYS)
+    return Rays(shapes, origins, given.unit(on + 1e-3 * random.uniform(-0.5, 0.5, (COUNT, RAYS, 3)) - origins))
+
+
+REGIMES = [
+    Regime("exactly along the axis", partial(given.along_axis, 11, None, count=COUNT)),
+    Regime("exactly along the axis, a scene at 1e8", partial(given.along_axis, 12, None, 1e8, COUNT)),
+    Regime("nearly along the axis", partial(given.along_axis, 13, (1e-12, 1e-3), count=COUNT)),
+    Regime("nearly along the axis, a scene at 1e8", partial(given.along_axis, 14, (1e-12, 1e-3), 1e8, COUNT)),
+    Regime("at the rim", partial(given.rim, 15, 2 * COUNT), blur=1e-12),
+    Regime("along the side", partial(given.tangent_to_side, 16, COUNT), blur=1e-6),
+    # 1e-8 off the axis, an axis that is exact to 2^-53 leaves 1e-8 of the angle, and so of t.
+    Regime("inside a tube of height 1e9", partial(given.inside_tube, 17, 1e9, COUNT), 3e-8),
+    Regime("across a tube from its wall", partial(given.from_the_wall, 18, COUNT)),
+    Regime("a height of 1e-9", partial(flat, 19, 1e-9)),
+    Regime("a needle", partial(needle, 20), blur=1e-6),
+]

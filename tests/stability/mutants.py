@@ -1,0 +1,59 @@
+"""Ways to intersect that look right and are not: the checks of the real ones must reject them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from minirt.lanes import Vec
+from minirt.shapes import Shape
+from tests.shapes import mutants
+from tests.shapes.ways import Array, Intersect, kind_of, on_arrays, vec
+
+
+def from_1e_4_on(shapes: list[Shape], origins: Array, directions: Array) -> Array:
+    """Hits nearer than a fixed distance do not count: a remedy against acne that knows no scale."""
+    t = on_arrays(shapes, origins, directions)
+    return np.where(t > 1e-4, t, np.inf)
+
+
+def moved_on_by_1e_4(shapes: list[Shape], origins: Array, directions: Array) -> Array:
+    """Rays start a fixed distance further on: another."""
+    return on_arrays(shapes, origins + 1e-4 * directions, directions) + 1e-4
+
+
+def in_single_precision(shapes: list[Shape], origins: Array, directions: Array) -> Array:
+    """The real formulas on float32."""
+    t = np.full(origins.shape[:2], np.inf)
+    for i, shape in enumerate(shapes):
+        rays = (vec(part[i].astype(np.float32)) for part in (origins, directions))
+        with np.errstate(all="ignore"):
+            hit, at = kind_of(shape).intersect(single(shape.pack()), *rays)
+        t[i] = np.where(hit, at, np.inf)
+    return t
+
+
+def single(packed: Any) -> Any:
+    """A packed shape whose numbers are float32."""
+    parts = (Vec(*map(np.float32, (p.x, p.y, p.z))) if isinstance(p, Vec) else np.float32(p) for p in packed)
+    return type(packed)(*parts)
+
+
+# For each mutant regimes that it must fail; it passes those that are easy for it.
+ANY: dict[str, tuple[Intersect, tuple[str, ...]]] = {
+    "from 1e-4 on": (from_1e_4_on, ("a size of 1e-12",)),
+    "moved on by 1e-4": (moved_on_by_1e_4, ("a size of 1e-12", "a scene at 1e8")),
+    "in single precision": (in_single_precision, ("usual", "a scene at 1e8", "a million sizes away")),
+}
+OWN: dict[str, tuple[Intersect, tuple[str, ...]]] = {
+    "sphere": (
+        mutants.way(mutants.from_the_origin),
+        ("a million sizes away", "a size of 1e-6, seen from 1e6", "from 0.001 above a diameter of 1e9"),
+    ),
+    "cylinder": (
+        mutants.way(mutants.piece_by_piece),
+        ("a million sizes away", "a size of 1e-6, seen from 1e6", "at the rim"),
+    ),
+    "plane": (mutants.way(mutants.hits_behind), ("usual", "at a slope of 1e-6 to 0.01")),
+}

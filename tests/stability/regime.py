@@ -1,0 +1,95 @@
+"""Rays that are hard in one way, the right answers, and which answers are near enough."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from mpmath import mpf
+from numpy.typing import NDArray
+
+from minirt.element import fields_of
+from minirt.fields import Length, Point
+from minirt.shapes import Shape
+from tests import oracle
+from tests.shapes.regimes import Rays
+
+Array = NDArray[np.float64]
+U = 2.0**-53
+
+
+class Regime(NamedTuple):
+    """A recipe for rays, and what an answer may be off by.
+
+    An answer passes that is exact within the relative `tolerance`. Where the surface ends or turns away from the ray an
+    exact answer is of no use, as rounding the ray's own numbers changes it: there it passes if it lies between those
+    for a shape thicker and one thinner by `slack` roundings of t, of the distance between origin and shape and of the
+    shape's size, and if it is exact within `blur` where all three hit.
+    """
+
+    name: str
+    make: Callable[[], Rays]
+    tolerance: float = 1e-13
+    slack: float = 64.0
+    blur: float = 1e-13
+
+
+class Right:
+    """The rays of a regime and the exact answers, the first of which is found when it is asked for."""
+
+    def __init__(self, regime: Regime, rays: Rays) -> None:
+        self.regime, self.rays = regime, rays
+        self.t = np.array([[self.at(i, j) for j in range(rays.origins.shape[1])] for i in range(len(rays.shapes))])
+        self.around = lru_cache(None)(self.thicker_and_thinner)
+
+    def at(self, i: int, j: int, swell: float = 0.0) -> float:
+        t = oracle.nearest(self.rays.shapes[i], self.rays.origins[i, j], self.rays.directions[i, j], mpf(swell))
+        return np.inf if t is None else float(t)
+
+    def thicker_and_thinner(self, i: int, j: int) -> tuple[float, float]:
+        shape, t = self.rays.shapes[i], self.t[i, j]
+        away = float(np.linalg.norm(self.rays.origins[i, j] - points(shape)[0]))
+        swell = self.regime.slack * U * ((t if np.isfinite(t) else 0.0) + away + size(shape))
+        return self.at(i, j, swell), self.at(i, j, -swell)
+
+    def wrong(self, t: Array, every: int = 1) -> list[str]:
+        """What is wrong with the answers t for every n-th ray of a shape, infinity for a miss."""
+        right = self.t[:, ::every]
+        with np.errstate(invalid="ignore"):
+            exact = (t == right) | (np.isfinite(right) & (np.abs(t - right) <= self.regime.tolerance * right))
+        found = (self.verdict(i, j * every, t[i, j]) for i, j in np.argwhere(~exact).tolist())
+        return [each for each in found if each]
+
+    def verdict(self, i: int, j: int, t: float) -> str:
+        """What is wrong with an answer that is not exact; empty if it is near enough."""
+        sides = [self.t[i, j], *self.around(i, j)]
+        hits = [side for side in sides if np.isfinite(side)]
+        if np.isinf(t):
+            fine = len(hits) < 3
+        else:
+            fine = bool(hits) and min(hits) * (1 - U) <= t <= max(hits) * (1 + self.regime.blur)
+            fine &= len(hits) < 3 or abs(t - sides[0]) <= self.regime.blur * sides[0]
+        if fine:
+            return ""
+        ray = f"{self.rays.origins[i, j].tolist()}, {self.rays.directions[i, j].tolist()}"
+        return f"t = {t!r}, not {sides[0]!r}, with slack {sides[1:]}: {self.rays.shapes[i]} from {ray}"
+
+
+@cache
+def posed(regime: Regime) -> Right:
+    """The rays of a regime and the right answers, found once."""
+    return Right(regime, regime.make())
+
+
+def points(shape: Shape) -> list[Array]:
+    """The points that a shape is given by."""
+    return [np.array(getattr(shape, each.name)) for each in fields_of(type(shape)) if isinstance(each, Point)]
+
+
+def size(shape: Shape) -> float:
+    """The lengths that a shape is given by, in all, and the distances between its points."""
+    lengths = [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Length)]
+    first, *others = points(shape)
+    return float(sum(lengths) + sum(np.linalg.norm(other - first) for other in others))

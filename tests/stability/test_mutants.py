@@ -1,0 +1,68 @@
+"""What looks right and is not does not pass."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import pytest
+from numba import njit
+
+from minirt.kernel.jit import FLAGS
+from minirt.shapes import KINDS, Kind
+from tests.shapes.ways import Intersect
+from tests.stability import mutants
+from tests.stability.regime import Regime, posed
+from tests.stability.table import REGIMES
+
+
+def regimes(kind: Kind, names: Iterable[str]) -> list[Regime]:
+    found = [regime for other, regime in REGIMES if other is kind and regime.name in names]
+    assert len(found) == len(set(names))
+    return found
+
+
+def errors(regime: Regime, intersect: Intersect) -> int:
+    right = posed(regime)
+    return len(right.wrong(intersect(*right.rays)))
+
+
+@pytest.mark.parametrize("name", mutants.ANY)
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+def test_no_remedy_without_a_scale_passes(kind: Kind, name: str) -> None:
+    intersect, failing = mutants.ANY[name]
+    for regime in regimes(kind, failing):
+        assert errors(regime, intersect) > 20
+
+
+@pytest.mark.parametrize("title", mutants.OWN)
+def test_no_naive_formula_passes(title: str) -> None:
+    kind = next(each for each in KINDS if each.element.title == title)
+    intersect, failing = mutants.OWN[title]
+    for regime in regimes(kind, failing):
+        assert errors(regime, intersect) > 0
+
+
+def guards(D: float, t: float) -> tuple[bool, bool, bool, float]:
+    """The guards that formulas and renderer rely on: NaN is no hit, infinity is no nearer hit, and light that is NaN or
+    infinite ends in [0, 1]."""
+    hit = D >= 0.0
+    nearer = t < np.inf
+    light = t if t > 0.0 else 0.0
+    return hit, not (D >= 0.0), nearer, light if light < 1.0 else 1.0
+
+
+def guarded(flags: dict[str, Any]) -> bool:
+    """Whether the guards hold when they are compiled with these flags."""
+    compiled = njit(**flags)(guards)
+    cases = [(np.nan, np.inf), (np.nan, np.nan), (np.inf, np.inf), (-1.0, -np.inf), (0.0, 0.5)]
+    return all(compiled(*case) == guards(*case) for case in cases)
+
+
+def test_guards_hold_with_the_flags_of_the_kernel() -> None:
+    assert guarded(FLAGS)
+
+
+def test_fastmath_does_not_pass() -> None:
+    assert not guarded({**FLAGS, "fastmath": True})

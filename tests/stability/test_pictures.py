@@ -1,0 +1,106 @@
+"""Whole pictures where light or camera are hard; the answers are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+from minirt.shapes import KINDS
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests import reference
+from tests.compare import edges
+from tests.kernel.pictures import linear, picture
+from tests.shapes.examples import example
+from tests.shapes.regimes import log, ways
+from tests.stability.test_properties import SEED, fixed, powers
+
+WHITE = (255, 255, 255)
+DARK = Ambient(0.0, WHITE)
+DIM = Ambient(0.25, WHITE)
+ABOVE = Camera((0, 3, 0), (0, -1, 0), 90)
+FLOOR = Plane((0, 0, 0), (0, 1, 0), WHITE)
+
+
+@pytest.mark.parametrize("normal", [(0, 1, 0), (0, -1, 0)])
+@pytest.mark.parametrize("height", [-1e-9, -3.0, -1e15, 0.0])
+def test_a_lamp_behind_a_plane_or_on_it_lights_nothing(height: float, normal: tuple[float, float, float]) -> None:
+    scene = Scene((DIM, ABOVE, Light((0.5, height, 0.2), 1.0), FLOOR.replace(normal=normal)))
+    assert (linear(scene) == 0.25).all()
+
+
+def test_a_lamp_at_the_eye_lights_what_is_seen_by_the_cosine_law() -> None:
+    scene = Scene((ABOVE, Light((0, 3, 0), 1.0), FLOOR))
+    _, directions = reference.camera_rays(ABOVE, 24, 16)
+    assert np.abs(linear(scene)[..., 0] + directions[..., 1]).max() <= 1e-15
+
+
+@pytest.mark.parametrize("place", [(0, 1e15, 0), (6e14, 8e14, 0), (-8e14, 1, 6e14)])
+def test_a_lamp_at_the_end_of_the_world_lights_all_in_one_direction(place: tuple[float, float, float]) -> None:
+    cosine = place[1] / np.linalg.norm(place)
+    scene = Scene((ABOVE, Light(place, 1.0), FLOOR))
+    assert np.abs(linear(scene) - cosine).max() <= 1e-14
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e8])
+@pytest.mark.parametrize("scale", [2.0**-30, 1e-4, 1.0, 1e6])
+@pytest.mark.parametrize("side", [(1, 0, 0), (0.6, 0.8, 0), (1, 0, 1e-3), (0, 0, 1)])
+def test_the_terminator_has_no_specks(scale: float, offset: float, side: tuple[float, float, float]) -> None:
+    # A ball is lit where the lamp is above its horizon, to the last pixel: it casts no shadow onto itself.
+    found, right = linear(ball(scale, side, offset), 120, 120), reference.render(ball(scale, side), 120, 120)
+    wrong = np.abs(found - right).max(axis=-1) > (1e-5 if offset else 1e-9)
+    assert not (wrong & ~edges(reference.to_bytes(right))).any()
+    assert wrong.sum() <= 4
+
+
+def ball(scale: float, side: tuple[float, float, float], offset: float = 0.0) -> Scene:
+    """A ball that fills the picture and a lamp to a side of it, all of them at `offset` sizes along each axis."""
+    centre = np.full(3, offset * scale)
+    eye = Camera(tuple(centre - [0, 0, 4 * scale]), (0, 0, 1), 30)
+    lamp = Light(tuple(centre + 1e3 * scale * np.array(side)), 1.0)
+    return Scene((DARK, eye, lamp, Sphere(tuple(centre), 2 * scale, WHITE)))
+
+
+def test_much_light_is_white() -> None:
+    lamps = [FurtherLight((0, 3 + i / 1000, 0), 1.0) for i in range(2000)]
+    pixels, light = picture(Scene((DARK, ABOVE, *lamps, FLOOR)), 8, 8)
+    assert light.min() > 1000
+    assert (pixels == 255).all()
+
+
+@pytest.mark.parametrize(("width", "height"), [(4000, 2), (2, 4000), (1, 1000), (1000, 1)])
+def test_long_pictures(width: int, height: int) -> None:
+    scene = Scene((DIM, ABOVE.replace(fov=10), Light((1, 3, 2), 0.7), FLOOR))
+    assert np.abs(linear(scene, width, height) - reference.render(scene, width, height)).max() <= 1e-9
+
+
+@fixed(max_examples=80)
+@given(SEED, powers(-12, 12), st.one_of(st.none(), powers(-2, 12)))
+def test_light_is_finite(seed: int, size: float, offset: float | None) -> None:
+    light = linear(stiff(seed, 10**size, 0.0 if offset is None else min(10 ** (size + offset), 1e14)))
+    assert np.isfinite(light).all()
+    assert (light >= 0).all()
+
+
+def stiff(seed: int, size: float, offset: float) -> Scene:
+    """Shapes of every kind in one another, lamps and the eye among them and often exactly where a shape is."""
+    random = np.random.default_rng(seed)
+    middle = offset * ways(random)
+    shapes = []
+    for kind in KINDS:
+        for _ in range(2):
+            each = example(kind, random, size * float(log(random, 1e-3, 1)[()]))
+            name = next(name for name, value in vars(each).items() if isinstance(value, tuple))
+            shapes.append(each.replace(**{name: tuple(middle + size * random.normal(size=3))}))
+
+    def anywhere() -> tuple[float, ...]:
+        shape = shapes[random.integers(len(shapes))]
+        exactly = next(value for value in vars(shape).values() if isinstance(value, tuple))
+        return exactly if random.random() < 0.4 else tuple(middle + 3 * size * random.normal(size=3))
+
+    lamps = [FurtherLight(anywhere(), 1.0) for _ in range(3)]
+    eye = Camera(anywhere(), tuple(ways(random).clip(-1, 1)), float(random.choice([0, 1e-3, 60, 179.999, 180])))
+    return Scene((DIM, eye, *lamps, *shapes))
