@@ -18,7 +18,7 @@ PICTURES = (
     Column("PSNR, dB", "psnr", ".1f"),
     Column("FLIP", "flip", ".4f"),
     Column("changed pixels", "changed", ".0f"),
-    Column("not finite", "non_finite", ".0f"),
+    Column("rays not finite", "not_finite", ".0f"),
     Column("ms", "wall_ms", ".2f"),
     Column("processor ms", "cpu_ms", ".2f"),
     Column("sorting, ms", "sort_ms", ".2f"),

@@ -12,22 +12,25 @@ from minirt.report.brute import BruteForce
 from minirt.scene import Scene
 
 COUNTS = (1, 4, 16, 64)  # samples of a pixel
-Picture = Callable[[Renderer, Scene, np.ndarray, int, "np.ndarray | None"], object]
+Picture = Callable[[Renderer, Scene, np.ndarray, int, "np.ndarray | None"], int]
 
 
 def everywhere(
     renderer: Renderer, scene: Scene, pixels: np.ndarray, samples: int, linear: np.ndarray | None = None
-) -> None:
-    """As many samples in each pixel."""
+) -> int:
+    """As many samples in each pixel; how many of the rays brought light that is not finite."""
     renderer.render(scene, pixels, samples, linear)
+    return renderer.not_finite
 
 
 def at_edges(
     renderer: Renderer, scene: Scene, pixels: np.ndarray, samples: int, linear: np.ndarray | None = None
-) -> None:
+) -> int:
     """One sample in each pixel, and then so many where neighbours differ."""
     renderer.render(scene, pixels, 1, linear)
+    before = renderer.not_finite
     renderer.refine(scene, pixels, samples, linear=linear)
+    return before + renderer.not_finite
 
 
 def brute_force(threads: int) -> Renderer:

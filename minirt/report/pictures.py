@@ -30,7 +30,7 @@ class Row(NamedTuple):
     psnr: float = nan  # decibels
     flip: float = nan  # mean over the pixels
     changed: float = nan  # pixels that differ in 8 bits
-    non_finite: float = nan  # colours of pixels that were infinite or NaN before they were clamped
+    not_finite: float = nan  # rays whose light was infinite or NaN, and is 0 in the picture
     wall_ms: float = nan
     cpu_ms: float = nan
     sort_ms: float = nan  # sorting the scene into lists, once for a scene
@@ -67,11 +67,11 @@ class Stage:
             self.ready[setting.knob.name] = renderer, compiled - start, (perf_counter() - compiled) * 1e3
         return self.ready[setting.knob.name]
 
-    def light(self, setting: Setting) -> Picture:
-        """The picture of a setting."""
+    def light(self, setting: Setting) -> tuple[Picture, int]:
+        """The picture of a setting, and how many of its rays brought light that is not finite."""
         linear = np.zeros((*self.pixels.shape[:2], 3))
-        setting.knob.picture(self.renderer(setting)[0], self.scene, self.pixels, setting.samples, linear)
-        return linear
+        renderer, *_ = self.renderer(setting)
+        return linear, setting.knob.picture(renderer, self.scene, self.pixels, setting.samples, linear)
 
 
 def measured(
@@ -101,9 +101,9 @@ def measure(
 ) -> tuple[Row, Picture]:
     """The row of a setting, and its picture."""
     renderer, compile_s, sort_ms = stage.renderer(setting)
-    lights: list[Picture] = []
+    lights: list[tuple[Picture, int]] = []
     (first,) = runs(lambda: lights.append(stage.light(setting)), 1, 0.0)
-    picture = shown(lights[0])
+    picture = shown(lights[0][0])
     best, remark = timed(
         lambda: setting.knob.picture(renderer, stage.scene, stage.pixels, setting.samples, None),
         first,
@@ -118,7 +118,7 @@ def measure(
         psnr=psnr(error),
         flip=float(flip.flip(flip.seen(picture), right).mean()),
         changed=changed(picture, reference.picture),
-        non_finite=int(np.count_nonzero(~np.isfinite(lights[0]))),
+        not_finite=lights[0][1],
         wall_ms=best.wall * 1e3,
         cpu_ms=best.cpu * 1e3,
         sort_ms=sort_ms,

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from functools import cache
-from math import isnan
+from math import isfinite, isnan
 
 import numpy as np
 import pytest
 
 import minirt
 from minirt.errors import RenderError
-from minirt.rendering import Renderer
+from minirt.rendering import packing
 from minirt.report import pictures
 from minirt.report.knobs import KNOBS, Knob, Setting, settings
 from minirt.report.pictures import Budget, Row, Stage, measured
 from minirt.report.reference import Reference, passes, reference
 from minirt.scene import Scene
-from tests.kernel.pictures import ALL, AMBIENT, EYE
+from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
 
 WIDTH, HEIGHT, SAMPLES = 96, 64, 1024
 EASY = Budget(seconds=0.0, longest=60.0, tries=1)
@@ -95,13 +95,13 @@ def test_knobs_do_what_they_say() -> None:
     assert rows()["single", 4].rmse != rows()["uniform", 4].rmse
     brute = rows()["brute force", 4]
     assert brute[1:6] == rows()["uniform", 4][1:6]  # samples and all errors
-    assert all(row.non_finite == 0 for row in rows().values())
+    assert all(row.not_finite == 0 for row in rows().values())
 
 
 def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
     stage = Stage(ALL, WIDTH, HEIGHT, 1)
     (knob,) = (knob for knob in KNOBS if knob.name == "adaptive")
-    made = stage.light(Setting(knob, 4))
+    made, _ = stage.light(Setting(knob, 4))
     once, everywhere = minirt.render(ALL, WIDTH, HEIGHT, samples=1).linear, minirt.render(ALL, WIDTH, HEIGHT, samples=4)
     assert once is not None
     assert everywhere.linear is not None
@@ -110,21 +110,23 @@ def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
     assert np.array_equal(made[refined], everywhere.linear[refined])
 
 
-def test_infinite_light_is_counted() -> None:
-    def spoiled(
-        renderer: Renderer, scene: Scene, pixels: np.ndarray, samples: int, linear: np.ndarray | None = None
-    ) -> None:
-        renderer.render(scene, pixels, samples, linear)
-        if linear is not None:
-            linear[0, 0] = np.nan, np.inf, 0.5
-
-    (row,) = rows_for(Setting(Knob("spoiled", "", picture=spoiled), 1))
-    assert row.non_finite == 2
-    assert row.rmse > 0
+def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two lamps as bright as no file may have: where both shine straight down, their sum is infinite."""
+    bright = Scene((AMBIENT, EYE, LAMP, *SHAPES))
+    monkeypatch.setattr(packing, "light_numbers", lambda scene: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * 2))
+    stage = Stage(bright, WIDTH, HEIGHT, 1)
+    wanted = list(settings(4))
+    rows = [row for row, _ in measured(stage, wanted, right(), EASY, lambda name: None)]
+    counts = {(row.knob, row.samples): row.not_finite for row in rows}
+    assert 0 < counts["uniform", 1] < WIDTH * HEIGHT
+    assert counts["uniform", 4] == pytest.approx(4 * counts["uniform", 1], rel=0.05)
+    assert counts["uniform", 1] < counts["adaptive", 4] < counts["uniform", 1] + counts["uniform", 4]
+    assert counts["brute force", 1] == counts["uniform", 1]
+    assert all(isfinite(row.rmse) for row in rows)
 
 
 def test_a_setting_that_fails_stays_as_nan() -> None:
-    def fails(*_: object) -> None:
+    def fails(*_: object) -> int:
         raise RenderError("no room")
 
     failed, good = rows_for(Setting(Knob("bad", "", picture=fails), 1), Setting(KNOBS[0], 1))
