@@ -1,14 +1,15 @@
 """Where a ray meets a shape, to 60 digits, in the decimal arithmetic of the standard library.
 
 The numbers of scene, ray and shape are taken as they are, to the last bit; only axes and normals, which a scene means
-to have unit length, are scaled to it. Every solid here is convex: a ray is in it for one interval of t, or for none.
+to have unit length, are scaled to it. Every shape here is a solid of revolution: of a point, h high along the axis and
+d off it, d^2 <= square + linear h + quadratic h^2 and low <= h <= high.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from decimal import Context, Decimal, localcontext
-from typing import Any
+from typing import Any, NamedTuple
 
 from minirt.shapes import Shape
 from minirt.shapes.cylinder import Cylinder
@@ -16,73 +17,92 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 
 Exact = list[Decimal]  # a vector
-Interval = tuple[Decimal, Decimal] | None
+Intervals = list[tuple[Decimal, Decimal]]
 DIGITS = Context(prec=60)
-END = Decimal("Infinity")
+END, ZERO = Decimal("Infinity"), Decimal(0)
+
+
+class Solid(NamedTuple):
+    """A solid of revolution; without a `square` it has no side."""
+
+    place: Exact
+    axis: Exact  # of unit length
+    square: Decimal | None = ZERO
+    linear: Decimal = ZERO
+    quadratic: Decimal = ZERO
+    low: Decimal = -END
+    high: Decimal = END
+
+
+def plane(shape: Any, _: Decimal) -> Solid:
+    """What is below a plane: as a sheet it has no thickness that could grow."""
+    return Solid(exact(shape.point), unit(exact(shape.normal)), square=None, high=ZERO)
+
+
+def sphere(shape: Any, swell: Decimal) -> Solid:
+    """d^2 <= r^2 - h^2."""
+    radius = Decimal(shape.diameter) / 2 + swell
+    return Solid(exact(shape.centre), exact((0, 0, 1)), radius * abs(radius), quadratic=Decimal(-1))
+
+
+def cylinder(shape: Any, swell: Decimal) -> Solid:
+    """d^2 <= r^2, between both caps."""
+    radius, half = Decimal(shape.diameter) / 2 + swell, Decimal(shape.height) / 2 + swell
+    return Solid(exact(shape.centre), unit(exact(shape.axis)), radius * abs(radius), low=-half, high=half)
+
+
+SOLIDS: dict[type[Shape], Callable[[Any, Decimal], Solid]] = {Plane: plane, Sphere: sphere, Cylinder: cylinder}
 
 
 def distance(shape: Shape, origin: Sequence[float], direction: Sequence[float], swell: float = 0.0) -> Decimal:
     """The least t > 0 at which origin + t direction lies on the surface, or infinity.
 
     The surface of a solid is moved outwards by `swell`: what a formula in fewer digits may answer lies between the
-    answers for a solid a little larger and one a little smaller. KeyError for a shape that there is no formula for.
+    answers for a solid a little larger and one a little smaller. KeyError for a shape that is not in `SOLIDS`.
     """
     with localcontext(DIGITS):
-        inside = INSIDE[type(shape)](shape, exact(origin), exact(direction), Decimal(swell))
-        return min((t for t in inside or () if t > 0), default=END)
+        inside = crossed(SOLIDS[type(shape)](shape, Decimal(swell)), exact(origin), exact(direction))
+        return min((t for interval in inside for t in interval if t > 0), default=END)
 
 
-def in_plane(plane: Any, origin: Exact, direction: Exact, _: Decimal) -> Interval:
-    """Where a line is in a plane: a single point of it, but for one along the plane."""
-    normal = exact(plane.normal)
-    slope = dot(normal, direction)
-    t = dot(normal, minus(exact(plane.point), origin)) / slope if slope else END
-    return (t, t) if slope else None
+def crossed(solid: Solid, origin: Exact, direction: Exact) -> Intervals:
+    """For which t a line is in a solid."""
+    out = [x - y for x, y in zip(origin, solid.place, strict=True)]
+    height, climb = dot(out, solid.axis), dot(direction, solid.axis)
+    within = both(not_above(climb, height - solid.high), not_above(-climb, solid.low - height))
+    if solid.square is None:
+        return within
+    p, d = across(out, solid.axis, height), across(direction, solid.axis, climb)
+    side = not_positive(
+        dot(d, d) - solid.quadratic * climb * climb,
+        dot(p, d) - (solid.linear / 2 + solid.quadratic * height) * climb,
+        dot(p, p) - solid.square - (solid.linear + solid.quadratic * height) * height,
+    )
+    return both(side, within)
 
 
-def in_sphere(sphere: Any, origin: Exact, direction: Exact, swell: Decimal) -> Interval:
-    """Where a line is in a ball."""
-    return near_zero(minus(origin, exact(sphere.centre)), direction, Decimal(sphere.diameter) / 2 + swell)
-
-
-def in_cylinder(cylinder: Any, origin: Exact, direction: Exact, swell: Decimal) -> Interval:
-    """Where a line is in the endless tube and between the planes of the caps."""
-    axis = unit(exact(cylinder.axis))
-    out = minus(origin, exact(cylinder.centre))
-    height, climb = dot(out, axis), dot(direction, axis)
-    half = Decimal(cylinder.height) / 2 + swell
-    tube = near_zero(across(out, axis), across(direction, axis), Decimal(cylinder.diameter) / 2 + swell)
-    return both(tube, between(height, climb, half))
-
-
-INSIDE: dict[type[Shape], Callable[..., Interval]] = {Plane: in_plane, Sphere: in_sphere, Cylinder: in_cylinder}
-
-
-def near_zero(p: Exact, d: Exact, radius: Decimal) -> Interval:
-    """Where |p + t d| <= radius."""
-    a, b, c = dot(d, d), dot(p, d), dot(p, p) - radius * radius
-    if radius < 0 or (a == 0 and c > 0):
-        return None
+def not_positive(a: Decimal, b: Decimal, c: Decimal) -> Intervals:
+    """Where a t^2 + 2 b t + c <= 0."""
     if a == 0:
-        return -END, END
+        return not_above(2 * b, c)
     square = b * b - a * c
-    return ((-b - square.sqrt()) / a, (-b + square.sqrt()) / a) if square >= 0 else None
+    if square < 0:
+        return [] if a > 0 else [(-END, END)]
+    low, high = sorted(((-b - square.sqrt()) / a, (-b + square.sqrt()) / a))
+    return [(low, high)] if a > 0 else [(-END, low), (high, END)]
 
 
-def between(height: Decimal, climb: Decimal, half: Decimal) -> Interval:
-    """Where |height + t climb| <= half."""
-    if climb == 0:
-        return (-END, END) if abs(height) <= half else None
-    ends = (-half - height) / climb, (half - height) / climb
-    return (min(ends), max(ends)) if half >= 0 else None
+def not_above(slope: Decimal, start: Decimal) -> Intervals:
+    """Where start + t slope <= 0."""
+    if slope == 0 or start.is_infinite():
+        return [(-END, END)] if start <= 0 else []
+    return [(-END, -start / slope)] if slope > 0 else [(-start / slope, END)]
 
 
-def both(a: Interval, b: Interval) -> Interval:
-    """What two intervals have in common."""
-    if a is None or b is None:
-        return None
-    start, end = max(a[0], b[0]), min(a[1], b[1])
-    return (start, end) if start <= end else None
+def both(some: Intervals, others: Intervals) -> Intervals:
+    """What lies in both."""
+    found = [(max(a, c), min(b, d)) for a, b in some for c, d in others]
+    return [(start, end) for start, end in found if start <= end]
 
 
 def exact(numbers: Sequence[float]) -> Exact:
@@ -95,18 +115,12 @@ def dot(a: Exact, b: Exact) -> Decimal:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def minus(a: Exact, b: Exact) -> Exact:
-    """a - b."""
-    return [x - y for x, y in zip(a, b, strict=True)]
-
-
 def unit(v: Exact) -> Exact:
     """v, scaled to length 1."""
     length = dot(v, v).sqrt()
     return [x / length for x in v]
 
 
-def across(v: Exact, axis: Exact) -> Exact:
-    """The part of v that is perpendicular to the unit vector `axis`."""
-    along = dot(v, axis)
+def across(v: Exact, axis: Exact, along: Decimal) -> Exact:
+    """The part of v that is perpendicular to the axis, of which it has so much along it."""
     return [x - along * y for x, y in zip(v, axis, strict=True)]

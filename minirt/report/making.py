@@ -17,7 +17,7 @@ from minirt.report import kernels
 from minirt.report.coincident import coincident
 from minirt.report.document import document, formulas, short
 from minirt.report.errors import error_picture
-from minirt.report.exact import INSIDE
+from minirt.report.exact import SOLIDS
 from minirt.report.eye import from_the_eye
 from minirt.report.findings import Findings, choices, subject
 from minirt.report.knobs import settings
@@ -93,7 +93,7 @@ def kernel_rows(
 ) -> Iterator[kernels.Row]:
     """The rows of some kinds, in all of their regimes and, where there is one, from the eye of a scene."""
     for number, kind in enumerate(kinds):
-        if kind.element not in INSIDE:
+        if kind.element not in SOLIDS:
             continue
         random = np.random.default_rng([SEED, number])
         poses = [(each.name, each.pose(kind, random, plan.shapes, RAYS)) for each in regimes_of(kind)]
@@ -106,7 +106,7 @@ def kernel_rows(
 
 def without_exact(kinds: Iterable[Kind]) -> list[str]:
     """What is said of kinds that nothing exact is known of."""
-    return [f"formula of the {kind.element.title}: none in 60 digits" for kind in kinds if kind.element not in INSIDE]
+    return [f"formula of the {kind.element.title}: none in 60 digits" for kind in kinds if kind.element not in SOLIDS]
 
 
 def same_without_lists(pictures: dict[tuple[str, int], Picture]) -> list[int]:

@@ -44,33 +44,39 @@ def meets_plane(plane: PackedPlane, origin: Vec, direction: Vec) -> tuple[Mask, 
 
 
 def meets_cylinder(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Side and caps one after the other: cracks at the rim, and no way along the axis."""
+    """|p x axis|^2 = radius^2 between the caps, and the caps."""
     p = to_basis(cylinder.u, cylinder.v, cylinder.w, origin - cylinder.centre)
     d = to_basis(cylinder.u, cylinder.v, cylinder.w, direction)
-    a = d.x * d.x + d.y * d.y
-    b = p.x * d.x + p.y * d.y
-    D = b * b - a * (p.x * p.x + p.y * p.y - cylinder.radius * cylinder.radius)
-    tube = D >= 0.0
-    best = splat(inf, D)
-    if any(tube):
-        root = sqrt(D)
-        best = nearer(on_side(cylinder, p, d, (-b - root) / a), best)
-        best = nearer(on_side(cylinder, p, d, (-b + root) / a), best)
-        best = nearer(on_cap(cylinder, p, d, -cylinder.half), best)
-        best = nearer(on_cap(cylinder, p, d, cylinder.half), best)
+    square = cylinder.radius * cylinder.radius
+    c = p.x * p.x + p.y * p.y - square
+    best = sides(p, d, d.x * d.x + d.y * d.y, p.x * d.x + p.y * d.y, c, -cylinder.half, cylinder.half)
+    best = nearer(on_cap(p, d, -cylinder.half, square), best)
+    best = nearer(on_cap(p, d, cylinder.half, square), best)
     return best < inf, best
 
 
-def on_side(cylinder: PackedCylinder, p: Vec, d: Vec, t: Number) -> tuple[Mask, Number]:
-    """Whether the tube is hit at t between the caps."""
-    return (t > 0.0) & (fabs(p.z + t * d.z) <= cylinder.half), t
+def sides(p: Vec, d: Vec, a: Number, b: Number, c: Number, low: Number, high: Number) -> Number:
+    """The distance to the nearest point of a t^2 + 2 b t + c = 0 between two heights, or infinity."""
+    D = b * b - a * c
+    best = splat(inf, D)
+    if any(D >= 0.0):
+        root = sqrt(D)
+        best = nearer(on_side(p, d, (-b - root) / a, low, high), best)
+        best = nearer(on_side(p, d, (-b + root) / a, low, high), best)
+    return best
 
 
-def on_cap(cylinder: PackedCylinder, p: Vec, d: Vec, height: Number) -> tuple[Mask, Number]:
-    """Whether and where the plane at a height is hit within the radius."""
+def on_side(p: Vec, d: Vec, t: Number, low: Number, high: Number) -> tuple[Mask, Number]:
+    """Whether the point at t lies between two heights."""
+    height = p.z + t * d.z
+    return (t > 0.0) & (height >= low) & (height <= high), t
+
+
+def on_cap(p: Vec, d: Vec, height: Number, square: Number) -> tuple[Mask, Number]:
+    """Whether and where the plane at a height is hit within a radius, of which this is the square."""
     t = (height - p.z) / d.z
     x, y = p.x + t * d.x, p.y + t * d.y
-    return (t > 0.0) & (x * x + y * y <= cylinder.radius * cylinder.radius), t
+    return (t > 0.0) & (x * x + y * y <= square), t
 
 
 def nearer(found: tuple[Mask, Number], best: Number) -> Number:

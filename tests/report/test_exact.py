@@ -20,7 +20,7 @@ from tests import oracle
 
 GREY = (128, 128, 128)
 TUBE = Cylinder((0, 0, 5), (0, 1, 0), 6, 4, GREY)
-CASES = [(kind, regime) for kind in KINDS if kind.element in exact.INSIDE for regime in regimes_of(kind)]
+CASES = [(kind, regime) for kind in KINDS if kind.element in exact.SOLIDS for regime in regimes_of(kind)]
 
 
 @pytest.mark.parametrize(

@@ -133,7 +133,7 @@ def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
 
 
 def test_kinds_that_nothing_exact_is_known_of_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(making, "INSIDE", {})
+    monkeypatch.setattr(making, "SOLIDS", {})
     assert "formula of the sphere: none in 60 digits" in report(ALL, "all.rt", tmp_path, (16, 16), 1, quick=True)
     assert (tmp_path / "kernels.csv").read_text().strip() == ""
 
@@ -142,7 +142,7 @@ def test_the_formulas_of_all_kinds(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr("sys.argv", ["report", str(tmp_path / "shapes"), "--quick"])
     __main__.main()
     rows = json.loads((tmp_path / "shapes" / "kernels.json").read_text())
-    assert {row["kind"] for row in rows} == {kind.element.title for kind in KINDS if kind.element in making.INSIDE}
+    assert {row["kind"] for row in rows} == {kind.element.title for kind in KINDS if kind.element in making.SOLIDS}
     assert "| cylinder | long tube |" in (tmp_path / "shapes" / "kernels.md").read_text()
     (tmp_path / "file").touch()
     monkeypatch.setattr("sys.argv", ["report", str(tmp_path / "file")])
