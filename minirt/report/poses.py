@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from minirt.element import fields_of
 from minirt.fields import Colour, Direction, Field, Length, Point, Real
 from minirt.lanes import Vec
+from minirt.rendering.tables import own_points
 from minirt.shapes import Kind, Shape
 
 Array = NDArray[np.float64]
@@ -79,10 +81,19 @@ def value(field: Field, random: Random, scale: Scale) -> object:
 
 
 def examples(kind: Kind, random: Random, scale: Scale, count: int) -> tuple[list[Shape], Array]:
-    """Random shapes, and the places that they are given by, (m, 1, 3)."""
-    shapes = [example(kind, random, scale) for _ in range(count)]
-    point = next(each.name for each in fields_of(kind.element) if isinstance(each, Point))
-    return shapes, np.array([getattr(shape, point) for shape in shapes])[:, None]
+    """Random shapes, and their middles, (m, 1, 3)."""
+    shapes: list[Shape] = []
+    while len(shapes) < count:
+        with suppress(ValueError):  # fields that do not go together
+            shapes.append(example(kind, random, scale))
+    return shapes, np.array([middle(shape) for shape in shapes])[:, None]
+
+
+def middle(shape: Shape) -> Array:
+    """The middle of a shape; of one without end, a point that it is given by."""
+    points = [centre for centre, _ in shape.balls()] or own_points(shape)
+    mean: Array = np.mean(points, axis=0)
+    return mean
 
 
 def towards(kind: Kind, random: Random, m: int, n: int, scale: Scale, away: tuple[float, float]) -> Rays:
@@ -123,9 +134,11 @@ def above(kind: Kind, random: Random, m: int, n: int, scale: Scale, height: tupl
 
 def rim(kind: Kind, random: Random, m: int, n: int, scale: Scale, off: tuple[float, float]) -> Rays:
     """At the edge between cap and side, off it by so many sizes, from everywhere."""
-    shapes, places = examples(kind, random, scale, m)
-    axes, half, radius = axes_of(shapes, n), lengths_of(shapes, "height") / 2, lengths_of(shapes, "diameter") / 2
-    edge = places + half * axes + radius * aside(random, axes) + log(random, *off, m, n, 1) * ways(random, m, n)
+    shapes, _ = examples(kind, random, scale, m)
+    widest = [max(shape.balls(), key=lambda ball: ball[1]) for shape in shapes]  # that of a cap
+    centres, radii = np.array([ball[0] for ball in widest]), np.array([ball[1] for ball in widest])
+    edge = centres[:, None] + radii[:, None, None] * aside(random, axes_of(shapes, n))
+    edge += scale.size * log(random, *off, m, n, 1) * ways(random, m, n)
     directions = ways(random, m, n)
     return Rays(shapes, edge - scale.size * random.uniform(3, 20, (m, n, 1)) * directions, directions)
 

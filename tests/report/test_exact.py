@@ -57,7 +57,7 @@ def test_the_oracle_of_the_tests_agrees(kind: Kind, regime: Regime) -> None:
     shapes, origins, directions = regime.pose(kind, np.random.default_rng(5), 3, 4)
     hits = 0
     for shape, starts, ways in zip(shapes, origins, directions, strict=True):
-        for swell in (0.0, 1e-9):
+        for swell in (0.0, 1e-9) if shape.balls() else (0.0,):
             for origin, direction in zip(starts, ways, strict=True):
                 found, right = (
                     distance(shape, origin, direction, swell),
