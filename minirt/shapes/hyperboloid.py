@@ -18,7 +18,7 @@ from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero
+from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
 
@@ -80,10 +80,18 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
     p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, f + approach * direction)
     d = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, direction)
     rise = hyperboloid.slope * d.z
-    reach = hyperboloid.slope * p.z
     a = d.x * d.x + d.y * d.y - rise * rise
+    steep = a < 0.0
+    per_height = 1.0 / d.z
+    bottom = (-hyperboloid.half - p.z) * per_height
+    top = (hyperboloid.half - p.z) * per_height
+    first, last = minimum(bottom, top), maximum(bottom, top)
+    # From here on t is counted from the plane of the waist or, for a flat ray, from where it is deepest in the solid.
+    least = deepest(a, p.x * d.x + p.y * d.y - hyperboloid.slope * p.z * rise, first, last)
+    start = where(steep, -p.z * per_height, least)
+    p = p + start * d
+    reach = where(steep, 0.0, hyperboloid.slope * p.z)
     side = copysign(1.0, a)
-    steep = side < 0.0
     met, low, high = below_zero(
         side * a,
         side * (p.x * d.x + p.y * d.y - reach * rise),
@@ -92,11 +100,8 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
     hit = met | steep
     t = approach
     if any(hit):
-        per_height = 1.0 / d.z
-        bottom = (-hyperboloid.half - p.z) * per_height
-        top = (hyperboloid.half - p.z) * per_height
-        first = minimum(bottom, top)
-        last = maximum(bottom, top)
+        approach = approach + start
+        first, last = first - start, last - start
         split = steep & met
         enter = where(steep, first, maximum(first, low))
         leave = where(steep & ~met, last, minimum(last, where(steep, low, high)))

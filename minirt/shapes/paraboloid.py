@@ -17,7 +17,7 @@ from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import across, along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero
+from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
 
@@ -75,18 +75,21 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
     approach = -dot(f, direction)  # t is counted from the closest approach to the vertex
     p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, f + approach * direction)
     d = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, direction)
-    hit, enter, leave = below_zero(
-        d.x * d.x + d.y * d.y,
-        p.x * d.x + p.y * d.y - paraboloid.focal * d.z,
-        p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z,
-    )
+    a = d.x * d.x + d.y * d.y
+    slant = paraboloid.focal * d.z
+    per_height = 1.0 / d.z
+    vertex = -p.z * per_height
+    cap = (paraboloid.height - p.z) * per_height
+    first, last = minimum(vertex, cap), maximum(vertex, cap)
+    start = deepest(a, p.x * d.x + p.y * d.y - slant, first, last)
+    p = p + start * d
+    c = p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z
+    hit, low, high = below_zero(a, p.x * d.x + p.y * d.y - slant, c)
     t = approach
     if any(hit):
-        per_height = 1.0 / d.z
-        vertex = -p.z * per_height
-        cap = (paraboloid.height - p.z) * per_height
-        enter = maximum(enter, minimum(vertex, cap))
-        leave = minimum(leave, maximum(vertex, cap))
+        approach = approach + start
+        enter = maximum(first - start, low)
+        leave = minimum(last - start, high)
         near = approach + enter
         t = where(near > 0.0, near, approach + leave)
         hit = hit & (enter <= leave) & (t > 0.0)
