@@ -32,7 +32,7 @@ def test_in_the_mirrored_direction_it_is_the_coefficient(blinn: bool) -> None:
 @pytest.mark.parametrize("n", [1.0, 2.5, 50.0, 1000.0])
 @pytest.mark.parametrize("eye", [20.0, 33.0, 50.0])
 def test_aside_of_it(eye: float, n: float) -> None:
-    # Phong: the angle between the mirrored lamp and the eye. Blinn: half of that, from the normal to the halfway vector.
+    # Phong: the angle between the mirrored lamp and the eye; Blinn: half of it, between the normal and the halfway one.
     assert seen(35, eye, 0.7, n, False) == pytest.approx(0.7 * cos(radians(eye - 35)) ** n, rel=1e-10)
     assert seen(35, eye, 0.7, n, True) == pytest.approx(0.7 * cos(radians((eye - 35) / 2)) ** n, rel=1e-10)
 
