@@ -170,6 +170,7 @@ class Colour(Three):
 
     names: str = "R,G,B"
     step: float = 8.0
+    initial: Any = (200, 200, 200)
 
     def component(self, text: str) -> int:
         return whole(text)

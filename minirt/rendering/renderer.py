@@ -240,14 +240,15 @@ class Renderer:
 
 
 def needs(scene: Scene) -> frozenset[Hashable]:
-    """What there is a kernel of its own for: the kinds of shapes and the features of a scene, and whether it is large
-    enough for cells around its lamps."""
-    return traits(scene) | {len(scene.shapes) > SMALL}
+    """What there is a kernel of its own for: the kinds of shapes and the features of a scene, and for parallel light
+    whether there are so many shapes that a tree is used."""
+    found = traits(scene)
+    return found | {"tree"} if "parallel" in found and len(scene.shapes) > SMALL else found
 
 
 def small(scene: Scene) -> Scene:
     """A scene of few shapes that needs the same."""
-    shapes = {(type(shape), *dressed(shape)): shape for shape in scene.shapes}
-    more = scene.shapes[: SMALL + 1]
+    shapes = list({(type(shape), *dressed(shape)): shape for shape in scene.shapes}.values())
+    more = min(len(scene.shapes), SMALL + 1) - len(shapes)
     sky = (scene.background,) if scene.background else ()
-    return Scene((scene.camera, *sky, *scene.lights, *shapes.values(), *more), scene.file)
+    return Scene((scene.camera, *sky, *scene.lights, *shapes, *shapes[:1] * more), scene.file)

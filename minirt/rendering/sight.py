@@ -108,7 +108,7 @@ def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: 
     views[:, 4], depths = by_depth(views[:, 4].copy())
     order = np.argsort(depths[rectangles[:used, 0]], kind="stable")
     starts = np.cumsum(counts)  # for now the ends
-    members = np.empty(starts[-1], np.int32)
+    members = np.empty(starts[-1] if kinds else 0, np.int32)
     kernel.fill(rectangles, order, grid.across, starts, members)
     return Lists(starts.reshape(kinds, stride), members, views)
 
