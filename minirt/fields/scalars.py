@@ -68,6 +68,7 @@ class Length(Scalar):
 
     unit: str = "scene unit"
     step: float = 1.05
+    share: float = 1.0  # of the length that is usual in a scene, for a new element
 
     def parse(self, text: str) -> float:
         return number(text)

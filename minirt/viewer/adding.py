@@ -7,7 +7,7 @@ from math import cos, pi, sin
 from typing import Any
 
 from minirt.element import Element, fields_of
-from minirt.fields import FARTHEST, Colour, Direction, Field, Length, Point, Real, Triple
+from minirt.fields import FARTHEST, Colour, Direction, Field, Length, Lengths, Point, Real, Triple
 from minirt.scene import Scene
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.view import mix, view
@@ -18,7 +18,6 @@ from minirt.viewer.state import State, can_edit
 
 AWAY = 1 / 2  # of the scene's size: how far in front of the camera
 LARGE = 1 / 8  # of the scene's size: what is added
-SMALLER = (1.0, 1 / 2, 1 / 4)  # what a length may be of the one before it, where a kind asks for that
 GREY = (200, 200, 200)
 
 
@@ -33,18 +32,13 @@ def has(scene: Scene, kind: type[Element]) -> bool:
     return any(type(each) is kind for each in scene.of(kind))
 
 
-def made(kind: type[Element], state: State) -> Element | None:
-    """An element of that kind in front of the camera; None where no choice of its lengths makes one."""
-    for ratio in SMALLER:
-        try:
-            return kind(**dict(chosen(kind, state, ratio)))
-        except ValueError:
-            continue
-    return None
+def made(kind: type[Element], state: State) -> Element:
+    """An element of that kind in front of the camera."""
+    return kind(**dict(chosen(kind, state)))
 
 
-def chosen(kind: type[Element], state: State, ratio: float) -> Iterator[tuple[str, Any]]:
-    """The fields that must be given; each length has that ratio to the one before it."""
+def chosen(kind: type[Element], state: State) -> Iterator[tuple[str, Any]]:
+    """The fields that must be given."""
     fields = [field for field in fields_of(kind) if field.required]
     places = iter(corners(state, sum(isinstance(field, Point) for field in fields)))
     length = nice(LARGE * state.size)
@@ -52,8 +46,9 @@ def chosen(kind: type[Element], state: State, ratio: float) -> Iterator[tuple[st
         if isinstance(field, Point):
             yield field.name, next(places)
         elif isinstance(field, Length):
-            yield field.name, length
-            length *= ratio
+            yield field.name, length * field.share
+        elif isinstance(field, Lengths):
+            yield field.name, (length, length, length)
         else:
             yield field.name, usual(field, state)
 

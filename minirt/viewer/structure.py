@@ -49,9 +49,8 @@ def add(way: int, state: State, _amount: float, now: float) -> State:
     again = state.recent is not None and state.recent[0] == ADDED
     before = history.undo(state) if again else state
     known = kinds(before.scene)
-    turns = ((state.kind + way * (again + ahead)) % len(known) for ahead in range(len(known)))
-    found = ((number, made(known[number], before)) for number in turns)
-    number, element = next((number, element) for number, element in found if element)
+    number = (state.kind + way * again) % len(known)
+    element = made(known[number], before)
     last = len(before.scene.elements) - 1
     scene = before.scene.edit(last, before.scene.elements[last], element)
     added = replace(replace(before, value=0).change(scene, ADDED, now, last + 1), kind=number)

@@ -116,5 +116,5 @@ def test_of_caps_in_one_plane_the_first_is_hit() -> None:
 
 def test_scenes_of_the_same_kinds_share_a_kernel() -> None:
     random = np.random.default_rng(0)
-    sorts = {typeof(tree(some(random, count))) for count in (3, 4, 17, 90, 1000)}
+    sorts = {typeof(tree(some(random, count))) for count in (len(KINDS), len(KINDS) + 1, 17, 90, 1000)}
     assert len(sorts) == 1
