@@ -77,5 +77,5 @@ def test_a_picture_as_background(folder: Path) -> None:
 
 def test_a_picture_that_is_gone_is_named(tmp_path: Path) -> None:
     shown = scene(tmp_path, BALL.replace(texture="gone.png"))
-    with pytest.raises(FileError, match="gone.png"):
+    with pytest.raises(FileError, match=r"gone\.png"):
         materials_of(shown, traits(shown))
