@@ -12,7 +12,10 @@ from decimal import Context, Decimal, localcontext
 from typing import Any, NamedTuple
 
 from minirt.shapes import Shape
+from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.hyperboloid import Hyperboloid
+from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 
@@ -51,7 +54,39 @@ def cylinder(shape: Any, swell: Decimal) -> Solid:
     return Solid(exact(shape.centre), unit(exact(shape.axis)), radius * abs(radius), low=-half, high=half)
 
 
-SOLIDS: dict[type[Shape], Callable[[Any, Decimal], Solid]] = {Plane: plane, Sphere: sphere, Cylinder: cylinder}
+def cone(shape: Any, swell: Decimal) -> Solid:
+    """d <= slope h below the base. The one around it at a distance has its apex so far behind."""
+    axis, slope = unit(exact(shape.axis)), Decimal(shape.diameter) / 2 / Decimal(shape.height)
+    back = swell * (1 + slope * slope).sqrt() / slope
+    apex = [x - back * a for x, a in zip(exact(shape.apex), axis, strict=True)]
+    high = Decimal(shape.height) + back + swell
+    return Solid(apex, axis, quadratic=slope * slope, low=ZERO, high=high)
+
+
+def paraboloid(shape: Any, swell: Decimal) -> Solid:
+    """d^2 <= r^2 h / height below the rim; the side moves by at least `swell`."""
+    radius, height = Decimal(shape.diameter) / 2, Decimal(shape.height)
+    linear = radius * radius / height
+    square = (2 * radius + linear) * swell
+    return Solid(exact(shape.vertex), unit(exact(shape.axis)), square, linear, high=height + swell)
+
+
+def hyperboloid(shape: Any, swell: Decimal) -> Solid:
+    """d^2 <= waist^2 + slope h^2 between both caps; the side moves by at least `swell`."""
+    waist, radius, half = (Decimal(each) / 2 for each in (shape.waist, shape.diameter, shape.height))
+    slope, square = (radius * radius - waist * waist) / (half * half), waist * waist + 2 * radius * swell
+    axis, end = unit(exact(shape.axis)), half + swell
+    return Solid(exact(shape.centre), axis, square, quadratic=slope, low=-end, high=end)
+
+
+SOLIDS: dict[type[Shape], Callable[[Any, Decimal], Solid]] = {
+    Plane: plane,
+    Sphere: sphere,
+    Cylinder: cylinder,
+    Cone: cone,
+    Paraboloid: paraboloid,
+    Hyperboloid: hyperboloid,
+}
 
 
 def distance(shape: Shape, origin: Sequence[float], direction: Sequence[float], swell: float = 0.0) -> Decimal:
