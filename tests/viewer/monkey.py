@@ -115,7 +115,10 @@ class Play:
         batch: list[str] = []
         while len(batch) < BATCH and not (batch and batch[-1] in FULL_SCREEN):
             batch.append(next(self.lines))
-        do(self.desktop, self.window, *batch, "up Shift")
+        try:
+            do(self.desktop, self.window, *batch, "up Shift")
+        except subprocess.CalledProcessError:  # the window went while the monkey was at it
+            self.find()
         self.done += len(batch)
         if batch[-1] in FULL_SCREEN:
             do(self.desktop, self.window, "wait 0.5")
