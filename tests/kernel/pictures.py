@@ -45,9 +45,10 @@ def linear(scene: Scene, width: int = 24, height: int = 16, samples: int = 1, re
 def picture(
     scene: Scene, width: int = 24, height: int = 16, samples: int = 1, renderer: Renderer = TWO
 ) -> tuple[NDArray[np.uint8], Array]:
-    """The pixels (h, w, 4) in the order blue, green, red, alpha, and their light."""
+    """The pixels (h, w, 4) in the order blue, green, red, alpha, and their light, which is finite for every ray."""
     pixels, light = np.full((height, width, 4), 77, np.uint8), np.full((height, width, 3), np.nan)
     assert renderer.render(scene, pixels, samples, light)
+    assert renderer.not_finite == 0
     return pixels, light
 
 
