@@ -37,6 +37,7 @@ MAY: dict[str, set[str]] = {
         "garbage",
         "fields",
         "element",
+        "materials",
         "shapes",
         "scene",
         "rendering",

@@ -9,15 +9,16 @@ upright; on a floor u, to the right, runs along x and v, upwards, along -z, on a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
+from minirt.materials import Checker, Compound
 from minirt.shapes.basis import face_on
-from minirt.shapes.shape import Ball, Place, Shape
+from minirt.shapes.shape import BOARD, Ball, Place, Shape
 
 PARALLEL = 4  # unit roundoffs of the scalar product of two unit vectors
 
@@ -30,6 +31,8 @@ class Plane(Shape):
     point: Triple = declare(Point, "a point of the plane")
     normal: Triple = declare(Direction, "normal")
     colour: Triple = declare(Colour, "colour")
+    _: KW_ONLY
+    checker: Checker | None = declare(Compound, "checkerboard", bare="1", **BOARD)
 
     def pack(self) -> PackedPlane:
         right, up = face_on(self.normal)

@@ -32,6 +32,7 @@ Place = NewType("Place", Vec)  # in a packed shape: a point, where other Vecs ar
 
 
 SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
+BOARD: dict[str, Any] = {"record": Checker, "aliases": ("pat",)} | SHARED
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +44,7 @@ class Shape(Element):
     specular: Specular | None = declare(Compound, "highlight", record=Specular, aliases=("spc",), **SHARED)
     mirror: float | None = declare(Mirror, "share of mirrored light", aliases=("mir",), **SHARED)
     glass: Glass | None = declare(Compound, "refracted light", record=Glass, aliases=("ref",), **SHARED)
-    checker: Checker | None = declare(Compound, "checkerboard", record=Checker, aliases=("pat",), bare="1", **SHARED)
+    checker: Checker | None = declare(Compound, "checkerboard", bare="0.125", **BOARD)
     texture: str | None = declare(Texture, "picture in the place of the colour", aliases=("txm", "tx"), **SHARED)
     bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)
     normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **SHARED)

@@ -74,7 +74,7 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, 
         close = hit & close
         product = chord
         if rarely(close):
-            product = where(close, power(origin, sphere.centre, sphere.radius), product)
+            product = splat(power(origin, sphere.centre, sphere.radius), chord)
             chord = where(close, approach * approach - product, chord)
         half = sqrt(chord)
         near = approach - half

@@ -22,7 +22,9 @@ def test_the_table_has_a_row_for_every_element_and_every_field_in_it() -> None:
     assert (head, rule) == ("| line | element | fields |", "|---|---|---|")
     for kind, row in zip(ELEMENTS.values(), rows, strict=True):
         assert row.startswith(f"| `{pattern(kind)}` | {kind.title}")
-        assert row.count("`") == 2 + 2 * len([field for field in fields_of(kind) if not field.sort])
+        assert all(f"`{alias}`" in row for alias in kind.aliases)
+        named = [field for field in fields_of(kind) if not field.sort]
+        assert row.count("`") == 2 + 2 * len(named) + 2 * len(kind.aliases)
         assert row.replace("\\|", "").count("|") == 4
 
 
@@ -40,7 +42,7 @@ def test_a_second_table_has_the_attributes_of_all_shapes() -> None:
         "| `specular:share,exponent[,blinn]`; also `spc:` | shapes | highlight<br>`share` share of the light, in [0, 1]"
         "<br>`exponent` how smooth, in [1, 1000000]<br>`blinn` from the halfway direction |"
     )
-    assert "| `checker:size[,R,G,B]`, or `checker` for `checker:1`; also `pat:` |" in rows[3]
+    assert "| `checker:size[,R,G,B]`, or `checker` for `checker:0.125` (planes: `checker:1`); also `pat:` |" in rows[3]
 
 
 def test_the_row_of_the_camera() -> None:
