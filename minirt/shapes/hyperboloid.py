@@ -44,10 +44,9 @@ class Hyperboloid(Shape):
 
     def pack(self) -> PackedHyperboloid:
         u, v, w = basis(self.axis)
-        spread = root(self.diameter - self.waist) * root(self.diameter + self.waist)
-        return PackedHyperboloid(
-            Place(Vec(*self.centre)), u, v, w, self.waist / 2, spread / self.height, self.height / 2
-        )
+        thinner, thicker = self.diameter - self.waist, self.diameter + self.waist
+        slope = root(thinner / self.height) * root(thicker / self.height)
+        return PackedHyperboloid(Place(Vec(*self.centre)), u, v, w, self.waist / 2, slope, self.height / 2)
 
     def ends(self) -> tuple[Triple, Triple]:
         return along(self.centre, self.axis, -self.height / 2), along(self.centre, self.axis, self.height / 2)
