@@ -69,7 +69,7 @@ class Packing:
 
         camera, lights = camera_numbers(scene.camera, width, height), light_numbers(scene)
         eye = keep((camera.tobytes(), width, height), seen_by_eye, self.kernel, tables, camera, width, height)
-        grid = grid_for(len(scene.shapes))
+        grid = grid_for(len(tables.places))
         lamps: list[Lists] = []
         keys: list[Hashable] = []
         for lamp in lights[:, :3]:

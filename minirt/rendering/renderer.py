@@ -234,4 +234,5 @@ def kinds_of(scene: Scene) -> frozenset[type]:
 
 def one_of_each(scene: Scene) -> Scene:
     """A small scene with the same kinds of shapes."""
-    return Scene((scene.camera, *{type(shape): shape for shape in scene.shapes}.values()))
+    examples = {type(shape): shape for shape in scene.shapes}.values()
+    return Scene((scene.camera, *(shape.some(np.arange(1)) for shape in examples)))
