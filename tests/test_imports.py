@@ -38,6 +38,7 @@ MAY: dict[str, set[str]] = {
         "garbage",
         "fields",
         "element",
+        "materials",
         "shapes",
         "scene",
         "rendering",

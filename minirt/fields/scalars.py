@@ -142,3 +142,6 @@ class Flag(Field):
 
     def check(self, value: bool) -> bool:
         return bool(value)
+
+    def nudge(self, value: bool, steps: float) -> bool:
+        return steps > 0

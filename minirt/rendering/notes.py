@@ -7,9 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from minirt.kernel.traced import Traced
-from minirt.rendering.flats import same_side
+from minirt.rendering.flats import idle
 from minirt.rendering.tables import Tables
-from minirt.scene import Light, Scene
+from minirt.rendering.traits import FEATURES, traits
+from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Shape
 
 
@@ -20,6 +21,8 @@ def notes(scene: Scene, tables: Tables, traced: Traced) -> Iterator[str]:
     yield f"kernel for {plurals(used)}"
     if idle_kinds := {kind.element for kind in ALL_KINDS} - used:
         yield f"kernel without {plurals(idle_kinds)}"
+    needed = traits(scene)
+    yield f"kernel without {', '.join(words for feature, words in FEATURES.items() if feature not in needed)}"
     sizes = sum(np.diff(group.starts) for group in traced.groups)
     yield f"tiles: {len(sizes)}, {np.mean(sizes):.1f} of {shapes} in each, {np.count_nonzero(sizes == 0)} without any"
     if traced.grid == 1:
@@ -31,9 +34,8 @@ def notes(scene: Scene, tables: Tables, traced: Traced) -> Iterator[str]:
             yield f"light {number} has brightness 0"
         elif not any(light.colour):
             yield f"light {number} is black"
-        elif isinstance(light, Light):
-            idle = same_side(tables.planes, np.array(scene.camera.position), np.array(light.position))
-            for index in tables.flat[idle].tolist():
+        else:
+            for index in tables.flat[idle(tables, np.array(scene.camera.position), light)].tolist():
                 yield f"{name(tables, index)} hides nothing from light {number}"
 
 

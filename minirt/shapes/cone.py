@@ -9,7 +9,6 @@ A solid cone with a cap on its base. `x,y,z` is the apex; the axis `ax,ay,az` ru
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
@@ -18,7 +17,7 @@ from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero
+from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
 
@@ -60,38 +59,35 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     """Whether and where a ray meets the cone.
 
     x^2 + y^2 <= slope^2 z^2 holds in two nappes, the cone and its mirror image. A ray that is flatter than the side is
-    within one of them for an interval of t; a steeper one is in both, but for an interval between, and in the cone
-    before or behind that, whichever is farther up the axis. What remains is cut to the heights between apex and base:
-    as with the cylinder there is no crack at the rim, and none at the apex.
+    within one of them for an interval of t; a steeper one, which crosses the plane between them, is in both, but for an
+    interval around that. What remains is cut to the heights between apex and base: as with the cylinder there is no
+    crack at the rim, and none at the apex.
     """
     f = origin - cone.apex
     approach = -dot(f, direction)  # t is counted from the closest approach to the apex
     p = to_basis(cone.u, cone.v, cone.w, f + approach * direction)
     d = to_basis(cone.u, cone.v, cone.w, direction)
-    across = d.x * d.x + d.y * d.y
     rise = cone.slope * d.z
-    a = across - rise * rise
-    # A flat ray goes on from its closest approach to the axis: far from the apex a thin cone is thin against p.
-    further = where(a > 0.0, -(p.x * d.x + p.y * d.y) / across, 0.0)
-    p = p + further * d
-    approach = approach + further
-    reach = cone.slope * p.z
+    a = d.x * d.x + d.y * d.y - rise * rise
+    steep = a < 0.0
+    per_height = 1.0 / d.z
+    tip = -p.z * per_height
+    base = (cone.height - p.z) * per_height
+    first, last = minimum(tip, base), maximum(tip, base)
+    # From here on t is counted from the plane of the apex or, for a flat ray, from where it is deepest in the cone.
+    start = where(steep, tip, deepest(a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last))
+    p = p + start * d
+    reach = where(steep, 0.0, cone.slope * p.z)
     side = copysign(1.0, a)
-    steep = side < 0.0
     b = p.x * d.x + p.y * d.y - reach * rise
-    met, low, high = below_zero(side * a, side * b, side * (p.x * p.x + p.y * p.y - reach * reach))
-    hit = met | steep
+    hit, low, high = below_zero(side * a, side * b, side * (p.x * p.x + p.y * p.y - reach * reach))
     t = approach
     if any(hit):
-        per_height = 1.0 / d.z
-        tip = -p.z * per_height
-        base = (cone.height - p.z) * per_height
+        approach = approach + start
+        first, last = first - start, last - start
         rising = d.z > 0.0
-        middle = -b / a  # of the interval outside, all of it where rounding left none
-        enter = where(steep, where(rising, where(met, high, middle), -inf), low)
-        leave = where(steep, where(rising, inf, where(met, low, middle)), high)
-        enter = maximum(minimum(tip, base), enter)
-        leave = minimum(maximum(tip, base), leave)
+        enter = maximum(first, where(steep, where(rising, high, first), low))
+        leave = minimum(last, where(steep, where(rising, last, low), high))
         near = approach + enter
         t = where(near > 0.0, near, approach + leave)
         hit = hit & (enter <= leave) & (t > 0.0)

@@ -16,7 +16,7 @@ from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero
+from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
 
@@ -66,16 +66,20 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Ma
     approach = -dot(f, direction)  # t is counted from the closest approach to the centre
     p = to_basis(cylinder.u, cylinder.v, cylinder.w, f + approach * direction)
     d = to_basis(cylinder.u, cylinder.v, cylinder.w, direction)
-    hit, enter, leave = below_zero(
-        d.x * d.x + d.y * d.y, p.x * d.x + p.y * d.y, p.x * p.x + p.y * p.y - cylinder.radius * cylinder.radius
-    )
+    a = d.x * d.x + d.y * d.y
+    per_height = 1.0 / d.z
+    bottom = (-cylinder.half - p.z) * per_height
+    top = (cylinder.half - p.z) * per_height
+    first, last = minimum(bottom, top), maximum(bottom, top)
+    start = deepest(a, p.x * d.x + p.y * d.y, first, last)
+    p = p + start * d
+    c = p.x * p.x + p.y * p.y - cylinder.radius * cylinder.radius
+    hit, low, high = below_zero(a, p.x * d.x + p.y * d.y, c)
     t = approach
     if any(hit):
-        per_height = 1.0 / d.z
-        bottom = (-cylinder.half - p.z) * per_height
-        top = (cylinder.half - p.z) * per_height
-        enter = maximum(enter, minimum(bottom, top))
-        leave = minimum(leave, maximum(bottom, top))
+        approach = approach + start
+        enter = maximum(first - start, low)
+        leave = minimum(last - start, high)
         near = approach + enter
         t = where(near > 0.0, near, approach + leave)
         hit = hit & (enter <= leave) & (t > 0.0)

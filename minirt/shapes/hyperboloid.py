@@ -13,12 +13,12 @@ from math import sqrt as root
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
-from minirt.lanes import Vec, any, copysign, dot, fabs, inverse_root, maximum, minimum, splat, where
+from minirt.lanes import Vec, any, copysign, dot, fabs, inverse_root, maximum, minimum, splat, sqrt, unit, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero
+from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
 
@@ -29,7 +29,7 @@ class Hyperboloid(Shape):
     code, title, plural = "hy", "hyperboloid", "hyperboloids"
     centre: Triple = declare(Point, "centre, half-way up")
     axis: Triple = declare(Direction, "axis")
-    waist: float = declare(Length, "diameter at the centre, at most that of the ends")
+    waist: float = declare(Length, "diameter at the centre, at most that of the ends", initial=0.5)
     diameter: float = declare(Length, "diameter of the ends")
     height: float = declare(Length, "height")
     colour: Triple = declare(Colour, "colour")
@@ -80,10 +80,18 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
     p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, f + approach * direction)
     d = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, direction)
     rise = hyperboloid.slope * d.z
-    reach = hyperboloid.slope * p.z
     a = d.x * d.x + d.y * d.y - rise * rise
+    steep = a < 0.0
+    per_height = 1.0 / d.z
+    bottom = (-hyperboloid.half - p.z) * per_height
+    top = (hyperboloid.half - p.z) * per_height
+    first, last = minimum(bottom, top), maximum(bottom, top)
+    # From here on t is counted from the plane of the waist or, for a flat ray, from where it is deepest in the solid.
+    least = deepest(a, p.x * d.x + p.y * d.y - hyperboloid.slope * p.z * rise, first, last)
+    start = where(steep, -p.z * per_height, least)
+    p = p + start * d
+    reach = where(steep, 0.0, hyperboloid.slope * p.z)
     side = copysign(1.0, a)
-    steep = side < 0.0
     met, low, high = below_zero(
         side * a,
         side * (p.x * d.x + p.y * d.y - reach * rise),
@@ -92,11 +100,8 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
     hit = met | steep
     t = approach
     if any(hit):
-        per_height = 1.0 / d.z
-        bottom = (-hyperboloid.half - p.z) * per_height
-        top = (hyperboloid.half - p.z) * per_height
-        first = minimum(bottom, top)
-        last = maximum(bottom, top)
+        approach = approach + start
+        first, last = first - start, last - start
         split = steep & met
         enter = where(steep, first, maximum(first, low))
         leave = where(steep & ~met, last, minimum(last, where(steep, low, high)))
@@ -114,32 +119,29 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
 
 
 def surface(hyperboloid: PackedHyperboloid, point: Vec) -> tuple[Vec, Vec]:
-    """`point` moved onto the side or a cap, whichever it is nearer to, and the outward normal there."""
+    """`point` moved onto the side or a cap, whichever it is nearer to, and the outward normal there.
+
+    It gets to the side along the axis where that is flatter than a half right angle, and across the axis where it is
+    steeper: exactly, and hardly farther than on the shortest way.
+    """
     p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, point - hyperboloid.centre)
-    above, out = from_side(hyperboloid, p)
+    rho = sqrt(p.x * p.x + p.y * p.y)
+    reach = hyperboloid.slope * p.z
+    down = hyperboloid.slope * reach  # rho and this are the slope of the side's function, across and against the axis
+    steep = rho >= fabs(down)
+    radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * reach)
+    above = 0.5 * (rho - radius) * (rho + radius) * inverse_root(rho * rho + down * down)  # to first order
     over = fabs(p.z) - hyperboloid.half
     side = above >= over
-    foot = p - above * out
-    above, out = from_side(hyperboloid, foot)
-    foot = foot - above * out
-    _, out = from_side(hyperboloid, foot)
+    out = where(steep, radius / rho, 1.0)
+    rise = sqrt(maximum((rho - hyperboloid.waist) * (rho + hyperboloid.waist), 0.0)) / hyperboloid.slope
+    foot = Vec(out * p.x, out * p.y, where(steep, p.z, copysign(rise, p.z)))
     flat = splat(0.0, over)
     cap = Vec(flat, flat, copysign(1.0, p.z))
+    falling = hyperboloid.slope * hyperboloid.slope * foot.z
+    normal = where(side, unit(Vec(foot.x, foot.y, -falling)), cap)
+    on = where(side, foot, p - over * cap)
     return (
-        hyperboloid.centre + from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, where(side, foot, p - over * cap)),
-        from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, where(side, out, cap)),
+        hyperboloid.centre + from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, on),
+        from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, normal),
     )
-
-
-def from_side(hyperboloid: PackedHyperboloid, p: Vec) -> tuple[Number, Vec]:
-    """How far outside of the side a point is, and the direction away from it.
-
-    That is, to first order, the value of the side's function by the length of its gradient (Taubin 1991): what is left
-    after one step is the square of it, in sizes of the hyperboloid, after two steps its fourth power.
-    """
-    reach = hyperboloid.slope * p.z
-    squared = p.x * p.x + p.y * p.y
-    down = hyperboloid.slope * reach
-    per_gradient = inverse_root(squared + down * down)  # of half of the gradient
-    above = 0.5 * (squared - reach * reach - hyperboloid.waist * hyperboloid.waist) * per_gradient
-    return above, per_gradient * Vec(p.x, p.y, -down)

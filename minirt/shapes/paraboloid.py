@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, dot, inverse_root, maximum, minimum, splat, where
+from minirt.lanes import Vec, any, dot, inverse_root, maximum, minimum, splat, sqrt, unit, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import across, along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero
+from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
 
@@ -75,18 +75,21 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
     approach = -dot(f, direction)  # t is counted from the closest approach to the vertex
     p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, f + approach * direction)
     d = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, direction)
-    hit, enter, leave = below_zero(
-        d.x * d.x + d.y * d.y,
-        p.x * d.x + p.y * d.y - paraboloid.focal * d.z,
-        p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z,
-    )
+    a = d.x * d.x + d.y * d.y
+    slant = paraboloid.focal * d.z
+    per_height = 1.0 / d.z
+    vertex = -p.z * per_height
+    cap = (paraboloid.height - p.z) * per_height
+    first, last = minimum(vertex, cap), maximum(vertex, cap)
+    start = deepest(a, p.x * d.x + p.y * d.y - slant, first, last)
+    p = p + start * d
+    c = p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z
+    hit, low, high = below_zero(a, p.x * d.x + p.y * d.y - slant, c)
     t = approach
     if any(hit):
-        per_height = 1.0 / d.z
-        vertex = -p.z * per_height
-        cap = (paraboloid.height - p.z) * per_height
-        enter = maximum(enter, minimum(vertex, cap))
-        leave = minimum(leave, maximum(vertex, cap))
+        approach = approach + start
+        enter = maximum(first - start, low)
+        leave = minimum(last - start, high)
         near = approach + enter
         t = where(near > 0.0, near, approach + leave)
         hit = hit & (enter <= leave) & (t > 0.0)
@@ -94,30 +97,25 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
 
 
 def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:
-    """`point` moved onto the side or the cap, whichever it is nearer to, and the outward normal there."""
+    """`point` moved onto the side or the cap, whichever it is nearer to, and the outward normal there.
+
+    It gets to the side along the axis where that is flatter than a half right angle, and across the axis where it is
+    steeper: exactly, and hardly farther than on the shortest way.
+    """
     p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, point - paraboloid.vertex)
-    above, out = from_side(paraboloid, p)
+    squared = p.x * p.x + p.y * p.y
+    steep = squared > paraboloid.focal * paraboloid.focal
+    within = 2.0 * paraboloid.focal * p.z  # the square of the radius at that height
+    above = 0.5 * (squared - within) * inverse_root(squared + paraboloid.focal * paraboloid.focal)  # to first order
     over = p.z - paraboloid.height
     side = above >= over
-    foot = p - above * out
-    above, out = from_side(paraboloid, foot)
-    foot = foot - above * out
-    _, out = from_side(paraboloid, foot)
+    out = where(steep, sqrt(maximum(within, 0.0) / squared), 1.0)
+    foot = Vec(out * p.x, out * p.y, where(steep, p.z, squared * (0.5 / paraboloid.focal)))
     flat = splat(0.0, over)
     cap = Vec(flat, flat, flat + 1.0)
+    normal = where(side, unit(Vec(foot.x, foot.y, flat - paraboloid.focal)), cap)
+    on = where(side, foot, p - over * cap)
     return (
-        paraboloid.vertex + from_basis(paraboloid.u, paraboloid.v, paraboloid.w, where(side, foot, p - over * cap)),
-        from_basis(paraboloid.u, paraboloid.v, paraboloid.w, where(side, out, cap)),
+        paraboloid.vertex + from_basis(paraboloid.u, paraboloid.v, paraboloid.w, on),
+        from_basis(paraboloid.u, paraboloid.v, paraboloid.w, normal),
     )
-
-
-def from_side(paraboloid: PackedParaboloid, p: Vec) -> tuple[Number, Vec]:
-    """How far outside of the side a point is, and the direction away from it.
-
-    That is, to first order, the value of the side's function by the length of its gradient (Taubin 1991): what is left
-    after one step is the square of it, in sizes of the paraboloid, after two steps its fourth power.
-    """
-    squared = p.x * p.x + p.y * p.y
-    per_gradient = inverse_root(squared + paraboloid.focal * paraboloid.focal)  # of half of the gradient
-    above = 0.5 * (squared - 2.0 * paraboloid.focal * p.z) * per_gradient
-    return above, per_gradient * Vec(p.x, p.y, splat(-paraboloid.focal, above))

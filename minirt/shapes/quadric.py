@@ -29,3 +29,12 @@ def below_zero(a: Number, b: Number, c: Number) -> tuple[Mask, Number, Number]:
         high = maximum(r0, r1)
         hit = hit & (~constant | (c <= 0.0))
     return hit, low, high
+
+
+def deepest(a: Number, b: Number, first: Number, last: Number) -> Number:
+    """Where, between two t, a t^2 + 2 b t + c is least, for a >= 0.
+
+    Of a ray that meets a solid between two planes that place lies in the solid, or as near to it as rounding lets it:
+    counted from there all numbers are as small as the solid there is wide, however long it is and wherever its middle.
+    """
+    return minimum(maximum(-b / a, first), last)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, dot, fabs, rarely, sqrt, unit, unit_roundoff, where
+from minirt.lanes import Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.exact import power
@@ -72,7 +72,7 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, 
         close = hit & close
         product = chord
         if rarely(close):
-            product = power(origin, sphere.centre, sphere.radius)
+            product = splat(power(origin, sphere.centre, sphere.radius), chord)
             chord = where(close, approach * approach - product, chord)
         half = sqrt(chord)
         near = approach - half

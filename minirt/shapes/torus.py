@@ -32,7 +32,7 @@ class Torus(Shape):
     centre: Triple = declare(Point, "centre")
     axis: Triple = declare(Direction, "axis")
     diameter: float = declare(Length, "diameter of the circle in the middle of the tube")
-    tube: float = declare(Length, "diameter of the tube, at most that of the circle")
+    tube: float = declare(Length, "diameter of the tube, at most that of the circle", initial=0.4)
     colour: Triple = declare(Colour, "colour")
 
     def conflict(self) -> tuple[str, str] | None:
@@ -98,7 +98,7 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
         hit = hit & (enter <= leave)
         if any(hit):
             # The sides of the surface at both ends and, as far as the ray comes there, at the turning points between.
-            first, second, third = turning_points(torus, p, d)
+            first, second, third = turning_points(torus, p, d, hit)
             first = minimum(maximum(first, enter), leave)
             second = minimum(maximum(second, enter), leave)
             third = minimum(maximum(third, enter), leave)
@@ -125,7 +125,7 @@ def side(torus: PackedTorus, p: Vec) -> Number:
     return where(sqrt(aside * aside + p.z * p.z) > torus.tube, 1.0, -1.0)
 
 
-def turning_points(torus: PackedTorus, p: Vec, d: Vec) -> tuple[Number, Number, Number]:
+def turning_points(torus: PackedTorus, p: Vec, d: Vec, asked: Mask) -> tuple[Number, Number, Number]:
     """Where (|q|^2 + ring^2 - tube^2)^2 - 4 ring^2 (q_x^2 + q_y^2) has an extremum along q = p + t d, in ascending
     order; the same three times where there is one.
 
@@ -141,11 +141,13 @@ def turning_points(torus: PackedTorus, p: Vec, d: Vec) -> tuple[Number, Number, 
     y = torus.ring * splat(1.415, bend)
     y = where(size <= 2.0 * bend * bend * bend, minimum(y, 2.0 * bend), y)
     small = 2.0**-30 * torus.ring  # what is left is the square of it
+    unsure = asked
     for _ in range(STEPS):
         slope = 3.0 * y * y + b
-        step = where(slope > 0.0, ((y * y + b) * y - size) / slope, 0.0)
+        step = where(unsure & (slope > 0.0), ((y * y + b) * y - size) / slope, 0.0)
         y = y - step
-        if not any(step > small):
+        unsure = unsure & (step > small)
+        if not any(unsure):
             break
     rest = -0.75 * y * y - b
     half = sqrt(maximum(rest, 0.0))
@@ -166,6 +168,7 @@ def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from
     t = 0.5 * (low + high)
     last = high - low
     rounding = 2.0 * unit_roundoff(t)
+    unsure = asked  # what is exact stays as it is, so that no ray's answer depends on those beside it
     for _ in range(STEPS):
         q = p + t * d
         rho = sqrt(q.x * q.x + q.y * q.y)
@@ -180,8 +183,9 @@ def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from
         newton = (t + step > low) & (t + step < high) & (2.0 * fabs(step) < last)
         step = where(newton, step, 0.5 * (low + high) - t)
         last = fabs(step)
-        t = t + step
-        if not any(asked & (last > rounding * (fabs(t) + torus.tube))):
+        t = where(unsure, t + step, t)
+        unsure = unsure & (last > rounding * (fabs(t) + torus.tube))
+        if not any(unsure):
             break
     return t
 

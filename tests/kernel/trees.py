@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from minirt.element import fields_of
+from minirt.fields import Point
 from minirt.kernel import bvh_build, bvh_collapse, jit_bvh
 from minirt.kernel.bvh import WIDTH, Group, Tree
 from minirt.rendering.tables import Tables
@@ -69,8 +71,8 @@ def some(random: Random, count: int, size: float = 1.0, offset: float = 0.0, spr
 
 def moved(shape: Shape, by: Array) -> Shape:
     """A shape in another place."""
-    name = "centre" if hasattr(shape, "centre") else "point"
-    return shape.replace(**{name: tuple(place(shape) + by)})
+    names = [each.name for each in fields_of(type(shape)) if isinstance(each, Point)]
+    return shape.replace(**{name: tuple(np.add(getattr(shape, name), by)) for name in names})
 
 
 def rays_at(random: Random, shapes: list[Shape], count: int) -> tuple[Array, Array]:

@@ -14,6 +14,7 @@ from minirt.element import fields_of
 from minirt.fields import Length, Lengths, Point
 from minirt.shapes import Shape
 from tests import oracle
+from tests.oracle.body import body, inside
 from tests.shapes.regimes import Rays
 
 Array = NDArray[np.float64]
@@ -26,8 +27,8 @@ class Regime(NamedTuple):
     An answer passes that is exact within the relative `tolerance`. Where the surface ends or turns away from the ray an
     exact answer is of no use, as rounding the ray's own numbers changes it: there it passes if it lies between those
     for a shape thicker and one thinner by `slack` roundings of t, of the distance between origin and shape and of the
-    shape's size, and, where all three hit, if it is
-    one of those within `blur`.
+    shape's size, and, where all three hit, if it is one of those within `blur`. Where only the thicker one is hit, and
+    that is a solid, it passes if it is in there: along a surface that is straight both ends of that may be far away.
     """
 
     name: str
@@ -50,10 +51,19 @@ class Right:
         return np.inf if t is None else float(t)
 
     def thicker_and_thinner(self, i: int, j: int) -> tuple[float, float]:
+        swell = self.swell(i, j)
+        return self.at(i, j, swell), self.at(i, j, -swell)
+
+    def swell(self, i: int, j: int) -> float:
         shape, t = self.rays.shapes[i], self.t[i, j]
         away = float(np.linalg.norm(self.rays.origins[i, j] - points(shape)[0]))
-        swell = self.regime.slack * U * ((t if np.isfinite(t) else 0.0) + away + size(shape))
-        return self.at(i, j, swell), self.at(i, j, -swell)
+        return self.regime.slack * U * ((t if np.isfinite(t) else 0.0) + away + size(shape))
+
+    def within_thicker(self, i: int, j: int, t: float) -> bool:
+        point = [
+            mpf(o) + mpf(t) * mpf(d) for o, d in zip(self.rays.origins[i, j], self.rays.directions[i, j], strict=True)
+        ]
+        return inside(body(self.rays.shapes[i], mpf(self.swell(i, j))), point)
 
     def wrong(self, t: Array, every: int = 1) -> list[str]:
         """What is wrong with the answers t for every n-th ray of a shape, infinity for a miss."""
@@ -72,6 +82,7 @@ class Right:
         else:
             fine = bool(hits) and min(hits) * (1 - U) <= t <= max(hits) * (1 + self.regime.blur)
             fine &= len(hits) < 3 or min(abs(t - side) / side for side in sides) <= self.regime.blur
+            fine |= len(hits) == 1 and self.within_thicker(i, j, t)
         if fine:
             return ""
         ray = f"{self.rays.origins[i, j].tolist()}, {self.rays.directions[i, j].tolist()}"
