@@ -9,9 +9,13 @@ A file of a shape holds its manual page, its line in a scene file (a frozen data
                                           the unit normal there, outward where there is an outside
     mapping(shape, point, normal)         where a picture has this point of the surface with this normal: u to the right
                                           and v upwards, 0 to 1 across a picture; and the tangents dP/du and dP/dv
+    shading(shape, point, normal)         of the few that stand for something rounder: the unit normal by which such a
+                                          point is lit, where `normal` is that of the surface
 
 The tangents and the normal are right-handed, so that nobody outside sees a picture mirrored. At poles and apexes, where
 a picture is gathered to a point, tangents may be zero.
+
+A mesh is many triangles, each of which the kernel keeps for itself: such a shape has `parts`.
 """
 
 from __future__ import annotations
@@ -20,6 +24,8 @@ from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple, NewType
+
+import numpy as np
 
 from minirt.element import Element
 from minirt.fields import Triple, declare
@@ -49,6 +55,15 @@ class Shape(Element):
     bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)
     normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **SHARED)
 
+    @property
+    def parts(self) -> int:
+        """How many things the kernel keeps of it."""
+        return 1
+
+    def some(self, parts: np.ndarray) -> Shape:
+        """The shape that is some of its parts."""
+        return self
+
     @abstractmethod
     def pack(self) -> Any:
         """What the kernel keeps of the shape: the NamedTuple of its `Kind`."""
@@ -67,6 +82,11 @@ class Shape(Element):
         """The axis-aligned box around the shape, or None where it has no end."""
 
 
+def unbent(shape: Any, point: Vec, normal: Vec) -> Vec:
+    """`shading` of a shape that is what it looks like."""
+    return normal
+
+
 class Kind(NamedTuple):
     """One entry of the registry of shapes."""
 
@@ -75,3 +95,4 @@ class Kind(NamedTuple):
     intersect: Callable[..., Any]
     surface: Callable[..., Any]
     mapping: Callable[..., Any]
+    shading: Callable[..., Any] = unbent
