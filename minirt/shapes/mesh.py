@@ -11,13 +11,14 @@ file.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
 
 from minirt import meshes
 from minirt.fields import FARTHEST, Colour, Length, MeshField, MeshFile, Point, Triple, declare
-from minirt.lanes import Vec, cross, dot, maximum, minimum, splat, unit, where
+from minirt.lanes import Vec, cross, dot, maximum, minimum, unit, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes import triangle
@@ -147,6 +148,6 @@ def mapping(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> tuple[Number, 
     v = of_a * mesh.v_a + of_b * mesh.v_b + of_c * mesh.v_c
     u_b, v_b, u_c, v_c = mesh.u_b - mesh.u_a, mesh.v_b - mesh.v_a, mesh.u_c - mesh.u_a, mesh.v_c - mesh.v_a
     area = u_b * v_c - u_c * v_b
-    per_area = where(area == 0.0, splat(0.0, u), 1.0 / area)
+    per_area = 1.0 / where(area == 0.0, inf, area)
     ab, ac = mesh.b - mesh.a, mesh.c - mesh.a
     return u, v, per_area * (v_c * ab - v_b * ac), per_area * (u_b * ac - u_c * ab)
