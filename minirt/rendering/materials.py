@@ -28,12 +28,16 @@ class Materials(NamedTuple):
 
     def of(self, owner: np.ndarray) -> Materials:
         """Those of the parts of shapes, of which `owner` (n,) has the numbers."""
-        rows = [None if table is None else table[owner] for table in (self.gloss, self.bounces)]
-        if self.skins is None:
-            return Materials(*rows, None)
-        tables = {name: getattr(self.skins, name) for name in ("checks", "textures", "bumps", "normals", "used")}
-        each = {name: None if table is None else table[owner] for name, table in tables.items()}
-        return Materials(*rows, self.skins._replace(**each))
+        skins: Skins | None = self.skins
+        if skins:
+            named = ("checks", "textures", "bumps", "normals", "used")
+            skins = skins._replace(**{name: rows(getattr(skins, name), owner) for name in named})
+        return Materials(rows(self.gloss, owner), rows(self.bounces, owner), skins)
+
+
+def rows(table: np.ndarray | None, owner: np.ndarray) -> np.ndarray | None:
+    """Those of a table that may be missing."""
+    return None if table is None else table[owner]
 
 
 def materials_of(scene: Scene, used: Set[Hashable]) -> Materials:
