@@ -112,12 +112,14 @@ def render(
     time: float | None = None,
     threads: int | None = None,
     precision: str = "double",
+    depth: int | None = None,
 ) -> Image:
     """Make the picture of a scene, `width` by `height` pixels with the mean of `samples` rays in each.
 
     Without a size the scene's own is used. Safe to call from several threads; the first call for a combination of
     shapes compiles for some seconds, later ones and later programs do not. `precision` "single" computes in float32
-    relative to the eye, about twice as fast. RenderError for a size or a number of samples below 1.
+    relative to the eye, about twice as fast. Light is mirrored or refracted `depth` times at most, of itself 8.
+    RenderError for a size or a number of samples below 1.
 
     With `samples` "auto" each part of the picture gets as many as it needs, until the estimated error is at most
     `error` (DEFAULT_ERROR where neither is given) or `time` seconds have passed, not counting those of compiling;
@@ -133,7 +135,7 @@ def render(
         raise RenderError(f"a picture has at least 1x1 pixels, got {width}x{height}")
     pixels = np.empty((height, width, 4), np.uint8)
     linear = np.zeros((height, width, 3))
-    chosen = renderer(threads, precision)
+    chosen = renderer(threads, precision, depth)
     if samples == "auto":
         if time is not None:
             chosen.prepare(scene)
@@ -156,8 +158,8 @@ def goal(error: float | None, time: float | None) -> tuple[float, float]:
 
 
 @cache
-def renderer(threads: int | None, precision: str = "double") -> Renderer:
-    """The renderer with that many threads and that precision, kept for the next picture."""
+def renderer(threads: int | None, precision: str = "double", depth: int | None = None) -> Renderer:
+    """The renderer with that many threads, that precision and depth, kept for the next picture."""
     from minirt.rendering import Renderer
 
-    return Renderer(threads, precision)
+    return Renderer(threads, precision, depth)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 OK, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
 SAMPLES, WINDOW_SAMPLES = 1, 16  # where none are asked for
+DEPTH, DEEPEST = 8, 32  # the same of bounces, and the most that there may be
 
 
 class Arguments(argparse.ArgumentParser):
@@ -80,6 +81,7 @@ def arguments() -> Arguments:
     add("--list-keys", action="store_true", help="list the keys of the window")
     add("--threads", type=lambda text: whole(text, 1, 1024), metavar="N", help="threads that render")
     add("--precision", choices=("double", "single"), default="double", help="of the numbers that pictures are made of")
+    add("--depth", type=lambda text: whole(text, 0, DEEPEST), metavar="N", help=f"bounces of light, at most ({DEPTH})")
     add("-v", "--verbose", action="store_true", help="say what is done, and how long it takes")
     add("--version", action="store_true", help="print the version")
     return parser
@@ -195,7 +197,7 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
 
     width, height = asked.size or minirt.size_of(scene)
     start = perf_counter()
-    renderer = minirt.renderer(asked.threads, asked.precision)
+    renderer = minirt.renderer(asked.threads, asked.precision, asked.depth)
     if asked.verbose:
         renderer.prepare(scene)
         print(f"kernel ready after {perf_counter() - start:.2f} s", file=sys.stderr)
@@ -210,13 +212,16 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
         time=asked.time,
         threads=asked.threads,
         precision=asked.precision,
+        depth=asked.depth,
     )
     if image.reached:
         print(image.reached, file=sys.stderr)
     if asked.verbose:
+        each = "" if image.reached else f"{samples} samples a pixel, "
         print(
-            f"{width}x{height}, {samples} samples a pixel, {renderer.threads} threads, {renderer.precision} "
-            f"precision: {(perf_counter() - start) * 1e3:.1f} ms",
+            f"{width}x{height}, {each}{renderer.threads} threads, {renderer.precision} precision: "
+            f"{(perf_counter() - start) * 1e3:.1f} ms",
+            f"rays whose light is not finite: {renderer.not_finite}",
             *renderer.packing.notes,
             sep="\n",
             file=sys.stderr,
@@ -233,7 +238,13 @@ def turntable(scene: Scene, asked: argparse.Namespace) -> int:
     width, height = asked.size or minirt.size_of(scene)
     made = (
         minirt.render(
-            seen, width, height, samples=asked.samples or SAMPLES, threads=asked.threads, precision=asked.precision
+            seen,
+            width,
+            height,
+            samples=asked.samples or SAMPLES,
+            threads=asked.threads,
+            precision=asked.precision,
+            depth=asked.depth,
         )
         for seen in with_progress(views(scene, asked.turntable), asked.turntable, "picture")
     )
@@ -264,7 +275,7 @@ def replay(scene: Scene, asked: argparse.Namespace) -> int:
         raise ReplayError(f"{asked.replay}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
     how: dict[str, Any] = {
         "file": asked.replay,
-        "renderer": minirt.renderer(asked.threads, asked.precision),
+        "renderer": minirt.renderer(asked.threads, asked.precision, asked.depth),
         "size": asked.size or minirt.size_of(scene),
         "path": asked.scene[0],
         "keys": "qwerty" if asked.keys == "auto" else asked.keys,  # not the user's: a replay is the same everywhere
@@ -294,7 +305,7 @@ def window(scene: Scene, asked: argparse.Namespace) -> int:
             lenient=asked.lenient,
             samples=asked.samples or WINDOW_SAMPLES,
             watch=asked.watch,
-            renderer=minirt.renderer(asked.threads, asked.precision),
+            renderer=minirt.renderer(asked.threads, asked.precision, asked.depth),
         )
     except MlxError as error:
         if not asked.fallback:

@@ -68,7 +68,6 @@ class Length(Scalar):
 
     unit: str = "scene unit"
     step: float = 1.05
-    share: float = 1.0  # of the length that is usual in a scene, for a new element
 
     def parse(self, text: str) -> float:
         return number(text)
@@ -143,3 +142,6 @@ class Flag(Field):
 
     def check(self, value: bool) -> bool:
         return bool(value)
+
+    def nudge(self, value: bool, steps: float) -> bool:
+        return steps > 0

@@ -6,7 +6,7 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.counter import fetch_add
-from minirt.kernel.shade import lit_sky
+from minirt.kernel.sky import coloured_sky, is_plain
 from minirt.kernel.trace import is_empty
 from minirt.kernel.traced import Traced
 from minirt.kernel.whitted import radiance
@@ -82,14 +82,14 @@ def frame(
     samples = rays.shape[0]
     step = width(rays) // DOWN
     nothing = splat(0.0, load(rays[0], 0))
-    empty_sky = lit_sky(scene.sky, nothing > 0.0, Vec(nothing, nothing, nothing))
+    empty_sky = coloured_sky(scene.sky, nothing > 0.0, Vec(nothing, nothing, nothing))
     while True:
         top = fetch_add(next_row, TILE)
         if top >= height:
             return
         for left in range(0, across, TILE):
             tile = top // TILE * tiles(across) + left // TILE
-            empty = is_empty(scene, tile)
+            empty = is_plain(scene.dome) and is_empty(scene, tile)
             # All packets for each sample, not all samples for each packet: a sum that is kept through the loop takes
             # registers from what is in it, and a seventh more time.
             for sample in range(samples):

@@ -21,13 +21,27 @@ from numba.core.typing.templates import AbstractTemplate, infer_global, signatur
 from numba.extending import lower_builtin, overload, register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
-from minirt.kernel import cache, counter, frame, highlight, lamps, rows, shade, skins, surfaces, texels, trace, whitted
+from minirt.kernel import (
+    cache,
+    counter,
+    frame,
+    highlight,
+    lamps,
+    rows,
+    shade,
+    skins,
+    sky,
+    surfaces,
+    texels,
+    trace,
+    whitted,
+)
 from minirt.kernel.inlined import Inlined
 from minirt.kernel.traced import Traced
 from minirt.lanes import power, vec
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, VecType, common, constant, splat, vec_of
-from minirt.shapes import KINDS, basis, exact, quadric
+from minirt.shapes import ALL_KINDS, basis, exact, quadric
 
 Arguments: TypeAlias = tuple[Any, ...]  # of `minirt.kernel.frame.frame`
 
@@ -64,6 +78,11 @@ def _intersect(shape, origin, direction):  # type: ignore[no-untyped-def]
 @overload(rows.surface, jit_options=INNER, strict=False)
 def _surface(shape, point):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).surface
+
+
+@overload(rows.shading, jit_options=INNER, strict=False)
+def _shading(shape, point, normal):  # type: ignore[no-untyped-def]
+    return rows.kind_of_packed(shape.instance_class).shading
 
 
 @overload(rows.mapping, jit_options=INNER, strict=False)
@@ -184,15 +203,17 @@ for _module in (
     skins,
     surfaces,
     shade,
+    sky,
     whitted,
     frame,
-    *(sys.modules[kind.intersect.__module__] for kind in KINDS),
+    *(sys.modules[kind.intersect.__module__] for kind in ALL_KINDS),
 ):
     for _function in own_functions(_module):
         if _function not in OWN_FORM:
             register_jitable(**INNER)(_function)
 
 CACHE = cache.folder()
+PAINTED = ("checks", "textures", "bumps", "normals")
 OPTIONAL = tuple(name for name, default in Traced._field_defaults.items() if default is None)
 
 
@@ -203,7 +224,7 @@ def kernel_of(features: tuple[str, ...], *row_types: np.dtype[Any]) -> Any:
 
     Each has a folder of its own: numba's index of a folder does not bear two programs that write it at the same time.
     """
-    if features:
+    if "tree" in features:
         import_module("minirt.kernel.jit_bvh")
     titles = (rows.kind_of(each.names).element.title for each in row_types)
     place = CACHE and CACHE / "-".join([*titles, *features, str(row_types[0][0].base)])
@@ -213,8 +234,13 @@ def kernel_of(features: tuple[str, ...], *row_types: np.dtype[Any]) -> Any:
 
 def kernel_for(traced: Traced) -> Any:
     """The kernel for a scene."""
-    features = tuple(name for name in OPTIONAL if getattr(traced, name) is not None)
-    return kernel_of(features, *(group.rows.dtype for group in traced.groups))
+    features = [*present(traced, OPTIONAL), *(present(traced.skins, PAINTED) if traced.skins else ())]
+    return kernel_of(tuple(features), *(group.rows.dtype for group in traced.groups))
+
+
+def present(table: Any, names: tuple[str, ...]) -> list[str]:
+    """The fields that are not None."""
+    return [name for name in names if getattr(table, name) is not None]
 
 
 def compile(arguments: Arguments) -> None:

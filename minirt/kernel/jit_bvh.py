@@ -97,7 +97,22 @@ for _module in (bvh, bvh_build, bvh_collapse, bvh_hits):
         if _function not in (*TAUGHT, *ENTRIES):
             register_jitable(**INNER)(_function)
 
+# With the types said at once, what builds trees is compiled when this module is imported.
+NUMBER, WHOLE = types.float64, types.int64
+TABLE, LINKS = NUMBER[:, ::1], WHOLE[:, ::1]
+BINARY = types.NamedTuple([TABLE, TABLE, LINKS, TABLE, NUMBER[::1], NUMBER[::1], LINKS], bvh_build.Binary)
+DIVIDE = WHOLE(BINARY)
+WEIGH = types.void(BINARY, TABLE, LINKS)
+COLLAPSE = types.UniTuple(WHOLE, 2)(BINARY, LINKS, NUMBER[::1], WHOLE[::1], LINKS, LINKS)
+
+
+def compiled(function: Any, *signature: Any) -> Any:
+    """A function with its compiled form, which is kept."""
+    return njit(*signature, cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(function)
+
+
 with cache.numba_cache(CACHE):
-    trace_rays, divide, weigh, collapse = (
-        njit(cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(each) for each in ENTRIES
-    )
+    divide = compiled(bvh_build.divide, DIVIDE)
+    weigh = compiled(bvh_collapse.weigh, WEIGH)
+    collapse = compiled(bvh_collapse.collapse, COLLAPSE)
+    trace_rays = compiled(bvh_hits.trace_rays)

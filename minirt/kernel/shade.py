@@ -77,10 +77,3 @@ def with_shine(gloss: Any, light: Vec, shine: Vec) -> Vec:
 def coloured(light: Vec, colour: Vec) -> Vec:
     """Light of one colour on a surface of another."""
     return Vec(light.x * colour.x, light.y * colour.y, light.z * colour.z)
-
-
-def lit_sky(sky: Any, hit: Mask, light: Vec) -> Vec:
-    """The light of rays that hit, and of the sky for those that do not."""
-    if sky is None:
-        return light
-    return where(hit, light, Vec(sky[0], sky[1], sky[2]))

@@ -25,8 +25,8 @@ class Skins(NamedTuple):
     bumps: Any  # (n, 2) the picture whose first channel is a height, and by how much it raises the surface
     normals: Any  # (n,) the picture of normals
     used: Any  # (n,) 0 for shapes on which nothing is painted
-    texels: Any  # the pictures one after the other: rows from the top, pixels from the left, three channels in [0, 1]
-    pictures: Any  # (k, 3) for each picture where it begins in `texels`, its width and its height
+    texels: Any  # the pictures one after the other: rows from the top, pixels from the left, channels in [0, 1]
+    pictures: Any  # (k, 4) for each picture where it begins in `texels`, its width, height and channels
 
 
 Mapped = tuple[Number, Number, Vec, Vec, int]

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from minirt.lanes import Vec, floor, gather
+from minirt.lanes import Vec, floor, gather, maximum, minimum
 from minirt.lanes.vec import Number
-
-CHANNELS = 3
 
 
 def picture_at(texels: Any, pictures: Any, which: int, u: Number, v: Number) -> Vec:
     """The colour of a picture at u, v, which run from 0 to 1 from left to right and from the bottom to the top.
 
-    The pixels are `texels`; `pictures` has for each picture where it begins, its width and its height. Bilinear: each
-    of the four pixels around a place counts as much as the place is near to its centre.
+    The pixels are `texels`; `pictures` has for each picture where it begins, its width, height and channels. Bilinear:
+    each of the four pixels around a place counts as much as the place is near to its centre.
     """
     red = channel_at(texels, pictures, which, 0, u, v)
     green = channel_at(texels, pictures, which, 1, u, v)
@@ -24,21 +22,21 @@ def picture_at(texels: Any, pictures: Any, which: int, u: Number, v: Number) -> 
 
 def channel_at(texels: Any, pictures: Any, which: int, channel: int, u: Number, v: Number) -> Number:
     """One of the three numbers of that colour."""
-    start, wide, high = pictures[which, 0] + channel, pictures[which, 1], pictures[which, 2]
+    start, wide, high, step = pictures[which, 0] + channel, pictures[which, 1], pictures[which, 2], pictures[which, 3]
     x = u * wide - 0.5
     y = (1.0 - v) * high - 0.5
     left, top = floor(x), floor(y)
     across, down = x - left, y - top
     x0, x1 = wrapped(left, wide), wrapped(left + 1.0, wide)
     y0, y1 = wrapped(top, high) * wide, wrapped(top + 1.0, high) * wide
-    upper = mix(gather(texels, start + CHANNELS * (y0 + x0)), gather(texels, start + CHANNELS * (y0 + x1)), across)
-    lower = mix(gather(texels, start + CHANNELS * (y1 + x0)), gather(texels, start + CHANNELS * (y1 + x1)), across)
+    upper = mix(gather(texels, start + step * (y0 + x0)), gather(texels, start + step * (y0 + x1)), across)
+    lower = mix(gather(texels, start + step * (y1 + x0)), gather(texels, start + step * (y1 + x1)), across)
     return mix(upper, lower, down)
 
 
 def wrapped(place: Number, size: float) -> Number:
-    """A whole number brought into [0, size) by steps of `size`."""
-    return place - size * floor(place / size)
+    """A whole number brought into [0, size) by steps of `size`; 0 for NaN, which rays have that hit nothing."""
+    return minimum(maximum(place - size * floor(place / size), 0.0), size - 1.0)
 
 
 def mix(a: Number, b: Number, share: Number) -> Number:

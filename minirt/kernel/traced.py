@@ -43,4 +43,5 @@ class Traced(NamedTuple):
     skins: Any = None  # `minirt.kernel.skins.Skins`
     depth: int = 0  # how often light may be mirrored or refracted on its way
     sky: Any = None  # (3,) light from where no shape is
+    dome: Any = None  # `minirt.kernel.sky.Dome`
     tree: Any = None  # `minirt.kernel.bvh.Tree` of the shapes, for rays that share no origin

@@ -15,7 +15,8 @@ import numpy as np
 
 from minirt.kernel import bvh_hits
 from minirt.kernel.bvh import put, put_vec
-from minirt.kernel.shade import clearance, coloured, lit_sky, received, with_shine
+from minirt.kernel.shade import clearance, coloured, received, with_shine
+from minirt.kernel.sky import beyond, lit_sky
 from minirt.kernel.surfaces import Surface, surfaces
 from minirt.kernel.trace import nearest
 from minirt.kernel.traced import Traced
@@ -46,7 +47,7 @@ def followed(
     if bounces is None:
         if any(hit):
             light, _ = leaving(scene, memory, t, owner, extent, origin, direction, hit)
-        return lit_sky(scene.sky, hit, light)
+        return lit_sky(scene, hit, light, direction)
     return whitted(scene, memory, t, owner, extent, origin + 0.0 * direction, direction)
 
 
@@ -106,7 +107,7 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
                     way = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * facing)
                     kept = where(through > LEAST, through, 0.0)
                     waiting = keep(paths, waiting, point - rounding * facing, way, kept, level)
-        light = beyond(scene.sky, light, where(asked & ~hit, weight, 0.0))
+        light = light + beyond(scene, where(asked & ~hit, weight, 0.0), direction)
         if waiting == 0:
             break
         waiting -= 1
@@ -138,10 +139,3 @@ def vec_from(paths: Any, at: int, like: Number) -> Vec:
     """The vectors of rays that waited."""
     count = width(like)
     return Vec(load(paths, at), load(paths, at + count), load(paths, at + 2 * count))
-
-
-def beyond(sky: Any, light: Vec, weight: Number) -> Vec:
-    """Light, and that of the sky for the rays that hit nothing."""
-    if sky is None:
-        return light
-    return light + weight * Vec(sky[0], sky[1], sky[2])

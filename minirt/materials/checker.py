@@ -20,5 +20,5 @@ class Checker(Record):
     """What `checker:` says."""
 
     title = "checker"
-    size: float = declare(Length, "side of a square, in u and v", unit="")
+    size: float = declare(Length, "side of a square, in u and v", unit="", initial=1.0)
     colour: Triple = declare(Colour, "the second colour", default=(0, 0, 0))

@@ -22,5 +22,5 @@ class Glass(Record):
     """What `glass:` says."""
 
     title = "glass"
-    ior: float = declare(Real, "index of refraction", low=1.0, high=10.0, step=0.02)
+    ior: float = declare(Real, "index of refraction", low=1.0, high=10.0, step=0.02, initial=1.5)
     share: float = declare(Real, "share that comes through", low=0.0, high=1.0, step=0.05, default=1.0)

@@ -12,4 +12,4 @@ from functools import partial
 
 from minirt.fields import Real
 
-Mirror = partial(Real, unit="ratio", low=0.0, high=1.0, step=0.05, placeholder="share")
+Mirror = partial(Real, unit="ratio", low=0.0, high=1.0, step=0.05, placeholder="share", initial=0.3)

@@ -25,6 +25,6 @@ class Specular(Record):
     """What `specular:` says."""
 
     title = "specular"
-    share: float = declare(Real, "share of the light", low=0.0, high=1.0, step=0.05)
-    exponent: float = declare(Factor, "how smooth", high=GREATEST)
+    share: float = declare(Real, "share of the light", low=0.0, high=1.0, step=0.05, initial=0.5)
+    exponent: float = declare(Factor, "how smooth", high=GREATEST, initial=30.0)
     blinn: bool = declare(Flag, "from the halfway direction", default=False)

@@ -5,6 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from minirt.kernel.lists import MARGIN, Grid
+from minirt.rendering.lamps import place_of
+from minirt.rendering.tables import Tables
+from minirt.scene import Lamp, ParallelLight
+from minirt.shapes import Shape
 
 
 def heights(planes: np.ndarray, point: np.ndarray) -> np.ndarray:
@@ -24,6 +28,29 @@ def same_side(planes: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """
     same: np.ndarray = heights(planes, a) * heights(planes, b) > 0
     return same
+
+
+def never_met(planes: np.ndarray, point: np.ndarray, direction: np.ndarray) -> np.ndarray:
+    """Which planes rays in a direction never meet that start on the side where a point is, whatever the rounding."""
+    slopes = planes[:, :3] @ direction
+    never: np.ndarray = (heights(planes, point) * slopes > 0) & (np.abs(slopes) > MARGIN)
+    return never
+
+
+def idle(tables: Tables, eye: np.ndarray, lamp: Lamp) -> np.ndarray:
+    """Which planes hide nothing that the eye sees from a lamp; never those that the eye sees through."""
+    if isinstance(lamp, ParallelLight):
+        found = never_met(tables.planes, eye, -np.array(lamp.direction))
+    else:
+        found = same_side(tables.planes, eye, place_of(lamp))
+    opaque = np.array([not is_glass(tables.shapes[i]) for i in tables.owner[tables.flat].tolist()], bool)
+    skipped: np.ndarray = found & opaque
+    return skipped
+
+
+def is_glass(shape: Shape) -> bool:
+    """Whether light goes through it."""
+    return shape.glass is not None and shape.glass.share > 0
 
 
 def runs(grid: Grid, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

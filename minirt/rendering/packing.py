@@ -3,40 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
+from functools import cached_property
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 
+from minirt.kernel import lists
 from minirt.kernel.traced import Group, Traced
 from minirt.rendering.camera import camera_numbers, pixel_rays
-from minirt.rendering.flats import same_side
+from minirt.rendering.flats import idle
+from minirt.rendering.lamps import beam_numbers, light_numbers, light_of, shining
+from minirt.rendering.materials import dome_of, materials_of
 from minirt.rendering.notes import notes
-from minirt.rendering.sight import Lists, grid_for, seen_by_eye, seen_by_lamp, spread_for
+from minirt.rendering.sight import Lists, grid_for, seen_by_eye, seen_by_lamp, seen_by_sun, spread_for
 from minirt.rendering.single import in_single
 from minirt.rendering.tables import Tables
-from minirt.scene import Ambient, Lamp, Light, Scene
+from minirt.rendering.traits import DEPTH, traits
+from minirt.rendering.tree import tree_of
+from minirt.scene import ParallelLight, Scene
 from minirt.shapes import Shape
 
 
-def light_of(source: Ambient | Lamp) -> np.ndarray:
-    """The light of a source at full incidence: red, green, blue."""
-    return np.divide(source.colour, 255) * source.brightness
-
-
-def light_numbers(scene: Scene) -> np.ndarray:
-    """Place and light of every point light that shines."""
-    lamps = [(*lamp.position, *light) for lamp in scene.of(Light) if (light := light_of(lamp)).any()]
-    return np.array(lamps, np.float64).reshape(len(lamps), 6)
-
-
 class Packing:
-    """Packs scene after scene, in "double" or "single" `precision`. Given `minirt.kernel.lists` for the kernel it does
-    without the compiler."""
+    """Packs scene after scene, in "double" or, where a scene allows it, "single" `precision`. Given
+    `minirt.kernel.lists` for the kernel it does without the compiler."""
 
-    def __init__(self, kernel: Any = None, precision: str = "double") -> None:
+    def __init__(self, kernel: Any = None, precision: str = "double", depth: int = DEPTH) -> None:
         self.kernel = kernel
         self.precision = precision
+        self.depth = depth  # bounces at most
         self.tables = Tables()
         self.known: dict[Hashable, Any] = {}  # what was worked out for the last scene, by what it was worked out from
         self.last: tuple[Scene, int, int, Traced] | None = None
@@ -52,7 +48,7 @@ class Packing:
         if self.last and self.last[0] is scene and self.last[1:3] == (width, height):
             return self.last[3]
         traced = self.traced(scene, width, height)
-        if self.precision == "single":
+        if self.precision == "single" and may_be_single(traced):
             traced = in_single(traced, self.tables.boxes)
         self.last = scene, width, height, traced
         return traced
@@ -67,16 +63,25 @@ class Packing:
             self.known[key] = before[key] if key in before else work(*given)
             return self.known[key]
 
-        camera, lights = camera_numbers(scene.camera, width, height), light_numbers(scene)
+        used = traits(scene) - (set() if self.depth else {"bounces"})
+        camera, lamps = camera_numbers(scene.camera, width, height), shining(scene)
+        lights = light_numbers(lamps)
         eye = keep((camera.tobytes(), width, height), seen_by_eye, self.kernel, tables, camera, width, height)
-        grid = grid_for(len(scene.shapes))
-        lamps: list[Lists] = []
+        grid = grid_for(len(tables.places))
+        seen: list[Lists] = []
         keys: list[Hashable] = []
-        for lamp in lights[:, :3]:
-            skipped = same_side(tables.planes, camera[:3], lamp)
-            keys.append((lamp.tobytes(), skipped.tobytes()))
-            lamps.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, lamp, grid, skipped))
-        lamp_starts, lit, lamp_views = keep(tuple(keys), joined, lamps, eye)
+        for lamp, place in zip(lamps, lights[:, :3], strict=True):
+            skipped = idle(tables, camera[:3], lamp)
+            if isinstance(lamp, ParallelLight):
+                keys.append(("parallel", skipped.tobytes()))
+                seen.append(keep(keys[-1], seen_by_sun, tables, grid, skipped))
+            else:
+                keys.append((place.tobytes(), skipped.tobytes()))
+                seen.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, place, grid, skipped))
+        lamp_starts, lit, lamp_views = keep(tuple(keys), joined, seen, eye)
+        materials = keep(("materials", used), materials_of, scene, tables.owner, used)
+        tree = "bounces" in used or ("parallel" in used and grid > 1)
+        paint: Any = scene.background and scene.background.paint
         return Traced(
             camera=pixel_rays(camera, width, height),
             ambient=light_of(scene.ambient) if scene.ambient else np.zeros(3),
@@ -90,12 +95,28 @@ class Packing:
             lit=lit,
             lamp_views=lamp_views,
             groups=tuple(map(Group, tables.rows, eye.starts, lamp_starts)),
+            beams=beam_numbers(lamps) if "beams" in used else None,
+            depth=self.depth,
+            sky=np.divide(paint, 255) if "sky" in used else None,
+            dome=keep(("dome", paint), dome_of, scene, paint) if "dome" in used else None,
+            tree=keep("tree", tree_of, tables, self.planter) if tree else None,
+            **materials._asdict(),
         )
+
+    @cached_property
+    def planter(self) -> Any:
+        """What builds trees: `minirt.kernel.jit_bvh`, or the same without the compiler."""
+        return import_module("minirt.kernel.bvh_plain" if self.kernel is lists else "minirt.kernel.jit_bvh")
 
     @property
     def notes(self) -> list[str]:
         """What was decided about the last scene, in words."""
         return list(notes(self.last[0], self.tables, self.last[3])) if self.last else []
+
+
+def may_be_single(traced: Traced) -> bool:
+    """Whether float32 will do: the tree is made of float64, and float32 cannot count the pixels of a large picture."""
+    return traced.tree is None and traced.dome is None and (traced.skins is None or not len(traced.skins.pictures))
 
 
 def joined(lamps: list[Lists], eye: Lists) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

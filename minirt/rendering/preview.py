@@ -26,7 +26,7 @@ FEWEST = 400  # rays of a picture that is worth showing
 def preview(scene: Scene, width: int, height: int) -> np.ndarray | None:
     """A picture of the scene, uint8 (h, w, 4) in the order blue, green, red, alpha, as fine as can be made in about
     `BUDGET` seconds and at most of that size, in its proportions; None where the scene has too many shapes for one."""
-    tries = max(1, len(scene.shapes)) * (1 + len(scene.lights))
+    tries = max(1, sum(shape.parts for shape in scene.shapes)) * (1 + len(scene.lights))
     rays = (BUDGET / tries - SHAPE) / RAY
     if rays < min(FEWEST, width * height):
         return None
@@ -36,14 +36,12 @@ def preview(scene: Scene, width: int, height: int) -> np.ndarray | None:
 
 def picture(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
     """The picture of that size, and its light, (h, w, 3)."""
-    light = np.zeros((height, width, 3))
-    if scene.shapes:
-        traced = in_one_list(Packing(lists).pack(scene, width, height))
-        y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
-        with np.errstate(all="ignore"):
-            direction = unit(towards(traced.camera, x, y))
-            seen = radiance(traced, memory_for(traced), 0, Vec(*traced.camera[:3]), direction)
-        light[...] = np.stack([seen.x, seen.y, seen.z], axis=-1).reshape(height, width, 3)
+    traced = in_one_list(Packing(lists, depth=0).pack(scene, width, height))
+    y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
+    with np.errstate(all="ignore"):
+        direction = unit(towards(traced.camera, x, y))
+        seen = radiance(traced, memory_for(traced), 0, Vec(*traced.camera[:3]), direction)
+    light = np.stack([seen.x, seen.y, seen.z], axis=-1).reshape(height, width, 3)
     pixels = np.full((height, width, 4), 255, np.uint8)
     pixels[..., :3] = level(light[..., ::-1])
     return pixels, light
@@ -58,7 +56,6 @@ def in_one_list(traced: Traced) -> Traced:
     return traced._replace(
         seen=np.lexsort((traced.views[:, 4], kinds)),
         grid=1,
-        bounces=None,
         tree=None,
         lit=np.array(by_lamp, np.int64).ravel(),
         groups=tuple(

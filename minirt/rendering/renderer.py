@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from functools import cached_property, partial
 from importlib import import_module
 from itertools import takewhile
@@ -24,6 +24,8 @@ from minirt.rendering.cores import usable_cores
 from minirt.rendering.frames import ALL_PACKETS, NO_LINEAR, Frame, frame_arguments, memory_for, room_for_sums
 from minirt.rendering.helper import Helper
 from minirt.rendering.reached import Reached
+from minirt.rendering.sight import SMALL
+from minirt.rendering.traits import DEPTH, dressed, parts, traits
 from minirt.rendering.workers import Workers
 from minirt.scene import Scene
 from minirt.shapes import Shape
@@ -35,14 +37,16 @@ PATIENCE, TRIES = 0.05, 4  # seconds that somebody who clicks waits for a pictur
 class Renderer:
     """Keeps threads and packed shapes from picture to picture. Any thread may call it; pictures are made one by one."""
 
-    def __init__(self, threads: int | None = None, precision: str = "double") -> None:
-        """As many threads as there are usable processors; "double" or "single" `precision`, or RenderError."""
+    def __init__(self, threads: int | None = None, precision: str = "double", depth: int | None = None) -> None:
+        """As many threads as there are usable processors; "double" or "single" `precision`, or RenderError; light is
+        mirrored or refracted `depth` times at most, where that is not given `DEPTH` times."""
         if precision not in PRECISIONS:
             raise RenderError(f"precision must be double or single, got '{precision}'")
         self.threads = threads or usable_cores()
         self.precision = precision
+        self.depth = DEPTH if depth is None else depth
         self.next_row = np.zeros(1, np.int64)
-        self.known: set[frozenset[type]] = set()  # kinds of shapes that there is a kernel for
+        self.known: set[frozenset[Hashable]] = set()  # traits of scenes that there is a kernel for
         self.not_finite = 0  # rays of the last picture whose light was infinite or NaN, and is 0 in it
         self.cancels = 0
         self.busy = Lock()
@@ -56,7 +60,7 @@ class Renderer:
     @cached_property
     def packing(self) -> Any:
         """The arrays of the last scene."""
-        return import_module("minirt.rendering.packing").Packing(precision=self.precision)
+        return import_module("minirt.rendering.packing").Packing(precision=self.precision, depth=self.depth)
 
     @cached_property
     def kernel(self) -> Any:
@@ -71,7 +75,7 @@ class Renderer:
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether the kernel for the kinds of shapes of this scene is there."""
-        return not scene.shapes or kinds_of(scene) in self.known
+        return not scene.shapes or needs(scene) in self.known
 
     def prepare(self, scene: Scene) -> None:
         """Load the kernel for the kinds of shapes of this scene, or compile it, which takes seconds.
@@ -85,8 +89,8 @@ class Renderer:
         """`prepare`, as it is."""
         pixels = np.zeros((1, 1, 4), np.uint8)
         if scene.shapes and self.kernel.CACHE:
-            packing = import_module("minirt.rendering.packing").Packing(lists, self.precision)
-            arguments = frame_arguments(packing.pack(one_of_each(scene), 1, 1), pixels)
+            packing = import_module("minirt.rendering.packing").Packing(lists, self.precision, self.depth)
+            arguments = frame_arguments(packing.pack(small(scene), 1, 1), pixels)
             if not self.kernel.is_kept(arguments):
                 self.helper.compile(arguments, self.kernel.get_ready)
         self.render(scene, pixels)
@@ -145,7 +149,7 @@ class Renderer:
         height, across, _ = pixels.shape
         self.not_finite = 0
         if not scene.shapes or not pixels.size:
-            pixels[...] = (0, 0, 0, 255)
+            self.draw_sky(scene, pixels, linear)
             return True
         self.next_row = counter = np.zeros(1, np.int64)
         if not is_wanted():
@@ -157,8 +161,16 @@ class Renderer:
             found = list(takewhile(lambda _: counter[0] < CANCELLED, strips))
             given = given._replace(wanted=np.concatenate(found) if found else ALL_PACKETS)
         self.run([given], self.threads)
-        self.known.add(kinds_of(scene))
+        self.known.add(needs(scene))
         return bool(counter[0] < CANCELLED)
+
+    def draw_sky(self, scene: Scene, pixels: np.ndarray, linear: np.ndarray) -> None:
+        """The picture of a scene without shapes."""
+        if scene.background and pixels.size:
+            pixels[...], light = import_module("minirt.rendering.preview").picture(scene, *pixels.shape[1::-1])
+            linear[...] = light if len(linear) else linear
+        else:
+            pixels[...] = (0, 0, 0, 255)
 
     def reach(
         self,
@@ -191,7 +203,7 @@ class Renderer:
             reached = auto.reach(error, seconds - (perf_counter() - start))
             if reached:
                 auto.halves.finish(pixels, NO_LINEAR if linear is None else linear)
-                self.known.add(kinds_of(scene))
+                self.known.add(needs(scene))
             return reached and reached._replace(seconds=perf_counter() - start)
 
     def run(self, frames: list[Frame], threads: int) -> None:
@@ -227,11 +239,17 @@ class Renderer:
         self.next_row[:] = CANCELLED
 
 
-def kinds_of(scene: Scene) -> frozenset[type]:
-    """The kinds of shapes in a scene: for each set of them there is a kernel of its own."""
-    return frozenset(map(type, scene.shapes))
+def needs(scene: Scene) -> frozenset[Hashable]:
+    """What there is a kernel of its own for: the kinds of shapes and the features of a scene, and for parallel light
+    whether there are so many shapes that a tree is used."""
+    found = traits(scene)
+    return found | {"tree"} if "parallel" in found and parts(scene) > SMALL else found
 
 
-def one_of_each(scene: Scene) -> Scene:
-    """A small scene with the same kinds of shapes."""
-    return Scene((scene.camera, *{type(shape): shape for shape in scene.shapes}.values()))
+def small(scene: Scene) -> Scene:
+    """A scene of few shapes that needs the same."""
+    examples = {(type(shape), *dressed(shape)): shape for shape in scene.shapes}.values()
+    shapes = [shape.some(np.arange(1)) for shape in examples]
+    more = min(parts(scene), SMALL + 1) - len(shapes)
+    sky = (scene.background,) if scene.background else ()
+    return Scene((scene.camera, *sky, *scene.lights, *shapes, *shapes[:1] * more), scene.file)

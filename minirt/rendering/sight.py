@@ -20,7 +20,8 @@ SPREAD = 0.5  # of the angle that cells have on average: a cell's list holds for
 EDGE = 3 * SPREAD * np.pi / 4
 # Up to so many shapes, cells along an edge of a lamp's cube, where building and using the lists was seen to take least;
 # with more than 512 float32 could not tell apart the directions that a list holds for.
-GRIDS = ((8, 1), (30, 16), (200, 32), (5_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
+SMALL = 8
+GRIDS = ((SMALL, 1), (30, 16), (200, 32), (5_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
 # Numbers above zero are in the order of their bits, the exponent first. The order of depth knows of those of a distance
 # the upper 20, from 2^-128 on: a distance to a 256th of it.
@@ -73,11 +74,20 @@ def seen_by_lamp(kernel: Any, tables: Tables, lamp: np.ndarray, grid: int, skipp
     return one_cell(tables, found.views, skipped) if grid == 1 else found
 
 
+def seen_by_sun(tables: Tables, grid: int, skipped: np.ndarray) -> Lists:
+    """What parallel light may meet: everything in one cell, or with more cells, where a tree is walked, nothing."""
+    views = np.zeros((len(tables.shapes), 5))
+    views[:, 3] = -2.0
+    if grid == 1:
+        return one_cell(tables, views, skipped)
+    return Lists(np.zeros((len(tables.rows), 6 * grid * grid + 1), np.int64), np.zeros(0, np.int32), views)
+
+
 def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: np.ndarray) -> Lists:
     """The shapes in each cell of a grid around a point."""
     kinds, faces = len(tables.rows), len(grid.frames)
     stride = faces * grid.down * grid.across + 1
-    views, counts = np.zeros((len(tables.shapes), 5)), np.zeros(kinds * stride, np.int64)
+    views, counts = np.zeros((len(tables.places), 5)), np.zeros(kinds * stride, np.int64)
     height = heights(tables.planes, origin)
     flat = np.zeros((0, 4), np.int64)
     if not skipped.all():
@@ -98,7 +108,7 @@ def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: 
     views[:, 4], depths = by_depth(views[:, 4].copy())
     order = np.argsort(depths[rectangles[:used, 0]], kind="stable")
     starts = np.cumsum(counts)  # for now the ends
-    members = np.empty(starts[-1], np.int32)
+    members = np.empty(starts[-1] if kinds else 0, np.int32)
     kernel.fill(rectangles, order, grid.across, starts, members)
     return Lists(starts.reshape(kinds, stride), members, views)
 

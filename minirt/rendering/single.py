@@ -33,7 +33,16 @@ def in_single(traced: Traced, boxes: np.ndarray) -> Traced:
         lit=traced.lit,
         lamp_views=wider(traced.lamp_views),
         groups=tuple(Group(moved(group.rows, eye), group.starts, group.lamp_starts) for group in traced.groups),
+        beams=known(traced.beams),
+        gloss=known(traced.gloss),
+        skins=traced.skins and traced.skins._replace(checks=known(traced.skins.checks)),
+        sky=known(traced.sky),
     )
+
+
+def known(numbers: np.ndarray | None) -> np.ndarray | None:
+    """In float32, where there are such."""
+    return None if numbers is None else rounded(numbers)
 
 
 def rounded(numbers: np.ndarray) -> np.ndarray:

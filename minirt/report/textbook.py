@@ -15,7 +15,10 @@ from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes import Shape
 from minirt.shapes.basis import to_basis
+from minirt.shapes.cone import Cone, PackedCone
 from minirt.shapes.cylinder import Cylinder, PackedCylinder
+from minirt.shapes.hyperboloid import Hyperboloid, PackedHyperboloid
+from minirt.shapes.paraboloid import PackedParaboloid, Paraboloid
 from minirt.shapes.plane import PackedPlane, Plane
 from minirt.shapes.sphere import PackedSphere, Sphere
 
@@ -55,6 +58,45 @@ def meets_cylinder(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tup
     return best < inf, best
 
 
+def meets_cone(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """|p x axis| = slope (p . axis) from the apex to the base, and the base."""
+    p = to_basis(cone.u, cone.v, cone.w, origin - cone.apex)
+    d = to_basis(cone.u, cone.v, cone.w, direction)
+    square = cone.slope * cone.slope
+    a = d.x * d.x + d.y * d.y - square * d.z * d.z
+    b = p.x * d.x + p.y * d.y - square * p.z * d.z
+    c = p.x * p.x + p.y * p.y - square * p.z * p.z
+    best = sides(p, d, a, b, c, 0.0, cone.height)
+    best = nearer(on_cap(p, d, cone.height, square * cone.height * cone.height), best)
+    return best < inf, best
+
+
+def meets_paraboloid(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """|p x axis|^2 = 2 focal (p . axis) below the rim, and the cap."""
+    p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, origin - paraboloid.vertex)
+    d = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, direction)
+    b = p.x * d.x + p.y * d.y - paraboloid.focal * d.z
+    c = p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z
+    best = sides(p, d, d.x * d.x + d.y * d.y, b, c, 0.0, paraboloid.height)
+    best = nearer(on_cap(p, d, paraboloid.height, 2.0 * paraboloid.focal * paraboloid.height), best)
+    return best < inf, best
+
+
+def meets_hyperboloid(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """|p x axis|^2 = waist^2 + slope^2 (p . axis)^2 between the caps, and the caps."""
+    p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, origin - hyperboloid.centre)
+    d = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, direction)
+    square, slope = hyperboloid.waist * hyperboloid.waist, hyperboloid.slope * hyperboloid.slope
+    a = d.x * d.x + d.y * d.y - slope * d.z * d.z
+    b = p.x * d.x + p.y * d.y - slope * p.z * d.z
+    c = p.x * p.x + p.y * p.y - square - slope * p.z * p.z
+    end = square + slope * hyperboloid.half * hyperboloid.half
+    best = sides(p, d, a, b, c, -hyperboloid.half, hyperboloid.half)
+    best = nearer(on_cap(p, d, -hyperboloid.half, end), best)
+    best = nearer(on_cap(p, d, hyperboloid.half, end), best)
+    return best < inf, best
+
+
 def sides(p: Vec, d: Vec, a: Number, b: Number, c: Number, low: Number, high: Number) -> Number:
     """The distance to the nearest point of a t^2 + 2 b t + c = 0 between two heights, or infinity."""
     D = b * b - a * c
@@ -89,4 +131,7 @@ FORMULAS: dict[type[Shape], Callable[..., Any]] = {
     Sphere: meets_sphere,
     Plane: meets_plane,
     Cylinder: meets_cylinder,
+    Cone: meets_cone,
+    Paraboloid: meets_paraboloid,
+    Hyperboloid: meets_hyperboloid,
 }

@@ -37,7 +37,7 @@ class Light(Lamp):
     position: Triple = declare(Point, "where it stands")
     brightness: float = declare(Real, "brightness", **RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
-    fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance")
+    fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance", initial=16.0)
 
 
 @dataclass(frozen=True)
@@ -72,4 +72,4 @@ class SpotLight(Lamp):
     brightness: float = declare(Real, "brightness", **RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
     rim: float = declare(Real, "outer share in which it fades", keyed=True, default=0.1, **RATIO)
-    fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance")
+    fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance", initial=16.0)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 from minirt.element import Element
 
 Item = Element | str  # a str is a line without an element, as it stands in the file
+
+Answer = TypeVar("Answer")
 
 ITEMS = 1024  # of a page that was just made; inserting makes it at most twice as long
 
@@ -18,7 +20,7 @@ class Page:
 
     def __init__(self, items: tuple[Item, ...]) -> None:
         self.items = items
-        self._known: dict[type[Any], tuple[Any, ...]] = {}
+        self._known: dict[Callable[..., Any], Any] = {}
 
     @cached_property
     def kinds(self) -> frozenset[type[Item]]:
@@ -29,7 +31,15 @@ class Page:
         """Its items of that type or of one that is derived from it."""
         if sort not in self._known:
             self._known[sort] = self._find(sort)
-        return self._known[sort]
+        found: tuple[Any, ...] = self._known[sort]
+        return found
+
+    def ask(self, question: Callable[[tuple[Item, ...]], Answer]) -> Answer:
+        """What a function says of its items."""
+        if question not in self._known:
+            self._known[question] = question(self.items)
+        answer: Answer = self._known[question]
+        return answer
 
     def _find(self, sort: type[Any]) -> tuple[Any, ...]:
         fitting = {kind for kind in self.kinds if issubclass(kind, sort)}

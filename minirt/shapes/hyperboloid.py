@@ -29,7 +29,7 @@ class Hyperboloid(Shape):
     code, title, plural = "hy", "hyperboloid", "hyperboloids"
     centre: Triple = declare(Point, "centre, half-way up")
     axis: Triple = declare(Direction, "axis")
-    waist: float = declare(Length, "diameter at the centre, at most that of the ends", share=0.5)
+    waist: float = declare(Length, "diameter at the centre, at most that of the ends", initial=0.5)
     diameter: float = declare(Length, "diameter of the ends")
     height: float = declare(Length, "height")
     colour: Triple = declare(Colour, "colour")

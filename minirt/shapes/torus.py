@@ -32,7 +32,7 @@ class Torus(Shape):
     centre: Triple = declare(Point, "centre")
     axis: Triple = declare(Direction, "axis")
     diameter: float = declare(Length, "diameter of the circle in the middle of the tube")
-    tube: float = declare(Length, "diameter of the tube, at most that of the circle", share=0.5)
+    tube: float = declare(Length, "diameter of the tube, at most that of the circle", initial=0.4)
     colour: Triple = declare(Colour, "colour")
 
     def conflict(self) -> tuple[str, str] | None:

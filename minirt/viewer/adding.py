@@ -1,24 +1,27 @@
-"""New elements: one of every kind that a scene file knows, made from the table of its fields alone."""
+"""New elements and attributes: one of every kind that a scene file knows, made from the table of its fields alone."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from math import cos, pi, sin
-from typing import Any
+from typing import Any, TypeVar
 
-from minirt.element import Element, fields_of
-from minirt.fields import FARTHEST, Colour, Direction, Field, Length, Lengths, Point, Real, Triple
+from minirt.element import Element, Record, fields_of
+from minirt.fields import FARTHEST, LEAST_LENGTH, Direction, Field, Length, Lengths, Picture, Point, Real, Triple, clamp
+from minirt.materials import Compound
 from minirt.scene import Scene
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.view import mix, view
 from minirt.shapes import Shape
+from minirt.viewer.gallery import pictures
 from minirt.viewer.motion import limited
-from minirt.viewer.neat import decimals, nice
+from minirt.viewer.neat import decimals, nice, round_length
 from minirt.viewer.state import State, can_edit
 
 AWAY = 1 / 2  # of the scene's size: how far in front of the camera
 LARGE = 1 / 8  # of the scene's size: what is added
-GREY = (200, 200, 200)
+
+Made = TypeVar("Made", bound=Record)
 
 
 def kinds(scene: Scene) -> list[type[Element]]:
@@ -32,25 +35,18 @@ def has(scene: Scene, kind: type[Element]) -> bool:
     return any(type(each) is kind for each in scene.of(kind))
 
 
-def made(kind: type[Element], state: State) -> Element:
-    """An element of that kind in front of the camera."""
+def made(kind: type[Made], state: State) -> Made:
+    """An element of that kind in front of the camera, or a record; LookupError where it takes a picture and there is
+    none."""
     return kind(**dict(chosen(kind, state)))
 
 
-def chosen(kind: type[Element], state: State) -> Iterator[tuple[str, Any]]:
+def chosen(kind: type[Record], state: State) -> Iterator[tuple[str, Any]]:
     """The fields that must be given."""
     fields = [field for field in fields_of(kind) if field.required]
     places = iter(corners(state, sum(isinstance(field, Point) for field in fields)))
-    length = nice(LARGE * state.size)
     for field in fields:
-        if isinstance(field, Point):
-            yield field.name, next(places)
-        elif isinstance(field, Length):
-            yield field.name, length * field.share
-        elif isinstance(field, Lengths):
-            yield field.name, (length, length, length)
-        else:
-            yield field.name, usual(field, state)
+        yield field.name, next(places) if isinstance(field, Point) else usual(field, state)
 
 
 def corners(state: State, count: int) -> list[Triple]:
@@ -75,11 +71,33 @@ def round_place(place: Triple, stride: float) -> Triple:
 
 
 def usual(field: Field, state: State) -> Any:
-    """A value of any other field."""
+    """What any other field begins with; LookupError as above."""
+    if isinstance(field, Compound):
+        return made(field.record, state)
+    if isinstance(field, Picture):
+        return first_picture(state.scene)
+    length = nice(LARGE * state.size)
+    if isinstance(field, Lengths):
+        return length, length, length
+    if isinstance(field, Length) and field.unit:
+        return round_length(clamp(length * (field.initial or 1), LEAST_LENGTH, FARTHEST))
+    return plain(field)
+
+
+def plain(field: Field) -> Any:
+    """What a field begins with that has nothing to do with the scene; LookupError where nobody knows."""
+    if field.initial is not None:
+        return field.initial
     if isinstance(field, Direction):
         return field.instead
-    if isinstance(field, Colour):
-        return GREY
     if isinstance(field, Real):
-        return (field.low + field.high) / 2 if field.high < FARTHEST else nice(LARGE * state.size)
-    return field.check(0)
+        return (field.low + field.high) / 2
+    raise LookupError(f"nothing to begin {field.name} with")
+
+
+def first_picture(scene: Scene) -> str:
+    """A picture file beside the scene; LookupError where there is none."""
+    name = next(pictures(scene), None)
+    if name is None:
+        raise LookupError("there is no picture beside the scene")
+    return name

@@ -76,6 +76,8 @@ BINDINGS = (
     steps(CHANGE, "grow", "increase the active value", "+", "=", "wheel up"),
     steps(CHANGE, "shrink", "decrease the active value", "-", "wheel down"),
     row(CHANGE, "next value", "which value: diameter, height, colour, ...", "V"),
+    row(CHANGE, "give attribute", "add an attribute: highlight, mirror, ...; again: the next", "M"),
+    row(CHANGE, "take attribute", "remove the attribute of the active value", "Shift+M"),
     row(CHANGE, "look at", "bring the selected element into view", "F"),
     row(CHANGE, "reset camera", "the camera as it is in the file", "Home", "R"),
     row(EDIT, "undo", "undo", "Ctrl+Z"),

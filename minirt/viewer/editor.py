@@ -14,7 +14,7 @@ from minirt.errors import ElementError
 from minirt.fields import Direction, Point
 from minirt.scene import Camera
 from minirt.scene.view import view
-from minirt.viewer import framing, history, selection, structure
+from minirt.viewer import attributes, framing, gallery, history, selection, structure
 from minirt.viewer.motion import WORLD, handedness, looked, rolled, rotated, translated
 from minirt.viewer.state import Frame, State, named
 from minirt.viewer.values import values
@@ -68,12 +68,15 @@ def resize(sign: float, state: State, amount: float, now: float) -> State:
     active = state.active
     if active is None:
         return state.say(f"{state.element.title} has no size")
+    another = partial(gallery.another, state.scene)
     changed = state.put(
-        state.element.replace(**{active.field.name: active.nudged(state.element, sign * amount)}),
+        state.element.replace(**{active.field.name: active.nudged(state.element, sign * amount, another)}),
         f"value {active.name}",
         now,
     )
     if changed is state:
+        if isinstance(active.of(state.element), str):
+            return state.say("there is no other picture beside the scene")
         limits = f" ({active.range})" if active.range else ""
         return state.say(f"{active.name} cannot go further{limits}")
     return changed
@@ -114,6 +117,8 @@ EDITS: dict[str, Edit] = {
     "grow": partial(resize, 1.0),
     "shrink": partial(resize, -1.0),
     "next value": next_value,
+    "give attribute": attributes.give,
+    "take attribute": attributes.take,
     "look at": framing.look_at,
     "reset camera": framing.reset_camera,
     "undo": history.undo,

@@ -41,17 +41,20 @@ def neat(old: Record, new: Kind, stride: float) -> Kind:
     return new.replace(**changes)
 
 
+def round_length(length: float) -> float:
+    """To as many digits as are kept of a length."""
+    return round(length, decimals(length) + DIGITS - 1)
+
+
 def rounded(field: Field, before: Any, after: Any, stride: float) -> Any:
     """The value of a field that was edited."""
     if isinstance(before, Record) and isinstance(after, Record):
         return neat(before, after, stride)
-    if isinstance(field, Factor):
-        return round(after, decimals(after) + DIGITS - 1)
+    if isinstance(field, (Factor, Length)):
+        return round_length(after)
     if isinstance(field, Point):
         places = decimals(stride) + PLACES
         return tuple(b if a == b else round(b, places) for a, b in zip(before, after, strict=True))
-    if isinstance(field, Length):
-        return round(after, decimals(after) + DIGITS - 1)
     if isinstance(field, Real):
         return round(after, decimals(field.step) + TENTHS)
     return after

@@ -91,10 +91,9 @@ class Session:
 
     def on_press(self, code: int | str) -> None:
         """A key goes down, or a character was typed."""
-        if isinstance(code, str):  # Shift may be a part of typing it
-            binding = self.keymap.find(code)
-            if binding:
-                self.act(binding, 1.0)
+        if isinstance(code, str):  # of one or more characters; Shift may be a part of typing it
+            for typed in filter(None, map(self.keymap.find, code)):
+                self.act(typed, 1.0)
             return
         binding = self.keymap.find(code, self.modifiers)
         if binding:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 
 from minirt.element import Element, fields_of
@@ -41,6 +43,13 @@ def delete(state: State, _amount: float, now: float) -> State:
     return state.select(state.selected).say(f"deleted the {element.title}")
 
 
+def makeable(known: list[type[Element]], numbers: list[int], state: State) -> Iterator[tuple[int, Element]]:
+    """Elements of those kinds, but for what takes a file where there is none."""
+    for number in numbers:
+        with suppress(LookupError):
+            yield number, made(known[number], state)
+
+
 def add(way: int, state: State, _amount: float, now: float) -> State:
     """An element in front of the camera, selected; again, before anything is done to it, one of the next kind instead.
 
@@ -49,8 +58,8 @@ def add(way: int, state: State, _amount: float, now: float) -> State:
     again = state.recent is not None and state.recent[0] == ADDED
     before = history.undo(state) if again else state
     known = kinds(before.scene)
-    number = (state.kind + way * again) % len(known)
-    element = made(known[number], before)
+    turns = [(state.kind + way * (again + ahead)) % len(known) for ahead in range(len(known))]
+    number, element = next(makeable(known, turns, before))
     last = len(before.scene.elements) - 1
     scene = before.scene.edit(last, before.scene.elements[last], element)
     added = replace(replace(before, value=0).change(scene, ADDED, now, last + 1), kind=number)

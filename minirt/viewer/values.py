@@ -1,16 +1,18 @@
 """What grows and shrinks of an element: its numbers, those of its attributes, its colours as a whole, and red, green
-and blue of them.
+and blue of them. Of a picture there is a next one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from minirt.element import Element, Record, fields_of
-from minirt.fields import Colour, Field
+from minirt.fields import Colour, Field, Picture
 
 COLOURS = "red", "green", "blue"
+
+Another = Callable[[str, float], str]  # the picture that so many key presses lead to from one
 
 
 class Value(NamedTuple):
@@ -37,38 +39,40 @@ class Value(NamedTuple):
         """Which component of the field it is, from 0; None for all."""
         return None if self.inner is None and self.colour is None else self.start + (self.colour or 0)
 
-    def nudged(self, element: Element, steps: float) -> Any:
+    def nudged(self, element: Element, steps: float, another: Another) -> Any:
         """What becomes of the field after so many key presses."""
-        old = getattr(element, self.field.name)
-        if self.inner is None:
-            return self.changed(self.field, old, steps)
-        return old.replace(**{self.inner.name: self.changed(self.inner, getattr(old, self.inner.name), steps)})
+        old = self.of(element)
+        new = another(old, steps) if isinstance(old, str) else (self.inner or self.field).nudge(old, steps)
+        if self.colour is not None:
+            new = (*old[: self.colour], new[self.colour], *old[self.colour + 1 :])
+        return getattr(element, self.field.name).replace(**{self.inner.name: new}) if self.inner else new
 
-    def changed(self, field: Field, old: Any, steps: float) -> Any:
-        """The same for the value of one field."""
-        new = field.nudge(old, steps)
-        return new if self.colour is None else (*old[: self.colour], new[self.colour], *old[self.colour + 1 :])
+    def of(self, element: Element) -> Any:
+        """What it is now; of a component the whole colour."""
+        value = getattr(element, self.field.name)
+        return getattr(value, self.inner.name) if self.inner else value
 
 
 def values(element: Element) -> tuple[Value, ...]:
     """All of them, the components of colours behind everything else."""
     whole = [value for field in fields_of(type(element)) for value in within(field, getattr(element, field.name))]
-    colours = [value for value in whole if isinstance(value.inner or value.field, Colour)]
+    fields = ((value, value.inner or value.field) for value in whole)
+    colours = [value for value, field in fields if isinstance(field, Colour) and not isinstance(value.of(element), str)]
     return (*whole, *(value._replace(colour=part) for value in colours for part in range(3)))
 
 
 def within(field: Field, value: Any) -> Iterator[Value]:
-    """Those of a field of an element; none where it is absent or names a file."""
+    """Those of a field of an element; none where it is absent."""
     if isinstance(value, Record):
         start = 0
         for inner in fields_of(type(value)):
             if grows(inner):
                 yield Value(field, inner, start=start)
             start += inner.width
-    elif grows(field) and value is not None and not isinstance(value, str):
+    elif grows(field) and value is not None:
         yield Value(field)
 
 
 def grows(field: Field) -> bool:
     """Whether key presses change values of the field."""
-    return type(field).nudge is not Field.nudge
+    return type(field).nudge is not Field.nudge or isinstance(field, Picture)

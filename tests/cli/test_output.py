@@ -129,10 +129,20 @@ def test_the_scene_may_name_the_size(run: Run, folder: Path) -> None:
 def test_verbose_says_how_long_it_took(run: Run) -> None:
     ended = run("ball.rt", "-o", "x.png", "--size", "8x6", "--samples", "2", "--threads", "1", "-v")
     assert (ended.status, ended.out) == (0, b"")
-    ready, made, *rest = ended.err.splitlines()
+    ready, made, finite, *rest = ended.err.splitlines()
     assert re.fullmatch(r"kernel ready after [0-9.]+ s", ready)
     assert re.fullmatch(r"8x6, 2 samples a pixel, 1 threads, double precision: [0-9.]+ ms", made)
-    assert rest[:2] == ["kernel for spheres, planes", "kernel without cylinders"]
+    assert finite == "rays whose light is not finite: 0"
+    assert rest[0] == "kernel for spheres, planes"
+    assert rest[1].startswith("kernel without cylinders")
+
+
+def test_verbose_leaves_it_to_what_was_reached_how_many_samples_there_are(run: Run) -> None:
+    ended = run("ball.rt", "-o", "x.png", "--size", "40x30", "--samples", "auto", "--error", "0.1", "-v")
+    _, reached, made, finite, *_ = ended.err.splitlines()
+    assert reached.startswith("2.0 samples a pixel on average, 2 at most; ")
+    assert re.fullmatch(r"40x30, [0-9]+ threads, double precision: [0-9.]+ ms", made)
+    assert finite == "rays whose light is not finite: 0"
 
 
 def test_precision(run: Run) -> None:
@@ -169,7 +179,7 @@ def test_without_a_display_the_picture_falls_back_to_a_file(
 def test_the_last_frame_of_a_replay_is_the_picture_without_a_window(
     run: Run, folder: Path, samples: tuple[str, ...]
 ) -> None:
-    (folder / "keys.txt").write_text("press I\nhold d 0.2\npress Home\n")
+    (folder / "keys.txt").write_text("press I\npress I\nhold d 0.2\npress Home\n")
     ended = run("ball.rt", "--replay", "keys.txt", "--size", "40x30", *samples, "-o", "-")
     assert (ended.status, ended.err) == (0, "")
     assert np.array_equal(pixels(ended.out), rendered(40, 30, int(samples[1]) if samples else 1))

@@ -71,8 +71,8 @@ def some(random: Random, count: int, size: float = 1.0, offset: float = 0.0, spr
 
 def moved(shape: Shape, by: Array) -> Shape:
     """A shape in another place."""
-    places = [each.name for each in fields_of(type(shape)) if isinstance(each, Point)]
-    return shape.replace(**{name: tuple(np.array(getattr(shape, name)) + by) for name in places})
+    names = [each.name for each in fields_of(type(shape)) if isinstance(each, Point)]
+    return shape.replace(**{name: tuple(np.add(getattr(shape, name), by)) for name in names})
 
 
 def rays_at(random: Random, shapes: list[Shape], count: int) -> tuple[Array, Array]:

@@ -109,11 +109,11 @@ def test_pictures_are_the_same_with_all_planes_in_all_lists(monkeypatch: pytest.
     pictures = [linear(scene, 60, 40, renderer=Renderer(1)) for scene in scenes]
     dropped = []
 
-    def none(planes: Any, eye: Any, lamp: Any, ask: Any = packing.same_side) -> np.ndarray:
-        dropped.append(ask(planes, eye, lamp).any())
-        return np.zeros(len(planes), bool)
+    def none(tables: Any, eye: Any, lamp: Any, ask: Any = packing.idle) -> np.ndarray:
+        dropped.append(ask(tables, eye, lamp).any())
+        return np.zeros(len(tables.planes), bool)
 
-    monkeypatch.setattr(packing, "same_side", none)
+    monkeypatch.setattr(packing, "idle", none)
     for scene, picture in zip(scenes, pictures, strict=True):
         assert np.array_equal(linear(scene, 60, 40, renderer=Renderer(1)), picture)
     assert 0.2 < np.mean(dropped) < 0.95

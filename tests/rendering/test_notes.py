@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from minirt.rendering.packing import Packing
+from minirt.rendering.traits import FEATURES
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+from minirt.shapes import ALL_KINDS
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 
@@ -22,8 +24,10 @@ def said(*balls: Sphere) -> list[str]:
 
 
 def test_what_is_left_out_and_why() -> None:
-    kernel, without, tiles, buffer, *rest = said(Sphere((0, 0, 0), 1, GREY))
-    assert (kernel, without) == ("kernel for spheres, planes", "kernel without cylinders")
+    kernel, without, plain, tiles, buffer, *rest = said(Sphere((0, 0, 0), 1, GREY))
+    others = [kind.element.plural for kind in ALL_KINDS if kind.element not in (Sphere, Plane)]
+    assert (kernel, without) == ("kernel for spheres, planes", f"kernel without {', '.join(others)}")
+    assert plain == f"kernel without {', '.join(FEATURES.values())}"
     assert tiles.startswith("tiles: 12, ")
     assert buffer == "light buffer: none, every shape is tried (3 shapes)"
     assert rest == [

@@ -16,7 +16,7 @@ from minirt.errors import RenderError
 from minirt.kernel.frame import CANCELLED
 from minirt.rendering import Renderer
 from minirt.rendering.frames import sample_places
-from minirt.rendering.renderer import kinds_of
+from minirt.rendering.renderer import needs
 from minirt.scene import Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, SHAPES, TWO, picture
 
@@ -116,7 +116,7 @@ def test_it_knows_which_kernels_are_there() -> None:
     assert renderer.is_ready(ALL)
     assert renderer.is_ready(Scene((EYE, *SHAPES[:3])))
     assert not renderer.is_ready(Scene((EYE, SHAPES[0])))
-    assert kinds_of(ALL) == {type(shape) for shape in SHAPES}
+    assert needs(ALL) == {type(shape) for shape in SHAPES}
 
 
 def test_the_number_of_threads() -> None:
