@@ -7,7 +7,7 @@ from math import dist
 
 from minirt.element import fields_of
 from minirt.fields import Length, Lengths
-from minirt.rendering.tables import own_points
+from minirt.rendering.parts import own_points
 from minirt.shapes import Shape
 
 
