@@ -11,6 +11,7 @@ file.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -137,3 +138,16 @@ def shading(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
     of_a, of_b, of_c = shares(mesh, point)
     mean = of_a * mesh.normal_a + of_b * mesh.normal_b + of_c * mesh.normal_c
     return unit(where(dot(mean, mean) > OPPOSED, mean, normal))
+
+
+def mapping(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """The mean of the coordinates at the corners; mirrored where those are so. Where the file has none, or all on a
+    line, the tangents are zero."""
+    of_a, of_b, of_c = shares(mesh, point)
+    u = of_a * mesh.u_a + of_b * mesh.u_b + of_c * mesh.u_c
+    v = of_a * mesh.v_a + of_b * mesh.v_b + of_c * mesh.v_c
+    u_b, v_b, u_c, v_c = mesh.u_b - mesh.u_a, mesh.v_b - mesh.v_a, mesh.u_c - mesh.u_a, mesh.v_c - mesh.v_a
+    area = u_b * v_c - u_c * v_b
+    per_area = 1.0 / where(area == 0.0, inf, area)
+    ab, ac = mesh.b - mesh.a, mesh.c - mesh.a
+    return u, v, per_area * (v_c * ab - v_b * ac), per_area * (u_b * ac - u_c * ab)
