@@ -217,9 +217,11 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
     if image.reached:
         print(image.reached, file=sys.stderr)
     if asked.verbose:
+        each = "" if image.reached else f"{samples} samples a pixel, "
         print(
-            f"{width}x{height}, {samples} samples a pixel, {renderer.threads} threads, {renderer.precision} "
-            f"precision: {(perf_counter() - start) * 1e3:.1f} ms",
+            f"{width}x{height}, {each}{renderer.threads} threads, {renderer.precision} precision: "
+            f"{(perf_counter() - start) * 1e3:.1f} ms",
+            f"rays whose light is not finite: {renderer.not_finite}",
             *renderer.packing.notes,
             sep="\n",
             file=sys.stderr,

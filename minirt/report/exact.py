@@ -1,23 +1,29 @@
 """Where a ray meets a shape, to 60 digits, in the decimal arithmetic of the standard library.
 
 The numbers of scene, ray and shape are taken as they are, to the last bit; only axes and normals, which a scene means
-to have unit length, are scaled to it. Every shape here is a solid of revolution: of a point, h high along the axis and
-d off it, d^2 <= square + linear h + quadratic h^2 and low <= h <= high.
+to have unit length, are scaled to it. Every shape here is where some solids of revolution overlap, most of them one
+alone: of a point, h high along the axis and d off it, d^2 <= square + linear h + quadratic h^2 and low <= h <= high.
+A sheet is a solid without thickness.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from decimal import Context, Decimal, localcontext
+from functools import reduce
 from typing import Any, NamedTuple
 
 from minirt.shapes import Shape
+from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.disc import Disc
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
+from minirt.shapes.triangle import Triangle
 
 Exact = list[Decimal]  # a vector
 Intervals = list[tuple[Decimal, Decimal]]
@@ -79,13 +85,56 @@ def hyperboloid(shape: Any, swell: Decimal) -> Solid:
     return Solid(exact(shape.centre), axis, square, quadratic=slope, low=-end, high=end)
 
 
-SOLIDS: dict[type[Shape], Callable[[Any, Decimal], Solid]] = {
+def disc(shape: Any, swell: Decimal) -> Solid:
+    """d^2 <= r^2 where h is 0, or `swell`."""
+    radius = Decimal(shape.diameter) / 2 + swell
+    return Solid(exact(shape.centre), unit(exact(shape.normal)), radius * abs(radius), low=swell, high=swell)
+
+
+def square(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
+    """A plane, half a side to the left and right and half a side up and down."""
+    centre, normal, half = exact(shape.centre), unit(exact(shape.normal)), Decimal(shape.side) / 2 + swell
+    level = cross(exact((0, 1, 0)), normal)
+    right = unit(level) if any(level) else exact((1, 0, 0))
+    return slab(centre, normal, swell, swell), *(slab(centre, w, -half, half) for w in (right, cross(normal, right)))
+
+
+def triangle(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
+    """A plane, and what is within each of three edges."""
+    corners = [exact(corner) for corner in (shape.a, shape.b, shape.c)]
+    edges = [minus(corners[i - 2], corners[i]) for i in range(3)]
+    normal = unit(cross(edges[0], edges[1]))
+    sides = (slab(p, unit(cross(edge, normal)), -END, swell) for p, edge in zip(corners, edges, strict=True))
+    return slab(corners[0], normal, swell, swell), *sides
+
+
+def box(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
+    """Half a size to both sides of the centre along each of its axes. Half a turn about what is half-way between y and
+    the axis, or its opposite, takes the axes of the scene to its own."""
+    centre, y = exact(shape.centre), unit(exact(shape.axis))
+    between = [y[0], y[1] + (1 if y[1] >= 0 else -1), y[2]]
+    share = [2 * each / dot(between, between) for each in between]
+    x, z = ([share[i] * part - int(i == j) for j, part in enumerate(between)] for i in (0, 2))
+    halves = (Decimal(size) / 2 + swell for size in shape.sizes)
+    return tuple(slab(centre, axis, -half, half) for axis, half in zip((x, y, z), halves, strict=True))
+
+
+def slab(place: Exact, axis: Exact, low: Decimal, high: Decimal) -> Solid:
+    """All between two heights."""
+    return Solid(place, axis, square=None, low=low, high=high)
+
+
+SOLIDS: dict[type[Shape], Callable[[Any, Decimal], Solid | tuple[Solid, ...]]] = {
     Plane: plane,
     Sphere: sphere,
     Cylinder: cylinder,
     Cone: cone,
     Paraboloid: paraboloid,
     Hyperboloid: hyperboloid,
+    Triangle: triangle,
+    Square: square,
+    Disc: disc,
+    Box: box,
 }
 
 
@@ -96,13 +145,15 @@ def distance(shape: Shape, origin: Sequence[float], direction: Sequence[float], 
     answers for a solid a little larger and one a little smaller. KeyError for a shape that is not in `SOLIDS`.
     """
     with localcontext(DIGITS):
-        inside = crossed(SOLIDS[type(shape)](shape, Decimal(swell)), exact(origin), exact(direction))
+        found = SOLIDS[type(shape)](shape, Decimal(swell))
+        solids = (found,) if isinstance(found, Solid) else found
+        inside = reduce(both, (crossed(solid, exact(origin), exact(direction)) for solid in solids))
         return min((t for interval in inside for t in interval if t > 0), default=END)
 
 
 def crossed(solid: Solid, origin: Exact, direction: Exact) -> Intervals:
     """For which t a line is in a solid."""
-    out = [x - y for x, y in zip(origin, solid.place, strict=True)]
+    out = minus(origin, solid.place)
     height, climb = dot(out, solid.axis), dot(direction, solid.axis)
     within = both(not_above(climb, height - solid.high), not_above(-climb, solid.low - height))
     if solid.square is None:
@@ -148,6 +199,16 @@ def exact(numbers: Sequence[float]) -> Exact:
 def dot(a: Exact, b: Exact) -> Decimal:
     """The scalar product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def minus(a: Exact, b: Exact) -> Exact:
+    """a - b."""
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
+def cross(a: Exact, b: Exact) -> Exact:
+    """The vector product."""
+    return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
 
 
 def unit(v: Exact) -> Exact:

@@ -9,14 +9,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.element import fields_of
-from minirt.fields import Length
 from minirt.kernel.jit_probe import probe
 from minirt.kernel.rows import row_type
+from minirt.rendering.parts import numbers, own_points
 from minirt.rendering.single import moved
-from minirt.rendering.tables import numbers, own_points
 from minirt.report import exact, textbook
 from minirt.report.poses import Array, Rays
+from minirt.report.sizes import sizes_of
 from minirt.shapes import Kind, Shape
 from minirt.timing import is_disturbed, runs
 
@@ -111,8 +110,7 @@ def answers(rays: Rays) -> Answers:
 
 def reach(shape: Shape, origin: Array) -> float:
     """How large the numbers are that a hit is computed from: the way to the shape and its lengths."""
-    lengths: list[float] = [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Length)]
-    return float(np.linalg.norm(origin - own_points(shape)[0])) + sum(lengths)
+    return float(np.linalg.norm(origin - own_points(shape)[0])) + sum(sizes_of(shape))
 
 
 def verdicts(found: Array, right: Answers) -> tuple[int, float, float, int, int]:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.element import fields_of
-from minirt.fields import Colour, Direction, Field, Length, Point, Real
+from minirt.fields import Colour, Direction, Field, Length, Lengths, Point, Real
 from minirt.lanes import Vec
-from minirt.rendering.tables import own_points
+from minirt.rendering.parts import own_points
 from minirt.shapes import Kind, Shape
 
 Array = NDArray[np.float64]
@@ -59,20 +59,23 @@ def log(random: Random, low: float, high: float, *shape: int) -> Array:
 
 def example(kind: Kind, random: Random, scale: Scale) -> Shape:
     """A random shape of a kind, made from the table of its fields."""
+    place = scale.offset * ways(random)
     values: dict[str, Any] = {
-        each.name: value(each, random, scale) for each in fields_of(kind.element) if each.default is None
+        each.name: value(each, random, scale, place) for each in fields_of(kind.element) if each.required
     }
     return kind.element(**values | dict(scale.lengths))
 
 
-def value(field: Field, random: Random, scale: Scale) -> object:
-    """A random value of a field; TypeError for a sort of field that is unknown here."""
+def value(field: Field, random: Random, scale: Scale, place: Array) -> object:
+    """A random value of a field of a shape near a place; TypeError for a sort of field that is unknown here."""
     if isinstance(field, Point):
-        return tuple(scale.offset * ways(random) + scale.size * random.normal(size=3))
+        return tuple(place + scale.size * random.normal(size=3))
     if isinstance(field, Direction):
         return tuple(ways(random).clip(-1, 1))
     if isinstance(field, Length):
         return scale.size * float(log(random, 0.2, 5))
+    if isinstance(field, Lengths):
+        return tuple(scale.size * log(random, 0.2, 5, 3))
     if isinstance(field, Real):
         return random.uniform(field.low, field.high)
     if isinstance(field, Colour):

@@ -19,13 +19,22 @@ class Regime(NamedTuple):
     about: str
     pose: Callable[[Kind, Random, int, int], Rays]
     needs: frozenset[str] = frozenset()  # fields without which a shape has no such rays
+    lacks: frozenset[str] = frozenset()  # fields with which it has none
 
 
-def regime(name: str, about: str, pose: Callable[..., Rays], needs: Iterable[str] = (), **how: object) -> Regime:
+def regime(
+    name: str,
+    about: str,
+    pose: Callable[..., Rays],
+    needs: Iterable[str] = (),
+    lacks: Iterable[str] = (),
+    **how: object,
+) -> Regime:
     """A line of the table."""
-    return Regime(name, about, partial(pose, **{"scale": Scale(), **how}), frozenset(needs))
+    return Regime(name, about, partial(pose, **{"scale": Scale(), **how}), frozenset(needs), frozenset(lacks))
 
 
+FLAT = ("normal",)
 ROUND, UPRIGHT, LONG = ("diameter",), ("axis", "diameter"), ("axis", "diameter", "height")
 REGIMES = (
     regime("benign", "3 to 20 sizes away", poses.towards, away=(3, 20)),
@@ -33,8 +42,8 @@ REGIMES = (
     regime("tiny and far", "1e-6 across, 1e5 to 1e6 away", poses.towards, scale=Scale(1e-6), away=(1e11, 1e12)),
     regime("offset", "1e8 from the scene's origin", poses.towards, scale=Scale(offset=1e8), away=(3, 20)),
     regime("inside", "from within", poses.inside, ROUND),
-    regime("tangent", "1e-16 to 1e-4 off the surface", poses.tangent, ROUND, off=(1e-16, 1e-4)),
-    regime("grazing", "slope 1e-15 to 1e-6", poses.grazing, ("normal",), slope=(1e-15, 1e-6)),
+    regime("tangent", "1e-16 to 1e-4 off the surface", poses.tangent, ROUND, FLAT, off=(1e-16, 1e-4)),
+    regime("grazing", "slope 1e-15 to 1e-6", poses.grazing, FLAT, slope=(1e-15, 1e-6)),
     regime("just above", "1e-6 to 1 above one 1e9 across", poses.above, ROUND, scale=Scale(1e9), height=(1e-6, 1.0)),
     regime("rim", "1e-16 to 1e-6 beside it", poses.rim, LONG, off=(1e-16, 1e-6)),
     regime("along the axis", "1e-12 to 1e-3 off it", poses.along, UPRIGHT, angle=(1e-12, 1e-3), back=5.0),
@@ -53,4 +62,4 @@ REGIMES = (
 def regimes_of(kind: Kind) -> list[Regime]:
     """Those that a kind of shape has."""
     names = {each.name for each in fields_of(kind.element)}
-    return [each for each in REGIMES if each.needs <= names]
+    return [each for each in REGIMES if each.needs <= names and not each.lacks & names]

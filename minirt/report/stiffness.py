@@ -7,16 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.element import fields_of
-from minirt.fields import Length
+from minirt.kernel.rows import kind_of
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec
 from minirt.rendering.camera import camera_numbers
 from minirt.rendering.notes import name
 from minirt.rendering.pick import columns
 from minirt.rendering.tables import Tables
+from minirt.report.sizes import sizes_of
 from minirt.scene import Scene
-from minirt.shapes import KINDS
 
 DOUBLE, SINGLE = 2.0**-53, 2.0**-24  # unit roundoffs
 VISIBLE = 1 / 255  # of what is looked at: an error that turns surfaces by so much changes a level of a colour
@@ -82,17 +81,12 @@ def views(tables: Tables, camera: np.ndarray) -> Views:
     """How the eye and the shapes in some tables lie to each other."""
     eye, forward = camera[:3], camera[9:]
     nearest, size = np.zeros((len(tables.shapes), 3)), np.full(len(tables.shapes), np.inf)
-    for kind in KINDS:
-        mine = [index for index, shape in enumerate(tables.shapes) if type(shape) is kind.element]
-        if not mine:
-            continue
-        shapes = [tables.shapes[index] for index in mine]
+    for group, packed in enumerate(tables.rows):
+        mine = np.flatnonzero(tables.places[:, 0] == group)
         with np.errstate(all="ignore"):
-            on, _ = kind.surface(columns([shape.pack() for shape in shapes]), Vec(*eye))
+            on, _ = kind_of(packed.dtype.names).surface(columns(packed), Vec(*eye))
         nearest[mine] = np.stack([np.broadcast_to(part, len(mine)) for part in (on.x, on.y, on.z)], axis=-1)
-        lengths = [each.name for each in fields_of(kind.element) if isinstance(each, Length)]
-        if lengths:
-            size[mine] = [min(getattr(shape, length) for length in lengths) for shape in shapes]
+        size[mine] = [min(sizes_of(tables.shapes[index]), default=np.inf) for index in mine]
     nearest = np.where(np.isfinite(nearest), nearest, tables.boxes[:, :3])  # from the very middle no point is nearest
     way = nearest - eye
     reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]  # of the shape, seen from the eye

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.kernel import frame
+from minirt.kernel import frame, lists
 from minirt.rendering import Renderer
 from minirt.rendering.camera import packet_rays
 from minirt.rendering.frames import ALL_PACKETS, memory_for, room_for_sums, sample_places
 from minirt.rendering.packing import Packing
+from minirt.rendering.traits import DEPTH
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -44,18 +45,19 @@ def linear(scene: Scene, width: int = 24, height: int = 16, samples: int = 1, re
 def picture(
     scene: Scene, width: int = 24, height: int = 16, samples: int = 1, renderer: Renderer = TWO
 ) -> tuple[NDArray[np.uint8], Array]:
-    """The pixels (h, w, 4) in the order blue, green, red, alpha, and their light."""
+    """The pixels (h, w, 4) in the order blue, green, red, alpha, and their light, which is finite for every ray."""
     pixels, light = np.full((height, width, 4), 77, np.uint8), np.full((height, width, 3), np.nan)
     assert renderer.render(scene, pixels, samples, light)
+    assert renderer.not_finite == 0
     return pixels, light
 
 
 def interpreted(
-    scene: Scene, width: int = 24, height: int = 16, samples: int = 1, precision: str = "double"
+    scene: Scene, width: int = 24, height: int = 16, samples: int = 1, precision: str = "double", depth: int = DEPTH
 ) -> tuple[Any, Array]:
     """The same by the kernel as it stands, in Python."""
     words, light = np.zeros((height, width), np.uint32), np.full((height, width, 3), np.nan)
-    traced = Packing(precision=precision).pack(scene, width, height)
+    traced = Packing(lists, precision, depth).pack(scene, width, height)
     with np.errstate(all="ignore"):
         rays = packet_rays(traced.camera, sample_places(samples))
         frame.frame(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.report import kernels, textbook
+from minirt.report import exact, kernels, textbook
 from minirt.report.eye import from_the_eye
 from minirt.report.kernels import Answers, Row, measured, verdicts
 from minirt.report.poses import Rays
@@ -22,6 +22,9 @@ from tests.kernel.pictures import ALL
 
 KIND = {kind.element: kind for kind in KINDS}
 BALL = KIND[Sphere]
+EVERY = pytest.mark.parametrize(
+    "kind", [KIND[element] for element in exact.SOLIDS], ids=lambda kind: kind.element.title
+)
 
 
 def rays_of(kind: Kind, name: str, shapes: int = 6) -> Rays:
@@ -64,7 +67,7 @@ def test_nan_is_a_miss() -> None:
     assert verdicts(np.array([nan]), answers(2))[3] == 1
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+@EVERY
 def test_the_own_formula_is_exact_and_float32_is_not(kind: Kind) -> None:
     rows = rows_of(kind, "benign")
     own, single = rows["miniRT"], rows["miniRT, float32"]
@@ -78,7 +81,7 @@ def test_the_own_formula_is_exact_and_float32_is_not(kind: Kind) -> None:
     assert own.cpu_ns_ray > 0
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+@EVERY
 @pytest.mark.parametrize("name", ["offset", "far"])
 def test_float32_is_relative_to_the_eye(kind: Kind, name: str) -> None:
     single = rows_of(kind, name)["miniRT, float32"]

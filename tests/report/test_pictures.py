@@ -15,7 +15,7 @@ from minirt.report import pictures
 from minirt.report.knobs import KNOBS, Knob, Setting, settings
 from minirt.report.pictures import Budget, Row, Stage, measured
 from minirt.report.reference import Reference, passes, reference
-from minirt.scene import Scene
+from minirt.scene import FurtherLight, Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
 
 WIDTH, HEIGHT, SAMPLES = 96, 64, 1024
@@ -112,8 +112,8 @@ def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
 
 def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two lamps as bright as no file may have: where both shine straight down, their sum is infinite."""
-    bright = Scene((AMBIENT, EYE, LAMP, *SHAPES))
-    monkeypatch.setattr(packing, "light_numbers", lambda scene: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * 2))
+    bright = Scene((AMBIENT, EYE, LAMP, FurtherLight(LAMP.position, 1.0), *SHAPES))
+    monkeypatch.setattr(packing, "light_numbers", lambda lamps: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps)))
     stage = Stage(bright, WIDTH, HEIGHT, 1)
     wanted = list(settings(4))
     rows = [row for row, _ in measured(stage, wanted, right(), EASY, lambda name: None)]
