@@ -12,9 +12,10 @@ from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec
 from minirt.rendering.camera import camera_numbers
 from minirt.rendering.notes import name
+from minirt.rendering.packing import Packing
 from minirt.rendering.pick import columns
 from minirt.rendering.tables import Tables
-from minirt.report.sizes import sizes_of
+from minirt.report.sizes import sizes
 from minirt.scene import Scene
 
 DOUBLE, SINGLE = 2.0**-53, 2.0**-24  # unit roundoffs
@@ -69,6 +70,14 @@ def stiff_shapes(scene: Scene, tables: Tables, width: int, height: int) -> Itera
         yield Stiff(element, "thinner than a pixel, so samples may miss it", {"pixels": float(pixels[index])})
 
 
+def lost_in_single(scene: Scene, packing: Packing, width: int, height: int) -> Iterator[Stiff]:
+    """What looks otherwise than it should in a picture that was made of a scene in float32."""
+    if scene.shapes and packing.pack(scene, width, height).camera.dtype == np.float32:
+        for each in stiff_shapes(scene, packing.tables, width, height):
+            if each.figures.get("single", 0.0) > VISIBLE:
+                yield each
+
+
 def worst(tables: Tables, amounts: np.ndarray, limit: float) -> Iterator[tuple[int, str]]:
     """The shapes with the largest amounts above a limit: indices and names, the last one with how many more there
     are."""
@@ -86,7 +95,7 @@ def views(tables: Tables, camera: np.ndarray) -> Views:
         with np.errstate(all="ignore"):
             on, _ = kind_of(packed.dtype.names).surface(columns(packed), Vec(*eye))
         nearest[mine] = np.stack([np.broadcast_to(part, len(mine)) for part in (on.x, on.y, on.z)], axis=-1)
-        size[mine] = [min(sizes_of(tables.shapes[index]), default=np.inf) for index in mine]
+        size[mine] = sizes([tables.shapes[index] for index in mine]).min(axis=1, initial=np.inf)
     nearest = np.where(np.isfinite(nearest), nearest, tables.boxes[:, :3])  # from the very middle no point is nearest
     way = nearest - eye
     reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]  # of the shape, seen from the eye
