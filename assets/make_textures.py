@@ -1,11 +1,12 @@
-"""Draws the pictures of scenes/textures: python assets/make_textures.py
+"""Draws the pictures of scenes/textures: python assets/make_textures.py [FOLDER]
 
-A planet, bricks with their heights and normals, water, and a sky of stars. All of it is drawn from noise with fixed
-seeds, so that the same pictures come out again, and those that are wrapped around something have no seam.
+A planet and bricks with their heights, water, and skies in the evening and at night. All of it is drawn from noise with
+fixed seeds, so that the same pictures come out again, and those that are wrapped around something have no seam.
 """
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +16,14 @@ FOLDER = Path(__file__).parent.parent / "scenes" / "textures"
 Array = np.ndarray
 
 
-def lattice(seed: int, cells: Array) -> Array:
-    """A random number in [0, 1) for each whole point of space; `cells` are (..., 3)."""
-    x, y, z = (cells[..., axis].astype(np.uint64) for axis in range(3))
+def lattice(seed: int, x: Array, y: Array, z: Array) -> Array:
+    """A random number in [0, 1) for each point of space with whole coordinates, not below 0."""
+    x, y, z = (axis.astype(np.uint64) for axis in (x, y, z))
     mixed = x * np.uint64(73856093) ^ y * np.uint64(19349663) ^ z * np.uint64(83492791) ^ np.uint64(seed * 2654435761)
-    for shift, factor in ((33, 0xFF51AFD7ED558CCD), (33, 0xC4CEB9FE1A85EC53), (33, 1)):  # Appleby, MurmurHash3
-        mixed = (mixed ^ mixed >> np.uint64(shift)) * np.uint64(factor)
-    return (mixed >> np.uint64(11)).astype(np.float64) * 2.0**-53
+    for factor in (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53, 1):  # Appleby, MurmurHash3
+        mixed ^= mixed >> np.uint64(33)
+        mixed *= np.uint64(factor)
+    return (mixed >> np.uint64(11)) * 2.0**-53
 
 
 def noise(seed: int, points: Array, period: Array | None = None) -> Array:
@@ -29,11 +31,14 @@ def noise(seed: int, points: Array, period: Array | None = None) -> Array:
     below = np.floor(points)
     part = points - below
     weight = part * part * (3 - 2 * part)
+    # For each axis the cells on both sides, and how much each counts.
+    sides = [below[..., axis] + corner for axis in range(3) for corner in (0, 1)]
+    shares = [weight[..., axis] if corner else 1 - weight[..., axis] for axis in range(3) for corner in (0, 1)]
+    cells = [side + 1000 if period is None else side % period[n // 2] for n, side in enumerate(sides)]
     total = np.zeros(points.shape[:-1])
-    for corner in np.ndindex(2, 2, 2):
-        cells = below + corner
-        cells = (np.mod(cells, period) if period is not None else cells + 1000).astype(np.int64)
-        total += np.prod(np.where(corner, weight, 1 - weight), axis=-1) * lattice(seed, cells)
+    for i, j, k in np.ndindex(2, 2, 2):
+        value = lattice(seed, cells[i], cells[2 + j], cells[4 + k])
+        total += shares[i] * shares[2 + j] * shares[4 + k] * value
     return total
 
 
@@ -70,8 +75,8 @@ def shades(at: Array, stops: list[tuple[float, str]]) -> Array:
     return np.stack([np.interp(at, places, colours[:, part]) for part in range(3)], axis=-1)
 
 
-def planet(width: int = 1024, height: int = 512) -> Array:
-    """Seas, land by height and latitude, ice at the poles, clouds over all of it."""
+def planet(width: int = 1024, height: int = 512) -> tuple[Array, Array]:
+    """Colour: seas, land by height and latitude, ice at the poles, clouds over all of it; and height in [0, 1]."""
     points = globe(width, height)
     land = fractal(1, 1.7 * points + 0.4 * fractal(40, 3 * points, 4)[..., None], 8) - 0.53
     sea = shades(land, [(-0.2, "061f4f"), (-0.05, "0d3b7a"), (0.0, "2c7fa8")])
@@ -84,7 +89,7 @@ def planet(width: int = 1024, height: int = 512) -> Array:
     colour += np.clip((0.06 - heat) / 0.04, 0, 1)[..., None] * ([242, 246, 250] - colour)
     swirl = 2.2 * points + 0.9 * fractal(60, 2 * points, 4)[..., None]
     cloud = np.clip(4 * (fractal(50, swirl, 7) - 0.53), 0, 0.85)[..., None]
-    return colour + cloud * (255 - colour)
+    return colour + cloud * (255 - colour), np.clip(0.1 * (land > 0) + 3 * land, 0, 1)
 
 
 ROWS, COLUMNS = 8, 4  # bricks in the picture
@@ -102,8 +107,7 @@ def bricks(width: int = 512, height: int = 512) -> tuple[Array, Array]:
     rough = fractal(7, points, 5, period)
     rise = np.clip((edge + 0.03 * (rough - 0.5) - JOINT) / 0.09, 0, 1)
     rise = rise * rise * (3 - 2 * rise)
-    brick = np.stack([np.floor(column) % COLUMNS, row, np.zeros_like(row)], axis=-1).astype(np.int64)
-    own = lattice(3, brick)
+    own = lattice(3, np.floor(column) % COLUMNS, row, np.zeros_like(row))
     heights = rise * (0.72 + 0.16 * own + 0.12 * rough) + (1 - rise) * 0.15 * rough
     clay = shades(own, [(0, "7a3526"), (0.4, "96452f"), (0.75, "a9583d"), (1, "8a4a3a")])
     clay *= (0.72 + 0.5 * rough)[..., None]
@@ -163,27 +167,53 @@ def stars(width: int = 1024, height: int = 512) -> Array:
     return colour
 
 
-def save(name: str, pixels: Array, colours: int = 0) -> None:
+SUN = np.array([0.55, 0.09, 0.83])  # where it stands in the evening sky: low, and left of the middle
+
+
+def evening(width: int = 1024, height: int = 512) -> Array:
+    """A map of the sky when the sun is low: from gold over rose to blue, with clouds that are lit from below."""
+    points = globe(width, height)[..., ::-1] * [1, 1, -1]  # its middle is +z, and right of that is -x
+    up = points[..., 1]
+    near = np.clip(points @ (SUN / np.linalg.norm(SUN)), 0, 1)[..., None]
+    heights = [-1, -0.02, 0, 0.12, 0.42, 1]
+    cold = shades(up, list(zip(heights, ["20242e", "4a4a58", "8d7c8c", "9a8ea8", "5a78b0", "22407e"], strict=True)))
+    warm = shades(up, list(zip(heights, ["2a2624", "6a5044", "ffb060", "f59a70", "9a86b0", "2c4a88"], strict=True)))
+    colour = cold + near**2 * (warm - cold)
+    # Clouds lie on a level plane above: towards the horizon they close up, and fade into haze.
+    high = np.maximum(up, 0.02)[..., None]
+    flat = np.concatenate([points[..., ::2] / (high + 0.12), np.zeros_like(high)], axis=-1)
+    puffs = fractal(70, 1.3 * flat, 6) + 0.15 * (fractal(80, 0.5 * flat, 2) - 0.5)
+    thick = np.clip(4.5 * (puffs - 0.5), 0, 1) * np.clip(up / 0.12, 0, 1)
+    lit = shades(near[..., 0] ** 3, [(0, "8a84a0"), (0.3, "d8a0a0"), (0.8, "ffc890"), (1, "fff0d0")])
+    colour += (0.85 * thick * (1 - 0.35 * thick))[..., None] * (lit - colour)
+    above = np.clip((up + 0.01) / 0.02, 0, 1)[..., None]
+    return colour + above * (near**600 * 400 + near**40 * 60) * np.array([1, 0.85, 0.6])
+
+
+def save(folder: Path, name: str, pixels: Array, colours: int = 0) -> None:
     """Write a picture, of so many colours where that is not 0."""
     image = Image.fromarray(np.rint(np.clip(pixels, 0, 255)).astype(np.uint8))
     if colours:
         image = image.quantize(colours, dither=Image.Dither.FLOYDSTEINBERG)
-    image.save(FOLDER / name, optimize=True)
+    image.save(folder / name, optimize=True)
 
 
-def main() -> None:
+def main(folder: Path = FOLDER) -> None:
     """Draw all of them."""
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    colour, heights = bricks()
+    folder.mkdir(parents=True, exist_ok=True)
+    globe_colour, globe_heights = planet()
+    wall, wall_heights = bricks()
     waves = water()
-    save("planet.png", planet(), 128)
-    save("bricks.png", colour, 64)
-    save("bricks-height.png", 255 * heights)
-    save("bricks-normal.png", normals(heights, 0.02), 256)
-    save("water-height.png", 255 * waves)
-    save("water-normal.png", normals(waves, 0.05))
-    save("stars.png", stars(), 64)
+    save(folder, "planet.png", globe_colour, 128)
+    save(folder, "planet-height.png", 255 * globe_heights[::2, ::2])
+    save(folder, "bricks.png", wall, 64)
+    save(folder, "bricks-height.png", 255 * wall_heights)
+    save(folder, "bricks-normal.png", normals(wall_heights[::2, ::2], 0.02))
+    save(folder, "water-height.png", 255 * waves)
+    save(folder, "water-normal.png", normals(waves, 0.05))
+    save(folder, "evening.png", evening())
+    save(folder, "stars.png", stars(), 64)
 
 
 if __name__ == "__main__":
-    main()
+    main(*map(Path, sys.argv[1:]))

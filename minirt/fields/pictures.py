@@ -12,11 +12,11 @@ from minirt.fields.triples import Colour, Triple
 FORBIDDEN = " \t\r\n\0#"  # a line is cut at blanks, and `#` begins a comment
 
 
-def file_name(text: str, also: str = "") -> str:
+def file_name(text: str, also: str = "", sort: str = "picture") -> str:
     """A name as it can stand in a line; FieldError where it cannot, also because of the characters of `also`."""
     if not isinstance(text, str) or not text or any(character in text for character in FORBIDDEN + also):
         commas = ", commas" if "," in also else ""
-        raise FieldError(f"must be the name of a picture file, without blanks{commas} and #, got {text!r}")
+        raise FieldError(f"must be the name of a {sort} file, without blanks{commas} and #, got {text!r}")
     return text
 
 

@@ -221,13 +221,14 @@ def reads(parse: Callable[[str], Any], text: str) -> bool:
 def unit(vector: Triple) -> Triple:
     """`vector` at length 1, also where its squares would underflow or overflow.
 
-    A vector that has length 1 within rounding is returned as it is, so that saving and loading change nothing. The
-    quotient below is off by at most 2u in length and `hypot` by 2u more (u = 2^-53): one step is enough for that.
+    A vector that has length 1 within rounding is returned as it is, so that saving and loading change nothing, unless
+    one of its components is beyond 1, which no file may have. The quotient below is off by at most 2u in length and
+    `hypot` by 2u more (u = 2^-53): one step is enough for that.
     """
     x, y, z = vector
-    if abs(math.hypot(x, y, z) - 1.0) <= 4 * 2.0**-53:
-        return float(x), float(y), float(z)
     largest = max(abs(x), abs(y), abs(z))
+    if largest <= 1.0 and abs(math.hypot(x, y, z) - 1.0) <= 4 * 2.0**-53:
+        return float(x), float(y), float(z)
     x, y, z = x / largest, y / largest, z / largest
     length = math.hypot(x, y, z)
     return x / length, y / length, z / length

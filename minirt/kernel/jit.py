@@ -41,7 +41,7 @@ from minirt.kernel.traced import Traced
 from minirt.lanes import power, vec
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, VecType, common, constant, splat, vec_of
-from minirt.shapes import KINDS, basis, exact, quadric
+from minirt.shapes import ALL_KINDS, basis, exact, quadric
 
 Arguments: TypeAlias = tuple[Any, ...]  # of `minirt.kernel.frame.frame`
 
@@ -78,6 +78,11 @@ def _intersect(shape, origin, direction):  # type: ignore[no-untyped-def]
 @overload(rows.surface, jit_options=INNER, strict=False)
 def _surface(shape, point):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).surface
+
+
+@overload(rows.shading, jit_options=INNER, strict=False)
+def _shading(shape, point, normal):  # type: ignore[no-untyped-def]
+    return rows.kind_of_packed(shape.instance_class).shading
 
 
 @overload(rows.mapping, jit_options=INNER, strict=False)
@@ -201,7 +206,7 @@ for _module in (
     sky,
     whitted,
     frame,
-    *(sys.modules[kind.intersect.__module__] for kind in KINDS),
+    *(sys.modules[kind.intersect.__module__] for kind in ALL_KINDS),
 ):
     for _function in own_functions(_module):
         if _function not in OWN_FORM:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from itertools import count
 from typing import Any
 
@@ -106,9 +105,14 @@ DIVIDE = WHOLE(BINARY)
 WEIGH = types.void(BINARY, TABLE, LINKS)
 COLLAPSE = types.UniTuple(WHOLE, 2)(BINARY, LINKS, NUMBER[::1], WHOLE[::1], LINKS, LINKS)
 
+
+def compiled(function: Any, *signature: Any) -> Any:
+    """A function with its compiled form, which is kept."""
+    return njit(*signature, cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(function)
+
+
 with cache.numba_cache(CACHE):
-    compiled = partial(njit, cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)
-    divide = compiled(DIVIDE)(bvh_build.divide)
-    weigh = compiled(WEIGH)(bvh_collapse.weigh)
-    collapse = compiled(COLLAPSE)(bvh_collapse.collapse)
-    trace_rays = compiled()(bvh_hits.trace_rays)
+    divide = compiled(bvh_build.divide, DIVIDE)
+    weigh = compiled(bvh_collapse.weigh, WEIGH)
+    collapse = compiled(bvh_collapse.collapse, COLLAPSE)
+    trace_rays = compiled(bvh_hits.trace_rays)

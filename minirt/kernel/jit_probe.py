@@ -13,9 +13,9 @@ from numba.extending import register_jitable
 from minirt.kernel.jit import FLAGS, INNER, own_functions
 from minirt.kernel.rows import read
 from minirt.lanes import Vec, load, save, where, width
-from minirt.shapes import KINDS
+from minirt.shapes import ALL_KINDS
 
-KNOWN = {kind.intersect.__module__ for kind in KINDS}  # whose functions have a compiled form
+KNOWN = {kind.intersect.__module__ for kind in ALL_KINDS}  # whose functions have a compiled form
 
 
 @cache

@@ -11,7 +11,7 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from minirt.lanes import Vec
-from minirt.shapes import KINDS, Kind
+from minirt.shapes import ALL_KINDS, Kind
 from minirt.shapes.shape import Place
 
 Rows = Any  # an array of dtype `row_type(kind)`
@@ -38,7 +38,7 @@ def place_fields(kind: Kind) -> tuple[str, ...]:
 def kind_of(fields: Any) -> Kind:
     """The kind to which a row with these field names belongs."""
     title = next(iter(fields)).split(".")[0]
-    return next(kind for kind in KINDS if kind.element.title == title)
+    return next(kind for kind in ALL_KINDS if kind.element.title == title)
 
 
 def read(rows: Rows, i: int) -> Any:
@@ -49,7 +49,7 @@ def read(rows: Rows, i: int) -> Any:
 
 def kind_of_packed(packed: type[Any]) -> Kind:
     """The kind whose packed form a class is."""
-    return next(kind for kind in KINDS if kind.packed is packed)
+    return next(kind for kind in ALL_KINDS if kind.packed is packed)
 
 
 def intersect(shape: Any, origin: Vec, direction: Vec) -> Any:
@@ -60,6 +60,11 @@ def intersect(shape: Any, origin: Vec, direction: Vec) -> Any:
 def mapping(shape: Any, point: Vec, normal: Vec) -> Any:
     """`mapping` of the shape's own kind."""
     return kind_of_packed(type(shape)).mapping(shape, point, normal)
+
+
+def shading(shape: Any, point: Vec, normal: Vec) -> Any:
+    """`shading` of the shape's own kind."""
+    return kind_of_packed(type(shape)).shading(shape, point, normal)
 
 
 def surface(shape: Any, point: Vec) -> Any:

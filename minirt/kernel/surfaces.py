@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from minirt.kernel.rows import read, surface
+from minirt.kernel.rows import read, shading, surface
 from minirt.kernel.skins import skinned
 from minirt.kernel.trace import over_kinds
 from minirt.kernel.traced import Group, Traced
@@ -56,20 +56,25 @@ def surfaces(scene: Traced, memory: Any, owner: Number, point: Vec, hit: Mask) -
 def surface_at(scene: Traced, index: int, point: Vec) -> Surface:
     """The surface of one shape, for all rays."""
     given = scene.places[index, 0], scene.places[index, 1], point
-    on, normal, _ = over_kinds(surface_of_kind, scene.groups, (point, point, 0), given)
-    bent, colour = skinned(scene.skins, scene, index, on, normal, row_of(scene.looks, index, point.x))
+    on, normal, bent, _ = over_kinds(surface_of_kind, scene.groups, (point, point, point, 0), given)
+    bent, colour = skinned(scene.skins, scene, index, on, bent, row_of(scene.looks, index, point.x))
     gloss, bounces = row_of(scene.gloss, index, point.x), row_of(scene.bounces, index, point.x)
     return Surface(on, normal, bent, colour, gloss, bounces)
 
 
-def surface_of_kind(group: Group, state: tuple[Vec, Vec, int], given: tuple[int, int, Vec]) -> tuple[Vec, Vec, int]:
-    """`surface` of row i of this kind, if it is the one that is wanted; the last of the state counts the kinds."""
-    on, normal, number = state
+def surface_of_kind(
+    group: Group, state: tuple[Vec, Vec, Vec, int], given: tuple[int, int, Vec]
+) -> tuple[Vec, Vec, Vec, int]:
+    """`surface` and `shading` of row i of this kind, if it is the one that is wanted; the last of the state counts the
+    kinds."""
+    on, normal, bent, number = state
     wanted, i, point = given
     if number == wanted:
-        on, out = surface(read(group.rows, i), point)
+        shape = read(group.rows, i)
+        on, out = surface(shape, point)
         normal = Vec(splat(out.x, point.x), splat(out.y, point.x), splat(out.z, point.x))
-    return on, normal, number + 1
+        bent = shading(shape, on, normal)
+    return on, normal, bent, number + 1
 
 
 def row_of(table: Any, index: int, like: Number) -> Vec:

@@ -43,7 +43,7 @@ def idle(tables: Tables, eye: np.ndarray, lamp: Lamp) -> np.ndarray:
         found = never_met(tables.planes, eye, -np.array(lamp.direction))
     else:
         found = same_side(tables.planes, eye, place_of(lamp))
-    opaque = np.array([not is_glass(tables.shapes[i]) for i in tables.flat.tolist()], bool)
+    opaque = np.array([not is_glass(tables.shapes[i]) for i in tables.owner[tables.flat].tolist()], bool)
     skipped: np.ndarray = found & opaque
     return skipped
 

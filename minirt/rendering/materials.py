@@ -27,14 +27,15 @@ class Materials(NamedTuple):
     skins: Any
 
 
-def materials_of(scene: Scene, used: Set[Hashable]) -> Materials:
-    """The tables of the shapes of a scene that uses those features of `minirt.rendering.traits`."""
+def materials_of(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
+    """The tables of what the kernel knows, of which `owner` (n,) tells the shape, for a scene that uses those features
+    of `minirt.rendering.traits`."""
     worn = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     count = len(scene.shapes)
     return Materials(
-        gloss_of(worn, count) if "gloss" in used else None,
-        bounces_of(worn, count) if "bounces" in used else None,
-        skins_of(scene, worn, used) if used & {"checks", "textures", "bumps", "normals"} else None,
+        gloss_of(worn, count)[owner] if "gloss" in used else None,
+        bounces_of(worn, count)[owner] if "bounces" in used else None,
+        skins_of(scene, worn, owner, used) if used & {"checks", "textures", "bumps", "normals"} else None,
     )
 
 
@@ -58,7 +59,7 @@ def bounces_of(worn: Worn, count: int) -> np.ndarray:
     return bounces
 
 
-def skins_of(scene: Scene, worn: Worn, used: Set[Hashable]) -> Skins:
+def skins_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hashable]) -> Skins:
     """See `minirt.kernel.skins`."""
     count, album = len(scene.shapes), Album(scene)
     checks = np.zeros((count, 4))
@@ -75,11 +76,11 @@ def skins_of(scene: Scene, worn: Worn, used: Set[Hashable]) -> Skins:
             normals[i] = album.number(shape.normal_map, pictures.picture)
         mark[i] = bool(shape.checker or shape.texture or bumps[i, 0] or shape.normal_map)
     return Skins(
-        checks=checks if "checks" in used else None,
-        textures=textures if "textures" in used else None,
-        bumps=bumps if "bumps" in used else None,
-        normals=normals if "normals" in used else None,
-        used=mark,
+        checks=checks[owner] if "checks" in used else None,
+        textures=textures[owner] if "textures" in used else None,
+        bumps=bumps[owner] if "bumps" in used else None,
+        normals=normals[owner] if "normals" in used else None,
+        used=mark[owner],
         **album.bound(),
     )
 

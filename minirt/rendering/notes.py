@@ -11,15 +11,15 @@ from minirt.rendering.flats import idle
 from minirt.rendering.tables import Tables
 from minirt.rendering.traits import FEATURES, traits
 from minirt.scene import Scene
-from minirt.shapes import KINDS, Shape
+from minirt.shapes import ALL_KINDS, Shape
 
 
 def notes(scene: Scene, tables: Tables, traced: Traced) -> Iterator[str]:
     """Sentences; lights and shapes have the numbers of their places among those of their kind in the file."""
-    shapes = f"{len(scene.shapes)} shape{'s' * (len(scene.shapes) != 1)}"
+    shapes = f"{len(tables.places)} shape{'s' * (len(tables.places) != 1)}"
     used = {type(shape) for shape in scene.shapes}
     yield f"kernel for {plurals(used)}"
-    if idle_kinds := {kind.element for kind in KINDS} - used:
+    if idle_kinds := {kind.element for kind in ALL_KINDS} - used:
         yield f"kernel without {plurals(idle_kinds)}"
     needed = traits(scene)
     yield f"kernel without {', '.join(words for feature, words in FEATURES.items() if feature not in needed)}"
@@ -41,9 +41,9 @@ def notes(scene: Scene, tables: Tables, traced: Traced) -> Iterator[str]:
 
 def plurals(elements: set[type[Shape]]) -> str:
     """What people call shapes of these kinds, in the order of the registry."""
-    return ", ".join(kind.element.plural for kind in KINDS if kind.element in elements)
+    return ", ".join(kind.element.plural for kind in ALL_KINDS if kind.element in elements)
 
 
 def name(tables: Tables, index: int) -> str:
     """What people call a shape: plane 2."""
-    return f"{type(tables.shapes[index]).title} {tables.places[index, 1] + 1}"
+    return f"{type(tables.shapes[tables.owner[index]]).title} {tables.places[index, 1] + 1}"

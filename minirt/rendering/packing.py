@@ -67,7 +67,7 @@ class Packing:
         camera, lamps = camera_numbers(scene.camera, width, height), shining(scene)
         lights = light_numbers(lamps)
         eye = keep((camera.tobytes(), width, height), seen_by_eye, self.kernel, tables, camera, width, height)
-        grid = grid_for(len(scene.shapes))
+        grid = grid_for(len(tables.places))
         seen: list[Lists] = []
         keys: list[Hashable] = []
         for lamp, place in zip(lamps, lights[:, :3], strict=True):
@@ -79,7 +79,7 @@ class Packing:
                 keys.append((place.tobytes(), skipped.tobytes()))
                 seen.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, place, grid, skipped))
         lamp_starts, lit, lamp_views = keep(tuple(keys), joined, seen, eye)
-        materials = keep(("materials", used), materials_of, scene, used)
+        materials = keep(("materials", used), materials_of, scene, tables.owner, used)
         tree = "bounces" in used or ("parallel" in used and grid > 1)
         paint: Any = scene.background and scene.background.paint
         return Traced(

@@ -17,7 +17,7 @@ from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing import Packing
 from minirt.rendering.tables import Tables
 from minirt.scene import Camera, Scene
-from minirt.shapes import KINDS, Shape
+from minirt.shapes import ALL_KINDS, Shape
 
 
 def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: Tables | None = None) -> Shape | None:
@@ -30,14 +30,17 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: Tables |
     camera = pixel_rays(camera_numbers(scene.camera, width, height), width, height)
     origin, direction = Vec(*camera[:3]), unit(towards(camera, x + 0.5, y + 0.5))
     with np.errstate(all="ignore"):
-        shapes = in_front(tables, origin, direction)
-        if len(shapes) < 2:
-            return shapes[0] if shapes else None
+        near = in_front(tables, origin, direction)
+        owners = np.unique(tables.owner[near])
+        if len(owners) < 2:
+            return tables.shapes[int(owners[0])] if len(owners) else None
         # Surfaces that may coincide: the kernel has a rule for them.
-        traced = Packing(lists).pack(Scene((scene.camera, *shapes)), width, height)
+        parts = [tables.shapes[each].some(near[tables.owner[near] == each] - tables.start[each]) for each in owners]
+        packing = Packing(lists)
+        traced = packing.pack(Scene((scene.camera, *parts)), width, height)
         rays = Vec(*(splat(part, camera) for part in (direction.x, direction.y, direction.z)))
         _, owner, _ = nearest(traced, y // TILE * tiles(width) + x // TILE, origin, rays)
-    return shapes[int(lane(owner, 0))]
+    return tables.shapes[int(owners[packing.tables.owner[int(lane(owner, 0))]])]
 
 
 def place(shape: Shape, camera: Camera, width: int, height: int, x: int, y: int) -> Triple | None:
@@ -55,21 +58,20 @@ def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray,
 def met(shape: Shape, camera: Camera, width: int, height: int, x: Any, y: Any) -> tuple[Any, Any, Vec, Vec]:
     """Whether and where the rays of pixels meet a shape, their origin and their directions."""
     numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
-    kind = next(kind for kind in KINDS if kind.element is type(shape))
+    kind = next(kind for kind in ALL_KINDS if kind.element is type(shape))
     with np.errstate(all="ignore"):
         origin, direction = Vec(*numbers[:3]), unit(towards(numbers, x + 0.5, y + 0.5))
         return *kind.intersect(shape.pack(), origin, direction), origin, direction
 
 
-def in_front(tables: Tables, origin: Vec, direction: Vec) -> list[Shape]:
-    """Of the shapes that a ray hits the nearest, and those so close to it that they may be in the same place."""
-    distance = np.full(len(tables.shapes), np.inf)
+def in_front(tables: Tables, origin: Vec, direction: Vec) -> np.ndarray:
+    """Of the parts that a ray hits the nearest, and those so close to it that they may be in the same place."""
+    distance = np.full(len(tables.places), np.inf)
     for group, rows in enumerate(tables.rows):
         hit, t = kind_of(rows.dtype.names).intersect(columns(rows), origin, direction)
         distance[tables.places[:, 0] == group] = np.where(hit, t, np.inf)
     least = distance.min(initial=np.inf)
-    near = np.flatnonzero(np.isfinite(distance) & (distance <= least * (1 + 2 * NEARBY)))
-    return [tables.shapes[index] for index in near]
+    return np.flatnonzero(np.isfinite(distance) & (distance <= least * (1 + 2 * NEARBY)))
 
 
 def columns(rows: Any) -> Any:

@@ -26,7 +26,7 @@ FEWEST = 400  # rays of a picture that is worth showing
 def preview(scene: Scene, width: int, height: int) -> np.ndarray | None:
     """A picture of the scene, uint8 (h, w, 4) in the order blue, green, red, alpha, as fine as can be made in about
     `BUDGET` seconds and at most of that size, in its proportions; None where the scene has too many shapes for one."""
-    tries = max(1, len(scene.shapes)) * (1 + len(scene.lights))
+    tries = max(1, sum(shape.parts for shape in scene.shapes)) * (1 + len(scene.lights))
     rays = (BUDGET / tries - SHAPE) / RAY
     if rays < min(FEWEST, width * height):
         return None

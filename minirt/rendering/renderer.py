@@ -25,7 +25,7 @@ from minirt.rendering.frames import ALL_PACKETS, NO_LINEAR, Frame, frame_argumen
 from minirt.rendering.helper import Helper
 from minirt.rendering.reached import Reached
 from minirt.rendering.sight import SMALL
-from minirt.rendering.traits import DEPTH, dressed, traits
+from minirt.rendering.traits import DEPTH, dressed, parts, traits
 from minirt.rendering.workers import Workers
 from minirt.scene import Scene
 from minirt.shapes import Shape
@@ -243,12 +243,13 @@ def needs(scene: Scene) -> frozenset[Hashable]:
     """What there is a kernel of its own for: the kinds of shapes and the features of a scene, and for parallel light
     whether there are so many shapes that a tree is used."""
     found = traits(scene)
-    return found | {"tree"} if "parallel" in found and len(scene.shapes) > SMALL else found
+    return found | {"tree"} if "parallel" in found and parts(scene) > SMALL else found
 
 
 def small(scene: Scene) -> Scene:
     """A scene of few shapes that needs the same."""
-    shapes = list({(type(shape), *dressed(shape)): shape for shape in scene.shapes}.values())
-    more = min(len(scene.shapes), SMALL + 1) - len(shapes)
+    examples = {(type(shape), *dressed(shape)): shape for shape in scene.shapes}.values()
+    shapes = [shape.some(np.arange(1)) for shape in examples]
+    more = min(parts(scene), SMALL + 1) - len(shapes)
     sky = (scene.background,) if scene.background else ()
     return Scene((scene.camera, *sky, *scene.lights, *shapes, *shapes[:1] * more), scene.file)

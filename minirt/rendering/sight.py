@@ -87,7 +87,7 @@ def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: 
     """The shapes in each cell of a grid around a point."""
     kinds, faces = len(tables.rows), len(grid.frames)
     stride = faces * grid.down * grid.across + 1
-    views, counts = np.zeros((len(tables.shapes), 5)), np.zeros(kinds * stride, np.int64)
+    views, counts = np.zeros((len(tables.places), 5)), np.zeros(kinds * stride, np.int64)
     height = heights(tables.planes, origin)
     flat = np.zeros((0, 4), np.int64)
     if not skipped.all():

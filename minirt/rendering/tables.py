@@ -7,19 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from minirt.element import fields_of
-from minirt.fields import Point
 from minirt.kernel.lists import MARGIN
 from minirt.kernel.rows import row_type
-from minirt.lanes import Vec
-from minirt.shapes import KINDS, Ball, Shape
+from minirt.rendering.parts import parts_of
+from minirt.shapes import ALL_KINDS, Shape
 
 PIECE = 4096  # shapes that are compared or written at once: their Python objects come and go in the processor's cache
-EVERYWHERE: tuple[Ball, ...] = (((0.0, 0.0, 0.0), np.inf),)  # where a shape lies that has no end and is no plane
+ONE = np.arange(1)
 
 
 class Tables:
-    """The last shapes that it was told of, n of them, those of each kind in rows of their own.
+    """The last shapes that it was told of, n of them, those of each kind in rows of their own. A mesh counts for as
+    many as it has parts: what is said of shapes in these arrays is said of the parts, of which `owner` (n,) tells the
+    index in `shapes`, and `start` the first of each of those.
 
     `rows`, `looks` and `places` are those of `minirt.kernel.traced`; `boxes`, (n, 4), are the middle of the box around
     each shape and half of its longest edge, or the same of the points of one without end. Shape i lies in the hull of
@@ -39,14 +39,17 @@ class Tables:
             return False
         others = len(shapes) != len(self.shapes)
         changed = [] if others else differing(self.shapes, shapes)
-        if others or any(type(shapes[i]) is not type(self.shapes[i]) for i in changed):
+        if others or not all(fits(self.shapes[i], shapes[i]) for i in changed):
             others, changed = True, self.make_room(shapes)
         self.shapes = shapes
         indices = np.array(changed, np.int64)
+        groups = self.places[self.start[indices], 0]
         for group in range(len(self.rows)):
-            mine = indices[self.places[indices, 0] == group]
-            for start in range(0, len(mine), PIECE):
-                self.write(group, mine[start : start + PIECE])
+            mine = indices[groups == group]
+            parts = np.sum(self.start[mine + 1] - self.start[mine])
+            step = max(1, PIECE * len(mine) // max(1, parts))
+            for start in range(0, len(mine), step):
+                self.write(group, mine[start : start + step])
         return others or bool(changed)
 
     def make_room(self, shapes: tuple[Shape, ...]) -> list[int]:
@@ -54,12 +57,10 @@ class Tables:
         start, behind = alike(self.shapes, shapes)
         new = shapes[start : len(shapes) - behind]
         gone = len(self.shapes) - behind
-        groups = self.places[:, 0]
         if len(new) <= PIECE and all(type(shape) in self.numbers for shape in new):
-            middle = np.array([self.numbers[type(shape)] for shape in new], np.int64)
-            groups = np.concatenate([groups[:start], middle, groups[gone:]])
-            if len(np.unique(groups)) == len(self.numbers):
-                self.splice(groups, start, gone, len(new))
+            kept = np.delete(self.places[:, 0], slice(self.start[start], self.start[gone]))
+            if set(np.unique(kept)) | {self.numbers[type(shape)] for shape in new} == set(self.numbers.values()):
+                self.splice(start, gone, new)
                 return list(range(start, start + len(new)))
         self.lay_out(shapes)
         return list(range(len(shapes)))
@@ -68,61 +69,74 @@ class Tables:
         """Make room for as many shapes of the same kinds."""
         kinds = [type(shape) for shape in shapes]
         present = set(kinds)
-        used = [kind for kind in KINDS if kind.element in present]
-        examples = [shapes[kinds.index(kind.element)] for kind in used]
+        used = [kind for kind in ALL_KINDS if kind.element in present]
+        examples = [shapes[kinds.index(kind.element)].some(ONE) for kind in used]
         self.numbers = {kind.element: group for group, kind in enumerate(used)}
         self.rows = tuple(np.zeros(0, row_type(kind)) for kind in used)
         self.is_flat = np.array([each.flat() is not None for each in examples], bool)
-        self.counts = np.array([0 if each.flat() else len(each.balls() or EVERYWHERE) for each in examples], np.int64)
-        self.places = np.zeros((0, 2), np.int64)
+        self.counts = np.array([parts_of([each]).balls.shape[1] for each in examples], np.int64)
+        self.places, self.start, self.owner = np.zeros((0, 2), np.int64), np.zeros(1, np.int64), np.zeros(0, np.int64)
         self.looks, self.boxes = np.zeros((0, 4)), np.zeros((0, 4))
         self.planes, self.balls, self.first = np.zeros((0, 5)), np.zeros((0, 4)), np.zeros(1, np.int64)
-        self.splice(np.fromiter((self.numbers[kind] for kind in kinds), np.int64, len(kinds)), 0, 0, len(kinds))
+        self.splice(0, 0, shapes)
         self.shapes = shapes
 
-    def splice(self, groups: np.ndarray, start: int, gone: int, count: int) -> None:
-        """Let `count` shapes take the places of those from index `start` to `gone`; `groups` are those of all shapes
-        then."""
-        before, behind = self.places[:start, 0], self.places[:gone, 0]
-        new = groups[start : start + count]
+    def splice(self, start: int, gone: int, shapes: tuple[Shape, ...]) -> None:
+        """Let shapes take the places of those from index `start` to `gone`."""
+        sizes = np.fromiter((shape.parts for shape in shapes), np.int64, len(shapes))
+        numbers = np.fromiter((self.numbers[type(shape)] for shape in shapes), np.int64, len(shapes))
+        new = np.repeat(numbers, sizes)
+        sizes = np.concatenate([np.diff(self.start[: start + 1]), sizes, np.diff(self.start[gone:])])
+        begin, end = self.start[start], self.start[gone]
+        before, behind = self.places[:begin, 0], self.places[:end, 0]
+        groups = np.concatenate([before, new, self.places[end:, 0]])
         self.rows = tuple(
             spliced(rows, np.sum(before == group), np.sum(behind == group), np.sum(new == group))
             for group, rows in enumerate(self.rows)
         )
         flat = [np.sum(self.is_flat[part]) for part in (before, behind, new)]
         self.planes = spliced(self.planes, *flat)
-        self.balls = spliced(self.balls, self.first[start], self.first[gone], self.counts[new].sum())
-        self.looks = spliced(self.looks, start, gone, count)
-        self.boxes = spliced(self.boxes, start, gone, count)
+        self.balls = spliced(self.balls, self.first[begin], self.first[end], self.counts[new].sum())
+        self.looks = spliced(self.looks, begin, end, len(new))
+        self.boxes = spliced(self.boxes, begin, end, len(new))
         self.places = np.zeros((len(groups), 2), np.int64)
         self.places[:, 0] = groups
         for group, rows in enumerate(self.rows):
             self.places[groups == group, 1] = np.arange(len(rows))
         self.flat = np.flatnonzero(self.is_flat[groups])
         self.first = np.concatenate([[0], np.cumsum(self.counts[groups])])
+        self.start = np.concatenate([[0], np.cumsum(sizes)])
+        self.owner = np.repeat(np.arange(len(sizes)), sizes)
 
-    def write(self, group: int, indices: np.ndarray) -> None:
-        """Put some shapes of one kind into the arrays."""
-        members = [self.shapes[index] for index in indices.tolist()]
+    def write(self, group: int, shapes: np.ndarray) -> None:
+        """Put some shapes of one kind, of these indices, into the arrays."""
+        members = [self.shapes[index] for index in shapes.tolist()]
+        parts = parts_of(members)
+        sizes = self.start[shapes + 1] - self.start[shapes]
+        indices = np.repeat(self.start[shapes] - np.cumsum(sizes) + sizes, sizes) + np.arange(len(parts.rows))
         rows = self.rows[group].view(np.float64).reshape(len(self.rows[group]), -1)
-        rows[self.places[indices, 1]] = numbers([shape.pack() for shape in members])
-        corners = boxes(members)
-        extents = np.abs(corners).max(axis=(1, 2))
-        self.looks[indices, :3] = np.array([shape.colour for shape in members]) / 255
+        rows[self.places[indices, 1]] = parts.rows
+        extents = np.abs(parts.boxes).max(axis=(1, 2))
+        self.looks[indices, :3] = np.repeat([shape.colour for shape in members], sizes, axis=0) / 255
         self.looks[indices, 3] = extents
-        self.boxes[indices, :3] = corners.mean(axis=1)
-        self.boxes[indices, 3] = (corners.max(axis=1) - corners.min(axis=1)).max(axis=1) / 2
-        if members[0].flat():
+        self.boxes[indices, :3] = parts.boxes.mean(axis=1)
+        self.boxes[indices, 3] = (parts.boxes.max(axis=1) - parts.boxes.min(axis=1)).max(axis=1) / 2
+        if self.is_flat[group]:
             flats = np.array([shape.flat() for shape in members])
             at = np.searchsorted(self.flat, indices)
             self.planes[at, :3] = flats[:, 1]
             self.planes[at, 3] = (flats[:, 0] * flats[:, 1]).sum(axis=1)
             self.planes[at, 4] = MARGIN * extents
         else:
-            balls = np.array([(*centre, radius) for each in members for centre, radius in each.balls() or EVERYWHERE])
-            balls[:, 3] += MARGIN * (balls[:, 3] + np.abs(balls[:, :3]).max(axis=1))
-            count = len(balls) // len(members)
-            self.balls[(self.first[indices, None] + np.arange(count)).ravel()] = balls
+            balls = parts.balls
+            balls[..., 3] += MARGIN * (balls[..., 3] + np.abs(balls[..., :3]).max(axis=2))
+            at = self.first[indices, None] + np.arange(balls.shape[1])
+            self.balls[at.ravel()] = balls.reshape(-1, 4)
+
+
+def fits(old: Shape, new: Shape) -> bool:
+    """Whether a shape has room where another was."""
+    return type(old) is type(new) and old.parts == new.parts
 
 
 def differing(old: tuple[Any, ...], new: tuple[Any, ...], most: float = inf) -> list[int]:
@@ -149,29 +163,3 @@ def alike(old: tuple[Any, ...], new: tuple[Any, ...]) -> tuple[int, int]:
 def spliced(array: np.ndarray, start: int, end: int, count: int) -> np.ndarray:
     """The array with so many rows of zeros in the place of those from `start` to `end`."""
     return np.concatenate([array[:start], np.zeros((count, *array.shape[1:]), array.dtype), array[end:]])
-
-
-def numbers(packed: list[Any]) -> np.ndarray:
-    """Packed shapes of a kind, a row each."""
-    columns: list[Any] = []
-    for parts in zip(*packed, strict=True):
-        if isinstance(parts[0], Vec):
-            columns += [[v.x for v in parts], [v.y for v in parts], [v.z for v in parts]]
-        else:
-            columns.append(parts)
-    return np.array(columns).T
-
-
-def boxes(shapes: list[Shape]) -> np.ndarray:
-    """For each shape of a kind the corners of the box around it, (n, 2, 3); of one without end, its points."""
-    return np.array([shape.bounds() or own_points(shape) for shape in shapes])
-
-
-def extent(shape: Shape) -> float:
-    """The largest coordinate of a shape; of one without end, the largest of its points."""
-    return float(np.abs(boxes([shape])).max())
-
-
-def own_points(shape: Shape) -> list[Any]:
-    """The points that a shape is given by."""
-    return [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)]

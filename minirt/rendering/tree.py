@@ -9,10 +9,12 @@ import numpy as np
 from minirt.kernel.bvh import NODE, WIDTH, Group, Tree
 from minirt.kernel.bvh_build import BINS, GROUP, INDEX, Binary
 from minirt.kernel.rows import kind_of, row_type
+from minirt.rendering.parts import parts_of
 from minirt.rendering.tables import Tables
-from minirt.shapes import Kind, Shape
+from minirt.shapes import Kind
 
 LINE = 64  # bytes of a line of the cache
+EMPTY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 def block_type(kind: Kind) -> np.dtype[Any]:
@@ -21,20 +23,24 @@ def block_type(kind: Kind) -> np.dtype[Any]:
     return np.dtype([(name, np.float64, (*fields[name].shape, WIDTH)) for name in fields.names or ()])
 
 
-def boxes_of(shapes: tuple[Shape, ...], places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def boxes_of(tables: Tables) -> tuple[np.ndarray, np.ndarray]:
     """The boxes of the shapes as `Binary` has them, and the indices of the shapes that have no end."""
-    bounds = [shape.bounds() for shape in shapes]
-    bounded = np.array([index for index, box in enumerate(bounds) if box], np.int64)
-    corners = np.array([box for box in bounds if box]).reshape(-1, 2, 3)
+    bounds = [shape.bounds() for shape in tables.shapes]
+    endless = tables.start[np.array([index for index, box in enumerate(bounds) if not box], np.int64)]
+    bounded = np.delete(np.arange(len(tables.places)), endless)
+    corners = np.repeat([box or EMPTY for box in bounds], np.diff(tables.start), axis=0)
+    for index, shape in enumerate(tables.shapes):
+        if shape.parts > 1:
+            corners[tables.start[index] : tables.start[index + 1]] = parts_of([shape]).boxes
     boxes = np.empty((len(bounded), 8))
-    boxes[:, :3], boxes[:, 3:6] = -corners[:, 0], corners[:, 1]
-    boxes[:, INDEX], boxes[:, GROUP] = bounded, places[bounded, 0]
-    return boxes, np.array([index for index, box in enumerate(bounds) if not box], np.int64)
+    boxes[:, :3], boxes[:, 3:6] = -corners[bounded, 0], corners[bounded, 1]
+    boxes[:, INDEX], boxes[:, GROUP] = bounded, tables.places[bounded, 0]
+    return boxes, endless
 
 
 def tree_of(tables: Tables, kernel: Any) -> Tree:
     """The tree over the shapes of some tables, built by the functions of `kernel`, compiled or not."""
-    boxes, endless = boxes_of(tables.shapes, tables.places)
+    boxes, endless = boxes_of(tables)
     nodes, leaves = wide_nodes(boxes, kernel)
     # Each kind has its blocks in the order of the leaves.
     kinds = boxes[leaves[:, 0], GROUP]

@@ -11,8 +11,8 @@ import numpy as np
 
 from minirt.kernel.jit_probe import probe
 from minirt.kernel.rows import row_type
+from minirt.rendering.parts import numbers, own_points
 from minirt.rendering.single import moved
-from minirt.rendering.tables import numbers, own_points
 from minirt.report import exact, textbook
 from minirt.report.poses import Array, Rays
 from minirt.report.sizes import sizes

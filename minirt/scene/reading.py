@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from minirt.element import Element, fields_of, once_per_kind, pattern
 from minirt.errors import FieldError, FileError, quoted
-from minirt.fields import Colour, Field
+from minirt.fields import Colour, Field, MeshFile
 from minirt.fields.numerals import named
 from minirt.scene.lines import Line, Word, joined, words
 from minirt.scene.log import Log
@@ -197,14 +197,24 @@ def value_of(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
     if remark:
         column, length = slot.place(None)
         log.notice(line, column, f"{kind.title} {field.title} {remark}", length)
-    return checked if usable(slot, checked, kind, line, log) else None
+    return with_files(slot, checked, kind, line, log)
 
 
-def usable(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log) -> bool:
-    """Whether the picture files that a value names can be used."""
+def with_files(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log) -> Any:
+    """The value with the mesh that it names; None where a file that it names cannot be used."""
     if log.folder is None:
-        return True
+        return value
     errors = len(log.errors)
+    if isinstance(value, MeshFile):
+        from minirt.meshes import mesh  # with numpy, which few scenes need this early
+
+        try:
+            return MeshFile(value.name, mesh(log.folder / value.name))
+        except FileError as error:
+            column, length = slot.place(None)
+            message = f"must be a mesh file, got {quoted(value.name)}: {error.reason}"
+            log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
+            return None
     for name, heights, part in slot.field.pictures(value):
         from minirt.materials import pictures  # with numpy, which few scenes need this early
 
@@ -214,7 +224,7 @@ def usable(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log) ->
             column, length = slot.place(part)
             message = f"must be a picture file, got {quoted(name)}: {error.reason}"
             log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
-    return len(log.errors) == errors
+    return value if len(log.errors) == errors else None
 
 
 def repair(field: Field, text: str) -> tuple[Any, str] | None:

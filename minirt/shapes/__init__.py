@@ -1,6 +1,20 @@
-"""The shapes. `KINDS` is the one list of them: a new shape is a file beside these and a line here."""
+"""The shapes. `KINDS` is the one list of those that are a formula each: a new one is a file beside these and a line
+here. A mesh is many triangles."""
 
-from minirt.shapes import box, cone, cylinder, disc, hyperboloid, paraboloid, plane, sphere, square, torus, triangle
+from minirt.shapes import (
+    box,
+    cone,
+    cylinder,
+    disc,
+    hyperboloid,
+    mesh,
+    paraboloid,
+    plane,
+    sphere,
+    square,
+    torus,
+    triangle,
+)
 from minirt.shapes.shape import Ball, Box, Kind, Shape
 
 KINDS = (
@@ -16,5 +30,7 @@ KINDS = (
     Kind(box.Box, box.PackedBox, box.intersect, box.surface),
     Kind(torus.Torus, torus.PackedTorus, torus.intersect, torus.surface),
 )
+MESH = Kind(mesh.Mesh, mesh.PackedMeshTriangle, mesh.intersect, mesh.surface, shading=mesh.shading)
+ALL_KINDS = (*KINDS, MESH)
 
-__all__ = ["KINDS", "Ball", "Box", "Kind", "Shape"]
+__all__ = ["ALL_KINDS", "KINDS", "MESH", "Ball", "Box", "Kind", "Shape"]

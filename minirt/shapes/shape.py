@@ -7,6 +7,10 @@ A file of a shape holds its manual page, its line in a scene file (a frozen data
                                           inside, leaves the shape: the least t > 0, or infinity
     surface(shape, point)                 a point within rounding of the surface: that point put onto the surface, and
                                           the unit normal there, outward where there is an outside
+    shading(shape, point, normal)         of the few that stand for something rounder: the unit normal by which such a
+                                          point is lit, where `normal` is that of the surface
+
+A mesh is many triangles, each of which the kernel keeps for itself: such a shape has `parts`.
 """
 
 from __future__ import annotations
@@ -15,6 +19,8 @@ from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple, NewType
+
+import numpy as np
 
 from minirt.element import Element
 from minirt.fields import Triple, declare
@@ -43,6 +49,15 @@ class Shape(Element):
     bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)
     normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **SHARED)
 
+    @property
+    def parts(self) -> int:
+        """How many things the kernel keeps of it."""
+        return 1
+
+    def some(self, parts: np.ndarray) -> Shape:
+        """The shape that is some of its parts."""
+        return self
+
     @abstractmethod
     def pack(self) -> Any:
         """What the kernel keeps of the shape: the NamedTuple of its `Kind`."""
@@ -61,6 +76,11 @@ class Shape(Element):
         """The axis-aligned box around the shape, or None where it has no end."""
 
 
+def unbent(shape: Any, point: Vec, normal: Vec) -> Vec:
+    """`shading` of a shape that is what it looks like."""
+    return normal
+
+
 class Kind(NamedTuple):
     """One entry of the registry of shapes."""
 
@@ -68,3 +88,4 @@ class Kind(NamedTuple):
     packed: type[Any]
     intersect: Callable[..., Any]
     surface: Callable[..., Any]
+    shading: Callable[..., Any] = unbent

@@ -80,7 +80,12 @@ class PackedTriangle(NamedTuple):
 
 
 def intersect(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the triangle.
+    """Whether and where a ray meets the triangle."""
+    return watertight(triangle.a, triangle.b, triangle.c, origin, direction)
+
+
+def watertight(a: Vec, b: Vec, c: Vec, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the triangle between three corners.
 
     Woop, Benthin and Wald, Watertight Ray/Triangle Intersection (2013): seen along the ray, its origin lies on the same
     side of all three edges. On which side it is depends on the two ends of an edge alone, each seen in the same way by
@@ -93,9 +98,9 @@ def intersect(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Ma
     d = turned(by_x, by_y, direction)
     per_depth = 1.0 / d.z
     shear = Vec(d.x * per_depth, d.y * per_depth, per_depth)
-    a = sheared(shear, turned(by_x, by_y, triangle.a - origin))
-    b = sheared(shear, turned(by_x, by_y, triangle.b - origin))
-    c = sheared(shear, turned(by_x, by_y, triangle.c - origin))
+    a = sheared(shear, turned(by_x, by_y, a - origin))
+    b = sheared(shear, turned(by_x, by_y, b - origin))
+    c = sheared(shear, turned(by_x, by_y, c - origin))
     # Twice the areas that the origin has with each edge: by them the hit is the mean of the corners.
     of_a = twice_the_area(b, c)
     of_b = twice_the_area(c, a)

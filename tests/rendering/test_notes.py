@@ -5,7 +5,7 @@ from __future__ import annotations
 from minirt.rendering.packing import Packing
 from minirt.rendering.traits import FEATURES
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
-from minirt.shapes import KINDS
+from minirt.shapes import ALL_KINDS
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 
@@ -25,7 +25,7 @@ def said(*balls: Sphere) -> list[str]:
 
 def test_what_is_left_out_and_why() -> None:
     kernel, without, plain, tiles, buffer, *rest = said(Sphere((0, 0, 0), 1, GREY))
-    others = [kind.element.plural for kind in KINDS if kind.element not in (Sphere, Plane)]
+    others = [kind.element.plural for kind in ALL_KINDS if kind.element not in (Sphere, Plane)]
     assert (kernel, without) == ("kernel for spheres, planes", f"kernel without {', '.join(others)}")
     assert plain == f"kernel without {', '.join(FEATURES.values())}"
     assert tiles.startswith("tiles: 12, ")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from minirt.kernel.rows import read
-from minirt.rendering import Renderer, tables
+from minirt.rendering import Renderer, parts
 from minirt.rendering.packing import Packing
-from minirt.rendering.tables import extent
+from minirt.rendering.parts import extent
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -22,7 +22,7 @@ from tests.kernel.pictures import ALL, EYE, LAMP, SHAPES, linear
 def packed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What was packed so far."""
     done: list[Any] = []
-    monkeypatch.setattr(tables, "numbers", lambda new, numbers=tables.numbers: done.extend(new) or numbers(new))
+    monkeypatch.setattr(parts, "numbers", lambda new, numbers=parts.numbers: done.extend(new) or numbers(new))
     return done
 
 
@@ -71,7 +71,7 @@ def test_the_extent_is_the_largest_coordinate(shape: Any, expected: float) -> No
 def test_an_edit_packs_again_only_what_it_changed(packed: list[Any]) -> None:
     keeper = Packing()
     keeper.pack(ALL, 24, 16)
-    assert len(packed) == len(SHAPES)
+    assert len(packed) == len(SHAPES) + len({*map(type, SHAPES)})  # an example of each kind tells how much room it takes
     packed.clear()
 
     moved = ALL.replace(ALL.spheres[1], centre=(9, 9, 9))

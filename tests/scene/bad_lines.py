@@ -19,7 +19,7 @@ IDENTIFIERS: list[Case] = [
     ("LL 0,0,0 0.5", 1, "unknown element 'LL'"),
     ("spsp 0,0,20 5 255,0,0", 1, "unknown element 'spsp', did you mean 'sp'?"),
     ("spp 0,0,20 5 255,0,0", 1, "did you mean 'sp'?"),
-    ("s 0,0,20 5 255,0,0", 1, "did you mean 'sp'?"),
+    ("s 0,0,20 5 255,0,0", 1, "did you mean 's"),
     ("sphere 0,0,20 5 255,0,0", 1, "did you mean 'sp'?"),
     ("camera 0,0,0 0,0,1 70", 1, "did you mean 'C'?"),
     ("cyl 0,0,20 0,1,0 1 2 255,0,0", 1, "did you mean 'cy'?"),

@@ -63,6 +63,13 @@ def test_a_unit_vector_has_length_1_and_its_own_direction(vector: tuple[float, f
     assert (x, y, z) == pytest.approx([each / largest / length for each in vector], abs=8 * U)
 
 
+def test_no_component_of_a_unit_vector_is_beyond_1() -> None:
+    beyond = 1 + 2 * U
+    assert unit((0.0, -beyond, -U / 2)) == pytest.approx((0.0, -1.0, 0.0))
+    for x, y, z in ((beyond, 0.0, 0.0), (1e-9, 0.0, -beyond), (0.0, beyond, 1e-17)):
+        assert max(map(abs, unit((x, y, z)))) <= 1
+
+
 def test_normalising_again_changes_no_bit() -> None:
     rng = random.Random(1)
     for _ in range(200_000):

@@ -22,7 +22,9 @@ def test_the_table_has_a_row_for_every_element_and_every_field_in_it() -> None:
     assert (head, rule) == ("| line | element | fields |", "|---|---|---|")
     for kind, row in zip(ELEMENTS.values(), rows, strict=True):
         assert row.startswith(f"| `{pattern(kind)}` | {kind.title}")
-        assert row.count("`") == 2 + 2 * len([field for field in fields_of(kind) if not field.sort])
+        assert all(f"`{alias}`" in row for alias in kind.aliases)
+        named = [field for field in fields_of(kind) if not field.sort]
+        assert row.count("`") == 2 + 2 * len(named) + 2 * len(kind.aliases)
         assert row.replace("\\|", "").count("|") == 4
 
 

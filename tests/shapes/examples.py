@@ -11,7 +11,7 @@ from minirt.element import fields_of
 from minirt.errors import ElementError
 from minirt.fields import Colour, Direction, Field, Length, Lengths, Point
 from minirt.kernel.trace import ROUNDING
-from minirt.rendering.tables import extent
+from minirt.rendering.parts import extent
 from minirt.shapes import Kind, Shape
 from tests.shapes.regimes import Array, Random, log, unit, ways
 from tests.shapes.ways import compiled, surfaces

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from minirt.kernel import jit, rows
 from minirt.lanes import Vec, lane, load, where, width
-from minirt.rendering.tables import numbers
+from minirt.rendering.parts import numbers
 from minirt.shapes import KINDS, Kind, Shape
 
 Array = NDArray[np.float64]

@@ -47,6 +47,10 @@ def command(window: int, text: str) -> list[str]:
             found = [*at, str(x), str(y), "mousedown", number, *moves, "sleep", "0.02", "mouseup", number]
         case ["wait", seconds]:
             found = ["sleep", seconds]
+        case ["hide"]:
+            found = ["windowminimize", str(window)]
+        case ["show"]:
+            found = ["windowactivate", "--sync", str(window)]
         case ["resize", size]:
             found = ["windowsize", str(window), *size.split("x")]
         case _:

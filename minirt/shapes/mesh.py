@@ -1,0 +1,139 @@
+"""Mesh: `ob file x,y,z scale R,G,B`.
+
+Triangles from a Wavefront .obj file, whose way begins at the folder of the scene file. What is 0,0,0 in the file is at
+`x,y,z` in the scene, and what is 1 long there is `scale` long. Triangles that share corners have no gap between them.
+Where the file has normals the surface is lit as if it were round, and its coordinates for pictures are those of the
+file.
+
+    ob meshes/knot.obj 0,1,20 2.5 220,180,90    a knot, two and a half times as large as in its file
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from minirt import meshes
+from minirt.fields import FARTHEST, Colour, Length, MeshField, MeshFile, Point, Triple, declare
+from minirt.lanes import Vec, cross, dot, maximum, minimum, unit, where
+from minirt.lanes.vec import Number
+from minirt.lanes.verbs import Mask
+from minirt.shapes import triangle
+from minirt.shapes.shape import Ball, Box, Place, Shape
+
+OPPOSED = 1e-3  # squared length of a mean of unit normals: with less they point anywhere
+
+
+@dataclass(frozen=True)
+class Mesh(Shape):
+    """A line `ob` of a scene file."""
+
+    code, title, plural, aliases = "ob", "mesh", "meshes", ("obj",)
+    file: MeshFile = declare(MeshField, "a Wavefront .obj file")
+    position: Triple = declare(Point, "where its origin is")
+    scale: float = declare(Length, "length of what is 1 in the file")
+    colour: Triple = declare(Colour, "colour")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.file.triangles is None:
+            object.__setattr__(self, "file", MeshFile(self.file.name, self.triangles))
+
+    def conflict(self) -> tuple[str, str] | None:
+        if self.file.triangles is None or np.abs(self.placed(self.triangles.box)).max() <= FARTHEST:
+            return None
+        return "scale", f"must not be so large that the mesh reaches beyond {FARTHEST:g}"
+
+    @property
+    def triangles(self) -> meshes.Triangles:
+        """What was read from its file; FileError where that is still to be done and cannot be."""
+        found: meshes.Triangles | None = self.file.triangles
+        return meshes.mesh(self.file.name) if found is None else found
+
+    @property
+    def parts(self) -> int:
+        return len(self.triangles)
+
+    def some(self, indices: np.ndarray) -> Mesh:
+        return self.replace(file=MeshFile(self.file.name, self.triangles.some(indices)))
+
+    def placed(self, points: np.ndarray) -> np.ndarray:
+        """Points of the file in the scene: equal ones stay equal."""
+        found: np.ndarray = self.scale * points + self.position
+        return found
+
+    def rows(self) -> np.ndarray:
+        """What the kernel keeps of its triangles, (m, 27): a `PackedMeshTriangle` each."""
+        made = self.triangles
+        rows = np.zeros((len(made), 27))
+        rows[:, :9].reshape(-1, 3, 3)[...] = self.placed(made.points)[made.corners]
+        rows[:, 9:12] = made.flat_normals
+        if made.normals is None:
+            rows[:, 12:21].reshape(-1, 3, 3)[...] = made.flat_normals[:, None]
+        else:
+            rows[:, 12:21] = made.normals.reshape(-1, 9)
+        if made.uvs is not None:
+            rows[:, 21:] = made.uvs.reshape(-1, 6)
+        return rows
+
+    def pack(self) -> PackedMeshTriangle:
+        """All triangles in one, whose numbers are arrays."""
+        columns = self.rows().T
+        vecs = [Vec(*columns[start : start + 3]) for start in range(0, 21, 3)]
+        return PackedMeshTriangle._make([*vecs, *columns[21:]])
+
+    def balls(self) -> tuple[Ball, ...]:
+        (a, b, c), (x, y, z) = self.bounds()
+        return tuple(((u, v, w), 0.0) for u in (a, x) for v in (b, y) for w in (c, z))
+
+    def bounds(self) -> Box:
+        low, high = self.placed(self.triangles.box).tolist()
+        return tuple(low), tuple(high)
+
+
+class PackedMeshTriangle(NamedTuple):
+    """What the kernel keeps of a triangle of a mesh."""
+
+    a: Place
+    b: Place
+    c: Place
+    normal: Vec
+    normal_a: Vec  # of what the triangles stand for, at the corners
+    normal_b: Vec
+    normal_c: Vec
+    u_a: float  # coordinates of pictures at the corners
+    v_a: float
+    u_b: float
+    v_b: float
+    u_c: float
+    v_c: float
+
+
+def intersect(mesh: PackedMeshTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the triangle; one of those at an edge or a corner is met, as of `tr`."""
+    return triangle.watertight(mesh.a, mesh.b, mesh.c, origin, direction)
+
+
+def surface(mesh: PackedMeshTriangle, point: Vec) -> tuple[Vec, Vec]:
+    """The point of the triangle's plane nearest to `point`, and the normal of that plane."""
+    height = dot(mesh.normal, point - mesh.a)
+    return point - height * mesh.normal, mesh.normal
+
+
+def shares(mesh: PackedMeshTriangle, point: Vec) -> tuple[Number, Number, Number]:
+    """How much of each corner there is in a point of the triangle: its barycentric coordinates, from 0 to 1."""
+    ab, ac, ap = mesh.b - mesh.a, mesh.c - mesh.a, point - mesh.a
+    whole = dot(cross(ab, ac), mesh.normal)  # twice the area
+    of_b = minimum(maximum(dot(cross(ap, ac), mesh.normal) / whole, 0.0), 1.0)
+    of_c = minimum(maximum(dot(cross(ab, ap), mesh.normal) / whole, 0.0), 1.0 - of_b)
+    return 1.0 - of_b - of_c, of_b, of_c
+
+
+def shading(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
+    """The normal by which a point is lit: the mean of those at the corners (Phong, Illumination for Computer Generated
+    Pictures, 1975)."""
+    of_a, of_b, of_c = shares(mesh, point)
+    mean = of_a * mesh.normal_a + of_b * mesh.normal_b + of_c * mesh.normal_c
+    return unit(where(dot(mean, mean) > OPPOSED, mean, normal))
