@@ -38,7 +38,7 @@ KINDS = (
     Kind(box.Box, box.PackedBox, box.intersect, box.surface, box.mapping),
     Kind(torus.Torus, torus.PackedTorus, torus.intersect, torus.surface, torus.mapping),
 )
-MESH = Kind(mesh.Mesh, mesh.PackedMeshTriangle, mesh.intersect, mesh.surface, mesh.mapping, shading=mesh.shading)
+MESH = Kind(mesh.Mesh, mesh.PackedMeshTriangle, mesh.intersect, mesh.surface, mesh.mapping, mesh.shading)
 ALL_KINDS = (*KINDS, MESH)
 
 __all__ = ["ALL_KINDS", "KINDS", "MESH", "Ball", "Box", "Kind", "Shape"]
