@@ -25,18 +25,20 @@ from minirt.rendering.cores import usable_cores
 from tests.stability.mutations import Change, changes
 
 FOLDER = Path(minirt.shapes.__file__).parent
-FILES = ("quadric", "exact", "basis", "sphere", "plane", "cylinder")
-TESTS = ("tests/stability/test_regimes.py", "tests/stability/test_surfaces.py", "tests/shapes", "tests/stability")
-THREADED = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
-OPTIONS = ("-x", "-q", "-p", "no:cacheprovider", "-k", THREADED)  # what starts threads does not survive a fork
+SHARED = ("quadric", "exact", "basis", "extents")  # of several shapes
+FILES = (*SHARED, *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.KINDS))
+TESTS = ("tests/shapes", "tests/stability/test_regimes.py", "tests/stability/test_surfaces.py", "tests/stability")
+# What starts threads does not survive a fork.
+UNFIT = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
 SECONDS = 120  # a change may make a loop endless
 
 
 def main(names: list[str]) -> int:
     """Print the survivors, and return whether there are any."""
-    if pytest.main([*TESTS, *OPTIONS]) != 0:
+    names = names or [*FILES]
+    if tested(names) != 0:
         raise SystemExit("the tests fail without any change")
-    work = [(name, change) for name in names or FILES for change in changes((FOLDER / f"{name}.py").read_text())]
+    work = [(name, change) for name in names for change in changes((FOLDER / f"{name}.py").read_text())]
     running: dict[int, tuple[str, Change]] = {}
     survivors, started = 0, time.monotonic()
     for each in work:
@@ -47,6 +49,12 @@ def main(names: list[str]) -> int:
         survivors += ended(running)
     print(f"{survivors} of {len(work)} changes pass all tests; {time.monotonic() - started:.0f} s")
     return survivors > 0
+
+
+def tested(names: list[str]) -> int:
+    """Run the tests of some files, those of a shape's file by its name; 0 if all pass."""
+    chosen = UNFIT if set(names) & set(SHARED) else f"{UNFIT} and ({' or '.join(names)})"
+    return int(pytest.main([*TESTS, "-x", "-q", "-p", "no:cacheprovider", "-k", chosen]))
 
 
 def tried(name: str, change: Change) -> int:
@@ -60,17 +68,18 @@ def tried(name: str, change: Change) -> int:
         os.dup2(nothing, 1)
         os.dup2(nothing, 2)
         put(import_module(f"minirt.shapes.{name}"), change)
-        os._exit(int(pytest.main([*TESTS, *OPTIONS])))
+        os._exit(tested([name]))
     finally:
         os._exit(1)
 
 
 def ended(running: dict[int, tuple[str, Change]]) -> bool:
-    """Wait for the next process to end: whether its change has passed all tests."""
+    """Wait for the next process to end: whether its change has passed all tests, or they took too long to tell."""
     process, status = os.wait()
     name, change = running.pop(process)
-    if status == 0:
-        print(f"minirt/shapes/{name}.py:{change.line}: {change.before}  ->  {change.after}", flush=True)
+    late = " (too slow)" if os.WIFSIGNALED(status) else ""
+    if status == 0 or late:
+        print(f"minirt/shapes/{name}.py:{change.line}: {change.before}  ->  {change.after}{late}", flush=True)
     return status == 0
 
 
