@@ -94,6 +94,8 @@ def round_place(place: Triple, stride: float) -> Triple:
 
 def usual(field: Field, state: State) -> Any:
     """What any other field begins with; LookupError as above."""
+    if field.bare:
+        return field.check(field.parse(field.bare))
     if isinstance(field, Compound):
         return made(field.record, state)
     if isinstance(field, Picture):
