@@ -2,10 +2,11 @@
 
 A picture as a relief: the surface stays as it is, but is lit as if its normals were those of one that is higher where
 the picture is lighter (Blinn 1978, Simulation of Wrinkled Surfaces). The picture lies on the surface as a texture does;
-of a coloured one the luminance counts. White is higher than black by `strength` times the width of the picture as it
-lies on the surface; less than 0 turns heights into depths.
+of a coloured one the luminance counts. White is `strength` scene units above black, or below it where that is less than
+0. The slope at a place is the difference over a pixel around it. What is mirrored and refracted goes by it, too, unless
+the surface would throw light below itself.
 
-    sp 0,0,20 8 200,120,80 bump:textures/bricks-height.png,0.02
+    sp 0,0,20 8 200,120,80 bump:textures/bricks-height.png,0.2
 """
 
 from __future__ import annotations
@@ -23,4 +24,6 @@ class Bump(Record):
 
     title = "bump"
     file: str = declare(partial(Picture, also=","), "the heights", heights=True)
-    strength: float = declare(Real, "height of white above black", low=-10.0, high=10.0, step=0.005, default=0.02)
+    strength: float = declare(
+        Real, "height of white above black", unit="scene unit", low=-10.0, high=10.0, step=0.01, default=0.05
+    )
