@@ -31,23 +31,16 @@ ROWS = 8
 MEMORY = (DEEPEST + 2) * ROWS * BYTES // 8
 
 
-def radiance(scene: Traced, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
-    """The light that arrives at `origin` against `direction`."""
+def radiance(bounces: Any, scene: Traced, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
+    """The light that arrives at `origin` against `direction`; `bounces` are those of the scene."""
     t, owner, extent = nearest(scene, tile, origin, direction)
-    return followed(scene.bounces, scene, memory, t, owner, extent, origin, direction)
-
-
-def followed(
-    bounces: Any, scene: Traced, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec
-) -> Vec:
-    """The same, knowing what is hit."""
-    hit = t < inf
-    nothing = splat(0.0, t)
-    light = Vec(nothing, nothing, nothing)
     if bounces is None:
+        hit = t < inf
+        nothing = splat(0.0, t)
+        light = Vec(nothing, nothing, nothing)
         if any(hit):
             light, _ = leaving(scene, memory, t, owner, extent, origin, direction, hit)
-        return lit_sky(scene, hit, light, direction)
+        return lit_sky(scene.sky, scene.dome, hit, light, direction)
     return whitted(scene, memory, t, owner, extent, origin + 0.0 * direction, direction)
 
 
@@ -109,7 +102,7 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
                     way = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * mirroring)
                     kept = where(through > LEAST, through, 0.0)
                     waiting = keep(paths, waiting, point - rounding * facing, way, kept, level)
-        light = light + beyond(scene, where(asked & ~hit, weight, 0.0), direction)
+        light = light + beyond(scene.sky, scene.dome, where(asked & ~hit, weight, 0.0), direction)
         if waiting == 0:
             break
         waiting -= 1
