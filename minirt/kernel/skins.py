@@ -40,7 +40,7 @@ def skinned(skins: Any, scene: Traced, index: int, point: Vec, normal: Vec, colo
         u, v, along_u, along_v, _ = over_kinds(
             mapping_of_kind, scene.groups, (nothing, nothing, point, point, 0), given
         )
-        colour = textured(skins.textures, skins, index, u, v, checkered(skins.checks, index, u, v, colour))
+        colour = checkered(skins.checks, index, u, v, textured(skins.textures, skins, index, u, v, colour))
         normal = raised(skins.bumps, skins, index, u, v, along_u, along_v, normal)
         normal = turned(skins.normals, skins, index, u, v, along_u, along_v, normal)
     return normal, colour
