@@ -26,28 +26,16 @@ class Materials(NamedTuple):
     bounces: Any
     skins: Any
 
-    def of(self, owner: np.ndarray) -> Materials:
-        """Those of the parts of shapes, of which `owner` (n,) has the numbers."""
-        skins: Skins | None = self.skins
-        if skins:
-            named = ("checks", "textures", "bumps", "normals", "used")
-            skins = skins._replace(**{name: rows(getattr(skins, name), owner) for name in named})
-        return Materials(rows(self.gloss, owner), rows(self.bounces, owner), skins)
 
-
-def rows(table: np.ndarray | None, owner: np.ndarray) -> np.ndarray | None:
-    """Those of a table that may be missing."""
-    return None if table is None else table[owner]
-
-
-def materials_of(scene: Scene, used: Set[Hashable]) -> Materials:
-    """The tables of the shapes of a scene that uses those features of `minirt.rendering.traits`."""
+def materials_of(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
+    """The tables of what the kernel knows, of which `owner` (n,) tells the shape, for a scene that uses those features
+    of `minirt.rendering.traits`."""
     worn = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     count = len(scene.shapes)
     return Materials(
-        gloss_of(worn, count) if "gloss" in used else None,
-        bounces_of(worn, count) if "bounces" in used else None,
-        skins_of(scene, worn, used) if used & {"checks", "textures", "bumps", "normals"} else None,
+        gloss_of(worn, count)[owner] if "gloss" in used else None,
+        bounces_of(worn, count)[owner] if "bounces" in used else None,
+        skins_of(scene, worn, owner, used) if used & {"checks", "textures", "bumps", "normals"} else None,
     )
 
 
@@ -71,7 +59,7 @@ def bounces_of(worn: Worn, count: int) -> np.ndarray:
     return bounces
 
 
-def skins_of(scene: Scene, worn: Worn, used: Set[Hashable]) -> Skins:
+def skins_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hashable]) -> Skins:
     """See `minirt.kernel.skins`."""
     count, album = len(scene.shapes), Album(scene)
     checks = np.zeros((count, 4))
@@ -88,11 +76,11 @@ def skins_of(scene: Scene, worn: Worn, used: Set[Hashable]) -> Skins:
             normals[i] = album.number(shape.normal_map, pictures.picture)
         mark[i] = bool(shape.checker or shape.texture or bumps[i, 0] or shape.normal_map)
     return Skins(
-        checks=checks if "checks" in used else None,
-        textures=textures if "textures" in used else None,
-        bumps=bumps if "bumps" in used else None,
-        normals=normals if "normals" in used else None,
-        used=mark,
+        checks=checks[owner] if "checks" in used else None,
+        textures=textures[owner] if "textures" in used else None,
+        bumps=bumps[owner] if "bumps" in used else None,
+        normals=normals[owner] if "normals" in used else None,
+        used=mark[owner],
         **album.bound(),
     )
 

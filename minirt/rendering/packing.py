@@ -79,7 +79,7 @@ class Packing:
                 keys.append((place.tobytes(), skipped.tobytes()))
                 seen.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, place, grid, skipped))
         lamp_starts, lit, lamp_views = keep(tuple(keys), joined, seen, eye)
-        materials = keep(("materials", used), lambda: materials_of(scene, used).of(tables.owner))
+        materials = keep(("materials", used), materials_of, scene, tables.owner, used)
         tree = "bounces" in used or ("parallel" in used and grid > 1)
         paint: Any = scene.background and scene.background.paint
         return Traced(

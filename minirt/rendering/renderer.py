@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable
 from functools import cached_property, partial
 from importlib import import_module
 from itertools import takewhile
@@ -25,7 +25,7 @@ from minirt.rendering.frames import ALL_PACKETS, NO_LINEAR, Frame, frame_argumen
 from minirt.rendering.helper import Helper
 from minirt.rendering.reached import Reached
 from minirt.rendering.sight import SMALL
-from minirt.rendering.traits import DEPTH, dressed, traits
+from minirt.rendering.traits import DEPTH, dressed, parts, traits
 from minirt.rendering.workers import Workers
 from minirt.scene import Scene
 from minirt.shapes import Shape
@@ -243,19 +243,13 @@ def needs(scene: Scene) -> frozenset[Hashable]:
     """What there is a kernel of its own for: the kinds of shapes and the features of a scene, and for parallel light
     whether there are so many shapes that a tree is used."""
     found = traits(scene)
-    return found | {"tree"} if "parallel" in found and parts_in(scene.shapes) > SMALL else found
+    return found | {"tree"} if "parallel" in found and parts(scene) > SMALL else found
 
 
 def small(scene: Scene) -> Scene:
     """A scene of few shapes that needs the same."""
-    several = {(type(shape), *dressed(shape)): shape for shape in scene.shapes}.values()
-    shapes = [shape.some(np.arange(min(shape.parts, SMALL + 1))) for shape in several]
-    more = min(parts_in(scene.shapes), SMALL + 1) - parts_in(shapes)
+    examples = {(type(shape), *dressed(shape)): shape for shape in scene.shapes}.values()
+    shapes = [shape.some(np.arange(1)) for shape in examples]
+    more = min(parts(scene), SMALL + 1) - len(shapes)
     sky = (scene.background,) if scene.background else ()
-    one = [shape.some(np.arange(1)) for shape in shapes[:1]]
-    return Scene((scene.camera, *sky, *scene.lights, *shapes, *one * more), scene.file)
-
-
-def parts_in(shapes: Sequence[Shape]) -> int:
-    """How many things the kernel keeps of some shapes; of many shapes, that they are many."""
-    return len(shapes) if len(shapes) > SMALL else sum(shape.parts for shape in shapes)
+    return Scene((scene.camera, *sky, *scene.lights, *shapes, *shapes[:1] * more), scene.file)

@@ -32,6 +32,16 @@ def traits(scene: Scene) -> frozenset[Hashable]:
     return frozenset().union(*(page.ask(traits_of_all) for page in scene.pages))
 
 
+def parts(scene: Scene) -> int:
+    """How many things the kernel knows: shapes, of meshes the triangles."""
+    return sum(page.ask(parts_of_all) for page in scene.pages)
+
+
+def parts_of_all(items: Iterable[Element | str]) -> int:
+    """Those of some elements."""
+    return sum(item.parts for item in items if isinstance(item, Shape))
+
+
 def traits_of_all(items: Iterable[Element | str]) -> frozenset[Hashable]:
     """Those of some elements."""
     return frozenset().union(*map(traits_of, items))

@@ -1,7 +1,8 @@
 """Cone: `co x,y,z ax,ay,az diameter height R,G,B`.
 
 A solid cone with a cap on its base. `x,y,z` is the apex; the axis `ax,ay,az` runs from there to the base, whose
-`diameter` it has at the distance `height`.
+`diameter` it has at the distance `height`. A picture lies once around the side, its upper edge at the apex, and once
+on the square around the base; on a cone that stands upright its middle is towards -z.
 
     co 0,3,20  0,-1,0  2  3  240,160,40    a tent three units high that stands on y = 0
 """
@@ -19,6 +20,7 @@ from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import along, box_of_boxes, box_of_disc
 from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.wrap import wrapped
 
 
 @dataclass(frozen=True)
@@ -111,3 +113,13 @@ def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
     out = Vec(p.x * per_rho * aside, p.y * per_rho * aside, up)
     on = p - where(on_side, off, p.z - cone.height) * out
     return cone.apex + from_basis(cone.u, cone.v, cone.w, on), from_basis(cone.u, cone.v, cone.w, out)
+
+
+def mapping(cone: PackedCone, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """Around the side and up it: from the base to the apex, so in the frame that has the apex above."""
+    u, v, w = cone.u, -cone.v, -cone.w
+    p = to_basis(u, v, w, point - cone.apex)
+    out = to_basis(u, v, w, normal)
+    narrowing = -cone.slope * sqrt(splat(1.0, p.z) + cone.slope * cone.slope)  # by height, along out.x and out.y
+    rise = cone.height * Vec(narrowing * out.x, narrowing * out.y, splat(1.0, p.z))
+    return wrapped(u, v, w, p, out.z > -0.5, 1.0 + p.z / cone.height, rise, cone.slope * cone.height)

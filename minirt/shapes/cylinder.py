@@ -1,6 +1,7 @@
 """Cylinder: `cy x,y,z ax,ay,az diameter height R,G,B`.
 
-A solid tube with both caps about the axis `ax,ay,az`; `x,y,z` is its centre, half-way up.
+A solid tube with both caps about the axis `ax,ay,az`; `x,y,z` is its centre, half-way up. A picture lies once around
+the side, of an upright one with its middle towards -z, and once on the square around each cap.
 
     cy 0,0,20  0,1,0  2  5  255,200,0    an upright column, from y = -2.5 to y = 2.5
 """
@@ -18,6 +19,7 @@ from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import along, box_of_boxes, box_of_disc
 from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.wrap import is_side, wrapped
 
 
 @dataclass(frozen=True)
@@ -99,3 +101,13 @@ def surface(cylinder: PackedCylinder, point: Vec) -> tuple[Vec, Vec]:
         cylinder.centre + from_basis(cylinder.u, cylinder.v, cylinder.w, on),
         from_basis(cylinder.u, cylinder.v, cylinder.w, out),
     )
+
+
+def mapping(cylinder: PackedCylinder, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """Around the side and up it."""
+    u, v, w = cylinder.u, cylinder.v, cylinder.w
+    p = to_basis(u, v, w, point - cylinder.centre)
+    side = is_side(p, to_basis(u, v, w, normal))
+    flat = splat(0.0, p.z)
+    tall = 2.0 * cylinder.half
+    return wrapped(u, v, w, p, side, 0.5 + p.z / tall, Vec(flat, flat, splat(tall, flat)), cylinder.radius)

@@ -1,7 +1,9 @@
 """Paraboloid: `pa x,y,z ax,ay,az diameter height R,G,B`.
 
 A solid paraboloid of revolution with a cap. `x,y,z` is the vertex; it opens along the axis `ax,ay,az` and has its
-`diameter` at the distance `height`, where the cap closes it.
+`diameter` at the distance `height`, where the cap closes it. A picture lies once around the side, upwards in equal
+steps of the distance from the axis, of an upright one with its middle towards -z, and once on the square around the
+cap.
 
     pa 0,0,20  0,1,0  4  3  120,200,160    a bowl, filled to the brim, whose rim is three units above its bottom
 """
@@ -19,6 +21,7 @@ from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import across, along, box_of_boxes, box_of_disc
 from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.wrap import is_side, wrapped
 
 
 @dataclass(frozen=True)
@@ -119,3 +122,15 @@ def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:
         paraboloid.vertex + from_basis(paraboloid.u, paraboloid.v, paraboloid.w, on),
         from_basis(paraboloid.u, paraboloid.v, paraboloid.w, normal),
     )
+
+
+def mapping(paraboloid: PackedParaboloid, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """Around the side and up it: in v grows the distance from the axis, so that the vertex is not stretched without
+    end. There the tangents are zero."""
+    u, v, w = paraboloid.u, paraboloid.v, paraboloid.w
+    p = to_basis(u, v, w, point - paraboloid.vertex)
+    rho = sqrt(p.x * p.x + p.y * p.y)
+    radius = sqrt(2.0 * paraboloid.focal * splat(paraboloid.height, rho))
+    per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
+    rise = radius * Vec(p.x * per_rho, p.y * per_rho, rho / paraboloid.focal)
+    return wrapped(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), rho / radius, rise, radius)

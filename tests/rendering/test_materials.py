@@ -34,7 +34,7 @@ def scene(folder: Path, *shapes: Shape) -> Scene:
 
 def test_plain_shapes_have_no_tables(tmp_path: Path) -> None:
     plain = scene(tmp_path, BALL, BALL.replace(mirror=0.0))
-    assert materials_of(plain, traits(plain)) == (None, None, None)
+    assert materials_of(plain, np.arange(2), traits(plain)) == (None, None, None)
 
 
 def test_rows_of_shapes(tmp_path: Path) -> None:
@@ -45,12 +45,20 @@ def test_rows_of_shapes(tmp_path: Path) -> None:
         BALL.replace(mirror=0.5, glass=Glass(1.25)),
     )
     shown = scene(tmp_path, *shapes)
-    gloss, bounces, skins = materials_of(shown, traits(shown))
+    gloss, bounces, skins = materials_of(shown, np.arange(4), traits(shown))
     assert np.array_equal(gloss, [[0, 0, 0], [0.5, 20, 1], [0, 0, 0], [0, 0, 0]])
     assert np.allclose(bounces, [[0, 0, 1], [0, 0, 1], [0.25, 0.5, 1.5], [1 / 3, 2 / 3, 1.25]])
     assert np.allclose(skins.checks, [[0] * 4, [0.25, 1, 0, 0.2], [0] * 4, [0] * 4])
     assert np.array_equal(skins.used, [0, 1, 0, 0])
     assert (skins.textures, skins.bumps, skins.normals) == (None, None, None)
+
+
+def test_the_parts_of_a_shape_have_its_rows(tmp_path: Path) -> None:
+    shown = scene(tmp_path, BALL, BALL.replace(mirror=0.5, checker=Checker(0.5)))
+    _, bounces, skins = materials_of(shown, np.array([0, 1, 1, 1]), traits(shown))
+    assert np.array_equal(bounces[:, 0], [0, 0.5, 0.5, 0.5])
+    assert np.array_equal(skins.checks[:, 0], [0, 0.5, 0.5, 0.5])
+    assert np.array_equal(skins.used, [0, 1, 1, 1])
 
 
 def test_pictures_are_kept_once(folder: Path) -> None:
@@ -60,7 +68,7 @@ def test_pictures_are_kept_once(folder: Path) -> None:
         BALL,
         BALL.replace(texture="a.png", normal_map="a.png", bump=Bump("b.png", 0.0)),
     )
-    skins = materials_of(shown, traits(shown)).skins
+    skins = materials_of(shown, np.arange(3), traits(shown)).skins
     assert np.array_equal(skins.textures, [1, 0, 1])
     assert np.array_equal(skins.bumps, [[2, 0.5], [0, 0], [0, 0]])
     assert np.array_equal(skins.normals, [0, 0, 1])
@@ -78,4 +86,4 @@ def test_a_picture_as_background(folder: Path) -> None:
 def test_a_picture_that_is_gone_is_named(tmp_path: Path) -> None:
     shown = scene(tmp_path, BALL.replace(texture="gone.png"))
     with pytest.raises(FileError, match=r"gone\.png"):
-        materials_of(shown, traits(shown))
+        materials_of(shown, np.arange(1), traits(shown))
