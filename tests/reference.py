@@ -37,7 +37,8 @@ def render(scene: Scene, width: int, height: int) -> Array:
         normal = normals(shape, points)
         facing = np.where(dot(normal, directions[seen])[:, None] > 0, -normal, normal)
         magnitude = distances[seen] + length(origins[seen]) + length(points)
-        picture[seen] = rgb(shape.colour) * light_at(scene, points, facing, OFF_SURFACE * magnitude)
+        bent = np.where(dot(normal, directions[seen])[:, None] > 0, -1, 1) * shading(shape, points, normal)
+        picture[seen] = rgb(shape.colour) * light_at(scene, points, facing, bent, OFF_SURFACE * magnitude)
     return picture
 
 
@@ -89,9 +90,9 @@ def first_in_front(enter: Array, leave: Array) -> Array:
     return np.where((enter <= leave) & (first > 0), first, np.inf)
 
 
-def light_at(scene: Scene, points: Array, facing: Array, offsets: Array) -> Array:
-    """The light that points with unit normals towards the viewer receive, per colour; shadow rays start at `offsets`
-    above the points."""
+def light_at(scene: Scene, points: Array, facing: Array, bent: Array, offsets: Array) -> Array:
+    """The light that points with unit normals towards the viewer receive, per colour, as if their normals were `bent`;
+    shadow rays start at `offsets` above the points."""
     received = np.zeros_like(points)
     if scene.ambient is not None:
         received += scene.ambient.brightness * rgb(scene.ambient.colour)
@@ -100,7 +101,7 @@ def light_at(scene: Scene, points: Array, facing: Array, offsets: Array) -> Arra
         way = np.array(light.position) - starts
         distance = length(way)
         towards = way / distance[:, None]
-        cosine = np.maximum(0.0, dot(facing, towards))
+        cosine = np.maximum(0.0, dot(bent, towards))
         visible = np.ones(len(points), dtype=bool)
         for shape in scene.shapes:
             visible &= first_in_front(*chord(shape, starts, towards)) >= distance * (1 - OFF_SURFACE)
@@ -180,6 +181,12 @@ def _(cylinder: Cylinder, points: Array) -> Array:
     on_cap = cylinder.height / 2 - np.abs(along) < cylinder.diameter / 2 - length(across)
     normal = np.where(on_cap[..., None], axis, across)
     return normal / length(normal)[..., None]
+
+
+@singledispatch
+def shading(shape: Shape, points: Array, normal: Array) -> Array:
+    """The unit normals by which points are lit, on the side of those of the surface."""
+    return normal
 
 
 def half_chord(radius: float, off_centre: Array) -> Array:
