@@ -26,7 +26,7 @@ def covered(mesh: Mesh, camera: Camera, width: int, height: int) -> np.ndarray |
     with np.errstate(all="ignore"):  # points that no triangle has may be anywhere
         x, y = x / depth, y / depth
     found = np.zeros((height, width), bool)
-    for facing in sides(x, y, made.corners):
+    for facing in sides(x, y, made.corners)[: 1 if made.closed else 2]:  # behind what is closed is its other side
         start, end = loose_edges(facing, made.corners, made.edges)
         found |= winding(x[start], y[start], x[end], y[end], width, height) != 0
     return found

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from minirt.scene import load
+from minirt.scene import Camera, load
 from minirt.shapes.mesh import Mesh
 from minirt.viewer.adding import kinds
 from minirt.viewer.editor import apply
+from minirt.viewer.outline import rims
 from minirt.viewer.replay import play
 from minirt.viewer.session import Session
 from minirt.viewer.state import opened
+from tests.meshes.examples import named
 from tests.viewer.fake import FakeRenderer
+from tests.viewer.test_marks import HEIGHT, WIDTH, drawn, edges
 
 BARE = "A 0.2 255,255,255\nC 0,2,-20 0,0,1 60\n"
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n"
@@ -95,3 +99,11 @@ def test_a_mesh_is_added_where_there_is_one(path: Path) -> None:
         each.unlink()
     assert Mesh not in kinds(scene)
     assert len(kinds(scene)) == count - 1
+
+
+@pytest.mark.parametrize("name", ["icosahedron", "knot"])
+def test_its_outline_is_where_it_ends(name: str) -> None:
+    shape, camera = named(name, (0.5, 0.2, 0), 2.0), Camera((1, 2, -6), (-0.1, -0.3, 0.9), 70)
+    for found, known in zip(rims(shape, camera, WIDTH, HEIGHT, 100), edges(shape, camera), strict=True):
+        assert np.array_equal(drawn(found), known)
+        assert known.sum() > 50
