@@ -154,3 +154,45 @@ def test_it_must_not_reach_too_far() -> None:
     assert named("icosahedron", scale=1e15).bounds()[1][0] == pytest.approx(0.85065e15)
     with pytest.raises(ElementError, match="scale must not be so large that the mesh reaches beyond 1e"):
         named("icosahedron", scale=1e15, position=(9e14, 0, 0))
+
+
+def mapped(packed: mesh.PackedMeshTriangle, points: np.ndarray, normals: np.ndarray) -> list[np.ndarray]:
+    u, v, along_u, along_v = mesh.mapping(packed, Vec(*points.T), Vec(*normals.T))
+    return [u, v, *(np.stack([each.x, each.y, each.z], axis=1) for each in (along_u, along_v))]
+
+
+def test_coordinates_of_pictures_are_those_of_the_file_and_their_directions_what_changes_them() -> None:
+    random = np.random.default_rng(5)
+    made = named("knot", (1, 2, 3), 2.0)
+    shares = random.dirichlet((2, 2, 2), made.parts)
+    rows = made.rows()
+    points = np.einsum("ij,ijk->ik", shares, rows[:, :9].reshape(-1, 3, 3))
+    u, v, along_u, along_v = mapped(made.pack(), points, rows[:, 9:12])
+    assert np.allclose(np.stack([u, v], axis=1), np.einsum("ij,ijk->ik", shares, made.triangles.uvs), atol=1e-12)
+    for step in (1e-4, -1e-4):  # a way along one of them changes that coordinate and not the other
+        for along, change in ((along_u, (step, 0)), (along_v, (0, step))):
+            later = mapped(made.pack(), points + step * along, rows[:, 9:12])
+            inside = np.minimum(*np.sort(shares, axis=1).T[:2]) > 0.02
+            assert np.abs(later[0] - u - change[0])[inside].max() < 1e-9
+            assert np.abs(later[1] - v - change[1])[inside].max() < 1e-9
+
+
+def test_what_is_raised_is_raised_from_the_round_surface() -> None:
+    made = named("knot")
+    packed, rows = made.pack(), made.rows()
+    points = rows[:, :9].reshape(-1, 3, 3).mean(axis=1)
+    smooth = mesh.shading(packed, Vec(*points.T), packed.normal)
+    normals = np.stack([smooth.x, smooth.y, smooth.z], axis=1)
+    _, _, along_u, along_v = mapped(packed, points, normals)
+    out = unit(np.cross(along_u, along_v))
+    assert np.abs(np.abs(np.einsum("ij,ij->i", out, normals)) - 1).max() < 1e-12
+    assert np.abs(np.einsum("ij,ij->i", out, rows[:, 9:12])).min() < 1 - 1e-5
+
+
+def test_without_coordinates_there_are_no_directions_or_those_of_the_triangle() -> None:
+    made = named("icosahedron")
+    rows = made.rows()
+    points = rows[:, :9].reshape(-1, 3, 3).mean(axis=1)
+    with np.errstate(all="raise"):
+        found = mapped(made.pack(), points, rows[:, 9:12])
+    assert all(np.isfinite(each).all() for each in found)
