@@ -10,7 +10,6 @@ from pathlib import Path
 from minirt.image import Image
 from minirt.scene import Scene, load
 from tests.compare import Bytes
-from tests.meshes import reference  # noqa: F401  (teaches the renderer meshes)
 from tests.reference import render, to_bytes
 
 ROOT = Path(__file__).parent.parent

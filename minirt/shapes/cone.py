@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, copysign, dot, inverse_root, maximum, minimum, splat, sqrt, where
+from minirt.lanes import Vec, any, copysign, inverse_root, maximum, minimum, splat, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
@@ -65,9 +65,7 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     interval around that. What remains is cut to the heights between apex and base: as with the cylinder there is no
     crack at the rim, and none at the apex.
     """
-    f = origin - cone.apex
-    approach = -dot(f, direction)  # t is counted from the closest approach to the apex
-    p = to_basis(cone.u, cone.v, cone.w, f + approach * direction)
+    p = to_basis(cone.u, cone.v, cone.w, origin - cone.apex)
     d = to_basis(cone.u, cone.v, cone.w, direction)
     rise = cone.slope * d.z
     a = d.x * d.x + d.y * d.y - rise * rise
@@ -83,15 +81,14 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     side = copysign(1.0, a)
     b = p.x * d.x + p.y * d.y - reach * rise
     hit, low, high = below_zero(side * a, side * b, side * (p.x * p.x + p.y * p.y - reach * reach))
-    t = approach
+    t = start
     if any(hit):
-        approach = approach + start
         first, last = first - start, last - start
         rising = d.z > 0.0
         enter = maximum(first, where(steep, where(rising, high, first), low))
         leave = minimum(last, where(steep, where(rising, last, low), high))
-        near = approach + enter
-        t = where(near > 0.0, near, approach + leave)
+        near = start + enter
+        t = where(near > 0.0, near, start + leave)
         hit = hit & (enter <= leave) & (t > 0.0)
     return hit, t
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, copysign, dot, fabs, maximum, minimum, splat, sqrt, where
+from minirt.lanes import Vec, any, copysign, fabs, maximum, minimum, splat, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
@@ -64,9 +64,7 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Ma
     The ray is inside the endless tube for one interval of t and between the planes of the caps for another: it is
     inside the cylinder where these overlap. There is no crack between cap and side, whatever the rounding.
     """
-    f = origin - cylinder.centre
-    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
-    p = to_basis(cylinder.u, cylinder.v, cylinder.w, f + approach * direction)
+    p = to_basis(cylinder.u, cylinder.v, cylinder.w, origin - cylinder.centre)
     d = to_basis(cylinder.u, cylinder.v, cylinder.w, direction)
     a = d.x * d.x + d.y * d.y
     per_height = 1.0 / d.z
@@ -77,13 +75,12 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Ma
     p = p + start * d
     c = p.x * p.x + p.y * p.y - cylinder.radius * cylinder.radius
     hit, low, high = below_zero(a, p.x * d.x + p.y * d.y, c)
-    t = approach
+    t = start
     if any(hit):
-        approach = approach + start
         enter = maximum(first - start, low)
         leave = minimum(last - start, high)
-        near = approach + enter
-        t = where(near > 0.0, near, approach + leave)
+        near = start + enter
+        t = where(near > 0.0, near, start + leave)
         hit = hit & (enter <= leave) & (t > 0.0)
     return hit, t
 

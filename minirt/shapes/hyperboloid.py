@@ -15,7 +15,7 @@ from math import sqrt as root
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
-from minirt.lanes import Vec, any, copysign, dot, fabs, inverse_root, maximum, minimum, splat, sqrt, unit, where
+from minirt.lanes import Vec, any, copysign, fabs, inverse_root, maximum, minimum, splat, sqrt, unit, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
@@ -77,9 +77,7 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
     outside of one, perhaps empty, where it is steeper. Cut to the heights between the caps that leaves up to two
     stretches within the solid; the first end of a stretch with t > 0 is hit.
     """
-    f = origin - hyperboloid.centre
-    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
-    p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, f + approach * direction)
+    p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, origin - hyperboloid.centre)
     d = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, direction)
     rise = hyperboloid.slope * d.z
     a = d.x * d.x + d.y * d.y - rise * rise
@@ -100,20 +98,19 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
         side * (p.x * p.x + p.y * p.y - reach * reach - hyperboloid.waist * hyperboloid.waist),
     )
     hit = met | steep
-    t = approach
+    t = start
     if any(hit):
-        approach = approach + start
         first, last = first - start, last - start
         split = steep & met
         enter = where(steep, first, maximum(first, low))
         leave = where(steep & ~met, last, minimum(last, where(steep, low, high)))
-        near = approach + enter
-        far = approach + leave
+        near = start + enter
+        far = start + leave
         t = where(near > 0.0, near, far)
         one = hit & (enter <= leave) & (far > 0.0)
         again = maximum(first, high)
-        near = approach + again
-        far = approach + last
+        near = start + again
+        far = start + last
         two = split & ~one & (again <= last) & (far > 0.0)
         t = where(two, where(near > 0.0, near, far), t)
         hit = one | two

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, dot, inverse_root, maximum, minimum, splat, sqrt, unit, where
+from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, unit, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
@@ -74,9 +74,7 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
     As with the cylinder it is inside for an interval of t, here that of x^2 + y^2 <= 2 focal z, cut to the heights
     below the cap. Of a ray along the axis one end of the interval is infinite, and the other exact.
     """
-    f = origin - paraboloid.vertex
-    approach = -dot(f, direction)  # t is counted from the closest approach to the vertex
-    p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, f + approach * direction)
+    p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, origin - paraboloid.vertex)
     d = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, direction)
     a = d.x * d.x + d.y * d.y
     slant = paraboloid.focal * d.z
@@ -88,13 +86,12 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
     p = p + start * d
     c = p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z
     hit, low, high = below_zero(a, p.x * d.x + p.y * d.y - slant, c)
-    t = approach
+    t = start
     if any(hit):
-        approach = approach + start
         enter = maximum(first - start, low)
         leave = minimum(last - start, high)
-        near = approach + enter
-        t = where(near > 0.0, near, approach + leave)
+        near = start + enter
+        t = where(near > 0.0, near, start + leave)
         hit = hit & (enter <= leave) & (t > 0.0)
     return hit, t
 

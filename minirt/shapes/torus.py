@@ -95,7 +95,7 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
         enter = maximum(-half, minimum(bottom, top))
         leave = minimum(half, maximum(bottom, top))
         start = -approach  # the ray's origin
-        within = start > enter
+        within = start >= enter
         enter = where(within, start, enter)
         hit = hit & (enter <= leave)
         if any(hit):

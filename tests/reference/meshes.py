@@ -8,7 +8,9 @@ from functools import lru_cache
 import numpy as np
 
 from minirt.shapes.mesh import Mesh
-from tests.reference import Array, chord, dot, length, normals, shading
+from tests.reference.hits import crossings
+from tests.reference.normals import normals, shading
+from tests.reference.vectors import Array, dot, length
 
 EDGE = 1e-12  # shares of a triangle by which a hit may be beside it: neighbours have no gap
 
@@ -22,8 +24,8 @@ def placed(mesh: Mesh) -> tuple[Array, Array]:
     return corners, np.concatenate([middles, 1.001 * radii[:, None]], axis=1)
 
 
-@chord.register
-def _(mesh: Mesh, origins: Array, directions: Array) -> tuple[Array, Array]:
+@crossings.register
+def _(mesh: Mesh, origins: Array, directions: Array) -> list[Array]:
     shape = directions.shape[:-1]
     origins, directions = np.broadcast_to(origins, directions.shape).reshape(-1, 3), directions.reshape(-1, 3)
     nearest = np.full(len(directions), np.inf)
@@ -35,8 +37,7 @@ def _(mesh: Mesh, origins: Array, directions: Array) -> tuple[Array, Array]:
         t, u, v = met(starts[near], ways[near], a, b, c)
         hit = (np.minimum(np.minimum(u, v), 1 - u - v) >= -EDGE) & (t > 0)
         nearest[lines[near[hit]]] = np.minimum(nearest[lines[near[hit]]], t[hit])
-    found = np.where(np.isfinite(nearest), nearest, np.nan).reshape(shape)
-    return found, found
+    return [np.where(np.isfinite(nearest), nearest, np.nan).reshape(shape)]
 
 
 def ball_of(balls: Array) -> Array:
