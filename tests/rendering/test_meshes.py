@@ -86,6 +86,17 @@ def test_a_ball_with_normals_is_lit_like_a_sphere() -> None:
     assert not seen[~there].any()
 
 
+def test_a_ball_with_normals_mirrors_like_a_sphere() -> None:
+    around = [Sphere((8 * np.cos(a), 5 * np.sin(3 * a), 8 * np.sin(a)), 4, (255, int(40 * a), 60)) for a in range(6)]
+    normals, corners = ball(3), named("icosphere", scale=3.0, mirror=1.0)
+    smooth = Mesh(MeshFile("ball.obj", normals), (0, 0, 0), 3.0, WHITE, mirror=1.0)
+    sphere, soft, flat = (
+        minirt.render(Scene((Ambient(1.0, WHITE), EYE, *around, each)), 160, 120).linear
+        for each in (Sphere((0, 0, 0), 6, WHITE, mirror=1.0), smooth, corners)
+    )
+    assert 0 < np.abs(soft - sphere).mean() < np.abs(flat - sphere).mean() / 3
+
+
 def test_single_precision_shows_the_same() -> None:
     shapes = named("knot", (1, 0, 0), 2.0), named("pot", (-3, -1, 2), 1.5), Plane((0, -3, 0), (0, 1, 0), GREY)
     scene = Scene((Ambient(0.2, WHITE), EYE, LAMP, *shapes))
