@@ -85,7 +85,7 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
                 against = -dot(normal, direction)
                 facing = where(against < 0.0, -normal, normal)
                 bent = where(against < 0.0, -found.bent, found.bent)
-                mirroring = tilted(scene.skins, bent, facing, direction)
+                mirroring = tilted(bent, facing, direction)
                 cosine = -dot(mirroring, direction)
                 # Snell's law: the ratio of the indices in front of the surface and behind it.
                 ratio = where(against < 0.0, bounces.z, 1.0 / bounces.z)
@@ -114,11 +114,9 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
     return light
 
 
-def tilted(skins: Any, bent: Vec, facing: Vec, direction: Vec) -> Vec:
+def tilted(bent: Vec, facing: Vec, direction: Vec) -> Vec:
     """The normal by which a surface mirrors and refracts: that by which it is lit, unless it is turned away from the
     ray or would throw it below the surface."""
-    if skins is None:
-        return facing
     cosine = -dot(bent, direction)
     risen = dot(direction, facing) + 2.0 * cosine * dot(bent, facing)
     return where((cosine > 0.0) & (risen > 0.0), bent, facing)
