@@ -216,6 +216,11 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
     )
     if image.reached:
         print(image.reached, file=sys.stderr)
+    if asked.precision == "single":
+        from minirt.report.stiffness import lost_in_single
+
+        for stiff in lost_in_single(scene, renderer.packing, width, height):
+            print(f"notice: single precision cannot show {stiff}", file=sys.stderr)
     if asked.verbose:
         each = "" if image.reached else f"{samples} samples a pixel, "
         print(

@@ -39,6 +39,7 @@ MAY: dict[str, set[str]] = {
         "fields",
         "element",
         "materials",
+        "meshes",
         "shapes",
         "scene",
         "rendering",

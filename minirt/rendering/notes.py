@@ -45,5 +45,7 @@ def plurals(elements: set[type[Shape]]) -> str:
 
 
 def name(tables: Tables, index: int) -> str:
-    """What people call a shape: plane 2."""
-    return f"{type(tables.shapes[tables.owner[index]]).title} {tables.places[index, 1] + 1}"
+    """What people call a shape, or that of which it is a part: plane 2."""
+    owner = int(tables.owner[index])
+    kind = type(tables.shapes[owner])
+    return f"{kind.title} {sum(type(shape) is kind for shape in tables.shapes[: owner + 1])}"

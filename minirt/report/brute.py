@@ -21,10 +21,10 @@ class BruteForce(Packing):
 
     def traced(self, scene: Scene, width: int, height: int) -> Traced:
         """RenderError where the lists would fill the memory."""
-        count = tiles(width) * tiles(height)
-        if count * len(scene.shapes) > MOST:
-            raise RenderError(f"{len(scene.shapes)} shapes in each of {count} tiles are too many")
-        return with_all_shapes(super().traced(scene, width, height), count)
+        traced, count = super().traced(scene, width, height), tiles(width) * tiles(height)
+        if count * len(traced.places) > MOST:
+            raise RenderError(f"{len(traced.places)} shapes in each of {count} tiles are too many")
+        return with_all_shapes(traced, count)
 
 
 def with_all_shapes(traced: Traced, tiles: int) -> Traced:

@@ -13,20 +13,21 @@ from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec, dot, unit
 from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.rendering.notes import name
+from minirt.rendering.pick import columns
 from minirt.rendering.tables import Tables
 from minirt.report.stiffness import DOUBLE, SINGLE, Stiff
 from minirt.scene import Scene
 
 ACROSS, DOWN = 64, 36  # rays that are tried, over the whole picture
 LEAST = 4  # of them that show two surfaces close together; where surfaces cross, a ray may do so by chance
-MOST_SHAPES = 1000  # for which that is done
+MOST_SHAPES = 1000  # or parts of them, for which that is done
 TIE = 4 * ROUNDING  # unit roundoffs between surfaces that the kernel takes for one, see `minirt.kernel.trace.nearer`
 CLOSE = 1000  # times that: nearly
 
 
 def coincident(scene: Scene, tables: Tables) -> Iterator[Stiff]:
     """Pairs of shapes of which the eye sees both surfaces in one place, or nearly."""
-    if not 2 <= len(tables.shapes) <= MOST_SHAPES:
+    if not 2 <= len(tables.owner) <= MOST_SHAPES:
         return
     camera = pixel_rays(camera_numbers(scene.camera, ACROSS, DOWN), ACROSS, DOWN)
     y, x = np.mgrid[:DOWN, :ACROSS].reshape(2, -1) + 0.5
@@ -42,6 +43,7 @@ def coincident(scene: Scene, tables: Tables) -> Iterator[Stiff]:
         double = gap / (TIE * DOUBLE * (world + tables.looks[pair, 3].max(axis=0)))
         single = gap / (TIE * SINGLE * (np.abs(points).max(axis=0) + reach[pair].max(axis=0)))
         close = (double <= CLOSE) | (single <= 1)
+    close &= tables.owner[pair[0]] != tables.owner[pair[1]]  # parts of a mesh have edges in common
     pairs = Counter(zip(*np.sort(pair[:, close], axis=0).tolist(), strict=True))
     for (one, other), count in pairs.items():
         mine = close & (pair.min(axis=0) == one) & (pair.max(axis=0) == other)
@@ -58,9 +60,9 @@ def coincident(scene: Scene, tables: Tables) -> Iterator[Stiff]:
 
 def hits(tables: Tables, eye: Vec, ways: Vec) -> tuple[np.ndarray, np.ndarray]:
     """For each shape and ray the distance, infinity where it misses, and the cosine to the surface's normal."""
-    t, slopes = np.empty((2, len(tables.shapes), len(ways.x)))
-    for index, shape in enumerate(tables.shapes):
-        packed = shape.pack()
+    t, slopes = np.empty((2, len(tables.owner), len(ways.x)))
+    for index, (group, row) in enumerate(tables.places):
+        packed = columns(tables.rows[group][row : row + 1])
         kind = kind_of_packed(type(packed))
         hit, at = kind.intersect(packed, eye, ways)
         _, normal = kind.surface(packed, eye + at * ways)

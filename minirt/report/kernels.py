@@ -15,7 +15,7 @@ from minirt.rendering.parts import numbers, own_points
 from minirt.rendering.single import moved
 from minirt.report import exact, textbook
 from minirt.report.poses import Array, Rays
-from minirt.report.sizes import sizes_of
+from minirt.report.sizes import sizes
 from minirt.shapes import Kind, Shape
 from minirt.timing import is_disturbed, runs
 
@@ -110,7 +110,7 @@ def answers(rays: Rays) -> Answers:
 
 def reach(shape: Shape, origin: Array) -> float:
     """How large the numbers are that a hit is computed from: the way to the shape and its lengths."""
-    return float(np.linalg.norm(origin - own_points(shape)[0])) + sum(sizes_of(shape))
+    return float(np.linalg.norm(origin - own_points(shape)[0])) + float(sizes([shape]).sum())
 
 
 def verdicts(found: Array, right: Answers) -> tuple[int, float, float, int, int]:

@@ -30,7 +30,7 @@ from minirt.report.regimes import regimes_of
 from minirt.report.stiffness import stiff_shapes
 from minirt.report.tables import as_csv, as_json
 from minirt.scene import Scene
-from minirt.shapes import KINDS, Kind
+from minirt.shapes import ALL_KINDS, KINDS, Kind
 
 SEED = 20240607
 REPORT = "report.md"
@@ -48,7 +48,7 @@ def report(
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
     make(folder)
-    plan, kinds = QUICK if quick else FULL, [kind for kind in KINDS if kind.element in set(map(type, scene.shapes))]
+    plan, kinds = QUICK if quick else FULL, [kind for kind in ALL_KINDS if kind.element in set(map(type, scene.shapes))]
     steps = passes(plan.samples) + len(list(settings(plan.most))) + sum(len(regimes_of(kind)) + 1 for kind in kinds)
     with progress(steps + 1) as shown:
         shown.step("compiling")

@@ -1,20 +1,30 @@
-"""How large a shape is, by its fields."""
+"""How large shapes are, by their fields."""
 
 from __future__ import annotations
 
-from itertools import pairwise
-from math import dist
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 from minirt.element import fields_of
-from minirt.fields import Length, Lengths
-from minirt.rendering.parts import own_points
+from minirt.fields import Length, Lengths, Point
+from minirt.rendering.parts import boxes
 from minirt.shapes import Shape
+from minirt.shapes.mesh import Mesh
 
 
-def sizes_of(shape: Shape) -> list[float]:
-    """The lengths that a shape is given by, and the distances between the points that it is."""
-    fields = fields_of(type(shape))
-    found: list[float] = [getattr(shape, each.name) for each in fields if isinstance(each, Length)]
-    found += [size for each in fields if isinstance(each, Lengths) for size in getattr(shape, each.name)]
-    points = own_points(shape)
-    return found + [dist(one, other) for one, other in pairwise([*points, points[0]]) if len(points) > 1]
+def sizes(shapes: Sequence[Shape]) -> NDArray[np.float64]:
+    """For each shape of one kind the lengths that it is given by, or the distances between the points that it is given
+    by, (n, k); a plane has none, and a mesh is as large as the box around it."""
+    if isinstance(shapes[0], Mesh):
+        diagonals: NDArray[np.float64] = np.linalg.norm(np.diff(boxes(list(shapes)), axis=1)[:, 0], axis=1)
+        return diagonals[:, None]
+
+    def columns(*sorts: type) -> list[NDArray[np.float64]]:
+        names = [each.name for each in fields_of(type(shapes[0])) if isinstance(each, sorts) and each.required]
+        return [np.array([getattr(shape, name) for shape in shapes], float).reshape(len(shapes), -1) for name in names]
+
+    points = columns(Point)
+    sides = [np.linalg.norm(one - points[i - 1], axis=1, keepdims=True) for i, one in enumerate(points)]
+    return np.hstack([*columns(Length, Lengths), *(sides if len(points) > 1 else ())] or [np.zeros((len(shapes), 0))])

@@ -12,9 +12,10 @@ from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec
 from minirt.rendering.camera import camera_numbers
 from minirt.rendering.notes import name
+from minirt.rendering.packing import Packing
 from minirt.rendering.pick import columns
 from minirt.rendering.tables import Tables
-from minirt.report.sizes import sizes_of
+from minirt.report.sizes import sizes
 from minirt.scene import Scene
 
 DOUBLE, SINGLE = 2.0**-53, 2.0**-24  # unit roundoffs
@@ -35,7 +36,7 @@ class Stiff(NamedTuple):
 
 
 class Views(NamedTuple):
-    """How the eye and n shapes lie to each other, in scene units."""
+    """How the eye and n parts of shapes lie to each other, in scene units."""
 
     distance: np.ndarray  # (n,) from the eye to the surface
     size: np.ndarray  # (n,) the shortest length of each shape, infinity where it has none
@@ -69,24 +70,40 @@ def stiff_shapes(scene: Scene, tables: Tables, width: int, height: int) -> Itera
         yield Stiff(element, "thinner than a pixel, so samples may miss it", {"pixels": float(pixels[index])})
 
 
+def lost_in_single(scene: Scene, packing: Packing, width: int, height: int) -> Iterator[Stiff]:
+    """What looks otherwise than it should in a picture that was made of a scene in float32."""
+    if scene.shapes and packing.pack(scene, width, height).camera.dtype == np.float32:
+        for each in stiff_shapes(scene, packing.tables, width, height):
+            if each.figures.get("single", 0.0) > VISIBLE:
+                yield each
+
+
 def worst(tables: Tables, amounts: np.ndarray, limit: float) -> Iterator[tuple[int, str]]:
     """The shapes with the largest amounts above a limit: indices and names, the last one with how many more there
     are."""
-    more = int(np.count_nonzero(amounts > limit)) - LISTED
-    for place, index in enumerate(np.argsort(-amounts, kind="stable")[: LISTED + min(0, more)].tolist(), 1):
+    order = np.argsort(-amounts, kind="stable")
+    order = order[amounts[order] > limit]
+    _, first = np.unique(tables.owner[order], return_index=True)
+    order = order[np.sort(first)]  # of each shape the worst part
+    more = len(order) - LISTED
+    for place, index in enumerate(order[:LISTED].tolist(), 1):
         yield index, name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
 
 
 def views(tables: Tables, camera: np.ndarray) -> Views:
     """How the eye and the shapes in some tables lie to each other."""
     eye, forward = camera[:3], camera[9:]
-    nearest, size = np.zeros((len(tables.shapes), 3)), np.full(len(tables.shapes), np.inf)
+    nearest, size = np.zeros((len(tables.owner), 3)), np.full(len(tables.owner), np.inf)
     for group, packed in enumerate(tables.rows):
         mine = np.flatnonzero(tables.places[:, 0] == group)
         with np.errstate(all="ignore"):
             on, _ = kind_of(packed.dtype.names).surface(columns(packed), Vec(*eye))
         nearest[mine] = np.stack([np.broadcast_to(part, len(mine)) for part in (on.x, on.y, on.z)], axis=-1)
-        size[mine] = [min(sizes_of(tables.shapes[index]), default=np.inf) for index in mine]
+        if not tables.is_flat[group]:  # one with an end is in its box, not everywhere on the plane that it lies in
+            middle, half = tables.boxes[mine, :3], tables.boxes[mine, 3:]
+            nearest[mine] = np.clip(nearest[mine], middle - half, middle + half)
+        owners, part_of = np.unique(tables.owner[mine], return_inverse=True)
+        size[mine] = sizes([tables.shapes[i] for i in owners]).min(axis=1, initial=np.inf)[part_of]
     nearest = np.where(np.isfinite(nearest), nearest, tables.boxes[:, :3])  # from the very middle no point is nearest
     way = nearest - eye
     reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]  # of the shape, seen from the eye

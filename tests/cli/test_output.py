@@ -153,6 +153,15 @@ def test_precision(run: Run) -> None:
     assert (ended.status, "invalid choice: 'half'" in ended.err) == (2, True)
 
 
+def test_what_single_precision_cannot_show_is_told(run: Run, folder: Path) -> None:
+    (folder / "huge.rt").write_text("A 0.2 255,255,255\nC 0,1.7,0 0,0,1 60\nsp 0,-5e8,0 1e9 9,9,9\nsp 0,2,9 1 9,9,9\n")
+    for precision, told in (("double", 0), ("single", 1)):
+        ended = run("huge.rt", "-o", "x.png", "--size", "8x6", "--precision", precision)
+        notices = [line for line in ended.err.splitlines() if line.startswith("notice: single precision cannot show ")]
+        assert len(notices) == told
+        assert all("show sphere 1: the eye is close to it for its size (size 1e+09, " in line for line in notices)
+
+
 def test_threads_do_not_change_the_picture(run: Run) -> None:
     one, three = (run("ball.rt", "-o", "-", "--size", "50x40", "--threads", n).out for n in "13")
     assert one == three

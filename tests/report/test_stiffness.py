@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import minirt
+from minirt.fields import MeshFile
 from minirt.kernel.frame import towards
 from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.rendering.tables import Tables
@@ -16,8 +17,11 @@ from minirt.report.stiffness import Stiff, stiff_shapes
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.disc import Disc
+from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
 
 GREY, RED = (128, 128, 128), (255, 0, 0)
 EYE = Camera((0, 0, 0), (0, 0, 1), 90)
@@ -81,6 +85,24 @@ def test_an_eye_on_a_plane() -> None:
     (on,) = stiff(Plane((0, 0, 9), (0, 1, 0), GREY))
     assert on.element == "plane 1"
     assert on.figures[HIT] == np.inf
+
+
+def test_the_plane_that_a_disc_lies_in_is_not_the_disc() -> None:
+    level = (0, 1, 0)
+    assert stiff(Disc((0, 0, 9), level, 2, GREY), Square((3, 0, 9), level, 2, GREY)) == []
+    (within,) = stiff(Disc((0, 0, 9), level, 20, GREY))
+    assert within.figures["distance"] == 0
+
+
+def test_a_mesh_is_one_shape(tmp_path: Path) -> None:
+    # Two small triangles far apart, which are no smaller than the mesh; an eye on one of them.
+    corners = "v 0 0 0\nv 1e-6 0 0\nv 0 0 1e-6\nv 9 9 9\nv 9.000001 9 9\nv 9 9.000001 9\n"
+    (tmp_path / "two.obj").write_text(corners + "f 1 2 3\nf 4 5 6\n")
+    mesh = Mesh(MeshFile(str(tmp_path / "two.obj")), (0, 0, 5), 1, GREY)
+    assert stiff(mesh) == []
+    assert close(mesh, Mesh(mesh.file, (0, 0, 7), 1, GREY)) == []
+    (on,) = stiff(Sphere((0, 9, 9), 1, GREY), mesh.replace(position=(0, 0, 0)))
+    assert (on.element, on.figures["distance"]) == ("mesh 1", 0)
 
 
 def test_thin_things_count_by_their_shortest_length() -> None:

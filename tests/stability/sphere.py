@@ -32,12 +32,12 @@ def near_the_surface(seed: int) -> Rays:
     return Rays([Sphere(tuple(centre), 2.0, GREY)] * count, centre + (1 + height) * out, directions)
 
 
-def to_the_horizon(seed: int) -> Rays:
-    """From 0.001 to 2 above a sphere of diameter 1e9, past its horizon and below: by a hundredth of its dip or more."""
+def to_the_horizon(seed: int, above: tuple[float, float], dips: tuple[float, ...]) -> Rays:
+    """From so far above a sphere of diameter 1e9, at such parts of the dip of its horizon."""
     random = np.random.default_rng(seed)
     up = ways(random, COUNT, RAYS)
-    height = log(random, 1e-3, 2.0, COUNT, RAYS, 1)
-    dip = np.sqrt(2 * height / 5e8) * random.choice([0.5, 0.99, 1.01, 1.1, 3.0], (COUNT, RAYS, 1))
+    height = log(random, *above, COUNT, RAYS, 1)
+    dip = np.sqrt(2 * height / 5e8) * random.choice(dips, (COUNT, RAYS, 1))
     shapes = [Sphere((0, 0, 0), 1e9, GREY)] * COUNT
     return Rays(shapes, (5e8 + height) * up, unit(across(random, up, COUNT, RAYS) - dip * up))
 
@@ -58,6 +58,17 @@ REGIMES = [
     Regime("from inside a diameter of 1e9", partial(just_inside, 12), 1e-9, 0.0),
     Regime("from 1e-9 to 1 radius off the surface", partial(near_the_surface, 14), 3e-14, 0.0),
     # There the angle below the horizon is 1e-8 of a direction that is exact to 2^-53.
-    Regime("to the horizon of a diameter of 1e9", partial(to_the_horizon, 15), 1e-8, 0.0),
+    Regime(
+        "to the horizon of a diameter of 1e9",
+        partial(to_the_horizon, 15, (1e-3, 2.0), (0.5, 0.99, 1.01, 1.1, 3.0)),
+        1e-8,
+        0.0,
+    ),
+    Regime(
+        "at the very horizon of a diameter of 1e9",
+        partial(to_the_horizon, 16, (1e-6, 1e-3), (0.9999, 1.0001)),
+        1e-6,
+        0.0,
+    ),
     Regime("from the centre", partial(in_the_centre, 13), 4e-16, 0.0),
 ]
