@@ -31,6 +31,10 @@ def test_answers_known_by_hand(way: Intersect) -> None:
     ]
     expected = [5, np.inf, 4, 5 + 0.75 * 1.59, np.inf, np.inf, 5 - 0.75 * 1.59, np.inf, np.inf, 5, np.inf, np.inf]
     assert shoot(way, BOARD, *rays) == pytest.approx(expected, rel=1e-15)
+    assert shoot(way, BOARD.replace(normal=(0, 0, -1)), ((2, 1, 0), (0, 0, 1)), ((2.01, 1, 0), (0, 0, 1))) == [
+        5,
+        np.inf,
+    ]
     assert shoot(way, BOARD.replace(normal=(-0.6, 0, 0.8)), *rays) == pytest.approx(expected, rel=1e-15)
 
 
