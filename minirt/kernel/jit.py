@@ -38,10 +38,10 @@ from minirt.kernel import (
 )
 from minirt.kernel.inlined import Inlined
 from minirt.kernel.traced import Traced
-from minirt.lanes import power, vec
+from minirt.lanes import angle, power, vec
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, VecType, common, constant, splat, vec_of
-from minirt.shapes import ALL_KINDS, basis, exact, quadric
+from minirt.shapes import ALL_KINDS, basis, exact, quadric, wrap
 
 Arguments: TypeAlias = tuple[Any, ...]  # of `minirt.kernel.frame.frame`
 
@@ -194,8 +194,10 @@ OWN_FORM = (whitted.path_memory, trace.over_kinds, counter.fetch_add, frame.stor
 for _module in (
     basis,
     exact,
+    angle,
     power,
     quadric,
+    wrap,
     trace,
     highlight,
     lamps,

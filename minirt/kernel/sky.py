@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from minirt.kernel.texels import picture_at
 from minirt.kernel.traced import Traced
 from minirt.lanes import Vec, any, maximum, minimum, splat, sqrt, where
-from minirt.lanes import sqrt as arctan2
+from minirt.lanes.angle import arctan2
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 

@@ -26,7 +26,7 @@ def channel_at(texels: Any, pictures: Any, which: int, channel: int, u: Number, 
     x = u * wide - 0.5
     y = (1.0 - v) * high - 0.5
     left, top = floor(x), floor(y)
-    across, down = x - left, y - top
+    across, down = minimum(x - left, 1.0), minimum(y - top, 1.0)  # no NaN, as in `wrapped`
     x0, x1 = wrapped(left, wide), wrapped(left + 1.0, wide)
     y0, y1 = wrapped(top, high) * wide, wrapped(top + 1.0, high) * wide
     upper = mix(gather(texels, start + step * (y0 + x0)), gather(texels, start + step * (y0 + x1)), across)

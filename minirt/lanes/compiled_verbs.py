@@ -85,7 +85,8 @@ def _two_to(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 
 @teach(verbs.rounded_product, two_numbers, [(ANY, ANY)])
 def _rounded_product(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.fmul(*same_numbers(context, builder, sig, args))
+    # Without the fence the flags of the kernel allow to fuse it with a sum that follows.
+    return llvm(builder, "arithmetic.fence", builder.fmul(*same_numbers(context, builder, sig, args)))
 
 
 @teach(verbs.product_error, two_numbers, [(ANY, ANY)])

@@ -1,8 +1,9 @@
-"""Checkerboard: `checker:size[,R,G,B]`, in short `pat:`; `checker` alone is `checker:1`.
+"""Checkerboard: `checker:size[,R,G,B]`, in short `pat:`; `checker` alone is `checker:0.125`, on planes `checker:1`.
 
 Squares whose sides are `size` long, in the surface's own coordinates u and v, have in turn the colour of the surface
 (or its texture) and the second colour, black when left out. The square with 0 <= u < size and 0 <= v < size has the
-colour of the surface.
+colour of the surface. On a plane u and v are lengths; on other shapes they run from 0 to 1 from edge to edge or once
+around, as their manual pages say, so that a size of 0.125 makes a board of 8 by 8.
 
     pl 0,-1,0 0,1,0 255,255,255 checker:2,40,40,60
 """
@@ -20,5 +21,5 @@ class Checker(Record):
     """What `checker:` says."""
 
     title = "checker"
-    size: float = declare(Length, "side of a square, in u and v", unit="", initial=1.0)
+    size: float = declare(Length, "side of a square, in u and v", unit="")
     colour: Triple = declare(Colour, "the second colour", default=(0, 0, 0))

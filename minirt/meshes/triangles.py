@@ -29,10 +29,23 @@ class Triangles:
         return Triangles(self.points, self.corners[indices], normals, uvs)
 
     @cached_property
+    def used(self) -> np.ndarray:
+        """The points that are corners."""
+        return np.unique(self.corners)
+
+    @cached_property
     def box(self) -> np.ndarray:
         """Least and greatest corner of the box around them, (2, 3)."""
-        used = self.points[np.unique(self.corners)]
+        used = self.points[self.used]
         return np.stack([used.min(axis=0), used.max(axis=0)])
+
+    @cached_property
+    def edges(self) -> np.ndarray:
+        """Numbers of their edges, (m, 3), each from a corner to the next; those between the same points have the
+        same."""
+        ends = np.sort(np.stack([self.corners, np.roll(self.corners, -1, axis=1)], axis=-1), axis=-1)
+        _, numbers = np.unique(ends[..., 0] * len(self.points) + ends[..., 1], return_inverse=True)
+        return numbers.reshape(-1, 3)
 
     @cached_property
     def flat_normals(self) -> np.ndarray:

@@ -28,10 +28,7 @@ def parts_of(shapes: list[Shape]) -> Parts:
     if isinstance(shapes[0], Mesh):
         rows = [shape.rows() for shape in shapes if isinstance(shape, Mesh)]
         return Parts(*map(np.concatenate, zip(*map(of_triangles, rows), strict=True)))
-    around = () if shapes[0].flat() else None
-    hulls = [shape.balls() or EVERYWHERE if around is None else around for shape in shapes]
-    balls = np.array([[(*centre, radius) for centre, radius in hull] for hull in hulls]).reshape(len(shapes), -1, 4)
-    return Parts(numbers([shape.pack() for shape in shapes]), boxes(shapes), balls)
+    return Parts(numbers([shape.pack() for shape in shapes]), boxes(shapes), balls_of(shapes))
 
 
 def of_triangles(rows: np.ndarray) -> Parts:
@@ -42,6 +39,14 @@ def of_triangles(rows: np.ndarray) -> Parts:
     a, b, c = corners.transpose(1, 0, 2)
     low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
     return Parts(rows, np.stack([low, high], axis=1), balls)
+
+
+def balls_of(shapes: list[Shape]) -> np.ndarray:
+    """`Parts.balls`."""
+    if isinstance(shapes[0], Mesh):
+        return parts_of(shapes).balls
+    hulls = [() if shape.flat() else shape.balls() or EVERYWHERE for shape in shapes]
+    return np.array([[(*centre, radius) for centre, radius in hull] for hull in hulls]).reshape(len(shapes), -1, 4)
 
 
 def numbers(packed: list[Any]) -> np.ndarray:

@@ -15,9 +15,11 @@ from minirt.kernel.trace import NEARBY, nearest
 from minirt.lanes import Vec, lane, splat, unit
 from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing import Packing
+from minirt.rendering.silhouette import covered
 from minirt.rendering.tables import Tables
 from minirt.scene import Camera, Scene
 from minirt.shapes import ALL_KINDS, Shape
+from minirt.shapes.mesh import Mesh
 
 
 def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: Tables | None = None) -> Shape | None:
@@ -51,17 +53,25 @@ def place(shape: Shape, camera: Camera, width: int, height: int, x: int, y: int)
 
 
 def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Whether the middles of pixels x, y show a shape where nothing is in front of it."""
+    """Whether the middles of pixels x, y show a shape where nothing is in front of it; nowhere for a mesh that reaches
+    beside or behind the eye."""
+    if isinstance(shape, Mesh):
+        found = covered(shape, camera, width, height)
+        there = (x >= 0) & (x < width) & (y >= 0) & (y < height)
+        return there & (found is not None and found[np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)])
     return np.broadcast_to(met(shape, camera, width, height, x, y)[0], x.shape)
 
 
 def met(shape: Shape, camera: Camera, width: int, height: int, x: Any, y: Any) -> tuple[Any, Any, Vec, Vec]:
-    """Whether and where the rays of pixels meet a shape, their origin and their directions."""
+    """Whether and where the rays of pixels meet a shape, their origin and their directions; of a mesh, a single ray."""
     numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
     kind = next(kind for kind in ALL_KINDS if kind.element is type(shape))
     with np.errstate(all="ignore"):
         origin, direction = Vec(*numbers[:3]), unit(towards(numbers, x + 0.5, y + 0.5))
-        return *kind.intersect(shape.pack(), origin, direction), origin, direction
+        hit, t = kind.intersect(shape.pack(), origin, direction)
+        if isinstance(shape, Mesh):
+            hit, t = hit.any(), np.where(hit, t, np.inf).min()
+        return hit, t, origin, direction
 
 
 def in_front(tables: Tables, origin: Vec, direction: Vec) -> np.ndarray:

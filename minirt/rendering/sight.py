@@ -76,7 +76,7 @@ def seen_by_lamp(kernel: Any, tables: Tables, lamp: np.ndarray, grid: int, skipp
 
 def seen_by_sun(tables: Tables, grid: int, skipped: np.ndarray) -> Lists:
     """What parallel light may meet: everything in one cell, or with more cells, where a tree is walked, nothing."""
-    views = np.zeros((len(tables.shapes), 5))
+    views = np.zeros((len(tables.places), 5))
     views[:, 3] = -2.0
     if grid == 1:
         return one_cell(tables, views, skipped)

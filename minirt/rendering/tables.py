@@ -9,7 +9,7 @@ import numpy as np
 
 from minirt.kernel.lists import MARGIN
 from minirt.kernel.rows import row_type
-from minirt.rendering.parts import parts_of
+from minirt.rendering.parts import balls_of, parts_of
 from minirt.shapes import ALL_KINDS, Shape
 
 PIECE = 4096  # shapes that are compared or written at once: their Python objects come and go in the processor's cache
@@ -74,7 +74,7 @@ class Tables:
         self.numbers = {kind.element: group for group, kind in enumerate(used)}
         self.rows = tuple(np.zeros(0, row_type(kind)) for kind in used)
         self.is_flat = np.array([each.flat() is not None for each in examples], bool)
-        self.counts = np.array([parts_of([each]).balls.shape[1] for each in examples], np.int64)
+        self.counts = np.array([balls_of([each]).shape[1] for each in examples], np.int64)
         self.places, self.start, self.owner = np.zeros((0, 2), np.int64), np.zeros(1, np.int64), np.zeros(0, np.int64)
         self.looks, self.boxes = np.zeros((0, 4)), np.zeros((0, 4))
         self.planes, self.balls, self.first = np.zeros((0, 5)), np.zeros((0, 4)), np.zeros(1, np.int64)

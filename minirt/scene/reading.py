@@ -14,7 +14,7 @@ from minirt.fields.numerals import named
 from minirt.scene.lines import Line, Word, joined, words
 from minirt.scene.log import Log
 from minirt.scene.registry import ELEMENTS, SPELLINGS
-from minirt.scene.spelling import GLUED, NUMERIC, hint, nearest, nearest_element
+from minirt.scene.spelling import GLUED, NUMERIC, hint, nearest_element, nearest_key
 
 SLASHES = re.compile(r"(?<![^ \t])//")
 COMMA_AND_BLANK = re.compile(r"[ \t],|,[ \t]")
@@ -137,8 +137,15 @@ def blame(kind: type[Element], slots: list[Slot], extra: Word, line: Line, log: 
     fill(kind, slots, line, log)
     del log.errors[before + 1 :]  # behind the first all fields may be off by one
     if len(log.errors) == before:
-        why = " (one element a line)" if extra.raw in SPELLINGS else f": expected '{pattern(kind)}'"
+        why = " (one element a line)" if extra.raw in SPELLINGS else instead(kind, extra.raw)
         log.error(line, extra.column, f"{kind.title} has no further field {quoted(extra.raw)}{why}", len(extra.raw))
+
+
+def instead(kind: type[Element], word: str) -> str:
+    """What may be meant by a word too many."""
+    keyed = table(kind).keyed
+    guess = nearest_key(word, list(keyed))
+    return hint(keyed[guess].notation) if guess else f": expected '{pattern(kind)}'"
 
 
 def attributes(kind: type[Element], keys: list[Word], line: Line, log: Log) -> list[Slot]:
@@ -166,9 +173,10 @@ def unknown_key(kind: type[Element], key: str) -> str:
     owners = dict.fromkeys(keys[key].sort or title for title, keys in keyed.items() if key in keys)
     if owners:
         return f"{kind.title} has no attribute '{key}': it belongs to {', '.join(owners)}"
-    own = list(table(kind).keyed)
-    others = [each for keys in keyed.values() for each in keys]
-    return f"unknown attribute {quoted(key)}{hint(nearest(key, own) or nearest(key, others))}"
+    own = table(kind).keyed
+    guess = nearest_key(key, list(own)) or nearest_key(key, [each for keys in keyed.values() for each in keys])
+    names = dict.fromkeys(field.keys[0] for field in own.values())
+    return f"unknown attribute {quoted(key)}" + (hint(guess) or f": {kind.title} has {', '.join(names) or 'none'}")
 
 
 def fill(kind: type[Element], slots: list[Slot], line: Line, log: Log) -> dict[str, Any] | None:

@@ -11,6 +11,24 @@ LOOKALIKES = str.maketrans("1I0", "llo")
 GLUED = re.compile(r"([A-Za-z]+)[-+.0-9]")
 NUMERIC = re.compile(r"[-+.,]*[0-9]")
 
+# How the keys of attributes begin in other programs' scenes, where their spelling does not tell what is meant.
+ELSEWHERE = {
+    "refl": "mirror",
+    "refr": "glass",
+    "ior": "glass",
+    "trans": "glass",
+    "shin": "specular",
+    "phong": "specular",
+    "tex": "texture",
+    "xpm": "texture",
+    "image": "texture",
+    "height": "bump",
+    "bump": "bump",
+    "chess": "checker",
+    "chequer": "checker",
+    "atten": "fade",
+}
+
 
 def nearest(word: str, known: list[str]) -> str:
     """The entry of `known` that is spelled most like `word`, or nothing where none is near."""
@@ -28,6 +46,12 @@ def nearest_element(word: str) -> str:
         return SPELLINGS[glued[1]].code
     names = {name: kind.code for kind in ELEMENTS.values() for name in (kind.title, kind.plural)}
     return nearest(word, list(ELEMENTS)) or names.get(nearest(word, list(names)), "")
+
+
+def nearest_key(word: str, known: list[str]) -> str:
+    """The key of `known` that `word` may mean, or nothing."""
+    meant = next((key for start, key in ELSEWHERE.items() if word.lower().startswith(start)), "")
+    return meant if meant in known else nearest(word, known)
 
 
 def hint(word: str) -> str:

@@ -27,6 +27,9 @@ def attribute_row(field: Field) -> str:
     parts = fields_of(field.record) if isinstance(field, Compound) else ()
     told = "<br>".join([described(field), *map(meaning, parts)])
     alone = f", or `{field.keys[0]}` for `{field.keys[0]}:{field.bare}`" if field.bare else ""
+    for kind in ELEMENTS.values():
+        own = next((each for each in fields_of(kind) if each.name == field.name and each.bare != field.bare), None)
+        alone += f" ({kind.plural}: `{field.keys[0]}:{own.bare}`)" if own else ""
     aliases = ", ".join(f"`{alias}:`" for alias in field.aliases)
     return f"| `{field.notation}`{alone}; also {aliases} | {field.sort} | {told} |"
 

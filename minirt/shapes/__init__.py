@@ -18,19 +18,27 @@ from minirt.shapes import (
 from minirt.shapes.shape import Ball, Box, Kind, Shape
 
 KINDS = (
-    Kind(sphere.Sphere, sphere.PackedSphere, sphere.intersect, sphere.surface),
-    Kind(plane.Plane, plane.PackedPlane, plane.intersect, plane.surface),
-    Kind(cylinder.Cylinder, cylinder.PackedCylinder, cylinder.intersect, cylinder.surface),
-    Kind(cone.Cone, cone.PackedCone, cone.intersect, cone.surface),
-    Kind(paraboloid.Paraboloid, paraboloid.PackedParaboloid, paraboloid.intersect, paraboloid.surface),
-    Kind(hyperboloid.Hyperboloid, hyperboloid.PackedHyperboloid, hyperboloid.intersect, hyperboloid.surface),
-    Kind(triangle.Triangle, triangle.PackedTriangle, triangle.intersect, triangle.surface),
-    Kind(square.Square, square.PackedSquare, square.intersect, square.surface),
-    Kind(disc.Disc, disc.PackedDisc, disc.intersect, disc.surface),
-    Kind(box.Box, box.PackedBox, box.intersect, box.surface),
-    Kind(torus.Torus, torus.PackedTorus, torus.intersect, torus.surface),
+    Kind(sphere.Sphere, sphere.PackedSphere, sphere.intersect, sphere.surface, sphere.mapping),
+    Kind(plane.Plane, plane.PackedPlane, plane.intersect, plane.surface, plane.mapping),
+    Kind(cylinder.Cylinder, cylinder.PackedCylinder, cylinder.intersect, cylinder.surface, cylinder.mapping),
+    Kind(cone.Cone, cone.PackedCone, cone.intersect, cone.surface, cone.mapping),
+    Kind(
+        paraboloid.Paraboloid, paraboloid.PackedParaboloid, paraboloid.intersect, paraboloid.surface, paraboloid.mapping
+    ),
+    Kind(
+        hyperboloid.Hyperboloid,
+        hyperboloid.PackedHyperboloid,
+        hyperboloid.intersect,
+        hyperboloid.surface,
+        hyperboloid.mapping,
+    ),
+    Kind(triangle.Triangle, triangle.PackedTriangle, triangle.intersect, triangle.surface, triangle.mapping),
+    Kind(square.Square, square.PackedSquare, square.intersect, square.surface, square.mapping),
+    Kind(disc.Disc, disc.PackedDisc, disc.intersect, disc.surface, disc.mapping),
+    Kind(box.Box, box.PackedBox, box.intersect, box.surface, box.mapping),
+    Kind(torus.Torus, torus.PackedTorus, torus.intersect, torus.surface, torus.mapping),
 )
-MESH = Kind(mesh.Mesh, mesh.PackedMeshTriangle, mesh.intersect, mesh.surface, shading=mesh.shading)
+MESH = Kind(mesh.Mesh, mesh.PackedMeshTriangle, mesh.intersect, mesh.surface, mesh.mapping, mesh.shading)
 ALL_KINDS = (*KINDS, MESH)
 
 __all__ = ["ALL_KINDS", "KINDS", "MESH", "Ball", "Box", "Kind", "Shape"]

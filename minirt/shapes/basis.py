@@ -4,20 +4,28 @@ from __future__ import annotations
 
 from math import copysign
 
-from minirt.fields import Triple
+from minirt.fields import Triple, upright
 from minirt.lanes import Vec, dot
 
 
 def basis(axis: Triple) -> tuple[Vec, Vec, Vec]:
     """Unit vectors u, v and the unit `axis` itself, perpendicular to each other and right-handed.
 
-    Without a branch or a division by a small number (Duff et al., Building an Orthonormal Basis, Revisited, 2017).
+    They are the scene's z, x and y, turned no further than it takes to bring y to the axis, or to its opposite. Without
+    a branch or a division by a small number (Duff et al., Building an Orthonormal Basis, Revisited, 2017).
     """
     x, y, z = axis
-    sign = copysign(1.0, z)
-    a = -1.0 / (sign + z)
-    b = x * y * a
-    return Vec(1.0 + sign * x * x * a, sign * b, -sign * x), Vec(b, sign + y * y * a, -y), Vec(x, y, z)
+    sign = copysign(1.0, y)
+    a = -1.0 / (sign + y)
+    b = z * x * a
+    return Vec(sign * b, -sign * z, 1.0 + sign * z * z * a), Vec(sign + x * x * a, -x, b), Vec(x, y, z)
+
+
+def face_on(normal: Triple) -> tuple[Vec, Vec]:
+    """Right and up for somebody who faces a flat surface: `right`, `up` and the unit normal are right-handed."""
+    x, y, z = normal
+    right, up = upright(-x, -y, -z)
+    return Vec(*right), Vec(*up)
 
 
 def to_basis(u: Vec, v: Vec, w: Vec, p: Vec) -> Vec:

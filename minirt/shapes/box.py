@@ -1,7 +1,8 @@
 """Box: `bo x,y,z ax,ay,az w,h,d R,G,B`.
 
 A solid block. `x,y,z` is its centre, `ax,ay,az` its own y axis, and `w,h,d` are its sizes along its own x, y and z
-axes. These are those of the scene, turned no further than it takes to bring y to the axis, or to its opposite.
+axes. These are those of the scene, turned no further than it takes to bring y to the axis, or to its opposite. Each
+face has a picture of its own: upright on the four that stand, above and below with its upper edge towards -z and z.
 
     bo 0,1,20  0,1,0  4,2,6  160,160,170    an upright block four wide, two high and six deep
 """
@@ -34,9 +35,8 @@ class Box(Shape):
 
     def axes(self) -> tuple[Vec, Vec, Vec]:
         """Its own x, y and z axes."""
-        x, y, z = self.axis
-        u, v, _ = basis((z, x, y))  # of the axes z, x and y in the place of x, y and z
-        return Vec(v.y, v.z, v.x), Vec(x, y, z), Vec(u.y, u.z, u.x)
+        z, x, y = basis(self.axis)
+        return x, y, z
 
     def pack(self) -> PackedBox:
         x, y, z = self.axes()
@@ -108,3 +108,20 @@ def surface(box: PackedBox, point: Vec) -> tuple[Vec, Vec]:
     )
     on = p - where(by_x, x, where(by_y, y, z)) * out
     return box.centre + from_basis(box.u, box.v, box.w, on), from_basis(box.u, box.v, box.w, out)
+
+
+def mapping(box: PackedBox, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """From 0 to 1 across the face: of those that stand upwards along the box's y axis."""
+    p = to_basis(box.u, box.v, box.w, point - box.centre)
+    out = to_basis(box.u, box.v, box.w, normal)
+    by_x, by_y = fabs(out.x) > 0.5, fabs(out.y) > 0.5
+    sign = copysign(1.0, where(by_x, -out.x, where(by_y, -out.y, out.z)))
+    flat = splat(0.0, p.x)
+    wide, tall, deep = 2.0 * box.half.x, 2.0 * box.half.y, 2.0 * box.half.z
+    by_z = sign * p.z / deep
+    return (
+        0.5 + where(by_x, by_z, where(by_y, p.x, sign * p.x) / wide),
+        0.5 + where(by_y, by_z, p.y / tall),
+        where(by_x, sign * deep, flat) * box.w + where(by_x, flat, where(by_y, splat(wide, flat), sign * wide)) * box.u,
+        where(by_y, sign * deep, flat) * box.w + where(by_y, flat, splat(tall, flat)) * box.v,
+    )

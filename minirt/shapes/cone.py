@@ -1,7 +1,8 @@
 """Cone: `co x,y,z ax,ay,az diameter height R,G,B`.
 
 A solid cone with a cap on its base. `x,y,z` is the apex; the axis `ax,ay,az` runs from there to the base, whose
-`diameter` it has at the distance `height`.
+`diameter` it has at the distance `height`. A picture lies once around the side, its upper edge at the apex, and once
+on the square around the base; on a cone that stands upright its middle is towards -z.
 
     co 0,3,20  0,-1,0  2  3  240,160,40    a tent three units high that stands on y = 0
 """
@@ -12,13 +13,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, copysign, dot, inverse_root, maximum, minimum, splat, sqrt, where
+from minirt.lanes import Vec, any, copysign, inverse_root, maximum, minimum, splat, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import along, box_of_boxes, box_of_disc
 from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.wrap import wrapped
 
 
 @dataclass(frozen=True)
@@ -63,9 +65,7 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     interval around that. What remains is cut to the heights between apex and base: as with the cylinder there is no
     crack at the rim, and none at the apex.
     """
-    f = origin - cone.apex
-    approach = -dot(f, direction)  # t is counted from the closest approach to the apex
-    p = to_basis(cone.u, cone.v, cone.w, f + approach * direction)
+    p = to_basis(cone.u, cone.v, cone.w, origin - cone.apex)
     d = to_basis(cone.u, cone.v, cone.w, direction)
     rise = cone.slope * d.z
     a = d.x * d.x + d.y * d.y - rise * rise
@@ -81,15 +81,14 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     side = copysign(1.0, a)
     b = p.x * d.x + p.y * d.y - reach * rise
     hit, low, high = below_zero(side * a, side * b, side * (p.x * p.x + p.y * p.y - reach * reach))
-    t = approach
+    t = start
     if any(hit):
-        approach = approach + start
         first, last = first - start, last - start
         rising = d.z > 0.0
         enter = maximum(first, where(steep, where(rising, high, first), low))
         leave = minimum(last, where(steep, where(rising, last, low), high))
-        near = approach + enter
-        t = where(near > 0.0, near, approach + leave)
+        near = start + enter
+        t = where(near > 0.0, near, start + leave)
         hit = hit & (enter <= leave) & (t > 0.0)
     return hit, t
 
@@ -111,3 +110,13 @@ def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
     out = Vec(p.x * per_rho * aside, p.y * per_rho * aside, up)
     on = p - where(on_side, off, p.z - cone.height) * out
     return cone.apex + from_basis(cone.u, cone.v, cone.w, on), from_basis(cone.u, cone.v, cone.w, out)
+
+
+def mapping(cone: PackedCone, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """Around the side and up it: from the base to the apex, so in the frame that has the apex above."""
+    u, v, w = cone.u, -cone.v, -cone.w
+    p = to_basis(u, v, w, point - cone.apex)
+    out = to_basis(u, v, w, normal)
+    narrowing = -cone.slope * sqrt(splat(1.0, p.z) + cone.slope * cone.slope)  # by height, along out.x and out.y
+    rise = cone.height * Vec(narrowing * out.x, narrowing * out.y, splat(1.0, p.z))
+    return wrapped(u, v, w, p, out.z > -0.5, 1.0 + p.z / cone.height, rise, cone.slope * cone.height)

@@ -1,6 +1,7 @@
 """Cylinder: `cy x,y,z ax,ay,az diameter height R,G,B`.
 
-A solid tube with both caps about the axis `ax,ay,az`; `x,y,z` is its centre, half-way up.
+A solid tube with both caps about the axis `ax,ay,az`; `x,y,z` is its centre, half-way up. A picture lies once around
+the side, of an upright one with its middle towards -z, and once on the square around each cap.
 
     cy 0,0,20  0,1,0  2  5  255,200,0    an upright column, from y = -2.5 to y = 2.5
 """
@@ -11,13 +12,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, copysign, dot, fabs, maximum, minimum, splat, sqrt, where
+from minirt.lanes import Vec, any, copysign, fabs, maximum, minimum, splat, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import along, box_of_boxes, box_of_disc
 from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.wrap import is_side, wrapped
 
 
 @dataclass(frozen=True)
@@ -62,9 +64,7 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Ma
     The ray is inside the endless tube for one interval of t and between the planes of the caps for another: it is
     inside the cylinder where these overlap. There is no crack between cap and side, whatever the rounding.
     """
-    f = origin - cylinder.centre
-    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
-    p = to_basis(cylinder.u, cylinder.v, cylinder.w, f + approach * direction)
+    p = to_basis(cylinder.u, cylinder.v, cylinder.w, origin - cylinder.centre)
     d = to_basis(cylinder.u, cylinder.v, cylinder.w, direction)
     a = d.x * d.x + d.y * d.y
     per_height = 1.0 / d.z
@@ -75,13 +75,12 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Ma
     p = p + start * d
     c = p.x * p.x + p.y * p.y - cylinder.radius * cylinder.radius
     hit, low, high = below_zero(a, p.x * d.x + p.y * d.y, c)
-    t = approach
+    t = start
     if any(hit):
-        approach = approach + start
         enter = maximum(first - start, low)
         leave = minimum(last - start, high)
-        near = approach + enter
-        t = where(near > 0.0, near, approach + leave)
+        near = start + enter
+        t = where(near > 0.0, near, start + leave)
         hit = hit & (enter <= leave) & (t > 0.0)
     return hit, t
 
@@ -99,3 +98,13 @@ def surface(cylinder: PackedCylinder, point: Vec) -> tuple[Vec, Vec]:
         cylinder.centre + from_basis(cylinder.u, cylinder.v, cylinder.w, on),
         from_basis(cylinder.u, cylinder.v, cylinder.w, out),
     )
+
+
+def mapping(cylinder: PackedCylinder, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """Around the side and up it."""
+    u, v, w = cylinder.u, cylinder.v, cylinder.w
+    p = to_basis(u, v, w, point - cylinder.centre)
+    side = is_side(p, to_basis(u, v, w, normal))
+    flat = splat(0.0, p.z)
+    tall = 2.0 * cylinder.half
+    return wrapped(u, v, w, p, side, 0.5 + p.z / tall, Vec(flat, flat, splat(tall, flat)), cylinder.radius)

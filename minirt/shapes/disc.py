@@ -1,6 +1,7 @@
 """Disc: `di x,y,z nx,ny,nz diameter R,G,B`.
 
-A flat disc, seen from both sides. `x,y,z` is its centre and `nx,ny,nz` its normal.
+A flat disc, seen from both sides. `x,y,z` is its centre and `nx,ny,nz` its normal. A picture fills the square around
+it once, upright for somebody who faces it; on a floor its upper edge is towards -z, on a ceiling towards z.
 
     di 0,0,20  0,1,0  6  200,120,120    a table top six units across, seen edge on
 """
@@ -14,6 +15,7 @@ from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
+from minirt.shapes.basis import face_on
 from minirt.shapes.extents import box_of_disc
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Box, Place, Shape
@@ -30,7 +32,8 @@ class Disc(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedDisc:
-        return PackedDisc(Place(Vec(*self.centre)), Vec(*self.normal), self.diameter / 2)
+        right, up = face_on(self.normal)
+        return PackedDisc(Place(Vec(*self.centre)), right, up, Vec(*self.normal), self.diameter / 2)
 
     def balls(self) -> tuple[Ball, ...]:
         return ((self.centre, self.diameter / 2),)
@@ -43,6 +46,8 @@ class PackedDisc(NamedTuple):
     """What the kernel keeps of a disc."""
 
     centre: Place
+    right: Vec  # of pictures
+    up: Vec
     normal: Vec
     radius: float
 
@@ -65,3 +70,12 @@ def surface(disc: PackedDisc, point: Vec) -> tuple[Vec, Vec]:
     """The point of the disc's plane nearest to `point`, and the normal."""
     height = dot(disc.normal, point - disc.centre)
     return point - height * disc.normal, disc.normal
+
+
+def mapping(disc: PackedDisc, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """From 0 to 1 across the square around the disc."""
+    p = point - disc.centre
+    across = 2.0 * disc.radius
+    per_diameter = 1.0 / across
+    u, v = 0.5 + dot(p, disc.right) * per_diameter, 0.5 + dot(p, disc.up) * per_diameter
+    return u, v, across * disc.right, across * disc.up

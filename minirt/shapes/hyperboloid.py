@@ -2,6 +2,8 @@
 
 A solid hyperboloid of one sheet about the axis `ax,ay,az`, with a cap at both ends. `x,y,z` is its centre; it is
 `waist` wide there and `diameter` wide at the ends, `height` apart. The waist may be as wide as the ends: a cylinder.
+A picture lies once around the side, of an upright one with its middle towards -z, and once on the square around each
+cap.
 
     hy 0,0,20  0,1,0  2  4  6  180,140,220    a cooling tower six units high
 """
@@ -13,13 +15,14 @@ from math import sqrt as root
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
-from minirt.lanes import Vec, any, copysign, dot, fabs, inverse_root, maximum, minimum, splat, sqrt, unit, where
+from minirt.lanes import Vec, any, copysign, fabs, inverse_root, maximum, minimum, splat, sqrt, unit, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import along, box_of_boxes, box_of_disc
 from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.wrap import is_side, wrapped
 
 
 @dataclass(frozen=True)
@@ -41,10 +44,9 @@ class Hyperboloid(Shape):
 
     def pack(self) -> PackedHyperboloid:
         u, v, w = basis(self.axis)
-        spread = root(self.diameter - self.waist) * root(self.diameter + self.waist)
-        return PackedHyperboloid(
-            Place(Vec(*self.centre)), u, v, w, self.waist / 2, spread / self.height, self.height / 2
-        )
+        thinner, thicker = self.diameter - self.waist, self.diameter + self.waist
+        slope = root(thinner / self.height) * root(thicker / self.height)
+        return PackedHyperboloid(Place(Vec(*self.centre)), u, v, w, self.waist / 2, slope, self.height / 2)
 
     def ends(self) -> tuple[Triple, Triple]:
         return along(self.centre, self.axis, -self.height / 2), along(self.centre, self.axis, self.height / 2)
@@ -75,9 +77,7 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
     outside of one, perhaps empty, where it is steeper. Cut to the heights between the caps that leaves up to two
     stretches within the solid; the first end of a stretch with t > 0 is hit.
     """
-    f = origin - hyperboloid.centre
-    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
-    p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, f + approach * direction)
+    p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, origin - hyperboloid.centre)
     d = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, direction)
     rise = hyperboloid.slope * d.z
     a = d.x * d.x + d.y * d.y - rise * rise
@@ -98,20 +98,19 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
         side * (p.x * p.x + p.y * p.y - reach * reach - hyperboloid.waist * hyperboloid.waist),
     )
     hit = met | steep
-    t = approach
+    t = start
     if any(hit):
-        approach = approach + start
         first, last = first - start, last - start
         split = steep & met
         enter = where(steep, first, maximum(first, low))
         leave = where(steep & ~met, last, minimum(last, where(steep, low, high)))
-        near = approach + enter
-        far = approach + leave
+        near = start + enter
+        far = start + leave
         t = where(near > 0.0, near, far)
         one = hit & (enter <= leave) & (far > 0.0)
         again = maximum(first, high)
-        near = approach + again
-        far = approach + last
+        near = start + again
+        far = start + last
         two = split & ~one & (again <= last) & (far > 0.0)
         t = where(two, where(near > 0.0, near, far), t)
         hit = one | two
@@ -145,3 +144,17 @@ def surface(hyperboloid: PackedHyperboloid, point: Vec) -> tuple[Vec, Vec]:
         hyperboloid.centre + from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, on),
         from_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, normal),
     )
+
+
+def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """Around the side and up it, in equal heights."""
+    u, v, w = hyperboloid.u, hyperboloid.v, hyperboloid.w
+    p = to_basis(u, v, w, point - hyperboloid.centre)
+    tall = 2.0 * hyperboloid.half
+    rho = sqrt(p.x * p.x + p.y * p.y)
+    per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
+    widening = hyperboloid.slope * (hyperboloid.slope * p.z * per_rho)  # by height
+    rise = tall * Vec(widening * (p.x * per_rho), widening * (p.y * per_rho), splat(1.0, p.z))
+    reach = hyperboloid.slope * hyperboloid.half
+    radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * splat(reach, p.z))
+    return wrapped(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), 0.5 + p.z / tall, rise, radius)

@@ -23,6 +23,7 @@ from minirt.lanes.verbs import Mask
 from minirt.shapes import triangle
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
+BARYCENTRIC = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)  # coordinates of pictures at the corners where the file has none
 OPPOSED = 1e-3  # squared length of a mean of unit normals: with less they point anywhere
 
 
@@ -74,8 +75,7 @@ class Mesh(Shape):
             rows[:, 12:21].reshape(-1, 3, 3)[...] = made.flat_normals[:, None]
         else:
             rows[:, 12:21] = made.normals.reshape(-1, 9)
-        if made.uvs is not None:
-            rows[:, 21:] = made.uvs.reshape(-1, 6)
+        rows[:, 21:] = BARYCENTRIC if made.uvs is None else made.uvs.reshape(-1, 6)
         return rows
 
     def pack(self) -> PackedMeshTriangle:
@@ -137,3 +137,18 @@ def shading(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
     of_a, of_b, of_c = shares(mesh, point)
     mean = of_a * mesh.normal_a + of_b * mesh.normal_b + of_c * mesh.normal_c
     return unit(where(dot(mean, mean) > OPPOSED, mean, normal))
+
+
+def mapping(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """As the file says, or else with a picture on each triangle, as on one of `tr`."""
+    of_a, of_b, of_c = shares(mesh, point)
+    ab, ac = mesh.b - mesh.a, mesh.c - mesh.a
+    u_b, v_b, u_c, v_c = mesh.u_b - mesh.u_a, mesh.v_b - mesh.v_a, mesh.u_c - mesh.u_a, mesh.v_c - mesh.v_a
+    area = u_b * v_c - u_c * v_b  # twice that of the triangle in the picture
+    per_area = where(area == 0.0, 0.0, 1.0 / where(area == 0.0, 1.0, area))
+    return (
+        of_a * mesh.u_a + of_b * mesh.u_b + of_c * mesh.u_c,
+        of_a * mesh.v_a + of_b * mesh.v_b + of_c * mesh.v_c,
+        per_area * (v_c * ab - v_b * ac),
+        per_area * (u_b * ac - u_c * ab),
+    )

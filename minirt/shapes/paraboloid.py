@@ -1,7 +1,9 @@
 """Paraboloid: `pa x,y,z ax,ay,az diameter height R,G,B`.
 
 A solid paraboloid of revolution with a cap. `x,y,z` is the vertex; it opens along the axis `ax,ay,az` and has its
-`diameter` at the distance `height`, where the cap closes it.
+`diameter` at the distance `height`, where the cap closes it. A picture lies once around the side, upwards in equal
+steps of the distance from the axis, of an upright one with its middle towards -z, and once on the square around the
+cap.
 
     pa 0,0,20  0,1,0  4  3  120,200,160    a bowl, filled to the brim, whose rim is three units above its bottom
 """
@@ -12,13 +14,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, dot, inverse_root, maximum, minimum, splat, sqrt, unit, where
+from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, unit, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import across, along, box_of_boxes, box_of_disc
 from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.wrap import is_side, wrapped
 
 
 @dataclass(frozen=True)
@@ -71,9 +74,7 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
     As with the cylinder it is inside for an interval of t, here that of x^2 + y^2 <= 2 focal z, cut to the heights
     below the cap. Of a ray along the axis one end of the interval is infinite, and the other exact.
     """
-    f = origin - paraboloid.vertex
-    approach = -dot(f, direction)  # t is counted from the closest approach to the vertex
-    p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, f + approach * direction)
+    p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, origin - paraboloid.vertex)
     d = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, direction)
     a = d.x * d.x + d.y * d.y
     slant = paraboloid.focal * d.z
@@ -85,13 +86,12 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
     p = p + start * d
     c = p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z
     hit, low, high = below_zero(a, p.x * d.x + p.y * d.y - slant, c)
-    t = approach
+    t = start
     if any(hit):
-        approach = approach + start
         enter = maximum(first - start, low)
         leave = minimum(last - start, high)
-        near = approach + enter
-        t = where(near > 0.0, near, approach + leave)
+        near = start + enter
+        t = where(near > 0.0, near, start + leave)
         hit = hit & (enter <= leave) & (t > 0.0)
     return hit, t
 
@@ -119,3 +119,15 @@ def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:
         paraboloid.vertex + from_basis(paraboloid.u, paraboloid.v, paraboloid.w, on),
         from_basis(paraboloid.u, paraboloid.v, paraboloid.w, normal),
     )
+
+
+def mapping(paraboloid: PackedParaboloid, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """Around the side and up it: in v grows the distance from the axis, so that the vertex is not stretched without
+    end. There the tangents are zero."""
+    u, v, w = paraboloid.u, paraboloid.v, paraboloid.w
+    p = to_basis(u, v, w, point - paraboloid.vertex)
+    rho = sqrt(p.x * p.x + p.y * p.y)
+    radius = sqrt(2.0 * paraboloid.focal * splat(paraboloid.height, rho))
+    per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
+    rise = radius * Vec(p.x * per_rho, p.y * per_rho, rho / paraboloid.focal)
+    return wrapped(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), rho / radius, rise, radius)

@@ -1,20 +1,24 @@
 """Plane: `pl x,y,z nx,ny,nz R,G,B`.
 
 All points p for which `p - (x,y,z)` is perpendicular to the normal `nx,ny,nz`. It has no end and two sides alike.
+Pictures are one unit wide and high and repeated without end, the lower left corner of one at `x,y,z`. They stand
+upright; on a floor u, to the right, runs along x and v, upwards, along -z, on a ceiling along x and z.
 
     pl 0,-1,0  0,1,0  200,200,200    a floor one unit below the origin
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
-from minirt.shapes.shape import Ball, Place, Shape
+from minirt.materials import Checker, Compound
+from minirt.shapes.basis import face_on
+from minirt.shapes.shape import BOARD, Ball, Place, Shape
 
 PARALLEL = 4  # unit roundoffs of the scalar product of two unit vectors
 
@@ -27,9 +31,12 @@ class Plane(Shape):
     point: Triple = declare(Point, "a point of the plane")
     normal: Triple = declare(Direction, "normal")
     colour: Triple = declare(Colour, "colour")
+    _: KW_ONLY
+    checker: Checker | None = declare(Compound, "checkerboard", bare="1", **BOARD)
 
     def pack(self) -> PackedPlane:
-        return PackedPlane(Place(Vec(*self.point)), Vec(*self.normal))
+        right, up = face_on(self.normal)
+        return PackedPlane(Place(Vec(*self.point)), Vec(*self.normal), right, up)
 
     def balls(self) -> tuple[Ball, ...]:
         return ()
@@ -46,6 +53,8 @@ class PackedPlane(NamedTuple):
 
     point: Place
     normal: Vec
+    right: Vec  # of pictures
+    up: Vec
 
 
 def intersect(plane: PackedPlane, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
@@ -59,3 +68,9 @@ def surface(plane: PackedPlane, point: Vec) -> tuple[Vec, Vec]:
     """The point of the plane nearest to `point`, and the normal."""
     height = dot(plane.normal, point - plane.point)
     return point - height * plane.normal, plane.normal
+
+
+def mapping(plane: PackedPlane, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """u and v in scene units, and the plane's own directions along them."""
+    p = point - plane.point
+    return dot(p, plane.right), dot(p, plane.up), plane.right, plane.up

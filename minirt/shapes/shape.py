@@ -1,14 +1,19 @@
 """What every shape's file provides, and what its formulas mean.
 
 A file of a shape holds its manual page, its line in a scene file (a frozen dataclass), what the kernel keeps of it
-(a NamedTuple of numbers and Vecs, made by `pack`) and two formulas:
+(a NamedTuple of numbers and Vecs, made by `pack`) and three formulas:
 
     intersect(shape, origin, direction)   the distance t along the unit `direction` at which the ray enters or, from
                                           inside, leaves the shape: the least t > 0, or infinity
     surface(shape, point)                 a point within rounding of the surface: that point put onto the surface, and
                                           the unit normal there, outward where there is an outside
+    mapping(shape, point, normal)         where a picture has this point of the surface with this normal: u to the right
+                                          and v upwards, 0 to 1 across a picture; and the tangents dP/du and dP/dv
     shading(shape, point, normal)         of the few that stand for something rounder: the unit normal by which such a
                                           point is lit, where `normal` is that of the surface
+
+The tangents and the normal are right-handed, so that nobody outside sees a picture mirrored. At poles and apexes, where
+a picture is gathered to a point, tangents may be zero.
 
 A mesh is many triangles, each of which the kernel keeps for itself: such a shape has `parts`.
 """
@@ -33,6 +38,7 @@ Place = NewType("Place", Vec)  # in a packed shape: a point, where other Vecs ar
 
 
 SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
+BOARD: dict[str, Any] = {"record": Checker, "aliases": ("pat",)} | SHARED
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +50,7 @@ class Shape(Element):
     specular: Specular | None = declare(Compound, "highlight", record=Specular, aliases=("spc",), **SHARED)
     mirror: float | None = declare(Mirror, "share of mirrored light", aliases=("mir",), **SHARED)
     glass: Glass | None = declare(Compound, "refracted light", record=Glass, aliases=("ref",), **SHARED)
-    checker: Checker | None = declare(Compound, "checkerboard", record=Checker, aliases=("pat",), bare="1", **SHARED)
+    checker: Checker | None = declare(Compound, "checkerboard", bare="0.125", **BOARD)
     texture: str | None = declare(Texture, "picture in the place of the colour", aliases=("txm", "tx"), **SHARED)
     bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)
     normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **SHARED)
@@ -88,4 +94,5 @@ class Kind(NamedTuple):
     packed: type[Any]
     intersect: Callable[..., Any]
     surface: Callable[..., Any]
+    mapping: Callable[..., Any]
     shading: Callable[..., Any] = unbent

@@ -1,6 +1,7 @@
 """Sphere: `sp x,y,z diameter R,G,B`.
 
-All points at the distance of half the `diameter` from the centre `x,y,z`.
+All points at the distance of half the `diameter` from the centre `x,y,z`. A picture lies around it once like a map of
+the earth, in equal steps of longitude and latitude: its upper edge at the pole +y, its middle towards -z.
 
     sp 0,0,20  12.6  10,0,255       a blue ball 20 units along z from the origin
 """
@@ -16,6 +17,7 @@ from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.exact import power
 from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.wrap import TURN, turns
 
 CLOSE = 2.0**-6  # to the surface: |f|^2 / radius^2 - 1
 ROUNDING = 16  # of the same, in unit roundoffs, and more
@@ -89,3 +91,15 @@ def surface(sphere: PackedSphere, point: Vec) -> tuple[Vec, Vec]:
     """The point of the sphere nearest to `point`, and the outward normal."""
     normal = unit(point - sphere.centre)
     return sphere.centre + sphere.radius * normal, normal
+
+
+def mapping(sphere: PackedSphere, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """Longitude and latitude, each from 0 to 1. At the poles the tangents are zero."""
+    rho = sqrt(normal.x * normal.x + normal.z * normal.z)
+    per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
+    half = 0.5 * TURN * sphere.radius
+    fall = -normal.y * per_rho
+    u, v = 0.5 + turns(-normal.x, -normal.z), 0.5 + 2.0 * turns(normal.y, rho)
+    along_u = 2.0 * half * Vec(normal.z, splat(0.0, rho), -normal.x)
+    along_v = half * Vec(fall * normal.x, rho, fall * normal.z)
+    return u, v, along_u, along_v

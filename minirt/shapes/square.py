@@ -1,7 +1,8 @@
 """Square: `sq x,y,z nx,ny,nz side R,G,B`.
 
 A flat square, seen from both sides. `x,y,z` is its centre and `nx,ny,nz` its normal. It stands upright: one pair of
-edges is horizontal; on a floor and a ceiling the edges are along x and z.
+edges is horizontal; on a floor and a ceiling the edges are along x and z. A picture fills it once, upright for
+somebody who faces it; on a floor its upper edge is towards -z, on a ceiling towards z.
 
     sq 0,2,20  0,0,-1  4  200,200,120    a board four units wide and high that faces the origin
 """
@@ -11,10 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from minirt.fields import Colour, Direction, Length, Point, Triple, declare, upright
+from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
+from minirt.shapes.basis import face_on
 from minirt.shapes.extents import along, box_of_points
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Box, Place, Shape
@@ -30,17 +32,13 @@ class Square(Shape):
     side: float = declare(Length, "side")
     colour: Triple = declare(Colour, "colour")
 
-    def axes(self) -> tuple[Triple, Triple]:
-        """Right and up for somebody who faces the square."""
-        x, y, z = self.normal
-        return upright(-x, -y, -z)
-
     def pack(self) -> PackedSquare:
-        right, up = self.axes()
-        return PackedSquare(Place(Vec(*self.centre)), Vec(*right), Vec(*up), Vec(*self.normal), self.side / 2)
+        right, up = face_on(self.normal)
+        return PackedSquare(Place(Vec(*self.centre)), right, up, Vec(*self.normal), self.side / 2)
 
     def corners(self) -> tuple[Triple, ...]:
-        (right, up), half = self.axes(), self.side / 2
+        half = self.side / 2
+        right, up = ((way.x, way.y, way.z) for way in face_on(self.normal))
         return tuple(along(along(self.centre, right, x), up, y) for x in (-half, half) for y in (-half, half))
 
     def balls(self) -> tuple[Ball, ...]:
@@ -77,3 +75,12 @@ def surface(square: PackedSquare, point: Vec) -> tuple[Vec, Vec]:
     """The point of the square's plane nearest to `point`, and the normal."""
     height = dot(square.normal, point - square.centre)
     return point - height * square.normal, square.normal
+
+
+def mapping(square: PackedSquare, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """From 0 to 1 from edge to edge."""
+    p = point - square.centre
+    side = 2.0 * square.half
+    per_side = 1.0 / side
+    u, v = 0.5 + dot(p, square.right) * per_side, 0.5 + dot(p, square.up) * per_side
+    return u, v, side * square.right, side * square.up

@@ -1,7 +1,8 @@
 """Torus: `to x,y,z ax,ay,az diameter tube R,G,B`.
 
 A solid ring about the axis `ax,ay,az`. `x,y,z` is its centre, `diameter` that of the circle in the middle of the tube,
-`tube` that of the tube itself. A tube as wide as the diameter leaves no hole.
+`tube` that of the tube itself. A tube as wide as the diameter leaves no hole. A picture lies once around the axis, of
+a flat ring with its middle towards -z, and once around the tube, with its middle where that is outermost.
 
     to 0,0,20  0,1,0  6  2  220,150,180    a ring eight units across that lies flat, two units thick
 """
@@ -19,6 +20,7 @@ from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.extents import along, box_of_disc
 from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.wrap import TURN, around, turns
 
 STEPS = 100  # at most, towards a root; most take less than ten
 CORNERS = 8  # of a polygon around the circle in the middle of the tube
@@ -93,7 +95,7 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
         enter = maximum(-half, minimum(bottom, top))
         leave = minimum(half, maximum(bottom, top))
         start = -approach  # the ray's origin
-        within = start > enter
+        within = start >= enter
         enter = where(within, start, enter)
         hit = hit & (enter <= leave)
         if any(hit):
@@ -204,4 +206,22 @@ def surface(torus: PackedTorus, point: Vec) -> tuple[Vec, Vec]:
     return (
         torus.centre + from_basis(torus.u, torus.v, torus.w, Vec(reach * x, reach * y, torus.tube * up)),
         from_basis(torus.u, torus.v, torus.w, Vec(across * x, across * y, up)),
+    )
+
+
+def mapping(torus: PackedTorus, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """Around the axis and around the tube."""
+    p = to_basis(torus.u, torus.v, torus.w, point - torus.centre)
+    out = to_basis(torus.u, torus.v, torus.w, normal)
+    rho = sqrt(p.x * p.x + p.y * p.y)
+    per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
+    x, y = p.x * per_rho, p.y * per_rho
+    across = out.x * x + out.y * y
+    u, way = around(p)
+    rise = TURN * torus.tube * Vec(-out.z * x, -out.z * y, across)
+    return (
+        u,
+        0.5 + turns(out.z, across),
+        from_basis(torus.u, torus.v, torus.w, way),
+        from_basis(torus.u, torus.v, torus.w, rise),
     )

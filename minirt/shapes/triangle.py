@@ -1,7 +1,8 @@
 """Triangle: `tr x,y,z x,y,z x,y,z R,G,B`.
 
 The flat surface between three corners, seen from both sides. Its normal points to where the corners are seen in
-counter-clockwise order. Triangles that share corners have no gap between them.
+counter-clockwise order. Triangles that share corners have no gap between them. The lower left half of a picture lies
+on it: its lower left corner on the first corner, the lower right one on the second, the upper left one on the third.
 
     tr -2,0,20  2,0,20  0,3,20  90,160,220    a sail two units up and down
 """
@@ -14,6 +15,7 @@ from typing import NamedTuple
 
 from minirt.fields import Colour, Point, Triple, declare, unit
 from minirt.lanes import Vec, dot, fabs, maximum, minimum, rounded_product, where
+from minirt.lanes import cross as product
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.extents import box_of_points
@@ -134,3 +136,12 @@ def surface(triangle: PackedTriangle, point: Vec) -> tuple[Vec, Vec]:
     """The point of the triangle's plane nearest to `point`, and the normal."""
     height = dot(triangle.normal, point - triangle.a)
     return point - height * triangle.normal, triangle.normal
+
+
+def mapping(triangle: PackedTriangle, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """What of a point belongs to the second corner and what to the third, as areas: Moller and Trumbore, Fast, Minimum
+    Storage Ray/Triangle Intersection, 1997."""
+    p, to_b, to_c = point - triangle.a, triangle.b - triangle.a, triangle.c - triangle.a
+    per_area = 1.0 / dot(product(to_b, to_c), triangle.normal)
+    u, v = dot(product(p, to_c), triangle.normal), dot(product(to_b, p), triangle.normal)
+    return u * per_area, v * per_area, to_b, to_c

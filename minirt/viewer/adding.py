@@ -7,13 +7,27 @@ from math import cos, pi, sin
 from typing import Any, TypeVar
 
 from minirt.element import Element, Record, fields_of
-from minirt.fields import FARTHEST, LEAST_LENGTH, Direction, Field, Length, Lengths, Picture, Point, Real, Triple, clamp
+from minirt.fields import (
+    FARTHEST,
+    LEAST_LENGTH,
+    Direction,
+    Field,
+    Length,
+    Lengths,
+    MeshField,
+    MeshFile,
+    Picture,
+    Point,
+    Real,
+    Triple,
+    clamp,
+)
 from minirt.materials import Compound
 from minirt.scene import Scene
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.view import mix, view
 from minirt.shapes import Shape
-from minirt.viewer.gallery import pictures
+from minirt.viewer.gallery import meshes, pictures
 from minirt.viewer.motion import limited
 from minirt.viewer.neat import decimals, nice, round_length
 from minirt.viewer.state import State, can_edit
@@ -25,9 +39,17 @@ Made = TypeVar("Made", bound=Record)
 
 
 def kinds(scene: Scene) -> list[type[Element]]:
-    """What can be added to a scene: shapes first, and of what may be there once only what is missing."""
+    """What can be added to a scene: shapes first, of what may be there once only what is missing, and last what takes a
+    mesh, where there is one."""
     missing = [kind for kind in ELEMENTS.values() if can_edit(kind) and not (kind.once and has(scene, kind))]
-    return sorted(missing, key=lambda kind: not issubclass(kind, Shape))
+    files = next(meshes(scene), None) is not None
+    useful = [kind for kind in missing if files or not takes_mesh(kind)]
+    return sorted(useful, key=lambda kind: (takes_mesh(kind), not issubclass(kind, Shape)))
+
+
+def takes_mesh(kind: type[Element]) -> bool:
+    """Whether it is made from a mesh file."""
+    return any(isinstance(field, MeshField) for field in fields_of(kind))
 
 
 def has(scene: Scene, kind: type[Element]) -> bool:
@@ -36,8 +58,8 @@ def has(scene: Scene, kind: type[Element]) -> bool:
 
 
 def made(kind: type[Made], state: State) -> Made:
-    """An element of that kind in front of the camera, or a record; LookupError where it takes a picture and there is
-    none."""
+    """An element of that kind in front of the camera, or a record; LookupError where it takes a picture or a mesh
+    and there is none."""
     return kind(**dict(chosen(kind, state)))
 
 
@@ -72,10 +94,14 @@ def round_place(place: Triple, stride: float) -> Triple:
 
 def usual(field: Field, state: State) -> Any:
     """What any other field begins with; LookupError as above."""
+    if field.bare:
+        return field.check(field.parse(field.bare))
     if isinstance(field, Compound):
         return made(field.record, state)
     if isinstance(field, Picture):
         return first_picture(state.scene)
+    if isinstance(field, MeshField):
+        return first_mesh(state.scene)
     length = nice(LARGE * state.size)
     if isinstance(field, Lengths):
         return length, length, length
@@ -101,3 +127,10 @@ def first_picture(scene: Scene) -> str:
     if name is None:
         raise LookupError("there is no picture beside the scene")
     return name
+
+
+def first_mesh(scene: Scene) -> MeshFile:
+    """A mesh file beside the scene; LookupError where there is none."""
+    for found in meshes(scene):
+        return found
+    raise LookupError("there is no mesh beside the scene")

@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import partial
 
 from minirt.errors import ElementError
-from minirt.fields import Direction, Point
+from minirt.fields import Direction, MeshFile, Point
 from minirt.scene import Camera
 from minirt.scene.view import view
 from minirt.viewer import attributes, framing, gallery, history, selection, structure
@@ -75,8 +75,10 @@ def resize(sign: float, state: State, amount: float, now: float) -> State:
         now,
     )
     if changed is state:
-        if isinstance(active.of(state.element), str):
-            return state.say("there is no other picture beside the scene")
+        value = active.of(state.element)
+        if isinstance(value, str | MeshFile):
+            sort = "picture" if isinstance(value, str) else "mesh"
+            return state.say(f"there is no other {sort} beside the scene")
         limits = f" ({active.range})" if active.range else ""
         return state.say(f"{active.name} cannot go further{limits}")
     return changed

@@ -1,22 +1,25 @@
-"""The picture files beside a scene, for what takes one: those in its folder and in the folders there."""
+"""The pictures and meshes beside a scene, for what takes one: files in its folder and in the folders there."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from pathlib import Path
 
 from minirt.errors import FieldError, FileError
+from minirt.fields import MeshFile
 from minirt.fields.pictures import file_name
+from minirt.meshes import mesh
 from minirt.scene import Scene
 
 SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".tga", ".webp", ".xpm"}
+MESHES = {".obj"}
 
 
-def names(scene: Scene) -> list[str]:
+def names(scene: Scene, suffixes: Set[str] = SUFFIXES) -> list[str]:
     """As lines of the scene name them: those in its own folder first."""
     folder = scene.beside("")
     inside = sorted(each for each in children(folder) if each.is_dir() and not each.name.startswith("."))
-    files = [each for room in (folder, *inside) for each in sorted(children(room)) if each.suffix.lower() in SUFFIXES]
+    files = [each for room in (folder, *inside) for each in sorted(children(room)) if each.suffix.lower() in suffixes]
     return [each.relative_to(folder).as_posix() for each in files]
 
 
@@ -44,11 +47,30 @@ def pictures(scene: Scene) -> Iterator[str]:
     return (name for name in names(scene) if usable(scene, name))
 
 
-def another(scene: Scene, name: str, steps: float) -> str:
-    """The next one that can be used, or with negative `steps` the previous one, round and round."""
-    known = names(scene)
+def read_mesh(scene: Scene, name: str) -> MeshFile | None:
+    """The mesh in a file, where a line can name it and it holds one."""
+    try:
+        return MeshFile(file_name(name), mesh(scene.beside(name)))
+    except (FieldError, FileError):
+        return None
+
+
+def meshes(scene: Scene) -> Iterator[MeshFile]:
+    """Those that can be used."""
+    return filter(None, (read_mesh(scene, name) for name in names(scene, MESHES)))
+
+
+def another(scene: Scene, file: str | MeshFile, steps: float) -> str | MeshFile:
+    """The next picture that can be used, or mesh, or with negative `steps` the previous one, round and round."""
+    if isinstance(file, MeshFile):
+        around = ring(names(scene, MESHES), file.name, steps)
+        return next(filter(None, (read_mesh(scene, each) for each in around)), file)
+    return next((each for each in ring(names(scene), file, steps) if usable(scene, each)), file)
+
+
+def ring(known: list[str], name: str, steps: float) -> list[str]:
+    """All names from the one behind `name` on, or with negative `steps` backwards."""
     if steps < 0:
         known.reverse()
     behind = known.index(name) + 1 if name in known else 0
-    around = known[behind:] + known[:behind]
-    return next((each for each in around if usable(scene, each)), name)
+    return known[behind:] + known[:behind]

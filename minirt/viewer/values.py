@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from minirt.element import Element, Record, fields_of
-from minirt.fields import Colour, Field, Picture
+from minirt.fields import Colour, Field, MeshField, MeshFile, Picture
 
 COLOURS = "red", "green", "blue"
 
-Another = Callable[[str, float], str]  # the picture that so many key presses lead to from one
+Another = Callable[[Any, float], Any]  # the picture or mesh that so many key presses lead to from one
 
 
 class Value(NamedTuple):
@@ -42,7 +42,7 @@ class Value(NamedTuple):
     def nudged(self, element: Element, steps: float, another: Another) -> Any:
         """What becomes of the field after so many key presses."""
         old = self.of(element)
-        new = another(old, steps) if isinstance(old, str) else (self.inner or self.field).nudge(old, steps)
+        new = another(old, steps) if isinstance(old, str | MeshFile) else (self.inner or self.field).nudge(old, steps)
         if self.colour is not None:
             new = (*old[: self.colour], new[self.colour], *old[self.colour + 1 :])
         return getattr(element, self.field.name).replace(**{self.inner.name: new}) if self.inner else new
@@ -56,6 +56,7 @@ class Value(NamedTuple):
 def values(element: Element) -> tuple[Value, ...]:
     """All of them, the components of colours behind everything else."""
     whole = [value for field in fields_of(type(element)) for value in within(field, getattr(element, field.name))]
+    whole.sort(key=lambda value: isinstance(value.field, MeshField))  # the size of a mesh comes before its file
     fields = ((value, value.inner or value.field) for value in whole)
     colours = [value for value, field in fields if isinstance(field, Colour) and not isinstance(value.of(element), str)]
     return (*whole, *(value._replace(colour=part) for value in colours for part in range(3)))
@@ -75,4 +76,4 @@ def within(field: Field, value: Any) -> Iterator[Value]:
 
 def grows(field: Field) -> bool:
     """Whether key presses change values of the field."""
-    return type(field).nudge is not Field.nudge or isinstance(field, Picture)
+    return type(field).nudge is not Field.nudge or isinstance(field, Picture | MeshField)

@@ -8,7 +8,7 @@ The numbers of scene, ray and shape are taken as they are, to the last bit; only
 to have unit length, are scaled to it. t counts in lengths of `direction`, which may be any but 0.
 
 For another shape add a file beside these, as short as `sphere.py`, and a line here: the function it registers with
-`body` takes the shape and a `swell` by which its surface is moved outwards, and returns
+`body` takes the shape and a `swell` by which its surface is moved outwards, of a sheet its edges, and returns
 
     Body((F,))                         a solid without edges
     Body((F, G, H))                    a solid that several surfaces bound, as a cylinder by its side and caps

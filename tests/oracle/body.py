@@ -30,7 +30,7 @@ class Body(NamedTuple):
 
 @singledispatch
 def body(shape: Shape, swell: Any = 0) -> Body:
-    """The body of a shape, its surface moved outwards by `swell`, and its edges, where it ends."""
+    """The body of a shape, its surface moved outwards by `swell`; of a sheet only its edges are moved."""
     raise TypeError(f"the oracle knows no {shape.title}")
 
 

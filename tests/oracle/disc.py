@@ -17,4 +17,4 @@ def _(disc: Disc, swell: Any = 0) -> Body:
         out = minus(p, centre)
         return dot(out, out) - radius * abs(radius)
 
-    return Body((lambda p: dot(minus(p, centre), normal) - swell,), (beyond,), solid=False)
+    return Body((lambda p: dot(minus(p, centre), normal),), (beyond,), solid=False)

@@ -8,6 +8,6 @@ from tests.oracle.vectors import dot, exact, minus, unit
 
 
 @body.register
-def _(plane: Plane, swell: Any = 0) -> Body:
+def _(plane: Plane, _swell: Any = 0) -> Body:
     point, normal = exact(plane.point), unit(plane.normal)
-    return Body((lambda p: dot(minus(p, point), normal) - swell,), solid=False)
+    return Body((lambda p: dot(minus(p, point), normal),), solid=False)

@@ -19,4 +19,4 @@ def _(square: Square, swell: Any = 0) -> Body:
     def within(axis: Vector) -> Any:
         return lambda p: dot(minus(p, centre), axis) ** 2 - half * abs(half)
 
-    return Body((lambda p: dot(minus(p, centre), normal) - swell,), (within(right), within(up)), solid=False)
+    return Body((lambda p: dot(minus(p, centre), normal),), (within(right), within(up)), solid=False)

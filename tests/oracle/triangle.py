@@ -17,4 +17,4 @@ def _(triangle: Triangle, swell: Any = 0) -> Body:
         return lambda p: dot(minus(p, start), out) - swell
 
     clips = tuple(beyond(corners[i], corners[(i + 1) % 3]) for i in range(3))
-    return Body((lambda p: dot(minus(p, a), normal) - swell,), clips, solid=False)
+    return Body((lambda p: dot(minus(p, a), normal),), clips, solid=False)

@@ -8,6 +8,7 @@ Case = tuple[str, int, str]
 
 COLUMN = len(SPHERE) + 2  # of the first attribute
 NUMBER = "must be a number, got"
+OWN = "sphere has specular, mirror, glass, checker, texture, bump, normal"
 MISSING = "cannot be read: no such file or directory"
 
 
@@ -27,7 +28,9 @@ SHAPES: list[Case] = on_sphere(
     ("specular:0.5,30,blinn,1", 22, "sphere specular must be share,exponent[,blinn], got '0.5,30,blinn,1'"),
     ("specular:nan,30", 9, f"sphere specular share {NUMBER} 'nan'"),
     ("spc:0.5,1e400", 8, "sphere specular exponent must be a number that a float64 can hold, got '1e400'"),
-    ("specular", 0, "sphere has no further field 'specular': expected 'sp x,y,z diameter R,G,B'"),
+    ("specular", 0, "sphere has no further field 'specular', did you mean 'specular:share,exponent[,blinn]'?"),
+    ("miror", 0, "sphere has no further field 'miror', did you mean 'mirror:share'?"),
+    ("m_wood", 0, "sphere has no further field 'm_wood': expected 'sp x,y,z diameter R,G,B'"),
     ("mirror:1.5", 7, "sphere mirror must be in [0, 1], got 1.5"),
     ("mir:1.5", 4, "sphere mirror must be in [0, 1], got 1.5"),
     ("mirror:0.5,1", 7, f"sphere mirror {NUMBER} '0.5,1'"),
@@ -59,9 +62,15 @@ SHAPES: list[Case] = on_sphere(
     ("mirorr:0.5", 0, "unknown attribute 'mirorr', did you mean 'mirror'?"),
     ("Mirror:0.5", 0, "unknown attribute 'Mirror', did you mean 'mirror'?"),
     ("normal_map:a.png", 0, "unknown attribute 'normal_map', did you mean 'normal'?"),
-    ("zzz:0.5", 0, "unknown attribute 'zzz'"),
+    ("zzz:0.5", 0, f"unknown attribute 'zzz': {OWN}"),
+    ("refl:0.5", 0, "unknown attribute 'refl', did you mean 'mirror'?"),
+    ("refr:0.9:1.5", 0, "unknown attribute 'refr', did you mean 'glass'?"),
+    ("shininess:200", 0, "unknown attribute 'shininess', did you mean 'specular'?"),
+    ("xpm:earth.xpm", 0, "unknown attribute 'xpm', did you mean 'texture'?"),
+    ("bump_strength:0.3", 0, "unknown attribute 'bump_strength', did you mean 'bump'?"),
     ("fade:5", 0, "sphere has no attribute 'fade': it belongs to light, further light, spot light"),
-    ("chequer", 0, "sphere has no further field 'chequer': expected 'sp x,y,z diameter R,G,B'"),
+    ("checkers", 0, "sphere has no further field 'checkers', did you mean 'checker:size[,R,G,B]'?"),
+    ("chessboard", 0, "sphere has no further field 'chessboard', did you mean 'checker:size[,R,G,B]'?"),
 )
 
 LAMPS: list[Case] = [
@@ -92,6 +101,13 @@ LAMPS: list[Case] = [
         "'sl x,y,z dx,dy,dz angle brightness [R,G,B] [rim:ratio] [fade:distance]'",
     ),
     ("L 0,0,0 1 rim:0.5", 11, "light has no attribute 'rim': it belongs to spot light"),
+    ("l 0,0,0 1 attenuation:9", 11, "unknown attribute 'attenuation', did you mean 'fade'?"),
+    (
+        "dl 0,-1,0 1 1,2,3 soft",
+        19,
+        "parallel light has no further field 'soft': expected 'dl dx,dy,dz brightness [R,G,B]'",
+    ),
+    ("dl 0,-1,0 1 soft:1", 13, "unknown attribute 'soft': parallel light has none"),
     ("R 640 480 mirror:1", 11, "resolution has no attribute 'mirror': it belongs to shapes"),
 ]
 

@@ -5,16 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from PIL import Image
 
 from minirt.errors import SceneError
 from minirt.materials import Bump, Checker, Glass, Specular
 from minirt.scene import Background, FurtherLight, Light, ParallelLight, Scene, SpotLight, describe, dump, load, parse
+from minirt.shapes import KINDS, Kind
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.scene.bad_attributes import BACKGROUNDS, LAMPS, SHAPES, Case
 from tests.scene.examples import AMBIENT, CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, notices, problems, read, scene_with
+from tests.shapes.examples import example
 
 ABSENT = dict.fromkeys(("specular", "mirror", "glass", "checker", "texture", "bump", "normal_map"))
 
@@ -44,12 +47,10 @@ def attributes(shape: Any) -> dict[str, Any]:
         ("mirror:0", {"mirror": 0.0}),
         ("glass:1.5", {"glass": Glass(1.5, 1.0)}),
         ("ref:1,0.25", {"glass": Glass(1.0, 0.25)}),
-        ("checker", {"checker": Checker(1.0, (0, 0, 0))}),
-        ("pat", {"checker": Checker(1.0, (0, 0, 0))}),
         ("checker:2.5", {"checker": Checker(2.5)}),
         ("pat:2.5,1,2,3", {"checker": Checker(2.5, (1, 2, 3))}),
-        ("mirror:0.3 spc:0.5,30  checker\tglass:2", None),
-        ("checker spc:0.5,30 glass:2 mirror:0.3 # all", None),
+        ("mirror:0.3 spc:0.5,30  checker:1\tglass:2", None),
+        ("pat:1 spc:0.5,30 glass:2 mirror:0.3 # all", None),
     ],
 )
 @pytest.mark.parametrize("line", [SPHERE, PLANE, CYLINDER])
@@ -61,6 +62,14 @@ def test_every_shape_has_them_in_any_order(line: str, words: str, values: dict[s
     assert shape == plain.replace(**attributes(shape))
     assert hash(shape) == hash(plain.replace(**attributes(shape)))
     assert notices(f"{line} {words}") == []
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+def test_a_checkerboard_alone_has_8_by_8_squares_and_on_a_plane_those_of_a_unit(kind: Kind) -> None:
+    line = describe(example(kind, np.random.default_rng(1)))
+    for word in ("checker", "pat"):
+        (*_, shape) = read(f"{line} {word}").shapes
+        assert shape.checker == Checker(1.0 if kind.element is Plane else 0.125, (0, 0, 0))
 
 
 @pytest.mark.parametrize(("line", "column", "message"), SHAPES + LAMPS + BACKGROUNDS)

@@ -4,9 +4,9 @@
     python -m tests.stability.mutation trace shade
 
 The interpreted tests run once, so that all is imported and all right answers are known; then each change gets a copy of
-this process (POSIX only) in which the functions have the changed code and the tests run again until one fails. A change
-that they let pass, and that is no other way to write the same, calls for a test. The files of the kernel are tested by
-pictures that they make uncompiled.
+this process (POSIX only) in which the functions have the changed code, and the regimes and then the tests are tried
+again until one fails. A change that they let pass, and that is no other way to write the same, calls for a test.
+Files of the kernel, which must not be mixed with those of shapes, are tested by pictures that are made uncompiled.
 """
 
 from __future__ import annotations
@@ -15,30 +15,30 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 from types import FunctionType, ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
-import minirt
+import minirt.shapes
 from minirt.rendering import preview
 from minirt.rendering.cores import usable_cores
-from minirt.shapes import KINDS
+from minirt.scene import Scene
 from tests.kernel import pictures
+from tests.shapes.ways import on_arrays
 from tests.stability.mutations import Change, changes
+from tests.stability.regime import posed
+from tests.stability.table import REGIMES
 
-if TYPE_CHECKING:
-    from minirt.scene import Scene
-
-FOLDERS = ("shapes", "kernel")
-FILES = ("quadric", "exact", "basis", "sphere", "plane", "cylinder")
+PACKAGE = Path(minirt.__file__).parent
+SHARED = ("quadric", "exact", "basis", "extents")  # of several shapes
+FILES = (*SHARED, *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.KINDS))
+TESTS = ("tests/shapes", "tests/stability/test_surfaces.py", "tests/stability/test_properties.py")
+# What starts threads does not survive a fork.
+UNFIT = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
 KERNEL = ("trace", "shade")
-TESTS = ("tests/stability/test_regimes.py", "tests/stability/test_surfaces.py", "tests/shapes", "tests/stability")
-THREADED = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
-OPTIONS = ("-x", "-q", "-p", "no:cacheprovider", "-k")  # what starts threads does not survive a fork
 PICTURES = (
     *(f"tests/kernel/test_{name}.py" for name in ("coincident", "extremes", "invariances", "lamps", "highlight")),
     *("tests/stability/test_pictures.py", "tests/kernel/test_whitted.py", "tests/rendering/test_sight.py"),
@@ -49,29 +49,29 @@ SECONDS = 120  # a change may make a loop endless
 
 def main(names: list[str]) -> int:
     """Print the survivors, and return whether there are any."""
-    tests = tests_of(names or FILES)
-    if pytest.main(tests) != 0:
+    names = names or [*FILES]
+    if any(map(fails, names)) or tested(names) != 0:
         raise SystemExit("the tests fail without any change")
-    work = [(name, change) for name in names or FILES for change in changes(path_of(name).read_text())]
+    work = [(name, change) for name in names for change in changes((PACKAGE / path_of(name)).read_text())]
     running: dict[int, tuple[str, Change]] = {}
     survivors, started = 0, time.monotonic()
     for each in work:
         if len(running) >= usable_cores():
             survivors += ended(running)
-        running[tried(*each, tests)] = each
+        running[tried(*each)] = each
     while running:
         survivors += ended(running)
     print(f"{survivors} of {len(work)} changes pass all tests; {time.monotonic() - started:.0f} s")
     return survivors > 0
 
 
-def tests_of(names: Sequence[str]) -> list[str]:
-    """What pytest is called with for some files."""
-    if {*names} & {*KERNEL}:
+def tested(names: list[str]) -> int:
+    """Run the tests of some files, those of a shape's file by its name; 0 if all pass."""
+    if set(names) <= set(KERNEL):
         pictures.picture = interpreted
-        return [*PICTURES, *OPTIONS, COMPILED]
-    own = {*names} <= {kind.element.title for kind in KINDS}
-    return [*TESTS, *OPTIONS, f"({' or '.join(names)}) and {THREADED}" if own else THREADED]
+        return int(pytest.main([*PICTURES, "-x", "-q", "-p", "no:cacheprovider", "-k", COMPILED]))
+    chosen = UNFIT if set(names) & set(SHARED) else f"{UNFIT} and ({' or '.join(names)})"
+    return int(pytest.main([*TESTS, "-x", "-q", "-p", "no:cacheprovider", "-k", chosen]))
 
 
 def interpreted(scene: Scene, width: int = 24, height: int = 16, samples: int = 1, renderer: object = None) -> Any:
@@ -79,13 +79,18 @@ def interpreted(scene: Scene, width: int = 24, height: int = 16, samples: int = 
     return preview.picture(scene, width, height)
 
 
-def path_of(name: str) -> Path:
-    """The file of that name."""
-    package = Path(minirt.__file__).parent
-    return next(path for folder in FOLDERS if (path := package / folder / f"{name}.py").exists())
+def path_of(name: str) -> str:
+    """The file of that name, in the package."""
+    return f"{'kernel' if name in KERNEL else 'shapes'}/{name}.py"
 
 
-def tried(name: str, change: Change, tests: list[str]) -> int:
+def fails(name: str) -> bool:
+    """Whether a regime already tells that the formulas of a file have been changed: most changes are found at once."""
+    rights = [posed(regime) for kind, regime in REGIMES if name in SHARED or kind.element.__module__.endswith(name)]
+    return any(any(right.errors(on_arrays(*right.rays))) for right in rights)
+
+
+def tried(name: str, change: Change) -> int:
     """The number of a process that runs the tests with a change; it ends with 0 if they all pass."""
     process = os.fork()
     if process:
@@ -95,18 +100,19 @@ def tried(name: str, change: Change, tests: list[str]) -> int:
         nothing = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nothing, 1)
         os.dup2(nothing, 2)
-        put(import_module(f"minirt.{path_of(name).parent.name}.{name}"), change)
-        os._exit(int(pytest.main(tests)))
+        put(import_module(f"minirt.{path_of(name)[:-3].replace('/', '.')}"), change)
+        os._exit(fails(name) or tested([name]))
     finally:
         os._exit(1)
 
 
 def ended(running: dict[int, tuple[str, Change]]) -> bool:
-    """Wait for the next process to end: whether its change has passed all tests."""
+    """Wait for the next process to end: whether its change has passed all tests, or they took too long to tell."""
     process, status = os.wait()
     name, change = running.pop(process)
-    if status == 0:
-        print(f"{path_of(name).name}:{change.line}: {change.before}  ->  {change.after}", flush=True)
+    late = " (too slow)" if os.WIFSIGNALED(status) else ""
+    if status == 0 or late:
+        print(f"minirt/{path_of(name)}:{change.line}: {change.before}  ->  {change.after}{late}", flush=True)
     return status == 0
 
 
@@ -128,7 +134,7 @@ def put(module: ModuleType, change: Change) -> None:
 
 
 def users_of(module: ModuleType, name: str) -> list[ModuleType]:
-    """Those of a package that have a constant of one of its modules."""
+    """Those of the package that have a constant of one of its modules, and it itself."""
     imports = f"from {module.__name__} import "
     found = [each for each in sys.modules.values() if each.__name__.startswith("minirt.") and hasattr(each, name)]
     return [each for each in found if each is module or imports in Path(str(each.__file__)).read_text()]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
 from typing import NamedTuple
 
@@ -27,8 +27,9 @@ class Regime(NamedTuple):
     An answer passes that is exact within the relative `tolerance`. Where the surface ends or turns away from the ray an
     exact answer is of no use, as rounding the ray's own numbers changes it: there it passes if it lies between those
     for a shape thicker and one thinner by `slack` roundings of t, of the distance between origin and shape and of the
-    shape's size, and, where all three hit, if it is one of those within `blur`. Where only the thicker one is hit, and
-    that is a solid, it passes if it is in there: along a surface that is straight both ends of that may be far away.
+    shape's size, and, where all three hit, if it is one of those within `blur`. Where the thinner one is missed, and
+    it is a solid, any hit in the thicker one passes: along a straight side the ends of that may be far away. A sheet is
+    larger and smaller instead of thicker and thinner, and a hit may be off by what moving it so far across changes.
     """
 
     name: str
@@ -59,6 +60,12 @@ class Right:
         away = float(np.linalg.norm(self.rays.origins[i, j] - points(shape)[0]))
         return self.regime.slack * U * ((t if np.isfinite(t) else 0.0) + away + size(shape))
 
+    def sheet_error(self, i: int, j: int, t: float) -> float:
+        """What a hit of a sheet at t may be off by."""
+        shape, direction = self.rays.shapes[i], self.rays.directions[i, j]
+        slope = abs(oracle.dot(oracle.normal(shape, self.rays.origins[i, j]), direction))
+        return max(self.regime.tolerance * t, min(self.regime.blur * t, float(self.swell(i, j) / slope)))
+
     def within_thicker(self, i: int, j: int, t: float) -> bool:
         point = [
             mpf(o) + mpf(t) * mpf(d) for o, d in zip(self.rays.origins[i, j], self.rays.directions[i, j], strict=True)
@@ -67,11 +74,15 @@ class Right:
 
     def wrong(self, t: Array, every: int = 1) -> list[str]:
         """What is wrong with the answers t for every n-th ray of a shape, infinity for a miss."""
+        return list(self.errors(t, every))
+
+    def errors(self, t: Array, every: int = 1) -> Iterator[str]:
+        """The same, one after the other: each takes its time."""
         right = self.t[:, ::every]
         with np.errstate(invalid="ignore"):
             exact = (t == right) | (np.isfinite(right) & (np.abs(t - right) <= self.regime.tolerance * right))
         found = (self.verdict(i, j * every, t[i, j]) for i, j in np.argwhere(~exact).tolist())
-        return [each for each in found if each]
+        return (each for each in found if each)
 
     def verdict(self, i: int, j: int, t: float) -> str:
         """What is wrong with an answer that is not exact; empty if it is near enough."""
@@ -79,10 +90,12 @@ class Right:
         hits = [side for side in sides if np.isfinite(side)]
         if np.isinf(t):
             fine = len(hits) < 3
+        elif not body(self.rays.shapes[i]).solid:
+            fine = bool(hits) and abs(t - hits[0]) <= self.sheet_error(i, j, hits[0])
         else:
             fine = bool(hits) and min(hits) * (1 - U) <= t <= max(hits) * (1 + self.regime.blur)
             fine &= len(hits) < 3 or min(abs(t - side) / side for side in sides) <= self.regime.blur
-            fine |= len(hits) == 1 and self.within_thicker(i, j, t)
+            fine |= len(hits) < 3 and self.within_thicker(i, j, t)
         if fine:
             return ""
         ray = f"{self.rays.origins[i, j].tolist()}, {self.rays.directions[i, j].tolist()}"

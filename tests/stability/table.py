@@ -2,8 +2,25 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from minirt.shapes import KINDS, Kind
-from tests.stability import cone, cylinder, hyperboloid, paraboloid, plane, sphere
+from minirt.shapes.torus import Torus
+from tests.oracle.body import body
+from tests.shapes.examples import example
+from tests.stability import (
+    box,
+    cone,
+    cylinder,
+    hyperboloid,
+    paraboloid,
+    plane,
+    sheets,
+    sphere,
+    stretched,
+    torus,
+    triangle,
+)
 from tests.stability.common import common
 from tests.stability.regime import Regime
 
@@ -14,7 +31,18 @@ OWN = {
     "cone": cone.REGIMES,
     "paraboloid": paraboloid.REGIMES,
     "hyperboloid": hyperboloid.REGIMES,
+    "triangle": triangle.REGIMES,
+    "square": sheets.SQUARES,
+    "disc": sheets.DISCS,
+    "box": box.REGIMES,
+    "torus": torus.REGIMES,
 }
-REGIMES: list[tuple[Kind, Regime]] = [
-    (kind, regime) for kind in KINDS for regime in [*common(kind), *OWN.get(kind.element.title, [])]
-]
+
+
+def regimes(kind: Kind) -> list[Regime]:
+    """Of a kind: those that all have, those of solids and its own, which for tori are the thin ones."""
+    plain = body(example(kind, np.random.default_rng(1))).solid and kind.element is not Torus
+    return [*common(kind), *(stretched.regimes(kind) if plain else []), *OWN[kind.element.title]]
+
+
+REGIMES = [(kind, regime) for kind in KINDS for regime in regimes(kind)]

@@ -19,6 +19,7 @@ from minirt.scene import Background, Resolution, Scene, dump, load, parse
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.view import mix, view
 from minirt.shapes import Shape
+from minirt.shapes.mesh import Mesh
 from minirt.viewer.adding import kinds, made
 from minirt.viewer.editor import apply
 from minirt.viewer.lens import lens
@@ -28,18 +29,21 @@ from tests.viewer.fake import played
 
 BARE = "A 0.2 255,255,255\nC 0,2,-20 0.1,-0.1,1 60\n"
 EDITABLE = [kind for kind in ELEMENTS.values() if kind is not Resolution]
-ADDED = kinds(parse(BARE).scene)
+ADDED = [*kinds(parse(BARE).scene), Mesh]
 KEYED = [(kind, field.name) for kind in EDITABLE for field in fields_of(kind) if field.keyed and field.default is None]
 SIZE = (64, 48)  # of the window of `played`
 
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """A scene file with two pictures beside it, one of them in a folder."""
+    """A scene file with two pictures beside it, one of them in a folder, and two meshes."""
     (tmp_path / "more").mkdir()
     for name in ("a.png", "more/b.png"):
         Image.new("RGB", (4, 4), (200, 120, 40)).save(tmp_path / name)
     (tmp_path / "c.png").write_text("no picture")
+    for name in ("a.obj", "more/b.obj"):
+        (tmp_path / name).write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n")
+    (tmp_path / "c.obj").write_text("no mesh")
     scene = tmp_path / "scene.rt"
     scene.write_text(BARE)
     return scene
@@ -212,4 +216,8 @@ def test_again_is_only_what_follows_at_once() -> None:
 def test_what_can_be_made_needs_no_more_than_the_table() -> None:
     state = opened(parse(BARE).scene)
     for kind in ADDED:
+        if kind is Mesh:
+            with pytest.raises(LookupError, match="no mesh beside"):
+                made(kind, state)
+            continue
         assert type(made(kind, state)) is kind

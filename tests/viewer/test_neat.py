@@ -8,15 +8,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from minirt.scene import describe, dump
+from minirt.scene import describe, dump, load
 from minirt.viewer.editor import apply
 from minirt.viewer.neat import decimals, nice
-from minirt.viewer.state import opened
+from minirt.viewer.state import index_of, opened
 from tests.viewer.fake import TEXT, played, scene
+from tests.windows import ROOT
 
 WILD = "# by hand\nA 0.2 255,255,255\n\tC  0.123456789012345,0,10   0,0,-1 90  # eye\nL 5,5,5 0.5\n\n" + "\n".join(
-    f"sp   {i}.000,{i / 3!r},-{i}e0 1.50\t{i},0,0   # no. {i}" for i in range(20)
+    f"sp   {i}.000,{i / 3!r},-{i}e0 1.50\t{i},0,0   spc:.50,3e1   mir:0.250\t # no. {i}" for i in range(20)
 )
+FILES = sorted((*ROOT.glob("scenes/*.rt"), *ROOT.glob("tests/scene/wild/*.rt")))
+WILDS = (WILD, WILD.replace("\n", "\r\n"), f"\ufeff{WILD}\n\n\n")
 
 
 @given(st.floats(1e-11, 1e17))
@@ -56,17 +59,38 @@ def test_no_number_is_longer_than_it_has_to_be():
             assert len(number.strip("-").replace(".", "").strip("0")) <= 9, describe(state.element)
 
 
+@pytest.mark.parametrize("wild", WILDS, ids=["LF", "CRLF", "BOM"])
 @pytest.mark.parametrize("drag", ["press d", "hold e 0.31", "wheel up 3", "drag 32,30 40,20", "press V"])
-def test_saving_after_an_edit_of_one_element_changes_one_line(tmp_path, drag):
+def test_saving_after_an_edit_of_one_element_changes_one_line(tmp_path, drag, wild):
     path = tmp_path / "wild.rt"
-    path.write_text(WILD)
-    session = played("press Tab", "press Tab", "press Tab", drag, "press Ctrl+S", text=WILD, path=path)
-    old, new = WILD.split("\n"), path.read_text().split("\n")
+    path.write_bytes(wild.encode())
+    session = played("press Tab", "press Tab", "press Tab", drag, "press Ctrl+S", text=wild, path=path)
+    old, new = wild.split("\n"), path.read_bytes().decode().split("\n")
     different = [(a, b) for a, b in zip(old, new, strict=True) if a != b]
     assert len(different) == (drag != "press V")
     for before, after in different:
-        assert before.split()[-3:] == after.split()[-3:]  # its comment
-    assert dump(session.state.scene) == path.read_text()
+        assert before.partition("spc:")[1:] == after.partition("spc:")[1:]  # attributes, comment, carriage return
+    assert dump(session.state.scene).encode() == path.read_bytes()
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_each_shape_of_each_scene_is_moved_in_one_line(path):
+    found = load(path, lenient=True).scene
+    old = path.read_bytes().decode().split("\n")
+    for shape in found.shapes[:: max(1, len(found.shapes) // 20)]:
+        state = apply(opened(found).select(index_of(found, shape)), "right")
+        new = dump(state.scene).split("\n")
+        assert sum(a != b for a, b in zip(old, new, strict=True)) == 1
+
+
+def test_an_edited_attribute_is_one_word_of_its_line(tmp_path):
+    path = tmp_path / "wild.rt"
+    path.write_bytes(WILDS[1].encode())
+    keys = ["press Tab", "press Tab", "press Tab", *["press V"] * 2, "press +", "press M", "press Shift+M"]
+    played(*keys, "press Ctrl+S", text=WILDS[1], path=path)
+    old, new = WILDS[1].split("\n"), path.read_bytes().decode().split("\n")
+    ((before, after),) = ((a, b) for a, b in zip(old, new, strict=True) if a != b)
+    assert before.replace("spc:.50,3e1", "spc:0.55,30") == after
 
 
 def test_what_did_not_move_keeps_all_its_digits():

@@ -1,0 +1,130 @@
+"""Writes the meshes of scenes/meshes: python assets/make_meshes.py
+
+A ball of twenty faces and one that was made round from it, a knot, and a teapot that was turned on a lathe.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+FOLDER = Path(__file__).parent.parent / "scenes" / "meshes"
+Array = np.ndarray
+GOLDEN = (1 + 5**0.5) / 2
+
+# Radius and height along the outline of a pot, from the top of its knob down to its foot; a smooth curve goes through.
+POT = [(0, 1.32), (0.09, 1.3), (0.13, 1.2), (0.06, 1.1), (0.1, 1.04), (0.4, 0.95), (0.6, 0.87)]
+POT += [(0.66, 0.86), (0.7, 0.8), (0.86, 0.62), (1.0, 0.35), (1.02, 0.1), (0.9, -0.2), (0.7, -0.38), (0.62, -0.45)]
+POT += [(0.66, -0.52), (0.64, -0.56), (0.4, -0.56), (0, -0.54)]
+
+
+def icosahedron() -> tuple[Array, Array]:
+    """The corners of twenty triangles on the unit sphere, and which of them each triangle has."""
+    flat = np.array([(0.0, a, b * GOLDEN) for a in (-1, 1) for b in (-1, 1)])
+    points = np.concatenate([np.roll(flat, turn, axis=1) for turn in range(3)])
+    near = np.linalg.norm(points[:, None] - points, axis=-1) < 2.1
+    faces = [
+        (i, j, k) for i in range(12) for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[k, i]
+    ]
+    corners = np.array(faces)
+    a, b, c = (points[corners[:, i]] for i in range(3))
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
+    corners[inward] = corners[inward][:, ::-1]
+    return points / np.linalg.norm(points[0]), corners
+
+
+def rounder(points: Array, corners: Array) -> tuple[Array, Array]:
+    """Each triangle in four, with new corners on the unit sphere."""
+    pairs = np.sort(np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1)
+    edges, which = np.unique(pairs, axis=0, return_inverse=True)
+    middles = points[edges].sum(axis=1)
+    middles /= np.linalg.norm(middles, axis=1, keepdims=True)
+    a, b, c = corners.T
+    ab, bc, ca = len(points) + which.reshape(3, -1)
+    new = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    return np.concatenate([points, middles]), np.concatenate([np.stack(each, axis=1) for each in new])
+
+
+def wrapped(surface: Callable[[Array, Array], Array], across: int, down: int, closed: bool) -> tuple[Array, ...]:
+    """The points and normals of a surface over u, which meets itself, and v, which does so if it is closed; places of
+    a picture; and faces of four corners, each three indices."""
+    u, v = np.meshgrid(np.arange(across + 1) / across, np.arange(down + 1) / down)
+    points = surface(u, v)
+    step = 1e-4
+    w = v if closed else np.clip(v, step, 1 - step)  # at a pole there is nothing to differ along u
+    normals = np.cross(surface(u + step, w) - surface(u - step, w), surface(u, w + step) - surface(u, w - step))
+    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    rows, columns = down if closed else down + 1, across
+    i, j = np.meshgrid(np.arange(across), np.arange(down))
+    around = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+    places = np.stack([k * (across + 1) + h for h, k in around], axis=-1)
+    corners = np.stack([(k % rows) * columns + h % columns for h, k in around], axis=-1)
+    faces = np.stack([corners, places, corners], axis=-1).reshape(-1, 4, 3)
+    return (
+        points[:rows, :columns].reshape(-1, 3),
+        np.stack([u, v], axis=-1).reshape(-1, 2),
+        normals[:rows, :columns].reshape(-1, 3),
+        faces,
+    )
+
+
+def knot(u: Array, v: Array) -> Array:
+    """A tube around a trefoil; u goes around the tube, v along it."""
+
+    def line(at: Array) -> Array:
+        turn = 2 * np.pi * at
+        x, y = np.sin(turn) + 2 * np.sin(2 * turn), np.cos(turn) - 2 * np.cos(2 * turn)
+        return np.stack([x, y, -np.sin(3 * turn)], axis=-1) / 3
+
+    along = line(v + 1e-4) - line(v - 1e-4)
+    along /= np.linalg.norm(along, axis=-1, keepdims=True)
+    aside = np.cross(along, np.array([0.0, 0.0, 1.0]))
+    aside /= np.linalg.norm(aside, axis=-1, keepdims=True)
+    turn = 2 * np.pi * u[..., None]
+    return line(v) + 0.22 * (np.cos(turn) * aside + np.sin(turn) * np.cross(along, aside))
+
+
+def pot(u: Array, v: Array) -> Array:
+    """A pot turned on a lathe; u goes around it, v from its foot to its knob."""
+    outline = np.array(POT[::-1])
+    at = np.clip(v, 0, 1) * (len(outline) - 1)
+    i = np.clip(at.astype(int), 0, len(outline) - 2)
+    t = (at - i)[..., None]
+    p = [outline[np.clip(i + k, 0, len(outline) - 1)] for k in (-1, 0, 1, 2)]
+    slopes = (p[2] - p[0]) / 2, (p[3] - p[1]) / 2  # Catmull and Rom 1974
+    t2, t3 = t * t, t * t * t
+    place = p[1] * (2 * t3 - 3 * t2 + 1) + p[2] * (3 * t2 - 2 * t3)
+    place += slopes[0] * (t3 - 2 * t2 + t) + slopes[1] * (t3 - t2)
+    turn = 2 * np.pi * u
+    return np.stack([place[..., 0] * np.cos(turn), place[..., 1], -place[..., 0] * np.sin(turn)], axis=-1)
+
+
+def save(name: str, title: str, points: Array, places: Array, normals: Array, faces: Array) -> None:
+    """Write a mesh; `faces` are (f, corners, 3) indices of the other three, or (f, corners) of points alone."""
+    lines = [f"# {title}"]
+    for key, rows in (("v", points), ("vt", places), ("vn", normals)):
+        lines += [f"{key} " + " ".join(f"{number + 0.0:.5g}" for number in row) for row in np.round(rows, 5).tolist()]
+    for face in (faces + 1).tolist():
+        lines.append(
+            "f " + " ".join("/".join(map(str, each)) if isinstance(each, list) else str(each) for each in face)
+        )
+    (FOLDER / name).write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
+def main() -> None:
+    """Write all of them."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    nothing = np.zeros((0, 3))
+    points, corners = icosahedron()
+    save("icosahedron.obj", "A ball of twenty faces", points, nothing, nothing, corners)
+    for _ in range(3):
+        points, corners = rounder(points, corners)
+    save("icosphere.obj", "A ball of 1,280 faces", points, nothing, nothing, corners)
+    save("knot.obj", "A trefoil knot, round and with places of a picture", *wrapped(knot, 18, 110, closed=True))
+    save("pot.obj", "A pot, round and with places of a picture", *wrapped(pot, 40, 54, closed=False))
+
+
+if __name__ == "__main__":
+    main()

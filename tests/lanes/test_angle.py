@@ -1,0 +1,88 @@
+"""Angles against 60 digits and against numpy's for what is no ordinary number, on numbers and on lanes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from numba import njit
+
+from minirt.kernel.jit import FLAGS
+from minirt.lanes import load, save, width
+from minirt.lanes.angle import arctan2
+from tests.lanes.numbers import PRECISIONS, assert_same, pairs
+
+ULPS = 2.0  # what the documentation promises
+
+
+@njit(**FLAGS)
+def on_lanes(y: Any, x: Any, out: Any) -> None:
+    for i in range(0, y.size, width(y)):
+        save(arctan2(load(y, i), load(x, i)), out, i)
+
+
+def compiled(y: np.ndarray, x: np.ndarray) -> np.ndarray:
+    out = np.empty_like(y)
+    on_lanes(y, x, out)
+    return out
+
+
+def interpreted(y: np.ndarray, x: np.ndarray) -> np.ndarray:
+    with np.errstate(all="ignore"):
+        return arctan2(y, x)
+
+
+WAYS = pytest.mark.parametrize("way", [interpreted, compiled])
+
+
+def off(got: np.ndarray, y: np.ndarray, x: np.ndarray) -> float:
+    """The largest error in units in the last place of the right angle."""
+    with mpmath.workdps(60):
+        right = [mpmath.atan2(mpmath.mpf(float(b)), mpmath.mpf(float(a))) for b, a in zip(y, x, strict=True)]
+        spacings = np.spacing(np.abs(np.array([float(each) for each in right])).astype(got.dtype))
+        steps = zip(got, right, spacings, strict=True)
+        return max(float(abs(mpmath.mpf(float(g)) - r) / float(step)) for g, r, step in steps)
+
+
+@WAYS
+@PRECISIONS
+def test_all_around_to_two_units_in_the_last_place(way: Any, dtype: Any) -> None:
+    random = np.random.default_rng(1)
+    turns = random.uniform(-np.pi, np.pi, 3200)
+    near = np.arange(-8, 9)[:, None] * (np.pi / 8) + 0.1 * 0.5 ** np.arange(64)  # and near the axes and diagonals
+    turns = np.concatenate([turns, near.ravel()])
+    sizes = 2.0 ** random.uniform(-30, 30, turns.size)
+    y, x = (sizes * np.sin(turns)).astype(dtype), (sizes * np.cos(turns)).astype(dtype)
+    assert off(way(y, x), y, x) <= ULPS
+
+
+@WAYS
+@PRECISIONS
+def test_ratios_around_the_places_where_the_formula_changes(way: Any, dtype: Any) -> None:
+    eps = float(np.finfo(dtype).eps)
+    ratios = [c * (1 + k * eps) for c in (0.25, 0.75, 1.0) for k in range(-16, 16)]
+    y = np.array(ratios, dtype)
+    x = np.ones_like(y)
+    for a, b in ((y, x), (x, y), (-y, -x)):
+        assert off(way(a, b), a, b) <= ULPS
+
+
+@WAYS
+@PRECISIONS
+def test_zeros_infinities_and_nan_as_numpy_says(way: Any, dtype: Any) -> None:
+    y, x = pairs(dtype)
+    got, right = way(y, x), np.arctan2(y, x)
+    assert got.dtype == dtype
+    special = (y == 0) | (x == 0) | ~np.isfinite(y) | ~np.isfinite(x)
+    assert special.sum() > 200
+    assert_same(got[special], right[special])
+    assert np.array_equal(np.signbit(got[~special]), np.signbit(right[~special]))
+    tiny = float(np.finfo(dtype).smallest_subnormal)
+    assert (np.abs(got - right)[~special] <= 4 * np.finfo(dtype).eps * np.abs(right)[~special] + 2 * tiny).all()
+
+
+def test_single_numbers() -> None:
+    assert arctan2(np.float64(1.0), np.float64(-1.0)) == 0.75 * np.pi
+    assert arctan2(np.float64(-0.0), np.float64(-3.0)) == -np.pi

@@ -1,0 +1,72 @@
+"""Files that are no meshes, and what is said of them."""
+
+from __future__ import annotations
+
+import pytest
+
+from minirt.meshes import obj
+from minirt.meshes.block import BrokenError
+
+SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\n"
+
+BROKEN = {
+    "": "has no faces",
+    "\n# nothing\n": "has no faces",
+    SQUARE: "has no faces",
+    SQUARE + "f 1 1 2\n": "has no triangle that is more than a line",
+    SQUARE + "f 1 2\n": "line 6: a face has at least 3 corners, got 2",
+    SQUARE + "f\n": "line 6: a face has at least 3 corners, got 0",
+    SQUARE + "f 1 2 0\n": "line 6: a corner names point 0, and there are 4",
+    SQUARE + "f 1 2 5\n": "line 6: a corner names point 5, and there are 4",
+    SQUARE + "\n\nf 1 2 3\nf 1 2 -5\n": "line 9: a corner names point -5, and there are 4",
+    SQUARE + "f 1//1 2//2 3//1\n": "line 6: a corner names vn 2, and there is 1",
+    SQUARE + "f 1/1 2/1 3/1\n": "line 6: a corner names vt 1, and there are 0",
+    SQUARE + "f 1 2 9\nf 1 2 7": "line 6: a corner names point 9, and there are 4",
+    SQUARE + f"f 1 2 {10**30}\n": f"line 6: a corner names point {2**62 + 1}, and there are 4",
+    SQUARE + "f 1/ 2/ 3/\n": "line 6: a corner is v, v/vt, v//vn or v/vt/vn, got '1/'",
+    SQUARE + "f /1 /2 /3\n": "line 6: a corner is v, v/vt, v//vn or v/vt/vn, got '/1'",
+    SQUARE + "f 1/1/1/1 2 3\n": "line 6: a corner is v, v/vt, v//vn or v/vt/vn, got '1/1/1/1'",
+    SQUARE + "f 1 2 x\n": "line 6: the point of a corner must be a whole number, got 'x'",
+    SQUARE + "f 1 2 3.0\n": "line 6: the point of a corner must be a whole number, got '3.0'",
+    SQUARE + "f 1 2 1_0\n": "line 6: the point of a corner must be a whole number, got '1_0'",
+    "v 0 0\n": "line 1: v has x y z, got 2 numbers",
+    "v 0 0 0 1 1 1 1 1\n": "line 1: v has x y z, got 8 numbers",
+    "v 0 0 nan\n": "line 1: v must be a number, got 'nan'",
+    "v 0 0 0\nv 1 inf 0\n": "line 2: v must be a number, got 'inf'",
+    "v 1e400 0 0\n": "line 1: v must be a number that a float64 can hold, got '1e400'",
+    "v 0 -2e15 0\n": "line 1: v must be in [-1e+15, 1e+15], got -2000000000000000",
+    "v 0 1_0 0\n": "line 1: v must be a number, got '1_0'",
+    "v 0 0 0x1\n": "line 1: v must be a number, got '0x1'",
+    "v 0,0,0\n": "line 1: v has x y z, got 1 number",
+    "vt\n": "line 1: vt has u v, got 0 numbers",
+    "vn 0 1\n": "line 1: vn has x y z, got 2 numbers",
+    "v 0 0 0\nsp 0,0,0 1 255,0,0\n": "line 2: a line begins with v, vt, vn, f or another word of .obj, got 'sp'",
+    "V 0 0 0\n": "line 1: a line begins with v, vt, vn, f or another word of .obj, got 'V'",
+    "curv 0 1 2\n": "line 1: a line begins with v, vt, vn, f or another word of .obj, got 'curv'",
+    "\x89PNG\n": "line 1: a line begins with v, vt, vn, f or another word of .obj, got '\\x89PNG'",
+    "v 0 0 \\\n0 \\\n# x\nv 1 2\n": "line 4: v has x y z, got 2 numbers",
+}
+
+
+@pytest.mark.parametrize(("text", "message"), BROKEN.items(), ids=range(len(BROKEN)))
+def test_a_broken_file(text: str, message: str) -> None:
+    with pytest.raises(BrokenError) as caught:
+        obj.parse(text.encode())
+    assert str(caught.value) == message
+
+
+def test_bytes_that_are_no_text() -> None:
+    with pytest.raises(BrokenError, match=r"^line 1: a line begins with"):
+        obj.parse(bytes(range(256)))
+
+
+def test_too_many_triangles(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(obj, "MOST", 3)
+    assert len(obj.parse((SQUARE + "f 1 2 3 4 -4\n").encode())) == 2  # one of three is a line
+    with pytest.raises(BrokenError, match=r"^has more than 3 triangles$"):
+        obj.parse((SQUARE + 4 * "f 1 2 3\n").encode())
+
+
+def test_a_line_of_a_megabyte() -> None:
+    with pytest.raises(BrokenError, match="got 1000000 characters"):
+        obj.parse(b"v 0 0 " + b"1" * 1_000_000)

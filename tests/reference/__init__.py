@@ -1,0 +1,107 @@
+"""A second, independent renderer, which the tests compare the program with.
+
+It draws all shapes and materials, all lamps with hard shadows, mirrors, glass and skies, one ray a pixel, in plain
+numpy float64, as the manual pages of the program say. It shares no code with the program beyond the scene's
+dataclasses, and its geometry is written another way: a shape is where a line goes through its surface, and the first
+such place in front of the origin is what is seen.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.scene import Camera, Scene
+from tests.reference.hits import first_hits
+from tests.reference.light import OFF_SURFACE, shaded
+from tests.reference.normals import normals
+from tests.reference.skin import lookup, painted, picture
+from tests.reference.vectors import Array, dot, length, rgb, upright
+
+DEPTH = 8  # how often light is mirrored or refracted on its way to the eye, at most
+LEAST = 2.0**-10  # rays are not followed for a share of the light of a pixel that is no more than this
+
+
+def render(scene: Scene, width: int, height: int, depth: int = DEPTH) -> Array:
+    """The linear picture, (height, width, 3), not clamped; the camera's field of view lies between 0 and 180."""
+    origins, directions = camera_rays(scene.camera, width, height)
+    seen = light_along(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), np.ones(width * height), depth)
+    return seen.reshape(height, width, 3)
+
+
+def to_bytes(linear: Array) -> NDArray[np.uint8]:
+    """The picture as it is shown: clamped to [0, 1] and rounded to the nearest of 256 steps, halves upwards."""
+    return np.floor(np.clip(linear, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+
+
+def camera_rays(camera: Camera, width: int, height: int) -> tuple[Array, Array]:
+    """Origin and unit direction of the ray through the centre of each pixel, (height, width, 3) each."""
+    right, up, forward = camera_frame(camera)
+    half = np.tan(np.radians(camera.fov) / 2)
+    x = (2 * (np.arange(width) + 0.5) / width - 1) * half
+    y = (1 - 2 * (np.arange(height) + 0.5) / height) * half * height / width
+    rays = forward + x[None, :, None] * right + y[:, None, None] * up
+    directions = rays / length(rays)[..., None]
+    return np.broadcast_to(np.array(camera.position), directions.shape), directions
+
+
+def camera_frame(camera: Camera) -> tuple[Array, Array, Array]:
+    """What the camera calls right, up and forward: unit vectors."""
+    forward = np.array(camera.direction)
+    right, up = upright(forward)
+    turn = np.radians(camera.roll)
+    return np.cos(turn) * right - np.sin(turn) * up, np.cos(turn) * up + np.sin(turn) * right, forward
+
+
+def light_along(scene: Scene, origins: Array, directions: Array, weights: Array, depth: int) -> Array:
+    """The light, times weights, that n rays bring back, (n, 3): after Whitted 1980."""
+    distances, owners = first_hits(scene.shapes, origins, directions)
+    light = np.zeros_like(origins)
+    missed = owners < 0
+    light[missed] = weights[missed, None] * sky(scene, directions[missed])
+    for index in np.unique(owners[~missed]):
+        rays, shape = owners == index, scene.shapes[index]
+        direction, weight = directions[rays], weights[rays]
+        points = origins[rays] + distances[rays, None] * direction
+        far = OFF_SURFACE * (distances[rays] + length(origins[rays]) + length(points))
+        normal = normals(shape, points)
+        colour, bent = painted(scene, shape, points, normal)
+        outside = dot(normal, direction) <= 0
+        facing, bent = (np.where(outside[:, None], n, -n) for n in (normal, bent))
+        light[rays] += weight[:, None] * shaded(scene, shape, points, facing, bent, colour, direction, far)
+        through = shape.glass.share if shape.glass else 0.0
+        back = shape.mirror or 0.0
+        whole = max(1.0, back + through)
+        if depth == 0 or back + through == 0:
+            continue
+        leaving = points + far[:, None] * facing, points - far[:, None] * facing
+        cosine = -dot(facing, direction)[:, None]
+        mirrored = direction + 2 * cosine * facing
+        ratio = np.where(outside, 1 / shape.glass.ior, shape.glass.ior) if shape.glass else np.ones(len(direction))
+        sine = ratio[:, None] * (direction + cosine * facing)  # Snell's law: what is along the surface
+        squared = dot(sine, sine)
+        total = squared > 1
+        refracted = sine - np.sqrt(np.maximum(0, 1 - squared))[:, None] * facing
+        shares = (
+            (leaving[0], mirrored, weight * (back + np.where(total, through, 0)) / whole),
+            (leaving[1], refracted, weight * np.where(total, 0, through) / whole),
+        )
+        for starts, ways, share in shares:
+            asked = share > LEAST
+            part = np.zeros_like(points)
+            part[asked] = light_along(scene, starts[asked], ways[asked], share[asked], depth - 1)
+            light[rays] += part
+    return light
+
+
+def sky(scene: Scene, directions: Array) -> Array:
+    """What is seen in directions in which there is nothing."""
+    if scene.background is None:
+        return np.zeros_like(directions)
+    if not isinstance(scene.background.paint, str):
+        return np.broadcast_to(rgb(scene.background.paint), directions.shape)
+    pixels = picture(scene.beside(scene.background.paint))
+    x, y, z = np.moveaxis(directions, -1, 0)
+    edge = 0.5 / len(pixels)  # nothing is above the upper row of pixels
+    v = np.clip(0.5 + np.arcsin(np.clip(y, -1, 1)) / np.pi, edge, 1 - edge)
+    return lookup(pixels, 0.5 + np.arctan2(-x, z) / (2 * np.pi), v)

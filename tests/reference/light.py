@@ -1,0 +1,62 @@
+"""The light that reaches surfaces from lamps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from minirt.scene import Lamp, Light, ParallelLight, Scene, SpotLight
+from minirt.shapes.shape import Shape
+from tests.reference.hits import first_in_front
+from tests.reference.vectors import Array, dot, length, rgb, unit
+
+OFF_SURFACE = 1e-10  # where a ray starts that leaves a surface, relative to the coordinates
+
+
+def from_lamp(lamp: Lamp, points: Array) -> tuple[Array, Array, Array]:
+    """The unit directions from points towards a lamp, its distance, and the share of its light that goes there."""
+    if isinstance(lamp, ParallelLight):
+        towards = np.broadcast_to(-np.array(lamp.direction), points.shape)
+        return towards, np.full(points.shape[:-1], np.inf), np.ones(points.shape[:-1])
+    assert isinstance(lamp, Light | SpotLight)
+    way = np.array(lamp.position) - points
+    distance, towards = length(way), unit(way)
+    share = np.ones_like(distance)
+    if isinstance(lamp, SpotLight):
+        half = np.radians(lamp.angle) / 2
+        cosine, edge, full = -dot(towards, np.array(lamp.direction)), np.cos(half), np.cos(half * (1 - lamp.rim))
+        if full > edge:
+            t = np.clip((cosine - edge) / (full - edge), 0, 1)
+            share = 3 * t**2 - 2 * t**3
+        else:
+            share = np.where(cosine > edge, 1.0, 0.0)
+    if lamp.fade:
+        share = share * np.maximum(0, 1 - distance / lamp.fade)
+    return towards, distance, share
+
+
+def shaded(
+    scene: Scene, shape: Shape, points: Array, normal: Array, bent: Array, colour: Array, direction: Array, far: Array
+) -> Array:
+    """The light of their own that points send back against `direction`, and that of their highlights: those of a
+    `shape`, with a `normal` towards the viewer, lit as if it were `bent`. Rays to lamps start `far` above."""
+    through = shape.glass.share if shape.glass else 0.0
+    own = 1 - min(1.0, (shape.mirror or 0.0) + through)
+    total = np.zeros_like(points)
+    if scene.ambient is not None:
+        total += own * colour * scene.ambient.brightness * rgb(scene.ambient.colour)
+    starts = points + far[:, None] * normal
+    for lamp in scene.lights:
+        towards, distance, share = from_lamp(lamp, starts)
+        cosine = dot(bent, towards)
+        reached = cosine > 0
+        for each in scene.shapes:
+            reached &= first_in_front(each, starts, towards) >= distance * (1 - OFF_SURFACE)
+        light = (lamp.brightness * share * reached)[:, None] * rgb(lamp.colour)
+        total += own * cosine[:, None] * colour * light
+        if shape.specular:
+            if shape.specular.blinn:
+                angle = dot(bent, unit(towards - direction))
+            else:
+                angle = dot(2 * cosine[:, None] * bent - towards, -direction)
+            total += shape.specular.share * np.maximum(0, angle)[:, None] ** shape.specular.exponent * light
+    return total

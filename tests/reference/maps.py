@@ -1,0 +1,158 @@
+"""Where pictures lie on shapes: u to the right and v upwards, and how a point moves with them."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+from typing import NamedTuple
+
+import numpy as np
+
+from minirt.shapes.box import Box
+from minirt.shapes.cone import Cone
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.disc import Disc
+from minirt.shapes.hyperboloid import Hyperboloid
+from minirt.shapes.paraboloid import Paraboloid
+from minirt.shapes.plane import Plane
+from minirt.shapes.shape import Shape
+from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
+from minirt.shapes.torus import Torus
+from minirt.shapes.triangle import Triangle
+from tests.reference.normals import normals
+from tests.reference.revolved import profile
+from tests.reference.vectors import Array, dot, length, turned, unit, upright
+
+
+class Place(NamedTuple):
+    """A point on a picture."""
+
+    u: Array
+    v: Array
+    along_u: Array  # by how much the point moves when u grows by 1
+    along_v: Array
+
+
+@singledispatch
+def place(shape: Shape, points: Array) -> Place:
+    """Where points of the surface lie on its picture."""
+    raise TypeError(f"the reference renderer knows no {shape.title}")
+
+
+def flat(points: Array, corner: Array, right: Array, up: Array) -> Place:
+    """On a picture with that lower left corner and these edges, perpendicular to each other."""
+    p = points - corner
+    edges = [np.broadcast_to(edge, points.shape) for edge in (right, up)]
+    return Place(dot(p, right) / dot(right, right), dot(p, up) / dot(up, up), *edges)
+
+
+@place.register
+def _(plane: Plane, points: Array) -> Place:
+    return flat(points, np.array(plane.point), *upright(-np.array(plane.normal)))
+
+
+@place.register(Square)
+@place.register(Disc)
+def _(sheet: Square | Disc, points: Array) -> Place:
+    size = sheet.diameter if isinstance(sheet, Disc) else sheet.side
+    right, up = upright(-np.array(sheet.normal))
+    return flat(points, np.array(sheet.centre) - size * (right + up) / 2, size * right, size * up)
+
+
+@place.register
+def _(triangle: Triangle, points: Array) -> Place:
+    a, b, c = (np.array(corner) for corner in (triangle.a, triangle.b, triangle.c))
+    (u, v), *_ = np.linalg.lstsq(np.stack([b - a, c - a], axis=-1), (points - a).reshape(-1, 3).T, rcond=None)
+    shape = points.shape[:-1]
+    return Place(
+        u.reshape(shape), v.reshape(shape), np.broadcast_to(b - a, points.shape), np.broadcast_to(c - a, points.shape)
+    )
+
+
+@place.register
+def _(box: Box, points: Array) -> Place:
+    x, z = turned(np.array(box.axis))
+    y = np.cross(z, x)
+    wide, tall, deep = box.sizes
+    normal = normals(box, points)
+    # For each face, by its normal: right and up of somebody who faces it.
+    faces = [(x, -z, y, deep, tall), (-x, z, y, deep, tall), (z, x, y, wide, tall), (-z, -x, y, wide, tall)]
+    faces += [(y, x, -z, wide, deep), (-y, x, z, wide, deep)]
+    found = Place(*(np.zeros(points.shape[:-1] + rest) for rest in ((), (), (3,), (3,))))
+    for out, to_right, upwards, across, high in faces:
+        mine = dot(normal, out) > 0.5
+        right, up = across * to_right, high * upwards
+        own = flat(points, np.array(box.centre) - (right + up) / 2, right, up)
+        for part, value in zip(found, own, strict=True):
+            part[mine] = value[mine]
+    return found
+
+
+def turn(p: Array, up: Array, middle: Array) -> Array:
+    """From 0 to 1 about the axis `up`, counter-clockwise from its tip, with 1/2 in the direction `middle`."""
+    return np.asarray(0.5 + np.arctan2(dot(np.cross(middle, p), up), dot(middle, p)) / (2 * np.pi))
+
+
+@place.register
+def _(sphere: Sphere, points: Array) -> Place:
+    up = np.array([0.0, 1.0, 0.0])
+    p = points - np.array(sphere.centre)
+    normal = unit(p)
+    latitude = np.arcsin(np.clip(normal[..., 1], -1, 1))
+    north = up - normal[..., 1:2] * normal
+    far = length(north)[..., None]
+    along_v = np.where(far > 0, np.pi * sphere.diameter / 2 * north / np.where(far > 0, far, 1), 0)
+    around = 2 * np.pi * np.cross(up, p)
+    return Place(turn(p, up, np.array([0.0, 0.0, -1.0])), 0.5 + latitude / np.pi, around, along_v)
+
+
+@place.register
+def _(torus: Torus, points: Array) -> Place:
+    axis = np.array(torus.axis)
+    _, z = turned(axis)
+    p = points - np.array(torus.centre)
+    outwards = unit(p - dot(p, axis)[..., None] * axis)
+    normal = normals(torus, points)
+    out, up = dot(normal, outwards), dot(normal, axis)
+    along_v = np.pi * torus.tube * (out[..., None] * axis - up[..., None] * outwards)
+    return Place(turn(p, axis, -z), 0.5 + np.arctan2(up, out) / (2 * np.pi), 2 * np.pi * np.cross(axis, p), along_v)
+
+
+@place.register(Cone)
+@place.register(Cylinder)
+@place.register(Paraboloid)
+@place.register(Hyperboloid)
+def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Place:
+    form = profile(shape)
+    _, z = turned(form.axis)
+    axis = -form.axis if isinstance(shape, Cone) else form.axis  # a cone has its apex above
+    across_axis = np.cross(axis, z)
+    p = points - form.origin
+    height = dot(p, form.axis)
+    radius = p - height[..., None] * form.axis
+    far = length(radius)
+    outwards = radius / np.where(far > 0, far, 1)[..., None]
+    span = form.high - form.low
+    if isinstance(shape, Cone):
+        v, along_v = 1 - height / span, -span * (form.axis + np.sqrt(form.two) * outwards)
+    elif isinstance(shape, Paraboloid):
+        rim = shape.diameter / 2
+        v = far / rim
+        along_v = rim * outwards + (2 * span * v)[..., None] * form.axis
+    else:
+        v = (height - form.low) / span
+        along_v = span * (form.axis + form.two * (height / np.where(far > 0, far, 1))[..., None] * outwards)
+    side = Place(turn(p, axis, -z), v, 2 * np.pi * np.cross(axis, p), along_v)
+    # On a cap, right is along x of the upright shape and up along -z on the upper one, along z on the lower one.
+    out = normals(shape, points)
+    capped, above = np.abs(dot(out, form.axis)) > 1 - 1e-9, dot(out, axis) > 0
+    for is_above in (True, False):
+        mine = capped & (above == is_above)
+        if mine.any():
+            end = form.high if (dot(out[mine], form.axis) > 0).all() else form.low
+            across = 2 * np.sqrt(form.at(end))
+            right, up = across * across_axis, across * (-z if is_above else z)
+            corner = form.origin + end * form.axis - (right + up) / 2
+            for part, value in zip(side, flat(points[mine], corner, right, up), strict=True):
+                part[mine] = value
+    return side

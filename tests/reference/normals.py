@@ -1,0 +1,84 @@
+"""How surfaces lie: the unit normals at points on them, outward where there is an outside."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+
+import numpy as np
+
+from minirt.shapes.box import Box
+from minirt.shapes.cone import Cone
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.disc import Disc
+from minirt.shapes.hyperboloid import Hyperboloid
+from minirt.shapes.paraboloid import Paraboloid
+from minirt.shapes.plane import Plane
+from minirt.shapes.shape import Shape
+from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
+from minirt.shapes.torus import Torus
+from minirt.shapes.triangle import Triangle
+from tests.reference.revolved import profile
+from tests.reference.vectors import Array, dot, length, turned, unit
+
+
+@singledispatch
+def normals(shape: Shape, points: Array) -> Array:
+    """The unit normals of a shape at points on its surface."""
+    raise TypeError(f"the reference renderer knows no {shape.title}")
+
+
+@normals.register(Plane)
+@normals.register(Square)
+@normals.register(Disc)
+def _(flat: Plane | Square | Disc, points: Array) -> Array:
+    return np.broadcast_to(np.array(flat.normal), points.shape)
+
+
+@normals.register(Triangle)
+def _(triangle: Triangle, points: Array) -> Array:
+    a, b, c = (np.array(corner) for corner in (triangle.a, triangle.b, triangle.c))
+    return np.broadcast_to(unit(np.cross(b - a, c - a)), points.shape)
+
+
+@normals.register(Sphere)
+def _(sphere: Sphere, points: Array) -> Array:
+    return unit(points - np.array(sphere.centre))
+
+
+@normals.register(Box)
+def _(box: Box, points: Array) -> Array:
+    x, z = turned(np.array(box.axis))
+    axes = np.stack([x, np.cross(z, x), z])
+    p = (points - np.array(box.centre)) @ axes.T
+    face = np.argmax(np.abs(p) - np.array(box.sizes) / 2, axis=-1)
+    return np.asarray(np.sign(np.take_along_axis(p, face[..., None], -1)) * axes[face])
+
+
+@normals.register(Cone)
+@normals.register(Cylinder)
+@normals.register(Paraboloid)
+@normals.register(Hyperboloid)
+def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Array:
+    form = profile(shape)
+    p = points - form.origin
+    height = dot(p, form.axis)
+    across = p - height[..., None] * form.axis
+    # Half of the gradient of radius^2 - profile; a cap is there where the side is farther away.
+    gradient = across - (form.one / 2 + form.two * height)[..., None] * form.axis
+    with np.errstate(divide="ignore", invalid="ignore"):
+        off_side = np.abs(dot(across, across) - form.at(height)) / (2 * length(gradient))
+    ends = np.array([form.low, form.high])
+    off_ends = np.abs(height[..., None] - ends)
+    off_ends[..., form.at(ends) == 0] = np.inf
+    up = np.where(off_ends.argmin(axis=-1) == 1, 1.0, -1.0)
+    on_cap = off_ends.min(axis=-1) < off_side
+    return np.where(on_cap[..., None], up[..., None] * form.axis, unit(gradient))
+
+
+@normals.register(Torus)
+def _(torus: Torus, points: Array) -> Array:
+    axis = np.array(torus.axis)
+    p = points - np.array(torus.centre)
+    ring = unit(p - dot(p, axis)[..., None] * axis) * torus.diameter / 2
+    return unit(p - ring)

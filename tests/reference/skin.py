@@ -1,0 +1,70 @@
+"""What is painted on surfaces: their colour, and the normals by which they are lit."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from minirt.scene import Scene
+from minirt.shapes.shape import Shape
+from tests.reference.maps import place
+from tests.reference.vectors import Array, dot, length, rgb, unit
+
+
+@cache
+def picture(path: Path) -> Array:
+    """Its pixels in [0, 1], the lowest row first, (h, w, 3)."""
+    return np.asarray(Image.open(path).convert("RGB"), float)[::-1] / 255
+
+
+@cache
+def heights(path: Path) -> Array:
+    """Its luminance, (h, w, 1)."""
+    return picture(path) @ np.array([[0.2126], [0.7152], [0.0722]])
+
+
+def lookup(pixels: Array, u: Array, v: Array) -> Array:
+    """What a picture that is repeated without end has at u, v: between the centres of its pixels along straight
+    lines."""
+    high, wide, _ = pixels.shape
+    x, y = u * wide - 0.5, v * high - 0.5
+    i, j = np.floor(x).astype(int), np.floor(y).astype(int)
+    total = np.zeros((*u.shape, pixels.shape[2]))
+    for column in (i, i + 1):
+        for row in (j, j + 1):
+            share = (1 - np.abs(x - column)) * (1 - np.abs(y - row))
+            total += share[..., None] * pixels[row % high, column % wide]
+    return total
+
+
+def painted(scene: Scene, shape: Shape, points: Array, normal: Array) -> tuple[Array, Array]:
+    """The colours of points, and their normals as they count for light; `normal` are those of the shape."""
+    colour = np.broadcast_to(rgb(shape.colour), points.shape)
+    if not (shape.checker or shape.texture or shape.bump or shape.normal_map):
+        return colour, normal
+    at = place(shape, points)
+    if shape.texture:
+        colour = lookup(picture(scene.beside(shape.texture)), at.u, at.v)
+    if shape.checker:
+        odd = (np.floor(at.u / shape.checker.size) + np.floor(at.v / shape.checker.size)) % 2 == 1
+        colour = np.where(odd[..., None], rgb(shape.checker.colour), colour)
+    if shape.bump:
+        pixels = heights(scene.beside(shape.bump.file))
+        high, wide, _ = pixels.shape
+        over_u = wide * (lookup(pixels, at.u + 0.5 / wide, at.v) - lookup(pixels, at.u - 0.5 / wide, at.v))
+        over_v = high * (lookup(pixels, at.u, at.v + 0.5 / high) - lookup(pixels, at.u, at.v - 0.5 / high))
+        # The tangents of the raised surface are P_u + h_u n and P_v + h_v n, and what is normal to both is wanted; the
+        # products of small quantities are left out (Blinn 1978).
+        raise_u, raise_v = shape.bump.strength * over_u * normal, shape.bump.strength * over_v * normal
+        raised = np.cross(at.along_u, at.along_v) + np.cross(raise_u, at.along_v) + np.cross(at.along_u, raise_v)
+        raised *= np.sign(dot(np.cross(at.along_u, at.along_v), normal))[..., None]
+        normal = np.where(length(raised)[..., None] > 1e-12, unit(raised), normal)
+    if shape.normal_map:
+        red, green, blue = np.moveaxis(2 * lookup(picture(scene.beside(shape.normal_map)), at.u, at.v) - 1, -1, 0)
+        normal = unit(
+            red[..., None] * unit(at.along_u) + green[..., None] * unit(at.along_v) + blue[..., None] * normal
+        )
+    return colour, normal

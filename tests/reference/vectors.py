@@ -1,0 +1,47 @@
+"""Vectors, (..., 3), and frames."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def dot(a: Array, b: Array) -> Array:
+    return np.asarray(np.sum(a * b, axis=-1))
+
+
+def length(a: Array) -> Array:
+    return np.sqrt(dot(a, a))
+
+
+def unit(a: Array) -> Array:
+    """At length 1; NaN where it has none."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(a / length(a)[..., None])
+
+
+def rgb(colour: tuple[float, float, float]) -> Array:
+    return np.array(colour) / 255.0
+
+
+def upright(forward: Array) -> tuple[Array, Array]:
+    """Right and up of somebody who looks along a unit vector, with the head upwards; looking down, towards -z."""
+    x, _, z = forward
+    level = np.hypot(x, z)
+    right = np.array([-z, 0.0, x]) / level if level > 0 else np.array([1.0, 0.0, 0.0])  # forward cross +y
+    return right, np.cross(right, forward)
+
+
+def turned(axis: Array) -> tuple[Array, Array]:
+    """What becomes of the scene's x and z when y is turned, on the shortest way, to the axis or, where that points
+    down, to its opposite."""
+    to = axis if axis[1] >= 0 else -axis
+    y = np.array([0.0, 1.0, 0.0])
+    about, cosine = np.cross(y, to), to[1]
+
+    def turn(v: Array) -> Array:  # Rodrigues
+        return np.asarray(v * cosine + np.cross(about, v) + about * dot(about, v) / (1 + cosine))
+
+    return turn(np.array([1.0, 0.0, 0.0])), turn(np.array([0.0, 0.0, 1.0]))

@@ -1,0 +1,100 @@
+"""The triangle's formulas, against answers known by hand; where they are hard is in `tests.stability`."""
+
+from __future__ import annotations
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+
+from minirt.shapes.triangle import Triangle
+from tests.shapes.regimes import GREY, RAYS, Array, Random, log, unit, ways
+from tests.shapes.test_sphere import shoot
+from tests.shapes.ways import Intersect
+
+SAIL = Triangle((-2, 0, 5), (2, 0, 5), (0, 3, 8), GREY)
+
+
+def test_answers_known_by_hand(way: Intersect) -> None:
+    rays = [
+        ((0, 1, 0), (0, 0, 1)),  # z = 5 + y
+        ((0, 1, 0), (0, 0, -1)),  # behind
+        ((0, 2, 9), (0, 0, -1)),  # from its back
+        ((0, 9, 6), (0, -1, 0)),  # from above, at y = 1
+        ((-9, 1.5, 6.5), (1, 0, 0)),  # along its lines, in it
+        ((1.3, 1, 0), (0, 0, 1)),  # 1 / 30 within the edge, at y = 1
+        ((1.4, 1, 0), (0, 0, 1)),  # and past it
+        ((-1.3, 1, 0), (0, 0, 1)),
+        ((-1.4, 1, 0), (0, 0, 1)),
+        ((0, -0.01, 0), (0, 0, 1)),
+        ((0, 3.01, 0), (0, 0, 1)),
+        ((0, 1, 6), (0, 0, 1)),  # from it
+        ((0, 1, 2), (0, 0.6, 0.8)),  # y + 5 = z: 0.2 t = 4
+    ]
+    expected = [6, np.inf, 2, 8, np.inf, 6, np.inf, 6, np.inf, np.inf, np.inf, np.inf, np.inf]
+    for corners in permutations((SAIL.a, SAIL.b, SAIL.c)):
+        t = shoot(way, Triangle(*corners, GREY), *rays)
+        assert t[:4] + t[5:] == pytest.approx(expected[:4] + expected[5:], rel=1e-15)
+
+
+@pytest.mark.parametrize("turn", range(3))
+@pytest.mark.parametrize("sign", [1, -1])
+def test_whatever_axis_it_is_seen_along(way: Intersect, turn: int, sign: int) -> None:
+    def turned(p: tuple[float, ...]) -> tuple[float, ...]:
+        return tuple(np.roll(np.array(p) * [1, 1, sign], turn))
+
+    other = Triangle(turned(SAIL.a), turned(SAIL.b), turned(SAIL.c), GREY)
+    rays = [((0.3, 0.1, 0), (0.1, 0.2, 0.9)), ((0.3, 0.5, 9), (0.1, 0.2, -0.9)), ((0.3, 1, 0), (-0.5, 0.2, 0.9))]
+    plain = shoot(way, SAIL, *rays)
+    assert np.isfinite(plain[:2]).all()
+    assert shoot(way, other, *[(turned(o), turned(d)) for o, d in rays]) == plain
+
+
+def test_nan_is_a_miss(way: Intersect) -> None:
+    rays = [((np.nan, 1, 0), (0, 0, 1)), ((0, np.nan, 0), (0, 0, 1)), ((0, 1, 0), (0, np.nan, 1))]
+    assert shoot(way, SAIL, *rays) == [np.inf] * 3
+
+
+def fan(random: Random) -> tuple[Array, list[Triangle]]:
+    """Triangles without a gap around a point, and that point: the middle of a bowl of seven corners."""
+    turns = np.sort(random.uniform(0, 2 * np.pi, 7)) + np.arange(7) * 1e-3
+    rim = np.stack([np.cos(turns), np.sin(turns), random.uniform(-0.2, 0.2, 7)], axis=-1)
+    scale, middle = log(random, 1e-3, 1e3), 10 * random.normal(size=3)
+    frame = np.linalg.qr(random.normal(size=(3, 3)))[0]
+    corners = scale * rim @ frame + middle
+    return middle, [
+        Triangle(tuple(middle), tuple(corners[i]), tuple(corners[(i + 1) % 7]), GREY)
+        if random.random() < 0.5
+        else Triangle(tuple(corners[(i + 1) % 7]), tuple(corners[i]), tuple(middle), GREY)
+        for i in range(7)
+        if (turns[(i + 1) % 7] - turns[i]) % (2 * np.pi) < np.pi
+    ]
+
+
+def gaps(intersect: Intersect, single: bool = False) -> int:
+    """How many rays towards edges and corners between triangles pass between them."""
+    random = np.random.default_rng(5)
+    missed = 0
+    for _ in range(60):
+        middle, triangles = fan(random)
+        if len(triangles) < 7:
+            continue
+        outer = np.array([each.b if each.a == tuple(middle) else each.a for each in triangles])
+        share = random.uniform(0, 0.9, (4 * RAYS, 1)) * random.integers(0, 2, (4 * RAYS, 1))
+        targets = middle + share * (outer[random.integers(7, size=4 * RAYS)] - middle)
+        size = np.linalg.norm(outer[0] - middle)
+        normal = np.mean(
+            [each.normal() if each.a == tuple(middle) else np.negative(each.normal()) for each in triangles], axis=0
+        )
+        directions = unit(ways(random, 4 * RAYS) - 2 * unit(normal))
+        origins = targets - size * log(random, 1, 100, 4 * RAYS, 1) * directions
+        towards = unit(targets - origins)
+        met = np.zeros(4 * RAYS, bool)
+        for each in triangles:
+            met |= np.isfinite(intersect([each], origins[None], towards[None])[0])
+        missed += int((~met).sum())
+    return missed
+
+
+def test_no_ray_passes_between_triangles(way: Intersect) -> None:
+    assert gaps(way) == 0

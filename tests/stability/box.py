@@ -1,0 +1,42 @@
+"""Where a box is hard."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from minirt.shapes.box import Box
+from tests.shapes.regimes import GREY, RAYS, Array, Random, ways
+from tests.stability.aims import along, at
+from tests.stability.regime import Regime
+
+
+def make(random: Random) -> Box:
+    """A box of about size 1."""
+    point, axis = tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1))
+    return Box(point, axis, tuple(random.uniform(0.5, 2, 3)), GREY)
+
+
+def corner(random: Random, box: Box) -> Array:
+    return np.array(box.corners())[random.integers(8, size=RAYS)]
+
+
+def edge(random: Random, box: Box) -> Array:
+    corners, share, start = np.array(box.corners()), random.random((RAYS, 1)), random.integers(8, size=RAYS)
+    other = start ^ (1 << random.integers(3, size=RAYS))  # corners are in binary order of the signs of their axes
+    return corners[start] * share + corners[other] * (1 - share)
+
+
+def axes(random: Random, box: Box) -> Array:
+    own = np.array([(axis.x, axis.y, axis.z) for axis in box.axes()])
+    return own[random.integers(3, size=RAYS)] * random.choice([-1.0, 1.0], (RAYS, 1))
+
+
+REGIMES = [
+    Regime("along an axis", partial(along, 11, make, axes)),
+    Regime("nearly along an axis", partial(along, 12, make, axes, (1e-14, 1e-3))),
+    Regime("along an axis, a scene at 1e8", partial(along, 13, make, axes, None, 1e8)),
+    Regime("at an edge", partial(at, 14, make, edge), blur=1e-12),
+    Regime("at a corner", partial(at, 15, make, corner), blur=1e-12),
+]

@@ -1,0 +1,61 @@
+"""Where a square and a disc are hard."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from minirt.shapes.disc import Disc
+from minirt.shapes.square import Square
+from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, across, log, unit, ways
+from tests.stability.aims import at
+from tests.stability.common import COUNT
+from tests.stability.regime import Regime
+
+Sheet = Square | Disc
+
+
+def square(random: Random) -> Square:
+    return Square(tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1)), random.uniform(0.5, 2), GREY)
+
+
+def disc(random: Random) -> Disc:
+    return Disc(tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1)), random.uniform(0.5, 2), GREY)
+
+
+def edge(random: Random, square: Square) -> Array:
+    corners, share, start = np.array(square.corners()), random.random((RAYS, 1)), random.integers(4, size=RAYS)
+    around = corners[[0, 1, 3, 2]]
+    return around[start] * share + around[(start + 1) % 4] * (1 - share)
+
+
+def rim(random: Random, disc: Disc) -> Array:
+    return np.array(disc.centre) + disc.diameter / 2 * across(random, np.array(disc.normal), RAYS)
+
+
+def grazing(seed: int, make: Callable[[Random], Sheet], slope: tuple[float, float]) -> Rays:
+    """At slopes in `slope`, at places around the centre, from both sides."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
+    for i in range(COUNT):
+        sheet = make(random)
+        normal = np.array(sheet.normal)
+        rise = log(random, *slope, RAYS, 1) * random.choice([-1.0, 1.0], (RAYS, 1))
+        directions[i] = unit(across(random, normal, RAYS) + rise * normal)
+        spot = np.array(sheet.centre) + 0.2 * random.random((RAYS, 1)) * across(random, normal, RAYS)
+        origins[i] = spot - random.uniform(1, 9, (RAYS, 1)) * directions[i]
+        shapes.append(sheet)
+    return Rays(shapes, origins, directions)
+
+
+def of(make: Callable[[Random], Sheet], border: Callable[[Random, Sheet], Array]) -> list[Regime]:
+    return [
+        Regime("at the edge", partial(at, 11, make, border), 1e-12, blur=1e-9),
+        Regime("at a slope of 1e-6 to 0.01", partial(grazing, 12, make, (1e-6, 1e-2)), 1e-9, blur=1e-6),
+    ]
+
+
+SQUARES = of(square, edge)
+DISCS = of(disc, rim)

@@ -1,0 +1,105 @@
+"""Where a torus is hard."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from minirt.shapes.torus import Torus
+from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, across, log, unit, ways
+from tests.stability.aims import along, at, axis_of
+from tests.stability.common import COUNT
+from tests.stability.regime import Regime
+
+
+def make(random: Random, tube: float = 0.4) -> Torus:
+    """A torus of about size 1 whose tube is such a share of its diameter."""
+    diameter = random.uniform(0.5, 2)
+    return Torus(tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1)), diameter, tube * diameter, GREY)
+
+
+def ring(random: Random, torus: Torus) -> Array:
+    """Places of the circle in the middle of the tube."""
+    return np.array(torus.centre) + torus.diameter / 2 * across(random, axis_of(torus), RAYS)
+
+
+def inside(random: Random, torus: Torus) -> Array:
+    """Places in the tube."""
+    return ring(random, torus) + torus.tube / 2 * random.random((RAYS, 1)) * ways(random, RAYS)
+
+
+def top(random: Random, torus: Torus) -> Array:
+    """Places of the circle along which a plane lies on it."""
+    return ring(random, torus) + torus.tube / 2 * axis_of(torus)
+
+
+def inner(random: Random, torus: Torus) -> Array:
+    """Places of the inner equator, where it is curved like a saddle."""
+    middle = np.array(torus.centre)
+    return middle + (1 - torus.tube / torus.diameter) * (ring(random, torus) - middle)
+
+
+def centre(_random: Random, torus: Torus) -> Array:
+    return np.tile(torus.centre, (RAYS, 1))
+
+
+def axis(random: Random, torus: Torus) -> Array:
+    return axis_of(torus) * random.choice([-1.0, 1.0], (RAYS, 1))
+
+
+def level(random: Random, torus: Torus) -> Array:
+    return across(random, axis_of(torus), RAYS)
+
+
+def from_inside(seed: int, tube: float = 0.4) -> Rays:
+    """From within the tube, in all directions."""
+    random = np.random.default_rng(seed)
+    shapes = [make(random, tube) for _ in range(COUNT)]
+    return Rays(shapes, np.stack([inside(random, shape) for shape in shapes]), ways(random, COUNT, RAYS))
+
+
+def over_the_top(seed: int) -> Rays:
+    """In the plane that lies on it, or from 1e-14 to 1e-4 off that: up to four hits are next to one another."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
+    for i in range(COUNT):
+        torus = make(random)
+        start, end = top(random, torus), top(random, torus)
+        directions[i] = unit(end - start)
+        off = log(random, 1e-14, 1e-4, RAYS, 1) * random.choice([-1.0, 0.0, 1.0], (RAYS, 1)) * axis_of(torus)
+        origins[i] = start + off - random.uniform(0, 9, (RAYS, 1)) * directions[i]
+        shapes.append(torus)
+    return Rays(shapes, origins, directions)
+
+
+def touching_twice(seed: int, off: tuple[float, float]) -> Rays:
+    """Through the centre, along the plane that touches it on both sides, which it meets in two circles (Villarceau)."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
+    for i in range(COUNT):
+        torus = make(random)
+        out, sine = across(random, axis_of(torus), RAYS), torus.tube / torus.diameter
+        directions[i] = np.sqrt(1 - sine**2) * out + sine * axis_of(torus)
+        aside = log(random, *off, RAYS, 1) * ways(random, RAYS)
+        origins[i] = np.array(torus.centre) + aside - random.uniform(0, 9, (RAYS, 1)) * directions[i]
+        shapes.append(torus)
+    return Rays(shapes, origins, directions)
+
+
+# Where the tube is touched a hit is the square root of a rounding away from where the ray is nearest to it.
+REGIMES = [
+    Regime("at the tube", partial(at, 11, make, inside)),
+    Regime("from inside", partial(from_inside, 12)),
+    Regime("from inside a thin tube", partial(from_inside, 13, 1e-6), blur=1e-7),
+    Regime("at a tube of 1e-3 of the diameter", partial(at, 14, partial(make, tube=1e-3), inside), blur=1e-9),
+    Regime("at a tube of 1e-9 of the diameter", partial(at, 15, partial(make, tube=1e-9), inside), blur=1e-9),
+    Regime("at the centre of one without a hole", partial(at, 16, partial(make, tube=1.0), centre), blur=1e-6),
+    Regime("along the axis", partial(along, 17, make, axis), blur=1e-6),
+    Regime("nearly along the axis", partial(along, 18, make, axis, (1e-12, 1e-3)), blur=1e-6),
+    Regime("across the axis", partial(along, 19, make, level), blur=1e-6),
+    Regime("at the top", partial(at, 20, make, top), blur=1e-6),
+    Regime("over the top", partial(over_the_top, 21), blur=1e-3),
+    Regime("at the inner equator", partial(at, 22, make, inner), blur=1e-6),
+    Regime("touching it twice", partial(touching_twice, 23, (1e-14, 1e-4)), blur=1e-6),
+]

@@ -1,0 +1,61 @@
+"""Where a triangle is hard."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from minirt.shapes.triangle import Triangle
+from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, across, log, unit, ways
+from tests.stability.aims import at
+from tests.stability.common import COUNT
+from tests.stability.regime import Regime
+
+
+def make(random: Random, height: float = 1.0) -> Triangle:
+    """A triangle of about size 1, its last corner as far from the opposite edge."""
+    a, along = random.normal(size=3), ways(random)
+    c = a + random.uniform(0, 1) * along + height * across(random, along)
+    return Triangle(tuple(a), tuple(a + along), tuple(c), GREY)
+
+
+def corners(triangle: Triangle) -> Array:
+    return np.array([triangle.a, triangle.b, triangle.c])
+
+
+def inside(random: Random, triangle: Triangle) -> Array:
+    return random.dirichlet(np.ones(3), RAYS) @ corners(triangle)
+
+
+def edge(random: Random, triangle: Triangle) -> Array:
+    share, start = random.random((RAYS, 1)), random.integers(3, size=RAYS)
+    return corners(triangle)[start] * share + corners(triangle)[(start + 1) % 3] * (1 - share)
+
+
+def corner(random: Random, triangle: Triangle) -> Array:
+    return corners(triangle)[random.integers(3, size=RAYS)]
+
+
+def grazing(seed: int, slope: tuple[float, float]) -> Rays:
+    """At slopes in `slope`, from both sides."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
+    for i in range(COUNT):
+        triangle = make(random)
+        rise = log(random, *slope, RAYS, 1) * random.choice([-1.0, 1.0], (RAYS, 1))
+        normal = np.array(triangle.normal())
+        directions[i] = unit(across(random, normal, RAYS) + rise * normal)
+        origins[i] = inside(random, triangle) - random.uniform(1, 9, (RAYS, 1)) * directions[i]
+        shapes.append(triangle)
+    return Rays(shapes, origins, directions)
+
+
+# Seen from 20 away an edge is known to 20 roundings: of a sliver that is 20 roundings by its height of the hit's place.
+REGIMES = [
+    Regime("at an edge", partial(at, 11, make, edge), 1e-12, blur=1e-9),
+    Regime("at a corner", partial(at, 12, make, corner, count=3 * COUNT), 1e-12, blur=1e-9),
+    Regime("a sliver", partial(at, 13, partial(make, height=1e-6), inside), 1e-9),
+    Regime("a sliver next to none", partial(at, 14, partial(make, height=1e-12), inside), 1e-3),
+    Regime("at a slope of 1e-6 to 0.01", partial(grazing, 15, (1e-6, 1e-2)), 1e-12, blur=1e-6),
+]

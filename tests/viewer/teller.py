@@ -1,0 +1,31 @@
+"""The viewer, which tells what rows of the table its keys led to, in a file: a line for each.
+
+python -m tests.viewer.teller SCENE LAYOUT FILE
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from minirt.scene import load
+from minirt.viewer.bindings import Binding
+from minirt.viewer.desktop import run
+from minirt.viewer.session import Session
+from tests.viewer.fake import FakeRenderer
+
+
+def main(scene: str, layout: str, file: str) -> int:
+    act = Session.act
+
+    def told(session: Session, binding: Binding, step: float) -> None:
+        act(session, binding, step)
+        with Path(file).open("a") as lines:
+            lines.write(f"{binding.action}\n")
+
+    Session.act = told  # type: ignore[method-assign]
+    return run(load(scene).scene, path=scene, size=(320, 240), keys=layout, renderer=FakeRenderer())
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
