@@ -21,5 +21,5 @@ class Checker(Record):
     """What `checker:` says."""
 
     title = "checker"
-    size: float = declare(Length, "side of a square, in u and v", unit="", initial=1.0)
+    size: float = declare(Length, "side of a square, in u and v", unit="")
     colour: Triple = declare(Colour, "the second colour", default=(0, 0, 0))

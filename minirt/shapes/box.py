@@ -113,12 +113,11 @@ def mapping(box: PackedBox, point: Vec, normal: Vec) -> tuple[Number, Number, Ve
     out = to_basis(box.u, box.v, box.w, normal)
     by_x, by_y = fabs(out.x) > 0.5, fabs(out.y) > 0.5
     sign = copysign(1.0, where(by_x, -out.x, where(by_y, -out.y, out.z)))
-    flat = splat(0.0, p.x)
     wide, tall, deep = 2.0 * box.half.x, 2.0 * box.half.y, 2.0 * box.half.z
     by_z = sign * p.z / deep
     return (
         0.5 + where(by_x, by_z, where(by_y, p.x, sign * p.x) / wide),
         0.5 + where(by_y, by_z, p.y / tall),
-        where(by_x, sign * deep, flat) * box.w + where(by_x, flat, where(by_y, splat(wide, flat), sign * wide)) * box.u,
-        where(by_y, sign * deep, flat) * box.w + where(by_y, flat, splat(tall, flat)) * box.v,
+        where(by_x, sign * deep, 0.0) * box.w + where(by_x, 0.0, where(by_y, wide, sign * wide)) * box.u,
+        where(by_y, sign * deep, 0.0) * box.w + where(by_y, 0.0, tall) * box.v,
     )

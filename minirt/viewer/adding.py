@@ -94,12 +94,12 @@ def round_place(place: Triple, stride: float) -> Triple:
 
 def usual(field: Field, state: State) -> Any:
     """What any other field begins with; LookupError as above."""
+    if field.bare:
+        return field.check(field.parse(field.bare))
     if isinstance(field, Compound):
         return made(field.record, state)
-    if isinstance(field, Picture):
-        return first_picture(state.scene)
-    if isinstance(field, MeshField):
-        return first_mesh(state.scene)
+    if isinstance(field, Picture | MeshField):
+        return first_picture(state.scene) if isinstance(field, Picture) else first_mesh(state.scene)
     length = nice(LARGE * state.size)
     if isinstance(field, Lengths):
         return length, length, length
