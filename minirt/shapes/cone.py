@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, copysign, inverse_root, maximum, minimum, splat, sqrt, where
+from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
@@ -78,9 +78,8 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     start = where(steep, tip, deepest(a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last))
     p = p + start * d
     reach = where(steep, 0.0, cone.slope * p.z)
-    side = copysign(1.0, a)
     b = p.x * d.x + p.y * d.y - reach * rise
-    hit, low, high = below_zero(side * a, side * b, side * (p.x * p.x + p.y * p.y - reach * reach))
+    hit, low, high = below_zero(a, b, p.x * p.x + p.y * p.y - reach * reach)
     t = start
     if any(hit):
         first, last = first - start, last - start
@@ -105,7 +104,7 @@ def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
     flat = splat(0.0, rho)
     pointed = rho == 0.0
     per_rho = where(pointed, 0.0, 1.0 / rho)
-    aside = where(on_side & ~pointed, cosine, flat)
+    aside = where(on_side, cosine, flat)
     up = where(on_side, where(pointed, -1.0, -sine), 1.0)
     out = Vec(p.x * per_rho * aside, p.y * per_rho * aside, up)
     on = p - where(on_side, off, p.z - cone.height) * out

@@ -91,19 +91,15 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
     start = where(steep, -p.z * per_height, least)
     p = p + start * d
     reach = where(steep, 0.0, hyperboloid.slope * p.z)
-    side = copysign(1.0, a)
-    met, low, high = below_zero(
-        side * a,
-        side * (p.x * d.x + p.y * d.y - reach * rise),
-        side * (p.x * p.x + p.y * p.y - reach * reach - hyperboloid.waist * hyperboloid.waist),
-    )
+    b = p.x * d.x + p.y * d.y - reach * rise
+    c = p.x * p.x + p.y * p.y - reach * reach - hyperboloid.waist * hyperboloid.waist
+    met, low, high = below_zero(a, b, c)
     hit = met | steep
     t = start
     if any(hit):
         first, last = first - start, last - start
-        split = steep & met
         enter = where(steep, first, maximum(first, low))
-        leave = where(steep & ~met, last, minimum(last, where(steep, low, high)))
+        leave = where(met, minimum(last, where(steep, low, high)), last)
         near = start + enter
         far = start + leave
         t = where(near > 0.0, near, far)
@@ -111,7 +107,7 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
         again = maximum(first, high)
         near = start + again
         far = start + last
-        two = split & ~one & (again <= last) & (far > 0.0)
+        two = steep & ~one & (again <= last) & (far > 0.0)
         t = where(two, where(near > 0.0, near, far), t)
         hit = one | two
     return hit, t

@@ -10,7 +10,7 @@ from minirt.lanes.verbs import Mask
 
 
 def below_zero(a: Number, b: Number, c: Number) -> tuple[Mask, Number, Number]:
-    """Where a t^2 + 2 b t + c <= 0 for a >= 0: whether anywhere, and the ends of the interval.
+    """Where a t^2 + 2 b t + c <= 0 or, for a < 0, >= 0: whether anywhere, and the ends of the interval.
 
     q adds two numbers of the same sign, so q / a and c / q are both exact to a few roundings (Press et al., Numerical
     Recipes, 5.6). With q = 0 the parabola touches zero at t = 0 or, where a = 0 too, is the constant c.
@@ -23,7 +23,7 @@ def below_zero(a: Number, b: Number, c: Number) -> tuple[Mask, Number, Number]:
         q = -(b + copysign(sqrt(D), b))
         level = q == 0.0
         constant = level & (a == 0.0)
-        r0 = where(constant, -inf, where(level, 0.0, q / a))
+        r0 = where(constant, -inf, q / a)
         r1 = where(constant, inf, where(level, 0.0, c / q))
         low = minimum(r0, r1)
         high = maximum(r0, r1)

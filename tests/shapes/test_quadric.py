@@ -20,6 +20,10 @@ CASES = [
     ((0, 0, 1), (False, None, None)),
     ((1, 1e8, 1), (True, -2e8, -5e-9)),  # the small root, which the formula of school loses
     ((1, -1e8, 1), (True, 5e-9, 2e8)),
+    ((-1, 0, 4), (True, -2, 2)),  # above zero
+    ((-1, 3, -8), (True, 2, 4)),
+    ((-1, 0, -4), (False, None, None)),
+    ((-1, 0, 0), (True, 0, 0)),
     ((np.nan, 1, 1), (False, None, None)),
     ((1, np.nan, 1), (False, None, None)),
     ((1, 1, np.nan), (False, None, None)),
