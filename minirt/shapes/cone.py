@@ -77,7 +77,7 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     # From here on t is counted from the plane of the apex or, for a flat ray, from where it is deepest in the cone.
     start = where(steep, tip, deepest(a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last))
     p = p + start * d
-    reach = where(steep, 0.0, cone.slope * p.z)
+    reach = cone.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
     hit, low, high = below_zero(a, b, p.x * p.x + p.y * p.y - reach * reach)
     t = start

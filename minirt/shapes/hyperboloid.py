@@ -90,7 +90,7 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
     least = deepest(a, p.x * d.x + p.y * d.y - hyperboloid.slope * p.z * rise, first, last)
     start = where(steep, -p.z * per_height, least)
     p = p + start * d
-    reach = where(steep, 0.0, hyperboloid.slope * p.z)
+    reach = hyperboloid.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
     c = p.x * p.x + p.y * p.y - reach * reach - hyperboloid.waist * hyperboloid.waist
     met, low, high = below_zero(a, b, c)
@@ -148,7 +148,7 @@ def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Nu
     p = to_basis(u, v, w, point - hyperboloid.centre)
     tall = 2.0 * hyperboloid.half
     rho = sqrt(p.x * p.x + p.y * p.y)
-    per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
+    per_rho = 1.0 / rho
     widening = hyperboloid.slope * (hyperboloid.slope * p.z * per_rho)  # by height
     rise = tall * Vec(widening * (p.x * per_rho), widening * (p.y * per_rho), 1.0)
     reach = hyperboloid.slope * hyperboloid.half

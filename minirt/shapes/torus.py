@@ -109,14 +109,14 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
             side_1 = where(first > enter, side(torus, p + first * d), side_0)
             side_2 = where(second > first, side(torus, p + second * d), side_1)
             side_3 = where(third > second, side(torus, p + third * d), side_2)
-            # The first two neighbours that differ; behind the last turning point the ray ends outside.
+            # The first two neighbours that differ, up to which all are as the first one; behind the last turning point
+            # the ray ends outside.
             by_1, by_2, by_3 = side_0 != side_1, side_1 != side_2, side_2 != side_3
             low = where(by_1, enter, where(by_2, first, where(by_3, second, third)))
             high = where(by_1, first, where(by_2, second, where(by_3, third, leave)))
-            from_side = where(by_1, side_0, where(by_2, side_1, where(by_3, side_2, side_3)))
             hit = hit & (by_1 | by_2 | by_3 | (side_3 < 0.0))
             if any(hit):
-                t = approach + crossing(torus, p, d, low, high, from_side, hit)
+                t = approach + crossing(torus, p, d, low, high, side_0, hit)
                 hit = hit & (t > 0.0)
     return hit, t
 

@@ -7,6 +7,7 @@ import pytest
 
 from minirt.shapes.box import Box
 from tests.shapes.checks import U
+from tests.shapes.mapped import interpreted
 from tests.shapes.regimes import GREY
 from tests.shapes.test_sphere import shoot
 from tests.shapes.ways import Intersect, surfaces
@@ -73,3 +74,12 @@ def test_its_box_and_its_balls() -> None:
     assert {radius for _, radius in BLOCK.balls()} == {0}
     turned = BLOCK.replace(axis=(0.6, 0.8, 0))
     assert turned.bounds() == (pytest.approx((-2, -1.2, 2)), pytest.approx((2, 3.2, 8)))
+
+
+def test_pictures_are_as_wide_and_high_as_its_faces() -> None:
+    faces = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
+    found = interpreted(BLOCK, BLOCK.centre + faces * [1, 2, 3], faces)
+    right = [[0, 0, -6], [0, 0, 6], [2, 0, 0], [2, 0, 0], [2, 0, 0], [-2, 0, 0]]
+    up = [[0, 4, 0], [0, 4, 0], [0, 0, -6], [0, 0, 6], [0, 4, 0], [0, 4, 0]]
+    assert found.along_u.tolist() == right
+    assert found.along_v.tolist() == up

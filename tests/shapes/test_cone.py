@@ -39,6 +39,12 @@ def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(way: Intersect) -> N
     assert shoot(way, TENT, *rays) == [3, np.inf, 4, np.inf]
 
 
+def test_rays_along_its_lines_and_at_its_apex(way: Intersect) -> None:
+    right = Cone((0, 0, 5), (0, -1, 0), 8, 4, GREY)  # its lines go down as far as they go aside
+    rays = [((-2, 2, 5), (1, -1, 0)), ((-2, 2, 6), (1, -1, 0)), ((-4, 2, 5), (2, -1, 0))]
+    assert shoot(way, right, *rays) == [2, np.inf, 2]  # along one, beside it, at the apex and nowhere else
+
+
 def test_nan_is_a_miss(way: Intersect) -> None:
     rays = [((np.nan, 2, 0), (0, 0, 1)), ((0, np.nan, 0), (0, 0, 1)), ((0, 2, 0), (np.nan, 0, 1))]
     assert shoot(way, TENT, *rays) == [np.inf] * 3

@@ -12,6 +12,7 @@ from tests.shapes.regimes import GREY
 from tests.shapes.test_sphere import shoot
 from tests.shapes.ways import Intersect, surfaces
 
+EVEN = Hyperboloid((0, 0, 5), (0, 1, 0), 15, 17, 8, GREY)  # x^2 + (z - 5)^2 = 7.5^2 + y^2, exactly
 TOWER = Hyperboloid((0, 0, 5), (0, 1, 0), 6, 10, 8, GREY)  # x^2 + (z - 5)^2 = 9 + y^2, from y = -4 to y = 4
 
 
@@ -39,6 +40,22 @@ def test_a_hole_is_seen_through(way: Intersect) -> None:
     x, side = 4, 7**0.5
     rays = [((x, y, 5), (0, -1, 0)) for y in (9, 3.9, 2, 0, -3, -5)]
     assert shoot(way, TOWER, *rays) == pytest.approx([5, 3.9 - side, 2 + side, side, 1, np.inf], rel=1e-15)
+
+
+def test_an_eye_on_the_surface_sees_what_comes_next_or_nothing(way: Intersect) -> None:
+    rays = [((0, 0, -2.5), (0, 0, 1)), ((0, 0, -2.5), (0, 0, -1)), ((0, 4, 5), (0, -1, 0)), ((0, 4, 5), (0, 1, 0))]
+    # Down past the waist: out of the upper half at y = 3.125, into the lower one at -3.125, and out of its cap.
+    rays += [((8.125, y, 5), (0, -1, 0)) for y in (3.125, -3.125, -4)]
+    assert shoot(way, EVEN, *rays) == [15, np.inf, 8, np.inf, 6.25, 0.875, np.inf]
+
+
+def test_rays_along_its_asymptotes_and_at_its_rim(way: Intersect) -> None:
+    rays = [((-6, -6, 12), (1, 1, 0)), ((-6, -6, 13), (1, 1, 0)), ((4.5, 6, 5), (2, -1, 0))]
+    assert shoot(way, EVEN, *rays) == [2, np.inf, 2]  # inside of it, beside it, at the rim and nowhere else
+
+
+def test_from_far_away_it_is_hit_as_exactly(way: Intersect) -> None:
+    assert shoot(way, TOWER, ((-6e7, 0, 5 - 8e7), (0.6, 0, 0.8))) == pytest.approx([1e8 - 3], rel=1e-15)
 
 
 def test_nan_is_a_miss(way: Intersect) -> None:
@@ -71,6 +88,20 @@ def test_where_the_side_is_flat_points_are_put_there_along_the_axis() -> None:
     assert np.abs(on[0] - [[4, height, 5], [4, -height, 5]]).max() <= 8 * U * 5
     down = np.array([4, -16 * height, 0]) / np.hypot(4, 16 * height)
     assert np.abs(normal[0] - [down, down * [1, -1, 1]]).max() <= 4 * U
+
+
+def test_near_the_rim_it_is_the_nearer_wall_that_counts() -> None:
+    over = 1e-4  # and this far, times (4 + 41^0.5) / 5, beside the rim both walls are as near
+    points = np.array([[5 + aside * over, 4 + over, 5] for aside in (2.07, 2.09)])
+    _, normal = surfaces([TOWER], points[None])
+    assert np.abs(normal[0] - [[0, 1, 0], np.array([5, -4, 0]) / 41**0.5]).max() <= 1e-4
+
+
+def test_within_the_waist_it_is_the_waist() -> None:
+    dish = Hyperboloid((0, 0, 5), (0, 1, 0), 6, 10, 2, GREY)  # 4 y is more than x: put there along the axis
+    on, normal = surfaces([dish], np.array([[[2.9, 0.2, 5]]]))
+    assert on[0, 0, 1] == 0
+    assert np.abs(normal[0, 0] - [1, 0, 0]).max() <= 4 * U
 
 
 def test_its_box_and_its_balls() -> None:

@@ -83,12 +83,14 @@ def test_the_surface_is_the_nearest_point_and_the_normal_points_outwards() -> No
 
 def test_its_box_and_its_balls() -> None:
     assert RING.bounds() == ((-4, 0, 1), (4, 2, 9))
+    assert RING.replace(centre=(7, 8, 9)).bounds() == ((3, 7, 5), (11, 9, 13))
     turned = RING.replace(axis=(0.6, 0.8, 0))
     assert turned.bounds() == (pytest.approx((-3.4, -1.8, 1)), pytest.approx((3.4, 3.8, 9)))
     assert len(RING.balls()) == 8
     middles = np.array([centre for centre, _ in RING.balls()])
     assert np.allclose(np.linalg.norm(middles - RING.centre, axis=1), 3 / np.cos(np.pi / 8))
     assert np.allclose(middles[:, 1], 1)
+    assert np.allclose(np.linalg.norm(middles - np.roll(middles, 1, axis=0), axis=1), 6 * np.tan(np.pi / 8))
     assert {radius for _, radius in RING.balls()} == {1}
 
 

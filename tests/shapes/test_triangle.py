@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from itertools import permutations
 
 import numpy as np
 import pytest
 
+from minirt.errors import ElementError
 from minirt.shapes.triangle import Triangle
+from tests.shapes.checks import U
 from tests.shapes.regimes import GREY, RAYS, Array, Random, log, unit, ways
 from tests.shapes.test_sphere import shoot
-from tests.shapes.ways import Intersect
+from tests.shapes.ways import Intersect, surfaces
 from tests.stability.mutants import in_single_precision
 
 SAIL = Triangle((-2, 0, 5), (2, 0, 5), (0, 3, 8), GREY)
@@ -46,8 +49,9 @@ def test_whatever_axis_it_is_seen_along(way: Intersect, turn: int, sign: int) ->
 
     other = Triangle(turned(SAIL.a), turned(SAIL.b), turned(SAIL.c), GREY)
     rays = [((0.3, 0.1, 0), (-0.05, 0.1, 0.9)), ((0.3, 0.5, 9), (0.1, 0.2, -0.9)), ((0.3, 1, 0), (-0.5, 0.2, 0.9))]
+    rays += [((0.3, 1, 9), (0, 0, -1)), ((0.3, 1, 0), (0, 0, 1))]
     plain = shoot(way, SAIL, *rays)
-    assert np.isfinite(plain[:2]).all()
+    assert np.isfinite(plain).tolist() == [True, True, False, True, True]
     assert shoot(way, other, *[(turned(o), turned(d)) for o, d in rays]) == pytest.approx(plain, rel=4e-16)
 
 
@@ -103,3 +107,32 @@ def test_no_ray_passes_between_triangles(way: Intersect) -> None:
 
 def test_nor_in_single_precision() -> None:
     assert gaps(in_single_precision) == 0
+
+
+def test_the_surface_is_the_nearest_point_of_its_plane() -> None:
+    on, normal = surfaces([SAIL], np.array([[[0.5, 1, 6.5], [0.5, 1, 5.5]]]))  # half a unit behind it and before it
+    assert np.abs(on[0] - [[0.5, 1.25, 6.25], [0.5, 0.75, 5.75]]).max() <= 8 * U * 5
+    assert np.abs(normal[0] - np.array([0, -1, 1]) / 2**0.5).max() <= 2 * U
+
+
+def test_one_that_is_too_thin_is_refused() -> None:
+    # Its longest edge is 4 and its largest coordinate 8: it must be higher than 16 roundings of 8.
+    limit = 16 * U * 8
+    with pytest.raises(ElementError, match="must not lie on a line with a and b"):
+        Triangle((4, 0, 0), (8, 0, 0), (6, limit, 0), GREY)
+    assert Triangle((4, 0, 0), (8, 0, 0), (6, np.nextafter(limit, 1), 0), GREY).normal() == (0, 0, 1)
+
+
+def test_the_normal_of_a_sliver_is_upright_on_its_longest_edge() -> None:
+    random = np.random.default_rng(7)
+    for height in log(random, 1e-12, 1, 200):
+        a, edge, aside = random.normal(size=(3, 3)) * [[1], [random.uniform(0.5, 4)], [height]]
+        sliver = Triangle(tuple(a), tuple(a + edge), tuple(a + random.uniform(0.2, 0.8) * edge + aside), GREY)
+        longest = max(sliver.edges(), key=lambda each: np.hypot(*each[:2]) ** 2 + each[2] ** 2)
+        across = sum(Fraction(n) * Fraction(e) for n, e in zip(sliver.normal(), longest, strict=True))
+        assert abs(across) <= 4 * U * np.linalg.norm(longest)
+
+
+def test_its_box_and_its_balls() -> None:
+    assert SAIL.bounds() == ((-2, 0, 5), (2, 3, 8))
+    assert SAIL.balls() == ((SAIL.a, 0), (SAIL.b, 0), (SAIL.c, 0))
