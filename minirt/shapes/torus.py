@@ -182,7 +182,7 @@ def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from
         low = where(before, t, low)
         high = where(before, high, t)
         step = -height / slope
-        newton = (t + step > low) & (t + step < high) & (2.0 * fabs(step) < last)
+        newton = (t + step >= low) & (t + step <= high) & (2.0 * fabs(step) < last)
         step = where(newton, step, 0.5 * (low + high) - t)
         last = fabs(step)
         t = where(unsure, t + step, t)

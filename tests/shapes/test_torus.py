@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from minirt.errors import ElementError
+from minirt.shapes import torus as module
 from minirt.shapes.torus import Torus
 from tests.shapes.checks import U
 from tests.shapes.regimes import GREY, RAYS, unit, ways
@@ -69,6 +70,17 @@ def test_no_ray_depends_on_those_beside_it(on: Intersect) -> None:
     assert np.isfinite(t).sum() > 50
     order = random.permutation(t.shape[1])
     assert np.array_equal(on([RING], origins[:, order], directions[:, order]), t[:, order])
+
+
+def test_most_roots_take_less_than_ten_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(4)
+    origins = 8 * ways(random, 1, 20 * RAYS)
+    directions = unit(np.array(RING.centre) + 2 * random.normal(size=origins.shape) - origins)
+    t = on_arrays([RING], origins, directions)
+    monkeypatch.setattr(module, "STEPS", 9)
+    soon, hit = on_arrays([RING], origins, directions), np.isfinite(t)
+    assert np.array_equal(np.isfinite(soon), hit)
+    assert np.mean(np.abs(soon[hit] - t[hit]) <= 1e-14 * t[hit]) >= 0.85
 
 
 def test_the_surface_is_the_nearest_point_and_the_normal_points_outwards() -> None:
