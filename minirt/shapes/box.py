@@ -14,7 +14,7 @@ from itertools import product
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
-from minirt.lanes import Vec, copysign, dot, fabs, maximum, minimum, splat, where
+from minirt.lanes import Vec, copysign, fabs, maximum, minimum, splat, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
@@ -73,17 +73,14 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number
     Between each pair of faces the ray is for an interval of t; it is in the box where all three overlap (Kay and
     Kajiya, Ray Tracing Complex Scenes, 1986).
     """
-    f = origin - box.centre
-    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
-    p = to_basis(box.u, box.v, box.w, f + approach * direction)
+    p = to_basis(box.u, box.v, box.w, origin - box.centre)
     d = to_basis(box.u, box.v, box.w, direction)
     enter_x, leave_x = between(p.x, d.x, box.half.x)
     enter_y, leave_y = between(p.y, d.y, box.half.y)
     enter_z, leave_z = between(p.z, d.z, box.half.z)
     enter = maximum(maximum(enter_x, enter_y), enter_z)
     leave = minimum(minimum(leave_x, leave_y), leave_z)
-    near = approach + enter
-    t = where(near > 0.0, near, approach + leave)
+    t = where(enter > 0.0, enter, leave)
     return (enter <= leave) & (t > 0.0), t
 
 

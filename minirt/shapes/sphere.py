@@ -83,7 +83,7 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, 
             near = where(close & (approach > 0.0), product / far, near)
             far = where(close & (approach <= 0.0), product / near, far)
         t = where(near > 0.0, near, far)
-        hit = hit & (chord >= 0.0) & (t > 0.0)
+        hit = hit & (t > 0.0)  # NaN where there is no chord
     return hit, t
 
 
