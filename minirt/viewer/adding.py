@@ -15,7 +15,6 @@ from minirt.fields import (
     Length,
     Lengths,
     MeshField,
-    MeshFile,
     Picture,
     Point,
     Real,
@@ -94,14 +93,10 @@ def round_place(place: Triple, stride: float) -> Triple:
 
 def usual(field: Field, state: State) -> Any:
     """What any other field begins with; LookupError as above."""
-    if field.bare:
-        return field.check(field.parse(field.bare))
     if isinstance(field, Compound):
-        return made(field.record, state)
-    if isinstance(field, Picture):
-        return first_picture(state.scene)
-    if isinstance(field, MeshField):
-        return first_mesh(state.scene)
+        return field.check(field.parse(field.bare)) if field.bare else made(field.record, state)
+    if isinstance(field, (Picture, MeshField)):
+        return first((pictures if isinstance(field, Picture) else meshes)(state.scene))
     length = nice(LARGE * state.size)
     if isinstance(field, Lengths):
         return length, length, length
@@ -121,16 +116,8 @@ def plain(field: Field) -> Any:
     raise LookupError(f"nothing to begin {field.name} with")
 
 
-def first_picture(scene: Scene) -> str:
-    """A picture file beside the scene; LookupError where there is none."""
-    name = next(pictures(scene), None)
-    if name is None:
-        raise LookupError("there is no picture beside the scene")
-    return name
-
-
-def first_mesh(scene: Scene) -> MeshFile:
-    """A mesh file beside the scene; LookupError where there is none."""
-    for found in meshes(scene):
+def first(files: Iterator[Any]) -> Any:
+    """The first file beside the scene; LookupError where there is none."""
+    for found in files:
         return found
-    raise LookupError("there is no mesh beside the scene")
+    raise LookupError("there is no such file beside the scene")
