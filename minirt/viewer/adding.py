@@ -96,7 +96,8 @@ def usual(field: Field, state: State) -> Any:
     if isinstance(field, Compound):
         return field.check(field.parse(field.bare)) if field.bare else made(field.record, state)
     if isinstance(field, (Picture, MeshField)):
-        return first((pictures if isinstance(field, Picture) else meshes)(state.scene))
+        sort, files = ("picture", pictures) if isinstance(field, Picture) else ("mesh", meshes)
+        return first(sort, files(state.scene))
     length = nice(LARGE * state.size)
     if isinstance(field, Lengths):
         return length, length, length
@@ -116,8 +117,8 @@ def plain(field: Field) -> Any:
     raise LookupError(f"nothing to begin {field.name} with")
 
 
-def first(files: Iterator[Any]) -> Any:
+def first(sort: str, files: Iterator[Any]) -> Any:
     """The first file beside the scene; LookupError where there is none."""
     for found in files:
         return found
-    raise LookupError("there is no such file beside the scene")
+    raise LookupError(f"there is no {sort} beside the scene")
