@@ -16,6 +16,7 @@ LOW = {"errors", "fields", "element", "lanes", "materials", "shapes"}
 MAY: dict[str, set[str]] = {
     "errors": set(),
     "amounts": set(),
+    "arguments": {"__init__", "amounts"},
     "atomic": set(),
     "garbage": set(),
     "regular": {"errors"},
@@ -52,7 +53,7 @@ MAY: dict[str, set[str]] = {
     "report": LOW | {"__init__", "atomic", "image", "kernel", "rendering", "scene", "timing"},
     "cli": {
         "__init__",
-        "amounts",
+        "arguments",
         "movie",
         "errors",
         "garbage",

@@ -8,10 +8,8 @@ from minirt.kernel.rows import mapping, read
 from minirt.kernel.texels import height_slopes, picture_at
 from minirt.kernel.trace import over_kinds
 from minirt.kernel.traced import Group, Traced
-from minirt.lanes import Vec, any, cross, dot, floor, splat, unit, where
+from minirt.lanes import Vec, copysign, cross, dot, fabs, floor, inverse_root, splat, unit, where
 from minirt.lanes.vec import Number
-
-FLAT = 1e-30  # squared length of the product of the tangents: less than that they have no direction
 
 
 class Skins(NamedTuple):
@@ -42,7 +40,7 @@ def skinned(skins: Any, scene: Traced, index: int, point: Vec, normal: Vec, colo
         u, v, along_u, along_v, _ = over_kinds(
             mapping_of_kind, scene.groups, (nothing, nothing, point, point, 0), given
         )
-        colour = textured(skins.textures, skins, index, u, v, checkered(skins.checks, index, u, v, colour))
+        colour = checkered(skins.checks, index, u, v, textured(skins.textures, skins, index, u, v, colour))
         normal = raised(skins.bumps, skins, index, u, v, along_u, along_v, normal)
         normal = turned(skins.normals, skins, index, u, v, along_u, along_v, normal)
     return normal, colour
@@ -80,32 +78,46 @@ def textured(textures: Any, skins: Any, index: int, u: Number, v: Number, colour
 
 
 def raised(bumps: Any, skins: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec) -> Vec:
-    """The normal of a surface raised by the heights of a picture: Blinn, Simulation of Wrinkled Surfaces, 1978."""
+    """The normal of a surface raised by the heights of a picture (Blinn, Simulation of Wrinkled Surfaces, 1978).
+
+    All lengths are in widths of the picture as it lies there. Of a normal that is not that of the tangents the slope
+    along the surface is subtracted (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
+    """
     if bumps is None:
         return normal
     if bumps[index, 0] == 0.0:
         return normal
     over_u, over_v = height_slopes(skins.texels, skins.pictures, int(bumps[index, 0]) - 1, u, v)
-    strength = bumps[index, 1]
-    plain = cross(along_u, along_v)
-    area = dot(plain, plain)
-    steep = area > FLAT
-    if not any(steep):
-        return normal
-    change = strength * (over_u * cross(normal, along_v) - over_v * cross(normal, along_u))
-    outside = where(dot(plain, normal) < 0.0, -1.0, 1.0)
-    return where(steep, unit(outside * where(steep, plain, normal) + change), normal)
+    per_width = inverse_length(along_u)
+    right, up = per_width * along_u, per_width * along_v
+    area = dot(cross(right, up), normal)
+    strength = bumps[index, 1] * copysign(1.0, area)
+    change = strength * (over_u * cross(normal, up) - over_v * cross(normal, right))
+    return unit(where(area == 0.0, normal, fabs(area) * normal + change))
 
 
 def turned(normals: Any, skins: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec) -> Vec:
-    """The normal that a picture has in terms of the tangents and of the plain normal: red, green, blue from 0 to 1
-    stand for -1 to 1 along u, v and the normal."""
+    """The normal that a picture has in terms of the tangents and of the plain normal: in red, green and blue what it
+    has along u, v and the normal."""
     if normals is None:
         return normal
     if normals[index] == 0:
         return normal
-    seen = picture_at(skins.texels, skins.pictures, normals[index] - 1, u, v)
-    right = where(dot(along_u, along_u) > FLAT, along_u, normal)
-    up = where(dot(along_v, along_v) > FLAT, along_v, normal)
-    x, y, z = 2.0 * seen.x - 1.0, 2.0 * seen.y - 1.0, 2.0 * seen.z - 1.0
-    return unit(x * unit(right) + y * unit(up) + z * normal)
+    seen = signed(picture_at(skins.texels, skins.pictures, normals[index] - 1, u, v))
+    right, up = inverse_length(along_u) * along_u, inverse_length(along_v) * along_v
+    found = seen.x * right + seen.y * up + seen.z * normal
+    squared = dot(found, found)
+    return unit(where(squared > 0.0, found, normal))
+
+
+def signed(colour: Vec) -> Vec:
+    """From colours, of which 255 is 1, to numbers of which 128 is 0 and 255 is 1."""
+    zero, scale = 128.0 / 255.0, 255.0 / 127.0
+    return Vec((colour.x - zero) * scale, (colour.y - zero) * scale, (colour.z - zero) * scale)
+
+
+def inverse_length(v: Vec) -> Number:
+    """1 / |v|, but 0 where v is 0."""
+    squared = dot(v, v)
+    nothing = squared == 0.0
+    return where(nothing, 0.0, inverse_root(where(nothing, 1.0, squared)))

@@ -30,7 +30,7 @@ def beyond(scene: Traced, weight: Number, direction: Vec) -> Vec:
     """The light of the sky in a direction, times a weight."""
     nothing = splat(0.0, weight)
     dark = Vec(nothing, nothing, nothing)
-    return weight * lit_sky(scene, weight < 0.0, dark, direction)
+    return where(weight > 0.0, weight * lit_sky(scene, weight < 0.0, dark, direction), dark)
 
 
 def coloured_sky(sky: Any, hit: Mask, light: Vec) -> Vec:

@@ -6,9 +6,14 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image as pillow  # noqa: N813
 
 import minirt
+from minirt import arguments
+from minirt.kernel import whitted
+from minirt.rendering import traits
 from tests.cli.program import ROOT, SCENE, Ended
 
 Run = Callable[..., Ended]
@@ -159,3 +164,15 @@ def test_list_keys_needs_no_scene(run: Run) -> None:
     ended = run("--list-keys")
     assert (ended.status, ended.err) == (0, "")
     assert len(ended.out.splitlines()) > 10
+
+
+def test_the_depth(run: Run, folder: Path) -> None:
+    assert (arguments.DEPTH, arguments.DEEPEST) == (traits.DEPTH, whitted.DEEPEST)
+    mirror = "A 1 255,255,255\nC 0,0,-5 0,0,1 60\nbg 0,0,255\npl 0,0,0 0,0,-1 255,0,0 mirror:1\n"
+    (folder / "mirror.rt").write_text(mirror)
+    for depth, colour in (("0", [255, 0, 0]), ("1", [0, 0, 255])):
+        assert run("mirror.rt", "-o", "x.png", "--size", "4x4", "--depth", depth).status == 0
+        assert np.asarray(pillow.open(folder / "x.png"))[0, 0].tolist() == colour
+    ended = run("mirror.rt", "-o", "x.png", "--depth", "33")
+    assert ended.status == 2
+    assert "--depth: must be a whole number from 0 to 32, got '33'" in ended.err

@@ -58,7 +58,8 @@ def painted(scene: Scene, shape: Shape, points: Array, normal: Array) -> tuple[A
         over_v = high * (lookup(pixels, at.u, at.v + 0.5 / high) - lookup(pixels, at.u, at.v - 0.5 / high))
         # The tangents of the raised surface are P_u + h_u n and P_v + h_v n, and what is normal to both is wanted; the
         # products of small quantities are left out (Blinn 1978).
-        raise_u, raise_v = shape.bump.strength * over_u * normal, shape.bump.strength * over_v * normal
+        rise = shape.bump.strength * length(at.along_u)[..., None] * normal  # of white: a share of the picture's width
+        raise_u, raise_v = rise * over_u, rise * over_v
         raised = np.cross(at.along_u, at.along_v) + np.cross(raise_u, at.along_v) + np.cross(at.along_u, raise_v)
         raised *= np.sign(dot(np.cross(at.along_u, at.along_v), normal))[..., None]
         normal = np.where(length(raised)[..., None] > 1e-12, unit(raised), normal)

@@ -30,13 +30,6 @@ def accepts_nan(sphere: PackedSphere, origin: Vec, direction: Vec) -> Any:
     return ~(chord < 0), first(-dot(f, direction) - sqrt(chord), -dot(f, direction) + sqrt(chord))
 
 
-def no_sign(a: Any, b: Any, c: Any) -> Any:
-    """`below_zero` without its copysign."""
-    D = b * b - a * c
-    q = -(b + sqrt(D))
-    return D >= 0, np.minimum(q / a, c / q), np.maximum(q / a, c / q)
-
-
 def two_roots(a: Any, b: Any, c: Any) -> Any:
     """`below_zero` by the formula of school."""
     D = b * b - a * c

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
 from typing import NamedTuple
 
@@ -74,11 +74,15 @@ class Right:
 
     def wrong(self, t: Array, every: int = 1) -> list[str]:
         """What is wrong with the answers t for every n-th ray of a shape, infinity for a miss."""
+        return list(self.errors(t, every))
+
+    def errors(self, t: Array, every: int = 1) -> Iterator[str]:
+        """The same, one after the other: each takes its time."""
         right = self.t[:, ::every]
         with np.errstate(invalid="ignore"):
             exact = (t == right) | (np.isfinite(right) & (np.abs(t - right) <= self.regime.tolerance * right))
         found = (self.verdict(i, j * every, t[i, j]) for i, j in np.argwhere(~exact).tolist())
-        return [each for each in found if each]
+        return (each for each in found if each)
 
     def verdict(self, i: int, j: int, t: float) -> str:
         """What is wrong with an answer that is not exact; empty if it is near enough."""

@@ -1,0 +1,152 @@
+"""`mapping` in the ways in which it runs, and what must hold for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from minirt.kernel import jit, rows
+from minirt.lanes import Vec, load, save, splat, width
+from minirt.shapes import Kind, Shape
+from minirt.shapes.paraboloid import Paraboloid
+from tests.shapes import ways
+from tests.shapes.charts import AROUND, Chart, charts
+from tests.shapes.examples import example
+from tests.shapes.regimes import Array
+from tests.shapes.ways import array, vec
+
+U = 2.0**-53
+
+
+class Mapped(NamedTuple):
+    """What `mapping` says of n points."""
+
+    u: Array
+    v: Array
+    along_u: Array  # (n, 3)
+    along_v: Array
+
+
+Way = Callable[[Shape, Array, Array], Mapped]
+
+
+def table(shape: Shape, number: Any = np.float64) -> Any:
+    """The row of a shape."""
+    return ways.table([shape]).astype(rows.row_type(ways.kind_of(shape), number))
+
+
+def interpreted(shape: Shape, points: Array, normals: Array, formula: Any = None) -> Mapped:
+    formula = formula or ways.kind_of(shape).mapping
+    with np.errstate(all="ignore"):
+        u, v, to_u, to_v = formula(rows.read(table(shape, points.dtype), 0), vec(points), vec(normals))
+    u, v = (np.broadcast_to(each, points.shape[:-1]) for each in (u, v))
+    return Mapped(u, v, array(to_u, points), array(to_v, points))
+
+
+@cache
+def kernel() -> Any:
+    """`mapping`, compiled with the flags of the renderer."""
+
+    def run(table: Any, p: Any, n: Any, out: Any) -> None:
+        for i in range(0, out.shape[1], width(out)):
+            point = Vec(load(p[0], i), load(p[1], i), load(p[2], i))
+            normal = Vec(load(n[0], i), load(n[1], i), load(n[2], i))
+            u, v, to_u, to_v = rows.mapping(rows.read(table, 0), point, normal)
+            save(u, out[0], i)
+            save(v, out[1], i)
+            save(splat(to_u.x, u), out[2], i)
+            save(splat(to_u.y, u), out[3], i)
+            save(splat(to_u.z, u), out[4], i)
+            save(splat(to_v.x, u), out[5], i)
+            save(splat(to_v.y, u), out[6], i)
+            save(splat(to_v.z, u), out[7], i)
+
+    return njit(**jit.FLAGS)(run)
+
+
+def compiled(shape: Shape, points: Array, normals: Array) -> Mapped:
+    """The number of points is a multiple of a packet's."""
+    out = np.empty((8, len(points)), points.dtype)
+    in_packets = (np.ascontiguousarray(each.T) for each in (points, normals))
+    kernel()(table(shape, points.dtype), *in_packets, out)
+    return Mapped(out[0], out[1], out[2:5].T, out[5:].T)
+
+
+WAYS: dict[str, Way] = {"interpreted": interpreted, "compiled": compiled}
+
+
+class Case(NamedTuple):
+    """A part of a shape, and 64 places of a picture on it."""
+
+    shape: Shape
+    chart: Chart
+    u: Array
+    v: Array
+    coordinates: float  # the largest
+
+
+@cache
+def cases(kind: Kind, size: float, offset: float) -> list[Case]:
+    random = np.random.default_rng(1)
+    found = []
+    for _ in range(6):
+        shape = example(kind, random, size, offset)
+        for chart in charts(shape):
+            u, v = random.uniform(0.001, 0.999, (2, 64))
+            points, _ = chart(u, v)
+            found.append(Case(shape, chart, *inner(kind, u, v), float(np.abs(points).max())))
+    return found
+
+
+def inner(kind: Kind, u: Array, v: Array) -> tuple[Array, Array]:
+    """The half of a picture that a triangle has."""
+    beyond = (u + v > 1) & (kind.element.title == "triangle")
+    return np.where(beyond, 1 - u, u), np.where(beyond, 1 - v, v)
+
+
+def lengths(vectors: Array) -> Array:
+    found: Array = np.linalg.norm(vectors, axis=-1)
+    return found
+
+
+def check_places(case: Case, way: Way, size: float) -> None:
+    """u and v are those of the chart, but for the rounding of the point."""
+    points, normals = case.chart(case.u, case.v)
+    got = way(case.shape, points, normals)
+    over_u, over_v = got.u - case.u, got.v - case.v
+    if case.shape.title in AROUND:
+        over_u -= np.rint(over_u)
+    off = lengths(over_u[:, None] * got.along_u + over_v[:, None] * got.along_v)
+    assert off.max() <= 32 * U * (case.coordinates + 10 * size) * steepness(case.shape)
+
+
+def steepness(shape: Shape) -> float:
+    """How much more than across v errs upwards, on a side where it follows from the distance to the axis."""
+    return np.hypot(1, 4 * shape.height / shape.diameter) if isinstance(shape, Paraboloid) else 1.0
+
+
+def check_tangents(case: Case, way: Way, size: float) -> None:
+    """The tangents are the differences of the chart around its places, but for h^4 and for the rounding of points."""
+    h = 1e-3
+    points, normals = case.chart(case.u, case.v)
+    got = way(case.shape, points, normals)
+    for along, a, b in ((got.along_u, h, 0.0), (got.along_v, 0.0, h)):
+        near, far = (
+            case.chart(case.u + k * a, case.v + k * b)[0] - case.chart(case.u - k * a, case.v - k * b)[0]
+            for k in (1, 2)
+        )
+        right = (8 * near - far) / (12 * h)
+        assert lengths(along - right).max() <= 1e-6 * lengths(right).max() + 8 * U * case.coordinates / h
+
+
+def check_hand(case: Case, way: Way, size: float) -> None:
+    """Seen from outside, v is counter-clockwise of u: a picture is not mirrored."""
+    points, normals = case.chart(case.u, case.v)
+    got = way(case.shape, points, normals)
+    product = np.cross(got.along_u, got.along_v)
+    assert (np.sum(product * normals, axis=-1) >= (1 - 1e-6) * lengths(product)).all()
+    assert (lengths(product) > 0).all()
