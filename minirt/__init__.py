@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from minirt.rendering.rays import Hits, trace
     from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
     from minirt.shapes.cylinder import Cylinder
+    from minirt.shapes.mesh import Mesh
     from minirt.shapes.plane import Plane
     from minirt.shapes.sphere import Sphere
     from minirt.viewer import view
@@ -43,6 +44,7 @@ __all__ = [
     "Hits",
     "Image",
     "Light",
+    "Mesh",
     "MiniRTError",
     "MlxError",
     "ParallelLight",
@@ -72,6 +74,7 @@ HOMES = {
         "minirt.scene",
     ),
     "Cylinder": "minirt.shapes.cylinder",
+    "Mesh": "minirt.shapes.mesh",
     "Plane": "minirt.shapes.plane",
     "Sphere": "minirt.shapes.sphere",
     **dict.fromkeys(("Hits", "trace"), "minirt.rendering.rays"),

@@ -3,7 +3,8 @@
 A picture as a relief: the surface stays as it is, but is lit as if its normals were those of one that is higher where
 the picture is lighter (Blinn 1978, Simulation of Wrinkled Surfaces). The picture lies on the surface as a texture does;
 of a coloured one the luminance counts. White is higher than black by `strength` times the width of the picture as it
-lies on the surface there; less than 0 turns heights into depths.
+lies on the surface there; less than 0 turns heights into depths. The slope at a place is the difference over a pixel
+around it. What is mirrored and refracted goes by it, too, unless the surface would throw light below itself.
 
     sp 0,0,20 8 200,120,80 bump:textures/bricks-height.png,0.02
 """

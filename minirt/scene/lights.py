@@ -62,7 +62,8 @@ class SpotLight(Lamp):
     """`sl x,y,z dx,dy,dz angle ratio [R,G,B]`: light within a cone.
 
     `angle` is the full opening angle. In the outer `rim` of the half of it, a tenth when left out, the light goes from
-    all to nothing along 3 t^2 - 2 t^3; with 0 the cone has a sharp edge. `fade` is that of a point light.
+    nothing to all along 3 t^2 - 2 t^3, with t from 0 to 1 as the cosine grows; with 0 the cone has a sharp
+    edge. `fade` is that of a point light.
     """
 
     code, title, plural = "sl", "spot light", "spot_lights"

@@ -98,10 +98,8 @@ def usual(field: Field, state: State) -> Any:
         return field.check(field.parse(field.bare))
     if isinstance(field, Compound):
         return made(field.record, state)
-    if isinstance(field, Picture):
-        return first_picture(state.scene)
-    if isinstance(field, MeshField):
-        return first_mesh(state.scene)
+    if isinstance(field, Picture | MeshField):
+        return first_picture(state.scene) if isinstance(field, Picture) else first_mesh(state.scene)
     length = nice(LARGE * state.size)
     if isinstance(field, Lengths):
         return length, length, length

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.scene import Camera, Scene
+from tests.reference import meshes  # noqa: F401  (what is said of each shape in the other files, of these alone)
 from tests.reference.hits import first_hits
 from tests.reference.light import OFF_SURFACE, shaded
 from tests.reference.normals import normals
@@ -75,13 +76,17 @@ def light_along(scene: Scene, origins: Array, directions: Array, weights: Array,
         if depth == 0 or back + through == 0:
             continue
         leaving = points + far[:, None] * facing, points - far[:, None] * facing
-        cosine = -dot(facing, direction)[:, None]
-        mirrored = direction + 2 * cosine * facing
+        # The relief counts, unless the light would come through the surface.
+        mirrored = direction - 2 * dot(bent, direction)[:, None] * bent
+        sound = (dot(bent, direction) < 0) & (dot(mirrored, facing) > 0)
+        tilted = np.where(sound[:, None], bent, facing)
+        cosine = -dot(tilted, direction)[:, None]
+        mirrored = direction + 2 * cosine * tilted
         ratio = np.where(outside, 1 / shape.glass.ior, shape.glass.ior) if shape.glass else np.ones(len(direction))
-        sine = ratio[:, None] * (direction + cosine * facing)  # Snell's law: what is along the surface
+        sine = ratio[:, None] * (direction + cosine * tilted)  # Snell's law: what is along the surface
         squared = dot(sine, sine)
         total = squared > 1
-        refracted = sine - np.sqrt(np.maximum(0, 1 - squared))[:, None] * facing
+        refracted = sine - np.sqrt(np.maximum(0, 1 - squared))[:, None] * tilted
         shares = (
             (leaving[0], mirrored, weight * (back + np.where(total, through, 0)) / whole),
             (leaving[1], refracted, weight * np.where(total, 0, through) / whole),

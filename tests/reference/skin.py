@@ -11,6 +11,7 @@ from PIL import Image
 from minirt.scene import Scene
 from minirt.shapes.shape import Shape
 from tests.reference.maps import place
+from tests.reference.normals import shading
 from tests.reference.vectors import Array, dot, length, rgb, unit
 
 
@@ -42,7 +43,7 @@ def lookup(pixels: Array, u: Array, v: Array) -> Array:
 
 def painted(scene: Scene, shape: Shape, points: Array, normal: Array) -> tuple[Array, Array]:
     """The colours of points, and their normals as they count for light; `normal` are those of the shape."""
-    colour = np.broadcast_to(rgb(shape.colour), points.shape)
+    colour, normal = np.broadcast_to(rgb(shape.colour), points.shape), shading(shape, points, normal)
     if not (shape.checker or shape.texture or shape.bump or shape.normal_map):
         return colour, normal
     at = place(shape, points)
@@ -58,7 +59,8 @@ def painted(scene: Scene, shape: Shape, points: Array, normal: Array) -> tuple[A
         over_v = high * (lookup(pixels, at.u, at.v + 0.5 / high) - lookup(pixels, at.u, at.v - 0.5 / high))
         # The tangents of the raised surface are P_u + h_u n and P_v + h_v n, and what is normal to both is wanted; the
         # products of small quantities are left out (Blinn 1978).
-        raise_u, raise_v = shape.bump.strength * over_u * normal, shape.bump.strength * over_v * normal
+        rise = shape.bump.strength * length(at.along_u)[..., None] * normal  # of white: a share of the picture's width
+        raise_u, raise_v = rise * over_u, rise * over_v
         raised = np.cross(at.along_u, at.along_v) + np.cross(raise_u, at.along_v) + np.cross(at.along_u, raise_v)
         raised *= np.sign(dot(np.cross(at.along_u, at.along_v), normal))[..., None]
         normal = np.where(length(raised)[..., None] > 1e-12, unit(raised), normal)

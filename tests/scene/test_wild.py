@@ -79,7 +79,7 @@ def test_cones_by_all_their_names() -> None:
     scene = wild("party-hats", lenient=True)
     assert scene.cones == (
         Cone((0, 3, 0), DOWN, 2.5, 3, (255, 180, 0), specular=Specular(0.5, 40)),
-        Cone((3, 2, 1), DOWN, 1.5, 2, (200, 0, 120), checker=Checker(1)),
+        Cone((3, 2, 1), DOWN, 1.5, 2, (200, 0, 120), checker=Checker(0.125)),
         Cone((-3, 2.2, -1), DOWN, 2, 2.2, (20, 120, 220), mirror=0.2),
     )
     assert scene.planes[0].normal == UP
@@ -122,6 +122,6 @@ def test_an_atom_with_numbers_of_all_spellings() -> None:
 def test_a_bar_with_the_further_shapes() -> None:
     scene = wild("bar")
     assert [type(shape).code for shape in scene.shapes] == ["pl", "bo", "pa", "hy", "di"]
-    assert scene.of(Disc) == (Disc((0, 0.01, -1), UP, 1.2, (200, 30, 60), checker=Checker(1)),)
+    assert scene.of(Disc) == (Disc((0, 0.01, -1), UP, 1.2, (200, 30, 60), checker=Checker(0.125)),)
     assert [shape.glass for shape in scene.shapes[2:4]] == [Glass(1.5), Glass(1.5, 0.8)]
     assert scene.camera.roll == 3.0
