@@ -142,20 +142,22 @@ def water(size: int = 256) -> Array:
     return (total - total.min()) / np.ptp(total)
 
 
-def stars(width: int = 1024, height: int = 512) -> Array:
+def stars(width: int = 2048, height: int = 1024) -> Array:
     """A map of the sky: stars evenly on the sphere, few bright and many faint ones, and a band of mist."""
     points = globe(width, height)
     pole = np.array([0.48, 0.8, 0.36])
     off = points @ (pole / np.linalg.norm(pole))
-    mist = fractal(11, 3 * points, 7)
+    near = np.abs(off) < 0.4  # where there is any mist
+    off, mist, dust = off[near], fractal(11, 3 * points[near], 7), fractal(17, 5 * points[near], 6)
     band = np.exp(-((off / 0.16) ** 2)) * np.clip(2.6 * (mist - 0.3), 0, 1)
-    dust = np.exp(-((off / 0.05) ** 2)) * np.clip(3 * (fractal(17, 5 * points, 6) - 0.42), 0, 1)
-    glow = np.clip(band - 0.8 * dust, 0, 1)[..., None]
-    colour = np.array([4.0, 5, 12]) + glow * [122, 114, 136]
+    band -= 0.9 * np.exp(-((off / 0.05) ** 2)) * np.clip(3 * (dust - 0.42), 0, 1)
+    glow = np.zeros((height, width, 1))
+    glow[near, 0] = 1 - np.exp(-1.2 * np.clip(band, 0, 1))
+    colour = np.array([4.0, 5, 12]) + glow * [124, 116, 140]
     random = np.random.default_rng(2)
-    count = 5000
+    count = 9000
     latitude, longitude = np.arcsin(random.uniform(-1, 1, count)), random.uniform(0, 1, count)
-    light = 45 * random.random(count) ** -0.6
+    light = 40 * random.random(count) ** -0.6
     tint = shades(random.random(count), [(0, "ffd0a0"), (0.4, "ffffff"), (1, "b0c8ff")]) / 255
     row = (0.5 - latitude / np.pi) * height
     wide = 0.55 / np.maximum(np.cos(latitude), 0.05)  # near the poles a map stretches everything across
@@ -207,10 +209,9 @@ def main(folder: Path = FOLDER) -> None:
     save(folder, "planet.png", globe_colour, 128)
     save(folder, "planet-height.png", 255 * globe_heights[::2, ::2])
     save(folder, "bricks.png", wall, 64)
-    save(folder, "bricks-height.png", 255 * wall_heights)
+    save(folder, "bricks-height.png", 255 * wall_heights[::2, ::2])
     save(folder, "bricks-normal.png", normals(wall_heights[::2, ::2], 0.02))
     save(folder, "water-height.png", 255 * waves)
-    save(folder, "water-normal.png", normals(waves, 0.05))
     save(folder, "evening.png", evening())
     save(folder, "stars.png", stars(), 64)
 
