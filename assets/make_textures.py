@@ -116,7 +116,7 @@ def bricks(width: int = 512, height: int = 512) -> tuple[Array, Array]:
 
 
 def normals(heights: Array, strength: float) -> Array:
-    """The normal map of heights, (h, w, 3) in [0, 255], of a picture that fits to itself.
+    """The normal map of heights, (h, w, 3) in [1, 255], 128 for 0, of a picture that fits to itself.
 
     The normal is (-dh/du, -dh/dv, 1) at unit length; u goes to the right, v up, and white is `strength` times the
     picture's width above black.
@@ -126,7 +126,7 @@ def normals(heights: Array, strength: float) -> Array:
     dv = width * (np.roll(heights, 1, 0) - np.roll(heights, -1, 0)) / 2
     normal = np.stack([-du, -dv, np.ones_like(du)], axis=-1)
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
-    return 127.5 + 127.5 * normal
+    return 128 + 127 * normal
 
 
 def water(size: int = 256) -> Array:
