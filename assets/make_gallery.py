@@ -12,7 +12,11 @@ from pathlib import Path
 import minirt
 
 ROOT = Path(__file__).parent.parent
-SHOWN = ["figure-iv1-planet", *sorted(path.stem for path in (ROOT / "scenes").glob("gallery-*.rt"))]
+SHOWN = [
+    "figure-iv1-planet",
+    *sorted(path.stem for path in (ROOT / "scenes").glob("gallery-*.rt")),
+    "material-glass-window",
+]
 WIDTH, HEIGHT, SAMPLES = 1280, 720, 64
 
 
@@ -23,7 +27,7 @@ def row(name: str) -> str:
     start = time.process_time()
     picture = minirt.render(scene, WIDTH, HEIGHT, samples=SAMPLES, threads=1)
     seconds = time.process_time() - start
-    file = f"{name.removeprefix('gallery-')}.jpg"
+    file = f"{name.split('-', 1)[1]}.jpg"
     picture.save(ROOT / "assets" / f"gallery-{file}")
     told = (scene.file.read_text().splitlines()[0] if scene.file else "").removeprefix("# ")
     command = f"miniRT scenes/{name}.rt --size {WIDTH}x{HEIGHT} --samples {SAMPLES} -o {file}"

@@ -89,7 +89,7 @@ def planet(width: int = 1024, height: int = 512) -> tuple[Array, Array]:
     colour += np.clip((0.06 - heat) / 0.04, 0, 1)[..., None] * ([242, 246, 250] - colour)
     swirl = 2.2 * points + 0.9 * fractal(60, 2 * points, 4)[..., None]
     cloud = np.clip(4 * (fractal(50, swirl, 7) - 0.53), 0, 0.85)[..., None]
-    return colour + cloud * (255 - colour), np.clip(0.1 * (land > 0) + 3 * land, 0, 1)
+    return colour + cloud * (255 - colour), np.clip(3.5 * land, 0, 1)
 
 
 ROWS, COLUMNS = 8, 4  # bricks in the picture
@@ -116,9 +116,9 @@ def bricks(width: int = 512, height: int = 512) -> tuple[Array, Array]:
 
 
 def normals(heights: Array, strength: float) -> Array:
-    """The normal map of heights, (h, w, 3) in [1, 255], 128 for 0, of a picture that fits to itself.
+    """The normal map of heights, (h, w, 3) in [0, 255], of a picture that fits to itself.
 
-    The normal is (-dh/du, -dh/dv, 1) at unit length; u goes to the right, v up, and white is `strength` times the
+    The normal is (-dh/du, -dh/dv, 1) at unit length, 128 for 0 and 255 for 1; u goes to the right, v up, and white is `strength` times the
     picture's width above black.
     """
     width = strength * heights.shape[1]
@@ -207,7 +207,7 @@ def main(folder: Path = FOLDER) -> None:
     wall, wall_heights = bricks()
     waves = water()
     save(folder, "planet.png", globe_colour, 128)
-    save(folder, "planet-height.png", 255 * globe_heights[::2, ::2])
+    save(folder, "planet-height.png", 255 * globe_heights.reshape(256, 2, 512, 2).mean(axis=(1, 3)))
     save(folder, "bricks.png", wall, 64)
     save(folder, "bricks-height.png", 255 * wall_heights[::2, ::2])
     save(folder, "bricks-normal.png", normals(wall_heights[::2, ::2], 0.02))
