@@ -118,8 +118,8 @@ def bricks(width: int = 512, height: int = 512) -> tuple[Array, Array]:
 def normals(heights: Array, strength: float) -> Array:
     """The normal map of heights, (h, w, 3) in [0, 255], of a picture that fits to itself.
 
-    The normal is (-dh/du, -dh/dv, 1) at unit length, 128 for 0 and 255 for 1; u goes to the right, v up, and white is `strength` times the
-    picture's width above black.
+    The normal is (-dh/du, -dh/dv, 1) at unit length, 128 for 0 and 255 for 1; u goes to the right, v up, and white is
+    `strength` times the picture's width above black.
     """
     width = strength * heights.shape[1]
     du = width * (np.roll(heights, -1, 1) - np.roll(heights, 1, 1)) / 2

@@ -102,3 +102,17 @@ def test_continuous_integration_installs_what_a_newcomer_is_told_to() -> None:
     assert set(packages.split()) == told
     assert "make test" in script
     assert "make test" in README
+
+
+def test_the_gallery_is_made_by_its_commands() -> None:
+    rows = re.findall(r"^\| !\[(.*)\]\((.*)\) \| (.*)<br>`miniRT (.*)`<br>[0-9.]+ s \|$", README, re.MULTILINE)
+    assert len(rows) >= 8
+    for told, picture, again, command in rows:
+        scene, size, samples, out = re.fullmatch(r"(\S+) --size (\S+) --samples (\S+) -o (\S+)", command).groups()  # type: ignore[union-attr]
+        assert told == again == (ROOT / scene).read_text().splitlines()[0].removeprefix("# ")
+        assert (picture, samples) == (f"assets/gallery-{out}", "64")
+        assert "x".join(map(str, pillow.open(ROOT / picture).size)) == size
+        assert (ROOT / picture).stat().st_size < 250_000
+    assert {path.name for path in (ROOT / "assets").glob("gallery-*")} == {
+        f"gallery-{row[3].split()[-1]}" for row in rows
+    }
