@@ -111,7 +111,8 @@ def test_the_gallery_is_made_by_its_commands() -> None:
         scene, size, samples, out = re.fullmatch(r"(\S+) --size (\S+) --samples (\S+) -o (\S+)", command).groups()  # type: ignore[union-attr]
         assert told == again == (ROOT / scene).read_text().splitlines()[0].removeprefix("# ")
         assert (picture, samples) == (f"assets/gallery-{out}", "64")
-        assert "x".join(map(str, pillow.open(ROOT / picture).size)) == size
+        with pillow.open(ROOT / picture) as image:
+            assert "x".join(map(str, image.size)) == size
         assert (ROOT / picture).stat().st_size < 250_000
     assert {path.name for path in (ROOT / "assets").glob("gallery-*")} == {
         f"gallery-{row[3].split()[-1]}" for row in rows
