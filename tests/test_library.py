@@ -111,8 +111,8 @@ def test_scenes_are_edited_into_new_ones(scene: minirt.Scene) -> None:
         scene.replace(scene.spheres[0], diameter=-1)
     with pytest.raises(ValueError, match="not in"):
         scene.replace(minirt.Sphere((0, 0, 0), 1, (1, 2, 3)), diameter=1)
-    with pytest.raises(AttributeError, match="a scene has no 'tori'"):
-        _ = scene.tori
+    with pytest.raises(AttributeError, match="a scene has no 'teapots'"):
+        _ = scene.teapots
     with pytest.raises(AttributeError):
         scene.items = ()  # type: ignore[misc]
 

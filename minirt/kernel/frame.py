@@ -30,7 +30,7 @@ def packet(scene: Traced, memory: Any, tile: int, rays: Any, x: int, y: int) -> 
     count = width(rays)
     origin = Vec(scene.camera[0], scene.camera[1], scene.camera[2])
     direction = towards(scene.camera, x, y) + Vec(load(rays, 0), load(rays, count), load(rays, 2 * count))
-    return radiance(scene, memory, tile, origin, unit(direction))
+    return radiance(scene.bounces, scene, memory, tile, origin, unit(direction))
 
 
 def added(light: Vec, sums: Any, start: int, sample: int) -> Vec:

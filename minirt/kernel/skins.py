@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from minirt.kernel.rows import mapping, read
 from minirt.kernel.texels import height_slopes, picture_at
 from minirt.kernel.trace import over_kinds
-from minirt.kernel.traced import Group, Traced
+from minirt.kernel.traced import Group
 from minirt.lanes import Vec, copysign, cross, dot, fabs, floor, inverse_root, splat, unit, where
 from minirt.lanes.vec import Number
 
@@ -30,16 +30,16 @@ class Skins(NamedTuple):
 Mapped = tuple[Number, Number, Vec, Vec, int]
 
 
-def skinned(skins: Any, scene: Traced, index: int, point: Vec, normal: Vec, colour: Vec) -> tuple[Vec, Vec]:
-    """The normal by which places of a shape are lit, and their colour."""
+def skinned(
+    skins: Any, groups: tuple[Group, ...], index: int, place: Any, point: Vec, normal: Vec, colour: Vec
+) -> tuple[Vec, Vec]:
+    """The normal by which places of a shape are lit, and their colour; the shape is at `place`, a group and a row."""
     if skins is None:
         return normal, colour
     if skins.used[index] != 0:
         nothing = splat(0.0, point.x)
-        given = scene.places[index, 0], scene.places[index, 1], point, normal
-        u, v, along_u, along_v, _ = over_kinds(
-            mapping_of_kind, scene.groups, (nothing, nothing, point, point, 0), given
-        )
+        given = place[0], place[1], point, normal
+        u, v, along_u, along_v, _ = over_kinds(mapping_of_kind, groups, (nothing, nothing, point, point, 0), given)
         colour = checkered(skins.checks, index, u, v, textured(skins.textures, skins, index, u, v, colour))
         normal = raised(skins.bumps, skins, index, u, v, along_u, along_v, normal)
         normal = turned(skins.normals, skins, index, u, v, along_u, along_v, normal)

@@ -6,7 +6,6 @@ from math import pi
 from typing import Any, NamedTuple
 
 from minirt.kernel.texels import picture_at
-from minirt.kernel.traced import Traced
 from minirt.lanes import Vec, any, maximum, minimum, splat, sqrt, where
 from minirt.lanes.angle import arctan2
 from minirt.lanes.vec import Number
@@ -20,17 +19,16 @@ class Dome(NamedTuple):
     pictures: Any  # its only row
 
 
-def lit_sky(scene: Traced, hit: Mask, light: Vec, direction: Vec) -> Vec:
+def lit_sky(sky: Any, dome: Any, hit: Mask, light: Vec, direction: Vec) -> Vec:
     """The light of rays that hit, and of the sky for those that do not."""
-    light = coloured_sky(scene.sky, hit, light)
-    return painted_sky(scene.dome, hit, light, direction)
+    return painted_sky(dome, hit, coloured_sky(sky, hit, light), direction)
 
 
-def beyond(scene: Traced, weight: Number, direction: Vec) -> Vec:
+def beyond(sky: Any, dome: Any, weight: Number, direction: Vec) -> Vec:
     """The light of the sky in a direction, times a weight."""
     nothing = splat(0.0, weight)
     dark = Vec(nothing, nothing, nothing)
-    return where(weight > 0.0, weight * lit_sky(scene, weight < 0.0, dark, direction), dark)
+    return where(weight > 0.0, weight * lit_sky(sky, dome, weight < 0.0, dark, direction), dark)
 
 
 def coloured_sky(sky: Any, hit: Mask, light: Vec) -> Vec:

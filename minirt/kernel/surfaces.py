@@ -55,9 +55,11 @@ def surfaces(scene: Traced, memory: Any, owner: Number, point: Vec, hit: Mask) -
 
 def surface_at(scene: Traced, index: int, point: Vec) -> Surface:
     """The surface of one shape, for all rays."""
-    given = scene.places[index, 0], scene.places[index, 1], point
-    on, normal, bent, _ = over_kinds(surface_of_kind, scene.groups, (point, point, point, 0), given)
-    bent, colour = skinned(scene.skins, scene, index, on, bent, row_of(scene.looks, index, point.x))
+    place = scene.places[index]
+    on, normal, bent, _ = over_kinds(
+        surface_of_kind, scene.groups, (point, point, point, 0), (place[0], place[1], point)
+    )
+    bent, colour = skinned(scene.skins, scene.groups, index, place, on, bent, row_of(scene.looks, index, point.x))
     gloss, bounces = row_of(scene.gloss, index, point.x), row_of(scene.bounces, index, point.x)
     return Surface(on, normal, bent, colour, gloss, bounces)
 

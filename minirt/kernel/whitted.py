@@ -31,23 +31,16 @@ ROWS = 8
 MEMORY = (DEEPEST + 2) * ROWS * BYTES // 8
 
 
-def radiance(scene: Traced, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
-    """The light that arrives at `origin` against `direction`."""
+def radiance(bounces: Any, scene: Traced, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
+    """The light that arrives at `origin` against `direction`; `bounces` are those of the scene."""
     t, owner, extent = nearest(scene, tile, origin, direction)
-    return followed(scene.bounces, scene, memory, t, owner, extent, origin, direction)
-
-
-def followed(
-    bounces: Any, scene: Traced, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec
-) -> Vec:
-    """The same, knowing what is hit."""
-    hit = t < inf
-    nothing = splat(0.0, t)
-    light = Vec(nothing, nothing, nothing)
     if bounces is None:
+        hit = t < inf
+        nothing = splat(0.0, t)
+        light = Vec(nothing, nothing, nothing)
         if any(hit):
             light, _ = leaving(scene, memory, t, owner, extent, origin, direction, hit)
-        return lit_sky(scene, hit, light, direction)
+        return lit_sky(scene.sky, scene.dome, hit, light, direction)
     return whitted(scene, memory, t, owner, extent, origin + 0.0 * direction, direction)
 
 
@@ -92,7 +85,7 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
                 against = -dot(normal, direction)
                 facing = where(against < 0.0, -normal, normal)
                 bent = where(against < 0.0, -found.bent, found.bent)
-                mirroring = tilted(scene.skins, bent, facing, direction)
+                mirroring = tilted(bent, facing, direction)
                 cosine = -dot(mirroring, direction)
                 # Snell's law: the ratio of the indices in front of the surface and behind it.
                 ratio = where(against < 0.0, bounces.z, 1.0 / bounces.z)
@@ -109,7 +102,7 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
                     way = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * mirroring)
                     kept = where(through > LEAST, through, 0.0)
                     waiting = keep(paths, waiting, point - rounding * facing, way, kept, level)
-        light = light + beyond(scene, where(asked & ~hit, weight, 0.0), direction)
+        light = light + beyond(scene.sky, scene.dome, where(asked & ~hit, weight, 0.0), direction)
         if waiting == 0:
             break
         waiting -= 1
@@ -121,11 +114,9 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
     return light
 
 
-def tilted(skins: Any, bent: Vec, facing: Vec, direction: Vec) -> Vec:
+def tilted(bent: Vec, facing: Vec, direction: Vec) -> Vec:
     """The normal by which a surface mirrors and refracts: that by which it is lit, unless it is turned away from the
     ray or would throw it below the surface."""
-    if skins is None:
-        return facing
     cosine = -dot(bent, direction)
     risen = dot(direction, facing) + 2.0 * cosine * dot(bent, facing)
     return where((cosine > 0.0) & (risen > 0.0), bent, facing)

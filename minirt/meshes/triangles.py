@@ -48,6 +48,12 @@ class Triangles:
         return numbers.reshape(-1, 3)
 
     @cached_property
+    def closed(self) -> bool:
+        """Whether all edges are edges of as many triangles in either direction."""
+        ways = np.sign(np.roll(self.corners, -1, axis=1) - self.corners)
+        return not np.bincount(self.edges.ravel(), ways.ravel()).any()
+
+    @cached_property
     def flat_normals(self) -> np.ndarray:
         """The unit normal of each, (m, 3): on the side of the corners' normals, or else where the corners are seen in
         counter-clockwise order. Of a sliver it is exact to a rounding about the longest edge, as that of a `tr`."""

@@ -111,7 +111,13 @@ class Packing:
     @property
     def notes(self) -> list[str]:
         """What was decided about the last scene, in words."""
-        return list(notes(self.last[0], self.tables, self.last[3])) if self.last else []
+        if not self.last:
+            return []
+        scene, _, _, traced = self.last
+        told = list(notes(scene, self.tables, traced))
+        if self.precision == "single" and not may_be_single(traced):
+            told.insert(0, "double precision: single has neither pictures nor a tree of shapes")
+        return told
 
 
 def may_be_single(traced: Traced) -> bool:

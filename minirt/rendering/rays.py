@@ -99,6 +99,8 @@ class Tracer:
                 counter = np.zeros(1, np.int64)
                 job = partial(self.kernel.trace_rays, counter, self.tree, origins, directions, *hits)
                 self.workers.run([job] * self.threads, partial(counter.fill, count))
+                there = hits.owner >= 0
+                hits.owner[there] = self.tables.owner[hits.owner[there]]
         return hits
 
     def plant(self, shapes: tuple[Shape, ...]) -> None:

@@ -26,7 +26,7 @@ def covered(mesh: Mesh, camera: Camera, width: int, height: int) -> np.ndarray |
     with np.errstate(all="ignore"):  # points that no triangle has may be anywhere
         x, y = x / depth, y / depth
     found = np.zeros((height, width), bool)
-    for facing in sides(x, y, made.corners):
+    for facing in sides(x, y, made.corners)[: 1 if made.closed else 2]:  # behind what is closed is its other side
         start, end = loose_edges(facing, made.corners, made.edges)
         found |= winding(x[start], y[start], x[end], y[end], width, height) != 0
     return found
@@ -56,7 +56,7 @@ def winding(ax: np.ndarray, ay: np.ndarray, bx: np.ndarray, by: np.ndarray, widt
     rows = np.abs(last - first)
     which = np.repeat(np.arange(len(rows)), rows)
     row = np.minimum(first, last)[which] + np.arange(len(which)) - np.repeat(np.cumsum(rows) - rows, rows)
-    at = ax[which] + (row + 0.5 - ay[which]) * ((bx - ax) / (by - ay))[which]
+    at = ax[which] + (row + 0.5 - ay[which]) * (bx - ax)[which] / (by - ay)[which]
     column = np.clip(np.ceil(at - 0.5), 0, width).astype(np.int64)
     turns = np.bincount(row * (width + 1) + column, np.sign(last - first)[which], height * (width + 1))
     around: np.ndarray = np.cumsum(np.rint(turns).reshape(height, width + 1)[:, :width], axis=1)

@@ -116,11 +116,13 @@ class Tables:
         indices = np.repeat(self.start[shapes] - np.cumsum(sizes) + sizes, sizes) + np.arange(len(parts.rows))
         rows = self.rows[group].view(np.float64).reshape(len(self.rows[group]), -1)
         rows[self.places[indices, 1]] = parts.rows
-        extents = np.abs(parts.boxes).max(axis=(1, 2))
+        corners = np.ascontiguousarray(np.moveaxis(parts.boxes, 0, 2))  # (2, 3, n), an eighth of the time to reduce
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        extents = np.maximum(np.abs(low), np.abs(high)).max(axis=0)
         self.looks[indices, :3] = np.repeat([shape.colour for shape in members], sizes, axis=0) / 255
         self.looks[indices, 3] = extents
-        self.boxes[indices, :3] = parts.boxes.mean(axis=1)
-        self.boxes[indices, 3] = (parts.boxes.max(axis=1) - parts.boxes.min(axis=1)).max(axis=1) / 2
+        self.boxes[indices, :3] = corners.mean(axis=0).T
+        self.boxes[indices, 3] = (high - low).max(axis=0) / 2
         if self.is_flat[group]:
             flats = np.array([shape.flat() for shape in members])
             at = np.searchsorted(self.flat, indices)
@@ -129,7 +131,8 @@ class Tables:
             self.planes[at, 4] = MARGIN * extents
         else:
             balls = parts.balls
-            balls[..., 3] += MARGIN * (balls[..., 3] + np.abs(balls[..., :3]).max(axis=2))
+            x, y, z, radius = np.abs(np.moveaxis(balls, 2, 0))
+            balls[..., 3] += MARGIN * (radius + np.maximum(np.maximum(x, y), z))
             at = self.first[indices, None] + np.arange(balls.shape[1])
             self.balls[at.ravel()] = balls.reshape(-1, 4)
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from minirt.report.findings import Findings, choices
 from minirt.report.kernels import Row
-from minirt.report.knobs import KNOBS
+from minirt.report.knobs import BOUNCES, KNOBS
 from minirt.report.regimes import REGIMES
 from minirt.report.tables import Column, as_markdown
 
@@ -47,7 +47,8 @@ def lines(found: Findings, has_diagram: bool) -> Iterator[str]:
     if has_diagram:
         yield "\n![Error against run time](diagram.png)"
     yield "\n" + as_markdown(found.pictures, PICTURES)
-    yield from ("", *(f"- {knob.name}: {knob.about}" for knob in KNOBS))
+    used = {row.knob for row in found.pictures}
+    yield from ("", *(f"- {knob.name}: {knob.about}" for knob in (*KNOBS, *BOUNCES) if knob.name in used))
     yield "\n## What to take\n"
     yield from (f"- {each}" for each in advice(found))
     yield "\n## What the scene does without\n"

@@ -86,9 +86,9 @@ def hyperboloid(shape: Any, swell: Decimal) -> Solid:
 
 
 def disc(shape: Any, swell: Decimal) -> Solid:
-    """d^2 <= r^2 where h is 0, or `swell`."""
+    """d^2 <= r^2 where h is 0."""
     radius = Decimal(shape.diameter) / 2 + swell
-    return Solid(exact(shape.centre), unit(exact(shape.normal)), radius * abs(radius), low=swell, high=swell)
+    return Solid(exact(shape.centre), unit(exact(shape.normal)), radius * abs(radius), low=ZERO, high=ZERO)
 
 
 def square(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
@@ -96,7 +96,7 @@ def square(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
     centre, normal, half = exact(shape.centre), unit(exact(shape.normal)), Decimal(shape.side) / 2 + swell
     level = cross(exact((0, 1, 0)), normal)
     right = unit(level) if any(level) else exact((1, 0, 0))
-    return slab(centre, normal, swell, swell), *(slab(centre, w, -half, half) for w in (right, cross(normal, right)))
+    return slab(centre, normal, ZERO, ZERO), *(slab(centre, w, -half, half) for w in (right, cross(normal, right)))
 
 
 def triangle(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
@@ -105,7 +105,7 @@ def triangle(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
     edges = [minus(corners[i - 2], corners[i]) for i in range(3)]
     normal = unit(cross(edges[0], edges[1]))
     sides = (slab(p, unit(cross(edge, normal)), -END, swell) for p, edge in zip(corners, edges, strict=True))
-    return slab(corners[0], normal, swell, swell), *sides
+    return slab(corners[0], normal, ZERO, ZERO), *sides
 
 
 def box(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
@@ -141,8 +141,9 @@ SOLIDS: dict[type[Shape], Callable[[Any, Decimal], Solid | tuple[Solid, ...]]] =
 def distance(shape: Shape, origin: Sequence[float], direction: Sequence[float], swell: float = 0.0) -> Decimal:
     """The least t > 0 at which origin + t direction lies on the surface, or infinity.
 
-    The surface of a solid is moved outwards by `swell`: what a formula in fewer digits may answer lies between the
-    answers for a solid a little larger and one a little smaller. KeyError for a shape that is not in `SOLIDS`.
+    The surface of a solid, or the edge of a sheet, is moved outwards by `swell`: what a formula in fewer digits may
+    answer lies between the answers for a shape a little larger and one a little smaller. KeyError for a shape that is
+    not in `SOLIDS`.
     """
     with localcontext(DIGITS):
         found = SOLIDS[type(shape)](shape, Decimal(swell))

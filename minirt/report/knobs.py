@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.rendering import Renderer
+from minirt.rendering.packing import Packing
+from minirt.rendering.traits import DEPTH, traits
 from minirt.report.brute import BruteForce
 from minirt.scene import Scene
 
@@ -50,12 +52,31 @@ class Knob(NamedTuple):
     counts: tuple[int, ...] = COUNTS
 
 
+SINGLE = Knob("single", "float32 relative to the eye", renderer=lambda threads: Renderer(threads, "single"))
 KNOBS = (
     Knob("uniform", "the same samples in each pixel, float64"),
     Knob("adaptive", "one sample, then more where neighbouring pixels differ", picture=at_edges, counts=COUNTS[1:]),
-    Knob("single", "float32 relative to the eye", renderer=lambda threads: Renderer(threads, "single")),
+    SINGLE,
     Knob("brute force", "no lists: every ray tries every shape", renderer=brute_force, counts=COUNTS[:2]),
 )
+
+
+def bounces(depth: int, name: str) -> Knob:
+    """As uniform, with so many bounces."""
+    about = f"light is mirrored or refracted {depth} times at most, not {DEPTH} times"
+    return Knob(name, about, renderer=lambda threads: Renderer(threads, depth=depth), counts=COUNTS[::2])
+
+
+BOUNCES = (bounces(0, "no bounces"), bounces(1, "1 bounce"), bounces(3, "3 bounces"))
+
+
+def knobs_of(scene: Scene) -> Iterator[Knob]:
+    """Those that a scene has: what is float64 anyway has no other precision, and what is not mirrored does not
+    bounce."""
+    is_single = Packing(precision="single").pack(scene, 16, 9).camera.dtype == np.float32
+    yield from (knob for knob in KNOBS if is_single or knob is not SINGLE)
+    if "bounces" in traits(scene):
+        yield from BOUNCES
 
 
 class Setting(NamedTuple):
@@ -70,7 +91,7 @@ class Setting(NamedTuple):
         return f"{self.knob.name} {self.samples}"
 
 
-def settings(most: int) -> Iterator[Setting]:
-    """All with at most so many samples, knob by knob."""
-    for knob in KNOBS:
+def settings(scene: Scene, most: int) -> Iterator[Setting]:
+    """All of a scene with at most so many samples, knob by knob."""
+    for knob in knobs_of(scene):
         yield from (Setting(knob, samples) for samples in knob.counts if samples <= most)

@@ -49,14 +49,15 @@ def report(
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
     make(folder)
     plan, kinds = QUICK if quick else FULL, [kind for kind in ALL_KINDS if kind.element in set(map(type, scene.shapes))]
-    steps = passes(plan.samples) + len(list(settings(plan.most))) + sum(len(regimes_of(kind)) + 1 for kind in kinds)
+    wanted = list(settings(scene, plan.most))
+    steps = passes(plan.samples) + len(wanted) + sum(len(regimes_of(kind)) + 1 for kind in kinds)
     with progress(steps + 1) as shown:
         shown.step("compiling")
         width, height = fitting(scene, size, plan)
         about = subject(scene, name, width, height, threads or usable_cores(), SEED)
         right = reference(scene, width, height, plan.samples, SEED, lambda: shown.step("reference"))
         stage = Stage(scene, width, height, about.threads)
-        found = list(measured(stage, list(settings(plan.most)), right, plan.budget, shown.step))
+        found = list(measured(stage, wanted, right, plan.budget, shown.step))
         rows = list(kernel_rows(kinds, plan, shown.step, scene))
     packing = Renderer().packing
     packing.pack(scene, width, height)

@@ -37,8 +37,7 @@ def line_of(element: Element) -> str:
     values = fill(kind, slots, line, log) if slots else None
     if not words or not slots or not values or log.errors:
         return describe(element)
-    said = ((field, getattr(element, field.name), values.get(field.name, field.default)) for field in fields_of(kind))
-    if all(same(*each) for each in said):
+    if all(getattr(element, field.name) == values.get(field.name, field.default) for field in fields_of(kind)):
         return line.source
     before, _, behind = line.source.partition(line.text)
     return before + changed(line.text, element, words, slots, values) + behind
@@ -66,11 +65,6 @@ def changed(text: str, element: Element, words: list[Word], slots: list[Slot], v
     return replaced(text, words[0].column, words[0].end, code)
 
 
-def same(field: Field, value: Any, other: Any) -> bool:
-    """Whether two values of a field are written alike."""
-    return value == other or (value is not None and other is not None and field.format(value) == field.format(other))
-
-
 def inserted(text: str, column: int, new: str) -> str:
     """`text` with `new` and a blank in front of it at `column`."""
     return f"{text[: column - 1]} {new}{text[column - 1 :]}"
@@ -79,7 +73,7 @@ def inserted(text: str, column: int, new: str) -> str:
 def respelled(text: str, slot: Slot, element: Element, values: dict[str, Any]) -> str:
     """`text` with the element's value in the slot, where it is another than that of `values`."""
     value = getattr(element, slot.field.name)
-    if same(slot.field, value, values[slot.field.name]):
+    if value == values[slot.field.name]:
         return text
     if value is None:
         return text[: slot.word.column - 1].rstrip(" \t") + text[slot.word.end - 1 :]

@@ -14,7 +14,7 @@ from itertools import product
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
-from minirt.lanes import Vec, copysign, dot, fabs, maximum, minimum, splat, where
+from minirt.lanes import Vec, copysign, fabs, maximum, minimum, splat, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
@@ -73,17 +73,14 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number
     Between each pair of faces the ray is for an interval of t; it is in the box where all three overlap (Kay and
     Kajiya, Ray Tracing Complex Scenes, 1986).
     """
-    f = origin - box.centre
-    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
-    p = to_basis(box.u, box.v, box.w, f + approach * direction)
+    p = to_basis(box.u, box.v, box.w, origin - box.centre)
     d = to_basis(box.u, box.v, box.w, direction)
     enter_x, leave_x = between(p.x, d.x, box.half.x)
     enter_y, leave_y = between(p.y, d.y, box.half.y)
     enter_z, leave_z = between(p.z, d.z, box.half.z)
     enter = maximum(maximum(enter_x, enter_y), enter_z)
     leave = minimum(minimum(leave_x, leave_y), leave_z)
-    near = approach + enter
-    t = where(near > 0.0, near, approach + leave)
+    t = where(enter > 0.0, enter, leave)
     return (enter <= leave) & (t > 0.0), t
 
 
@@ -116,12 +113,11 @@ def mapping(box: PackedBox, point: Vec, normal: Vec) -> tuple[Number, Number, Ve
     out = to_basis(box.u, box.v, box.w, normal)
     by_x, by_y = fabs(out.x) > 0.5, fabs(out.y) > 0.5
     sign = copysign(1.0, where(by_x, -out.x, where(by_y, -out.y, out.z)))
-    flat = splat(0.0, p.x)
     wide, tall, deep = 2.0 * box.half.x, 2.0 * box.half.y, 2.0 * box.half.z
     by_z = sign * p.z / deep
     return (
         0.5 + where(by_x, by_z, where(by_y, p.x, sign * p.x) / wide),
         0.5 + where(by_y, by_z, p.y / tall),
-        where(by_x, sign * deep, flat) * box.w + where(by_x, flat, where(by_y, splat(wide, flat), sign * wide)) * box.u,
-        where(by_y, sign * deep, flat) * box.w + where(by_y, flat, splat(tall, flat)) * box.v,
+        where(by_x, sign * deep, 0.0) * box.w + where(by_x, 0.0, where(by_y, wide, sign * wide)) * box.u,
+        where(by_y, sign * deep, 0.0) * box.w + where(by_y, 0.0, tall) * box.v,
     )

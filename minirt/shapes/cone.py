@@ -117,6 +117,6 @@ def mapping(cone: PackedCone, point: Vec, normal: Vec) -> tuple[Number, Number, 
     u, v, w = cone.u, -cone.v, -cone.w
     p = to_basis(u, v, w, point - cone.apex)
     out = to_basis(u, v, w, normal)
-    narrowing = -cone.slope * sqrt(splat(1.0, p.z) + cone.slope * cone.slope)  # by height, along out.x and out.y
-    rise = cone.height * Vec(narrowing * out.x, narrowing * out.y, splat(1.0, p.z))
+    narrowing = -cone.slope * sqrt(1.0 + cone.slope * cone.slope)  # by height, along out.x and out.y
+    rise = cone.height * Vec(narrowing * out.x, narrowing * out.y, 1.0)
     return wrapped(u, v, w, p, out.z > -0.5, 1.0 + p.z / cone.height, rise, cone.slope * cone.height)

@@ -105,6 +105,5 @@ def mapping(cylinder: PackedCylinder, point: Vec, normal: Vec) -> tuple[Number, 
     u, v, w = cylinder.u, cylinder.v, cylinder.w
     p = to_basis(u, v, w, point - cylinder.centre)
     side = is_side(p, to_basis(u, v, w, normal))
-    flat = splat(0.0, p.z)
     tall = 2.0 * cylinder.half
-    return wrapped(u, v, w, p, side, 0.5 + p.z / tall, Vec(flat, flat, splat(tall, flat)), cylinder.radius)
+    return wrapped(u, v, w, p, side, 0.5 + p.z / tall, Vec(0.0, 0.0, tall), cylinder.radius)

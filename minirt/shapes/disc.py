@@ -55,15 +55,11 @@ class PackedDisc(NamedTuple):
 def intersect(disc: PackedDisc, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the disc; a ray along it, within rounding, does not."""
     f = origin - disc.centre
-    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
-    g = f + approach * direction
     slope = dot(disc.normal, direction)
-    further = -dot(disc.normal, g) / slope
-    t = approach + further
-    # From the centre to the hit: the closest approach is at a right angle to the rest of the way.
-    squared = dot(g, g) + further * further
+    t = -dot(disc.normal, f) / slope
+    p = f + t * direction
     hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0)
-    return hit & (squared <= disc.radius * disc.radius), t
+    return hit & (dot(p, p) <= disc.radius * disc.radius), t
 
 
 def surface(disc: PackedDisc, point: Vec) -> tuple[Vec, Vec]:

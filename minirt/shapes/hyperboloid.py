@@ -154,7 +154,7 @@ def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Nu
     rho = sqrt(p.x * p.x + p.y * p.y)
     per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
     widening = hyperboloid.slope * (hyperboloid.slope * p.z * per_rho)  # by height
-    rise = tall * Vec(widening * (p.x * per_rho), widening * (p.y * per_rho), splat(1.0, p.z))
+    rise = tall * Vec(widening * (p.x * per_rho), widening * (p.y * per_rho), 1.0)
     reach = hyperboloid.slope * hyperboloid.half
-    radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * splat(reach, p.z))
+    radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * reach)
     return wrapped(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), 0.5 + p.z / tall, rise, radius)

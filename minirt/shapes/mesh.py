@@ -140,15 +140,17 @@ def shading(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
 
 
 def mapping(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """As the file says, or else with a picture on each triangle, as on one of `tr`."""
+    """As the file says, or else with a picture on each triangle, as on one of `tr`; what is raised is raised from what
+    the triangles stand for, across `normal`."""
     of_a, of_b, of_c = shares(mesh, point)
     ab, ac = mesh.b - mesh.a, mesh.c - mesh.a
     u_b, v_b, u_c, v_c = mesh.u_b - mesh.u_a, mesh.v_b - mesh.v_a, mesh.u_c - mesh.u_a, mesh.v_c - mesh.v_a
     area = u_b * v_c - u_c * v_b  # twice that of the triangle in the picture
     per_area = where(area == 0.0, 0.0, 1.0 / where(area == 0.0, 1.0, area))
+    along_u, along_v = per_area * (v_c * ab - v_b * ac), per_area * (u_b * ac - u_c * ab)
     return (
         of_a * mesh.u_a + of_b * mesh.u_b + of_c * mesh.u_c,
         of_a * mesh.v_a + of_b * mesh.v_b + of_c * mesh.v_c,
-        per_area * (v_c * ab - v_b * ac),
-        per_area * (u_b * ac - u_c * ab),
+        along_u - dot(along_u, normal) * normal,
+        along_v - dot(along_v, normal) * normal,
     )

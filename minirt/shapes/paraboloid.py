@@ -127,7 +127,7 @@ def mapping(paraboloid: PackedParaboloid, point: Vec, normal: Vec) -> tuple[Numb
     u, v, w = paraboloid.u, paraboloid.v, paraboloid.w
     p = to_basis(u, v, w, point - paraboloid.vertex)
     rho = sqrt(p.x * p.x + p.y * p.y)
-    radius = sqrt(2.0 * paraboloid.focal * splat(paraboloid.height, rho))
+    radius = sqrt(2.0 * paraboloid.focal * paraboloid.height)
     per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
     rise = radius * Vec(p.x * per_rho, p.y * per_rho, rho / paraboloid.focal)
     return wrapped(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), rho / radius, rise, radius)

@@ -83,7 +83,7 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, 
             near = where(close & (approach > 0.0), product / far, near)
             far = where(close & (approach <= 0.0), product / near, far)
         t = where(near > 0.0, near, far)
-        hit = hit & (chord >= 0.0) & (t > 0.0)
+        hit = hit & (t > 0.0)  # NaN where there is no chord
     return hit, t
 
 
@@ -100,6 +100,6 @@ def mapping(sphere: PackedSphere, point: Vec, normal: Vec) -> tuple[Number, Numb
     half = 0.5 * TURN * sphere.radius
     fall = -normal.y * per_rho
     u, v = 0.5 + turns(-normal.x, -normal.z), 0.5 + 2.0 * turns(normal.y, rho)
-    along_u = 2.0 * half * Vec(normal.z, splat(0.0, rho), -normal.x)
+    along_u = 2.0 * half * Vec(normal.z, 0.0, -normal.x)
     along_v = half * Vec(fall * normal.x, rho, fall * normal.z)
     return u, v, along_u, along_v

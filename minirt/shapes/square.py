@@ -61,12 +61,9 @@ class PackedSquare(NamedTuple):
 def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the square; a ray along it, within rounding, does not."""
     f = origin - square.centre
-    approach = -dot(f, direction)  # t is counted from the closest approach to the centre
-    g = f + approach * direction
     slope = dot(square.normal, direction)
-    further = -dot(square.normal, g) / slope
-    p = g + further * direction
-    t = approach + further
+    t = -dot(square.normal, f) / slope
+    p = f + t * direction
     hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0)
     return hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half), t
 

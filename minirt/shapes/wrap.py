@@ -23,7 +23,7 @@ def turns(y: Number, x: Number) -> Number:
 
 def around(p: Vec) -> tuple[Number, Vec]:
     """From 0 to 1 about the axis, counter-clockwise from its tip, 1/2 at -x; and the way there for each turn."""
-    return 0.5 + turns(-p.y, -p.x), Vec(-TURN * p.y, TURN * p.x, splat(0.0, p.x))
+    return 0.5 + turns(-p.y, -p.x), Vec(-TURN * p.y, TURN * p.x, 0.0)
 
 
 def is_side(p: Vec, normal: Vec) -> Mask:
@@ -47,6 +47,6 @@ def wrapped(
     return (
         where(side, turn, 0.5 + p.y * per_diameter),
         where(side, height, 0.5 + up * p.x * per_diameter),
-        from_basis(u, v, w, where(side, way, Vec(flat, splat(across, flat), flat))),
+        from_basis(u, v, w, where(side, way, Vec(flat, across, flat))),
         from_basis(u, v, w, where(side, rise, Vec(up * across, flat, flat))),
     )

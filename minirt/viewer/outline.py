@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from minirt.rendering.pick import covers
 from minirt.scene import Camera
 from minirt.shapes import Shape
+from minirt.shapes.mesh import Mesh
 from minirt.viewer.lens import Lens, lens, minus
 
 Places = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns of pixels
@@ -24,6 +25,8 @@ def rims(shape: Shape, camera: Camera, width: int, height: int, rays: int) -> tu
 
     About so many rays are spent on looking for it: with few of them, what is thin may be missed in places.
     """
+    if isinstance(shape, Mesh):
+        return rims_of(covers(shape, camera, width, height, *np.meshgrid(np.arange(width), np.arange(height))))
     left, top, right, bottom = extent(shape, lens(camera, width, height))
     step = max(1, ceil(((right - left) * (bottom - top) / rays) ** 0.5))
     x, y = np.meshgrid(np.arange(left, right + step, step), np.arange(top, bottom + step, step))
@@ -43,6 +46,15 @@ def rims(shape: Shape, camera: Camera, width: int, height: int, rays: int) -> tu
     outside, inside = np.logical_or.reduce(around) & ~middle, middle & ~np.logical_and.reduce(around)
     y, x = y[:, 1:-1, 1:-1], x[:, 1:-1, 1:-1]
     return (y[outside], x[outside]), (y[inside], x[inside])
+
+
+def rims_of(mask: NDArray[np.bool_]) -> tuple[Places, Places]:
+    """The same for a shape that covers those pixels, (h, w)."""
+    down, right = np.nonzero(mask[1:] != mask[:-1]), np.nonzero(mask[:, 1:] != mask[:, :-1])
+    rows = np.concatenate([down[0], down[0] + 1, right[0], right[0]])
+    columns = np.concatenate([down[1], down[1], right[1], right[1] + 1])
+    inside = mask[rows, columns]
+    return (rows[~inside], columns[~inside]), (rows[inside], columns[inside])
 
 
 def extent(shape: Shape, seen: Lens) -> Box:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.scene import Camera, Scene
+from tests.reference import meshes  # noqa: F401  (what is said of each shape in the other files, of these alone)
 from tests.reference.hits import first_hits
 from tests.reference.light import OFF_SURFACE, shaded
 from tests.reference.normals import normals

@@ -28,6 +28,12 @@ def normals(shape: Shape, points: Array) -> Array:
     raise TypeError(f"the reference renderer knows no {shape.title}")
 
 
+@singledispatch
+def shading(shape: Shape, points: Array, normal: Array) -> Array:
+    """The unit normals by which points are lit where nothing is painted; `normal` are those of the shape."""
+    return normal
+
+
 @normals.register(Plane)
 @normals.register(Square)
 @normals.register(Disc)

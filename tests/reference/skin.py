@@ -11,6 +11,7 @@ from PIL import Image
 from minirt.scene import Scene
 from minirt.shapes.shape import Shape
 from tests.reference.maps import place
+from tests.reference.normals import shading
 from tests.reference.vectors import Array, dot, length, rgb, unit
 
 
@@ -42,7 +43,7 @@ def lookup(pixels: Array, u: Array, v: Array) -> Array:
 
 def painted(scene: Scene, shape: Shape, points: Array, normal: Array) -> tuple[Array, Array]:
     """The colours of points, and their normals as they count for light; `normal` are those of the shape."""
-    colour = np.broadcast_to(rgb(shape.colour), points.shape)
+    colour, normal = np.broadcast_to(rgb(shape.colour), points.shape), shading(shape, points, normal)
     if not (shape.checker or shape.texture or shape.bump or shape.normal_map):
         return colour, normal
     at = place(shape, points)

@@ -39,6 +39,16 @@ def test_what_is_left_out_and_why() -> None:
     ]
 
 
+def test_single_precision_where_there_is_none() -> None:
+    packing = Packing(precision="single")
+    for mirror in (None, 0.5):
+        packing.pack(Scene((Camera((0, 0, -9), (0, 0, 1), 60), Sphere((0, 0, 0), 1, GREY, mirror=mirror))), 64, 48)
+        told = packing.notes[0]
+        assert told == (
+            "double precision: single has neither pictures nor a tree of shapes" if mirror else "kernel for spheres"
+        )
+
+
 def test_the_size_of_the_light_buffer() -> None:
     *_, buffer, _, _, _, _, _ = said(*(Sphere((i, 0, 0), 1, GREY) for i in range(48)))
     assert buffer == "light buffer: 6 x 32 x 32 cells a lamp (50 shapes)"

@@ -12,7 +12,7 @@ import minirt
 from minirt.errors import RenderError
 from minirt.rendering import packing
 from minirt.report import pictures
-from minirt.report.knobs import KNOBS, Knob, Setting, settings
+from minirt.report.knobs import KNOBS, Knob, Setting, knobs_of, settings
 from minirt.report.pictures import Budget, Row, Stage, measured
 from minirt.report.reference import Reference, passes, reference
 from minirt.scene import FurtherLight, Scene
@@ -44,7 +44,7 @@ def rows_for(*wanted: Setting, budget: Budget = EASY) -> list[Row]:
 
 @cache
 def rows() -> dict[tuple[str, int], Row]:
-    return {(row.knob, row.samples): row for row in rows_for(*settings(16))}
+    return {(row.knob, row.samples): row for row in rows_for(*settings(ALL, 16))}
 
 
 @pytest.mark.parametrize("samples", [1, 4, 16])
@@ -98,6 +98,18 @@ def test_knobs_do_what_they_say() -> None:
     assert all(row.not_finite == 0 for row in rows().values())
 
 
+def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
+    mirrors = ALL.replace(ALL.shapes[0], mirror=0.5).replace(ALL.shapes[1], mirror=0.9)
+    names = [knob.name for knob in knobs_of(ALL)]
+    assert names == ["uniform", "adaptive", "single", "brute force"]
+    assert [knob.name for knob in knobs_of(mirrors)] == [*names[:2], names[3], "no bounces", "1 bounce", "3 bounces"]
+    right = reference(mirrors, WIDTH, HEIGHT, 256, seed=3)
+    wanted = [setting for setting in settings(mirrors, 16) if setting.samples == 16]
+    stage = Stage(mirrors, WIDTH, HEIGHT, 1)
+    rmse = {row.knob: row.rmse for row, _ in measured(stage, wanted, right, EASY, lambda name: None)}
+    assert rmse["no bounces"] > 2 * rmse["1 bounce"] > 4 * rmse["3 bounces"] > 4 * rmse["uniform"]
+
+
 def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
     stage = Stage(ALL, WIDTH, HEIGHT, 1)
     (knob,) = (knob for knob in KNOBS if knob.name == "adaptive")
@@ -115,7 +127,7 @@ def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) ->
     bright = Scene((AMBIENT, EYE, LAMP, FurtherLight(LAMP.position, 1.0), *SHAPES))
     monkeypatch.setattr(packing, "light_numbers", lambda lamps: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps)))
     stage = Stage(bright, WIDTH, HEIGHT, 1)
-    wanted = list(settings(4))
+    wanted = list(settings(bright, 4))
     rows = [row for row, _ in measured(stage, wanted, right(), EASY, lambda name: None)]
     counts = {(row.knob, row.samples): row.not_finite for row in rows}
     assert 0 < counts["uniform", 1] < WIDTH * HEIGHT

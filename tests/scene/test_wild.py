@@ -69,7 +69,7 @@ def test_planets_have_their_pictures() -> None:
         f"{PICTURES}planet.png",
         Bump(f"{PICTURES}planet-height.png", 0.03),
     )
-    assert moon.bump == Bump(f"{PICTURES}bricks-height.png", 0.05)
+    assert moon.bump == Bump(f"{PICTURES}bricks-height.png", 0.02)
     assert (mars.texture, mars.normal_map) == (f"{PICTURES}bricks.png", f"{PICTURES}bricks-normal.png")
     assert mars.specular == Specular(0.4, 20)
     assert all(scene.beside(name).is_file() for name in (earth.texture, mars.normal_map))

@@ -32,8 +32,9 @@ def test_answers_known_by_hand(way: Intersect) -> None:
         ((-9, 1, 8.01), (1, 0, 0)),
         ((-4, 0, 5), (0.6, 0.8, 0)),  # over it
         ((-2.5, 0, 5), (0.6, 0.8, 0)),  # at the side, 2 up
+        ((-2, 2, 5), (0.5**0.5, 0.5**0.5, 0)),  # at the very edge
     ]
-    expected = [2, np.inf, 1, 6, 8, 1, 2, 3, 2] + [np.inf] * 6 + [2.5]
+    expected = [2, np.inf, 1, 6, 8, 1, 2, 3, 2] + [np.inf] * 6 + [2.5, 2**0.5]
     assert shoot(way, BLOCK, *rays) == pytest.approx(expected, rel=1e-15)
     assert shoot(way, BLOCK.replace(axis=(0, -1, 0)), *rays) == pytest.approx(expected, rel=1e-15)
 

@@ -22,12 +22,13 @@ def test_answers_known_by_hand(way: Intersect) -> None:
         ((1.59, 1, 0), (0, 0, 1)),  # near the rim: 3/4 of that deeper
         ((1.61, 1, 0), (0, 0, 1)),  # past it
         ((0, 2.99, 0), (0, 0, 1)),
+        ((0, 3, 0), (0, 0, 1)),  # the very rim
         ((0, 3.01, 0), (0, 0, 1)),
         ((1.2, 2.4, 0), (0, 0, 1)),  # where a square would be: 1.5 aside and 1.4 up
         ((-1, 1, 4.25), (0.8, 0, 0.6)),  # along it
         ((0, 1, 5), (0, 0, 1)),  # from it
     ]
-    expected = [5, np.inf, 4, 5 + 0.75 * 1.59, np.inf, 5, np.inf, np.inf, np.inf, np.inf]
+    expected = [5, np.inf, 4, 5 + 0.75 * 1.59, np.inf, 5, 5, np.inf, np.inf, np.inf, np.inf]
     assert shoot(way, PLATE, *rays) == pytest.approx(expected, rel=1e-15)
     assert shoot(way, PLATE.replace(normal=(-0.6, 0, 0.8)), *rays) == pytest.approx(expected, rel=1e-15)
 

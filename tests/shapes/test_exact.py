@@ -37,6 +37,14 @@ def test_compiled_they_are_the_same() -> None:
         assert parts(a, b) == (a * b, product_error(a, b), a * b + 1.0)
 
 
+def test_compiled_a_product_that_is_used_once_is_not_fused_with_the_sum() -> None:
+    @njit(**FLAGS)
+    def rest(a: float, b: float, product: float) -> float:
+        return rounded_product(a, b) - product
+
+    assert all(rest(a, b, a * b) == 0 for a, b in PAIRS)
+
+
 def test_the_power_of_a_point_keeps_what_is_left_of_it() -> None:
     for exponent in range(-6, 4):
         x, y, z = RANDOM.normal(size=3)

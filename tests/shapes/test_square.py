@@ -25,11 +25,16 @@ def test_answers_known_by_hand(way: Intersect) -> None:
         ((-1.59, -0.99, 0), (0, 0, 1)),
         ((-1.61, 0, 0), (0, 0, 1)),
         ((0, -1.01, 0), (0, 0, 1)),
+        ((0, 3, 0), (0, 0, 1)),  # the very edge
         ((-1, 1, 5.0 - 0.75), (0.8, 0, 0.6)),  # along it
         ((0, 1, 5), (0, 0, 1)),  # from it
     ]
-    expected = [5, np.inf, 4, 5 + 0.75 * 1.59, np.inf, np.inf, 5 - 0.75 * 1.59] + [np.inf] * 4
+    expected = [5, np.inf, 4, 5 + 0.75 * 1.59, np.inf, np.inf, 5 - 0.75 * 1.59, np.inf, np.inf, 5, np.inf, np.inf]
     assert shoot(way, BOARD, *rays) == pytest.approx(expected, rel=1e-15)
+    assert shoot(way, BOARD.replace(normal=(0, 0, -1)), ((2, 1, 0), (0, 0, 1)), ((2.01, 1, 0), (0, 0, 1))) == [
+        5,
+        np.inf,
+    ]
     assert shoot(way, BOARD.replace(normal=(-0.6, 0, 0.8)), *rays) == pytest.approx(expected, rel=1e-15)
 
 

@@ -85,6 +85,7 @@ def common(kind: Kind) -> list[Regime]:
     regimes = [
         Regime("usual", partial(made, 1)),
         Regime("a million sizes away", partial(made, 2, (1e2, 1e6))),
+        Regime("a scene at 1e6", partial(made, 10, offset=1e6)),
         Regime("a scene at 1e8", partial(made, 3, offset=1e8)),
         Regime("a size of 1e-6, seen from 1e6", partial(made, 4, (1e11, 1e12), 1e-6)),
         Regime("a size of 1e-12", partial(made, 5, size=1e-12)),

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from minirt.lanes import Vec
+from minirt.report import textbook
 from minirt.shapes import Shape
 from tests.shapes import mutants
 from tests.shapes.ways import Array, Intersect, kind_of, on_arrays, vec
@@ -44,7 +45,7 @@ def single(packed: Any) -> Any:
 ANY: dict[str, tuple[Intersect, tuple[str, ...]]] = {
     "from 1e-4 on": (from_1e_4_on, ("a size of 1e-12",)),
     "moved on by 1e-4": (moved_on_by_1e_4, ("a size of 1e-12", "a scene at 1e8")),
-    "in single precision": (in_single_precision, ("usual", "a scene at 1e8", "a million sizes away")),
+    "in single precision": (in_single_precision, ("usual", "a scene at 1e6", "a million sizes away")),
 }
 OWN: dict[str, tuple[Intersect, tuple[str, ...]]] = {
     "sphere": (
@@ -55,5 +56,14 @@ OWN: dict[str, tuple[Intersect, tuple[str, ...]]] = {
         mutants.way(mutants.piece_by_piece),
         ("a million sizes away", "a size of 1e-6, seen from 1e6", "at the rim"),
     ),
+    "cone": (
+        mutants.way(textbook.meets_cone),
+        ("a million sizes away", "at the apex", "along a generator", "a half-angle of 89.94 degrees"),
+    ),
+    "paraboloid": (
+        mutants.way(textbook.meets_paraboloid),
+        ("a million sizes away", "along the axis", "at the vertex"),
+    ),
+    "hyperboloid": (mutants.way(textbook.meets_hyperboloid), ("a million sizes away", "along an asymptote")),
     "plane": (mutants.way(mutants.hits_behind), ("usual", "at a slope of 1e-6 to 0.01")),
 }

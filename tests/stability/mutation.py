@@ -1,10 +1,12 @@
 """Changes the formulas, one place at a time, and lists the changes that no test notices.
 
     python -m tests.stability.mutation [sphere cylinder ...]
+    python -m tests.stability.mutation trace shade
 
 The interpreted tests run once, so that all is imported and all right answers are known; then each change gets a copy of
 this process (POSIX only) in which the functions have the changed code, and the regimes and then the tests are tried
 again until one fails. A change that they let pass, and that is no other way to write the same, calls for a test.
+Files of the kernel, which must not be mixed with those of shapes, are tested by pictures that are made uncompiled.
 """
 
 from __future__ import annotations
@@ -21,18 +23,27 @@ from typing import Any
 import pytest
 
 import minirt.shapes
+from minirt.rendering import preview
 from minirt.rendering.cores import usable_cores
+from minirt.scene import Scene
+from tests.kernel import pictures
 from tests.shapes.ways import on_arrays
 from tests.stability.mutations import Change, changes
 from tests.stability.regime import posed
 from tests.stability.table import REGIMES
 
-FOLDER = Path(minirt.shapes.__file__).parent
+PACKAGE = Path(minirt.__file__).parent
 SHARED = ("quadric", "exact", "basis", "extents")  # of several shapes
 FILES = (*SHARED, *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.KINDS))
 TESTS = ("tests/shapes", "tests/stability/test_surfaces.py", "tests/stability/test_properties.py")
 # What starts threads does not survive a fork.
 UNFIT = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
+KERNEL = ("trace", "shade")
+PICTURES = (
+    *(f"tests/kernel/test_{name}.py" for name in ("coincident", "extremes", "invariances", "lamps", "highlight")),
+    *("tests/stability/test_pictures.py", "tests/kernel/test_whitted.py", "tests/rendering/test_sight.py"),
+)
+COMPILED = "not compiled and not every_scene and not many_shapes and not light_is_finite and not lists_begin"
 SECONDS = 120  # a change may make a loop endless
 
 
@@ -41,7 +52,7 @@ def main(names: list[str]) -> int:
     names = names or [*FILES]
     if any(map(fails, names)) or tested(names) != 0:
         raise SystemExit("the tests fail without any change")
-    work = [(name, change) for name in names for change in changes((FOLDER / f"{name}.py").read_text())]
+    work = [(name, change) for name in names for change in changes((PACKAGE / path_of(name)).read_text())]
     running: dict[int, tuple[str, Change]] = {}
     survivors, started = 0, time.monotonic()
     for each in work:
@@ -56,8 +67,21 @@ def main(names: list[str]) -> int:
 
 def tested(names: list[str]) -> int:
     """Run the tests of some files, those of a shape's file by its name; 0 if all pass."""
+    if set(names) <= set(KERNEL):
+        pictures.picture = interpreted
+        return int(pytest.main([*PICTURES, "-x", "-q", "-p", "no:cacheprovider", "-k", COMPILED]))
     chosen = UNFIT if set(names) & set(SHARED) else f"{UNFIT} and ({' or '.join(names)})"
     return int(pytest.main([*TESTS, "-x", "-q", "-p", "no:cacheprovider", "-k", chosen]))
+
+
+def interpreted(scene: Scene, width: int = 24, height: int = 16, samples: int = 1, renderer: object = None) -> Any:
+    """`tests.kernel.pictures.picture` without the compiler."""
+    return preview.picture(scene, width, height)
+
+
+def path_of(name: str) -> str:
+    """The file of that name, in the package."""
+    return f"{'kernel' if name in KERNEL else 'shapes'}/{name}.py"
 
 
 def fails(name: str) -> bool:
@@ -76,7 +100,7 @@ def tried(name: str, change: Change) -> int:
         nothing = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nothing, 1)
         os.dup2(nothing, 2)
-        put(import_module(f"minirt.shapes.{name}"), change)
+        put(import_module(f"minirt.{path_of(name)[:-3].replace('/', '.')}"), change)
         os._exit(fails(name) or tested([name]))
     finally:
         os._exit(1)
@@ -88,7 +112,7 @@ def ended(running: dict[int, tuple[str, Change]]) -> bool:
     name, change = running.pop(process)
     late = " (too slow)" if os.WIFSIGNALED(status) else ""
     if status == 0 or late:
-        print(f"minirt/shapes/{name}.py:{change.line}: {change.before}  ->  {change.after}{late}", flush=True)
+        print(f"minirt/{path_of(name)}:{change.line}: {change.before}  ->  {change.after}{late}", flush=True)
     return status == 0
 
 
@@ -99,13 +123,21 @@ def put(module: ModuleType, change: Change) -> None:
     for name, new in changed.items():
         old = getattr(module, name)
         if isinstance(new, (int, float)):
-            setattr(module, name, new)
+            for user in users_of(module, name):
+                setattr(user, name, new)
         elif isinstance(new, FunctionType) and new.__module__ == module.__name__:
             old.__code__ = new.__code__
         elif isinstance(new, type) and new.__module__ == module.__name__:
             for method, value in vars(new).items():
                 if isinstance(value, FunctionType) and value.__code__.co_filename == module.__file__:
                     vars(old)[method].__code__ = value.__code__
+
+
+def users_of(module: ModuleType, name: str) -> list[ModuleType]:
+    """Those of the package that have a constant of one of its modules, and it itself."""
+    imports = f"from {module.__name__} import "
+    found = [each for each in sys.modules.values() if each.__name__.startswith("minirt.") and hasattr(each, name)]
+    return [each for each in found if each is module or imports in Path(str(each.__file__)).read_text()]
 
 
 if __name__ == "__main__":

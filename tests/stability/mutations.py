@@ -61,7 +61,7 @@ def variants(node: ast.expr) -> Iterator[ast.expr]:
                 yield right
         case ast.UnaryOp(_, operand):
             yield operand
-        case ast.Compare(left, [operator], [right]):
+        case ast.Compare(left, [operator], [right]) if type(operator) in OPERATORS:
             yield ast.Compare(left, [OPERATORS[type(operator)]()], [right])
             if type(operator) in STRICT:
                 yield ast.Compare(left, [STRICT[type(operator)]()], [right])

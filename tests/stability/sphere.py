@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from minirt.shapes.sphere import Sphere
-from tests.shapes.regimes import GREY, RAYS, Rays, across, just_above, log, unit, ways
+from tests.shapes.regimes import GREY, RAYS, Array, Rays, across, just_above, log, unit, ways
 from tests.stability.common import COUNT
 from tests.stability.regime import Regime
 
@@ -30,6 +31,30 @@ def near_the_surface(seed: int) -> Rays:
     directions = np.where(height > 0, down, ways(random, count, RAYS))
     centre = ways(random)
     return Rays([Sphere(tuple(centre), 2.0, GREY)] * count, centre + (1 + height) * out, directions)
+
+
+def on_the_surface(seed: int) -> Rays:
+    """From points that are inside by less than a rounding, and outside by as much as rounding can make of that, away
+    from the centre: each of these rays hits at once."""
+    random = np.random.default_rng(seed)
+    shapes = [Sphere(tuple(10.0**e * ways(random)), 10.0**e, GREY) for e in np.linspace(-12, 12, COUNT)]
+    origins, directions = np.empty((2, COUNT, RAYS, 3))
+    for i, shape in enumerate(shapes):
+        centre, radius = np.array(shape.centre), shape.diameter / 2
+        points = centre + radius * ways(random, 2**16)
+        exactly = above(points.astype(np.longdouble), centre.astype(np.longdouble), np.longdouble(radius))
+        seeming = np.where(exactly < 0, above(points, centre, radius), -np.inf)
+        origins[i] = points[np.argsort(seeming)[-RAYS:]]
+        out = unit(origins[i] - centre)
+        directions[i] = unit(random.uniform(0.1, 1, (RAYS, 1)) * out + across(random, out, RAYS))
+    return Rays(shapes, origins, directions)
+
+
+def above(points: Array, centre: Array, radius: Any) -> Array:
+    """The power of points with respect to a sphere."""
+    f = points - centre
+    height: Array = (f * f).sum(axis=-1) - radius * radius
+    return height
 
 
 def to_the_horizon(seed: int, above: tuple[float, float], dips: tuple[float, ...]) -> Rays:
@@ -57,6 +82,7 @@ REGIMES = [
     ),
     Regime("from inside a diameter of 1e9", partial(just_inside, 12), 1e-9, 0.0),
     Regime("from 1e-9 to 1 radius off the surface", partial(near_the_surface, 14), 3e-14, 0.0),
+    Regime("from less than a rounding inside", partial(on_the_surface, 17), 1e-13, 0.0),
     # There the angle below the horizon is 1e-8 of a direction that is exact to 2^-53.
     Regime(
         "to the horizon of a diameter of 1e9",

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import minirt
+from minirt.materials import Specular
 from minirt.rendering import Renderer
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes import KINDS
@@ -41,6 +42,16 @@ def test_a_lamp_at_the_eye_lights_what_is_seen_by_the_cosine_law() -> None:
     scene = Scene((ABOVE, Light((0, 3, 0), 1.0), FLOOR))
     _, directions = reference.camera_rays(ABOVE, 24, 16)
     assert np.abs(linear(scene)[..., 0] + directions[..., 1]).max() <= 1e-15
+
+
+def test_a_lamp_at_the_eye_that_fades_and_its_highlight() -> None:
+    shiny = FLOOR.replace(specular=Specular(0.4, 3))
+    scene = Scene((ABOVE, Light((0, 3, 0), 1.0, fade=8), shiny))
+    _, directions = reference.camera_rays(ABOVE, 24, 16)
+    cosine = -directions[..., 1]
+    strength = np.maximum(0, 1 - 3 / cosine / 8)
+    shine = 0.4 * np.maximum(0, 2 * cosine**2 - 1) ** 3  # the mirrored ray leads away from the eye by twice the angle
+    assert np.abs(linear(scene)[..., 0] - strength * (cosine + shine)).max() <= 1e-14
 
 
 @pytest.mark.parametrize("place", [(0, 1e15, 0), (6e14, 8e14, 0), (-8e14, 1, 6e14)])

@@ -74,9 +74,9 @@ def acne(found: Seen, offset: Offset) -> int:
     t, slack = compiled(*rays), 2 * offsets(found.points, found.shapes)
     count = 0
     for i, j in np.argwhere(np.isfinite(t))[:500]:
-        # A hit that is none on a shape thinner by a little, if at all, is the start again.
+        # A hit that is none on a solid thinner by a little, if at all, is the start again, and so is any on a sheet.
         real = oracle.nearest(rays.shapes[i], rays.origins[i, j], rays.directions[i, j], -slack[i, 0, 0])
-        count += real is None or real > 10 * t[i, j]
+        count += not body(rays.shapes[i]).solid or real is None or real > 10 * t[i, j]
     return count
 
 

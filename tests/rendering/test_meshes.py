@@ -1,0 +1,187 @@
+"""Meshes among other shapes: traced, packed, edited, picked and outlined, each as one shape."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.fields import MeshFile
+from minirt.materials import Specular
+from minirt.rendering.packing import Packing
+from minirt.rendering.pick import covers, pick, place
+from minirt.rendering.tables import Tables
+from minirt.scene import Ambient, Camera, Light, Scene
+from minirt.shapes.mesh import Mesh
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.meshes.examples import GREY, ball, first_hits, named, soup
+from tests.rendering.test_packing import assert_same
+from tests.shapes.regimes import unit, ways
+
+WHITE = (255, 255, 255)
+EYE = Camera((0, 0, -9), (0, 0, 1), 60)
+LAMP = Light((5, 8, -9), 0.9, WHITE)
+
+
+def corners(*shapes: Mesh) -> np.ndarray:
+    return np.concatenate([each.rows()[:, :9].reshape(-1, 3, 3) for each in shapes])
+
+
+def test_rays_hit_what_brute_force_says() -> None:
+    random = np.random.default_rng(1)
+    shapes = soup(random, 300), named("icosahedron", (1, 0, 0), 2.0), named("icosahedron", (-2, 1, 1), 0.7)
+    origins, directions = 6 * random.normal(size=(3000, 3)), ways(random, 3000)
+    hits = minirt.trace(Scene((EYE, *shapes)), origins, directions)
+    right, triangle, doubt = first_hits(corners(*shapes), origins, directions)
+    owner = np.where(triangle < 0, -1, np.searchsorted([300, 320, 340], triangle, side="right"))
+    sure = doubt > 1e-9
+    assert sure.mean() > 0.999
+    assert np.array_equal(hits.owner[sure], owner[sure])
+    there = sure & np.isfinite(right)
+    assert there.sum() > 500
+    assert np.abs(hits.distance[there] / right[there] - 1).max() < 1e-10
+    points = origins + right[:, None] * directions
+    assert np.abs(hits.point[there] - points[there]).max() < 1e-10
+
+
+@pytest.mark.parametrize(("position", "scale"), [((0, 0, 0), 1.0), ((1e6, -3e5, 1 / 3), 1e-2)])
+def test_no_ray_leaks_through_edges_and_corners(position: tuple[float, float, float], scale: float) -> None:
+    random = np.random.default_rng(2)
+    shape = named("icosphere", position, scale)
+    made = corners(shape)
+    count = 50_000
+    ends = made[random.integers(len(made), size=count)]
+    share = random.random((count, 1)) * (np.arange(count)[:, None] % 5 > 0)  # every fifth at a corner
+    aims = ends[:, 0] + share * (ends[:, 1] - ends[:, 0])
+    inside = position + 0.9 * scale * random.random((count, 1)) * ways(random, count)
+    through = minirt.trace(Scene((EYE, shape)), inside, aims - inside)
+    assert np.isfinite(through.distance).all()
+    outside = position + 3 * scale * ways(random, count)
+    met = minirt.trace(Scene((EYE, shape)), outside, position + 0.5 * (aims - position) - outside)
+    assert np.isfinite(met.distance).all()
+    assert (met.distance < 3 * scale).all()
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_no_pixel_leaks(precision: str) -> None:
+    shape = named("icosphere", scale=5.0)
+    scene = Scene((Ambient(1.0, WHITE), Camera((0.1, 0.2, -0.3), (0, 0, 1), 100), shape))
+    seen = minirt.render(scene, 400, 300, precision=precision).linear
+    assert np.allclose(seen, 200 / 255, atol=1e-6)
+
+
+def test_a_ball_with_normals_is_lit_like_a_sphere() -> None:
+    shape = Mesh(MeshFile("ball.obj", ball(3)), (0, 0, 0), 3.0, WHITE)
+    scene = Scene((EYE, Light(EYE.position, 1.0, WHITE), shape))
+    seen = minirt.render(scene, 160, 120).linear[..., 0].ravel()
+    x, y = (each.ravel() for each in np.meshgrid(np.arange(160) + 0.5, np.arange(120) + 0.5))
+    half = np.tan(np.radians(30))
+    directions = unit(np.stack([(1 - x / 80) * half, (1 - y / 60) * half * 0.75, np.ones_like(x)], axis=1))
+    hits = minirt.trace(scene, np.broadcast_to(np.array(EYE.position), directions.shape), directions)
+    there = hits.owner == 0
+    assert 4000 < there.sum() < 9000
+    cosines = -np.einsum("ij,ij->i", unit(hits.point[there]), directions[there])
+    assert np.abs(seen[there] - np.maximum(cosines, 0)).max() < 1e-9  # at the rim a normal may lean away
+    assert not seen[~there].any()
+
+
+def test_a_ball_with_normals_mirrors_like_a_sphere() -> None:
+    around = [Sphere((8 * np.cos(a), 5 * np.sin(3 * a), 8 * np.sin(a)), 4, (255, int(40 * a), 60)) for a in range(6)]
+    normals, corners = ball(3), named("icosphere", scale=3.0, mirror=1.0)
+    smooth = Mesh(MeshFile("ball.obj", normals), (0, 0, 0), 3.0, WHITE, mirror=1.0)
+    sphere, soft, flat = (
+        minirt.render(Scene((Ambient(1.0, WHITE), EYE, *around, each)), 160, 120).linear
+        for each in (Sphere((0, 0, 0), 6, WHITE, mirror=1.0), smooth, corners)
+    )
+    assert 0 < np.abs(soft - sphere).mean() < np.abs(flat - sphere).mean() / 3
+
+
+def test_single_precision_shows_the_same() -> None:
+    shapes = named("knot", (1, 0, 0), 2.0), named("pot", (-3, -1, 2), 1.5), Plane((0, -3, 0), (0, 1, 0), GREY)
+    scene = Scene((Ambient(0.2, WHITE), EYE, LAMP, *shapes))
+    double, single = (minirt.render(scene, 160, 120, precision=each).array.astype(int) for each in ("double", "single"))
+    assert len(np.unique(double)) > 100
+    assert (np.abs(double - single).max(axis=-1) > 2).mean() < 2e-3
+
+
+def test_what_is_packed_after_edits_is_what_would_be_packed_at_first() -> None:
+    ico, knot = named("icosahedron"), named("icosphere", (2, 0, 0), 0.5)
+    balls = Sphere((0, 3, 0), 1, GREY), Sphere((0, -3, 0), 1, GREY)
+    scene = Scene((Ambient(0.2, WHITE), EYE, LAMP, balls[0], ico, Plane((0, -5, 0), (0, 1, 0), GREY), knot, balls[1]))
+    packing = Packing()
+    packing.pack(scene, 24, 16)
+    edits = [
+        lambda s: s.replace(s.meshes[0], position=(0.5, 1, 0)),
+        lambda s: s.replace(s.meshes[1], scale=2.0),
+        lambda s: s.replace(s.meshes[1], colour=(1, 2, 3), specular=Specular(0.5, 20)),
+        lambda s: s.replace(s.spheres[0], centre=(1, 1, 1)),
+        lambda s: s.replace(s.meshes[0], s.meshes[0].replace(file=s.meshes[1].file)),  # more triangles
+        lambda s: s.edit(len(s.elements) - 1, s.elements[-1], ico.replace(position=(0, 0, 9))),
+        lambda s: s.edit(3),
+        lambda s: s.replace(s.meshes[1], s.meshes[1].some(np.arange(5))),
+        lambda s: s.edit(3),
+    ]
+    for edit in edits:
+        scene = edit(scene)
+        assert_same(packing.pack(scene, 24, 16), scene)
+        sizes = [shape.parts for shape in scene.shapes]
+        assert np.array_equal(packing.tables.owner, np.repeat(np.arange(len(sizes)), sizes))
+        assert packing.tables.start.tolist() == [0, *np.cumsum(sizes)]
+
+
+def test_materials_are_those_of_the_mesh() -> None:
+    first = named("icosahedron", specular=Specular(0.5, 20), mirror=0.25)
+    second = named("icosahedron", (3, 0, 0), specular=Specular(0.1, 5))
+    traced = Packing().pack(Scene((EYE, LAMP, first, Sphere((0, 3, 0), 1, GREY), second)), 32, 32)
+    assert np.array_equal(traced.gloss[:, :2], np.repeat([[0.5, 20], [0, 0], [0.1, 5]], [20, 1, 20], axis=0))
+    assert np.array_equal(traced.bounces[:, 0], np.repeat([0.25, 0, 0], [20, 1, 20]))
+
+
+def test_a_pixel_is_picked_for_the_mesh_that_it_shows() -> None:
+    shapes = named("knot", (1, 0, 0), 2.0), named("pot", (-3, -1, 2), 1.5), Sphere((0, 2, 0), 2, GREY)
+    scene, tables = Scene((EYE, *shapes)), Tables()
+    shown = [pick(scene, 40, 30, x, y, tables) for y in range(0, 30, 2) for x in range(0, 40, 2)]
+    assert {*shapes, None} == set(shown)
+    for x, y in ((11, 9), (15, 20), (30, 18), (0, 0)):
+        found = pick(scene, 40, 30, x, y)
+        where = found and place(found, EYE, 40, 30, x, y)
+        if where:
+            way = np.array(where) - EYE.position
+            hits = minirt.trace(scene, [EYE.position], [way])
+            assert hits.distance[0] == pytest.approx(np.linalg.norm(way), rel=1e-9)
+
+
+def test_of_meshes_in_the_same_place_the_first_is_picked() -> None:
+    one, other = named("icosphere", scale=2.0), named("icosphere", scale=2.0, mirror=0.5)
+    for shapes in ((one, other), (other, one)):
+        for x, y in ((32, 24), (30, 20), (36, 27)):
+            assert pick(Scene((EYE, *shapes)), 64, 48, x, y) is shapes[0]
+
+
+@pytest.mark.parametrize("name", ["icosahedron", "icosphere", "knot", "pot", "soup"])
+def test_an_outline_is_that_of_what_rays_meet(name: str) -> None:
+    random = np.random.default_rng(3)
+    shape = soup(random, 60).replace(scale=0.7) if name == "soup" else named(name, (0.3, 0.2, 0.1), 2.5)
+    camera = Camera((3.0, 4.0, -9.0), (-0.3, -0.35, 0.9), 70, roll=20)
+    x, y = np.meshgrid(np.arange(80), np.arange(60))
+    found = covers(shape, camera, 80, 60, x, y)
+    picked = [[pick(Scene((camera, shape)), 80, 60, i, j) is shape for i in range(0, 80, 4)] for j in range(0, 60, 4)]
+    assert np.array_equal(found[::4, ::4], picked)
+    assert 20 < np.sum(picked) < 290
+    assert not covers(shape, camera, 80, 60, np.array([-1, 80, 3]), np.array([3, 3, 60])).any()
+
+
+def test_a_mesh_around_the_eye_has_no_outline() -> None:
+    camera = Camera((0, 0, 0), (0, 0, 1), 70)
+    x, y = np.meshgrid(np.arange(8), np.arange(6))
+    assert not covers(named("icosphere"), camera, 8, 6, x, y).any()
+
+
+def test_a_scene_of_a_large_mesh_gets_its_kernel_from_a_small_one() -> None:
+    from minirt.rendering.renderer import small
+
+    scene = Scene((EYE, LAMP, named("knot"), Sphere((0, 3, 0), 1, GREY), named("pot")))
+    made = small(scene)
+    assert {type(shape) for shape in made.shapes} == {Mesh, Sphere}
+    assert sum(shape.parts for shape in made.shapes) < 20

@@ -1,0 +1,107 @@
+"""Lines `ob` of a scene file: read, refused, written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from minirt.errors import SceneError
+from minirt.scene import describe, dump, load, parse
+from minirt.shapes.mesh import Mesh
+from tests.scene.examples import AMBIENT, CAMERA
+
+ONE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes" / "one.obj").write_text(ONE)
+    (tmp_path / "bad.obj").write_text("v 0 0 0\nv 1 0 x\n")
+    return tmp_path
+
+
+def scene(folder: Path, *lines: str) -> Path:
+    path = folder / "scene.rt"
+    path.write_text("\n".join([AMBIENT, CAMERA, *lines, ""]))
+    return path
+
+
+def test_a_mesh_is_read_from_beside_the_scene(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir("/")
+    path = scene(folder, "ob meshes/one.obj 1,2,3 2 255,0,0 mirror:0.5", f"obj {folder}/meshes/one.obj 0,0,0 1 9,9,9")
+    one, other = load(path).scene.shapes
+    assert isinstance(one, Mesh)
+    assert one.bounds() == ((1, 2, 3), (3, 4, 3))
+    assert (one.mirror, one.colour, one.parts) == (0.5, (255, 0, 0), 1)
+    assert one.file.triangles is other.file.triangles  # read once
+
+
+REFUSED = {
+    "ob meshes/two.obj 0,0,0 1 9,9,9": (4, "cannot be read: no such file or directory"),
+    "ob bad.obj 0,0,0 1 9,9,9": (4, "line 2: v must be a number, got 'x'"),
+    "ob meshes 0,0,0 1 9,9,9": (4, "is a folder"),
+    "ob /dev/null 0,0,0 1 9,9,9": (4, "is not a regular file"),
+}
+
+
+@pytest.mark.parametrize(("line", "told"), REFUSED.items())
+def test_a_mesh_that_cannot_be_read(folder: Path, line: str, told: tuple[int, str]) -> None:
+    with pytest.raises(SceneError) as caught:
+        load(scene(folder, line))
+    (problem,) = caught.value.problems
+    name = line.split()[1]
+    assert problem.message == f"mesh file must be a mesh file, got '{name}': {told[1]}"
+    assert (problem.line, problem.column, problem.length, problem.text) == (3, told[0], len(name), line)
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("ob meshes/one.obj 0,0,0 0 9,9,9", "mesh scale must be > 0, got 0"),
+        ("ob meshes/one.obj 0,0,z 1 9,9,9", "mesh position z must be a number, got 'z'"),
+        ("ob meshes/one.obj 0,0,0 1", "mesh colour is missing: expected 'ob file x,y,z scale R,G,B'"),
+        ("ob 0,0,0 1 9,9,9", "mesh colour is missing: expected 'ob file x,y,z scale R,G,B'"),
+        (
+            "ob meshes/one.obj 1e15,0,0 1e3 9,9,9",
+            "mesh scale must not be so large that the mesh reaches beyond 1e+15",
+        ),
+    ],
+)
+def test_a_line_that_is_wrong(folder: Path, line: str, message: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        load(scene(folder, line))
+    assert caught.value.problems[0].message == message
+
+
+def test_a_changed_mesh_is_written_with_what_changed(folder: Path) -> None:
+    line = "ob  meshes/one.obj   0,0,0  1.50   9,9,9   mirror:.5  # mine"
+    read = load(scene(folder, line)).scene
+    assert dump(read).splitlines()[2] == line
+    moved = read.replace(read.meshes[0], position=(1.0, 0.0, 0.0))
+    assert dump(moved).splitlines()[2] == "ob  meshes/one.obj   1,0,0  1.50   9,9,9   mirror:.5  # mine"
+    larger = moved.replace(moved.meshes[0], scale=3.0, mirror=None)
+    assert dump(larger).splitlines()[2] == "ob  meshes/one.obj   1,0,0  3      9,9,9  # mine"
+    assert describe(larger.meshes[0]) == "ob meshes/one.obj 1,0,0 3 9,9,9"
+    again = parse(dump(larger), folder / "scene.rt").scene
+    assert again.items == larger.items
+
+
+def test_a_mesh_that_is_another_file_now_is_another_mesh(folder: Path) -> None:
+    path = scene(folder, "ob meshes/one.obj 0,0,0 1 9,9,9")
+    before = load(path).scene.meshes[0]
+    (folder / "meshes" / "one.obj").write_text(ONE + "f 3 2 1\n")
+    after = load(path).scene.meshes[0]
+    assert before != after
+    assert (before.parts, after.parts) == (1, 2)
+    assert load(path).scene.meshes[0] == after
+
+
+def test_a_text_of_no_file_names_meshes_in_the_current_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = "\n".join([AMBIENT, CAMERA, "ob meshes/one.obj 0,0,0 1 9,9,9", ""])
+    monkeypatch.chdir(folder)
+    assert parse(text).scene.shapes[0].parts == 1
+    monkeypatch.chdir("/")
+    with pytest.raises(SceneError, match="cannot be read"):
+        parse(text)
