@@ -136,6 +136,21 @@ def test_continuous_integration_installs_what_a_newcomer_is_told_to() -> None:
     assert "make test" in README
 
 
+def test_the_gallery_is_made_by_its_commands() -> None:
+    rows = re.findall(r"^\| !\[(.*)\]\((.*)\) \| (.*)<br>`miniRT (.*)`<br>[0-9.]+ s \|$", README, re.MULTILINE)
+    assert len(rows) >= 8
+    for told, picture, again, command in rows:
+        scene, size, samples, out = re.fullmatch(r"(\S+) --size (\S+) --samples (\S+) -o (\S+)", command).groups()  # type: ignore[union-attr]
+        assert told == again == (ROOT / scene).read_text().splitlines()[0].removeprefix("# ")
+        assert (picture, samples) == (f"assets/gallery-{out}", "64")
+        with pillow.open(ROOT / picture) as image:
+            assert "x".join(map(str, image.size)) == size
+        assert (ROOT / picture).stat().st_size < 250_000
+    assert {path.name for path in (ROOT / "assets").glob("gallery-*")} == {
+        f"gallery-{row[3].split()[-1]}" for row in rows
+    }
+
+
 def test_all_tests_that_their_page_names_are_there() -> None:
     page = (ROOT / "tests" / "README.md").read_text()
     names = re.findall(r"`([\w/]+\.py)`", page)
