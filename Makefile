@@ -3,6 +3,7 @@
 # make check   lint and types
 # make bench   time of a frame, beside others: make bench BENCH=--quick for a short run
 # make report  error against run time of some scenes: make report REPORT=--quick for a short run
+# make textures, make gallery   draws the pictures of the scenes, and those of the README's gallery
 # make bench-peers   installs what `make bench` compares with and draws by (Debian, Ubuntu)
 
 VENV   := .venv
@@ -52,6 +53,9 @@ report: $(NAME)
 	$(VENV)/bin/python -m minirt.report out/report/shapes $(REPORT)
 	$(foreach scene,$(REPORTED),$(NAME) scenes/$(scene).rt --report out/report/$(scene) $(REPORT) &&) true
 
+textures gallery: $(NAME)
+	$(VENV)/bin/python assets/make_$@.py
+
 bench-peers: $(NAME)
 	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox
 	$(PIP) install --quiet --editable '.[report]' embreex
@@ -66,4 +70,4 @@ fclean: clean
 re: fclean
 	$(MAKE) all
 
-.PHONY: all bonus run test check bench report bench-peers clean fclean re
+.PHONY: all bonus run test check bench report textures gallery bench-peers clean fclean re

@@ -89,7 +89,7 @@ def planet(width: int = 1024, height: int = 512) -> tuple[Array, Array]:
     colour += np.clip((0.06 - heat) / 0.04, 0, 1)[..., None] * ([242, 246, 250] - colour)
     swirl = 2.2 * points + 0.9 * fractal(60, 2 * points, 4)[..., None]
     cloud = np.clip(4 * (fractal(50, swirl, 7) - 0.53), 0, 0.85)[..., None]
-    return colour + cloud * (255 - colour), np.clip(0.1 * (land > 0) + 3 * land, 0, 1)
+    return colour + cloud * (255 - colour), np.clip(3.5 * land, 0, 1)
 
 
 ROWS, COLUMNS = 8, 4  # bricks in the picture
@@ -118,15 +118,15 @@ def bricks(width: int = 512, height: int = 512) -> tuple[Array, Array]:
 def normals(heights: Array, strength: float) -> Array:
     """The normal map of heights, (h, w, 3) in [0, 255], of a picture that fits to itself.
 
-    The normal is (-dh/du, -dh/dv, 1) at unit length; u goes to the right, v up, and white is `strength` times the
-    picture's width above black.
+    The normal is (-dh/du, -dh/dv, 1) at unit length, 128 for 0 and 255 for 1; u goes to the right, v up, and white is
+    `strength` times the picture's width above black.
     """
     width = strength * heights.shape[1]
     du = width * (np.roll(heights, -1, 1) - np.roll(heights, 1, 1)) / 2
     dv = width * (np.roll(heights, 1, 0) - np.roll(heights, -1, 0)) / 2
     normal = np.stack([-du, -dv, np.ones_like(du)], axis=-1)
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
-    return 127.5 + 127.5 * normal
+    return 128 + 127 * normal
 
 
 def water(size: int = 256) -> Array:
@@ -142,20 +142,22 @@ def water(size: int = 256) -> Array:
     return (total - total.min()) / np.ptp(total)
 
 
-def stars(width: int = 1024, height: int = 512) -> Array:
+def stars(width: int = 2048, height: int = 1024) -> Array:
     """A map of the sky: stars evenly on the sphere, few bright and many faint ones, and a band of mist."""
     points = globe(width, height)
     pole = np.array([0.48, 0.8, 0.36])
     off = points @ (pole / np.linalg.norm(pole))
-    mist = fractal(11, 3 * points, 7)
+    near = np.abs(off) < 0.4  # where there is any mist
+    off, mist, dust = off[near], fractal(11, 3 * points[near], 7), fractal(17, 5 * points[near], 6)
     band = np.exp(-((off / 0.16) ** 2)) * np.clip(2.6 * (mist - 0.3), 0, 1)
-    dust = np.exp(-((off / 0.05) ** 2)) * np.clip(3 * (fractal(17, 5 * points, 6) - 0.42), 0, 1)
-    glow = np.clip(band - 0.8 * dust, 0, 1)[..., None]
-    colour = np.array([4.0, 5, 12]) + glow * [122, 114, 136]
+    band -= 0.9 * np.exp(-((off / 0.05) ** 2)) * np.clip(3 * (dust - 0.42), 0, 1)
+    glow = np.zeros((height, width, 1))
+    glow[near, 0] = 1 - np.exp(-1.2 * np.clip(band, 0, 1))
+    colour = np.array([4.0, 5, 12]) + glow * [124, 116, 140]
     random = np.random.default_rng(2)
-    count = 5000
+    count = 9000
     latitude, longitude = np.arcsin(random.uniform(-1, 1, count)), random.uniform(0, 1, count)
-    light = 45 * random.random(count) ** -0.6
+    light = 40 * random.random(count) ** -0.6
     tint = shades(random.random(count), [(0, "ffd0a0"), (0.4, "ffffff"), (1, "b0c8ff")]) / 255
     row = (0.5 - latitude / np.pi) * height
     wide = 0.55 / np.maximum(np.cos(latitude), 0.05)  # near the poles a map stretches everything across
@@ -205,12 +207,11 @@ def main(folder: Path = FOLDER) -> None:
     wall, wall_heights = bricks()
     waves = water()
     save(folder, "planet.png", globe_colour, 128)
-    save(folder, "planet-height.png", 255 * globe_heights[::2, ::2])
+    save(folder, "planet-height.png", 255 * globe_heights.reshape(256, 2, 512, 2).mean(axis=(1, 3)))
     save(folder, "bricks.png", wall, 64)
-    save(folder, "bricks-height.png", 255 * wall_heights)
+    save(folder, "bricks-height.png", 255 * wall_heights[::2, ::2])
     save(folder, "bricks-normal.png", normals(wall_heights[::2, ::2], 0.02))
     save(folder, "water-height.png", 255 * waves)
-    save(folder, "water-normal.png", normals(waves, 0.05))
     save(folder, "evening.png", evening())
     save(folder, "stars.png", stars(), 64)
 

@@ -22,10 +22,18 @@ if TYPE_CHECKING:
     from minirt.rendering import Renderer
     from minirt.rendering.rays import Hits, trace
     from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
+    from minirt.shapes.box import Box
+    from minirt.shapes.cone import Cone
     from minirt.shapes.cylinder import Cylinder
+    from minirt.shapes.disc import Disc
+    from minirt.shapes.hyperboloid import Hyperboloid
     from minirt.shapes.mesh import Mesh
+    from minirt.shapes.paraboloid import Paraboloid
     from minirt.shapes.plane import Plane
     from minirt.shapes.sphere import Sphere
+    from minirt.shapes.square import Square
+    from minirt.shapes.torus import Torus
+    from minirt.shapes.triangle import Triangle
     from minirt.viewer import view
 
 __version__ = "0.1.0"
@@ -35,18 +43,23 @@ DEFAULT_SIZE = (1280, 720)  # pixels; of a scene that does not name a size
 __all__ = [
     "Ambient",
     "Background",
+    "Box",
     "Bump",
     "Camera",
     "Checker",
+    "Cone",
     "Cylinder",
+    "Disc",
     "FurtherLight",
     "Glass",
     "Hits",
+    "Hyperboloid",
     "Image",
     "Light",
     "Mesh",
     "MiniRTError",
     "MlxError",
+    "Paraboloid",
     "ParallelLight",
     "Plane",
     "RenderError",
@@ -56,6 +69,9 @@ __all__ = [
     "Specular",
     "Sphere",
     "SpotLight",
+    "Square",
+    "Torus",
+    "Triangle",
     "load",
     "render",
     "save_movie",
@@ -65,6 +81,11 @@ __all__ = [
 ]
 
 
+SHAPES = (
+    *("Box", "Cone", "Cylinder", "Disc", "Hyperboloid", "Mesh"),
+    *("Paraboloid", "Plane", "Sphere", "Square", "Torus", "Triangle"),
+)
+
 # What is imported only when it is used, so that `miniRT --help` need not wait for it.
 HOMES = {
     "Image": "minirt.image",
@@ -73,10 +94,7 @@ HOMES = {
         ("Ambient", "Background", "Camera", "FurtherLight", "Light", "ParallelLight", "Scene", "SpotLight"),
         "minirt.scene",
     ),
-    "Cylinder": "minirt.shapes.cylinder",
-    "Mesh": "minirt.shapes.mesh",
-    "Plane": "minirt.shapes.plane",
-    "Sphere": "minirt.shapes.sphere",
+    **{shape: f"minirt.shapes.{shape.lower()}" for shape in SHAPES},
     **dict.fromkeys(("Hits", "trace"), "minirt.rendering.rays"),
     "save_movie": "minirt.movie",
     "view": "minirt.viewer",

@@ -10,7 +10,7 @@ from PIL import Image as pillow  # noqa: N813
 
 import minirt
 from minirt.cli import main
-from minirt.scene import format_table
+from minirt.scene import dump, format_table, parse
 from minirt.viewer import keys_markdown
 
 ROOT = Path(__file__).parent.parent
@@ -42,6 +42,38 @@ def test_the_lines_of_python_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     exec(lines, names)
     assert (tmp_path / "demo.png").read_bytes().startswith(b"\x89PNG")
     assert names["scene"].spheres[0].diameter == 3  # type: ignore[attr-defined]
+
+
+def test_a_scene_is_made_without_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (lines,) = (block for block in blocks("python") if "Camera.look_at" in block)
+    monkeypatch.chdir(tmp_path)
+    names = {"minirt": minirt}
+    exec(lines, names)
+    scene = names["made"]
+    again = parse(dump(scene)).scene  # type: ignore[arg-type]
+    assert again.items == scene.items  # type: ignore[attr-defined]
+    with pillow.open(tmp_path / "beads.png") as picture:
+        assert picture.size == (320, 240)
+        assert len(picture.getcolors(100_000) or ()) > 1000
+
+
+def test_all_blocks_of_python_are_run() -> None:
+    known = ("minirt.load", "Camera.look_at", "minirt.save_movie", "minirt.trace", "minirt.mlx", "squared = ")
+    assert all(any(word in block for word in known) for block in blocks("python"))
+
+
+def test_rays_are_traced() -> None:
+    (lines,) = (block for block in blocks("python") if "minirt.trace" in block)
+    names: dict[str, object] = {"minirt": minirt, "scene": minirt.load(ROOT / "scenes/demo.rt")}
+    exec(lines, names)
+    assert names["hits"].distance.shape == (1,)  # type: ignore[attr-defined]
+
+
+def test_the_heart_of_a_sphere_is_in_its_file() -> None:
+    (lines,) = (block for block in blocks("python") if "squared = " in block)
+    source = (ROOT / "minirt/shapes/sphere.py").read_text()
+    for line in lines.splitlines():
+        assert line.split("  #")[0] in source, line
 
 
 def test_the_animation_and_the_window(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -102,3 +134,26 @@ def test_continuous_integration_installs_what_a_newcomer_is_told_to() -> None:
     assert set(packages.split()) == told
     assert "make test" in script
     assert "make test" in README
+
+
+def test_the_gallery_is_made_by_its_commands() -> None:
+    rows = re.findall(r"^\| !\[(.*)\]\((.*)\) \| (.*)<br>`miniRT (.*)`<br>[0-9.]+ s \|$", README, re.MULTILINE)
+    assert len(rows) >= 8
+    for told, picture, again, command in rows:
+        scene, size, samples, out = re.fullmatch(r"(\S+) --size (\S+) --samples (\S+) -o (\S+)", command).groups()  # type: ignore[union-attr]
+        assert told == again == (ROOT / scene).read_text().splitlines()[0].removeprefix("# ")
+        assert (picture, samples) == (f"assets/gallery-{out}", "64")
+        with pillow.open(ROOT / picture) as image:
+            assert "x".join(map(str, image.size)) == size
+        assert (ROOT / picture).stat().st_size < 250_000
+    assert {path.name for path in (ROOT / "assets").glob("gallery-*")} == {
+        f"gallery-{row[3].split()[-1]}" for row in rows
+    }
+
+
+def test_all_tests_that_their_page_names_are_there() -> None:
+    page = (ROOT / "tests" / "README.md").read_text()
+    names = re.findall(r"`([\w/]+\.py)`", page)
+    assert len(names) > 20
+    for name in names:
+        assert any((folder / name).is_file() for folder in (ROOT, ROOT / "tests")), name

@@ -14,8 +14,8 @@ def arctan2(y: Number, x: Number) -> Number:
     """The angle from the x axis to (x, y), from -pi to pi, for all numbers as IEEE 754 says: also for zeros of both
     signs, infinities and NaN.
 
-    It is within 2 units in the last place, in float64 and in float32. The angle between (x, y) and the nearer axis is
-    at most pi / 4.
+    It is within 3 units in the last place, in float64 and in float32, and follows from the angle to the nearer axis,
+    which is at most pi / 4.
     """
     a, b = fabs(y), fabs(x)
     steep = a > b

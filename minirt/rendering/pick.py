@@ -39,7 +39,7 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: Tables |
         # Surfaces that may coincide: the kernel has a rule for them.
         parts = [tables.shapes[each].some(near[tables.owner[near] == each] - tables.start[each]) for each in owners]
         packing = Packing(lists)
-        traced = packing.pack(Scene((scene.camera, *parts)), width, height)
+        traced = packing.pack(Scene((scene.camera, *parts), scene.file), width, height)
         rays = Vec(*(splat(part, camera) for part in (direction.x, direction.y, direction.z)))
         _, owner, _ = nearest(traced, y // TILE * tiles(width) + x // TILE, origin, rays)
     return tables.shapes[int(owners[packing.tables.owner[int(lane(owner, 0))]])]

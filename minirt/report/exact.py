@@ -142,7 +142,7 @@ def distance(shape: Shape, origin: Sequence[float], direction: Sequence[float], 
     """The least t > 0 at which origin + t direction lies on the surface, or infinity.
 
     The surface of a solid, or the edge of a sheet, is moved outwards by `swell`: what a formula in fewer digits may
-    answer lies between the answers for a solid a little larger and one a little smaller. KeyError for a shape that is
+    answer lies between the answers for a shape a little larger and one a little smaller. KeyError for a shape that is
     not in `SOLIDS`.
     """
     with localcontext(DIGITS):

@@ -15,7 +15,6 @@ from minirt.fields import (
     Length,
     Lengths,
     MeshField,
-    MeshFile,
     Picture,
     Point,
     Real,
@@ -94,12 +93,11 @@ def round_place(place: Triple, stride: float) -> Triple:
 
 def usual(field: Field, state: State) -> Any:
     """What any other field begins with; LookupError as above."""
-    if field.bare:
-        return field.check(field.parse(field.bare))
     if isinstance(field, Compound):
-        return made(field.record, state)
-    if isinstance(field, Picture | MeshField):
-        return first_picture(state.scene) if isinstance(field, Picture) else first_mesh(state.scene)
+        return field.check(field.parse(field.bare)) if field.bare else made(field.record, state)
+    if isinstance(field, (Picture, MeshField)):
+        sort, files = ("picture", pictures) if isinstance(field, Picture) else ("mesh", meshes)
+        return first(sort, files(state.scene))
     length = nice(LARGE * state.size)
     if isinstance(field, Lengths):
         return length, length, length
@@ -119,16 +117,8 @@ def plain(field: Field) -> Any:
     raise LookupError(f"nothing to begin {field.name} with")
 
 
-def first_picture(scene: Scene) -> str:
-    """A picture file beside the scene; LookupError where there is none."""
-    name = next(pictures(scene), None)
-    if name is None:
-        raise LookupError("there is no picture beside the scene")
-    return name
-
-
-def first_mesh(scene: Scene) -> MeshFile:
-    """A mesh file beside the scene; LookupError where there is none."""
-    for found in meshes(scene):
+def first(sort: str, files: Iterator[Any]) -> Any:
+    """The first file beside the scene; LookupError where there is none."""
+    for found in files:
         return found
-    raise LookupError("there is no mesh beside the scene")
+    raise LookupError(f"there is no {sort} beside the scene")

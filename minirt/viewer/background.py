@@ -66,8 +66,14 @@ class BackgroundPainter(Painter):
             with self._changed:
                 self._running = None
                 if outcome:
-                    self.outcomes.append(outcome)
+                    self._add(outcome)
             self._tell()
+
+    def _add(self, outcome: Outcome) -> None:
+        """Of the pictures that nobody took yet only the last will be looked at."""
+        if outcome.pixels is not None:
+            self.outcomes = [each for each in self.outcomes if each.pixels is None]
+        self.outcomes.append(outcome)
 
     def _next(self) -> Job | None:
         """The latest request, as soon as there is one; None when closed."""

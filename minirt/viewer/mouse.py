@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from minirt.errors import MiniRTError
 from minirt.mlx import Button
 from minirt.rendering.pick import place
 from minirt.scene import Camera
@@ -50,7 +51,12 @@ class Mouse:
         if drag is None:
             self.click(button)
             return
-        point = self.grasp(x, y, selecting=button == Button.LEFT)
+        try:
+            point = self.grasp(x, y, selecting=button == Button.LEFT)
+        except MiniRTError as error:  # a picture on a shape may be gone since
+            session.complain(error)
+            session.show(session.state)
+            return
         held = dragging.grip(session.state.cut(), session.win.width, session.win.height, x, y, point)
         self._press = Press(button, x, y, drag, held)
 

@@ -14,9 +14,17 @@ from minirt.rendering.frames import ALL_PACKETS, memory_for, room_for_sums, samp
 from minirt.rendering.packing import Packing
 from minirt.rendering.traits import DEPTH
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+from minirt.shapes.box import Box
+from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.disc import Disc
+from minirt.shapes.hyperboloid import Hyperboloid
+from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
+from minirt.shapes.torus import Torus
+from minirt.shapes.triangle import Triangle
 
 Array = NDArray[np.float64]
 
@@ -33,7 +41,18 @@ SHAPES = (
     Plane((0, 0, 6), (0.1, 0.2, -1), (120, 140, 165)),
     Cylinder((-3, -0.5, -1), (1, 0, 0.4), 1, 1.5, (245, 180, 50)),
 )
-ALL = Scene((AMBIENT, EYE, LAMP, SECOND, *SHAPES))  # every kind of shape, two lamps, shadows
+ALL = Scene((AMBIENT, EYE, LAMP, SECOND, *SHAPES))  # what most scenes are made of, two lamps, shadows
+MORE = (
+    Cone((-3, 2.5, 1), (0.2, -1, 0.1), 1.4, 2.2, (200, 90, 200)),
+    Paraboloid((3.6, 2.6, 1), (0.1, -0.9, 0.3), 1.4, 1.8, (90, 200, 200)),
+    Hyperboloid((3, -0.2, -3), (0.2, 1, 0.1), 0.5, 1.1, 1.2, (200, 200, 90)),
+    Triangle((-4, 0.5, 3), (-1, 3.5, 4), (0.5, 0.8, 2.5), (120, 200, 120)),
+    Square((-3.2, 1.2, -2), (0.3, 0.5, -0.8), 0.9, (230, 140, 60)),
+    Disc((0.8, 2.6, 1), (0.2, -0.4, -0.9), 1.6, (100, 140, 230)),
+    Box((-0.8, -0.6, -3), (0.3, 0.9, 0.2), (0.6, 0.4, 0.9), (180, 180, 180)),
+    Torus((2.2, 1.9, -2), (0.4, 0.6, -0.7), 1.2, 0.4, (220, 120, 160)),
+)
+EVERY = Scene((AMBIENT, EYE, LAMP, SECOND, *SHAPES, *MORE))
 ONE, TWO = Renderer(1), Renderer(2)
 
 

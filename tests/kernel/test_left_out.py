@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from minirt.kernel import jit
+from minirt.lanes.angle import ATAN_HALF
+from minirt.materials import Checker
 from minirt.rendering import Renderer
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
@@ -53,6 +55,14 @@ print(code(of(Sphere)).count(chr(10)))
 
 def test_a_kernel_does_not_change_with_the_kinds_of_shapes_that_there_are() -> None:
     assert size_without() == size_without("plane", "cylinder") > 1000
+
+
+def test_coordinates_of_pictures_come_with_what_is_painted() -> None:
+    plain = of(Sphere, Cylinder)
+    painted = Scene((*plain.elements[:-1], plain.elements[-1].replace(checker=Checker(0.5))))
+    constant = f"0x{np.float64(ATAN_HALF).view(np.uint64):X}"
+    assert constant not in code(plain)
+    assert constant in code(painted)
 
 
 def test_shapes_that_are_not_seen_change_nothing() -> None:

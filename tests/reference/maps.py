@@ -71,8 +71,9 @@ def _(triangle: Triangle, points: Array) -> Place:
 
 @place.register
 def _(box: Box, points: Array) -> Place:
-    x, z = turned(np.array(box.axis))
-    y = np.cross(z, x)
+    y = np.array(box.axis)
+    _, z = turned(y)
+    x = np.cross(y, z)
     wide, tall, deep = box.sizes
     normal = normals(box, points)
     # For each face, by its normal: right and up of somebody who faces it.

@@ -65,7 +65,8 @@ def painted(scene: Scene, shape: Shape, points: Array, normal: Array) -> tuple[A
         raised *= np.sign(dot(np.cross(at.along_u, at.along_v), normal))[..., None]
         normal = np.where(length(raised)[..., None] > 1e-12, unit(raised), normal)
     if shape.normal_map:
-        red, green, blue = np.moveaxis(2 * lookup(picture(scene.beside(shape.normal_map)), at.u, at.v) - 1, -1, 0)
+        seen = 255 * lookup(picture(scene.beside(shape.normal_map)), at.u, at.v)
+        red, green, blue = np.moveaxis((seen - 128) / 127, -1, 0)  # 128 is 0, 255 is 1
         normal = unit(
             red[..., None] * unit(at.along_u) + green[..., None] * unit(at.along_v) + blue[..., None] * normal
         )

@@ -20,7 +20,7 @@ from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from tests.kernel.pictures import ALL, AMBIENT, EYE, TWO
+from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, TWO
 from tests.random_scenes import random_scene
 
 Array = NDArray[np.float64]
@@ -51,6 +51,7 @@ def tiny() -> Scene:
 
 KNOWN = {
     "all": ALL,
+    "every kind": EVERY,
     "demo": minirt.load(SCENES / "demo.rt"),
     "subject": minirt.load(SCENES / "subject.rt"),
     "everything": minirt.load(SCENES / "figure-v4-everything.rt"),

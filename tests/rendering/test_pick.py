@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from minirt.rendering import Renderer, pick
 from minirt.rendering.pick import place
@@ -51,6 +53,13 @@ def test_in_random_scenes(seed: int) -> None:
 def test_of_coincident_surfaces_the_one_that_is_seen_is_hit(name: str) -> None:
     assert_picks(Scene((EYE, *SAME[name])))
     assert_picks(Scene((EYE, *reversed(SAME[name]))))
+
+
+def test_coincident_surfaces_with_pictures_that_lie_elsewhere(tmp_path: Path) -> None:
+    Image.new("RGB", (2, 2), (9, 9, 9)).save(tmp_path / "grey.png")
+    ball = Sphere((0, 0, 5), 2, (1, 2, 3), texture="grey.png")
+    scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), ball, ball.replace(diameter=2)), tmp_path / "scene.rt")
+    assert pick(scene, 11, 11, 5, 5) in scene.shapes
 
 
 def test_where_on_a_shape() -> None:

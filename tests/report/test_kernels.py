@@ -14,8 +14,11 @@ from minirt.report.eye import from_the_eye
 from minirt.report.kernels import Answers, Row, measured, verdicts
 from minirt.report.poses import Rays
 from minirt.report.regimes import REGIMES, regimes_of
-from minirt.shapes import KINDS, Kind, sphere
+from minirt.shapes import KINDS, Kind, Shape, sphere
+from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.hyperboloid import Hyperboloid
+from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import ALL
@@ -87,6 +90,20 @@ def test_float32_is_relative_to_the_eye(kind: Kind, name: str) -> None:
     single = rows_of(kind, name)["miniRT, float32"]
     assert single.hits > 50
     assert single.rms_error < 1e-4
+
+
+COSTS = {Sphere: 2.0, Plane: 1.25, Cylinder: 1.25, Paraboloid: 1.25, Cone: 1.5, Hyperboloid: 1.6}
+
+
+@pytest.mark.parametrize("element", COSTS, ids=lambda element: element.title)
+def test_what_exact_formulas_cost_beside_those_of_textbooks(element: type[Shape]) -> None:
+    """Both measured in turn, in processor time; other programs can only make a try look worse."""
+
+    def cost() -> float:
+        rows = rows_of(KIND[element], "benign")
+        return rows["miniRT"].cpu_ns_ray / rows["textbook"].cpu_ns_ray
+
+    assert any(cost() <= COSTS[element] for _ in range(5))
 
 
 def test_textbooks_lose_what_is_tiny_and_far() -> None:

@@ -107,8 +107,7 @@ def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
     wanted = [setting for setting in settings(mirrors, 16) if setting.samples == 16]
     stage = Stage(mirrors, WIDTH, HEIGHT, 1)
     rmse = {row.knob: row.rmse for row, _ in measured(stage, wanted, right, EASY, lambda name: None)}
-    assert rmse["no bounces"] > 2 * rmse["1 bounce"] > 4 * rmse["3 bounces"]
-    assert rmse["3 bounces"] == pytest.approx(rmse["uniform"], rel=0.2)
+    assert rmse["no bounces"] > 2 * rmse["1 bounce"] > 4 * rmse["3 bounces"] > 4 * rmse["uniform"]
 
 
 def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:

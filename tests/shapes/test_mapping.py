@@ -98,6 +98,7 @@ TIPS: list[tuple[Shape, tuple[float, ...], tuple[float, ...]]] = [
     (Paraboloid((1, 2, 3), UP, 2, 3, GREY), (1, 5, 3), UP),
     (Cylinder((1, 2, 3), UP, 2, 6, GREY), (1, 5, 3), UP),
     (Hyperboloid((1, 2, 3), UP, 2, 3, 6, GREY), (1, 5, 3), UP),
+    (Hyperboloid((1, 2, 3), UP, 1e-30, 3, 6, GREY), (1, 2, 3), (1, 0, 0)),
     (Torus((1, 2, 3), UP, 2, 2, GREY), (1, 2, 3), (1, 0, 0)),
 ]
 

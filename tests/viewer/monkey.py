@@ -6,6 +6,7 @@ python -m tests.viewer.monkey 20 7      # with another seed
 
 from __future__ import annotations
 
+import os
 import random
 import subprocess
 import sys
@@ -94,6 +95,12 @@ def memory(process: subprocess.Popen[str]) -> int:
     return 1024 * int(next(line.split()[1] for line in status.splitlines() if line.startswith("VmRSS")))
 
 
+def used(process: subprocess.Popen[str]) -> float:
+    """Seconds of processor time that it has had."""
+    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 class Play:
     """A monkey's time with a window of its own."""
 
@@ -119,6 +126,7 @@ class Play:
             do(self.desktop, self.window, *batch, "up Shift")
         except subprocess.CalledProcessError:  # the window went while the monkey was at it
             self.find()
+        self.wait()
         self.done += len(batch)
         if batch[-1] in FULL_SCREEN:
             do(self.desktop, self.window, "wait 0.5")
@@ -128,6 +136,14 @@ class Play:
             self.write(self.chance.choice(OTHERS))
         for written in self.path.parent.glob("scene-*"):
             written.unlink()
+
+    def wait(self) -> None:
+        """Let the program come to rest, as a person would who looks at it: what it is behind with is in a queue."""
+        for _ in range(20):
+            before = used(self.process)
+            do(self.desktop, self.window, "wait 0.1")
+            if used(self.process) - before < 0.05:
+                return
 
     def write(self, text: str) -> None:
         """Be another program."""

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from minirt.errors import RenderError
+from minirt.errors import FileError, RenderError
 from minirt.mlx import Key, Mlx
 from minirt.mlx.memory import Memory
 from minirt.viewer.background import BackgroundPainter
@@ -334,6 +334,19 @@ def test_an_error_of_the_renderer_is_a_message_over_the_picture():
     bench.memory.wait(1)
     bench.memory.play()
     assert len(bench.painter.requests) == 2  # and is not tried again
+
+
+def test_an_error_under_the_pointer_is_a_message_over_the_picture() -> None:
+    bench = Bench()
+    bench.finish(0.001)
+
+    def gone(*_: object) -> None:
+        raise FileError("brick.png", "cannot be read")
+
+    bench.session.pick = gone
+    bench.memory.click(30, 20)
+    bench.memory.play()
+    assert "brick.png" in bench.session.state.message
 
 
 def test_an_unknown_error_ends_the_program_with_a_known_one():

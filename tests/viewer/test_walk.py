@@ -16,7 +16,7 @@ from minirt.scene import Scene, dump, load, parse
 from minirt.viewer.replay import play
 from minirt.viewer.state import State
 from tests.viewer.hands import do
-from tests.viewer.test_real_window import SIZE, TEXT, Viewer, resized, viewing
+from tests.viewer.test_real_window import COMPILED, SIZE, TEXT, Viewer, resized, viewing
 from tests.windows import until
 
 pytestmark = pytest.mark.window
@@ -86,7 +86,11 @@ class Twin:
         state = self.state()
         shown = slice(0, -MESSAGE if state.message else None)
         picture, viewer = still(state.scene)[shown], self.viewer
-        until(lambda: np.array_equal(viewer.desktop.screenshot(viewer.window)[shown], picture), self.lines[-1])
+
+        def same() -> bool:
+            return np.array_equal(viewer.desktop.screenshot(viewer.window)[shown], picture)
+
+        until(same, self.lines[-1], COMPILED)
         before, after = viewer.path.read_text(), dump(state.scene)
         viewer.key("ctrl+s")
         until(lambda: viewer.path.read_text() == after, f"the file after {self.lines[-1]}")

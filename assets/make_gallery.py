@@ -1,0 +1,39 @@
+"""Draws the pictures of the README's gallery, and prints its table: python assets/make_gallery.py [SCENE ...]
+
+A time is that of one thread's processor, without reading the scene and compiling.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import minirt
+
+ROOT = Path(__file__).parent.parent
+SHOWN = [
+    "figure-iv1-planet",
+    *sorted(path.stem for path in (ROOT / "scenes").glob("gallery-*.rt")),
+    "material-glass-window",
+]
+WIDTH, HEIGHT, SAMPLES = 1280, 720, 64
+
+
+def row(name: str) -> str:
+    """Draw a scene; its line of the table."""
+    scene = minirt.load(ROOT / "scenes" / f"{name}.rt")
+    minirt.render(scene, WIDTH, HEIGHT, threads=1)  # compiled
+    start = time.process_time()
+    picture = minirt.render(scene, WIDTH, HEIGHT, samples=SAMPLES, threads=1)
+    seconds = time.process_time() - start
+    file = f"{name.split('-', 1)[1]}.jpg"
+    picture.save(ROOT / "assets" / f"gallery-{file}")
+    told = (scene.file.read_text().splitlines()[0] if scene.file else "").removeprefix("# ")
+    command = f"miniRT scenes/{name}.rt --size {WIDTH}x{HEIGHT} --samples {SAMPLES} -o {file}"
+    return f"| ![{told}](assets/gallery-{file}) | {told}<br>`{command}`<br>{seconds:.1f} s |"
+
+
+if __name__ == "__main__":
+    for name in sys.argv[1:] or SHOWN:
+        print(row(name), flush=True)

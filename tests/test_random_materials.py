@@ -1,0 +1,109 @@
+"""Random scenes of all shapes, lamps and materials at once, against the reference renderer.
+
+Each has all kinds and features, so that they share a kernel.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.element import Element
+from minirt.materials import Bump, Checker, Glass, Specular
+from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
+from minirt.shapes import Shape
+from minirt.shapes.box import Box
+from minirt.shapes.cone import Cone
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.disc import Disc
+from minirt.shapes.hyperboloid import Hyperboloid
+from minirt.shapes.paraboloid import Paraboloid
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
+from minirt.shapes.torus import Torus
+from minirt.shapes.triangle import Triangle
+from tests.compare import off
+from tests.reference import render, to_bytes
+
+SCENES = Path(__file__).parent.parent / "scenes"
+
+
+def material_scene(seed: int) -> Scene:
+    """The scene of that number."""
+    random = np.random.default_rng(seed)
+
+    def place(spread: float = 4) -> tuple[float, ...]:
+        return tuple(spread * random.normal(size=3))
+
+    def way() -> tuple[float, ...]:
+        v = random.normal(size=3)
+        return tuple(v / np.linalg.norm(v))
+
+    def colour() -> tuple[int, ...]:
+        return tuple(random.integers(30, 256, 3))
+
+    def size() -> float:
+        return float(np.exp(0.5 * random.normal() + 0.5))
+
+    shapes: list[Shape] = [
+        Plane((0, -9, 0), (0, 1, 0), colour()),
+        Sphere(place(), size(), colour()),
+        Sphere(place(), 2 * size(), colour()),
+        Cylinder(place(), way(), size(), 2 * size(), colour()),
+        Cone(place(), way(), size(), 2 * size(), colour()),
+        Paraboloid(place(), way(), size(), size(), colour()),
+        Hyperboloid(place(), way(), 0.8, 0.8 + size(), 2 * size(), colour()),
+        Torus(place(), way(), 2 + size(), 1.2, colour()),
+        Box(place(), way(), (size(), size(), size()), colour()),
+        Square(place(), way(), 2 * size(), colour()),
+        Disc(place(), way(), 2 * size(), colour()),
+        Triangle(place(), place(), place(), colour()),
+    ]
+    materials = [
+        {"specular": Specular(random.random(), 1 + 40 * random.random(), blinn=random.random() < 0.5)},
+        {"mirror": random.random()},
+        {"glass": Glass(1 + random.random(), random.random())},
+        {"checker": Checker(random.uniform(0.1, 0.5), colour())},
+        {"texture": "textures/planet.png"},
+        {"bump": Bump("textures/water-height.png", random.uniform(-0.05, 0.05))},
+        {"normal_map": "textures/bricks-normal.png"},
+    ]
+    # Each of them is somewhere, and every shape has about two.
+    owners = random.permutation(len(shapes))[: len(materials)]
+    dressed = [
+        shape.replace(
+            **{
+                name: value
+                for number, each in enumerate(materials)
+                for name, value in each.items()
+                if owners[number] == index or random.random() < 0.15
+            }
+        )
+        for index, shape in enumerate(shapes)
+    ]
+    eye = np.array(place(9))
+    lamps: list[Element] = [
+        Light(place(7), 0.4, colour()),
+        FurtherLight(place(7), 0.5, colour(), fade=30.0),
+        ParallelLight(way(), 0.3, colour()),
+        SpotLight(tuple(eye), tuple(-eye / np.linalg.norm(eye)), 60, 0.6, colour(), rim=random.random()),
+    ]
+    camera = Camera.look_at(tuple(eye), (0, 0, 0), fov=60, roll=30 * random.random())
+    return Scene(
+        [Ambient(0.2, colour()), camera, Background("textures/evening.png"), *lamps, *dressed], SCENES / "x.rt"
+    )
+
+
+@pytest.mark.parametrize("batch", range(4))
+def test_random_scenes_of_everything(batch: int) -> None:
+    wrong = total = 0
+    for seed in range(batch * 8, batch * 8 + 8):
+        scene = material_scene(seed)
+        bad = off(minirt.render(scene, 64, 40).array, to_bytes(render(scene, 64, 40)))
+        assert bad.mean() < 0.003, f"seed {seed}"
+        wrong, total = wrong + bad.sum(), total + bad.size
+    assert wrong < 3e-4 * total
