@@ -35,7 +35,6 @@ def power(point: Vec, centre: Vec, radius: Number) -> Number:
     rr, rr_low = two_product(radius, radius)
     total, low_1 = two_sum(xx, yy)
     total, low_2 = two_sum(total, zz)
-    total, low_3 = two_sum(total, -rr)
     squares = xx_low + yy_low + zz_low - rr_low
     mixed = 2.0 * (x * x_low + y * y_low + z * z_low)
-    return total + (low_1 + low_2 + low_3 + squares + mixed)
+    return (total - rr) + (low_1 + low_2 + squares + mixed)  # near the sphere that difference is exact
