@@ -41,6 +41,7 @@ class Mesh(Shape):
         super().__post_init__()
         if self.file.triangles is None:
             object.__setattr__(self, "file", MeshFile(self.file.name, self.triangles))
+            super().__post_init__()  # now that its size is known
 
     def conflict(self) -> tuple[str, str] | None:
         if self.file.triangles is None or np.abs(self.placed(self.triangles.box)).max() <= FARTHEST:

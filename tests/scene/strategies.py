@@ -12,14 +12,30 @@ from hypothesis import strategies as st
 import minirt
 from minirt.element import Record, fields_of
 from minirt.errors import ElementError
-from minirt.fields import FARTHEST, Colour, Direction, Field, Flag, Length, Lengths, Paint, Picture, Point, Real, Whole
+from minirt.fields import (
+    FARTHEST,
+    Colour,
+    Direction,
+    Field,
+    Flag,
+    Length,
+    Lengths,
+    MeshField,
+    Paint,
+    Picture,
+    Point,
+    Real,
+    Whole,
+)
 from minirt.materials import Compound
 from minirt.scene import Camera, Scene, describe
 from minirt.scene.registry import ELEMENTS
 
 Known = TypeVar("Known", bound=Record)
 
-PICTURES = [str(path) for path in sorted((Path(minirt.__file__).parent.parent / "assets").glob("*.png"))[:2]]
+ROOT = Path(minirt.__file__).parent.parent
+PICTURES = [str(path) for path in sorted((ROOT / "assets").glob("*.png"))[:2]]
+MESH = str(ROOT / "scenes" / "meshes" / "icosahedron.obj")
 BLANKS = st.text(" \t", min_size=1, max_size=3)
 INDENTS = st.text(" \t", max_size=2)
 COMMENTS = st.one_of(
@@ -34,6 +50,7 @@ COLOUR = st.tuples(*[st.integers(0, 255)] * 3)
 VALUES: dict[type[Field], Callable[[Any], st.SearchStrategy[object]]] = {
     Compound: lambda field: built(field.record),
     Picture: lambda _: st.sampled_from(PICTURES),
+    MeshField: lambda _: st.just(MESH),
     Flag: lambda _: st.booleans(),
     Real: lambda field: st.floats(field.low, field.high),
     Length: lambda _: st.floats(0, FARTHEST, exclude_min=True),
