@@ -148,7 +148,7 @@ def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Nu
     p = to_basis(u, v, w, point - hyperboloid.centre)
     tall = 2.0 * hyperboloid.half
     rho = sqrt(p.x * p.x + p.y * p.y)
-    per_rho = 1.0 / rho
+    per_rho = 1.0 / where(rho == 0.0, 1.0, rho)  # a waist of almost no width has points on the axis
     widening = hyperboloid.slope * (hyperboloid.slope * p.z * per_rho)  # by height
     rise = tall * Vec(widening * (p.x * per_rho), widening * (p.y * per_rho), 1.0)
     reach = hyperboloid.slope * hyperboloid.half
