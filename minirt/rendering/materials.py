@@ -16,6 +16,8 @@ from minirt.scene import Scene
 from minirt.shapes import Shape
 
 Worn = list[tuple[int, Shape]]  # the shapes that have attributes, with their numbers
+PAINTED = {"checks", "textures", "bumps", "normals"}
+WORN = {"gloss", "bounces", *PAINTED}
 Reader = Callable[[Path], np.ndarray]
 
 
@@ -30,12 +32,14 @@ class Materials(NamedTuple):
 def materials_of(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
     """The tables of what the kernel knows, of which `owner` (n,) tells the shape, for a scene that uses those features
     of `minirt.rendering.traits`."""
+    if not used & WORN:  # not even a look at each of a million shapes
+        return Materials(None, None, None)
     worn = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     count = len(scene.shapes)
     return Materials(
         gloss_of(worn, count)[owner] if "gloss" in used else None,
         bounces_of(worn, count)[owner] if "bounces" in used else None,
-        skins_of(scene, worn, owner, used) if used & {"checks", "textures", "bumps", "normals"} else None,
+        skins_of(scene, worn, owner, used) if used & PAINTED else None,
     )
 
 

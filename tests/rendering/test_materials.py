@@ -10,6 +10,7 @@ from PIL import Image as pillow  # noqa: N813
 
 from minirt.errors import FileError
 from minirt.materials import Bump, Checker, Glass, Specular
+from minirt.rendering import materials
 from minirt.rendering.materials import dome_of, materials_of
 from minirt.rendering.traits import traits
 from minirt.scene import Camera, Scene
@@ -35,6 +36,16 @@ def scene(folder: Path, *shapes: Shape) -> Scene:
 def test_plain_shapes_have_no_tables(tmp_path: Path) -> None:
     plain = scene(tmp_path, BALL, BALL.replace(mirror=0.0))
     assert materials_of(plain, np.arange(2), traits(plain)) == (None, None, None)
+
+
+def test_nobody_looks_at_shapes_that_are_all_plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    looks: list[Shape] = []
+    monkeypatch.setattr(materials, "ATTRIBUTES", lambda shape: looks.append(shape) or materials.PLAIN)
+    shown = scene(tmp_path, *[BALL] * 3)
+    materials_of(shown, np.arange(3), traits(shown))
+    assert looks == []
+    materials_of(shown, np.arange(3), {"gloss"})
+    assert looks == [BALL] * 3
 
 
 def test_rows_of_shapes(tmp_path: Path) -> None:
