@@ -37,6 +37,7 @@ from minirt.kernel import (
     whitted,
 )
 from minirt.kernel.inlined import Inlined
+from minirt.kernel.kept import Keeper
 from minirt.kernel.traced import Traced
 from minirt.lanes import angle, power, vec
 from minirt.lanes.teaching import teach
@@ -215,11 +216,12 @@ for _module in (
             register_jitable(**INNER)(_function)
 
 CACHE = cache.folder()
+LOADED = 8  # kernels in memory, where they can be loaded again
 PAINTED = ("checks", "textures", "bumps", "normals")
 OPTIONAL = tuple(name for name, default in Traced._field_defaults.items() if default is None)
 
 
-@lru_cache(None)
+@lru_cache(LOADED if CACHE else None)
 def kernel_of(features: tuple[str, ...], *row_types: np.dtype[Any]) -> Any:
     """The kernel for shapes that lie in rows of these types and for `features` of a scene, compiled or loaded when it
     is first called.
@@ -230,8 +232,11 @@ def kernel_of(features: tuple[str, ...], *row_types: np.dtype[Any]) -> Any:
         import_module("minirt.kernel.jit_bvh")
     titles = (rows.kind_of(each.names).element.title for each in row_types)
     place = CACHE and CACHE / "-".join([*titles, *features, str(row_types[0][0].base)])
-    with cache.numba_cache(place):
-        return njit(cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(frame.frame)
+    kernel = njit(no_cfunc_wrapper=True, **FLAGS)(frame.frame)
+    if place:
+        with cache.numba_cache(place):
+            kernel._cache = Keeper(frame.frame)
+    return kernel
 
 
 def kernel_for(traced: Traced) -> Any:

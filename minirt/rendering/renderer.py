@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
+from contextlib import nullcontext
 from functools import cached_property, partial
 from importlib import import_module
 from itertools import takewhile
@@ -82,7 +83,7 @@ class Renderer:
 
         Another process compiles, where what it makes can be kept. RenderError where that fails.
         """
-        with uncollected():
+        with nullcontext() if self.known else uncollected():
             self.load(scene)
 
     def load(self, scene: Scene) -> None:
