@@ -93,7 +93,7 @@ class Renderer:
             packing = import_module("minirt.rendering.packing").Packing(lists, self.precision, self.depth)
             arguments = frame_arguments(packing.pack(small(scene), 1, 1), pixels)
             if not self.kernel.is_kept(arguments):
-                self.helper.compile(arguments, self.kernel.get_ready)
+                self.helper.compile(arguments)
         self.render(scene, pixels)
 
     def stop(self) -> None:
