@@ -32,19 +32,19 @@ class Part(JITCodeLibrary):
         """The part with all parts of it."""
         if self.whole is None:
             self.whole = self._final_module.clone()
-            for each in parts(self, []):
+            for each in reversed(called(self, [])):  # linked is only what something refers to that is there already
                 module = each._final_module if isinstance(each, Part) else each._get_module_for_linking()
                 self.whole.link_in(module, preserve=True)
         return self.whole
 
 
-def parts(library: Any, found: list[Any]) -> list[Any]:
-    """What a library calls, directly or not, after what is found already."""
+def called(library: Any, found: list[Any]) -> list[Any]:
+    """What is found already and what a library calls, directly or not; callers come after all that they call."""
     for each in library._linking_libraries:
         if each not in found:
-            found.append(each)
             if isinstance(each, Part):
-                parts(each, found)
+                called(each, found)
+            found.append(each)
     return found
 
 

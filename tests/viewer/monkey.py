@@ -104,6 +104,8 @@ def used(process: subprocess.Popen[str]) -> float:
 class Play:
     """A monkey's time with a window of its own."""
 
+    FIRST_SIZE = f"resize {SIZE[0]}x{SIZE[1]}", "wait 2"
+
     def __init__(self, desktop: Desktop, process: subprocess.Popen[str], path: Path, seed: int) -> None:
         self.desktop = desktop
         self.process = process
@@ -154,7 +156,12 @@ class Play:
     def settled(self) -> int:
         """Bytes of memory with the scene of the file in a window of the first size."""
         self.write(TEXT)
-        do(self.desktop, self.window, "press Ctrl+R", "wait 1", f"resize {SIZE[0]}x{SIZE[1]}", "wait 2")
+        do(self.desktop, self.window, "press Ctrl+R", "wait 1", *self.FIRST_SIZE)
+        if self.desktop.size(self.window) != SIZE:  # which a window as large as the screen cannot have
+            do(self.desktop, self.window, FULL_SCREEN[0], "wait 1")
+            self.find()
+            do(self.desktop, self.window, *self.FIRST_SIZE)
+        assert self.desktop.size(self.window) == SIZE
         return memory(self.process)
 
 
