@@ -23,6 +23,7 @@ from numba.extending import lower_builtin, overload, register_jitable
 import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
 from minirt.kernel import (
     cache,
+    cells,
     counter,
     frame,
     highlight,
@@ -198,6 +199,7 @@ for _module in (
     power,
     quadric,
     wrap,
+    cells,
     trace,
     highlight,
     lamps,

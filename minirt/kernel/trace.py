@@ -6,6 +6,7 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
+from minirt.kernel.cells import close, look_up
 from minirt.kernel.rows import intersect, read, surface
 from minirt.kernel.traced import Group, Traced
 from minirt.lanes import (
@@ -14,10 +15,7 @@ from minirt.lanes import (
     dot,
     fabs,
     first,
-    floor,
-    lane,
     maximum,
-    minimum,
     rarely,
     splat,
     unit_roundoff,
@@ -137,28 +135,14 @@ def unhidden(scene: Traced, memory: Any, lamp: int, origin: Vec, direction: Vec,
     for _ in range(width(distance)):  # at most a look for each ray
         if not any(left):
             break
-        mine = left & close(memory[lamp], direction, scene.spread)
+        mine = left & close(memory[lamp], scene.around[lamp], direction)
         if rarely(not any(mine)):
-            look_up(memory[lamp], scene.grid, direction, first(left))
-            mine = left & close(memory[lamp], direction, scene.spread)
+            look_up(memory[lamp], scene.around[lamp], scene.grid, direction, first(left))
+            mine = left & close(memory[lamp], scene.around[lamp], direction)
         given = (scene, lamp, int(memory[lamp, 3]), mine, origin, direction, distance)
         free = over_kinds(unhidden_by_kind, scene.groups, free, given)
         left = left & ~mine
     return free
-
-
-def close(remembered: Any, direction: Vec, spread: float) -> Mask:
-    """Whether a direction is as close to the remembered one as the lists of cells allow."""
-    return dot(Vec(remembered[0], remembered[1], remembered[2]), direction) >= spread
-
-
-def look_up(remembered: Any, grid: int, direction: Vec, ray: int) -> None:
-    """Remember the direction of a ray of the packet towards the lamp, and the cell that it comes through."""
-    x, y, z = lane(direction.x, ray), lane(direction.y, ray), lane(direction.z, ray)
-    remembered[0] = x
-    remembered[1] = y
-    remembered[2] = z
-    remembered[3] = cell(Vec(-x, -y, -z), grid)
 
 
 def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Mask, Vec, Vec, Number]) -> Mask:
@@ -173,23 +157,3 @@ def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Ma
             hit, t = intersect(read(group.rows, scene.places[index, 1]), origin, direction)
             free = free & ~(mine & hit & (t < distance))
     return free
-
-
-def cell(direction: Vec, grid: int) -> Number:
-    """The cell of a cube around a lamp that a direction from it goes through: (face * grid + row) * grid + column.
-
-    Faces 0 to 5 are +x, -x, +y, -y, +z, -z; on each, columns go along the next axis in the cycle x, y, z, rows along
-    the one after it, both from -1 to 1.
-    """
-    ax, ay, az = fabs(direction.x), fabs(direction.y), fabs(direction.z)
-    along_x = (ax >= ay) & (ax >= az)
-    along_y = ~along_x & (ay >= az)
-    major = where(along_x, direction.x, where(along_y, direction.y, direction.z))
-    across = where(along_x, direction.y, where(along_y, direction.z, direction.x))
-    down = where(along_x, direction.z, where(along_y, direction.x, direction.y))
-    face = where(along_x, 0.0, where(along_y, 2.0, 4.0)) + where(major > 0.0, 0.0, 1.0)
-    half = 0.5 * grid
-    scale = half / fabs(major)
-    column = minimum(floor(across * scale + half), grid - 1.0)
-    row = minimum(floor(down * scale + half), grid - 1.0)
-    return (face * grid + row) * grid + column

@@ -32,7 +32,7 @@ class Traced(NamedTuple):
     seen: Any  # the shapes in each tile, the nearest first
     views: Any  # (n, 5) the cone from the eye; no point of the shape is nearer to it than the last number
     grid: int  # cells along an edge of the cubes around the lamps; 1 where they have no cells
-    spread: float  # cosine of an angle: a cell's list holds for all directions so close to one that goes through it
+    around: Any  # (m, 11) how directions from each lamp are sorted into cells, see `minirt.kernel.cells`
     lit: Any  # the shapes in each cell of each cube, the nearest first
     lamp_views: Any  # (m, n, 5) the same from each lamp
     groups: Any  # a tuple of Group: one for each kind of shape that the scene has

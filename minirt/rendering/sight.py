@@ -9,12 +9,12 @@ import numpy as np
 
 from minirt.kernel.frame import TILE, tiles
 from minirt.kernel.lists import MARGIN, Grid
+from minirt.rendering.ahead import SPREAD, square_ahead
 from minirt.rendering.flats import heights, runs
 from minirt.rendering.tables import Tables
 
 # Across, down and forward of the six faces of a cube, in the order of `minirt.kernel.trace.cell`.
 FACES = np.array([np.roll(np.diag([1.0, 1.0, side]), axis + 1, axis=1) for axis in range(3) for side in (1, -1)])
-SPREAD = 0.5  # of the angle that cells have on average: a cell's list holds for directions so close to one in it
 # By how many cells a cube's intervals grow for that: at the corner of a face, where slopes change most with the angle,
 # an angle e changes them by less than 3 e.
 EDGE = 3 * SPREAD * np.pi / 4
@@ -29,12 +29,16 @@ DROPPED = 44
 NEAREST = (1023 - 128) << (52 - DROPPED)
 
 
+NOTHING_AROUND = np.zeros(11)
+
+
 class Lists(NamedTuple):
     """What may be met in each cell: `members[starts[kind, cell]:starts[kind, cell + 1]]`, the nearest first."""
 
     starts: np.ndarray  # (kinds, cells + 1)
     members: np.ndarray
     views: np.ndarray  # (n, 5) as in `minirt.kernel.traced`
+    around: np.ndarray = NOTHING_AROUND  # (11,)
 
 
 def grid_for(shapes: int) -> int:
@@ -42,9 +46,12 @@ def grid_for(shapes: int) -> int:
     return next(cells for most, cells in GRIDS if shapes <= most)
 
 
-def spread_for(grid: int) -> float:
-    """The cosine of the angle around a direction for which the list of its cell holds."""
-    return float(np.cos(SPREAD * np.pi / 2 / grid))
+def around(grid: int, ahead: Grid | None) -> np.ndarray:
+    """The same for the kernel, see `minirt.kernel.cells`."""
+    if ahead is None:
+        spread = 2 * np.sin(SPREAD * np.pi / 4 / grid)
+        return np.array([*[0.0] * 10, spread * spread])
+    return np.array([*ahead.frames.ravel(), ahead.scale_x, (SPREAD / ahead.scale_x) ** 2])
 
 
 def screen(camera: np.ndarray, width: int, height: int) -> Grid:
@@ -53,14 +60,15 @@ def screen(camera: np.ndarray, width: int, height: int) -> Grid:
     wide, high = float(np.linalg.norm(right)), float(np.linalg.norm(up))
     x, y = width / (2 * TILE), height / (2 * TILE)
     frames = np.stack([right / wide, -up / high, forward])[None]
-    return Grid(frames, tiles(width), tiles(height), x / wide, x, y / high, y, 1 / TILE)
+    across, down = tiles(width), tiles(height)
+    return Grid(frames, across, down, x / wide, x, y / high, y, 1 / TILE, across * down, -1)
 
 
 @cache
 def cube(grid: int) -> Grid:
     """The cells around a lamp."""
     half = grid / 2
-    return Grid(FACES, grid, grid, half, half, half, half, EDGE)
+    return Grid(FACES, grid, grid, half, half, half, half, EDGE, 6 * grid * grid, -1)
 
 
 def seen_by_eye(kernel: Any, tables: Tables, camera: np.ndarray, width: int, height: int) -> Lists:
@@ -70,8 +78,11 @@ def seen_by_eye(kernel: Any, tables: Tables, camera: np.ndarray, width: int, hei
 
 def seen_by_lamp(kernel: Any, tables: Tables, lamp: np.ndarray, grid: int, skipped: np.ndarray) -> Lists:
     """The shapes in each cell of the cube around a lamp, but for the planes that are `skipped` (p,)."""
-    found = lists(kernel, tables, np.array(lamp), cube(grid), skipped)
-    return one_cell(tables, found.views, skipped) if grid == 1 else found
+    ahead = None if grid == 1 else square_ahead(tables, lamp, grid)
+    found = lists(kernel, tables, np.array(lamp), cube(grid) if ahead is None else ahead, skipped)
+    if grid == 1:
+        return one_cell(tables, found.views, skipped)
+    return found._replace(around=around(grid, ahead))
 
 
 def seen_by_sun(tables: Tables, grid: int, skipped: np.ndarray) -> Lists:
@@ -85,8 +96,7 @@ def seen_by_sun(tables: Tables, grid: int, skipped: np.ndarray) -> Lists:
 
 def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: np.ndarray) -> Lists:
     """The shapes in each cell of a grid around a point."""
-    kinds, faces = len(tables.rows), len(grid.frames)
-    stride = faces * grid.down * grid.across + 1
+    kinds, stride = len(tables.rows), grid.cells + 1
     views, counts = np.zeros((len(tables.places), 5)), np.zeros(kinds * stride, np.int64)
     height = heights(tables.planes, origin)
     flat = np.zeros((0, 4), np.int64)
@@ -95,10 +105,14 @@ def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: 
         which, cell, columns = runs(grid, -np.sign(height[shown, None]) * tables.planes[shown, :3])
         shape = tables.flat[shown][which]
         cell += tables.places[shape, 0] * stride
+        if grid.elsewhere >= 0:
+            shape = np.concatenate([shape, tables.flat[shown]])
+            cell = np.concatenate([cell, tables.places[tables.flat[shown], 0] * stride + grid.elsewhere])
+            columns = np.concatenate([columns, np.ones(shown.sum(), np.int64)])
         flat = np.stack([shape, cell, columns, np.ones_like(cell)], axis=1)
         begins, ends = (np.bincount(each, minlength=len(counts)) for each in (cell, cell + columns))
         counts = np.cumsum(begins - ends)
-    rectangles = np.empty((len(flat) + faces * len(views), 4), np.int32)
+    rectangles = np.empty((len(flat) + len(views) * max(len(grid.frames), 2), 4), np.int32)
     rectangles[: len(flat)] = flat
     slack = MARGIN * float(np.abs(origin).max())
     room = rectangles, len(flat), views, counts
