@@ -7,7 +7,7 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.cells import close, look_up
-from minirt.kernel.rows import intersect, read, surface
+from minirt.kernel.rows import intersect, may_meet, read, surface
 from minirt.kernel.traced import Group, Traced
 from minirt.lanes import (
     Vec,
@@ -22,6 +22,7 @@ from minirt.lanes import (
     where,
     width,
 )
+from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
@@ -49,11 +50,6 @@ def count_of_kind(group: Group, count: int, tile: int) -> int:
     return count + int(group.starts[tile + 1] - group.starts[tile])
 
 
-def largest(v: Vec) -> Number:
-    """The largest coordinate, without its sign."""
-    return maximum(maximum(fabs(v.x), fabs(v.y)), fabs(v.z))
-
-
 def nearest(scene: Traced, tile: int, origin: Vec, direction: Vec) -> tuple[Number, Number, Number]:
     """The distance to the first hit of each ray, the index of the shape that is hit and its extent; infinity, -1 and 0
     where none is.
@@ -76,10 +72,12 @@ def nearest_of_kind(
         view = scene.views[index]
         if not any(state[0] > view[4]):
             break
-        if view[3] <= -1.0 or rarely(within(view, direction)):
+        everywhere = view[3] <= -1.0
+        if everywhere or rarely(within(view, direction)):
             shape = read(group.rows, scene.places[index, 1])
-            hit, t = intersect(shape, origin, direction)
-            state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
+            if everywhere or any(may_meet(shape, origin, None, direction, state[0] > view[4])):
+                hit, t = intersect(shape, origin, direction)
+                state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
     return state
 
 
@@ -148,12 +146,16 @@ def unhidden(scene: Traced, memory: Any, lamp: int, origin: Vec, direction: Vec,
 def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Mask, Vec, Vec, Number]) -> Mask:
     """Of the rays that are free so far, those that the shapes of one kind do not stop; only `mine` are tried."""
     scene, lamp, at, mine, origin, direction, distance = given
+    place = Vec(scene.lights[lamp, 0], scene.lights[lamp, 1], scene.lights[lamp, 2])
     for i in range(group.lamp_starts[lamp, at], group.lamp_starts[lamp, at + 1]):
         index = scene.lit[i]
         view = scene.lamp_views[lamp, index]
         if not any(free & mine & (distance > view[4])):
             break
-        if view[3] <= -1.0 or rarely(mine & within(view, -direction)):
-            hit, t = intersect(read(group.rows, scene.places[index, 1]), origin, direction)
-            free = free & ~(mine & hit & (t < distance))
+        everywhere = view[3] <= -1.0
+        if everywhere or rarely(mine & within(view, -direction)):
+            shape = read(group.rows, scene.places[index, 1])
+            if everywhere or any(may_meet(shape, place, origin, direction, free & mine)):
+                hit, t = intersect(shape, origin, direction)
+                free = free & ~(mine & hit & (t < distance))
     return free

@@ -1,8 +1,11 @@
-"""The cells ahead of a lamp that sees all that has an end from outside."""
+"""The cells of a lamp that sees a crowd of shapes from outside: only ahead, where those are, and so much the finer.
+
+Shapes beside the crowd are left out of it where they are few: they are in the list of all directions elsewhere.
+"""
 
 from __future__ import annotations
 
-from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,29 +13,50 @@ from minirt.kernel.cells import AHEAD
 from minirt.kernel.lists import Grid
 from minirt.rendering.tables import Tables
 
+CROWD = 1000  # shapes at least: with fewer a cube takes less time
+BESIDE = 8  # shapes at most
 SPREAD = 0.5  # of the angle that cells have on average: a cell's list holds for directions so close to one in it
-WIDEST = 1.0  # slope at the edges of the square: a cube is used where it would be more
+WIDEST = 1.0  # slope at the edges of the square: where more would be needed there is a cube
+FINEST = 2.0**-18  # slope that a cell has at least: float32 could not tell closer directions apart
+BORDER = 4  # cells on each side for what of a shape at the edge of the crowd rounding and `SPREAD` may take out of it
 
 
-def square_ahead(tables: Tables, lamp: np.ndarray, grid: int) -> Grid | None:
-    low, high, radius = tables.crowd
-    middle = (low + high) / 2
-    way = middle - lamp
+class Crowd(NamedTuple):
+    """A ball around most of the shapes."""
+
+    middle: np.ndarray
+    radius: float
+
+
+def crowd(tables: Tables) -> Crowd | None:
+    """The crowd of a scene; None where there is none."""
+    boxes = np.delete(tables.boxes, tables.flat, axis=0) if len(tables.flat) else tables.boxes
+    if len(boxes) < CROWD:
+        return None
+    middle = boxes[:, :3].mean(axis=0)
+    away = boxes[:, :3] - middle
+    reach = np.sqrt(np.einsum("ij,ij->i", away, away)) + np.sqrt(3) * boxes[:, 3]
+    last = len(reach) - 1 - BESIDE
+    return Crowd(middle, float(np.partition(reach, last)[last]))
+
+
+def square_ahead(found: Crowd | None, lamp: np.ndarray, grid: int) -> Grid | None:
+    """The cells ahead of a lamp; None where a cube with `grid` cells along an edge should be around it."""
+    if found is None:
+        return None
+    way = found.middle - lamp
     distance = float(np.linalg.norm(way))
-    if not distance > radius or not np.isfinite(distance):
-        return None
-    forward = way / distance
-    across = np.cross(forward, np.eye(3)[np.argmin(np.abs(forward))])
-    across /= np.linalg.norm(across)
-    frame = np.stack([across, np.cross(forward, across), forward])
-    x, y, z = frame @ (np.array(list(product(*zip(low, high)))) - lamp).T
-    slope = radius / np.sqrt(distance**2 - radius**2)
-    if z.min() > 0:
-        slope = min(slope, max(np.abs(x / z).max(), np.abs(y / z).max()))
     cells = AHEAD * grid
-    slope *= 1 + 8 / cells
-    if slope > WIDEST:
+    if not found.radius < distance / np.sqrt(1 + WIDEST**-2):
         return None
-    scale = cells / 2 / slope
-    margin = 1.02 * SPREAD * np.sqrt(1 + slope**2) * np.sqrt(1 + 2 * slope**2)
-    return Grid(frame[None], cells, cells, scale, cells / 2, scale, cells / 2, margin, 6 * grid * grid, cells * cells)
+    slope = found.radius / np.sqrt(distance**2 - found.radius**2)
+    size = max(slope / (cells / 2 - BORDER), FINEST)
+    edge = size * (cells / 2 + 2)
+    forward = way / distance
+    across = np.cross(forward, np.eye(3)[np.abs(forward).argmin()])
+    across /= np.linalg.norm(across)
+    frames = np.stack([across, np.cross(forward, across), forward])[None]
+    # An angle changes a slope by at most its product with both roots, where both slopes are those at the edge.
+    margin = 1.02 * SPREAD * np.sqrt(1 + edge**2) * np.sqrt(1 + 2 * edge**2)
+    half = cells / 2
+    return Grid(frames, cells, cells, 1 / size, half, 1 / size, half, margin, 6 * grid * grid, cells * cells)

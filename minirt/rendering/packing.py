@@ -11,6 +11,7 @@ import numpy as np
 
 from minirt.kernel import lists
 from minirt.kernel.traced import Group, Traced
+from minirt.rendering.ahead import crowd
 from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.rendering.flats import idle
 from minirt.rendering.lamps import beam_numbers, light_numbers, light_of, shining
@@ -67,7 +68,7 @@ class Packing:
         camera, lamps = camera_numbers(scene.camera, width, height), shining(scene)
         lights = light_numbers(lamps)
         eye = keep((camera.tobytes(), width, height), seen_by_eye, self.kernel, tables, camera, width, height)
-        grid = grid_for(len(tables.places))
+        grid, most = grid_for(tables), keep("crowd", crowd, tables)
         seen: list[Lists] = []
         keys: list[Hashable] = []
         for lamp, place in zip(lamps, lights[:, :3], strict=True):
@@ -77,7 +78,7 @@ class Packing:
                 seen.append(keep(keys[-1], seen_by_sun, tables, grid, skipped))
             else:
                 keys.append((place.tobytes(), skipped.tobytes()))
-                seen.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, place, grid, skipped))
+                seen.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, most, place, grid, skipped))
         lamp_starts, lit, lamp_views, around = keep(tuple(keys), joined, seen, eye)
         materials = keep(("materials", used), materials_of, scene, tables.owner, used)
         tree = "bounces" in used or ("parallel" in used and grid > 1)
@@ -130,7 +131,17 @@ def joined(lamps: list[Lists], eye: Lists) -> tuple[np.ndarray, np.ndarray, np.n
     if len(lamps) == 1:
         return lamps[0].starts[:, None], lamps[0].members, lamps[0].views[None], lamps[0].around[None]
     if not lamps:
-        return np.zeros((len(eye.starts), 0, 1), np.int64), eye.members[:0], np.zeros((0, *eye.views.shape)), np.zeros((0, 11))
+        return (
+            np.zeros((len(eye.starts), 0, 1), np.int64),
+            eye.members[:0],
+            np.zeros((0, *eye.views.shape)),
+            np.zeros((0, 11)),
+        )
     before = np.cumsum([0, *(len(each.members) for each in lamps[:-1])])
     starts = np.stack([each.starts + first for each, first in zip(lamps, before, strict=True)], axis=1)
-    return starts, np.concatenate([each.members for each in lamps]), np.stack([each.views for each in lamps]), np.stack([each.around for each in lamps])
+    return (
+        starts,
+        np.concatenate([each.members for each in lamps]),
+        np.stack([each.views for each in lamps]),
+        np.stack([each.around for each in lamps]),
+    )

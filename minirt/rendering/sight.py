@@ -9,27 +9,29 @@ import numpy as np
 
 from minirt.kernel.frame import TILE, tiles
 from minirt.kernel.lists import MARGIN, Grid
-from minirt.rendering.ahead import SPREAD, square_ahead
+from minirt.rendering.ahead import SPREAD, Crowd, square_ahead
 from minirt.rendering.flats import heights, runs
 from minirt.rendering.tables import Tables
+from minirt.shapes import Shape
+from minirt.shapes.mesh import Mesh
 
-# Across, down and forward of the six faces of a cube, in the order of `minirt.kernel.trace.cell`.
+# Across, down and forward of the six faces of a cube, in the order of `minirt.kernel.cells.cell_of_cube`.
 FACES = np.array([np.roll(np.diag([1.0, 1.0, side]), axis + 1, axis=1) for axis in range(3) for side in (1, -1)])
 # By how many cells a cube's intervals grow for that: at the corner of a face, where slopes change most with the angle,
 # an angle e changes them by less than 3 e.
 EDGE = 3 * SPREAD * np.pi / 4
-# Up to so many shapes, cells along an edge of a lamp's cube, where building and using the lists was seen to take least;
-# with more than 512 float32 could not tell apart the directions that a list holds for.
+# Up to so many shapes, cells along an edge of a lamp's cube, where building and using the lists was seen to take least.
+# Of the triangles of a mesh, which lie side by side, a few count, and of the others one in so many.
 SMALL = 8
-GRIDS = ((SMALL, 1), (30, 16), (200, 32), (5_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
+FEW, SIDE_BY_SIDE = 200, 8
+GRIDS = ((SMALL, 1), (30, 16), (200, 32), (20_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
 # Numbers above zero are in the order of their bits, the exponent first. The order of depth knows of those of a distance
 # the upper 20, from 2^-128 on: a distance to a 256th of it.
 DROPPED = 44
 NEAREST = (1023 - 128) << (52 - DROPPED)
 
-
-NOTHING_AROUND = np.zeros(11)
+NO_CELLS = np.zeros(11)  # around a lamp
 
 
 class Lists(NamedTuple):
@@ -38,16 +40,22 @@ class Lists(NamedTuple):
     starts: np.ndarray  # (kinds, cells + 1)
     members: np.ndarray
     views: np.ndarray  # (n, 5) as in `minirt.kernel.traced`
-    around: np.ndarray = NOTHING_AROUND  # (11,)
+    around: np.ndarray = NO_CELLS  # (11,)
 
 
-def grid_for(shapes: int) -> int:
+def grid_for(tables: Tables) -> int:
     """Cells along an edge of the cube around a lamp; 1 where trying all shapes is faster than looking them up."""
+    shapes = sum(weight(kind, len(rows)) for kind, rows in zip(tables.numbers, tables.rows, strict=True))
     return next(cells for most, cells in GRIDS if shapes <= most)
 
 
+def weight(kind: type[Shape], parts: int) -> int:
+    """For how many shapes the parts of some shapes of a kind count."""
+    return min(parts, FEW + parts // SIDE_BY_SIDE) if kind is Mesh else parts
+
+
 def around(grid: int, ahead: Grid | None) -> np.ndarray:
-    """The same for the kernel, see `minirt.kernel.cells`."""
+    """How directions are sorted into cells, for the kernel: see `minirt.kernel.cells`."""
     if ahead is None:
         spread = 2 * np.sin(SPREAD * np.pi / 4 / grid)
         return np.array([*[0.0] * 10, spread * spread])
@@ -76,13 +84,15 @@ def seen_by_eye(kernel: Any, tables: Tables, camera: np.ndarray, width: int, hei
     return lists(kernel, tables, camera[:3], screen(camera, width, height), np.zeros(len(tables.planes), bool))
 
 
-def seen_by_lamp(kernel: Any, tables: Tables, lamp: np.ndarray, grid: int, skipped: np.ndarray) -> Lists:
-    """The shapes in each cell of the cube around a lamp, but for the planes that are `skipped` (p,)."""
-    ahead = None if grid == 1 else square_ahead(tables, lamp, grid)
-    found = lists(kernel, tables, np.array(lamp), cube(grid) if ahead is None else ahead, skipped)
+def seen_by_lamp(
+    kernel: Any, tables: Tables, found: Crowd | None, lamp: np.ndarray, grid: int, skipped: np.ndarray
+) -> Lists:
+    """The shapes in each cell around a lamp, but for the planes that are `skipped` (p,)."""
+    ahead = square_ahead(found, lamp, grid)
+    seen = lists(kernel, tables, np.array(lamp), cube(grid) if ahead is None else ahead, skipped)
     if grid == 1:
-        return one_cell(tables, found.views, skipped)
-    return found._replace(around=around(grid, ahead))
+        return one_cell(tables, seen.views, skipped)
+    return seen._replace(around=around(grid, ahead))
 
 
 def seen_by_sun(tables: Tables, grid: int, skipped: np.ndarray) -> Lists:
