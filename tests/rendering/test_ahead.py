@@ -72,7 +72,8 @@ def test_rays_to_a_parallel_lamp_come_by_no_point() -> None:
     packed = Packing().pack(shown, WIDTH, HEIGHT)
     assert packed.grid == 1
     assert packed.tree is None
-    dark, lit = (linear(each, WIDTH, HEIGHT)[HEIGHT // 2 :] for each in (shown, shown.replace(above)))
+    aside = shown.replace(above, position=(0, 4, -90))
+    dark, lit = (linear(each, WIDTH, HEIGHT)[HEIGHT // 2 :] for each in (shown, aside))
     shadow = (dark < lit).any(axis=-1)
     assert 20 < shadow.sum() < 0.2 * shadow.size
     assert np.array_equal(dark[~shadow], lit[~shadow])
