@@ -263,3 +263,30 @@ def test_a_direction_lies_in_the_cell_that_its_face_row_and_column_say(grid: int
                 direction = forward + across * right + down * up
                 assert cell(sight.NO_CELLS, grid, Vec(*map(np.float64, direction))) == expected
                 expected += 1
+
+
+@KERNELS
+@pytest.mark.parametrize("size", [1.0, 1e-3, 1e-7])
+def test_corners_and_tangents_are_in_the_cone(size: float, kernel: Any) -> None:
+    """Seen from a point, the corners of triangles and the rims of balls as small as this, and hardly more is."""
+    random = np.random.default_rng(7)
+    for _ in range(300):
+        way = unit_way(random)
+        corners = 10.0 ** random.uniform(-3, 3) * (way + size * 0.4 * random.normal(size=(3, 3)))
+        axis, cosine = seen(kernel, np.c_[corners, np.zeros(3)])
+        assert all(np.dot(axis, corner / np.linalg.norm(corner)) >= cosine for corner in corners)
+        sine = size * random.uniform(0.3, 0.99999)
+        axis, cosine = seen(kernel, np.array([[*3 * way, 3 * sine]]))
+        aside = np.cross(way, unit_way(random))
+        rim = np.sqrt(1 - sine * sine) * way + sine * aside / np.linalg.norm(aside)
+        assert np.dot(axis, rim / np.linalg.norm(rim)) >= cosine
+        wider = 1.01 * np.arcsin(sine) + 2e-7
+        assert cosine > np.cos(wider)
+
+
+def seen(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]:
+    """The cone around the hull of some balls, seen from the origin: axis and cosine."""
+    rectangles, views, counts = np.zeros((6, 4), np.int32), np.zeros((1, 5)), np.zeros(25, np.int64)
+    given = np.zeros(3), sight.cube(2), balls, 0.0, np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
+    kernel.cover(*given, rectangles, 0, views, counts)
+    return views[0, :3], float(views[0, 3])
