@@ -9,8 +9,8 @@ class Group(NamedTuple):
     """The shapes of one kind, and which of them may be met in which direction.
 
     Directions are sorted into cells: those from the eye into the tiles of the picture, those from a lamp into squares
-    on the faces of a cube around it. What may be met in cell c is `seen[starts[c]:starts[c + 1]]` of the scene, and for
-    lamp i `lit[lamp_starts[i, c]:lamp_starts[i, c + 1]]`.
+    on the faces of a cube around it, or ahead of it. What may be met in cell c is `seen[starts[c]:starts[c + 1]]` of
+    the scene, and for lamp i `lit[lamp_starts[i, c]:lamp_starts[i, c + 1]]`.
     """
 
     rows: Any  # a row a shape
