@@ -35,17 +35,14 @@ def look_up(remembered: Any, around: Any, grid: int, direction: Vec, ray: int) -
 
 def cell(around: Any, grid: int, direction: Vec) -> Number:
     """The cell around a lamp that a direction from it goes through."""
-    if around[SCALE] == 0.0:
-        return cell_of_cube(direction, grid)
-    across = dot(Vec(around[0], around[1], around[2]), direction)
-    down = dot(Vec(around[3], around[4], around[5]), direction)
-    forward = dot(Vec(around[6], around[7], around[8]), direction)
+    x, y, z = direction.x, direction.y, direction.z
     edge = AHEAD * grid
-    per_slope = around[SCALE] / forward
-    column = floor(across * per_slope + 0.5 * edge)
-    row = floor(down * per_slope + 0.5 * edge)
-    ahead = (forward > 0.0) & (column >= 0.0) & (column < edge) & (row >= 0.0) & (row < edge)
-    return where(ahead, row * edge + column, 1.0 * edge * edge)
+    per_slope = around[SCALE] / (around[6] * x + around[7] * y + around[8] * z)
+    column = (around[0] * x + around[1] * y + around[2] * z) * per_slope + 0.5 * edge
+    row = (around[3] * x + around[4] * y + around[5] * z) * per_slope + 0.5 * edge
+    ahead = (per_slope > 0.0) & (minimum(column, row) >= 0.0) & (column < edge) & (row < edge)
+    found = where(ahead, floor(row) * edge + floor(column), 1.0 * edge * edge)
+    return where(around[SCALE] > 0.0, found, cell_of_cube(direction, grid))
 
 
 def cell_of_cube(direction: Vec, grid: int) -> Number:
