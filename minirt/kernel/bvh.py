@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.trace import NEARBY, largest, over_kinds
+from minirt.kernel.trace import NEARBY, over_kinds
 from minirt.lanes import Vec, copysign, load, maximum, minimum, width
+from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 

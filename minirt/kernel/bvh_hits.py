@@ -24,8 +24,9 @@ from minirt.kernel.bvh import (
 )
 from minirt.kernel.counter import fetch_add
 from minirt.kernel.rows import intersect, kind_of, read, surface
-from minirt.kernel.trace import largest, nearer, over_kinds
+from minirt.kernel.trace import nearer, over_kinds
 from minirt.lanes import Vec, any, lane, load, splat, unit, where
+from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 

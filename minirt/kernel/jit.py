@@ -22,6 +22,7 @@ from numba.extending import lower_builtin, overload, register_jitable
 import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
 from minirt.kernel import (
     cache,
+    cells,
     counter,
     frame,
     highlight,
@@ -38,10 +39,10 @@ from minirt.kernel import (
 from minirt.kernel.inlined import Inlined
 from minirt.kernel.kept import compiled
 from minirt.kernel.traced import Traced
-from minirt.lanes import angle, power, vec
+from minirt.lanes import angle, largest, power, vec
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, VecType, common, constant, splat, vec_of
-from minirt.shapes import ALL_KINDS, basis, exact, quadric, wrap
+from minirt.shapes import ALL_KINDS, basis, exact, pyramid, quadric, shape, wrap
 
 Arguments: TypeAlias = tuple[Any, ...]  # of `minirt.kernel.frame.frame`
 
@@ -80,6 +81,11 @@ def _surface(shape, point):  # type: ignore[no-untyped-def]
 @overload(rows.shading, jit_options=INNER, strict=False)
 def _shading(shape, point, normal):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).shading
+
+
+@overload(rows.may_meet, jit_options=INNER, strict=False)
+def _may_meet(shape, apex, start, direction, asked):  # type: ignore[no-untyped-def]
+    return rows.kind_of_packed(shape.instance_class).may_meet
 
 
 @overload(rows.mapping, jit_options=INNER, strict=False)
@@ -192,9 +198,13 @@ for _module in (
     basis,
     exact,
     angle,
+    largest,
     power,
     quadric,
     wrap,
+    pyramid,
+    shape,
+    cells,
     trace,
     highlight,
     lamps,

@@ -15,7 +15,7 @@ for _function in own_functions(lists):
 
 # With the types said at once they are compiled when this module is imported.
 NUMBER, WHOLE, SHORT = types.float64, types.int64, types.int32
-GRID = types.NamedTuple([NUMBER[:, :, ::1], WHOLE, WHOLE, *[NUMBER] * 5], lists.Grid)
+GRID = types.NamedTuple([NUMBER[:, :, ::1], WHOLE, WHOLE, *[NUMBER] * 5, WHOLE, WHOLE], lists.Grid)
 COVER = WHOLE(
     *(NUMBER[::1], GRID, NUMBER[:, ::1], NUMBER, WHOLE[::1], WHOLE[:, ::1]),
     *(SHORT[:, ::1], WHOLE, NUMBER[:, ::1], WHOLE[::1]),

@@ -13,7 +13,8 @@ from math import inf, sqrt
 from typing import Any, NamedTuple
 
 MARGIN = 1e-12  # of the coordinates that a place is computed from, which are rounded to 1e-16
-ROUND = 1e-7  # of the cosine of a cone, in which the root of a difference is precise to 1e-8
+ROUND = 1e-7  # of the sine of a cone: by how much its cosine may be wrong, as roots of differences are by 2e-8
+UNIT = 4e-15  # of a scalar product of unit vectors
 
 
 class Grid(NamedTuple):
@@ -27,6 +28,8 @@ class Grid(NamedTuple):
     scale_y: float
     middle_y: float
     margin: float  # cells by which intervals grow before they are rounded to cells
+    cells: int  # of all frames, and others
+    elsewhere: int  # the cell of all directions that are in no frame, which is among those; -1 where there is none
 
 
 def cover(
@@ -46,13 +49,17 @@ def cover(
     Shape i is the convex hull of `balls[first[i]:first[i + 1]]`, (b, 4) centre and radius, which grow by `slack`; its
     cells begin at `places[i, 0]` times one more than the grid has. Writes rectangles, (r, 4) shape, first cell, columns
     and rows, from number `used` on, and answers how many there are; of shapes with a rectangle the `view`; and adds to
-    `counts` how many rectangles cover each cell.
+    `counts` how many rectangles cover each cell. A shape that may be met in the directions that are in no frame has a
+    rectangle of that cell.
     """
-    stride = grid.frames.shape[0] * grid.down * grid.across + 1
+    stride = grid.cells + 1
     for shape in range(views.shape[0]):
         before = used
+        whole = False
         for face in range(grid.frames.shape[0]):
-            column, row, columns, rows = rectangle(origin, grid, face, balls, first[shape], first[shape + 1], slack)
+            column, row, columns, rows, whole = rectangle(
+                origin, grid, face, balls, first[shape], first[shape + 1], slack
+            )
             if columns > 0 and rows > 0:
                 cell = places[shape, 0] * stride + (face * grid.down + row) * grid.across + column
                 rectangles[used, 0] = shape
@@ -63,6 +70,14 @@ def cover(
                 for line in range(cell, cell + rows * grid.across, grid.across):
                     for at in range(line, line + columns):
                         counts[at] += 1
+        if grid.elsewhere >= 0 and first[shape] < first[shape + 1] and not whole:
+            cell = places[shape, 0] * stride + grid.elsewhere
+            rectangles[used, 0] = shape
+            rectangles[used, 1] = cell
+            rectangles[used, 2] = 1
+            rectangles[used, 3] = 1
+            used += 1
+            counts[cell] += 1
         if used > before:
             view(origin, balls, first[shape], first[shape + 1], slack, views[shape])
     return used
@@ -70,9 +85,9 @@ def cover(
 
 def rectangle(
     origin: Any, grid: Grid, face: int, balls: Any, start: int, end: int, slack: float
-) -> tuple[int, int, int, int]:
+) -> tuple[int, int, int, int, bool]:
     """First column, first row, columns and rows of the cells in which the convex hull of some balls, grown by `slack`,
-    may be met; no columns or no rows where there is none."""
+    may be met; no columns or no rows where there is none. And whether all of it, and of the margin, is in cells."""
     half_x = (grid.middle_x + grid.margin) / grid.scale_x  # slopes at the edges of the grid
     half_y = (grid.middle_y + grid.margin) / grid.scale_y
     slant_x = sqrt(1.0 + half_x * half_x)
@@ -87,7 +102,7 @@ def rectangle(
         z = frame[2, 0] * px + frame[2, 1] * py + frame[2, 2] * pz
         behind &= z <= -radius
         if behind and i + 1 == end:
-            return 0, 0, 0, 0
+            return 0, 0, 0, 0, False
         x = frame[0, 0] * px + frame[0, 1] * py + frame[0, 2] * pz
         y = frame[1, 0] * px + frame[1, 1] * py + frame[1, 2] * pz
         left &= x + half_x * z < -slant_x * radius
@@ -96,16 +111,16 @@ def rectangle(
         below &= y - half_y * z > slant_y * radius
         beside |= z <= radius
         if i + 1 == end and (left | right | above | below):
-            return 0, 0, 0, 0
+            return 0, 0, 0, 0, False
         low, high = tangents(x, z, radius)
         low_x, high_x = min(low_x, low), max(high_x, high)
         low, high = tangents(y, z, radius)
         low_y, high_y = min(low_y, low), max(high_y, high)
     if beside and end - start > 1:  # some of the hull may be where no ball is
         low_x, high_x, low_y, high_y = -inf, inf, -inf, inf
-    column, columns = interval(low_x, high_x, grid.scale_x, grid.middle_x, grid.margin, grid.across)
-    row, rows = interval(low_y, high_y, grid.scale_y, grid.middle_y, grid.margin, grid.down)
-    return column, row, columns, rows
+    column, columns, all_across = interval(low_x, high_x, grid.scale_x, grid.middle_x, grid.margin, grid.across)
+    row, rows, all_down = interval(low_y, high_y, grid.scale_y, grid.middle_y, grid.margin, grid.down)
+    return column, row, columns, rows, all_across and all_down
 
 
 def tangents(x: float, z: float, radius: float) -> tuple[float, float]:
@@ -122,14 +137,15 @@ def tangents(x: float, z: float, radius: float) -> tuple[float, float]:
     return low, high
 
 
-def interval(low: float, high: float, scale: float, middle: float, margin: float, cells: int) -> tuple[int, int]:
-    """First cell and number of cells, of so many in a row, for the slopes from `low` to `high`."""
+def interval(low: float, high: float, scale: float, middle: float, margin: float, cells: int) -> tuple[int, int, bool]:
+    """First cell and number of cells, of so many in a row, for the slopes from `low` to `high`; and whether those are
+    all of them."""
     begin = low * scale + middle - margin
     end = high * scale + middle + margin
     if not (begin < cells and end >= 0.0):
-        return 0, 0
+        return 0, 0, False
     start = int(max(begin, 0.0))
-    return start, int(min(end, cells - 1.0)) + 1 - start
+    return start, int(min(end, cells - 1.0)) + 1 - start, begin >= 0.0 and end < cells
 
 
 def view(origin: Any, balls: Any, start: int, end: int, slack: float, seen: Any) -> None:
@@ -150,7 +166,7 @@ def view(origin: Any, balls: Any, start: int, end: int, slack: float, seen: Any)
     seen[3], seen[4] = -2.0, 0.0
     if length == 0.0:
         return
-    least, cosine = inf, 1.0
+    least, cosine, widest = inf, 1.0, 0.0
     for i in range(start, end):
         px, py, pz = balls[i, 0] - origin[0], balls[i, 1] - origin[1], balls[i, 2] - origin[2]
         radius = balls[i, 3] + slack
@@ -159,11 +175,12 @@ def view(origin: Any, balls: Any, start: int, end: int, slack: float, seen: Any)
         aside = sqrt(max(squared - along * along, 0.0))
         tangent = sqrt(max(squared - radius * radius, 0.0))
         least = min(least, along - radius)
+        widest = max(widest, radius * radius / squared)
         # Of the sum of two angles: from the axis to the centre, and from there to the rim.
         cosine = min(cosine, (along * tangent - aside * radius) / squared) if tangent > 0.0 else -2.0
     seen[0], seen[1], seen[2] = x / length, y / length, z / length
     if cosine > 0.0:
-        seen[3] = cosine - ROUND
+        seen[3] = cosine - ROUND * sqrt(widest) - UNIT
     seen[4] = max(least, 0.0)
 
 

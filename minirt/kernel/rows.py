@@ -67,6 +67,11 @@ def shading(shape: Any, point: Vec, normal: Vec) -> Any:
     return kind_of_packed(type(shape)).shading(shape, point, normal)
 
 
+def may_meet(shape: Any, apex: Vec, start: Any, direction: Vec, asked: Any) -> Any:
+    """`may_meet` of the shape's own kind."""
+    return kind_of_packed(type(shape)).may_meet(shape, apex, start, direction, asked)
+
+
 def surface(shape: Any, point: Vec) -> Any:
     """`surface` of the shape's own kind."""
     return kind_of_packed(type(shape)).surface(shape, point)

@@ -8,9 +8,10 @@ from minirt.kernel import bvh_hits
 from minirt.kernel.highlight import highlight
 from minirt.kernel.lamps import arrival
 from minirt.kernel.surfaces import Surface
-from minirt.kernel.trace import ROUNDING, largest, unhidden
+from minirt.kernel.trace import ROUNDING, unhidden
 from minirt.kernel.traced import Traced
 from minirt.lanes import Vec, any, dot, splat, unit_roundoff, where
+from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 

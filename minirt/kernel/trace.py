@@ -6,7 +6,8 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.rows import intersect, read, surface
+from minirt.kernel.cells import close, look_up
+from minirt.kernel.rows import intersect, may_meet, read, surface
 from minirt.kernel.traced import Group, Traced
 from minirt.lanes import (
     Vec,
@@ -14,16 +15,14 @@ from minirt.lanes import (
     dot,
     fabs,
     first,
-    floor,
-    lane,
     maximum,
-    minimum,
     rarely,
     splat,
     unit_roundoff,
     where,
     width,
 )
+from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
@@ -51,11 +50,6 @@ def count_of_kind(group: Group, count: int, tile: int) -> int:
     return count + int(group.starts[tile + 1] - group.starts[tile])
 
 
-def largest(v: Vec) -> Number:
-    """The largest coordinate, without its sign."""
-    return maximum(maximum(fabs(v.x), fabs(v.y)), fabs(v.z))
-
-
 def nearest(scene: Traced, tile: int, origin: Vec, direction: Vec) -> tuple[Number, Number, Number]:
     """The distance to the first hit of each ray, the index of the shape that is hit and its extent; infinity, -1 and 0
     where none is.
@@ -78,10 +72,12 @@ def nearest_of_kind(
         view = scene.views[index]
         if not any(state[0] > view[4]):
             break
-        if view[3] <= -1.0 or rarely(within(view, direction)):
+        everywhere = view[3] <= -1.0
+        if everywhere or rarely(within(view, direction)):
             shape = read(group.rows, scene.places[index, 1])
-            hit, t = intersect(shape, origin, direction)
-            state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
+            if everywhere or any(may_meet(shape, origin, None, direction, state[0] > view[4])):
+                hit, t = intersect(shape, origin, direction)
+                state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
     return state
 
 
@@ -137,59 +133,29 @@ def unhidden(scene: Traced, memory: Any, lamp: int, origin: Vec, direction: Vec,
     for _ in range(width(distance)):  # at most a look for each ray
         if not any(left):
             break
-        mine = left & close(memory[lamp], direction, scene.spread)
+        mine = left & close(memory[lamp], scene.around[lamp], direction)
         if rarely(not any(mine)):
-            look_up(memory[lamp], scene.grid, direction, first(left))
-            mine = left & close(memory[lamp], direction, scene.spread)
+            look_up(memory[lamp], scene.around[lamp], scene.grid, direction, first(left))
+            mine = left & close(memory[lamp], scene.around[lamp], direction)
         given = (scene, lamp, int(memory[lamp, 3]), mine, origin, direction, distance)
         free = over_kinds(unhidden_by_kind, scene.groups, free, given)
         left = left & ~mine
     return free
 
 
-def close(remembered: Any, direction: Vec, spread: float) -> Mask:
-    """Whether a direction is as close to the remembered one as the lists of cells allow."""
-    return dot(Vec(remembered[0], remembered[1], remembered[2]), direction) >= spread
-
-
-def look_up(remembered: Any, grid: int, direction: Vec, ray: int) -> None:
-    """Remember the direction of a ray of the packet towards the lamp, and the cell that it comes through."""
-    x, y, z = lane(direction.x, ray), lane(direction.y, ray), lane(direction.z, ray)
-    remembered[0] = x
-    remembered[1] = y
-    remembered[2] = z
-    remembered[3] = cell(Vec(-x, -y, -z), grid)
-
-
 def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Mask, Vec, Vec, Number]) -> Mask:
     """Of the rays that are free so far, those that the shapes of one kind do not stop; only `mine` are tried."""
     scene, lamp, at, mine, origin, direction, distance = given
+    place = Vec(scene.lights[lamp, 0], scene.lights[lamp, 1], scene.lights[lamp, 2])
     for i in range(group.lamp_starts[lamp, at], group.lamp_starts[lamp, at + 1]):
         index = scene.lit[i]
         view = scene.lamp_views[lamp, index]
         if not any(free & mine & (distance > view[4])):
             break
-        if view[3] <= -1.0 or rarely(mine & within(view, -direction)):
-            hit, t = intersect(read(group.rows, scene.places[index, 1]), origin, direction)
-            free = free & ~(mine & hit & (t < distance))
+        everywhere = view[3] <= -1.0
+        if everywhere or rarely(mine & within(view, -direction)):
+            shape = read(group.rows, scene.places[index, 1])
+            if everywhere or any(may_meet(shape, place, origin, direction, free & mine)):
+                hit, t = intersect(shape, origin, direction)
+                free = free & ~(mine & hit & (t < distance))
     return free
-
-
-def cell(direction: Vec, grid: int) -> Number:
-    """The cell of a cube around a lamp that a direction from it goes through: (face * grid + row) * grid + column.
-
-    Faces 0 to 5 are +x, -x, +y, -y, +z, -z; on each, columns go along the next axis in the cycle x, y, z, rows along
-    the one after it, both from -1 to 1.
-    """
-    ax, ay, az = fabs(direction.x), fabs(direction.y), fabs(direction.z)
-    along_x = (ax >= ay) & (ax >= az)
-    along_y = ~along_x & (ay >= az)
-    major = where(along_x, direction.x, where(along_y, direction.y, direction.z))
-    across = where(along_x, direction.y, where(along_y, direction.z, direction.x))
-    down = where(along_x, direction.z, where(along_y, direction.x, direction.y))
-    face = where(along_x, 0.0, where(along_y, 2.0, 4.0)) + where(major > 0.0, 0.0, 1.0)
-    half = 0.5 * grid
-    scale = half / fabs(major)
-    column = minimum(floor(across * scale + half), grid - 1.0)
-    row = minimum(floor(down * scale + half), grid - 1.0)
-    return (face * grid + row) * grid + column

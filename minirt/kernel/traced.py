@@ -9,8 +9,8 @@ class Group(NamedTuple):
     """The shapes of one kind, and which of them may be met in which direction.
 
     Directions are sorted into cells: those from the eye into the tiles of the picture, those from a lamp into squares
-    on the faces of a cube around it. What may be met in cell c is `seen[starts[c]:starts[c + 1]]` of the scene, and for
-    lamp i `lit[lamp_starts[i, c]:lamp_starts[i, c + 1]]`.
+    on the faces of a cube around it, or ahead of it. What may be met in cell c is `seen[starts[c]:starts[c + 1]]` of
+    the scene, and for lamp i `lit[lamp_starts[i, c]:lamp_starts[i, c + 1]]`.
     """
 
     rows: Any  # a row a shape
@@ -32,7 +32,7 @@ class Traced(NamedTuple):
     seen: Any  # the shapes in each tile, the nearest first
     views: Any  # (n, 5) the cone from the eye; no point of the shape is nearer to it than the last number
     grid: int  # cells along an edge of the cubes around the lamps; 1 where they have no cells
-    spread: float  # cosine of an angle: a cell's list holds for all directions so close to one that goes through it
+    around: Any  # (m, 11) how directions from each lamp are sorted into cells, see `minirt.kernel.cells`
     lit: Any  # the shapes in each cell of each cube, the nearest first
     lamp_views: Any  # (m, n, 5) the same from each lamp
     groups: Any  # a tuple of Group: one for each kind of shape that the scene has

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from minirt.kernel.cells import AHEAD, SCALE
 from minirt.kernel.traced import Traced
 from minirt.rendering.flats import idle
 from minirt.rendering.tables import Tables
@@ -28,7 +29,7 @@ def notes(scene: Scene, tables: Tables, traced: Traced) -> Iterator[str]:
     if traced.grid == 1:
         yield f"light buffer: none, every shape is tried ({shapes})"
     else:
-        yield f"light buffer: 6 x {traced.grid} x {traced.grid} cells a lamp ({shapes})"
+        yield f"light buffer: {' or '.join(cells(traced))} a lamp ({shapes})"
     for number, light in enumerate(scene.lights, 1):
         if not light.brightness:
             yield f"light {number} has brightness 0"
@@ -37,6 +38,15 @@ def notes(scene: Scene, tables: Tables, traced: Traced) -> Iterator[str]:
         else:
             for index in tables.flat[idle(tables, np.array(scene.camera.position), light)].tolist():
                 yield f"{name(tables, index)} hides nothing from light {number}"
+
+
+def cells(traced: Traced) -> Iterator[str]:
+    """What cells lamps have: around them, or ahead of them where they see all shapes there."""
+    ahead, edge = traced.around[:, SCALE] > 0, AHEAD * traced.grid
+    if not ahead.all() or not len(ahead):
+        yield f"6 x {traced.grid} x {traced.grid} cells"
+    if ahead.any():
+        yield f"{edge} x {edge} cells ahead of"
 
 
 def plurals(elements: set[type[Shape]]) -> str:

@@ -11,12 +11,13 @@ import numpy as np
 
 from minirt.kernel import lists
 from minirt.kernel.traced import Group, Traced
+from minirt.rendering.ahead import crowd
 from minirt.rendering.camera import camera_numbers, pixel_rays
 from minirt.rendering.flats import idle
 from minirt.rendering.lamps import beam_numbers, light_numbers, light_of, shining
 from minirt.rendering.materials import dome_of, materials_of
 from minirt.rendering.notes import notes
-from minirt.rendering.sight import Lists, grid_for, seen_by_eye, seen_by_lamp, seen_by_sun, spread_for
+from minirt.rendering.sight import Lists, grid_for, seen_by_eye, seen_by_lamp, seen_by_sun
 from minirt.rendering.single import in_single
 from minirt.rendering.tables import Tables
 from minirt.rendering.traits import DEPTH, traits
@@ -67,7 +68,7 @@ class Packing:
         camera, lamps = camera_numbers(scene.camera, width, height), shining(scene)
         lights = light_numbers(lamps)
         eye = keep((camera.tobytes(), width, height), seen_by_eye, self.kernel, tables, camera, width, height)
-        grid = grid_for(len(tables.places))
+        grid, most = grid_for(tables), keep("crowd", crowd, tables)
         seen: list[Lists] = []
         keys: list[Hashable] = []
         for lamp, place in zip(lamps, lights[:, :3], strict=True):
@@ -77,8 +78,8 @@ class Packing:
                 seen.append(keep(keys[-1], seen_by_sun, tables, grid, skipped))
             else:
                 keys.append((place.tobytes(), skipped.tobytes()))
-                seen.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, place, grid, skipped))
-        lamp_starts, lit, lamp_views = keep(tuple(keys), joined, seen, eye)
+                seen.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, most, place, grid, skipped))
+        lamp_starts, lit, lamp_views, around = keep(tuple(keys), joined, seen, eye)
         materials = keep(("materials", used), materials_of, scene, tables.owner, used)
         tree = "bounces" in used or ("parallel" in used and grid > 1)
         paint: Any = scene.background and scene.background.paint
@@ -91,7 +92,7 @@ class Packing:
             seen=eye.members,
             views=eye.views,
             grid=grid,
-            spread=spread_for(grid),
+            around=around,
             lit=lit,
             lamp_views=lamp_views,
             groups=tuple(map(Group, tables.rows, eye.starts, lamp_starts)),
@@ -125,12 +126,22 @@ def may_be_single(traced: Traced) -> bool:
     return traced.tree is None and traced.dome is None and (traced.skins is None or not len(traced.skins.pictures))
 
 
-def joined(lamps: list[Lists], eye: Lists) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The lists of all lamps as one: starts (kinds, m, cells + 1), members, views (m, n, 5)."""
+def joined(lamps: list[Lists], eye: Lists) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The lists of all lamps as one: starts (kinds, m, cells + 1), members, views (m, n, 5), around (m, 11)."""
     if len(lamps) == 1:
-        return lamps[0].starts[:, None], lamps[0].members, lamps[0].views[None]
+        return lamps[0].starts[:, None], lamps[0].members, lamps[0].views[None], lamps[0].around[None]
     if not lamps:
-        return np.zeros((len(eye.starts), 0, 1), np.int64), eye.members[:0], np.zeros((0, *eye.views.shape))
+        return (
+            np.zeros((len(eye.starts), 0, 1), np.int64),
+            eye.members[:0],
+            np.zeros((0, *eye.views.shape)),
+            np.zeros((0, 11)),
+        )
     before = np.cumsum([0, *(len(each.members) for each in lamps[:-1])])
     starts = np.stack([each.starts + first for each, first in zip(lamps, before, strict=True)], axis=1)
-    return starts, np.concatenate([each.members for each in lamps]), np.stack([each.views for each in lamps])
+    return (
+        starts,
+        np.concatenate([each.members for each in lamps]),
+        np.stack([each.views for each in lamps]),
+        np.stack([each.around for each in lamps]),
+    )

@@ -9,24 +9,29 @@ import numpy as np
 
 from minirt.kernel.frame import TILE, tiles
 from minirt.kernel.lists import MARGIN, Grid
+from minirt.rendering.ahead import SPREAD, Crowd, square_ahead
 from minirt.rendering.flats import heights, runs
 from minirt.rendering.tables import Tables
+from minirt.shapes import Shape
+from minirt.shapes.mesh import Mesh
 
-# Across, down and forward of the six faces of a cube, in the order of `minirt.kernel.trace.cell`.
+# Across, down and forward of the six faces of a cube, in the order of `minirt.kernel.cells.cell_of_cube`.
 FACES = np.array([np.roll(np.diag([1.0, 1.0, side]), axis + 1, axis=1) for axis in range(3) for side in (1, -1)])
-SPREAD = 0.5  # of the angle that cells have on average: a cell's list holds for directions so close to one in it
 # By how many cells a cube's intervals grow for that: at the corner of a face, where slopes change most with the angle,
 # an angle e changes them by less than 3 e.
 EDGE = 3 * SPREAD * np.pi / 4
-# Up to so many shapes, cells along an edge of a lamp's cube, where building and using the lists was seen to take least;
-# with more than 512 float32 could not tell apart the directions that a list holds for.
+# Up to so many shapes, cells along an edge of a lamp's cube, where building and using the lists was seen to take least.
+# Of the triangles of a mesh, which lie side by side, a few count, and of the others one in so many.
 SMALL = 8
-GRIDS = ((SMALL, 1), (30, 16), (200, 32), (5_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
+FEW, SIDE_BY_SIDE = 200, 8
+GRIDS = ((SMALL, 1), (30, 16), (200, 32), (20_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
 # Numbers above zero are in the order of their bits, the exponent first. The order of depth knows of those of a distance
 # the upper 20, from 2^-128 on: a distance to a 256th of it.
 DROPPED = 44
 NEAREST = (1023 - 128) << (52 - DROPPED)
+
+NO_CELLS = np.zeros(11)  # around a lamp
 
 
 class Lists(NamedTuple):
@@ -35,16 +40,26 @@ class Lists(NamedTuple):
     starts: np.ndarray  # (kinds, cells + 1)
     members: np.ndarray
     views: np.ndarray  # (n, 5) as in `minirt.kernel.traced`
+    around: np.ndarray = NO_CELLS  # (11,)
 
 
-def grid_for(shapes: int) -> int:
+def grid_for(tables: Tables) -> int:
     """Cells along an edge of the cube around a lamp; 1 where trying all shapes is faster than looking them up."""
+    shapes = sum(weight(kind, len(rows)) for kind, rows in zip(tables.numbers, tables.rows, strict=True))
     return next(cells for most, cells in GRIDS if shapes <= most)
 
 
-def spread_for(grid: int) -> float:
-    """The cosine of the angle around a direction for which the list of its cell holds."""
-    return float(np.cos(SPREAD * np.pi / 2 / grid))
+def weight(kind: type[Shape], parts: int) -> int:
+    """For how many shapes the parts of some shapes of a kind count."""
+    return min(parts, FEW + parts // SIDE_BY_SIDE) if kind is Mesh else parts
+
+
+def around(grid: int, ahead: Grid | None) -> np.ndarray:
+    """How directions are sorted into cells, for the kernel: see `minirt.kernel.cells`."""
+    if ahead is None:
+        spread = 2 * np.sin(SPREAD * np.pi / 4 / grid)
+        return np.array([*[0.0] * 10, spread * spread])
+    return np.array([*ahead.frames.ravel(), ahead.scale_x, (SPREAD / ahead.scale_x) ** 2])
 
 
 def screen(camera: np.ndarray, width: int, height: int) -> Grid:
@@ -53,14 +68,15 @@ def screen(camera: np.ndarray, width: int, height: int) -> Grid:
     wide, high = float(np.linalg.norm(right)), float(np.linalg.norm(up))
     x, y = width / (2 * TILE), height / (2 * TILE)
     frames = np.stack([right / wide, -up / high, forward])[None]
-    return Grid(frames, tiles(width), tiles(height), x / wide, x, y / high, y, 1 / TILE)
+    across, down = tiles(width), tiles(height)
+    return Grid(frames, across, down, x / wide, x, y / high, y, 1 / TILE, across * down, -1)
 
 
 @cache
 def cube(grid: int) -> Grid:
     """The cells around a lamp."""
     half = grid / 2
-    return Grid(FACES, grid, grid, half, half, half, half, EDGE)
+    return Grid(FACES, grid, grid, half, half, half, half, EDGE, 6 * grid * grid, -1)
 
 
 def seen_by_eye(kernel: Any, tables: Tables, camera: np.ndarray, width: int, height: int) -> Lists:
@@ -68,10 +84,15 @@ def seen_by_eye(kernel: Any, tables: Tables, camera: np.ndarray, width: int, hei
     return lists(kernel, tables, camera[:3], screen(camera, width, height), np.zeros(len(tables.planes), bool))
 
 
-def seen_by_lamp(kernel: Any, tables: Tables, lamp: np.ndarray, grid: int, skipped: np.ndarray) -> Lists:
-    """The shapes in each cell of the cube around a lamp, but for the planes that are `skipped` (p,)."""
-    found = lists(kernel, tables, np.array(lamp), cube(grid), skipped)
-    return one_cell(tables, found.views, skipped) if grid == 1 else found
+def seen_by_lamp(
+    kernel: Any, tables: Tables, found: Crowd | None, lamp: np.ndarray, grid: int, skipped: np.ndarray
+) -> Lists:
+    """The shapes in each cell around a lamp, but for the planes that are `skipped` (p,)."""
+    ahead = square_ahead(found, lamp, grid)
+    seen = lists(kernel, tables, np.array(lamp), cube(grid) if ahead is None else ahead, skipped)
+    if grid == 1:
+        return one_cell(tables, seen.views, skipped)
+    return seen._replace(around=around(grid, ahead))
 
 
 def seen_by_sun(tables: Tables, grid: int, skipped: np.ndarray) -> Lists:
@@ -85,8 +106,7 @@ def seen_by_sun(tables: Tables, grid: int, skipped: np.ndarray) -> Lists:
 
 def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: np.ndarray) -> Lists:
     """The shapes in each cell of a grid around a point."""
-    kinds, faces = len(tables.rows), len(grid.frames)
-    stride = faces * grid.down * grid.across + 1
+    kinds, stride = len(tables.rows), grid.cells + 1
     views, counts = np.zeros((len(tables.places), 5)), np.zeros(kinds * stride, np.int64)
     height = heights(tables.planes, origin)
     flat = np.zeros((0, 4), np.int64)
@@ -95,10 +115,14 @@ def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: 
         which, cell, columns = runs(grid, -np.sign(height[shown, None]) * tables.planes[shown, :3])
         shape = tables.flat[shown][which]
         cell += tables.places[shape, 0] * stride
+        if grid.elsewhere >= 0:
+            shape = np.concatenate([shape, tables.flat[shown]])
+            cell = np.concatenate([cell, tables.places[tables.flat[shown], 0] * stride + grid.elsewhere])
+            columns = np.concatenate([columns, np.ones(shown.sum(), np.int64)])
         flat = np.stack([shape, cell, columns, np.ones_like(cell)], axis=1)
         begins, ends = (np.bincount(each, minlength=len(counts)) for each in (cell, cell + columns))
         counts = np.cumsum(begins - ends)
-    rectangles = np.empty((len(flat) + faces * len(views), 4), np.int32)
+    rectangles = np.empty((len(flat) + len(views) * max(len(grid.frames), 2), 4), np.int32)
     rectangles[: len(flat)] = flat
     slack = MARGIN * float(np.abs(origin).max())
     room = rectangles, len(flat), views, counts

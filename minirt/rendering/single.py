@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from minirt.kernel.cells import SPREAD
 from minirt.kernel.rows import kind_of, place_fields, row_type
 from minirt.kernel.traced import Group, Traced
 
@@ -29,7 +30,7 @@ def in_single(traced: Traced, boxes: np.ndarray) -> Traced:
         seen=traced.seen,
         views=wider(traced.views),
         grid=traced.grid,
-        spread=min(1.0, traced.spread + MARGIN),
+        around=narrower(traced.around),
         lit=traced.lit,
         lamp_views=wider(traced.lamp_views),
         groups=tuple(Group(moved(group.rows, eye), group.starts, group.lamp_starts) for group in traced.groups),
@@ -58,6 +59,13 @@ def wider(views: np.ndarray) -> np.ndarray:
     views[..., 3] -= MARGIN
     views[..., 4] = np.nextafter(views[..., 4], np.float32(-np.inf))
     return views
+
+
+def narrower(around: np.ndarray) -> np.ndarray:
+    """How directions from lamps are sorted into cells, in float32: fewer count as close."""
+    around = around.copy()
+    around[:, SPREAD] = np.maximum(np.sqrt(around[:, SPREAD]) - MARGIN, 0.0) ** 2
+    return rounded(around)
 
 
 def moved(rows: np.ndarray, eye: np.ndarray) -> np.ndarray:

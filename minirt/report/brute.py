@@ -40,7 +40,6 @@ def with_all_shapes(traced: Traced, tiles: int) -> Traced:
         seen=np.concatenate(seen),
         views=np.broadcast_to(np.array(EVERYWHERE), traced.views.shape).copy(),
         grid=1,
-        spread=1.0,
         lit=np.concatenate([members[:0], *lit]),
         lamp_views=np.broadcast_to(np.array(EVERYWHERE), traced.lamp_views.shape).copy(),
         groups=tuple(

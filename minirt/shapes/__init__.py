@@ -32,13 +32,20 @@ KINDS = (
         hyperboloid.surface,
         hyperboloid.mapping,
     ),
-    Kind(triangle.Triangle, triangle.PackedTriangle, triangle.intersect, triangle.surface, triangle.mapping),
+    Kind(
+        triangle.Triangle,
+        triangle.PackedTriangle,
+        triangle.intersect,
+        triangle.surface,
+        triangle.mapping,
+        may_meet=triangle.may_meet,
+    ),
     Kind(square.Square, square.PackedSquare, square.intersect, square.surface, square.mapping),
     Kind(disc.Disc, disc.PackedDisc, disc.intersect, disc.surface, disc.mapping),
     Kind(box.Box, box.PackedBox, box.intersect, box.surface, box.mapping),
     Kind(torus.Torus, torus.PackedTorus, torus.intersect, torus.surface, torus.mapping),
 )
-MESH = Kind(mesh.Mesh, mesh.PackedMeshTriangle, mesh.intersect, mesh.surface, mesh.mapping, mesh.shading)
+MESH = Kind(mesh.Mesh, mesh.PackedMeshTriangle, mesh.intersect, mesh.surface, mesh.mapping, mesh.shading, mesh.may_meet)
 ALL_KINDS = (*KINDS, MESH)
 
 __all__ = ["ALL_KINDS", "KINDS", "MESH", "Ball", "Box", "Kind", "Shape"]

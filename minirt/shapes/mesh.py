@@ -20,7 +20,7 @@ from minirt.fields import FARTHEST, Colour, Length, MeshField, MeshFile, Point, 
 from minirt.lanes import Vec, cross, dot, maximum, minimum, unit, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
-from minirt.shapes import triangle
+from minirt.shapes import pyramid, triangle
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
 BARYCENTRIC = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)  # coordinates of pictures at the corners where the file has none
@@ -115,6 +115,11 @@ class PackedMeshTriangle(NamedTuple):
 def intersect(mesh: PackedMeshTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the triangle; one of those at an edge or a corner is met, as of `tr`."""
     return triangle.watertight(mesh.a, mesh.b, mesh.c, origin, direction)
+
+
+def may_meet(mesh: PackedMeshTriangle, apex: Vec, start: Vec | None, direction: Vec, asked: Mask) -> Mask:
+    """Of rays through a point, those that may meet the triangle."""
+    return pyramid.may_meet((mesh.a, mesh.b, mesh.c), mesh.normal, apex, start, direction, asked)
 
 
 def surface(mesh: PackedMeshTriangle, point: Vec) -> tuple[Vec, Vec]:

@@ -11,6 +11,9 @@ A file of a shape holds its manual page, its line in a scene file (a frozen data
                                           and v upwards, 0 to 1 across a picture; and the tangents dP/du and dP/dv
     shading(shape, point, normal)         of the few that stand for something rounder: the unit normal by which such a
                                           point is lit, where `normal` is that of the surface
+    may_meet(shape, apex, start, direction, asked)
+                                          of those that are many: which rays of a packet through a common point, the
+                                          apex, may meet the shape; see `minirt.shapes.pyramid`
 
 The tangents and the normal are right-handed, so that nobody outside sees a picture mirrored. At poles and apexes, where
 a picture is gathered to a point, tangents may be zero.
@@ -30,6 +33,7 @@ import numpy as np
 from minirt.element import Element
 from minirt.fields import Triple, declare
 from minirt.lanes import Vec
+from minirt.lanes.verbs import Mask
 from minirt.materials import Bump, Checker, Compound, Glass, Mirror, NormalMap, Specular, Texture
 
 Box = tuple[Triple, Triple]  # least and greatest corner
@@ -87,6 +91,11 @@ def unbent(shape: Any, point: Vec, normal: Vec) -> Vec:
     return normal
 
 
+def anywhere(shape: Any, apex: Vec, start: Vec | None, direction: Vec, asked: Mask) -> Mask:
+    """`may_meet` of a shape that is tested as fast."""
+    return asked
+
+
 class Kind(NamedTuple):
     """One entry of the registry of shapes."""
 
@@ -96,3 +105,4 @@ class Kind(NamedTuple):
     surface: Callable[..., Any]
     mapping: Callable[..., Any]
     shading: Callable[..., Any] = unbent
+    may_meet: Callable[..., Any] = anywhere

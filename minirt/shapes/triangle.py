@@ -18,6 +18,7 @@ from minirt.lanes import Vec, dot, fabs, maximum, minimum, rounded_product, wher
 from minirt.lanes import cross as product
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
+from minirt.shapes import pyramid
 from minirt.shapes.extents import box_of_points
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
@@ -84,6 +85,11 @@ class PackedTriangle(NamedTuple):
 def intersect(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the triangle."""
     return watertight(triangle.a, triangle.b, triangle.c, origin, direction)
+
+
+def may_meet(triangle: PackedTriangle, apex: Vec, start: Vec | None, direction: Vec, asked: Mask) -> Mask:
+    """Of rays through a point, those that may meet the triangle."""
+    return pyramid.may_meet((triangle.a, triangle.b, triangle.c), triangle.normal, apex, start, direction, asked)
 
 
 def watertight(a: Vec, b: Vec, c: Vec, origin: Vec, direction: Vec) -> tuple[Mask, Number]:

@@ -52,3 +52,17 @@ def test_single_precision_where_there_is_none() -> None:
 def test_the_size_of_the_light_buffer() -> None:
     *_, buffer, _, _, _, _, _ = said(*(Sphere((i, 0, 0), 1, GREY) for i in range(48)))
     assert buffer == "light buffer: 6 x 32 x 32 cells a lamp (50 shapes)"
+
+
+def test_which_cells_lamps_have() -> None:
+    heap = [Sphere((i % 10, i // 10 % 10, i // 100), 0.5, GREY) for i in range(1000)]
+    lamps = Light((50, 20, -9), 1), FurtherLight((5, 5, 5), 1)
+    for shown, cells in (
+        (lamps[:1], "128 x 128 cells ahead of a lamp"),
+        (lamps[1:], "6 x 64 x 64 cells a lamp"),
+        (lamps, "6 x 64 x 64 cells or 128 x 128 cells ahead of a lamp"),
+        ((), "6 x 64 x 64 cells a lamp"),
+    ):
+        packing = Packing()
+        packing.pack(Scene((Camera((0, 0, -9), (0, 0, 1), 60), *shown, *heap)), 64, 48)
+        assert f"light buffer: {cells} (1000 shapes)" in packing.notes

@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from minirt.kernel import jit_lists, lists
+from minirt.kernel.cells import AHEAD, SCALE, SPREAD, cell
 from minirt.kernel.frame import TILE, tiles, towards
 from minirt.kernel.rows import kind_of, read
-from minirt.kernel.trace import cell, within
-from minirt.lanes import Vec, dot, unit
-from minirt.rendering import sight
+from minirt.kernel.trace import within
+from minirt.lanes import Vec, unit
+from minirt.rendering import ahead, sight
 from minirt.rendering.packing import Packing
+from minirt.rendering.tables import Tables
 from minirt.scene import Camera, Light, Scene
 from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
@@ -22,6 +24,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.random_scenes import random_scene
 from tests.shapes.examples import hits
+from tests.shapes.regimes import ways
 
 WIDTH, HEIGHT = 70, 45  # five tiles by three, the last ones cut
 
@@ -93,8 +96,32 @@ def test_a_tile_lists_all_that_its_rays_hit(make: Any, seed: int, kernel: Any) -
         assert t >= traced.views[shape, 4]
 
 
+def outside_scene(seed: int) -> Scene:
+    """The same shapes, all but a few in a heap, and a lamp that sees the heap from outside, near or far."""
+    random = np.random.default_rng(seed)
+    shapes = [each for each in hard_scene(seed).shapes if isinstance(each, Plane) or random.random() < 0.1]
+    middle, size = 10.0 ** random.uniform(0, 6) * random.normal(size=3), 10.0 ** random.uniform(-1, 2)
+    for _ in range(40):
+        place = tuple(middle + size * random.uniform(-0.5, 0.5, 3))
+        shapes.append(Sphere(place, size * 10.0 ** random.uniform(-4, -0.5), (1, 2, 3)))
+    lamp = middle + size * 10.0 ** random.uniform(0.1, 4) * unit_way(random)
+    return Scene((Camera((0, 0, 0), (0, 0, 1), 90), Light(tuple(lamp), 1), *shapes))
+
+
+def unit_way(random: np.random.Generator) -> Any:
+    way = random.normal(size=3)
+    return way / np.linalg.norm(way)
+
+
+@pytest.fixture
+def small_crowds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Squares ahead of lamps for scenes that are small enough to try everything."""
+    monkeypatch.setattr(ahead, "CROWD", 30)
+
+
 @KERNELS
-@pytest.mark.parametrize(("make", "seed"), SCENES)
+@pytest.mark.usefixtures("small_crowds")
+@pytest.mark.parametrize(("make", "seed"), [*SCENES, *((outside_scene, seed) for seed in range(40))])
 def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int, kernel: Any) -> None:
     traced = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
     random = np.random.default_rng(seed)
@@ -104,12 +131,18 @@ def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int,
     directions /= np.linalg.norm(directions, axis=0)
     planes = [index for index, shape in enumerate(make(seed).shapes) if shape.flat()]
     for lamp, row in enumerate(traced.lights):
-        count = 6 * traced.grid**2 if traced.grid > 1 else 1
+        count, around = 6 * traced.grid**2 if traced.grid > 1 else 1, traced.around[lamp]
+        if around[SCALE] > 0:  # a half of the directions into the square, and some just beside it
+            reach = 1.1 * AHEAD / 2 * traced.grid / around[SCALE]
+            slopes = reach * random.uniform(-1, 1, (2, 1000))
+            directions[:, 1000:] = around[:9].reshape(3, 3).T @ np.array([*slopes, np.ones(1000)])
+            directions /= np.linalg.norm(directions, axis=0)
         # The list of a cell that was looked up holds for directions close by.
-        nearby = directions + sight.SPREAD * np.pi / 2 / traced.grid * 0.57 * random.uniform(-1, 1, (3, 2000))
+        nearby = directions + 0.99 * np.sqrt(around[SPREAD]) * ways(random, 2000).T
         nearby /= np.linalg.norm(nearby, axis=0)
-        nearby = np.where(dot(Vec(*directions), Vec(*nearby)) >= traced.spread, nearby, directions)
-        cells = cell(Vec(*nearby), traced.grid) if traced.grid > 1 else np.zeros(2000)
+        nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= around[SPREAD], nearby, directions)
+        with np.errstate(all="ignore"):
+            cells = cell(around, traced.grid, Vec(*nearby)) if traced.grid > 1 else np.zeros(2000)
         lists = [members(traced, "lamp_starts", traced.lit, lamp, at) for at in range(count)]
         assert 0 <= cells.min() <= cells.max() < count
         left_out = {shape for shape in planes if not any(shape in each for each in lists)}
@@ -209,8 +242,15 @@ def scattered() -> list[Any]:
 
 @pytest.mark.parametrize("shapes", [1, 8, 9, 200, 2_000, 10_000])
 def test_more_shapes_more_cells(shapes: int) -> None:
-    assert sight.grid_for(shapes) >= sight.grid_for(max(1, shapes // 2))
-    assert (sight.grid_for(shapes) == 1) == (shapes <= 8)
+    grid, half = (sight.grid_for(tables_of(count)) for count in (shapes, max(1, shapes // 2)))
+    assert grid >= half
+    assert (grid == 1) == (shapes <= 8)
+
+
+def tables_of(count: int) -> Tables:
+    tables = Tables()
+    tables.update((Sphere((0, 0, 0), 1, (1, 2, 3)),) * count)
+    return tables
 
 
 @pytest.mark.parametrize("grid", [2, 16])
@@ -222,5 +262,33 @@ def test_a_direction_lies_in_the_cell_that_its_face_row_and_column_say(grid: int
         for down in slopes:
             for across in slopes:
                 direction = forward + across * right + down * up
-                assert cell(Vec(*map(np.float64, direction)), grid) == expected
+                with np.errstate(all="ignore"):
+                    assert cell(sight.NO_CELLS, grid, Vec(*map(np.float64, direction))) == expected
                 expected += 1
+
+
+@KERNELS
+@pytest.mark.parametrize("size", [1.0, 1e-3, 1e-7])
+def test_corners_and_tangents_are_in_the_cone(size: float, kernel: Any) -> None:
+    """Seen from a point, the corners of triangles and the rims of balls as small as this, and hardly more is."""
+    random = np.random.default_rng(7)
+    for _ in range(300):
+        way = unit_way(random)
+        corners = 10.0 ** random.uniform(-3, 3) * (way + size * 0.4 * random.normal(size=(3, 3)))
+        axis, cosine = seen(kernel, np.c_[corners, np.zeros(3)])
+        assert all(np.dot(axis, corner / np.linalg.norm(corner)) >= cosine for corner in corners)
+        sine = size * random.uniform(0.3, 0.99999)
+        axis, cosine = seen(kernel, np.array([[*3 * way, 3 * sine]]))
+        aside = np.cross(way, unit_way(random))
+        rim = np.sqrt(1 - sine * sine) * way + sine * aside / np.linalg.norm(aside)
+        assert np.dot(axis, rim / np.linalg.norm(rim)) >= cosine
+        wider = 1.01 * np.arcsin(sine) + 2e-7
+        assert cosine > np.cos(wider)
+
+
+def seen(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]:
+    """The cone around the hull of some balls, seen from the origin: axis and cosine."""
+    rectangles, views, counts = np.zeros((6, 4), np.int32), np.zeros((1, 5)), np.zeros(25, np.int64)
+    given = np.zeros(3), sight.cube(2), balls, 0.0, np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
+    kernel.cover(*given, rectangles, 0, views, counts)
+    return views[0, :3], float(views[0, 3])

@@ -1,0 +1,92 @@
+"""Pyramids over triangles: no ray that hits is left out, and few others are tried."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from minirt.kernel.shade import clearance
+from minirt.lanes import Vec
+from minirt.shapes.pyramid import may_meet
+from minirt.shapes.triangle import watertight
+
+COUNT = 4000
+REGIMES = [(1.0, 0.0, 5.0), (1e-3, 0.0, 5.0), (1.0, 1e6, 5.0), (1e-4, 10.0, 5e3), (300.0, 0.0, 1.0), (1.0, 0.0, 0.01)]
+
+
+def vec(points: Any, number: type) -> Vec:
+    return Vec(*np.asarray(points, number).T)
+
+
+def drawn(seed: int, size: float, offset: float, distance: float, number: type) -> tuple[Any, ...]:
+    """A triangle, a point away from it, and points of the triangle: also of its edges, and its corners."""
+    random = np.random.default_rng(seed)
+    middle = offset * random.normal(size=3)
+    corners = (middle + size * random.normal(size=(3, 3))).astype(number).astype(float)
+    apex = (middle + distance * random.normal(size=3)).astype(number).astype(float)
+    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    shares = random.dirichlet(np.ones(3), COUNT)
+    shares[::4, 0] = 0
+    shares[::8, 1] = 0
+    shares /= shares.sum(axis=1, keepdims=True)
+    return corners, apex, normal / np.linalg.norm(normal), shares @ corners, random
+
+
+@pytest.mark.parametrize("number", [np.float64, np.float32])
+@pytest.mark.parametrize("regime", REGIMES)
+@pytest.mark.parametrize("seed", range(8))
+def test_all_rays_that_hit_are_tried(seed: int, regime: tuple[float, float, float], number: type) -> None:
+    corners, apex, normal, points, random = drawn(seed, *regime, number)
+    a, b, c = (vec(each, number) for each in corners)
+    origin, up, everything = vec(apex, number), vec(normal, number), np.ones(COUNT, bool)
+    # From the apex, and from behind the triangle towards it.
+    away = points - apex
+    for start in (None, points + away * 10.0 ** random.uniform(-3, 2, (COUNT, 1))):
+        begin = np.broadcast_to(apex, points.shape) if start is None else start.astype(number).astype(float)
+        aim = away if start is None else apex - begin
+        direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), number)
+        with np.errstate(all="ignore"):  # float32 may not tell corners so far away apart
+            hit, _ = watertight(a, b, c, vec(begin, number), direction)
+        tried = may_meet((a, b, c), up, origin, None if start is None else vec(begin, number), direction, everything)
+        assert hit.mean() > 0.5 or number is np.float32
+        assert not (hit & ~tried).any()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_rays_beside_it_are_not_tried(seed: int) -> None:
+    corners, apex, normal, _, random = drawn(seed, 1.0, 10.0, 5.0, np.float64)
+    outside = random.dirichlet(np.ones(3), COUNT)
+    outside[:, 0] = -(10.0 ** random.uniform(-6, 2, COUNT))
+    outside[:, 1] = 1 - outside[:, 0] - outside[:, 2]
+    aim = outside @ corners - apex
+    direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), np.float64)
+    given = tuple(vec(each, np.float64) for each in corners), vec(normal, np.float64), vec(apex, np.float64)
+    assert not may_meet(*given, None, direction, np.ones(COUNT, bool)).any()
+
+
+@pytest.mark.parametrize("number", [np.float64, np.float32])
+@pytest.mark.parametrize("seed", range(20))
+def test_a_surface_does_not_try_itself(seed: int, number: type) -> None:
+    corners, apex, normal, points, _ = drawn(seed, 1.0, 10.0, 50.0, number)
+    a, b, c = (vec(each, number) for each in corners)
+    normal = normal * np.sign(normal @ (apex - corners[0]))
+    point, up = vec(points, number), vec(normal, number)
+    rounding = clearance(point, number(np.abs(corners).max()))
+    assert rounding.dtype == number
+    start = point + rounding * up
+    aim = apex - points
+    direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), number)
+    for side in (1.0, -1.0):
+        tried = may_meet((a, b, c), up * number(side), vec(apex, number), start, direction, np.ones(COUNT, bool))
+        assert not tried.any()
+
+
+def test_only_what_is_asked_for() -> None:
+    corners, apex, normal, points, _ = drawn(3, 1.0, 0.0, 5.0, np.float64)
+    aim = points - apex
+    direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), np.float64)
+    asked = np.arange(COUNT) % 3 == 0
+    given = tuple(vec(each, np.float64) for each in corners), vec(normal, np.float64), vec(apex, np.float64)
+    assert np.array_equal(may_meet(*given, None, direction, asked), asked)
