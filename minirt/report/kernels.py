@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from decimal import Decimal, localcontext
+from functools import partial
 from math import ceil, inf, isfinite, nan, sqrt
+from statistics import median
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,12 +19,12 @@ from minirt.report import exact, textbook
 from minirt.report.poses import Array, Rays
 from minirt.report.sizes import sizes
 from minirt.shapes import Kind, Shape
-from minirt.timing import is_disturbed, runs
+from minirt.timing import Run, in_turn, is_disturbed
 
 U = 2.0**-53
 SLACK = 64 * U  # of distance and size: a verdict so close to the boundary may be either
 TIMED = 100_000  # rays of a run
-RUNS = 7
+RUNS = 15
 
 
 class Row(NamedTuple):
@@ -39,6 +41,7 @@ class Row(NamedTuple):
     false_hits: int
     ns_ray: float  # of one thread
     cpu_ns_ray: float
+    times_textbook: float  # the processor time in that of the textbook's formula; NaN where that is none
     valid: bool  # False: other programs disturbed the measurement of time
 
 
@@ -53,22 +56,31 @@ class Answers(NamedTuple):
 def measured(kind: Kind, regime: str, rays: Rays) -> Iterator[Row]:
     """The rows of all formulas for the rays of a regime; the number of rays for a shape is a multiple of 32."""
     right = answers(rays)
-    for name, formula, number in formulas(kind):
-        shoot, found = prepared(formula, rays, kind, number)
+    names, *parts = zip(*formulas(kind), strict=True)
+    works = [prepared(formula, rays, kind, number) for formula, number in zip(*parts, strict=True)]
+    count = len(works[0][1])
+    often = ceil(TIMED / count)
+    for shoot, _ in works:
         shoot(1)
-        times = runs(lambda: shoot(ceil(TIMED / len(found))), RUNS, 0.0)  # noqa: B023
-        best = min(times)
-        each = 1e9 / (ceil(TIMED / len(found)) * len(found))
+    times = dict(zip(names, in_turn([partial(shoot, often) for shoot, _ in works], RUNS), strict=True))
+    for name, (_, found) in zip(names, works, strict=True):
+        best = min(times[name])
         yield Row(
             kind.element.title,
             regime,
             name,
-            len(found),
+            count,
             *verdicts(found.astype(np.float64), right),
-            best.wall * each,
-            best.cpu * each,
+            best.wall * 1e9 / (often * count),
+            best.cpu * 1e9 / (often * count),
+            times_as_long(times[name], times.get("textbook", ())),
             not is_disturbed(best, 1),
         )
+
+
+def times_as_long(some: Sequence[Run], others: Sequence[Run]) -> float:
+    """The median of the processor time of one run in that of another of the same turn; NaN for none."""
+    return median(one.cpu / other.cpu for one, other in zip(some, others, strict=True)) if others else nan
 
 
 def formulas(kind: Kind) -> Iterator[tuple[str, Callable[..., Any], type[np.floating[Any]]]]:
