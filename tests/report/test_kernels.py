@@ -69,6 +69,13 @@ def test_where_rounding_decides_both_verdicts_are_right() -> None:
         assert isnan(largest)
 
 
+def test_at_an_edge_either_place_that_rounding_chooses_between_is_right() -> None:
+    edge = answers(3, thicker=(2,), thinner=(3,))
+    assert [verdicts(np.array([t]), edge)[1] for t in (2.0, 3.0, 2.5)] == [0, 0, pytest.approx(0.5 / 3)]
+    beside = answers(3, thicker=(3 - 1e-6,), thinner=(3,))
+    assert verdicts(np.array([3 - 1e-6]), beside)[1] == pytest.approx(1e-6 / 3)
+
+
 def test_nan_is_a_miss() -> None:
     assert verdicts(np.array([nan]), answers(2))[3] == 1
 
