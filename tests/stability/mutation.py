@@ -33,7 +33,7 @@ from tests.stability.regime import posed
 from tests.stability.table import REGIMES
 
 PACKAGE = Path(minirt.__file__).parent
-SHARED = ("quadric", "exact", "basis", "extents")  # of several shapes
+SHARED = ("quadric", "exact", "basis", "extents", "wrap")  # of several shapes
 FILES = (*SHARED, *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.KINDS))
 TESTS = ("tests/shapes", "tests/stability/test_surfaces.py", "tests/stability/test_properties.py")
 # What starts threads does not survive a fork.

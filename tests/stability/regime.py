@@ -94,7 +94,7 @@ class Right:
 
     def verdict(self, i: int, j: int, t: float) -> str:
         """What is wrong with an answer that is not exact; empty if it is near enough."""
-        if not self.solid and abs(t - self.t[i, j]) <= self.sheet_error(i, j, self.t[i, j]):
+        if not self.solid and abs(t - self.t[i, j]) < self.sheet_error(i, j, self.t[i, j]):  # not inf < inf
             return ""
         sides = [self.t[i, j], *self.around(i, j)]
         hits = [side for side in sides if np.isfinite(side)]
