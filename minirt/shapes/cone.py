@@ -74,8 +74,7 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     tip = -p.z * per_height
     base = (cone.height - p.z) * per_height
     first, last = minimum(tip, base), maximum(tip, base)
-    # From here on t is counted from the plane of the apex or, for a flat ray, from where it is deepest in the cone.
-    start = where(steep, tip, deepest(per_a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last))
+    start = deepest(per_a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last)
     p = p + start * d
     reach = cone.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise

@@ -35,9 +35,10 @@ def below_zero(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Nu
 
 
 def deepest(per_a: Number, b: Number, first: Number, last: Number) -> Number:
-    """Where, between two t, a t^2 + 2 b t + c is least, for a >= 0.
+    """Where, between two t, a t^2 + 2 b t + c is least, for a >= 0; for a < 0 somewhere between them.
 
     Of a ray that meets a solid between two planes that place lies in the solid, or as near to it as rounding lets it:
     counted from there all numbers are as small as the solid there is wide, however long it is and wherever its middle.
+    A ray with a < 0 is steeper than the solid's side, and nowhere between the planes farther off than that is wide.
     """
     return minimum(maximum(-b * per_a, first), last)
