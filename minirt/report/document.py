@@ -95,7 +95,8 @@ def formulas(rows: list[Row]) -> Iterator[str]:
     yield (
         "Relative error of the distance at which a ray meets a shape, against 60 digits: the largest (and the root "
         "mean square), false misses/false hits, and nanoseconds a ray of one thread, * where other programs disturbed "
-        "it. Verdicts are false where a shape thicker and one thinner by 64 roundings both have the other one. "
+        "it. Verdicts are false where a shape thicker and one thinner by 64 roundings both have the other one; a "
+        "square and a disc are larger and smaller by 64 roundings by the ray's slope. "
         "The cost is the processor time of the first formula in that of the textbook's, the median of runs in turn. "
         "Packets of rays of which one starts closely above or below a sphere, on its scale, are worked out with twice "
         "the digits and take several times as long; other packets do not.\n"

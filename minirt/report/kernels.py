@@ -19,6 +19,8 @@ from minirt.report import exact, textbook
 from minirt.report.poses import Array, Rays
 from minirt.report.sizes import sizes
 from minirt.shapes import Kind, Shape
+from minirt.shapes.disc import Disc
+from minirt.shapes.square import Square
 from minirt.timing import Run, in_turn, is_disturbed
 
 U = 2.0**-53
@@ -114,7 +116,7 @@ def answers(rays: Rays) -> Answers:
     for shape, origins, directions in zip(*rays, strict=True):
         for origin, direction in zip(origins, directions, strict=True):
             t = exact.distance(shape, origin, direction)
-            slack = SLACK * (reach(shape, origin) + (float(t) if t.is_finite() else 0.0))
+            slack = SLACK * (reach(shape, origin) + (float(t) if t.is_finite() else 0.0)) / slope(shape, direction)
             found.t.append(t)
             found.thicker.append(exact.distance(shape, origin, direction, slack))
             found.thinner.append(exact.distance(shape, origin, direction, -slack))
@@ -124,6 +126,12 @@ def answers(rays: Rays) -> Answers:
 def reach(shape: Shape, origin: Array) -> float:
     """How large the numbers are that a hit is computed from: the way to the shape and its lengths."""
     return float(np.linalg.norm(origin - own_points(shape)[0])) + float(sizes([shape]).sum())
+
+
+def slope(shape: Shape, direction: Array) -> float:
+    """The sine of the angle of a ray to a square or a disc: where it meets that is known to roundings by this. Of
+    others the edges are met from all sides: 1."""
+    return max(abs(float(np.dot(shape.normal, direction))), U) if isinstance(shape, (Square, Disc)) else 1.0
 
 
 def verdicts(found: Array, right: Answers) -> tuple[int, float, float, int, int]:

@@ -18,10 +18,12 @@ from minirt.shapes import KINDS, Kind, Shape, sphere
 from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.disc import Disc
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
 from minirt.shapes.triangle import Triangle
 from minirt.timing import Run
 from tests.kernel.pictures import ALL
@@ -133,6 +135,13 @@ def test_textbooks_lose_what_is_tiny_and_far() -> None:
     assert rows["textbook"].false_misses > 10
     assert rows["textbook"].false_hits > 5
     assert rows["miniRT, float32"].hits == 0
+
+
+@pytest.mark.parametrize("element", [Square, Disc], ids=lambda element: element.title)
+def test_at_a_flat_slope_the_place_in_a_sheet_is_known_to_roundings_by_the_slope(element: type[Shape]) -> None:
+    own = rows_of(KIND[element], "grazing")["miniRT"]
+    assert own.hits > 50
+    assert own.false_misses == own.false_hits == 0
 
 
 def test_textbooks_crack_at_rims_and_take_grazing_for_parallel() -> None:
