@@ -14,7 +14,8 @@ def below_zero(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Nu
     this order for a > 0 and in the other one for a < 0; NaN where there are none. `per_a` is 1 / a.
 
     q adds two numbers of the same sign, so q / a and c / q are both exact to a few roundings (Press et al., Numerical
-    Recipes, 5.6). With q = 0 the parabola touches zero at t = 0 or, where a = 0 too, is the constant c.
+    Recipes, 5.6). With q = 0 the parabola touches zero at t = 0 or, where a = 0 too, is the constant c: below zero from
+    -infinity or from infinity on.
     """
     D = b * b - a * c
     met = D >= 0.0
@@ -25,9 +26,7 @@ def below_zero(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Nu
         by_a, by_c = q * per_a, c / q
         level = q == 0.0
         if rarely(level):
-            constant = level & (a == 0.0)
-            by_a = where(constant, where(c > 0.0, -inf, inf), by_a)
-            by_c = where(constant, where(c > 0.0, inf, -inf), where(level, 0.0, by_c))
+            by_c = where(level, where(a == 0.0, where(c > 0.0, inf, -inf), 0.0), by_c)
         falling = q < 0.0
         below = where(falling, by_a, by_c)
         above = where(falling, by_c, by_a)
