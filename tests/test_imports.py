@@ -82,6 +82,7 @@ COMPILED = {  # the only files that import the compiler
     "kernel/jit_probe.py",
     "kernel/cache.py",
     "kernel/inlined.py",
+    "kernel/kept.py",
 }
 HEAVY = ("rendering", "viewer", "kernel", "mlx", "report")
 LATE = {"numba", "llvmlite", "pyglet", "PIL", *(f"minirt.{part}" for part in HEAVY)}

@@ -69,13 +69,14 @@ class Desktop:
         found: list[int] = []
 
         def look() -> bool:
-            with suppress(subprocess.CalledProcessError):  # there is no list before the first window
+            with suppress(subprocess.CalledProcessError, IndexError):  # not there yet, or on its way to another place
                 lines = self.run("wmctrl", "-l").decode().splitlines()
                 found[:] = [int(line.split()[0], 16) for line in lines if line.split(None, 3)[3:] == [title]]
-            return bool(found)
+                self.activate(found[0])
+                return True
+            return False
 
         until(look, f"a window called {title}")
-        self.activate(found[0])
         return found[0]
 
     def activate(self, window: int) -> None:

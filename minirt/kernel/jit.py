@@ -15,8 +15,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from llvmlite import ir
-from numba import njit, typeof, types
-from numba.core.registry import cpu_target
+from numba import typeof, types
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import lower_builtin, overload, register_jitable
 
@@ -37,6 +36,7 @@ from minirt.kernel import (
     whitted,
 )
 from minirt.kernel.inlined import Inlined
+from minirt.kernel.kept import compiled
 from minirt.kernel.traced import Traced
 from minirt.lanes import angle, power, vec
 from minirt.lanes.teaching import teach
@@ -45,9 +45,6 @@ from minirt.shapes import ALL_KINDS, basis, exact, quadric, wrap
 
 Arguments: TypeAlias = tuple[Any, ...]  # of `minirt.kernel.frame.frame`
 
-# error_model: x / 0 is infinite or NaN, as in IEEE 754. fastmath: a * b + c may round once, and nothing else. _nrt: the
-# kernel allocates nothing, and without reference counting it was seen to run twice as fast.
-FLAGS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True, "_nrt": False}
 # Functions that only the kernel calls: without wrappers for calls from outside 20 % less to compile; inlined, because a
 # call passes vectors through memory, 1.5 to 2 times as fast.
 INNER: dict[str, Any] = {
@@ -215,11 +212,12 @@ for _module in (
             register_jitable(**INNER)(_function)
 
 CACHE = cache.folder()
+LOADED = 8  # kernels in memory, where they can be loaded again
 PAINTED = ("checks", "textures", "bumps", "normals")
 OPTIONAL = tuple(name for name, default in Traced._field_defaults.items() if default is None)
 
 
-@lru_cache(None)
+@lru_cache(LOADED if CACHE else None)
 def kernel_of(features: tuple[str, ...], *row_types: np.dtype[Any]) -> Any:
     """The kernel for shapes that lie in rows of these types and for `features` of a scene, compiled or loaded when it
     is first called.
@@ -230,8 +228,7 @@ def kernel_of(features: tuple[str, ...], *row_types: np.dtype[Any]) -> Any:
         import_module("minirt.kernel.jit_bvh")
     titles = (rows.kind_of(each.names).element.title for each in row_types)
     place = CACHE and CACHE / "-".join([*titles, *features, str(row_types[0][0].base)])
-    with cache.numba_cache(place):
-        return njit(cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(frame.frame)
+    return compiled(frame.frame, place)
 
 
 def kernel_for(traced: Traced) -> Any:
@@ -248,12 +245,6 @@ def present(table: Any, names: tuple[str, ...]) -> list[str]:
 def compile(arguments: Arguments) -> None:
     """Compile the kernel for arguments of these types, unless it is kept from an earlier run."""
     kernel_for(arguments[-1]).compile(tuple(map(typeof, arguments)))
-
-
-def get_ready() -> None:
-    """Load what numba needs to load a kernel, which it would do with the first."""
-    cpu_target.typing_context.refresh()
-    cpu_target.target_context.refresh()
 
 
 def is_kept(arguments: Arguments) -> bool:

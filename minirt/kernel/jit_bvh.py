@@ -6,12 +6,13 @@ from itertools import count
 from typing import Any
 
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core import cgutils
 from numba.extending import register_jitable
 
-from minirt.kernel import bvh, bvh_build, bvh_collapse, bvh_hits, cache, rows, whitted
-from minirt.kernel.jit import CACHE, FLAGS, INNER, first_number, own_functions
+from minirt.kernel import bvh, bvh_build, bvh_collapse, bvh_hits, rows, whitted
+from minirt.kernel.jit import CACHE, INNER, first_number, own_functions
+from minirt.kernel.kept import compiled
 from minirt.lanes import compiled_verbs, verbs
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, Mask, VecType, constant, vec_of
@@ -106,13 +107,7 @@ WEIGH = types.void(BINARY, TABLE, LINKS)
 COLLAPSE = types.UniTuple(WHOLE, 2)(BINARY, LINKS, NUMBER[::1], WHOLE[::1], LINKS, LINKS)
 
 
-def compiled(function: Any, *signature: Any) -> Any:
-    """A function with its compiled form, which is kept."""
-    return njit(*signature, cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(function)
-
-
-with cache.numba_cache(CACHE):
-    divide = compiled(bvh_build.divide, DIVIDE)
-    weigh = compiled(bvh_collapse.weigh, WEIGH)
-    collapse = compiled(bvh_collapse.collapse, COLLAPSE)
-    trace_rays = compiled(bvh_hits.trace_rays)
+divide = compiled(bvh_build.divide, CACHE, DIVIDE)
+weigh = compiled(bvh_collapse.weigh, CACHE, WEIGH)
+collapse = compiled(bvh_collapse.collapse, CACHE, COLLAPSE)
+trace_rays = compiled(bvh_hits.trace_rays, CACHE)

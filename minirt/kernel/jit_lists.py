@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from numba import njit, types
+from numba import types
 from numba.extending import register_jitable
 
-from minirt.kernel import cache, lists
-from minirt.kernel.jit import CACHE, FLAGS, INNER, own_functions
+from minirt.kernel import lists
+from minirt.kernel.jit import CACHE, INNER, own_functions
+from minirt.kernel.kept import compiled
 
 for _function in own_functions(lists):
     if _function not in (lists.cover, lists.fill):
@@ -21,6 +22,5 @@ COVER = WHOLE(
 )
 FILL = types.void(SHORT[:, ::1], WHOLE[::1], WHOLE, WHOLE[::1], SHORT[::1])
 
-with cache.numba_cache(CACHE):
-    cover = njit(COVER, cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(lists.cover)
-    fill = njit(FILL, cache=CACHE is not None, no_cfunc_wrapper=True, **FLAGS)(lists.fill)
+cover = compiled(lists.cover, CACHE, COVER)
+fill = compiled(lists.fill, CACHE, FILL)

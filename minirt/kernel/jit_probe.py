@@ -10,7 +10,8 @@ from typing import Any
 from numba import njit
 from numba.extending import register_jitable
 
-from minirt.kernel.jit import FLAGS, INNER, own_functions
+from minirt.kernel.jit import INNER, own_functions
+from minirt.kernel.kept import FLAGS
 from minirt.kernel.rows import read
 from minirt.lanes import Vec, load, save, where, width
 from minirt.shapes import ALL_KINDS

@@ -6,7 +6,6 @@ import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
@@ -20,9 +19,9 @@ class Helper:
 
     process: subprocess.Popen[bytes] | None = None
 
-    def compile(self, arguments: tuple[Any, ...], meanwhile: Callable[[], None]) -> None:
-        """Compile the kernel for arguments of these types and keep it, and call `meanwhile` beside that; do nothing
-        where no process can be started. RenderError with the reason where that fails, or where `stop` ended it."""
+    def compile(self, arguments: tuple[Any, ...]) -> None:
+        """Compile the kernel for arguments of these types and keep it; do nothing where no process can be started.
+        RenderError with the reason where that fails, or where `stop` ended it."""
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(each or os.curdir for each in sys.path)}
         try:
             self.process = process = subprocess.Popen(
@@ -41,7 +40,6 @@ class Helper:
             with suppress(BrokenPipeError):
                 process.stdin.write(pickle.dumps(arguments))
                 process.stdin.flush()
-            meanwhile()
             told = process.stderr.read().decode(errors="replace").strip()
         if process.returncode:
             reason = told.splitlines()[-1] if told else f"the compiler ended with status {process.returncode}"

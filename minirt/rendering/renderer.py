@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
+from contextlib import nullcontext
 from functools import cached_property, partial
 from importlib import import_module
 from itertools import takewhile
@@ -82,7 +83,7 @@ class Renderer:
 
         Another process compiles, where what it makes can be kept. RenderError where that fails.
         """
-        with uncollected():
+        with nullcontext() if self.known else uncollected():
             self.load(scene)
 
     def load(self, scene: Scene) -> None:
@@ -92,7 +93,7 @@ class Renderer:
             packing = import_module("minirt.rendering.packing").Packing(lists, self.precision, self.depth)
             arguments = frame_arguments(packing.pack(small(scene), 1, 1), pixels)
             if not self.kernel.is_kept(arguments):
-                self.helper.compile(arguments, self.kernel.get_ready)
+                self.helper.compile(arguments)
         self.render(scene, pixels)
 
     def stop(self) -> None:

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from numba import njit, typeof
 
-from minirt.kernel import bvh_hits, jit
+import minirt.kernel.jit  # noqa: F401  (attaches the compiler)
+from minirt.kernel import bvh_hits
 from minirt.kernel.bvh import WIDTH
+from minirt.kernel.kept import FLAGS
 from minirt.lanes import Vec, lane, load, where
 from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
@@ -55,7 +57,7 @@ def shadows() -> Any:
             for ray in range(WIDTH):
                 free[i + ray] = lane(answer, ray)
 
-    return run, njit(**jit.FLAGS)(run)
+    return run, njit(**FLAGS)(run)
 
 
 @pytest.mark.parametrize("way", [0, 1], ids=["interpreted", "compiled"])

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from minirt.kernel import jit
+from minirt.kernel.kept import compiled
 from minirt.lanes.angle import ATAN_HALF
 from minirt.materials import Checker
 from minirt.rendering import Renderer
@@ -28,7 +29,7 @@ def of(*kinds: type[Any]) -> Scene:
 
 def code(scene: Scene) -> str:
     """The kernel of a scene, compiled here and now: what is kept from other runs shows no LLVM code."""
-    kernel = jit.njit(no_cfunc_wrapper=True, **jit.FLAGS)(jit.frame.frame)
+    kernel = compiled(jit.frame.frame, None)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(jit, "kernel_for", lambda traced: kernel)
         Renderer(1).render(scene, np.zeros((8, 8, 4), np.uint8))

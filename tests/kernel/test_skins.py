@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from numba import njit
 
+import minirt.kernel.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel import skins
-from minirt.kernel.jit import FLAGS
+from minirt.kernel.kept import FLAGS
 from minirt.kernel.skins import Skins, checkered, raised, turned
 from minirt.kernel.texels import height_slopes
 from minirt.lanes import Vec, load, save, width

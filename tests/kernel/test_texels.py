@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from numba import njit
 
+import minirt.kernel.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel import texels
-from minirt.kernel.jit import FLAGS
+from minirt.kernel.kept import FLAGS
 from minirt.lanes import load, save, width
 from minirt.rendering.materials import Album
 from tests.kernel.pictures import Array

@@ -91,29 +91,31 @@ def test_two_programs_at_once(tmp_path: Path) -> None:
 def test_what_goes_wrong_is_told(monkeypatch: pytest.MonkeyPatch, code: str, reason: str) -> None:
     monkeypatch.setattr(helper, "COMMAND", (sys.executable, "-c", code))
     with pytest.raises(RenderError, match=f"^the kernel cannot be compiled: {reason}$"):
-        Helper().compile((), lambda: None)
+        Helper().compile(())
 
 
 def test_where_no_process_can_be_started_nothing_is_done(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(helper, "COMMAND", (str(tmp_path / "nothing"),))
-    Helper().compile((), lambda: None)
+    Helper().compile(())
 
 
 def test_stop_ends_the_process(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(helper, "COMMAND", (sys.executable, "-c", "import time; time.sleep(60)"))
     errors: list[RenderError] = []
-    started = threading.Event()
     made = Helper()
     made.stop()  # of nothing
 
     def compile() -> None:
         with pytest.raises(RenderError) as caught:
-            made.compile((), started.set)
+            made.compile(())
         errors.append(caught.value)
 
     thread = threading.Thread(target=compile)
     thread.start()
-    assert started.wait(5)
+    start = time.monotonic()
+    while made.process is None:
+        assert time.monotonic() - start < 5
+        time.sleep(0.01)
     start = time.monotonic()
     made.stop()
     thread.join(5)

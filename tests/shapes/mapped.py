@@ -9,7 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from minirt.kernel import jit, rows
+import minirt.kernel.jit  # noqa: F401  (attaches the compiler)
+from minirt.kernel import rows
+from minirt.kernel.kept import FLAGS
 from minirt.lanes import Vec, load, save, splat, width
 from minirt.shapes import Kind, Shape
 from minirt.shapes.paraboloid import Paraboloid
@@ -65,7 +67,7 @@ def kernel() -> Any:
             save(splat(to_v.y, u), out[6], i)
             save(splat(to_v.z, u), out[7], i)
 
-    return njit(**jit.FLAGS)(run)
+    return njit(**FLAGS)(run)
 
 
 def compiled(shape: Shape, points: Array, normals: Array) -> Mapped:

@@ -7,7 +7,8 @@ from fractions import Fraction
 import numpy as np
 from numba import njit
 
-from minirt.kernel.jit import FLAGS
+import minirt.kernel.jit  # noqa: F401  (attaches the compiler)
+from minirt.kernel.kept import FLAGS
 from minirt.lanes import Vec, product_error, rounded_product
 from minirt.shapes.exact import power, two_product, two_sum
 

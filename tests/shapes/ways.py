@@ -10,7 +10,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from minirt.kernel import jit, rows
+import minirt.kernel.jit  # noqa: F401  (attaches the compiler)
+from minirt.kernel import rows
+from minirt.kernel.kept import FLAGS
 from minirt.lanes import Vec, lane, load, where, width
 from minirt.rendering.parts import numbers
 from minirt.shapes import KINDS, Kind, Shape
@@ -84,7 +86,7 @@ def kernel() -> Any:
             for ray in range(width(t)):
                 t[i + ray] = lane(at, ray)
 
-    return njit(**jit.FLAGS)(run)
+    return njit(**FLAGS)(run)
 
 
 def compiled(shapes: list[Shape], origins: Array, directions: Array) -> Array:

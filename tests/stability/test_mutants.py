@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from minirt.kernel.jit import FLAGS
+import minirt.kernel.jit  # noqa: F401  (attaches the compiler)
+from minirt.kernel.kept import FLAGS
 from minirt.shapes import KINDS, Kind
 from tests.shapes.ways import Intersect
 from tests.stability import mutants

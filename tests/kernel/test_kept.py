@@ -1,0 +1,75 @@
+"""Machine code of kernels: what is written, and that memory is free again."""
+
+from __future__ import annotations
+
+import gc
+import pickle
+import weakref
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from minirt.kernel import jit, kept
+from minirt.rendering import Renderer
+from minirt.rendering.frames import frame_arguments
+from minirt.rendering.packing import Packing
+from minirt.scene import Scene, parse
+
+BALL = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0 2 255,60,60\n"
+FLOOR = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\npl 0,-1,0 0,1,0 9,9,99\n"
+
+pytestmark = pytest.mark.skipif(jit.CACHE is None, reason="kernels cannot be kept here")
+
+
+def picture(scene: Scene) -> bytes:
+    renderer, pixels = Renderer(threads=1), np.zeros((30, 40, 4), np.uint8)
+    renderer.prepare(scene)
+    renderer.render(scene, pixels)
+    return pixels.tobytes()
+
+
+def kernel(scene: Scene) -> object:
+    return jit.kernel_for(Packing().pack(scene, 40, 30))
+
+
+def test_what_is_written_is_machine_code_and_hardly_more() -> None:
+    scene = parse(BALL).scene
+    picture(scene)
+    arguments = frame_arguments(Packing().pack(scene, 40, 30), np.zeros((30, 40, 4), np.uint8))
+    assert jit.is_kept(arguments)
+    folder = Path(jit.kernel_for(arguments[-1])._cache.cache_path)
+    for written in folder.glob("frame.frame*.nbc"):
+        (_, kind, (machine_code, names)), *_ = pickle.loads(written.read_bytes())
+        assert kind == "object"
+        assert len(machine_code) > 10_000
+        assert len(names) < 0.2 * len(machine_code)
+
+
+def test_a_kernel_that_nobody_holds_gives_its_memory_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    ball, floor = parse(BALL).scene, parse(FLOOR).scene
+    picture(ball)  # what is there with the first is never looked through again
+    engines = []
+
+    class Codegen(kept.JITCPUCodegen):  # type: ignore[misc]
+        def __init__(self, name: str) -> None:
+            super().__init__(name)
+            engines.append(weakref.ref(self._engine._ee))
+
+    monkeypatch.setattr(kept, "JITCPUCodegen", Codegen)
+    jit.kernel_of.cache_clear()
+    before = picture(floor)
+    assert len(engines) == 1
+    gc.collect()
+    assert engines[0]() is not None, "as long as it may be called"
+    jit.kernel_of.cache_clear()
+    gc.collect()
+    assert engines[0]() is None
+    assert picture(floor) == before
+    assert len(engines) == 2
+
+
+def test_few_kernels_are_in_memory_at_a_time() -> None:
+    assert jit.kernel_of.cache_info().maxsize == jit.LOADED
+    held = kernel(parse(BALL).scene)
+    assert kernel(parse(BALL).scene) is held
