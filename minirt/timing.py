@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from time import perf_counter, process_time
 from typing import NamedTuple
 
@@ -24,6 +24,11 @@ def runs(work: Callable[[], object], least: int, seconds: float) -> list[Run]:
         work()
         times.append(Run(perf_counter() - wall, process_time() - cpu))
     return times
+
+
+def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[Run, ...]]:
+    """The times of so many runs of each work. They take turns: what else the machine does slows all of them alike."""
+    return [*zip(*([runs(work, 1, 0.0)[0] for work in works] for _ in range(times)), strict=True)]
 
 
 def is_disturbed(run: Run, threads: int) -> bool:

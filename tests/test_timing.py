@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from itertools import count
 
 import pytest
 
 from minirt import timing
-from minirt.timing import Run, is_disturbed, runs
+from minirt.timing import Run, in_turn, is_disturbed, runs
 
 
 def work() -> None:
@@ -21,6 +22,13 @@ def work() -> None:
 def test_as_many_runs_as_are_asked_for() -> None:
     done: list[int] = []
     assert len(runs(lambda: done.append(0), 7, 0.0)) == len(done) == 7
+
+
+def test_works_take_turns() -> None:
+    done: list[int] = []
+    times = in_turn([partial(done.append, 0), partial(done.append, 1)], 3)
+    assert [len(each) for each in times] == [3, 3]
+    assert done == [0, 1] * 3
 
 
 def test_and_more_to_fill_the_time(monkeypatch: pytest.MonkeyPatch) -> None:

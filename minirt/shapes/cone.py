@@ -70,25 +70,22 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     rise = cone.slope * d.z
     a = d.x * d.x + d.y * d.y - rise * rise
     steep = a < 0.0
-    per_height = 1.0 / d.z
+    per_a, per_height = 1.0 / a, 1.0 / d.z
     tip = -p.z * per_height
     base = (cone.height - p.z) * per_height
     first, last = minimum(tip, base), maximum(tip, base)
-    # From here on t is counted from the plane of the apex or, for a flat ray, from where it is deepest in the cone.
-    start = where(steep, tip, deepest(a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last))
+    start = deepest(per_a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last)
     p = p + start * d
     reach = cone.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
-    hit, low, high = below_zero(a, b, p.x * p.x + p.y * p.y - reach * reach)
+    hit, below, above = below_zero(a, per_a, b, p.x * p.x + p.y * p.y - reach * reach)
     t = start
     if any(hit):
-        first, last = first - start, last - start
-        rising = d.z > 0.0
-        enter = maximum(first, where(steep, where(rising, high, first), low))
-        leave = minimum(last, where(steep, where(rising, last, low), high))
-        near = start + enter
-        t = where(near > 0.0, near, start + leave)
-        hit = hit & (enter <= leave) & (t > 0.0)
+        rising = d.z > 0.0  # a steep ray that rises gets out of the other nappe and into this one, up to the base
+        near = where(steep & ~rising, first, maximum(start + below, first))
+        far = where(steep & rising, last, minimum(start + above, last))
+        t = where(near > 0.0, near, far)
+        hit = hit & (near <= far) & (t > 0.0)
     return hit, t
 
 

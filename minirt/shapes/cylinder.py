@@ -67,21 +67,20 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Ma
     p = to_basis(cylinder.u, cylinder.v, cylinder.w, origin - cylinder.centre)
     d = to_basis(cylinder.u, cylinder.v, cylinder.w, direction)
     a = d.x * d.x + d.y * d.y
-    per_height = 1.0 / d.z
+    per_a, per_height = 1.0 / a, 1.0 / d.z
     bottom = (-cylinder.half - p.z) * per_height
     top = (cylinder.half - p.z) * per_height
     first, last = minimum(bottom, top), maximum(bottom, top)
-    start = deepest(a, p.x * d.x + p.y * d.y, first, last)
+    start = deepest(per_a, p.x * d.x + p.y * d.y, first, last)
     p = p + start * d
     c = p.x * p.x + p.y * p.y - cylinder.radius * cylinder.radius
-    hit, low, high = below_zero(a, p.x * d.x + p.y * d.y, c)
+    hit, below, above = below_zero(a, per_a, p.x * d.x + p.y * d.y, c)
     t = start
     if any(hit):
-        enter = maximum(first - start, low)
-        leave = minimum(last - start, high)
-        near = start + enter
-        t = where(near > 0.0, near, start + leave)
-        hit = hit & (enter <= leave) & (t > 0.0)
+        near = maximum(start + below, first)
+        far = minimum(start + above, last)
+        t = where(near > 0.0, near, far)
+        hit = hit & (near <= far) & (t > 0.0)
     return hit, t
 
 

@@ -82,34 +82,29 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
     rise = hyperboloid.slope * d.z
     a = d.x * d.x + d.y * d.y - rise * rise
     steep = a < 0.0
-    per_height = 1.0 / d.z
+    per_a, per_height = 1.0 / a, 1.0 / d.z
     bottom = (-hyperboloid.half - p.z) * per_height
     top = (hyperboloid.half - p.z) * per_height
     first, last = minimum(bottom, top), maximum(bottom, top)
     # From here on t is counted from the plane of the waist or, for a flat ray, from where it is deepest in the solid.
-    least = deepest(a, p.x * d.x + p.y * d.y - hyperboloid.slope * p.z * rise, first, last)
+    least = deepest(per_a, p.x * d.x + p.y * d.y - hyperboloid.slope * p.z * rise, first, last)
     start = where(steep, -p.z * per_height, least)
     p = p + start * d
     reach = hyperboloid.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
     c = p.x * p.x + p.y * p.y - reach * reach - hyperboloid.waist * hyperboloid.waist
-    met, low, high = below_zero(a, b, c)
+    met, below, above = below_zero(a, per_a, b, c)
     hit = met | steep
     t = start
     if any(hit):
-        first, last = first - start, last - start
-        enter = where(steep, first, maximum(first, low))
-        leave = where(met, minimum(last, where(steep, low, high)), last)
-        near = start + enter
-        far = start + leave
+        again = maximum(start + below, first)
+        near = where(steep, first, again)
+        far = minimum(start + above, last)
+        over = steep & ((far < near) | (far <= 0.0))
+        near = where(over, again, near)
+        far = where(over, last, far)
         t = where(near > 0.0, near, far)
-        one = hit & (enter <= leave) & (far > 0.0)
-        again = maximum(first, high)
-        near = start + again
-        far = start + last
-        two = steep & ~one & (again <= last) & (far > 0.0)
-        t = where(two, where(near > 0.0, near, far), t)
-        hit = one | two
+        hit = hit & (near <= far) & (t > 0.0)
     return hit, t
 
 

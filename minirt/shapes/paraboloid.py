@@ -78,21 +78,20 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
     d = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, direction)
     a = d.x * d.x + d.y * d.y
     slant = paraboloid.focal * d.z
-    per_height = 1.0 / d.z
+    per_a, per_height = 1.0 / a, 1.0 / d.z
     vertex = -p.z * per_height
     cap = (paraboloid.height - p.z) * per_height
     first, last = minimum(vertex, cap), maximum(vertex, cap)
-    start = deepest(a, p.x * d.x + p.y * d.y - slant, first, last)
+    start = deepest(per_a, p.x * d.x + p.y * d.y - slant, first, last)
     p = p + start * d
     c = p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z
-    hit, low, high = below_zero(a, p.x * d.x + p.y * d.y - slant, c)
+    hit, below, above = below_zero(a, per_a, p.x * d.x + p.y * d.y - slant, c)
     t = start
     if any(hit):
-        enter = maximum(first - start, low)
-        leave = minimum(last - start, high)
-        near = start + enter
-        t = where(near > 0.0, near, start + leave)
-        hit = hit & (enter <= leave) & (t > 0.0)
+        near = maximum(start + below, first)
+        far = minimum(start + above, last)
+        t = where(near > 0.0, near, far)
+        hit = hit & (near <= far) & (t > 0.0)
     return hit, t
 
 

@@ -2,39 +2,42 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, nan
 
-from minirt.lanes import any, copysign, maximum, minimum, sqrt, where
+from minirt.lanes import any, copysign, maximum, minimum, rarely, splat, sqrt, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
 
-def below_zero(a: Number, b: Number, c: Number) -> tuple[Mask, Number, Number]:
-    """Where a t^2 + 2 b t + c <= 0 or, for a < 0, >= 0: whether anywhere, and the ends of the interval.
+def below_zero(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Number, Number]:
+    """Whether a t^2 + 2 b t + c is zero anywhere, and where it goes below zero and above it again: the two roots, in
+    this order for a > 0 and in the other one for a < 0; NaN where there are none. `per_a` is 1 / a.
 
     q adds two numbers of the same sign, so q / a and c / q are both exact to a few roundings (Press et al., Numerical
-    Recipes, 5.6). With q = 0 the parabola touches zero at t = 0 or, where a = 0 too, is the constant c.
+    Recipes, 5.6). With q = 0 the parabola touches zero at t = 0 or, where a = 0 too, is the constant c: below zero from
+    -infinity or from infinity on.
     """
     D = b * b - a * c
-    hit = D >= 0.0
-    low = b
-    high = b
-    if any(hit):
+    met = D >= 0.0
+    below = splat(nan, D)
+    above = below
+    if any(met):
         q = -(b + copysign(sqrt(D), b))
+        by_a, by_c = q * per_a, c / q
         level = q == 0.0
-        constant = level & (a == 0.0)
-        r0 = where(constant, -inf, q / a)
-        r1 = where(constant, inf, where(level, 0.0, c / q))
-        low = minimum(r0, r1)
-        high = maximum(r0, r1)
-        hit = hit & (~constant | (c <= 0.0))
-    return hit, low, high
+        if rarely(level):
+            by_c = where(level, where(a == 0.0, where(c > 0.0, inf, -inf), 0.0), by_c)
+        falling = q < 0.0
+        below = where(falling, by_a, by_c)
+        above = where(falling, by_c, by_a)
+    return met, below, above
 
 
-def deepest(a: Number, b: Number, first: Number, last: Number) -> Number:
-    """Where, between two t, a t^2 + 2 b t + c is least, for a >= 0.
+def deepest(per_a: Number, b: Number, first: Number, last: Number) -> Number:
+    """Where, between two t, a t^2 + 2 b t + c is least, for a >= 0; for a < 0 somewhere between them.
 
     Of a ray that meets a solid between two planes that place lies in the solid, or as near to it as rounding lets it:
     counted from there all numbers are as small as the solid there is wide, however long it is and wherever its middle.
+    A ray with a < 0 is steeper than the solid's side, and nowhere between the planes farther off than that is wide.
     """
-    return minimum(maximum(-b / a, first), last)
+    return minimum(maximum(-b * per_a, first), last)

@@ -14,7 +14,7 @@ from math import hypot
 from typing import NamedTuple
 
 from minirt.fields import Colour, Point, Triple, declare, unit
-from minirt.lanes import Vec, dot, fabs, maximum, minimum, rounded_product, where
+from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rounded_product, where
 from minirt.lanes import cross as product
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
@@ -102,35 +102,36 @@ def watertight(a: Vec, b: Vec, c: Vec, origin: Vec, direction: Vec) -> tuple[Mas
     towards an edge or a corner between triangles meets at least one of them.
     """
     x, y, z = fabs(direction.x), fabs(direction.y), fabs(direction.z)
-    by_x, by_y = (x >= y) & (x >= z), y >= z  # where it is not by x
-    d = turned(by_x, by_y, direction)
+    by_x = (x >= y) & (x >= z)
+    by_y = (y >= z) & ~by_x
+    d = exchanged(by_x, by_y, direction)
     per_depth = 1.0 / d.z
     shear = Vec(d.x * per_depth, d.y * per_depth, per_depth)
-    a = sheared(shear, turned(by_x, by_y, a - origin))
-    b = sheared(shear, turned(by_x, by_y, b - origin))
-    c = sheared(shear, turned(by_x, by_y, c - origin))
+    a = sheared(shear, exchanged(by_x, by_y, a - origin))
+    b = sheared(shear, exchanged(by_x, by_y, b - origin))
+    c = sheared(shear, exchanged(by_x, by_y, c - origin))
     # Twice the areas that the origin has with each edge: by them the hit is the mean of the corners.
     of_a = twice_the_area(b, c)
     of_b = twice_the_area(c, a)
     of_c = twice_the_area(a, b)
-    t = (of_a * a.z + of_b * b.z + of_c * c.z) / (of_a + of_b + of_c)
     least = minimum(minimum(of_a, of_b), of_c)
     most = maximum(maximum(of_a, of_b), of_c)
-    return ((least >= 0.0) | (most <= 0.0)) & (t > 0.0), t
+    hit = (least >= 0.0) | (most <= 0.0)
+    t = a.z
+    if any(hit):
+        t = (of_a * a.z + of_b * b.z + of_c * c.z) * per_depth / (of_a + of_b + of_c)
+        hit = hit & (t > 0.0)
+    return hit, t
 
 
-def turned(by_x: Mask, by_y: Mask, v: Vec) -> Vec:
-    """The vector with its axes turned round until the one that is meant is the last."""
-    return Vec(
-        where(by_x, v.y, where(by_y, v.z, v.x)),
-        where(by_x, v.z, where(by_y, v.x, v.y)),
-        where(by_x, v.x, where(by_y, v.y, v.z)),
-    )
+def exchanged(by_x: Mask, by_y: Mask, v: Vec) -> Vec:
+    """The vector with its last axis and the one that is meant, where it is another, in each other's place."""
+    return Vec(where(by_x, v.z, v.x), where(by_y, v.z, v.y), where(by_x, v.x, where(by_y, v.y, v.z)))
 
 
 def sheared(shear: Vec, v: Vec) -> Vec:
     """Where a point is seen along the ray, and how far along it."""
-    return Vec(v.x - rounded_product(shear.x, v.z), v.y - rounded_product(shear.y, v.z), v.z * shear.z)
+    return Vec(v.x - rounded_product(shear.x, v.z), v.y - rounded_product(shear.y, v.z), v.z)
 
 
 def twice_the_area(p: Vec, q: Vec) -> Number:

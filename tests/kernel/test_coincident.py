@@ -9,8 +9,9 @@ import pytest
 
 from minirt.fields import unit
 from minirt.kernel import trace
+from minirt.lanes import Vec
 from minirt.scene import Ambient, Camera, Light, Scene
-from minirt.shapes import Shape
+from minirt.shapes import Shape, plane
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
@@ -91,3 +92,32 @@ def test_a_tie_that_the_nearer_wins_does_not_pass(monkeypatch: pytest.MonkeyPatc
         twins = scene(order[0].replace(colour=GREEN), order[1].replace(colour=BLUE))
         wrong += (interpreted(twins)[1][..., 2] > 0).sum()
     assert wrong > 50
+
+
+def owners(best: np.ndarray, rival: Plane, origin: Vec, direction: Vec) -> np.ndarray:
+    """Which shape owns each place, 1 that was hit at `best` or 0, a plane that is tried after it."""
+    state = best, np.ones_like(best), np.zeros_like(best)
+    hit, t = plane.intersect(rival.pack(), origin, direction)
+    return trace.nearer(rival.pack(), 0, 0.0, hit, t, origin, direction, state)[1]
+
+
+def test_to_the_horizon_the_earlier_owns_it_where_two_planes_are_tilted_by_roundings() -> None:
+    """One unit above them, at slopes of 1.5e-12 to 3e-12: there t differs by up to 0.9 NEARBY."""
+    slopes, round_about = np.geomspace(1.5e-12, 3e-12, 1000), np.linspace(0, 200, 1000)
+    level = [np.cos(round_about) * t + np.sin(round_about) * b for t, b in zip(T, np.cross(N, T), strict=True)]
+    direction = Vec(*(x - slopes * n for x, n in zip(level, N, strict=True)))
+    origin = Vec(*(np.full(1000, n) for n in N))
+    tilted = Plane((0, 0, 0), (np.nextafter(N[0], 1), N[1], np.nextafter(N[2], 1)), RED)
+    _, t = plane.intersect(Plane((0, 0, 0), N, RED).pack(), origin, direction)
+    farther = t < plane.intersect(tilted.pack(), origin, direction)[1]
+    assert farther.sum() > 300
+    assert (owners(t, tilted, origin, direction) == 0).all()
+
+
+def test_what_is_seen_at_a_flat_slope_is_not_taken_for_what_is_before_it() -> None:
+    """A plane, seen at slopes at which even 1e-4 along the ray is no way from it, behind something 1e-4 nearer."""
+    slopes = np.geomspace(1e-14, 1e-12, 100)
+    origin, direction = Vec(*np.zeros((3, 100))), Vec(np.ones(100), -slopes, np.zeros(100))
+    floors = [Plane((0, -slope, 0), (0, 1, 0), RED) for slope in slopes]  # all are met at 1
+    owned = [owners(np.full(100, 1 - 1e-4), floor, origin, direction)[i] for i, floor in enumerate(floors)]
+    assert owned == [1] * 100

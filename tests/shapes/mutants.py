@@ -30,7 +30,7 @@ def accepts_nan(sphere: PackedSphere, origin: Vec, direction: Vec) -> Any:
     return ~(chord < 0), first(-dot(f, direction) - sqrt(chord), -dot(f, direction) + sqrt(chord))
 
 
-def two_roots(a: Any, b: Any, c: Any) -> Any:
+def two_roots(a: Any, _: Any, b: Any, c: Any) -> Any:
     """`below_zero` by the formula of school."""
     D = b * b - a * c
     return D >= 0, (-b - sqrt(D)) / a, (-b + sqrt(D)) / a

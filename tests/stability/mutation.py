@@ -34,7 +34,8 @@ from tests.stability.table import REGIMES
 
 PACKAGE = Path(minirt.__file__).parent
 SHARED = ("quadric", "exact", "basis", "extents")  # of several shapes
-FILES = (*SHARED, *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.KINDS))
+TOPICS = {"wrap": "mapping"}  # what the tests of a file are called, where not as the file
+FILES = (*SHARED, *TOPICS, *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.KINDS))
 TESTS = ("tests/shapes", "tests/stability/test_surfaces.py", "tests/stability/test_properties.py")
 # What starts threads does not survive a fork.
 UNFIT = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
@@ -70,8 +71,10 @@ def tested(names: list[str]) -> int:
     if set(names) <= set(KERNEL):
         pictures.picture = interpreted
         return int(pytest.main([*PICTURES, "-x", "-q", "-p", "no:cacheprovider", "-k", COMPILED]))
-    chosen = UNFIT if set(names) & set(SHARED) else f"{UNFIT} and ({' or '.join(names)})"
-    return int(pytest.main([*TESTS, "-x", "-q", "-p", "no:cacheprovider", "-k", chosen]))
+    own = [f"tests/shapes/test_{name}.py" for name in names]  # first: they tell soonest
+    topics = " or ".join(TOPICS.get(name, name) for name in names)
+    chosen = UNFIT if set(names) & set(SHARED) else f"{UNFIT} and ({topics})"
+    return int(pytest.main([*filter(os.path.exists, own), *TESTS, "-x", "-q", "-p", "no:cacheprovider", "-k", chosen]))
 
 
 def interpreted(scene: Scene, width: int = 24, height: int = 16, samples: int = 1, renderer: object = None) -> Any:

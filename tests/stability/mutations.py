@@ -23,7 +23,8 @@ OPERATORS: dict[type[ast.AST], type[ast.AST]] = {
 }
 STRICT: dict[type[ast.AST], type[ast.AST]] = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
 OTHERS = {"minimum": "maximum", "maximum": "minimum", "near": "far", "far": "near", "enter": "leave", "leave": "enter"}
-OTHERS |= {"low": "high", "high": "low", "r0": "r1", "r1": "r0", "bottom": "top", "top": "bottom"}
+OTHERS |= {"low": "high", "high": "low", "below": "above", "above": "below", "bottom": "top", "top": "bottom"}
+OTHERS |= {"by_a": "by_c", "by_c": "by_a", "first": "last", "last": "first", "again": "near"}
 COMPONENTS = {"x": "y", "y": "z", "z": "x", "u": "v", "v": "w", "w": "u"}
 WRAPPERS = {"fabs", "sqrt", "unit", "copysign", "splat", "rounded_product", "product_error"}  # f(x, ...) becomes x
 
@@ -73,7 +74,7 @@ def variants(node: ast.expr) -> Iterator[ast.expr]:
             yield yes
             yield no
             yield ast.Call(node.func, [mask, no, yes], [])
-        case ast.Call(ast.Name("any"), [_]):
+        case ast.Call(ast.Name("any" | "rarely"), [_]):
             yield ast.Constant(False)
         case ast.Call(ast.Name(name), [first, *_]) if name in WRAPPERS:
             yield first

@@ -29,7 +29,6 @@ def grazing(seed: int, slope: tuple[float, float], offset: float = 0.0) -> Rays:
 REGIMES = [
     Regime("at a slope of 0.01 to 1", partial(grazing, 11, (0.01, 1.0))),
     Regime("at a slope of 0.01 to 1, a scene at 1e8", partial(grazing, 12, (0.01, 1.0), 1e8)),
-    # A slope s is the difference of numbers near 1 and known to some 2^-53 / s of itself.
-    Regime("at a slope of 1e-6 to 0.01", partial(grazing, 13, (1e-6, 1e-2)), 1e-9),
-    Regime("at a slope of 1e-12 to 1e-6", partial(grazing, 14, (1e-12, 1e-6)), 1e-3),
+    Regime("at a slope of 1e-6 to 0.01", partial(grazing, 13, (1e-6, 1e-2))),
+    Regime("at a slope of 1e-12 to 1e-6", partial(grazing, 14, (1e-12, 1e-6))),
 ]

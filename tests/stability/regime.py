@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from minirt.element import fields_of
 from minirt.fields import Length, Lengths, Point
 from minirt.shapes import Shape
+from minirt.shapes.triangle import Triangle
 from tests import oracle
 from tests.oracle.body import body, inside
 from tests.shapes.regimes import Rays
@@ -28,8 +29,11 @@ class Regime(NamedTuple):
     exact answer is of no use, as rounding the ray's own numbers changes it: there it passes if it lies between those
     for a shape thicker and one thinner by `slack` roundings of t, of the distance between origin and shape and of the
     shape's size, and, where all three hit, if it is one of those within `blur`. Where the thinner one is missed, and
-    it is a solid, any hit in the thicker one passes: along a straight side the ends of that may be far away. A sheet is
-    larger and smaller instead of thicker and thinner, and a hit may be off by what moving it so far across changes.
+    it is a solid, any hit in the thicker one passes: along a straight side the ends of that may be far away.
+
+    A sheet is larger and smaller instead of thicker and thinner, and no tolerance is chosen for it: of a ray at a slope
+    s to it, t may be off by 4 roundings of t, of the way from the origin to the sheet and of its `lever`, by s. So much
+    changes when the origin moves by these roundings.
     """
 
     name: str
@@ -44,6 +48,8 @@ class Right:
 
     def __init__(self, regime: Regime, rays: Rays) -> None:
         self.regime, self.rays = regime, rays
+        self.solid = body(rays.shapes[0]).solid
+        self.normal = lru_cache(None)(lambda i: oracle.normal(rays.shapes[i], rays.origins[i, 0]))  # of a sheet
         self.t = np.array([[self.at(i, j) for j in range(rays.origins.shape[1])] for i in range(len(rays.shapes))])
         self.around = lru_cache(None)(self.thicker_and_thinner)
 
@@ -56,15 +62,16 @@ class Right:
         return self.at(i, j, swell), self.at(i, j, -swell)
 
     def swell(self, i: int, j: int) -> float:
-        shape, t = self.rays.shapes[i], self.t[i, j]
-        away = float(np.linalg.norm(self.rays.origins[i, j] - points(shape)[0]))
-        return self.regime.slack * U * ((t if np.isfinite(t) else 0.0) + away + size(shape))
+        t = self.t[i, j]
+        return self.regime.slack * U * ((t if np.isfinite(t) else 0.0) + self.away(i, j) + size(self.rays.shapes[i]))
+
+    def away(self, i: int, j: int) -> float:
+        return float(np.linalg.norm(self.rays.origins[i, j] - points(self.rays.shapes[i])[0]))
 
     def sheet_error(self, i: int, j: int, t: float) -> float:
         """What a hit of a sheet at t may be off by."""
-        shape, direction = self.rays.shapes[i], self.rays.directions[i, j]
-        slope = abs(oracle.dot(oracle.normal(shape, self.rays.origins[i, j]), direction))
-        return max(self.regime.tolerance * t, min(self.regime.blur * t, float(self.swell(i, j) / slope)))
+        slope = float(abs(oracle.dot(self.normal(i), self.rays.directions[i, j])))
+        return 4 * U * (t + self.away(i, j) + lever(self.rays.shapes[i])) / slope
 
     def within_thicker(self, i: int, j: int, t: float) -> bool:
         point = [
@@ -80,18 +87,21 @@ class Right:
         """The same, one after the other: each takes its time."""
         right = self.t[:, ::every]
         with np.errstate(invalid="ignore"):
-            exact = (t == right) | (np.isfinite(right) & (np.abs(t - right) <= self.regime.tolerance * right))
+            near = np.isfinite(right) & (np.abs(t - right) <= self.regime.tolerance * right)
+        exact = (t == right) | (near & self.solid)
         found = (self.verdict(i, j * every, t[i, j]) for i, j in np.argwhere(~exact).tolist())
         return (each for each in found if each)
 
     def verdict(self, i: int, j: int, t: float) -> str:
         """What is wrong with an answer that is not exact; empty if it is near enough."""
+        if not self.solid and abs(t - self.t[i, j]) < self.sheet_error(i, j, self.t[i, j]):  # not inf < inf
+            return ""
         sides = [self.t[i, j], *self.around(i, j)]
         hits = [side for side in sides if np.isfinite(side)]
         if np.isinf(t):
             fine = len(hits) < 3
-        elif not body(self.rays.shapes[i]).solid:
-            fine = bool(hits) and abs(t - hits[0]) <= self.sheet_error(i, j, hits[0])
+        elif not self.solid:
+            fine = 0 < len(hits) < 3 and abs(t - hits[0]) <= self.sheet_error(i, j, hits[0])
         else:
             fine = bool(hits) and min(hits) * (1 - U) <= t <= max(hits) * (1 + self.regime.blur)
             fine &= len(hits) < 3 or min(abs(t - side) / side for side in sides) <= self.regime.blur
@@ -111,6 +121,16 @@ def posed(regime: Regime) -> Right:
 def points(shape: Shape) -> list[Array]:
     """The points that a shape is given by."""
     return [np.array(getattr(shape, each.name)) for each in fields_of(type(shape)) if isinstance(each, Point)]
+
+
+def lever(shape: Shape) -> float:
+    """What a hit's place in a triangle is known to some roundings of: it is the mean of the corners by areas, which are
+    known to roundings of the square of the longest edge. Of a sliver that is much, and along the sliver."""
+    if not isinstance(shape, Triangle):
+        return 0.0
+    longest = max(float(np.linalg.norm(edge)) for edge in shape.edges())
+    twice_the_area = float(np.linalg.norm(np.cross(*shape.edges()[:2])))
+    return longest**3 / twice_the_area
 
 
 def size(shape: Shape) -> float:

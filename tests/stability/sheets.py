@@ -52,8 +52,8 @@ def grazing(seed: int, make: Callable[[Random], Sheet], slope: tuple[float, floa
 
 def of(make: Callable[[Random], Sheet], border: Callable[[Random, Sheet], Array]) -> list[Regime]:
     return [
-        Regime("at the edge", partial(at, 11, make, border), 1e-12, blur=1e-9),
-        Regime("at a slope of 1e-6 to 0.01", partial(grazing, 12, make, (1e-6, 1e-2)), 1e-9, blur=1e-6),
+        Regime("at the edge", partial(at, 11, make, border)),
+        Regime("at a slope of 1e-6 to 0.01", partial(grazing, 12, make, (1e-6, 1e-2))),
     ]
 
 

@@ -51,11 +51,10 @@ def grazing(seed: int, slope: tuple[float, float]) -> Rays:
     return Rays(shapes, origins, directions)
 
 
-# Seen from 20 away an edge is known to 20 roundings: of a sliver that is 20 roundings by its height of the hit's place.
 REGIMES = [
-    Regime("at an edge", partial(at, 11, make, edge), 1e-12, blur=1e-9),
-    Regime("at a corner", partial(at, 12, make, corner, count=3 * COUNT), 1e-12, blur=1e-9),
-    Regime("a sliver", partial(at, 13, partial(make, height=1e-6), inside), 1e-9),
-    Regime("a sliver next to none", partial(at, 14, partial(make, height=1e-12), inside), 1e-3),
-    Regime("at a slope of 1e-6 to 0.01", partial(grazing, 15, (1e-6, 1e-2)), 1e-12, blur=1e-6),
+    Regime("at an edge", partial(at, 11, make, edge)),
+    Regime("at a corner", partial(at, 12, make, corner, count=3 * COUNT)),
+    Regime("a sliver", partial(at, 13, partial(make, height=1e-6), inside)),
+    Regime("a sliver next to none", partial(at, 14, partial(make, height=1e-12), inside)),
+    Regime("at a slope of 1e-6 to 0.01", partial(grazing, 15, (1e-6, 1e-2))),
 ]

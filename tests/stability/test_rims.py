@@ -1,0 +1,77 @@
+"""Which part of a solid a ray meets that nearly meets a rim: the verdict is right, but for rays closer to it than
+64 roundings of t, of the way from the origin to the shape and of the shape's size. Of these one may miss the rim and
+meet the shape far behind it, as a hyperboloid's other end."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import fabs, mpf, sqrt
+
+from minirt.shapes import Shape
+from tests.oracle.vectors import cross, dot, exact, minus, unit
+from tests.shapes import mutants
+from tests.shapes.ways import Intersect
+from tests.stability.regime import posed
+from tests.stability.table import REGIMES
+from tests.stability.ways import WAYS
+
+RIMS: dict[str, tuple[tuple[str, float], ...]] = {  # for each rim its height above the point, in heights of the shape
+    "cylinder": (("centre", -0.5), ("centre", 0.5)),
+    "hyperboloid": (("centre", -0.5), ("centre", 0.5)),
+    "cone": (("apex", 1.0),),
+    "paraboloid": (("vertex", 1.0),),
+}
+AT_THE_RIM = {kind.element.title: regime for kind, regime in REGIMES if regime.name == "at the rim"}
+
+
+def beside_rim(shape: Any, point: str, share: float, origin: Any, direction: Any) -> mpf:
+    """How far a ray passes from a rim: from the rim's tangent where the ray crosses its plane, to first order."""
+    axis, d = unit(shape.axis), exact(direction)
+    p = minus(exact(origin), exact(getattr(shape, point)))
+    s = (mpf(share) * mpf(shape.height) - dot(p, axis)) / dot(d, axis)
+    crossed = [a + s * b for a, b in zip(p, d, strict=True)]
+    radial = minus(crossed, [dot(crossed, axis) * x for x in axis])
+    radius = sqrt(dot(radial, radial))
+    out = [x / radius for x in radial]
+    across = cross(d, cross(axis, out))  # the way and the tangent are both perpendicular to it
+    return fabs(radius - mpf(shape.diameter) / 2) * fabs(dot(out, across)) / sqrt(dot(across, across))
+
+
+def beside(shape: Shape, origin: Any, direction: Any) -> float:
+    return float(min(beside_rim(shape, *rim, origin, direction) for rim in RIMS[shape.title]))
+
+
+def wrong(title: str, intersect: Intersect) -> int:
+    """How many rays get another answer though they pass the rims farther away."""
+    right = posed(AT_THE_RIM[title])
+    shapes, origins, directions = right.rays
+    t = intersect(*right.rays)
+    with np.errstate(invalid="ignore"):
+        elsewhere = (t != right.t) & ~(np.abs(t - right.t) <= 1e-12 * right.t)
+    rays = np.argwhere(elsewhere).tolist()
+    return sum(beside(shapes[i], origins[i, j], directions[i, j]) > right.swell(i, j) for i, j in rays)
+
+
+@pytest.mark.parametrize("way", ["arrays", "compiled"])
+@pytest.mark.parametrize("title", RIMS)
+def test_only_rays_within_64_roundings_of_a_rim_may_take_it_for_another_place(title: str, way: str) -> None:
+    assert wrong(title, WAYS[way][0]) == 0
+
+
+def test_a_crack_is_found() -> None:
+    assert wrong("cylinder", mutants.way(mutants.piece_by_piece)) > 0
+
+
+def test_so_close_to_the_rim_of_a_hyperboloid_rounding_chooses_between_its_ends() -> None:
+    right = posed(AT_THE_RIM["hyperboloid"])
+    ambiguous = 0
+    for i, shape in enumerate(right.rays.shapes):
+        for j in range(right.t.shape[1]):
+            thicker, thinner = right.thicker_and_thinner(i, j)
+            if np.isfinite(thinner) and thinner - thicker > 1e-3 * thicker:
+                assert beside(shape, right.rays.origins[i, j], right.rays.directions[i, j]) <= right.swell(i, j)
+                ambiguous += 1
+    assert ambiguous > 0
