@@ -93,8 +93,10 @@ class Polynomial:
             value = self(t)
             low, high = (t, high) if value * below > 0 else (low, t)
             last, step = step, value / slope(t)
+            if fabs(step) <= 8 * eps * fabs(t):
+                return t - step
             t = t - step if 2 * fabs(step) < fabs(last) else (low + high) / 2
-            if min(fabs(step), high - low) <= 8 * eps * fabs(t):
+            if high - low <= 8 * eps * fabs(t):
                 return t
         raise ArithmeticError(f"no root of {self.coefficients} in [{low}, {high}]")
 

@@ -45,6 +45,12 @@ def test_the_roots_of_a_polynomial(roots: list[mpf], factor: float) -> None:
         assert abs(one - other) <= abs(other) * mpf("1e-35")
 
 
+def test_the_last_two_steps_may_be_of_one_size() -> None:
+    roots = [mpf(x) for x in (-935875.23, 0, 0.79, 456628.801, 480168.5)]
+    found = product(roots, mpf(7e20)).roots()
+    assert max(abs(x - y) for x, y in zip(found, roots, strict=True)) < mpf("1e-45")
+
+
 def test_roots_that_are_hard() -> None:
     close = [mpf(1), 1 + mpf("1e-20"), mpf(5)]
     assert max(abs(x - y) for x, y in zip(product(close, mpf(1)).roots(), close, strict=True)) < mpf("1e-38")
