@@ -110,3 +110,22 @@ def test_a_tube_wider_than_the_ring_is_refused() -> None:
     with pytest.raises(ElementError, match="torus tube must be at most the diameter, 6, got 7"):
         RING.replace(tube=7)
     assert RING.replace(tube=6).tube == 6
+
+
+def test_a_step_that_leads_out_of_where_the_surface_is_crossed_is_not_taken(way: Intersect) -> None:
+    tube = 0.034751787197153904
+    origin = np.array([1.0217727611113592, -0.23003780827641834, -0.035576964714855296])
+    direction = np.array([-0.9962543729509578, -0.08488865002048886, 0.01646637403295192])
+
+    def height(t: float) -> float:
+        x, y, z = origin + t * direction
+        return float(np.hypot(np.hypot(x, y) - 1, z) - tube)
+
+    low, high = 1.9, 1.915  # between those it gets into the tube, and before them into none
+    assert height(low) > 0 > height(high)
+    assert min(height(t) for t in np.linspace(0, low, 100_000)) > 0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if height(middle) > 0 else (low, middle)
+    thin = Torus((0, 0, 0), (0, 0, 1), 2, 2 * tube, GREY)
+    assert shoot(way, thin, (tuple(origin), tuple(direction))) == pytest.approx([low], rel=1e-9)
