@@ -7,6 +7,7 @@ formulas by the types of shapes, so what is compiled holds just the kinds of sha
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from functools import lru_cache
 from importlib import import_module
 from itertools import count
@@ -152,11 +153,16 @@ def packed_type(array: Any, i: Any) -> Any:
 def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     address = first_number(context, builder, sig, args)
     numbers = (builder.load(builder.gep(address, [ir.Constant(ir.IntType(64), at)])) for at in count())
+    return packed_of(context, builder, sig.return_type, numbers)
+
+
+def packed_of(context: Any, builder: ir.IRBuilder, kind: Any, numbers: Iterator[Any]) -> Any:
+    """The packed shape of a type that is made of some numbers."""
     parts = [
-        vec_of(context, builder, kind, [next(numbers) for _ in "xyz"]) if isinstance(kind, VecType) else next(numbers)
-        for kind in sig.return_type.types
+        vec_of(context, builder, each, [next(numbers) for _ in "xyz"]) if isinstance(each, VecType) else next(numbers)
+        for each in kind.types
     ]
-    return context.make_tuple(builder, sig.return_type, parts)
+    return context.make_tuple(builder, kind, parts)
 
 
 @teach(counter.fetch_add, lambda counter, amount: types.int64, [(types.Array, types.Integer)])
