@@ -9,10 +9,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from numba import _dynfunc
+from llvmlite.binding import create_new_function_pass_manager
+from numba import _dynfunc, types
+from numba.core import ir
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
-from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
+from numba.core.ir_utils import get_definition, guard
 from numba.core.typed_passes import NativeLowering, NoPythonBackend, NopythonTypeInference, PreLowerStripPhis
 from numba.core.untyped_passes import DeadBranchPrune, FixupArgs, IRProcessing, ReconstructSSA, TranslateByteCode
 
@@ -21,6 +24,14 @@ class Part(JITCodeLibrary):
     """LLVM code that is linked into that of others and becomes machine code only there."""
 
     whole: Any = None  # with all that it calls
+
+    def _optimize_functions(self, module: Any) -> None:
+        """Variables become values, so that there is less of it; all else can wait for the whole."""
+        module.data_layout = self._codegen._data_layout
+        passes = create_new_function_pass_manager()
+        passes.add_sroa_pass()
+        for function in module.functions:
+            passes.run(function, self._codegen._pass_builder())
 
     def finalize(self) -> None:
         """The whole is optimised, and each part linked into it once."""
@@ -49,6 +60,34 @@ def called(library: Any, found: list[Any]) -> list[Any]:
     return found
 
 
+@register_pass(mutates_CFG=False, analysis_only=False)
+class Absent(FunctionPass):
+    """Writes None for what is asked of an argument and known to be None by its type, for the next step to see."""
+
+    _name = "absent"
+
+    def __init__(self) -> None:
+        FunctionPass.__init__(self)
+
+    def run_pass(self, state: Any) -> bool:
+        for block in state.func_ir.blocks.values():
+            for found in block.find_insts(ir.Assign):
+                if is_absent(state, found.value):
+                    found.value = ir.Const(None, found.loc)
+                    state.func_ir._definitions[found.target.name] = [found.value]
+        return False
+
+
+def is_absent(state: Any, asked: Any) -> bool:
+    """Whether something is a field of an argument that is None."""
+    if not (isinstance(asked, ir.Expr) and asked.op == "getattr"):
+        return False
+    owner = guard(get_definition, state.func_ir, asked.value)
+    if not isinstance(owner, ir.Arg):
+        return False
+    return state.typingctx.resolve_getattr(state.args[owner.index], asked.attr) == types.none
+
+
 @register_pass(mutates_CFG=True, analysis_only=False)
 class PartLowering(NativeLowering):
     """Makes a Part of a function whose types are known."""
@@ -71,6 +110,7 @@ STEPS = (
     (TranslateByteCode, "what the function does"),
     (FixupArgs, "its arguments"),
     (IRProcessing, "where its variables live"),
+    (Absent, "what its arguments lack"),
     (DeadBranchPrune, "without what is done only with what is None"),
     (ReconstructSSA, "a variable for each value"),
     (NopythonTypeInference, "the types of all"),
@@ -81,7 +121,7 @@ STEPS = (
 
 
 class Inlined(CompilerBase):
-    """The steps; `if x is None` is decided by the type of an argument x."""
+    """The steps; `if x is None` and `if x.y is None` are decided by the type of an argument x."""
 
     def define_pipelines(self) -> list[PassManager]:
         steps = PassManager("inlined")

@@ -16,10 +16,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from llvmlite import ir
 from numba import typeof, types
-from numba.core.typing.templates import AbstractTemplate, infer_global, signature
-from numba.extending import lower_builtin, overload, register_jitable
+from numba.extending import overload, register_jitable
 
-import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
+import minirt.kernel.jit_placed
+import minirt.lanes.compiled  # noqa: F401  (teach numba the verbs of the formulas)
 from minirt.kernel import (
     cache,
     cells,
@@ -91,38 +91,6 @@ def _may_meet(shape, apex, start, direction, asked):  # type: ignore[no-untyped-
 @overload(rows.mapping, jit_options=INNER, strict=False)
 def _mapping(shape, point, normal):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).mapping
-
-
-@infer_global(trace.over_kinds)
-class OverKinds(AbstractTemplate):
-    """The type of `over_kinds`: that of the state after the last step."""
-
-    key = trace.over_kinds
-
-    def generic(self, args: Any, kws: Any) -> Any:
-        return signature(steps_of(self.context, *args)[-1].return_type, *args)
-
-
-def steps_of(context: Any, step: Any, groups: Any, state: Any, given: Any) -> list[Any]:
-    """The signature of the step for each kind."""
-    found = []
-    for group in groups:
-        found.append(context.resolve_function_type(step, (group, state, given), {}))
-        state = found[-1].return_type
-    return found
-
-
-@lower_builtin(trace.over_kinds, types.Any, types.BaseTuple, types.Any, types.Any)  # type: ignore[untyped-decorator]
-def _over_kinds(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    _, groups, state, given = args
-    kind = sig.args[2]
-    for place, each in enumerate(steps_of(context.typing_context, *sig.args)):
-        function = context.get_function(sig.args[0], each)
-        context.add_linking_libs(getattr(function, "libs", ()))
-        state = context.cast(builder, state, kind, each.args[1])
-        state = function(builder, (builder.extract_value(groups, place), state, given))
-        kind = each.return_type
-    return state
 
 
 def first_number(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
