@@ -78,7 +78,7 @@ def frame(
     packet. `wanted` is not 0 for each packet (row, column) that is to be rendered, or has no rows where all are. A
     counter set to `CANCELLED` from outside ends the frame at the next packet.
     """
-    tiles_of_rows(next_row, pixels, linear, rays, wanted, memory, sums, placed(scene))
+    tiles_of_rows(next_row, placed(pixels), placed(linear), rays, placed(wanted), placed(memory), sums, placed(scene))
 
 
 def tiles_of_rows(

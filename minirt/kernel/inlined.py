@@ -9,12 +9,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from llvmlite.binding import create_new_function_pass_manager
 from numba import _dynfunc, types
 from numba.core import ir
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
-from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
+from numba.core.compiler_machinery import FunctionPass, PassManager, _pass_registry, register_pass
 from numba.core.ir_utils import get_definition, guard
 from numba.core.typed_passes import NativeLowering, NoPythonBackend, NopythonTypeInference, PreLowerStripPhis
 from numba.core.untyped_passes import DeadBranchPrune, FixupArgs, IRProcessing, ReconstructSSA, TranslateByteCode
@@ -24,14 +23,6 @@ class Part(JITCodeLibrary):
     """LLVM code that is linked into that of others and becomes machine code only there."""
 
     whole: Any = None  # with all that it calls
-
-    def _optimize_functions(self, module: Any) -> None:
-        """Variables become values, so that there is less of it; all else can wait for the whole."""
-        module.data_layout = self._codegen._data_layout
-        passes = create_new_function_pass_manager()
-        passes.add_sroa_pass()
-        for function in module.functions:
-            passes.run(function, self._codegen._pass_builder())
 
     def finalize(self) -> None:
         """The whole is optimised, and each part linked into it once."""
@@ -120,11 +111,19 @@ STEPS = (
 )
 
 
+class Steps(PassManager):
+    """Takes the steps one after the other. numba's own manager goes through the code anew after each."""
+
+    def run(self, state: Any) -> None:
+        for step, _ in self.passes:
+            _pass_registry.get(step).pass_inst.run_pass(state)
+
+
 class Inlined(CompilerBase):
     """The steps; `if x is None` and `if x.y is None` are decided by the type of an argument x."""
 
     def define_pipelines(self) -> list[PassManager]:
-        steps = PassManager("inlined")
+        steps = Steps("inlined")
         for step, what in STEPS:
             steps.add_pass(step, what)
         steps.finalize()
