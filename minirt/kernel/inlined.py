@@ -7,6 +7,7 @@ and loops need, which saves another fifth.
 
 from __future__ import annotations
 
+import operator
 from typing import Any
 
 from numba import _dynfunc, types
@@ -52,10 +53,10 @@ def called(library: Any, found: list[Any]) -> list[Any]:
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
-class Absent(FunctionPass):
-    """Writes None for what is asked of an argument and known to be None by its type, for the next step to see."""
+class Presence(FunctionPass):
+    """Decides `x is None` and `x.y is None` by the type of an argument x, for the next step to see."""
 
-    _name = "absent"
+    _name = "presence"
 
     def __init__(self) -> None:
         FunctionPass.__init__(self)
@@ -63,20 +64,34 @@ class Absent(FunctionPass):
     def run_pass(self, state: Any) -> bool:
         for block in state.func_ir.blocks.values():
             for found in block.find_insts(ir.Assign):
-                if is_absent(state, found.value):
-                    found.value = ir.Const(None, found.loc)
+                decided = decision(state, found.value)
+                if decided is not None:
+                    found.value = ir.Const(decided, found.loc)
                     state.func_ir._definitions[found.target.name] = [found.value]
         return False
 
 
-def is_absent(state: Any, asked: Any) -> bool:
-    """Whether something is a field of an argument that is None."""
-    if not (isinstance(asked, ir.Expr) and asked.op == "getattr"):
-        return False
-    owner = guard(get_definition, state.func_ir, asked.value)
-    if not isinstance(owner, ir.Arg):
-        return False
-    return state.typingctx.resolve_getattr(state.args[owner.index], asked.attr) == types.none
+def decision(state: Any, asked: Any) -> bool | None:
+    """What the answer always is, or None where something else is asked or the answer is not known."""
+    if not (isinstance(asked, ir.Expr) and asked.op == "binop" and asked.fn in (operator.is_, operator.is_not)):
+        return None
+    left, right = (guard(get_definition, state.func_ir, side) for side in (asked.lhs, asked.rhs))
+    kind = kind_of(state, left)
+    if kind is None or not (isinstance(right, ir.Const) and right.value is None):
+        return None
+    return bool((kind == types.none) == (asked.fn is operator.is_))
+
+
+def kind_of(state: Any, definition: Any) -> Any:
+    """The type of an argument, or of a field of one; None for all else."""
+    if isinstance(definition, ir.Arg):
+        return state.args[definition.index]
+    if not (isinstance(definition, ir.Expr) and definition.op == "getattr"):
+        return None
+    owner = guard(get_definition, state.func_ir, definition.value)
+    return (
+        state.typingctx.resolve_getattr(state.args[owner.index], definition.attr) if isinstance(owner, ir.Arg) else None
+    )
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -101,8 +116,8 @@ STEPS = (
     (TranslateByteCode, "what the function does"),
     (FixupArgs, "its arguments"),
     (IRProcessing, "where its variables live"),
-    (Absent, "what its arguments lack"),
-    (DeadBranchPrune, "without what is done only with what is None"),
+    (Presence, "what of its arguments is there"),
+    (DeadBranchPrune, "without what is never done then"),
     (ReconstructSSA, "a variable for each value"),
     (NopythonTypeInference, "the types of all"),
     (PreLowerStripPhis, "one variable where ways meet"),
@@ -120,7 +135,7 @@ class Steps(PassManager):
 
 
 class Inlined(CompilerBase):
-    """The steps; `if x is None` and `if x.y is None` are decided by the type of an argument x."""
+    """The steps."""
 
     def define_pipelines(self) -> list[PassManager]:
         steps = Steps("inlined")

@@ -39,7 +39,12 @@ class PlacedModel(models.PrimitiveModel):
         super().__init__(manager, kind, ADDRESS)
 
 
-@teach(traced.placed, Placed, [(types.BaseTuple,), (types.Array,)])
+def can_be_placed(kind: Any) -> bool:
+    """Tuples, and arrays whose rows lie one after the other."""
+    return isinstance(kind, types.BaseTuple) or (isinstance(kind, types.Array) and kind.layout == "C")
+
+
+@teach(traced.placed, lambda kind: Placed(kind) if can_be_placed(kind) else None, [(types.Any,)])
 def _placed(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.bitcast(cgutils.alloca_once_value(builder, args[0]), ADDRESS)
 
@@ -51,8 +56,8 @@ def part(context: Any, builder: ir.IRBuilder, kind: Placed, value: Any, place: i
 
 
 def is_array(kind: Any) -> bool:
-    """Whether that is an array in memory, with its rows one after the other."""
-    return isinstance(kind, Placed) and isinstance(kind.content, types.Array) and kind.content.layout == "C"
+    """Whether that is an array in memory."""
+    return isinstance(kind, Placed) and isinstance(kind.content, types.Array)
 
 
 # Tuples.
@@ -61,7 +66,7 @@ def is_array(kind: Any) -> bool:
 def kind_at(kind: Placed, place: int) -> types.Type:
     """The type of a part."""
     found = kind.content[place]
-    return Placed(found) if isinstance(found, (types.BaseTuple, types.Array)) else found
+    return Placed(found) if can_be_placed(found) else found
 
 
 def value_at(context: Any, builder: ir.IRBuilder, kind: Placed, value: Any, place: int) -> Any:
