@@ -88,10 +88,8 @@ def kind_of(state: Any, definition: Any) -> Any:
         return state.args[definition.index]
     if not (isinstance(definition, ir.Expr) and definition.op == "getattr"):
         return None
-    owner = guard(get_definition, state.func_ir, definition.value)
-    return (
-        state.typingctx.resolve_getattr(state.args[owner.index], definition.attr) if isinstance(owner, ir.Arg) else None
-    )
+    owner = kind_of(state, guard(get_definition, state.func_ir, definition.value))
+    return owner and state.typingctx.resolve_getattr(owner, definition.attr)
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -135,7 +133,7 @@ class Steps(PassManager):
 
 
 class Inlined(CompilerBase):
-    """The steps."""
+    """Compiles by these steps."""
 
     def define_pipelines(self) -> list[PassManager]:
         steps = Steps("inlined")
