@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.kernel.trace import NEARBY, over_kinds
-from minirt.lanes import Vec, copysign, load, maximum, minimum, width
+from minirt.lanes import Vec, copysign, load, lowest, maximum, minimum, width
 from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
@@ -185,11 +185,6 @@ def name_of(tagged: float) -> int:
 def bits(mask: Mask) -> int:
     """A mask as a whole number, the bits of which are the truths, that of the first lane the lowest."""
     return sum(1 << int(ray) for ray in np.flatnonzero(mask))
-
-
-def lowest(number: int) -> int:
-    """The lowest bit of a number that is not 0."""
-    return (number & -number).bit_length() - 1
 
 
 def packet_memory() -> Any:

@@ -13,7 +13,7 @@ from numba.extending import register_jitable
 from minirt.kernel import bvh, bvh_build, bvh_collapse, bvh_hits, rows, whitted
 from minirt.kernel.jit import CACHE, INNER, first_number, own_functions
 from minirt.kernel.kept import compiled
-from minirt.lanes import compiled_verbs, verbs
+from minirt.lanes import compiled_answers, verbs
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, Mask, VecType, constant, vec_of
 
@@ -65,12 +65,7 @@ def _name_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 
 @teach(bvh.bits, lambda mask: types.int64, [(Mask,)])
 def _bits(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.zext(compiled_verbs.bits(builder, args[0]), WORD)
-
-
-@teach(bvh.lowest, lambda number: types.int64 if number == types.int64 else None, [(types.Integer,)])
-def _lowest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.cttz(args[0], ir.Constant(ir.IntType(1), 1))
+    return builder.zext(compiled_answers.bits(builder, args[0]), WORD)
 
 
 def packed_lanes(blocks: Any, i: Any) -> Any:
@@ -91,7 +86,7 @@ def _read_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any
     return context.make_tuple(builder, sig.return_type, parts)
 
 
-TAUGHT = (bvh.packet_memory, bvh.put, bvh.tag, bvh.name_of, bvh.bits, bvh.lowest, bvh_hits.read_block)
+TAUGHT = (bvh.packet_memory, bvh.put, bvh.tag, bvh.name_of, bvh.bits, bvh_hits.read_block)
 ENTRIES = (bvh_hits.trace_rays, bvh_build.divide, bvh_collapse.weigh, bvh_collapse.collapse)
 for _module in (bvh, bvh_build, bvh_collapse, bvh_hits):
     for _function in own_functions(_module):
