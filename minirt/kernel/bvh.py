@@ -146,11 +146,6 @@ def least(x: Number) -> float:
     return float(x.view(np.int64).min().view(np.float64))
 
 
-def lowest(number: int) -> int:
-    """The lowest bit of a number that is not 0."""
-    return (number & -number).bit_length() - 1
-
-
 def packet_memory() -> Any:
     """Room for what a packet keeps on its way; compiled, it is a thread's own."""
     return np.zeros(MEMORY)

@@ -14,7 +14,6 @@ from minirt.kernel.bvh import (
     Tree,
     aim,
     bits,
-    lowest,
     packet_memory,
     put,
     put_vec,
@@ -26,7 +25,7 @@ from minirt.kernel.counter import fetch_add
 from minirt.kernel.rows import intersect, kind_of, read, surface
 from minirt.kernel.trace import nearer, over_kinds
 from minirt.kernel.traced import placed
-from minirt.lanes import Vec, any, lane, load, splat, unit, where
+from minirt.lanes import Vec, any, lane, load, lowest, splat, unit, where
 from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask

@@ -26,7 +26,6 @@ from minirt.kernel.bvh import (
     boxes_met,
     leaf_of,
     least,
-    lowest,
     name_of,
     planes_of,
     put,
@@ -37,7 +36,7 @@ from minirt.kernel.bvh import (
     whole_at,
 )
 from minirt.kernel.trace import over_kinds
-from minirt.lanes import any, load, where
+from minirt.lanes import any, load, lowest, where
 
 
 def walk(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> None:

@@ -43,7 +43,7 @@ from minirt.kernel.traced import Traced
 from minirt.lanes import angle, largest, power, vec
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, VecType, common, constant, splat, vec_of
-from minirt.shapes import ALL_KINDS, basis, exact, pyramid, quadric, shape, wrap
+from minirt.shapes import ALL_KINDS, Kind, basis, exact, pyramid, quadric, shape, wrap
 
 Arguments: TypeAlias = tuple[Any, ...]  # of `minirt.kernel.frame.frame`
 
@@ -92,6 +92,21 @@ def _may_meet(shape, apex, start, direction, asked):  # type: ignore[no-untyped-
 @overload(rows.mapping, jit_options=INNER, strict=False)
 def _mapping(shape, point, normal):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).mapping
+
+
+@overload(trace.nearest_of_kind, jit_options=INNER, strict=False)
+def _nearest_of_kind(group, state, given):  # type: ignore[no-untyped-def]
+    return trace.nearest_of_crowd if kind_of_group(group).crowd else trace.nearest_of_few
+
+
+@overload(trace.unhidden_by_kind, jit_options=INNER, strict=False)
+def _unhidden_by_kind(group, free, given):  # type: ignore[no-untyped-def]
+    return trace.unhidden_by_crowd if kind_of_group(group).crowd else trace.unhidden_by_few
+
+
+def kind_of_group(group: Any) -> Kind:
+    """The kind of the shapes of a group, by its type."""
+    return rows.kind_of(group.content[0].dtype.fields)
 
 
 def first_number(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
@@ -172,7 +187,15 @@ def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> An
 
 
 register_jitable(**INNER)(vec.cross)
-OWN_FORM = (whitted.path_memory, trace.over_kinds, counter.fetch_add, frame.store_block, frame.frame)
+OWN_FORM = (
+    whitted.path_memory,
+    trace.over_kinds,
+    trace.nearest_of_kind,
+    trace.unhidden_by_kind,
+    counter.fetch_add,
+    frame.store_block,
+    frame.frame,
+)
 for _module in (
     basis,
     exact,

@@ -14,7 +14,7 @@ from minirt.kernel import bvh, bvh_build, bvh_collapse, bvh_hits, bvh_walk, rows
 from minirt.kernel.jit import CACHE, INNER, first_number, own_functions, packed_of
 from minirt.kernel.jit_placed import teach_for_placed
 from minirt.kernel.kept import compiled
-from minirt.lanes import compiled_verbs, verbs
+from minirt.lanes import compiled_answers, verbs
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, Mask, VecType, constant
 
@@ -69,12 +69,7 @@ def _name_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 
 @teach(bvh.bits, lambda mask: types.int64, [(Mask,)])
 def _bits(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.zext(compiled_verbs.bits(builder, args[0]), WORD)
-
-
-@teach(bvh.lowest, lambda number: types.int64 if number == types.int64 else None, [(types.Integer,)])
-def _lowest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.cttz(args[0], ir.Constant(ir.IntType(1), 1))
+    return builder.zext(compiled_answers.bits(builder, args[0]), WORD)
 
 
 @teach(bvh.least, lambda x: types.float64, [(Lanes,)])
@@ -147,7 +142,6 @@ TAUGHT = (
     bvh.name_of,
     bvh.bits,
     bvh.least,
-    bvh.lowest,
     bvh_hits.read_block,
     bvh_hits.read_one,
 )
