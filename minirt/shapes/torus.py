@@ -158,11 +158,9 @@ def turning_points(torus: PackedTorus, p: Vec, d: Vec, asked: Mask) -> tuple[Num
 def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from_side: Number, asked: Mask) -> Number:
     """Where p + t d crosses the surface between two t on different sides of it, of which `from_side` is the first.
 
-    Newton's steps; half of what is left instead where one would lead out of it, or is not half as long as the one
-    before (Press et al., Numerical Recipes, 9.4).
+    Newton's steps, or half of what is left where one would lead out of it (Press et al., Numerical Recipes, 9.4).
     """
     t = 0.5 * (low + high)
-    last = high - low
     rounding = 4.0 * unit_roundoff(t)
     unsure = asked
     for _ in range(STEPS):
@@ -175,13 +173,12 @@ def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from
         before = height * from_side > 0.0
         low = where(before, t, low)
         high = where(before, high, t)
-        step = -height / slope
-        newton = (t + step >= low) & (t + step <= high) & (2.0 * fabs(step) < last)
-        step = where(newton, step, 0.5 * (low + high) - t)
-        last = fabs(step)
+        newton = t - height / slope
+        nearer = where((newton > low) & (newton < high), newton, 0.5 * (low + high))
         unsure = unsure & (fabs(height) > rounding * torus.ring)  # below that it is what rounding left
-        t = where(unsure, t + step, t)
-        unsure = unsure & (last > rounding * (fabs(t) + torus.tube))
+        step = where(unsure, nearer - t, 0.0)
+        t = t + step
+        unsure = fabs(step) > rounding * (fabs(t) + torus.tube)
         if not any(unsure):
             break
     return t
