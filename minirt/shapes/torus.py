@@ -14,7 +14,7 @@ from math import cos, pi, sin
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
-from minirt.lanes import Vec, any, copysign, dot, fabs, maximum, minimum, splat, sqrt, unit_roundoff, where
+from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, splat, sqrt, unit_roundoff, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
