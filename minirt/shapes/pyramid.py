@@ -6,7 +6,7 @@ does, and of a mesh with triangles as small as pixels it leaves only those to th
 
 from __future__ import annotations
 
-from minirt.lanes import Vec, cross, dot, maximum, minimum, unit_roundoff, where
+from minirt.lanes import Vec, cross, dot, maximum, minimum, splat, unit_roundoff, where
 from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
@@ -26,9 +26,9 @@ def may_meet(
     a, b, c = corners[0] - apex, corners[1] - apex, corners[2] - apex
     of_a, of_b, of_c = dot(cross(b, c), direction), dot(cross(c, a), direction), dot(cross(a, b), direction)
     size = maximum(maximum(largest(a), largest(b)), largest(c))
-    far = size
+    far = splat(size, direction.x)
     if start is not None:
-        far = size + largest(apex - start)
+        far = far + largest(apex - start)
         asked = asked & (depth(corners[0], normal, dot(normal, a), start) >= 0.0)
     margin = APART * unit_roundoff(direction.x) * size * far
     least, most = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
