@@ -65,15 +65,18 @@ def test_nan_is_a_miss(way: Intersect) -> None:
     assert shoot(way, RING, *rays) == [np.inf] * 3
 
 
+@pytest.mark.parametrize("tube", [2, 6])
 @pytest.mark.parametrize("on", [on_arrays, compiled])
-def test_no_ray_depends_on_those_beside_it(on: Intersect) -> None:
-    random = np.random.default_rng(3)
-    origins = 8 * ways(random, 1, 20 * RAYS)
-    directions = unit(np.array(RING.centre) + 2 * random.normal(size=origins.shape) - origins)
-    t = on([RING], origins, directions)
-    assert np.isfinite(t).sum() > 50
-    order = random.permutation(t.shape[1])
-    assert np.array_equal(on([RING], origins[:, order], directions[:, order]), t[:, order])
+def test_no_ray_depends_on_those_beside_it(on: Intersect, tube: float) -> None:
+    torus, random = RING.replace(tube=tube), np.random.default_rng(3)
+    # Many of such rays are in a plane through the axis or across it, and leave nothing but rounding.
+    targets, origins = np.array(torus.centre) + random.integers(-8, 9, (2, 200 * RAYS, 3)) / 2
+    directions = unit(targets + (targets == origins).all(axis=1, keepdims=True) - origins)
+    order = random.permutation(200 * RAYS)
+    t = on([torus], origins[None], directions[None])[0]
+    packets = on(200 * [torus], *(part[order].reshape(200, RAYS, 3) for part in (origins, directions)))
+    assert np.isfinite(t).sum() > 500
+    assert np.array_equal(packets.reshape(-1), t[order])
 
 
 def test_most_roots_take_less_than_ten_steps(monkeypatch: pytest.MonkeyPatch) -> None:
