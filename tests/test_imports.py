@@ -79,6 +79,7 @@ COMPILED = {  # the only files that import the compiler
     "kernel/jit.py",
     "kernel/jit_bvh.py",
     "kernel/jit_lists.py",
+    "kernel/jit_placed.py",
     "kernel/jit_probe.py",
     "kernel/cache.py",
     "kernel/inlined.py",

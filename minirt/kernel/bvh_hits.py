@@ -25,6 +25,7 @@ from minirt.kernel.bvh import (
 from minirt.kernel.counter import fetch_add
 from minirt.kernel.rows import intersect, kind_of, read, surface
 from minirt.kernel.trace import nearer, over_kinds
+from minirt.kernel.traced import placed
 from minirt.lanes import Vec, any, lane, load, splat, unit, where
 from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
@@ -121,6 +122,7 @@ def trace_rays(
     Any number of threads may do so at the same time. `origins`, `directions` of any length, `points` and `normals` are
     (n, 3), `distances` and `owners` (n,); what belongs to a ray without a hit stays as it is.
     """
+    tree = placed(tree)
     count = origins.shape[0]
     memory = packet_memory()
     while True:

@@ -23,14 +23,14 @@ def main() -> None:
     if sys.argv[1:] == LISTS[-1:]:
         Thread(target=leave_at_end_of_input, daemon=True).start()
         import_module("minirt.kernel.jit_lists")  # which compiles as it is imported
-        return
+        os._exit(0)
     arguments = pickle.load(sys.stdin.buffer)
     Thread(target=leave_at_end_of_input, daemon=True).start()
     with Popen(LISTS) as beside:
         from minirt.kernel import jit
 
         jit.compile(arguments)
-    sys.exit(beside.returncode)
+    os._exit(beside.returncode)  # to give back what the compiler took would need a tenth of the time
 
 
 def leave_at_end_of_input() -> None:

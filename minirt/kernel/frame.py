@@ -6,9 +6,9 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.counter import fetch_add
-from minirt.kernel.sky import coloured_sky, is_plain
+from minirt.kernel.sky import lit_sky
 from minirt.kernel.trace import is_empty
-from minirt.kernel.traced import Traced
+from minirt.kernel.traced import Traced, placed
 from minirt.kernel.whitted import radiance
 from minirt.lanes import Vec, lane, load, minimum, rarely, save, splat, unit, where, width
 from minirt.lanes.vec import Number
@@ -30,7 +30,7 @@ def packet(scene: Traced, memory: Any, tile: int, rays: Any, x: int, y: int) -> 
     count = width(rays)
     origin = Vec(scene.camera[0], scene.camera[1], scene.camera[2])
     direction = towards(scene.camera, x, y) + Vec(load(rays, 0), load(rays, count), load(rays, 2 * count))
-    return radiance(scene.bounces, scene, memory, tile, origin, unit(direction))
+    return radiance(scene, memory, tile, origin, unit(direction))
 
 
 def added(light: Vec, sums: Any, start: int, sample: int) -> Vec:
@@ -78,18 +78,25 @@ def frame(
     packet. `wanted` is not 0 for each packet (row, column) that is to be rendered, or has no rows where all are. A
     counter set to `CANCELLED` from outside ends the frame at the next packet.
     """
+    tiles_of_rows(next_row, placed(pixels), placed(linear), rays, placed(wanted), placed(memory), sums, placed(scene))
+
+
+def tiles_of_rows(
+    next_row: Any, pixels: Any, linear: Any, rays: Any, wanted: Any, memory: Any, sums: Any, scene: Traced
+) -> None:
+    """The frame, tile by tile."""
     height, across = pixels.shape
     samples = rays.shape[0]
     step = width(rays) // DOWN
     nothing = splat(0.0, load(rays[0], 0))
-    empty_sky = coloured_sky(scene.sky, nothing > 0.0, Vec(nothing, nothing, nothing))
+    dark = Vec(nothing, nothing, nothing)
     while True:
         top = fetch_add(next_row, TILE)
         if top >= height:
             return
         for left in range(0, across, TILE):
             tile = top // TILE * tiles(across) + left // TILE
-            empty = is_plain(scene.dome) and is_empty(scene, tile)
+            empty = scene.dome is None and is_empty(scene, tile)
             # All packets for each sample, not all samples for each packet: a sum that is kept through the loop takes
             # registers from what is in it, and a seventh more time.
             for sample in range(samples):
@@ -100,7 +107,7 @@ def frame(
                         if rarely(wanted.shape[0] > 0) and wanted[y // DOWN, x // step] == 0:
                             continue
                         if empty:
-                            store(pixels, linear, x, y, empty_sky)
+                            store(pixels, linear, x, y, lit_sky(scene, nothing > 0.0, dark, dark))
                             continue
                         light = made_finite(packet(scene, memory, tile, rays[sample], x, y), memory)
                         if rarely(samples > 1):

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from minirt.lanes import Vec, any, dot, minimum, splat, unit, where
 from minirt.lanes.power import power
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
 
-def highlight(gloss: Any, look: Vec, normal: Vec, towards: Vec, direction: Vec, lit: Mask) -> Number:
+def highlight(look: Vec, normal: Vec, towards: Vec, direction: Vec, lit: Mask) -> Number:
     """The share of a lamp's light that is seen as a highlight along `direction`, for the rays that are `lit`.
 
-    `look` is a row of `gloss` (n, 3): the coefficient k, the exponent n and 1 for Blinn's form. Phong 1975: k (r.v)^n
+    `look` is a row of `Traced.gloss`: the coefficient k, the exponent n and 1 for Blinn's form. Phong 1975: k (r.v)^n
     with the mirrored direction r of the lamp and the direction v of the eye; Blinn 1977: k (n.h)^n with the vector h
-    halfway between lamp and eye. None where no shape is glossy.
+    halfway between lamp and eye.
     """
-    if gloss is None:
-        return splat(0.0, towards.x)
     mirrored = 2.0 * dot(normal, towards) * dot(normal, -direction) + dot(towards, direction)
     halfway = dot(normal, unit(towards - direction))
     base = minimum(where(look.z > 0.5, halfway, mirrored), 1.0)

@@ -7,12 +7,15 @@ and loops need, which saves another fifth.
 
 from __future__ import annotations
 
+import operator
 from typing import Any
 
-from numba import _dynfunc
+from numba import _dynfunc, types
+from numba.core import ir
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
-from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.compiler_machinery import FunctionPass, PassManager, _pass_registry, register_pass
+from numba.core.ir_utils import get_definition, guard
 from numba.core.typed_passes import NativeLowering, NoPythonBackend, NopythonTypeInference, PreLowerStripPhis
 from numba.core.untyped_passes import DeadBranchPrune, FixupArgs, IRProcessing, ReconstructSSA, TranslateByteCode
 
@@ -49,6 +52,46 @@ def called(library: Any, found: list[Any]) -> list[Any]:
     return found
 
 
+@register_pass(mutates_CFG=False, analysis_only=False)
+class Presence(FunctionPass):
+    """Decides `x is None` and `x.y is None` by the type of an argument x, for the next step to see."""
+
+    _name = "presence"
+
+    def __init__(self) -> None:
+        FunctionPass.__init__(self)
+
+    def run_pass(self, state: Any) -> bool:
+        for block in state.func_ir.blocks.values():
+            for found in block.find_insts(ir.Assign):
+                decided = decision(state, found.value)
+                if decided is not None:
+                    found.value = ir.Const(decided, found.loc)
+                    state.func_ir._definitions[found.target.name] = [found.value]
+        return False
+
+
+def decision(state: Any, asked: Any) -> bool | None:
+    """What the answer always is, or None where something else is asked or the answer is not known."""
+    if not (isinstance(asked, ir.Expr) and asked.op == "binop" and asked.fn in (operator.is_, operator.is_not)):
+        return None
+    left, right = (guard(get_definition, state.func_ir, side) for side in (asked.lhs, asked.rhs))
+    kind = kind_of(state, left)
+    if kind is None or not (isinstance(right, ir.Const) and right.value is None):
+        return None
+    return bool((kind == types.none) == (asked.fn is operator.is_))
+
+
+def kind_of(state: Any, definition: Any) -> Any:
+    """The type of an argument, or of a field of one; None for all else."""
+    if isinstance(definition, ir.Arg):
+        return state.args[definition.index]
+    if not (isinstance(definition, ir.Expr) and definition.op == "getattr"):
+        return None
+    owner = kind_of(state, guard(get_definition, state.func_ir, definition.value))
+    return owner and state.typingctx.resolve_getattr(owner, definition.attr)
+
+
 @register_pass(mutates_CFG=True, analysis_only=False)
 class PartLowering(NativeLowering):
     """Makes a Part of a function whose types are known."""
@@ -71,7 +114,8 @@ STEPS = (
     (TranslateByteCode, "what the function does"),
     (FixupArgs, "its arguments"),
     (IRProcessing, "where its variables live"),
-    (DeadBranchPrune, "without what is done only with what is None"),
+    (Presence, "what of its arguments is there"),
+    (DeadBranchPrune, "without what is never done then"),
     (ReconstructSSA, "a variable for each value"),
     (NopythonTypeInference, "the types of all"),
     (PreLowerStripPhis, "one variable where ways meet"),
@@ -80,11 +124,19 @@ STEPS = (
 )
 
 
+class Steps(PassManager):
+    """Takes the steps one after the other. numba's own manager goes through the code anew after each."""
+
+    def run(self, state: Any) -> None:
+        for step, _ in self.passes:
+            _pass_registry.get(step).pass_inst.run_pass(state)
+
+
 class Inlined(CompilerBase):
-    """The steps; `if x is None` is decided by the type of an argument x."""
+    """Compiles by these steps."""
 
     def define_pipelines(self) -> list[PassManager]:
-        steps = PassManager("inlined")
+        steps = Steps("inlined")
         for step, what in STEPS:
             steps.add_pass(step, what)
         steps.finalize()

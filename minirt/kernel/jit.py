@@ -16,8 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from llvmlite import ir
 from numba import typeof, types
-from numba.core.typing.templates import AbstractTemplate, infer_global, signature
-from numba.extending import lower_builtin, overload, register_jitable
+from numba.extending import overload, register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (teaches numba the verbs of the formulas)
 from minirt.kernel import (
@@ -37,6 +36,7 @@ from minirt.kernel import (
     whitted,
 )
 from minirt.kernel.inlined import Inlined
+from minirt.kernel.jit_placed import Placed, data, length, teach_for_placed
 from minirt.kernel.kept import compiled
 from minirt.kernel.traced import Traced
 from minirt.lanes import angle, largest, power, vec
@@ -93,38 +93,6 @@ def _mapping(shape, point, normal):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).mapping
 
 
-@infer_global(trace.over_kinds)
-class OverKinds(AbstractTemplate):
-    """The type of `over_kinds`: that of the state after the last step."""
-
-    key = trace.over_kinds
-
-    def generic(self, args: Any, kws: Any) -> Any:
-        return signature(steps_of(self.context, *args)[-1].return_type, *args)
-
-
-def steps_of(context: Any, step: Any, groups: Any, state: Any, given: Any) -> list[Any]:
-    """The signature of the step for each kind."""
-    found = []
-    for group in groups:
-        found.append(context.resolve_function_type(step, (group, state, given), {}))
-        state = found[-1].return_type
-    return found
-
-
-@lower_builtin(trace.over_kinds, types.Any, types.BaseTuple, types.Any, types.Any)  # type: ignore[untyped-decorator]
-def _over_kinds(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    _, groups, state, given = args
-    kind = sig.args[2]
-    for place, each in enumerate(steps_of(context.typing_context, *sig.args)):
-        function = context.get_function(sig.args[0], each)
-        context.add_linking_libs(getattr(function, "libs", ()))
-        state = context.cast(builder, state, kind, each.args[1])
-        state = function(builder, (builder.extract_value(groups, place), state, given))
-        kind = each.return_type
-    return state
-
-
 def first_number(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     """The address of the first number of a row."""
     array = context.make_array(sig.args[0])(context, builder, value=args[0])
@@ -141,6 +109,8 @@ def numbers_of(array: Any) -> list[Any]:
 
 def packed_type(array: Any, i: Any) -> Any:
     """The type of a packed shape: the kind's NamedTuple of float64s and Vecs."""
+    if not isinstance(array, types.Array):
+        return None
     number = common(*numbers_of(array))
     fields = [
         VecType(number) if isinstance(each.type, types.NestedArray) else number for each in array.dtype.fields.values()
@@ -159,6 +129,9 @@ def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return context.make_tuple(builder, sig.return_type, parts)
 
 
+teach_for_placed(rows.read, packed_type, _read)
+
+
 @teach(counter.fetch_add, lambda counter, amount: types.int64, [(types.Array, types.Integer)])
 def _fetch_add(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     counter = context.make_array(sig.args[0])(context, builder, value=args[0])
@@ -171,12 +144,12 @@ def whole_block(pixels: Any, x: Any, y: Any, *levels: Any) -> Any:
     return types.none if all(isinstance(each, Lanes) for each in levels) else None
 
 
-@teach(frame.store_block, whole_block, [(types.Array, types.Integer, types.Integer, Lanes, Lanes, Lanes)])
+@teach(frame.store_block, whole_block, [(Placed, types.Integer, types.Integer, Lanes, Lanes, Lanes)])
 def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     word = ir.IntType(32)
-    pixels = context.make_array(sig.args[0])(context, builder, value=args[0])
+    pixels = data(context, builder, sig.args[0], args[0])
     x, y = (context.cast(builder, args[i], sig.args[i], types.intp) for i in (1, 2))
-    width = builder.extract_value(pixels.shape, 1)
+    width = length(context, builder, sig.args[0], args[0], 1)
     count = sig.args[3].count
     step = count // frame.DOWN
     words = splat(builder, ir.Constant(word, frame.OPAQUE), count)
@@ -187,7 +160,7 @@ def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> An
         lanes = [ir.Constant(word, line * step + i) for i in range(step)]
         part = builder.shuffle_vector(words, words, ir.Constant(ir.VectorType(word, step), lanes))
         row = builder.mul(builder.add(y, ir.Constant(y.type, line)), width)
-        place = builder.gep(pixels.data, [builder.add(row, x)])
+        place = builder.gep(pixels, [builder.add(row, x)])
         builder.store(part, builder.bitcast(place, part.type.as_pointer()), align=4)
     return context.get_dummy_value()
 

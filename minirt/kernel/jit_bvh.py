@@ -12,6 +12,7 @@ from numba.extending import register_jitable
 
 from minirt.kernel import bvh, bvh_build, bvh_collapse, bvh_hits, rows, whitted
 from minirt.kernel.jit import CACHE, INNER, first_number, own_functions
+from minirt.kernel.jit_placed import teach_for_placed
 from minirt.kernel.kept import compiled
 from minirt.lanes import compiled_verbs, verbs
 from minirt.lanes.teaching import teach
@@ -75,6 +76,8 @@ def _lowest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 
 def packed_lanes(blocks: Any, i: Any) -> Any:
     """The type of a block: the kind's NamedTuple of lanes and of Vecs of them."""
+    if not isinstance(blocks, types.Array):
+        return None
     fields = blocks.dtype.fields.values()
     numbers = [VecType(LANES) if len(each.type.shape) == 2 else LANES for each in fields]
     return types.NamedTuple(numbers, rows.kind_of(blocks.dtype.fields).packed)
@@ -90,6 +93,8 @@ def _read_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any
     ]
     return context.make_tuple(builder, sig.return_type, parts)
 
+
+teach_for_placed(bvh_hits.read_block, packed_lanes, _read_block)
 
 TAUGHT = (bvh.packet_memory, bvh.put, bvh.tag, bvh.name_of, bvh.bits, bvh.lowest, bvh_hits.read_block)
 ENTRIES = (bvh_hits.trace_rays, bvh_build.divide, bvh_collapse.weigh, bvh_collapse.collapse)

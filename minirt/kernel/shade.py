@@ -41,38 +41,18 @@ def received(
         lit = hit & (cosine > 0.0)
         if any(lit):
             reach = distance - 4.0 * (rounding + ROUNDING * u * largest(lamp))  # a surface hides no lamp on it
-            lit = unblocked(scene.beams, scene, memory, i, start, towards, reach, lit)
+            lit = unblocked(scene, memory, i, start, towards, reach, lit)
             total = total + where(lit, cosine, 0.0) * light
-            share = highlight(scene.gloss, found.gloss, bent, towards, direction, lit)
-            shine = with_shine(scene.gloss, shine, share * strength * light)
+            if scene.gloss is not None:
+                shine = shine + highlight(found.gloss, bent, towards, direction, lit) * strength * light
     return total, shine
 
 
-def unblocked(
-    beams: Any, scene: Traced, memory: Any, lamp: int, start: Vec, towards: Vec, reach: Number, lit: Mask
-) -> Mask:
+def unblocked(scene: Traced, memory: Any, lamp: int, start: Vec, towards: Vec, reach: Number, lit: Mask) -> Mask:
     """`unhidden`; the rays to a lamp whose light is parallel share no end, and walk the tree where there is one."""
-    if beams is None:
+    if scene.beams is None or scene.tree is None or scene.beams[lamp, 6] < 0.5:
         return unhidden(scene, memory, lamp, start, towards, reach, lit)
-    if beams[lamp, 6] > 0.5:
-        return unhidden_in_tree(scene.tree, scene, memory, lamp, start, towards, reach, lit)
-    return unhidden(scene, memory, lamp, start, towards, reach, lit)
-
-
-def unhidden_in_tree(
-    tree: Any, scene: Traced, memory: Any, lamp: int, start: Vec, towards: Vec, reach: Number, lit: Mask
-) -> Mask:
-    """The same for such a lamp."""
-    if tree is None:
-        return unhidden(scene, memory, lamp, start, towards, reach, lit)
-    return bvh_hits.unhidden(tree, start, towards, reach, lit)
-
-
-def with_shine(gloss: Any, light: Vec, shine: Vec) -> Vec:
-    """Light and a highlight."""
-    if gloss is None:
-        return light
-    return light + shine
+    return bvh_hits.unhidden(scene.tree, start, towards, reach, lit)
 
 
 def coloured(light: Vec, colour: Vec) -> Vec:

@@ -34,8 +34,6 @@ def skinned(
     skins: Any, groups: tuple[Group, ...], index: int, place: Any, point: Vec, normal: Vec, colour: Vec
 ) -> tuple[Vec, Vec]:
     """The normal by which places of a shape are lit, and their colour; the shape is at `place`, a group and a row."""
-    if skins is None:
-        return normal, colour
     if skins.used[index] != 0:
         nothing = splat(0.0, point.x)
         given = place[0], place[1], point, normal

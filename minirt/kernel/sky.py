@@ -6,6 +6,7 @@ from math import pi
 from typing import Any, NamedTuple
 
 from minirt.kernel.texels import picture_at
+from minirt.kernel.traced import Traced
 from minirt.lanes import Vec, any, maximum, minimum, splat, sqrt, where
 from minirt.lanes.angle import arctan2
 from minirt.lanes.vec import Number
@@ -19,35 +20,27 @@ class Dome(NamedTuple):
     pictures: Any  # its only row
 
 
-def lit_sky(sky: Any, dome: Any, hit: Mask, light: Vec, direction: Vec) -> Vec:
+def lit_sky(scene: Traced, hit: Mask, light: Vec, direction: Vec) -> Vec:
     """The light of rays that hit, and of the sky for those that do not."""
-    return painted_sky(dome, hit, coloured_sky(sky, hit, light), direction)
+    if scene.sky is not None:
+        light = where(hit, light, Vec(scene.sky[0], scene.sky[1], scene.sky[2]))
+    if scene.dome is not None and any(~hit):
+        light = where(hit, light, painted(scene.dome, direction))
+    return light
 
 
-def beyond(sky: Any, dome: Any, weight: Number, direction: Vec) -> Vec:
+def beyond(scene: Traced, weight: Number, direction: Vec) -> Vec:
     """The light of the sky in a direction, times a weight."""
     nothing = splat(0.0, weight)
     dark = Vec(nothing, nothing, nothing)
-    return where(weight > 0.0, weight * lit_sky(sky, dome, weight < 0.0, dark, direction), dark)
+    return where(weight > 0.0, weight * lit_sky(scene, weight < 0.0, dark, direction), dark)
 
 
-def coloured_sky(sky: Any, hit: Mask, light: Vec) -> Vec:
-    """A sky of one colour."""
-    if sky is None:
-        return light
-    return where(hit, light, Vec(sky[0], sky[1], sky[2]))
-
-
-def painted_sky(dome: Any, hit: Mask, light: Vec, direction: Vec) -> Vec:
-    """A picture around the scene."""
-    if dome is None:
-        return light
-    if any(~hit):
-        u, v = longitude_and_latitude(direction)
-        edge = 0.5 / dome.pictures[0, 2]  # nothing is above the upper row of pixels
-        seen = picture_at(dome.texels, dome.pictures, 0, u, minimum(maximum(v, edge), 1.0 - edge))
-        light = where(hit, light, seen)
-    return light
+def painted(dome: Dome, direction: Vec) -> Vec:
+    """The light of a picture around the scene."""
+    u, v = longitude_and_latitude(direction)
+    edge = 0.5 / dome.pictures[0, 2]  # nothing is above the upper row of pixels
+    return picture_at(dome.texels, dome.pictures, 0, u, minimum(maximum(v, edge), 1.0 - edge))
 
 
 def longitude_and_latitude(direction: Vec) -> tuple[Number, Number]:
@@ -55,8 +48,3 @@ def longitude_and_latitude(direction: Vec) -> tuple[Number, Number]:
     u = 0.5 + arctan2(-direction.x, direction.z) * (0.5 / pi)
     v = 0.5 + arctan2(direction.y, sqrt(direction.x * direction.x + direction.z * direction.z)) * (1.0 / pi)
     return u, v
-
-
-def is_plain(dome: Any) -> bool:
-    """Whether the sky looks the same everywhere."""
-    return dome is None

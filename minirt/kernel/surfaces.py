@@ -59,8 +59,15 @@ def surface_at(scene: Traced, index: int, point: Vec) -> Surface:
     on, normal, bent, _ = over_kinds(
         surface_of_kind, scene.groups, (point, point, point, 0), (place[0], place[1], point)
     )
-    bent, colour = skinned(scene.skins, scene.groups, index, place, on, bent, row_of(scene.looks, index, point.x))
-    gloss, bounces = row_of(scene.gloss, index, point.x), row_of(scene.bounces, index, point.x)
+    nothing = splat(0.0, point.x)
+    gloss = bounces = Vec(nothing, nothing, nothing)
+    colour = row_of(scene.looks, index, point.x)
+    if scene.skins is not None:
+        bent, colour = skinned(scene.skins, scene.groups, index, place, on, bent, colour)
+    if scene.gloss is not None:
+        gloss = row_of(scene.gloss, index, point.x)
+    if scene.bounces is not None:
+        bounces = row_of(scene.bounces, index, point.x)
     return Surface(on, normal, bent, colour, gloss, bounces)
 
 
@@ -80,7 +87,5 @@ def surface_of_kind(
 
 
 def row_of(table: Any, index: int, like: Number) -> Vec:
-    """The first three numbers of a row, for all rays; 0 where there is no table."""
-    if table is None:
-        return Vec(splat(0.0, like), splat(0.0, like), splat(0.0, like))
+    """The first three numbers of a row, for all rays."""
     return Vec(splat(table[index, 0], like), splat(table[index, 1], like), splat(table[index, 2], like))

@@ -15,7 +15,7 @@ import numpy as np
 
 from minirt.kernel import bvh_hits
 from minirt.kernel.bvh import put, put_vec
-from minirt.kernel.shade import clearance, coloured, received, with_shine
+from minirt.kernel.shade import clearance, coloured, received
 from minirt.kernel.sky import beyond, lit_sky
 from minirt.kernel.surfaces import Surface, surfaces
 from minirt.kernel.trace import nearest
@@ -31,17 +31,17 @@ ROWS = 8
 MEMORY = (DEEPEST + 2) * ROWS * BYTES // 8
 
 
-def radiance(bounces: Any, scene: Traced, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
-    """The light that arrives at `origin` against `direction`; `bounces` are those of the scene."""
+def radiance(scene: Traced, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
+    """The light that arrives at `origin` against `direction`."""
     t, owner, extent = nearest(scene, tile, origin, direction)
-    if bounces is None:
-        hit = t < inf
-        nothing = splat(0.0, t)
-        light = Vec(nothing, nothing, nothing)
-        if any(hit):
-            light, _ = leaving(scene, memory, t, owner, extent, origin, direction, hit)
-        return lit_sky(scene.sky, scene.dome, hit, light, direction)
-    return whitted(scene, memory, t, owner, extent, origin + 0.0 * direction, direction)
+    if scene.bounces is not None:
+        return whitted(scene, memory, t, owner, extent, origin + 0.0 * direction, direction)
+    hit = t < inf
+    nothing = splat(0.0, t)
+    light = Vec(nothing, nothing, nothing)
+    if any(hit):
+        light, _ = leaving(scene, memory, t, owner, extent, origin, direction, hit)
+    return lit_sky(scene, hit, light, direction)
 
 
 def leaving(
@@ -55,15 +55,12 @@ def leaving(
         normal = where(away, -normal, normal)
         bent = where(away, -bent, bent)
     total, shine = received(scene, memory, found, normal, bent, direction, extent, hit)
-    own = opaque(scene.bounces, found.bounces, coloured(total, found.colour))
-    return with_shine(scene.gloss, own, shine), found
-
-
-def opaque(table: Any, bounces: Vec, light: Vec) -> Vec:
-    """The share of its own light that a surface shows."""
-    if table is None:
-        return light
-    return light * maximum(1.0 - bounces.x - bounces.y, 0.0)
+    own = coloured(total, found.colour)
+    if scene.bounces is not None:
+        own = own * maximum(1.0 - found.bounces.x - found.bounces.y, 0.0)
+    if scene.gloss is not None:
+        own = own + shine
+    return own, found
 
 
 def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec) -> Vec:
@@ -102,7 +99,7 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
                     way = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * mirroring)
                     kept = where(through > LEAST, through, 0.0)
                     waiting = keep(paths, waiting, point - rounding * facing, way, kept, level)
-        light = light + beyond(scene.sky, scene.dome, where(asked & ~hit, weight, 0.0), direction)
+        light = light + beyond(scene, where(asked & ~hit, weight, 0.0), direction)
         if waiting == 0:
             break
         waiting -= 1

@@ -40,7 +40,7 @@ def picture(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarr
     y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
     with np.errstate(all="ignore"):
         direction = unit(towards(traced.camera, x, y))
-        seen = radiance(None, traced, memory_for(traced), 0, Vec(*traced.camera[:3]), direction)
+        seen = radiance(traced, memory_for(traced), 0, Vec(*traced.camera[:3]), direction)
     light = np.stack([seen.x, seen.y, seen.z], axis=-1).reshape(height, width, 3)
     pixels = np.full((height, width, 4), 255, np.uint8)
     pixels[..., :3] = level(light[..., ::-1])

@@ -13,6 +13,7 @@ import minirt.kernel.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel import bvh_hits
 from minirt.kernel.bvh import WIDTH
 from minirt.kernel.kept import FLAGS
+from minirt.kernel.traced import placed
 from minirt.lanes import Vec, lane, load, where
 from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
@@ -49,11 +50,12 @@ def shadows() -> Any:
     """`unhidden`, compiled, for n rays of unit direction, a multiple of `WIDTH`."""
 
     def run(scene: Any, o: Any, d: Any, distances: Any, free: Any) -> None:
+        tree = placed(scene)
         for i in range(0, distances.size, WIDTH):
             origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
             direction = Vec(load(d[0], i), load(d[1], i), load(d[2], i))
             distance = load(distances, i)
-            answer = where(bvh_hits.unhidden(scene, origin, direction, distance, distance > 0.0), 1.0, 0.0 * distance)
+            answer = where(bvh_hits.unhidden(tree, origin, direction, distance, distance > 0.0), 1.0, 0.0 * distance)
             for ray in range(WIDTH):
                 free[i + ray] = lane(answer, ray)
 

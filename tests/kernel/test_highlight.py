@@ -19,7 +19,7 @@ def seen(lamp: float, eye: float, k: float, n: float, blinn: bool, lit: np.ndarr
     towards = Vec(*(np.full(16, each) for each in (-sin(radians(lamp)), cos(radians(lamp)), 0.0)))
     gaze = Vec(*(np.full(16, each) for each in (-sin(radians(eye)), -cos(radians(eye)), 0.0)))
     look = Vec(*(np.full(16, each) for each in (k, n, float(blinn))))
-    share = highlight(np.zeros((1, 3)), look, UP, towards, gaze, lit)
+    share = highlight(look, UP, towards, gaze, lit)
     assert np.array_equal(share, np.full(16, share[0]))
     return float(share[0])
 
@@ -42,7 +42,3 @@ def test_none_behind_the_mirrored_direction_and_none_in_the_shadow() -> None:
     assert seen(60, -40, 1, 1, True) == pytest.approx(cos(radians(50)))
     assert seen(35, 35, 0.7, 50, False, ~LIT) == 0
     assert seen(35, 35, 0, 50, False) == 0
-
-
-def test_without_glossy_shapes_there_is_nothing_to_do() -> None:
-    assert np.array_equal(highlight(None, UP, UP, UP, UP, LIT), np.zeros(16))
