@@ -6,12 +6,12 @@ does, and of a mesh with triangles as small as pixels it leaves only those to th
 
 from __future__ import annotations
 
-from minirt.lanes import Vec, cross, dot, maximum, minimum, unit_roundoff, where
+from minirt.lanes import Vec, cross, dot, maximum, minimum, splat, unit_roundoff, where
 from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
-APART = 1024  # roundings of the coordinates by which rays may pass beside the point, or beside a side of the pyramid
+APART = 1024  # roundings of its length by which a ray may pass beside the point, or beside a side of the pyramid
 BEHIND = 4  # roundings of the coordinates by which a start may seem to lie behind the triangle
 
 
@@ -26,12 +26,13 @@ def may_meet(
     a, b, c = corners[0] - apex, corners[1] - apex, corners[2] - apex
     of_a, of_b, of_c = dot(cross(b, c), direction), dot(cross(c, a), direction), dot(cross(a, b), direction)
     size = maximum(maximum(largest(a), largest(b)), largest(c))
-    margin = APART * unit_roundoff(direction.x) * size * (size + largest(apex))
+    far = splat(size, direction.x)
+    if start is not None:
+        far = far + largest(apex - start)
+        asked = asked & (depth(corners[0], normal, dot(normal, a), start) >= 0.0)
+    margin = APART * unit_roundoff(direction.x) * size * far
     least, most = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
-    asked = asked & ((least >= -margin) | (most <= margin))
-    if start is None:
-        return asked
-    return asked & (depth(corners[0], normal, dot(normal, a), start) >= 0.0)
+    return asked & ((least >= -margin) | (most <= margin))
 
 
 def depth(corner: Vec, normal: Vec, height: float, start: Vec) -> Number:

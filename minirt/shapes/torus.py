@@ -14,7 +14,7 @@ from math import cos, pi, sin
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
-from minirt.lanes import Vec, any, copysign, dot, fabs, maximum, minimum, splat, sqrt, unit_roundoff, where
+from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, splat, sqrt, unit_roundoff, where
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
@@ -96,7 +96,7 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
         leave = minimum(half, maximum(bottom, top))
         start = -approach  # the ray's origin
         within = start >= enter
-        enter = where(within, start, enter)
+        enter = maximum(enter, start)
         hit = hit & (enter <= leave)
         if any(hit):
             # The sides of the surface at both ends and, as far as the ray comes there, at the turning points between.
@@ -129,7 +129,7 @@ def side(torus: PackedTorus, p: Vec) -> Number:
 
 def turning_points(torus: PackedTorus, p: Vec, d: Vec, asked: Mask) -> tuple[Number, Number, Number]:
     """Where (|q|^2 + ring^2 - tube^2)^2 - 4 ring^2 (q_x^2 + q_y^2) has an extremum along q = p + t d, in ascending
-    order; the same three times where there is one.
+    order; where there is only one, with two places that are none, which cut a stretch without any in two.
 
     With p the point of the ray closest to the centre, the derivative is 4 (t^3 + b t + c). The root that is largest
     without its sign is where Newton's steps from beyond end, which never pass it; a quadratic is left for the others.
@@ -138,39 +138,31 @@ def turning_points(torus: PackedTorus, p: Vec, d: Vec, asked: Mask) -> tuple[Num
     b = dot(p, p) + squared - torus.tube * torus.tube - 2.0 * squared * (d.x * d.x + d.y * d.y)
     c = -2.0 * squared * (p.x * d.x + p.y * d.y)
     size = fabs(c)
-    bend = sqrt(maximum(-b, 0.0) * (1.0 / 3.0))
-    # No extremum is farther than sqrt(2) ring, and no root of three than twice the place where the cubic turns.
-    y = torus.ring * splat(1.415, bend)
-    y = where(size <= 2.0 * bend * bend * bend, minimum(y, 2.0 * bend), y)
+    y = torus.ring * splat(1.415, c)  # no extremum is farther than sqrt(2) ring
     small = 2.0**-30 * torus.ring  # what is left is the square of it
-    unsure = asked
+    unsure = asked  # what is exact stays as it is, so that no ray's answer depends on those beside it
     for _ in range(STEPS):
-        slope = 3.0 * y * y + b
-        step = where(unsure & (slope > 0.0), ((y * y + b) * y - size) / slope, 0.0)
+        step = where(unsure, ((y * y + b) * y - size) / (3.0 * y * y + b), 0.0)
         y = y - step
-        unsure = unsure & (step > small)
+        unsure = step > small
         if not any(unsure):
             break
-    rest = -0.75 * y * y - b
-    half = sqrt(maximum(rest, 0.0))
-    sign = copysign(1.0, -c)
-    far, mean = sign * y, -0.5 * sign * y
-    lone = rest <= 0.0
-    near, middle = where(lone, far, mean - half), where(lone, far, mean + half)
-    forward = sign > 0.0
+    forward = c < 0.0
+    far = where(forward, y, -y)
+    mean = -0.5 * far
+    half = sqrt(maximum(-0.75 * y * y - b, 0.0))
+    near, middle = mean - half, mean + half
     return where(forward, near, far), where(forward, middle, near), where(forward, far, middle)
 
 
 def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from_side: Number, asked: Mask) -> Number:
     """Where p + t d crosses the surface between two t on different sides of it, of which `from_side` is the first.
 
-    Newton's steps; half of what is left instead where one would lead out of it, or is not half as long as the one
-    before (Press et al., Numerical Recipes, 9.4).
+    Newton's steps, or half of what is left where one would lead out of it (Press et al., Numerical Recipes, 9.4).
     """
     t = 0.5 * (low + high)
-    last = high - low
-    rounding = 2.0 * unit_roundoff(t)
-    unsure = asked  # what is exact stays as it is, so that no ray's answer depends on those beside it
+    rounding = 4.0 * unit_roundoff(t)
+    unsure = asked
     for _ in range(STEPS):
         q = p + t * d
         rho = sqrt(q.x * q.x + q.y * q.y)
@@ -181,12 +173,12 @@ def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from
         before = height * from_side > 0.0
         low = where(before, t, low)
         high = where(before, high, t)
-        step = -height / slope
-        newton = (t + step >= low) & (t + step <= high) & (2.0 * fabs(step) < last)
-        step = where(newton, step, 0.5 * (low + high) - t)
-        last = fabs(step)
-        t = where(unsure, t + step, t)
-        unsure = unsure & (last > rounding * (fabs(t) + torus.tube))
+        newton = t - height / slope
+        nearer = where((newton > low) & (newton < high), newton, 0.5 * (low + high))
+        unsure = unsure & (fabs(height) > rounding * torus.ring)  # below that it is what rounding left
+        step = where(unsure, nearer - t, 0.0)
+        t = t + step
+        unsure = fabs(step) > rounding * (fabs(t) + torus.tube)
         if not any(unsure):
             break
     return t

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from tests.shapes.mapped import WAYS, Case, Way, cases, check_hand, check_places
 from tests.shapes.regimes import GREY
 from tests.shapes.test_protocol import scaled
 
+TITLED = partial(pytest.mark.parametrize, ids=lambda each: each.title if isinstance(each, Shape) else None)
 SIZES = [(1.0, 0.0), (1e-6, 0.0), (1e6, 0.0), (1.0, 1e6), (1e-6, 1.0)]
 CHECKS = (check_places, check_tangents, check_hand)
 ALL = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
@@ -79,7 +81,7 @@ KNOWN: list[tuple[Shape, tuple[float, ...], tuple[float, ...], tuple[float, floa
 
 
 @EITHER
-@pytest.mark.parametrize(("shape", "point", "normal", "right"), KNOWN)
+@TITLED(("shape", "point", "normal", "right"), KNOWN)
 def test_known_places(shape: Shape, point: Any, normal: Any, right: Any, way: Way) -> None:
     points, normals = np.tile(np.array(point, float), (16, 1)), np.tile(np.array(normal, float), (16, 1))
     got = way(shape, points, normals)
@@ -105,7 +107,7 @@ TIPS: list[tuple[Shape, tuple[float, ...], tuple[float, ...]]] = [
 
 @EITHER
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
-@pytest.mark.parametrize(("shape", "point", "normal"), TIPS)
+@TITLED(("shape", "point", "normal"), TIPS)
 def test_at_poles_and_apexes_all_is_finite(shape: Shape, point: Any, normal: Any, dtype: Any, way: Way) -> None:
     # The tip itself and places a little or next to nothing aside.
     aside = np.zeros((32, 3))

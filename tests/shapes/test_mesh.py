@@ -161,7 +161,7 @@ def mapped(packed: mesh.PackedMeshTriangle, points: np.ndarray, normals: np.ndar
     return [u, v, *(np.stack([each.x, each.y, each.z], axis=1) for each in (along_u, along_v))]
 
 
-def test_coordinates_of_pictures_are_those_of_the_file_and_their_directions_what_changes_them() -> None:
+def test_coordinates_are_those_of_the_file_and_their_directions_what_changes_them() -> None:
     random = np.random.default_rng(5)
     made = named("knot", (1, 2, 3), 2.0)
     shares = random.dirichlet((2, 2, 2), made.parts)
@@ -196,3 +196,17 @@ def test_without_coordinates_there_are_no_directions_or_those_of_the_triangle() 
     with np.errstate(all="raise"):
         found = mapped(made.pack(), points, rows[:, 9:12])
     assert all(np.isfinite(each).all() for each in found)
+    assert np.allclose(found[:2], 1 / 3)  # half a picture on each triangle
+    a, b, c = rows[:, :9].reshape(-1, 3, 3).swapaxes(0, 1)
+    assert np.allclose(found[2], b - a)
+    assert np.allclose(found[3], c - a)
+
+
+def test_points_are_put_onto_the_plane_of_the_triangle() -> None:
+    made = named("knot", (1, 2, 3), 2.0)
+    rows, random = made.rows(), np.random.default_rng(6)
+    points = np.einsum("ij,ijk->ik", random.dirichlet((1, 1, 1), made.parts), rows[:, :9].reshape(-1, 3, 3))
+    beside = points + random.normal(size=(made.parts, 1)) * rows[:, 9:12]
+    on, normal = mesh.surface(made.pack(), Vec(*beside.T))
+    assert np.abs(np.stack([on.x, on.y, on.z], axis=1) - points).max() < 1e-14
+    assert np.array_equal(np.stack([normal.x, normal.y, normal.z], axis=1), rows[:, 9:12])

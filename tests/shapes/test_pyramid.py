@@ -10,47 +10,81 @@ import pytest
 from minirt.kernel.shade import clearance
 from minirt.lanes import Vec
 from minirt.shapes.pyramid import may_meet
-from minirt.shapes.triangle import watertight
+from minirt.shapes.triangle import Triangle, watertight
+from tests.shapes.regimes import GREY
 
 COUNT = 4000
 REGIMES = [(1.0, 0.0, 5.0), (1e-3, 0.0, 5.0), (1.0, 1e6, 5.0), (1e-4, 10.0, 5e3), (300.0, 0.0, 1.0), (1.0, 0.0, 0.01)]
+REGIMES += [(1e-11, 0.0, 1e-10)]
+FAR = 1e6  # as many times as far behind the triangle as the apex is before it
+PLACES = {  # where 0 is, and how the three corners lie beside the apex
+    "as drawn": lambda corners, apex, random: (corners, apex),
+    "a corner at 0": lambda corners, apex, random: (corners - corners[0], apex - corners[0]),
+    "the middle at 0": lambda corners, apex, random: (corners - corners.mean(0), apex - corners.mean(0)),
+    "the apex at 0": lambda corners, apex, random: (corners - apex, 0 * apex),
+    "the apex at 0, near corners": lambda corners, apex, random: (
+        10.0 ** random.choice([-5, 0], (3, 1)) * (corners - apex),
+        0 * apex,
+    ),
+    "the apex at 0, near an edge": lambda corners, apex, random: (
+        corners - corners[:2].mean(0) + 1e-5 * random.normal(size=3),
+        0 * apex,
+    ),
+    "far starts at 0": lambda corners, apex, random: seen_from(corners, apex, 1 + FAR),
+    "half-way to far starts at 0": lambda corners, apex, random: seen_from(corners, apex, (1 + FAR) / 2),
+}
+CASES = [(regime, "as drawn", number) for regime in REGIMES for number in (np.float64, np.float32)]
+CASES += [(REGIMES[i], place, np.float64) for i in (0, 5) for place in PLACES]
 
 
 def vec(points: Any, number: type) -> Vec:
     return Vec(*np.asarray(points, number).T)
 
 
-def drawn(seed: int, size: float, offset: float, distance: float, number: type) -> tuple[Any, ...]:
+def seen_from(corners: Any, apex: Any, share: float) -> tuple[Any, Any]:
+    """Corners and apex where 0 is as many times as far from the apex as the middle of an edge is, and behind that."""
+    start = apex + share * (corners[:2].mean(0) - apex)
+    return corners - start, apex - start
+
+
+def drawn(
+    seed: int, size: float, offset: float, distance: float, number: type, place: str = "as drawn"
+) -> tuple[Any, ...]:
     """A triangle, a point away from it, and points of the triangle: also of its edges, and its corners."""
     random = np.random.default_rng(seed)
     middle = offset * random.normal(size=3)
-    corners = (middle + size * random.normal(size=(3, 3))).astype(number).astype(float)
-    apex = (middle + distance * random.normal(size=3)).astype(number).astype(float)
-    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    given = middle + size * random.normal(size=(3, 3)), middle + distance * random.normal(size=3)
+    corners, apex = (each.astype(number).astype(float) for each in PLACES[place](*given, random))
+    normal = np.array(Triangle(*map(tuple, corners.tolist()), GREY).normal())
     shares = random.dirichlet(np.ones(3), COUNT)
     shares[::4, 0] = 0
     shares[::8, 1] = 0
     shares /= shares.sum(axis=1, keepdims=True)
-    return corners, apex, normal / np.linalg.norm(normal), shares @ corners, random
+    return corners, apex, normal, np.roll(shares, seed, axis=1) @ corners, random
 
 
-@pytest.mark.parametrize("number", [np.float64, np.float32])
-@pytest.mark.parametrize("regime", REGIMES)
+@pytest.mark.parametrize(("regime", "place", "number"), CASES)
 @pytest.mark.parametrize("seed", range(8))
-def test_all_rays_that_hit_are_tried(seed: int, regime: tuple[float, float, float], number: type) -> None:
-    corners, apex, normal, points, random = drawn(seed, *regime, number)
+def test_all_rays_that_hit_are_tried(seed: int, regime: tuple[float, float, float], place: str, number: type) -> None:
+    corners, apex, normal, points, random = drawn(seed, *regime, number, place)
     a, b, c = (vec(each, number) for each in corners)
     origin, up, everything = vec(apex, number), vec(normal, number), np.ones(COUNT, bool)
-    # From the apex, and from behind the triangle towards it.
+    beside = random.normal(size=(COUNT, 3)) @ (corners - corners[0])  # in the plane
+    middle = corners[:2].mean(0)  # of an edge
+    points[::16] = middle + 1e-5 * (points[::16] - middle)
+    points = points + 10.0 ** random.uniform(-20, -7, (COUNT, 1)) * beside
     away = points - apex
-    for start in (None, points + away * 10.0 ** random.uniform(-3, 2, (COUNT, 1))):
+    near, far = (10.0 ** random.integers(*powers, (COUNT, 1)) for powers in ((-18, -5), (-3, 9)))
+    # From the apex, from the triangle and from behind it towards the apex, also from so far that they do not quite get
+    # there.
+    for start in (None, points + near * away, points + far * away):
         begin = np.broadcast_to(apex, points.shape) if start is None else start.astype(number).astype(float)
         aim = away if start is None else apex - begin
         direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), number)
         with np.errstate(all="ignore"):  # float32 may not tell corners so far away apart
             hit, _ = watertight(a, b, c, vec(begin, number), direction)
         tried = may_meet((a, b, c), up, origin, None if start is None else vec(begin, number), direction, everything)
-        assert hit.mean() > 0.5 or number is np.float32
+        assert hit.mean() > 0.2 or number is np.float32
         assert not (hit & ~tried).any()
 
 
@@ -90,3 +124,4 @@ def test_only_what_is_asked_for() -> None:
     asked = np.arange(COUNT) % 3 == 0
     given = tuple(vec(each, np.float64) for each in corners), vec(normal, np.float64), vec(apex, np.float64)
     assert np.array_equal(may_meet(*given, None, direction, asked), asked)
+    assert np.array_equal(may_meet(*given, vec(points + aim, np.float64), direction, asked), asked)

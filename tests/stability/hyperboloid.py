@@ -60,5 +60,6 @@ REGIMES = [
     Regime("at the rim", partial(at, 16, make, rim), blur=1e-12),
     Regime("at the waist", partial(at, 17, make, waist)),
     Regime("a waist of 1e-6 of the diameter", partial(at, 18, partial(make, waist=1e-6), waist, (1e-3, 1e-1))),
+    Regime("closely at a waist of 1e-6 of that", partial(at, 20, partial(make, waist=1e-6), waist, (1e-9, 1e-6))),
     Regime("a waist as wide as the ends", partial(at, 19, partial(make, waist=1.0), waist, (1e-3, 1e-1))),
 ]

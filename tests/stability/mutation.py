@@ -35,7 +35,7 @@ from tests.stability.table import REGIMES
 PACKAGE = Path(minirt.__file__).parent
 SHARED = ("quadric", "exact", "basis", "extents")  # of several shapes
 TOPICS = {"wrap": "mapping"}  # what the tests of a file are called, where not as the file
-FILES = (*SHARED, *TOPICS, *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.KINDS))
+FILES = (*SHARED, *TOPICS, "pyramid", *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.ALL_KINDS))
 TESTS = ("tests/shapes", "tests/stability/test_surfaces.py", "tests/stability/test_properties.py")
 # What starts threads does not survive a fork.
 UNFIT = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
@@ -125,7 +125,7 @@ def put(module: ModuleType, change: Change) -> None:
     exec(compile(change.tree, str(module.__file__), "exec"), changed)
     for name, new in changed.items():
         old = getattr(module, name)
-        if isinstance(new, (int, float)):
+        if isinstance(new, (int, float, tuple)):
             for user in users_of(module, name):
                 setattr(user, name, new)
         elif isinstance(new, FunctionType) and new.__module__ == module.__name__:
