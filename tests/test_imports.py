@@ -70,6 +70,7 @@ MAY: dict[str, set[str]] = {
 COMPILER = {"numba", "llvmlite"}
 COMPILED = {  # the only files that import the compiler
     "lanes/compiled.py",
+    "lanes/compiled_answers.py",
     "lanes/compiled_operators.py",
     "lanes/compiled_vec.py",
     "lanes/compiled_verbs.py",

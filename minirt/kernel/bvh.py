@@ -3,33 +3,36 @@
 A ray is tested against all boxes of a node at once, each plane of them one load (Wald et al., Getting Rid of Packets,
 2008). The tree is widened for what rounding may do to both the test of the boxes and the formulas of the shapes: a box
 by `MARGIN` of its coordinates when it is built, and for each ray by `MARGIN` of the coordinates of its origin. That is
-more than the 3 roundings of the test itself (Ize, Robust BVH Ray Traversal, 2013).
+more than the roundings of the test itself (Ize, Robust BVH Ray Traversal, 2013).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.trace import NEARBY, over_kinds
-from minirt.lanes import Vec, copysign, load, maximum, minimum, width
+from minirt.kernel.trace import NEARBY
+from minirt.lanes import Vec, copysign, fabs, load, maximum, minimum, width
 from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
 
 WIDTH = width(np.empty(0))  # children of a node, shapes in a leaf, rays in a packet
 MARGIN = 2.0**-42  # of the coordinates; a formula is wrong by less than 2**-47 of distance, place and size together
+TINY = 2.0**-500  # stands for 0 in a direction, so that no ray is parallel to the planes of boxes
 NODE = 7 * WIDTH  # numbers of a node: of its children the low x, y and z, the high x, y and z, and the names
+NAMES = 6 * WIDTH  # where those are
 LEVELS = 32  # of the tree down to `WIDTH` shapes or fewer
 NAME = 0xFFFFFFFF  # the bits of a number that hold a name
 
 # What a packet keeps on its way, in numbers of its memory: a row of lanes for each of x, y and z.
-ENTER, LEAVE, INVERSE, ORIGIN, DIRECTION, FOUND = (3 * WIDTH * i for i in range(6))
-TAGS = 18 * WIDTH  # of the children of a node
-TODO = 19 * WIDTH  # nodes and leaves that a ray has still to visit
-MEMORY = TODO + (LEVELS + WIDTH) * (WIDTH - 1)
+ENTER, LEAVE, INVERSE, ORIGIN, DIRECTION, FOUND = (3 * WIDTH * i for i in range(6))  # beyond `FOUND` nothing matters
+NEXT = 18 * WIDTH  # the tag of the node or leaf that each ray visits next
+TOP = 19 * WIDTH  # where the last of its rows in `TODO` is, a whole number
+TODO = 20 * WIDTH  # for each level of the tree and each ray a row of tags, of the children that it has still to visit
+LEVEL = WIDTH * WIDTH
+MEMORY = TODO + (LEVELS + WIDTH) * LEVEL
 
 
 class Group(NamedTuple):
@@ -37,7 +40,7 @@ class Group(NamedTuple):
 
     rows: Any  # a row a shape
     blocks: Any  # for each number of a packed shape `WIDTH` of them; where there are fewer shapes, the last again
-    owners: Any  # (blocks, WIDTH) which shapes of the scene those are
+    labels: Any  # (blocks, WIDTH, 2) which shapes of the scene those are, and their extents
     endless: Any  # (k,) the shapes of the scene that are in no box
 
 
@@ -55,14 +58,22 @@ class Tree(NamedTuple):
 
 def aim(memory: Any, origin: Vec, direction: Vec) -> None:
     """Keep the rays of a packet, as the boxes are tested with them."""
-    inverse = Vec(1.0 / direction.x, 1.0 / direction.y, 1.0 / direction.z)
+    inverse = Vec(inverse_of(direction.x), inverse_of(direction.y), inverse_of(direction.z))
     slack = MARGIN * largest(origin)
     grow = Vec(copysign(slack, inverse.x), copysign(slack, inverse.y), copysign(slack, inverse.z))
-    put_vec(memory, ENTER, origin + grow)  # to move the ray forward is to move the planes that it enters by back
-    put_vec(memory, LEAVE, origin - grow)
+    enter = origin + grow  # to move the ray forward is to move the planes that it enters by back
+    leave = origin - grow
+    # A plane is then one multiplication and subtraction away; what that rounds is less than the slack, too.
+    put_vec(memory, ENTER, Vec(enter.x * inverse.x, enter.y * inverse.y, enter.z * inverse.z))
+    put_vec(memory, LEAVE, Vec(leave.x * inverse.x, leave.y * inverse.y, leave.z * inverse.z))
     put_vec(memory, INVERSE, inverse)
     put_vec(memory, ORIGIN, origin)
     put_vec(memory, DIRECTION, direction)
+
+
+def inverse_of(x: Number) -> Number:
+    """1 / x, and something large for 0, with the sign of that."""
+    return 1.0 / copysign(maximum(fabs(x), TINY), x)
 
 
 def put_vec(memory: Any, at: int, v: Vec) -> None:
@@ -90,58 +101,15 @@ def boxes_met(
     """Which boxes of a node a ray meets up to the distance `limit`, and where it enters them."""
     x, y, z = planes
     enter, leave, inverse = vec_at(memory, ENTER, ray), vec_at(memory, LEAVE, ray), vec_at(memory, INVERSE, ray)
-    in_x = (load(nodes, node + x) - enter.x) * inverse.x
-    in_y = (load(nodes, node + y) - enter.y) * inverse.y
-    in_z = (load(nodes, node + z) - enter.z) * inverse.z
-    out_x = (load(nodes, node + 3 * WIDTH - x) - leave.x) * inverse.x
-    out_y = (load(nodes, node + 5 * WIDTH - y) - leave.y) * inverse.y
-    out_z = (load(nodes, node + 7 * WIDTH - z) - leave.z) * inverse.z
-    # 0 * inf is NaN where a ray runs in a side of the widened box, and hits nothing in it. A distance is no NaN: the
-    # verbs take their second argument instead.
+    in_x = load(nodes, node + x) * inverse.x - enter.x
+    in_y = load(nodes, node + y) * inverse.y - enter.y
+    in_z = load(nodes, node + z) * inverse.z - enter.z
+    out_x = load(nodes, node + 3 * WIDTH - x) * inverse.x - leave.x
+    out_y = load(nodes, node + 5 * WIDTH - y) * inverse.y - leave.y
+    out_z = load(nodes, node + 7 * WIDTH - z) * inverse.z - leave.z
     near = maximum(maximum(in_x, in_y), maximum(in_z, 0.0))
     far = minimum(minimum(out_x, out_y), minimum(out_z, limit))
     return near <= far, near
-
-
-def walk(visit: Callable[..., Any], tree: Tree, memory: Any, ray: int, state: Any) -> Any:
-    """The state after `state = visit(group, block, tree, origin, direction, state)` for the leaves that a ray meets,
-    the nearest first. The first of the state is a distance beyond which nothing matters.
-    """
-    origin, direction = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray)
-    planes = planes_of(vec_at(memory, INVERSE, ray))
-    limit = reach(state[0])
-    left = TODO
-    name = 0
-    while True:
-        if name >= 0:
-            met, near = boxes_met(tree.nodes, name, memory, ray, planes, limit)
-            children = bits(met)
-            if children != 0:
-                child = lowest(children)
-                children = children & (children - 1)
-                if children == 0:
-                    name = name_of(tree.nodes[name + 6 * WIDTH + child])
-                    continue
-                # The nearest is visited next. The others wait, sorted so that the nearer is last.
-                put(memory, TAGS, tag(near, load(tree.nodes, name + 6 * WIDTH)))
-                next_tag = memory[TAGS + child]
-                start = left
-                while children != 0:
-                    other = memory[TAGS + lowest(children)]
-                    children = children & (children - 1)
-                    left = wait(memory, start, left, maximum(next_tag, other))
-                    next_tag = minimum(next_tag, other)
-                name = name_of(next_tag)
-                continue
-        else:
-            state, _ = over_kinds(leaf_of_kind, tree.groups, (state, 0), (visit, -1 - name, tree, origin, direction))
-            limit = reach(state[0])
-        while left > TODO and memory[left - 1] > limit:
-            left -= 1
-        if left == TODO:
-            return state
-        left -= 1
-        name = name_of(memory[left])
 
 
 def reach(distance: float) -> float:
@@ -149,27 +117,13 @@ def reach(distance: float) -> float:
     return distance * (1.0 + 2.0 * NEARBY)
 
 
-def wait(memory: Any, start: int, left: int, tagged: float) -> int:
-    """Put a tag among those from `start` to `left`, which fall, and return their end."""
-    at = left
-    while at > start and memory[at - 1] < tagged:
-        memory[at] = memory[at - 1]
-        at -= 1
-    memory[at] = tagged
-    return left + 1
-
-
-def leaf_of_kind(group: Group, state: tuple[Any, int], given: tuple[Callable[..., Any], int, Tree, Vec, Vec]) -> Any:
-    """`visit` of a leaf, if it is one of this kind; the last of the state counts the kinds."""
-    inner, number = state
-    visit, leaf, tree, origin, direction = given
-    if leaf % len(tree.groups) == number:
-        inner = visit(group, leaf // len(tree.groups), tree, origin, direction, inner)
-    return inner, number + 1
-
-
 # A name travels with the distance to its box in one number: it takes the place of the low half of the bits, which
 # changes the distance by less than 2**-20 of it. The order of such numbers is that of the distances.
+
+
+def leaf_of(name: int) -> int:
+    """The number of a leaf in its name."""
+    return ~name & NAME >> 1  # the compiler sees that it is not below 0
 
 
 def tag(distance: Number, names: Number) -> Number:
@@ -187,14 +141,24 @@ def bits(mask: Mask) -> int:
     return sum(1 << int(ray) for ray in np.flatnonzero(mask))
 
 
-def lowest(number: int) -> int:
-    """The lowest bit of a number that is not 0."""
-    return (number & -number).bit_length() - 1
+def least(x: Number) -> float:
+    """The least of some numbers that are not below 0; NaN is more than infinity."""
+    return float(x.view(np.int64).min().view(np.float64))
 
 
 def packet_memory() -> Any:
     """Room for what a packet keeps on its way; compiled, it is a thread's own."""
     return np.zeros(MEMORY)
+
+
+def whole_at(memory: Any, at: int) -> int:
+    """A whole number that was kept."""
+    return int(memory[at : at + 1].view(np.int64)[0])
+
+
+def put_whole(memory: Any, at: int, n: int) -> None:
+    """Keep a whole number, in the place of another one."""
+    memory[at : at + 1].view(np.int64)[0] = n
 
 
 def put(memory: Any, at: int, x: Number) -> None:

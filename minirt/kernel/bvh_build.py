@@ -173,8 +173,9 @@ def add(bins: Any, b: int) -> None:
 
 
 def cost_of(bins: Any) -> float:
-    """How often rays meet the box around those in the last row, times their number."""
-    return area(bins, BINS) * bins[BINS, 6] if bins[BINS, 6] > 0.0 else inf
+    """How often rays meet the box around those in the last row, times the leaves that they fill."""
+    leaves = (int(bins[BINS, 6]) + WIDTH - 1) // WIDTH
+    return area(bins, BINS) * leaves if leaves > 0 else inf
 
 
 def area(reaches: Any, i: int) -> float:

@@ -14,19 +14,18 @@ from minirt.kernel.bvh import (
     Tree,
     aim,
     bits,
-    lowest,
     packet_memory,
     put,
     put_vec,
     reach,
     vec_at,
-    walk,
 )
+from minirt.kernel.bvh_walk import walk
 from minirt.kernel.counter import fetch_add
 from minirt.kernel.rows import intersect, kind_of, read, surface
 from minirt.kernel.trace import nearer, over_kinds
 from minirt.kernel.traced import placed
-from minirt.lanes import Vec, any, lane, load, splat, unit, where
+from minirt.lanes import Vec, any, lane, load, lowest, splat, unit, where
 from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 from minirt.lanes.verbs import Mask
@@ -43,13 +42,7 @@ def nearest(tree: Tree, origin: Vec, direction: Vec, asked: Mask) -> Nearest:
     nothing = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
     best, owner, extent = over_kinds(nearest_endless, tree.groups, nothing, (tree, origin, direction))
     put_vec(memory, FOUND, Vec(best, owner, extent))
-    left = bits(asked)
-    while left != 0:
-        ray = lowest(left)
-        left = left & (left - 1)
-        found = vec_at(memory, FOUND, ray)
-        found = walk(nearest_of_block, tree, memory, ray, (found.x, found.y, found.z))
-        memory[FOUND + ray], memory[FOUND + WIDTH + ray], memory[FOUND + 2 * WIDTH + ray] = found
+    walk(nearest_of_block, tree, memory, bits(asked))
     return load(memory, FOUND), load(memory, FOUND + WIDTH), load(memory, FOUND + 2 * WIDTH)
 
 
@@ -64,17 +57,21 @@ def nearest_endless(group: Group, state: Nearest, given: tuple[Tree, Vec, Vec]) 
     return state
 
 
-def nearest_of_block(group: Group, block: int, tree: Tree, origin: Vec, direction: Vec, state: Nearest) -> Nearest:
+def nearest_of_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
     """`nearest` of one ray over a block of shapes."""
+    origin, direction = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray)
     hit, t = intersect(read_block(group.blocks, block), origin, direction)
-    left = bits(hit & (t <= reach(state[0])))
-    while left != 0:
-        i = lowest(left)
-        left = left & (left - 1)
-        index = group.owners[block, i]
-        shape = read(group.rows, tree.places[index, 1])
-        state = nearer(shape, index, tree.extents[index], True, lane(t, i), origin, direction, state)
-    return state
+    left = bits(hit & (t <= reach(memory[FOUND + ray])))
+    if left != 0:
+        found = vec_at(memory, FOUND, ray)
+        state = found.x, found.y, found.z
+        while left != 0:
+            i = lowest(left)
+            left = left & (left - 1)
+            shape = read_one(group.blocks, block, i)  # in the cache, as its row in the table is not
+            index, extent = group.labels[block, i, 0], group.labels[block, i, 1]
+            state = nearer(shape, index, extent, True, lane(t, i), origin, direction, state)
+        memory[FOUND + ray], memory[FOUND + WIDTH + ray], memory[FOUND + 2 * WIDTH + ray] = state
 
 
 def unhidden(tree: Tree, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
@@ -83,11 +80,7 @@ def unhidden(tree: Tree, origin: Vec, direction: Vec, distance: Number, asked: M
     aim(memory, origin, direction)
     free = over_kinds(free_of_endless, tree.groups, asked, (tree, origin, direction, distance))
     put(memory, FOUND, where(free, distance, -inf))
-    left = bits(free)
-    while left != 0:
-        ray = lowest(left)
-        left = left & (left - 1)
-        memory[FOUND + ray] = walk(free_of_block, tree, memory, ray, (memory[FOUND + ray],))[0]
+    walk(free_of_block, tree, memory, bits(free))
     return load(memory, FOUND) > -inf
 
 
@@ -100,17 +93,21 @@ def free_of_endless(group: Group, free: Mask, given: tuple[Tree, Vec, Vec, Numbe
     return free
 
 
-def free_of_block(
-    group: Group, block: int, tree: Tree, origin: Vec, direction: Vec, state: tuple[float]
-) -> tuple[float]:
-    """How far a ray has to be looked at: -infinity as soon as something stops it."""
-    hit, t = intersect(read_block(group.blocks, block), origin, direction)
-    return (where(any(hit & (t < state[0])), -inf, state[0]),)
+def free_of_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
+    """Nothing matters any more to a ray, not even what is at -infinity, as soon as something stops it."""
+    hit, t = intersect(read_block(group.blocks, block), vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray))
+    memory[FOUND + ray] = where(any(hit & (t < memory[FOUND + ray])), -inf, memory[FOUND + ray])
 
 
 def read_block(blocks: Any, i: int) -> Any:
     """The packed shapes of a block as one whose numbers are lanes."""
     parts = (Vec(*part) if part.ndim == 2 else part for part in blocks[i])
+    return kind_of(blocks.dtype.names).packed(*parts)
+
+
+def read_one(blocks: Any, block: int, i: int) -> Any:
+    """The packed shape in lane i of a block."""
+    parts = (Vec(*part[:, i]) if part.ndim == 2 else part[i] for part in blocks[block])
     return kind_of(blocks.dtype.names).packed(*parts)
 
 
@@ -138,13 +135,14 @@ def trace_rays(
             origin, direction = lanes_at(memory, ORIGIN), unit(rescaled(lanes_at(memory, DIRECTION)))
             t, owner, _ = nearest(tree, origin, direction, load(memory, FOUND) < count)
             put_vec(memory, ORIGIN, origin + t * direction)
+            put_vec(memory, FOUND, Vec(t, owner, t))
             for ray in range(min(WIDTH, count - first)):
-                index = int(lane(owner, ray))
+                index = int(memory[FOUND + WIDTH + ray])
                 if index >= 0:
                     point = vec_at(memory, ORIGIN, ray)
                     group, row = tree.places[index, 0], tree.places[index, 1]
                     on, normal, _ = over_kinds(surface_of_kind, tree.groups, (point, point, 0), (group, row, point))
-                    distances[first + ray], owners[first + ray] = lane(t, ray), index
+                    distances[first + ray], owners[first + ray] = memory[FOUND + ray], index
                     store_vec(points, first + ray, on)
                     store_vec(normals, first + ray, normal)
 

@@ -7,6 +7,7 @@ formulas by the types of shapes, so what is compiled holds just the kinds of sha
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from functools import lru_cache
 from importlib import import_module
 from itertools import count
@@ -42,7 +43,7 @@ from minirt.kernel.traced import Traced
 from minirt.lanes import angle, largest, power, vec
 from minirt.lanes.teaching import teach
 from minirt.lanes.vector import Lanes, VecType, common, constant, splat, vec_of
-from minirt.shapes import ALL_KINDS, basis, exact, pyramid, quadric, shape, wrap
+from minirt.shapes import ALL_KINDS, Kind, basis, exact, pyramid, quadric, shape, wrap
 
 Arguments: TypeAlias = tuple[Any, ...]  # of `minirt.kernel.frame.frame`
 
@@ -93,6 +94,21 @@ def _mapping(shape, point, normal):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).mapping
 
 
+@overload(trace.nearest_of_kind, jit_options=INNER, strict=False)
+def _nearest_of_kind(group, state, given):  # type: ignore[no-untyped-def]
+    return trace.nearest_of_crowd if kind_of_group(group).crowd else trace.nearest_of_few
+
+
+@overload(trace.unhidden_by_kind, jit_options=INNER, strict=False)
+def _unhidden_by_kind(group, free, given):  # type: ignore[no-untyped-def]
+    return trace.unhidden_by_crowd if kind_of_group(group).crowd else trace.unhidden_by_few
+
+
+def kind_of_group(group: Any) -> Kind:
+    """The kind of the shapes of a group, by its type."""
+    return rows.kind_of(group.content[0].dtype.fields)
+
+
 def first_number(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     """The address of the first number of a row."""
     array = context.make_array(sig.args[0])(context, builder, value=args[0])
@@ -122,11 +138,16 @@ def packed_type(array: Any, i: Any) -> Any:
 def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     address = first_number(context, builder, sig, args)
     numbers = (builder.load(builder.gep(address, [ir.Constant(ir.IntType(64), at)])) for at in count())
+    return packed_of(context, builder, sig.return_type, numbers)
+
+
+def packed_of(context: Any, builder: ir.IRBuilder, kind: Any, numbers: Iterator[Any]) -> Any:
+    """The packed shape of a type that is made of some numbers."""
     parts = [
-        vec_of(context, builder, kind, [next(numbers) for _ in "xyz"]) if isinstance(kind, VecType) else next(numbers)
-        for kind in sig.return_type.types
+        vec_of(context, builder, each, [next(numbers) for _ in "xyz"]) if isinstance(each, VecType) else next(numbers)
+        for each in kind.types
     ]
-    return context.make_tuple(builder, sig.return_type, parts)
+    return context.make_tuple(builder, kind, parts)
 
 
 teach_for_placed(rows.read, packed_type, _read)
@@ -166,7 +187,15 @@ def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> An
 
 
 register_jitable(**INNER)(vec.cross)
-OWN_FORM = (whitted.path_memory, trace.over_kinds, counter.fetch_add, frame.store_block, frame.frame)
+OWN_FORM = (
+    whitted.path_memory,
+    trace.over_kinds,
+    trace.nearest_of_kind,
+    trace.unhidden_by_kind,
+    counter.fetch_add,
+    frame.store_block,
+    frame.frame,
+)
 for _module in (
     basis,
     exact,

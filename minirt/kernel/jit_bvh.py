@@ -10,24 +10,27 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import register_jitable
 
-from minirt.kernel import bvh, bvh_build, bvh_collapse, bvh_hits, rows, whitted
-from minirt.kernel.jit import CACHE, INNER, first_number, own_functions
+from minirt.kernel import bvh, bvh_build, bvh_collapse, bvh_hits, bvh_walk, rows, whitted
+from minirt.kernel.jit import CACHE, INNER, first_number, own_functions, packed_of
 from minirt.kernel.jit_placed import teach_for_placed
 from minirt.kernel.kept import compiled
-from minirt.lanes import compiled_verbs, verbs
+from minirt.lanes import compiled_answers, verbs
 from minirt.lanes.teaching import teach
-from minirt.lanes.vector import Lanes, Mask, VecType, constant, vec_of
+from minirt.lanes.vector import Lanes, Mask, VecType, constant
 
 WORD = ir.IntType(64)
 LANES = Lanes(types.float64)
 LANES_IR = ir.VectorType(ir.DoubleType(), LANES.count)
 WORDS = ir.VectorType(WORD, LANES.count)
 MEMORY = types.CPointer(types.float64)
+LINE = 64  # bytes of a line of the cache: no load of lanes needs two
 
 
 @teach(bvh.packet_memory, lambda: MEMORY, [()])
 def _packet_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return cgutils.alloca_once(builder, ir.DoubleType(), size=bvh.MEMORY)
+    memory = cgutils.alloca_once(builder, ir.DoubleType(), size=bvh.MEMORY)
+    memory.align = LINE
+    return memory
 
 
 @teach(whitted.path_memory, lambda: MEMORY, [()])
@@ -66,39 +69,84 @@ def _name_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 
 @teach(bvh.bits, lambda mask: types.int64, [(Mask,)])
 def _bits(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.zext(compiled_verbs.bits(builder, args[0]), WORD)
+    return builder.zext(compiled_answers.bits(builder, args[0]), WORD)
 
 
-@teach(bvh.lowest, lambda number: types.int64 if number == types.int64 else None, [(types.Integer,)])
-def _lowest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.cttz(args[0], ir.Constant(ir.IntType(1), 1))
+@teach(bvh.least, lambda x: types.float64, [(Lanes,)])
+def _least(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    kind = ir.FunctionType(WORD, [WORDS])
+    name = f"llvm.vector.reduce.smin.v{LANES.count}i64"
+    found = builder.call(cgutils.get_or_insert_function(builder.module, kind, name), [builder.bitcast(args[0], WORDS)])
+    return builder.bitcast(found, ir.DoubleType())
 
 
-def packed_lanes(blocks: Any, i: Any) -> Any:
-    """The type of a block: the kind's NamedTuple of lanes and of Vecs of them."""
+def word_place(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    """Where in a memory the whole number at an index is."""
+    place = builder.gep(args[0], [context.cast(builder, args[1], sig.args[1], types.intp)])
+    return builder.bitcast(place, WORD.as_pointer())
+
+
+@teach(bvh.whole_at, lambda memory, at: types.int64, [(types.CPointer, types.Integer)])
+def _whole_at(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.load(word_place(context, builder, sig, args))
+
+
+@teach(bvh.put_whole, lambda memory, at, n: types.none, [(types.CPointer, types.Integer, types.Integer)])
+def _put_whole(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    builder.store(context.cast(builder, args[2], sig.args[2], types.int64), word_place(context, builder, sig, args))
+    return context.get_dummy_value()
+
+
+def packed_in(blocks: Any, number: Any) -> Any:
+    """The type of what is in a block: the kind's NamedTuple of numbers of a type, and of Vecs of them."""
     if not isinstance(blocks, types.Array):
         return None
     fields = blocks.dtype.fields.values()
-    numbers = [VecType(LANES) if len(each.type.shape) == 2 else LANES for each in fields]
+    numbers = [VecType(number) if len(each.type.shape) == 2 else number for each in fields]
     return types.NamedTuple(numbers, rows.kind_of(blocks.dtype.fields).packed)
 
 
-@teach(bvh_hits.read_block, packed_lanes, [(types.Array, types.Integer)])
+def packed_block(blocks: Any, i: Any) -> Any:
+    """The type of all shapes of a block, side by side."""
+    return packed_in(blocks, LANES)
+
+
+def packed_one(blocks: Any, block: Any, i: Any) -> Any:
+    """The type of one of them."""
+    return packed_in(blocks, types.float64)
+
+
+@teach(bvh_hits.read_block, packed_block, [(types.Array, types.Integer)])
 def _read_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     first = builder.bitcast(first_number(context, builder, sig, args), LANES_IR.as_pointer())
     numbers = (builder.load(builder.gep(first, [ir.Constant(WORD, i)]), align=8) for i in count())
-    parts = [
-        vec_of(context, builder, kind, [next(numbers) for _ in "xyz"]) if isinstance(kind, VecType) else next(numbers)
-        for kind in sig.return_type.types
-    ]
-    return context.make_tuple(builder, sig.return_type, parts)
+    return packed_of(context, builder, sig.return_type, numbers)
 
 
-teach_for_placed(bvh_hits.read_block, packed_lanes, _read_block)
+@teach(bvh_hits.read_one, packed_one, [(types.Array, types.Integer, types.Integer)])
+def _read_one(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    first = builder.gep(first_number(context, builder, sig, args), [args[2]])
+    numbers = (builder.load(builder.gep(first, [ir.Constant(WORD, LANES.count * i)])) for i in count())
+    return packed_of(context, builder, sig.return_type, numbers)
 
-TAUGHT = (bvh.packet_memory, bvh.put, bvh.tag, bvh.name_of, bvh.bits, bvh.lowest, bvh_hits.read_block)
+
+teach_for_placed(bvh_hits.read_block, packed_block, _read_block)
+teach_for_placed(bvh_hits.read_one, packed_one, _read_one)
+
+TAUGHT = (
+    bvh.packet_memory,
+    bvh.put,
+    bvh.whole_at,
+    bvh.put_whole,
+    bvh.tag,
+    bvh.name_of,
+    bvh.bits,
+    bvh.least,
+    bvh_hits.read_block,
+    bvh_hits.read_one,
+)
 ENTRIES = (bvh_hits.trace_rays, bvh_build.divide, bvh_collapse.weigh, bvh_collapse.collapse)
-for _module in (bvh, bvh_build, bvh_collapse, bvh_hits):
+for _module in (bvh, bvh_walk, bvh_build, bvh_collapse, bvh_hits):
     for _function in own_functions(_module):
         if _function not in (*TAUGHT, *ENTRIES):
             register_jitable(**INNER)(_function)

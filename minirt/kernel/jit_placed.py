@@ -193,7 +193,7 @@ def teach_for_placed(function: Any, result: Result, generate: Any) -> None:
     def found(table: Any, *others: Any) -> types.Type | None:
         return result(table.content, *others) if is_array(table) else None
 
-    @teach(function, found, [(Placed, types.Any)])
+    @teach(function, found, [(Placed, types.Any), (Placed, types.Any, types.Any)])
     def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         kind = sig.args[0].content
         array = builder.load(builder.bitcast(args[0], context.get_value_type(kind).as_pointer()))

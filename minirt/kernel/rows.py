@@ -67,6 +67,11 @@ def shading(shape: Any, point: Vec, normal: Vec) -> Any:
     return kind_of_packed(type(shape)).shading(shape, point, normal)
 
 
+def is_crowd(rows: Rows) -> bool:
+    """Whether shapes of the kind of these rows come in crowds."""
+    return kind_of(rows.dtype.names).crowd
+
+
 def may_meet(shape: Any, apex: Vec, start: Any, direction: Vec, asked: Any) -> Any:
     """`may_meet` of the shape's own kind."""
     return kind_of_packed(type(shape)).may_meet(shape, apex, start, direction, asked)

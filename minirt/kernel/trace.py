@@ -7,7 +7,7 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.cells import close, look_up
-from minirt.kernel.rows import intersect, may_meet, read, surface
+from minirt.kernel.rows import intersect, is_crowd, may_meet, read, surface
 from minirt.kernel.traced import Group, Traced
 from minirt.lanes import (
     Vec,
@@ -15,6 +15,8 @@ from minirt.lanes import (
     dot,
     fabs,
     first,
+    greatest,
+    lowest,
     maximum,
     rarely,
     splat,
@@ -28,6 +30,9 @@ from minirt.lanes.verbs import Mask
 
 ROUNDING = 16  # of a point on a surface: unit roundoffs of its largest coordinate and of the extent of the shape
 NEARBY = 2.0**-14  # two hits so close to each other, relative to their distance, may be one place
+# Cones of a crowd that are tried in a row, so that no branch waits for them: a tenth of the time of a mesh, but with
+# few shapes more than it saves.
+AT_ONCE = 16
 
 
 def over_kinds(step: Callable[..., Any], groups: tuple[Group, ...], state: Any, given: Any) -> Any:
@@ -66,6 +71,13 @@ def nearest_of_kind(
     group: Group, state: tuple[Number, Number, Number], given: tuple[Traced, int, Vec, Vec]
 ) -> tuple[Number, Number, Number]:
     """`nearest` over the shapes of one kind, where others gave `state`."""
+    return (nearest_of_crowd if is_crowd(group.rows) else nearest_of_few)(group, state, given)
+
+
+def nearest_of_few(
+    group: Group, state: tuple[Number, Number, Number], given: tuple[Traced, int, Vec, Vec]
+) -> tuple[Number, Number, Number]:
+    """The same, shape by shape."""
     scene, tile, origin, direction = given
     for i in range(group.starts[tile], group.starts[tile + 1]):
         index = scene.seen[i]
@@ -78,6 +90,36 @@ def nearest_of_kind(
             if everywhere or any(may_meet(shape, origin, None, direction, state[0] > view[4])):
                 hit, t = intersect(shape, origin, direction)
                 state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
+    return state
+
+
+def nearest_of_crowd(
+    group: Group, state: tuple[Number, Number, Number], given: tuple[Traced, int, Vec, Vec]
+) -> tuple[Number, Number, Number]:
+    """The same, with the cones of some shapes tried before anything else of them."""
+    scene, tile, origin, direction = given
+    start, end = int(group.starts[tile]), int(group.starts[tile + 1])
+    while start < end:
+        farthest = greatest(state[0])
+        met = 0
+        for i in range(start, min(start + AT_ONCE, end)):
+            view = scene.views[scene.seen[i]]
+            if not farthest > view[4]:
+                end = i
+                break
+            met |= int(any(within(view, direction))) << (i - start)
+        while met != 0:
+            index = scene.seen[start + lowest(met)]
+            met &= met - 1
+            view = scene.views[index]
+            asked = state[0] > view[4]
+            if not any(asked):
+                return state
+            shape = read(group.rows, scene.places[index, 1])
+            if view[3] <= -1.0 or any(may_meet(shape, origin, None, direction, asked)):
+                hit, t = intersect(shape, origin, direction)
+                state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
+        start += AT_ONCE
     return state
 
 
@@ -145,6 +187,11 @@ def unhidden(scene: Traced, memory: Any, lamp: int, origin: Vec, direction: Vec,
 
 def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Mask, Vec, Vec, Number]) -> Mask:
     """Of the rays that are free so far, those that the shapes of one kind do not stop; only `mine` are tried."""
+    return (unhidden_by_crowd if is_crowd(group.rows) else unhidden_by_few)(group, free, given)
+
+
+def unhidden_by_few(group: Group, free: Mask, given: tuple[Traced, int, int, Mask, Vec, Vec, Number]) -> Mask:
+    """The same, shape by shape."""
     scene, lamp, at, mine, origin, direction, distance = given
     place = Vec(scene.lights[lamp, 0], scene.lights[lamp, 1], scene.lights[lamp, 2])
     for i in range(group.lamp_starts[lamp, at], group.lamp_starts[lamp, at + 1]):
@@ -158,4 +205,30 @@ def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Ma
             if everywhere or any(may_meet(shape, place, origin, direction, free & mine)):
                 hit, t = intersect(shape, origin, direction)
                 free = free & ~(mine & hit & (t < distance))
+    return free
+
+
+def unhidden_by_crowd(group: Group, free: Mask, given: tuple[Traced, int, int, Mask, Vec, Vec, Number]) -> Mask:
+    """The same, with the cones of some shapes tried before anything else of them."""
+    scene, lamp, at, mine, origin, direction, distance = given
+    place = Vec(scene.lights[lamp, 0], scene.lights[lamp, 1], scene.lights[lamp, 2])
+    start, end = int(group.lamp_starts[lamp, at]), int(group.lamp_starts[lamp, at + 1])
+    while start < end:
+        farthest = greatest(where(free & mine, distance, -inf))
+        met = 0
+        for i in range(start, min(start + AT_ONCE, end)):
+            view = scene.lamp_views[lamp, scene.lit[i]]
+            if not farthest > view[4]:
+                end = i
+                break
+            met |= int(any(mine & within(view, -direction))) << (i - start)
+        while met != 0:
+            index = scene.lit[start + lowest(met)]
+            met &= met - 1
+            shape = read(group.rows, scene.places[index, 1])
+            everywhere = scene.lamp_views[lamp, index, 3] <= -1.0
+            if everywhere or any(may_meet(shape, place, origin, direction, free & mine)):
+                hit, t = intersect(shape, origin, direction)
+                free = free & ~(mine & hit & (t < distance))
+        start += AT_ONCE
     return free

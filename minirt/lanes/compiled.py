@@ -4,6 +4,6 @@ Importing this module teaches numba what each of them becomes on float64, on lan
 types of arguments it holds, which type comes out, and which LLVM instructions do it.
 """
 
-from minirt.lanes import compiled_operators, compiled_vec, compiled_verbs
+from minirt.lanes import compiled_answers, compiled_operators, compiled_vec, compiled_verbs
 
-__all__ = ["compiled_operators", "compiled_vec", "compiled_verbs"]
+__all__ = ["compiled_answers", "compiled_operators", "compiled_vec", "compiled_verbs"]

@@ -133,31 +133,6 @@ def _where(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     )
 
 
-def bits(builder: ir.IRBuilder, mask: Any) -> Any:
-    """A mask as a whole number with one bit a lane."""
-    return builder.bitcast(mask, ir.IntType(mask.type.count))
-
-
-@teach(verbs.any, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
-def _any(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    if sig.args[0] == types.boolean:
-        return args[0]
-    whole = bits(builder, args[0])
-    return builder.icmp_unsigned("!=", whole, ir.Constant(whole.type, 0))
-
-
-@teach(verbs.rarely, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
-def _rarely(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    bit = ir.IntType(1)
-    expect = builder.module.declare_intrinsic("llvm.expect", [bit], ir.FunctionType(bit, [bit, bit]))
-    return builder.call(expect, [_any(context, builder, sig, args), ir.Constant(bit, 0)])
-
-
-@teach(verbs.first, lambda mask: types.int64 if isinstance(mask, Mask) else None, [(Mask,)])
-def _first(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.cttz(builder.zext(bits(builder, args[0]), ir.IntType(64)), ir.Constant(ir.IntType(1), 1))
-
-
 @teach(verbs.width, lambda x: types.int64 if isinstance(x, (Lanes, types.Array)) else None, [(ANY,)])
 def _width(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     kind = sig.args[0]

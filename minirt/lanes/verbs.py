@@ -134,6 +134,16 @@ def lane(x: Number, ray: int) -> float:
     return float(x[ray])
 
 
+def greatest(x: Number) -> float:
+    """The greatest number of all rays, -infinity where all are NaN."""
+    return float(np.fmax.reduce(x, initial=-np.inf))
+
+
 def first(mask: Mask) -> int:
     """The index of the first ray for which the mask is true; there must be one."""
     return int(np.argmax(mask))
+
+
+def lowest(number: int) -> int:
+    """The lowest bit of a number that is not 0."""
+    return (number & -number).bit_length() - 1

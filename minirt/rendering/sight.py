@@ -27,8 +27,8 @@ FEW, SIDE_BY_SIDE = 200, 8
 GRIDS = ((SMALL, 1), (30, 16), (200, 32), (20_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
 # Numbers above zero are in the order of their bits, the exponent first. The order of depth knows of those of a distance
-# the upper 20, from 2^-128 on: a distance to a 256th of it.
-DROPPED = 44
+# the upper 25, from 2^-128 on: a distance to 2^-13 of it, which is more than `minirt.kernel.trace.NEARBY`.
+DROPPED = 39
 NEAREST = (1023 - 128) << (52 - DROPPED)
 
 NO_CELLS = np.zeros(11)  # around a lamp
@@ -101,7 +101,7 @@ def seen_by_sun(tables: Tables, grid: int, skipped: np.ndarray) -> Lists:
     views[:, 3] = -2.0
     if grid == 1:
         return one_cell(tables, views, skipped)
-    return Lists(np.zeros((len(tables.rows), 6 * grid * grid + 1), np.int64), np.zeros(0, np.int32), views)
+    return Lists(np.zeros((len(tables.rows), 6 * grid * grid + 1), np.int64), np.zeros(0, np.uint32), views)
 
 
 def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: np.ndarray) -> Lists:
@@ -130,18 +130,26 @@ def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: 
     views[tables.flat, 3] = -2.0
     views[tables.flat, 4] = np.abs(height)
     views[:, 4], depths = by_depth(views[:, 4].copy())
-    order = np.argsort(depths[rectangles[:used, 0]], kind="stable")
+    order = in_order(depths[rectangles[:used, 0]])
     starts = np.cumsum(counts)  # for now the ends
-    members = np.empty(starts[-1] if kinds else 0, np.int32)
+    members = np.empty(starts[-1] if kinds else 0, np.uint32)
     kernel.fill(rectangles, order, grid.across, starts, members)
     return Lists(starts.reshape(kinds, stride), members, views)
 
 
 def by_depth(near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distances rounded down, and their places in the order of depth, in 16 bits: numpy sorts those by counting."""
-    depths = np.maximum((near.view(np.int64) >> DROPPED) - NEAREST, 0)
+    """Distances rounded down by a step at least, since what is hit so little farther on may be in the same place, and
+    their places in the order of depth."""
+    depths = np.maximum((near.view(np.int64) >> DROPPED) - NEAREST - 1, 0)
     rounded = np.where(depths > 0, (depths + NEAREST) << DROPPED, 0).view(np.float64)
-    return rounded, depths.astype(np.uint16)
+    return rounded, depths
+
+
+def in_order(depths: np.ndarray) -> np.ndarray:
+    """The indices of places in the order of depth, 21 bits each, from the least on: numpy sorts 16 bits by counting."""
+    low = np.argsort(depths.astype(np.uint16), kind="stable")
+    order: np.ndarray = low[np.argsort((depths >> 16).astype(np.uint8)[low], kind="stable")]
+    return order
 
 
 def one_cell(tables: Tables, views: np.ndarray, skipped: np.ndarray) -> Lists:
@@ -150,4 +158,4 @@ def one_cell(tables: Tables, views: np.ndarray, skipped: np.ndarray) -> Lists:
     kinds = tables.places[shapes, 0]
     order = np.lexsort((views[shapes, 4], kinds))
     starts = np.searchsorted(kinds[order], np.arange(len(tables.rows))[:, None] + [0, 1])
-    return Lists(starts, shapes[order].astype(np.int32), views)
+    return Lists(starts, shapes[order].astype(np.uint32), views)

@@ -45,6 +45,7 @@ def tree_of(tables: Tables, kernel: Any) -> Tree:
     # Each kind has its blocks in the order of the leaves.
     kinds = boxes[leaves[:, 0], GROUP]
     blocks = np.zeros(len(leaves), np.int64)
+    extents = np.ascontiguousarray(tables.looks[:, 3])
     groups = []
     for group, rows in enumerate(tables.rows):
         mine = np.flatnonzero(kinds == group)
@@ -52,13 +53,14 @@ def tree_of(tables: Tables, kernel: Any) -> Tree:
         start, stop = leaves[mine, :2, None].transpose(1, 0, 2)
         owners = boxes[np.minimum(start + np.arange(WIDTH), stop - 1), INDEX].astype(np.int64)
         table = side_by_side(rows, tables.places[owners, 1])
-        groups.append(Group(rows, table, owners, endless[tables.places[endless, 0] == group]))
+        labels = np.stack([owners, extents[owners]], axis=-1)
+        groups.append(Group(rows, table, labels, endless[tables.places[endless, 0] == group]))
     names = nodes.reshape(-1, 7, WIDTH)[:, 6]
     leaf = names < 0
     which = (-1 - names[leaf]).astype(np.int64)
     names[leaf] = -1 - (blocks[which] * len(groups) + kinds[which])
     names[...] = names.astype(np.int32).view(np.uint32).astype(np.uint64).view(np.float64)
-    return Tree(nodes, np.ascontiguousarray(tables.looks[:, 3]), tables.places, tuple(groups))
+    return Tree(nodes, extents, tables.places, tuple(groups))
 
 
 def wide_nodes(boxes: np.ndarray, kernel: Any) -> tuple[np.ndarray, np.ndarray]:

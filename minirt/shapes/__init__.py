@@ -45,7 +45,16 @@ KINDS = (
     Kind(box.Box, box.PackedBox, box.intersect, box.surface, box.mapping),
     Kind(torus.Torus, torus.PackedTorus, torus.intersect, torus.surface, torus.mapping),
 )
-MESH = Kind(mesh.Mesh, mesh.PackedMeshTriangle, mesh.intersect, mesh.surface, mesh.mapping, mesh.shading, mesh.may_meet)
+MESH = Kind(
+    mesh.Mesh,
+    mesh.PackedMeshTriangle,
+    mesh.intersect,
+    mesh.surface,
+    mesh.mapping,
+    mesh.shading,
+    mesh.may_meet,
+    crowd=True,
+)
 ALL_KINDS = (*KINDS, MESH)
 
 __all__ = ["ALL_KINDS", "KINDS", "MESH", "Ball", "Box", "Kind", "Shape"]

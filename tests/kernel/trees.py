@@ -38,8 +38,8 @@ def without_boxes(shapes: list[Shape]) -> Tree:
     kinds = [kind for kind in KINDS if kind.element in set(map(type, shapes))]
     groups = []
     for i, (kind, rows) in enumerate(zip(kinds, kept.rows, strict=True)):
-        owners = np.zeros((0, WIDTH), np.int64)
-        groups.append(Group(rows, aligned(0, block_type(kind)), owners, np.flatnonzero(kept.places[:, 0] == i)))
+        labels = np.zeros((0, WIDTH, 2))
+        groups.append(Group(rows, aligned(0, block_type(kind)), labels, np.flatnonzero(kept.places[:, 0] == i)))
     root = np.repeat([np.inf, -np.inf, 0.0], [3 * WIDTH, 3 * WIDTH, WIDTH])
     return Tree(root, kept.looks[:, 3].copy(), kept.places, tuple(groups))
 

@@ -12,7 +12,7 @@ from minirt.kernel import jit_lists, lists
 from minirt.kernel.cells import AHEAD, SCALE, SPREAD, cell
 from minirt.kernel.frame import TILE, tiles, towards
 from minirt.kernel.rows import kind_of, read
-from minirt.kernel.trace import within
+from minirt.kernel.trace import NEARBY, within
 from minirt.lanes import Vec, unit
 from minirt.rendering import ahead, sight
 from minirt.rendering.packing import Packing
@@ -220,6 +220,24 @@ def test_a_ball_without_end_is_everywhere_and_at_no_distance(kernel: Any) -> Non
 
 def test_around_the_eye_a_disc_is_everywhere() -> None:
     assert lists.tangents(0.5, -0.5, 1.0) == (-np.inf, np.inf)
+
+
+def test_distances_are_less_by_what_may_be_one_place_and_by_little_more() -> None:
+    near = np.geomspace(1e-30, 1e30, 10_000)
+    rounded, depths = sight.by_depth(near)
+    assert (rounded * (1 + NEARBY) <= near).all()
+    assert (rounded * (1 + 4 * NEARBY) > near).all()
+    assert (np.diff(depths) >= 0).all()
+    assert sight.by_depth(np.array([0.0, 1e-50]))[0].tolist() == [0, 0]
+
+
+def test_the_order_of_depth_is_that_of_the_distances() -> None:
+    near = np.random.default_rng(8).permutation(np.geomspace(1e-3, 1e3, 10_000))
+    rounded, depths = sight.by_depth(near)
+    order = sight.in_order(depths)
+    assert sorted(order.tolist()) == list(range(10_000))
+    assert (np.diff(rounded[order]) >= 0).all()
+    assert (np.diff(order)[np.diff(depths[order]) == 0] > 0).all()
 
 
 def test_lists_leave_something_out() -> None:
