@@ -216,7 +216,8 @@ def test_coordinates_that_are_askew_and_those_that_are_all_the_same() -> None:
         assert np.abs(later[i] - before[i] - step[:, 0]).max() < 1e-9
         assert np.abs(later[1 - i] - before[1 - i]).max() < 1e-9
     one = packed._replace(**dict.fromkeys(packed._fields[7:], np.full(50, 0.3)))
-    assert not np.any(mapped(one, points, rows[:, 9:12])[2:])
+    for flat in (one, one._replace(u_b=skew.u_b), one._replace(v_c=skew.v_c)):
+        assert not np.any(mapped(flat, points, rows[:, 9:12])[2:])
 
 
 def test_points_are_put_onto_the_plane_of_the_triangle() -> None:
