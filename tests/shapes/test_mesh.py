@@ -122,6 +122,7 @@ def test_shares_beyond_a_triangle_or_of_none_stay_shares() -> None:
         for made in (soup(random, 100), soup(random, 100, 0.0)):
             found = np.stack(mesh.shares(made.pack(), Vec(*far.T)), axis=1)
             assert (found >= 0).all()
+            assert (found[:, 1:] == 0).any(axis=0).all()
             assert np.abs(found.sum(axis=1) - 1).max() < 1e-15
 
 
@@ -200,6 +201,23 @@ def test_without_coordinates_there_are_no_directions_or_those_of_the_triangle() 
     a, b, c = rows[:, :9].reshape(-1, 3, 3).swapaxes(0, 1)
     assert np.allclose(found[2], b - a)
     assert np.allclose(found[3], c - a)
+
+
+def test_coordinates_that_are_askew_and_those_that_are_all_the_same() -> None:
+    random = np.random.default_rng(7)
+    made = soup(random, 50)
+    rows, packed = made.rows(), made.pack()
+    points = rows[:, :9].reshape(-1, 3, 3).mean(axis=1)
+    skew = packed._replace(**dict(zip(packed._fields[7:], random.uniform(-1, 1, (6, 50)), strict=True)))
+    before = mapped(skew, points, rows[:, 9:12])
+    for i, along in enumerate(before[2:]):
+        step = 1e-3 / (1 + np.linalg.norm(along, axis=1, keepdims=True))
+        later = mapped(skew, points + step * along, rows[:, 9:12])
+        assert np.abs(later[i] - before[i] - step[:, 0]).max() < 1e-9
+        assert np.abs(later[1 - i] - before[1 - i]).max() < 1e-9
+    one = packed._replace(**dict.fromkeys(packed._fields[7:], np.full(50, 0.3)))
+    for flat in (one, one._replace(u_b=skew.u_b), one._replace(v_c=skew.v_c)):
+        assert not np.any(mapped(flat, points, rows[:, 9:12])[2:])
 
 
 def test_points_are_put_onto_the_plane_of_the_triangle() -> None:

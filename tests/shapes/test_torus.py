@@ -96,6 +96,7 @@ def test_most_roots_take_less_than_ten_steps(monkeypatch: pytest.MonkeyPatch) ->
         (1, (0, -5, 2), (0, -3, 0), 12),
         (1, (-7e6, -1e6, 5), (1, 3, 0), 30),
         (0.01, (0, 1, 0), (0, -3, 0), 12),  # its first place in the tube's wall is as near as can be told
+        (1, (-4, 0, 0), (-5, 7, 6), 12),  # from a rounding inside of it
         (3, (1.5, 0.5, 0), (-5, -7, 0), 36),  # what height is left is rounding, of either sign
     ],
 )
