@@ -92,11 +92,8 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
         bottom = (-torus.tube - p.z) * per_height
         top = (torus.tube - p.z) * per_height
         half = sqrt(chord)
-        enter = maximum(-half, minimum(bottom, top))
+        enter = maximum(maximum(-half, minimum(bottom, top)), -approach)  # not before the ray's origin
         leave = minimum(half, maximum(bottom, top))
-        start = -approach  # the ray's origin
-        within = start >= enter
-        enter = maximum(enter, start)
         hit = hit & (enter <= leave)
         if any(hit):
             # The sides of the surface at both ends and, as far as the ray comes there, at the turning points between.
@@ -104,11 +101,10 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
             first = minimum(maximum(first, enter), leave)
             second = minimum(maximum(second, enter), leave)
             third = minimum(maximum(third, enter), leave)
-            here = to_basis(torus.u, torus.v, torus.w, f)
-            side_0 = where(within, side(torus, here), 1.0)
+            side_0 = side(torus, to_basis(torus.u, torus.v, torus.w, f))
             side_1 = where(first > enter, side(torus, p + first * d), side_0)
             side_2 = where(second > first, side(torus, p + second * d), side_1)
-            side_3 = where(third > second, side(torus, p + third * d), side_2)
+            side_3 = side(torus, p + third * d)
             # The first two neighbours that differ, up to which all are as the first one; behind the last turning point
             # the ray ends outside.
             by_1, by_2, by_3 = side_0 != side_1, side_1 != side_2, side_2 != side_3

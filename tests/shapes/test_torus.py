@@ -190,3 +190,29 @@ def test_a_step_that_leads_out_of_where_the_surface_is_crossed_is_not_taken(way:
         low, high = (middle, high) if height(middle) > 0 else (low, middle)
     thin = Torus((0, 0, 0), (0, 0, 1), 2, 2 * tube, GREY)
     assert shoot(way, thin, (tuple(origin), tuple(direction))) == pytest.approx([low], rel=1e-9)
+
+
+@pytest.mark.parametrize("on", [on_arrays, compiled])
+def test_from_its_inner_side_the_other_one_is_seen(on: Intersect) -> None:
+    random = np.random.default_rng(5)
+    turns = random.uniform(0, 2 * np.pi, 500 * RAYS)
+    out = np.stack([np.cos(turns), 0 * turns, np.sin(turns)], axis=1)
+    origins = np.array(RING.centre) + 2 * out  # within rounding of the tube, on either side of it
+    targets = np.array(RING.centre) - 2 * out + random.uniform(-0.5, 0.5, out.shape)
+    directions = unit(targets - origins)
+    t, beyond = (on([RING], (origins + start * directions)[None], directions[None]) for start in (0, 1e-3))
+    inside = t < 1e-9  # a rounding inside of the tube, it leaves that first
+    assert 0.05 < np.mean(inside) < 0.95
+    assert np.abs(t - 1e-3 - beyond)[~inside].max() < 1e-12
+
+
+@pytest.mark.parametrize("on", [on_arrays, compiled])
+def test_through_the_middle_of_the_tube_the_far_wall_is_seen(on: Intersect) -> None:
+    turns, tilts = np.random.default_rng(6).uniform(0, 2 * np.pi, (2, 2000 * RAYS))
+    circle = np.stack([np.cos(turns), 0 * turns, np.sin(turns)], axis=1)
+    normals = np.cos(tilts)[:, None] * circle + np.sin(tilts)[:, None] * np.array(RING.axis)
+    origins = np.array(RING.centre) + 3 * circle + normals
+    t = on([RING], origins[None], -normals[None])
+    near = t < 1e-9  # a rounding outside of the tube, it meets that first
+    assert 0.05 < np.mean(near) < 0.95
+    assert np.abs(t - 2)[~near].max() < 1e-12
