@@ -12,10 +12,12 @@ Job: TypeAlias = Callable[[], object]
 
 
 class Task(NamedTuple):
-    """A job, and where its end is told: first by an item in the list, an error or None, then by the bell."""
+    """A job, and where its end is told: by an item in the list, an error or None. Errors and the last of the `number`
+    of jobs ring the bell: to wake who waits takes time from those that work."""
 
     job: Job
     ended: list[BaseException | None]
+    number: int
     bell: SimpleQueue[None]
 
 
@@ -39,7 +41,7 @@ class Workers:
         ended: list[BaseException | None] = []
         bell: SimpleQueue[None] = SimpleQueue()
         for job in jobs:
-            self.tasks.put(Task(job, ended, bell))
+            self.tasks.put(Task(job, ended, len(jobs), bell))
         interrupts: list[BaseException] = []
         while len(ended) < len(jobs):
             try:
@@ -55,14 +57,15 @@ class Workers:
 def work(tasks: SimpleQueue[Task | None]) -> None:
     """What a thread does: one job after the other, until there is None."""
     while task := tasks.get():
+        error = None
         try:
             task.job()
-        except BaseException as error:
-            task.ended.append(error)
-        else:
-            task.ended.append(None)
-        task.bell.put(None)
-        del task
+        except BaseException as raised:
+            error = raised
+        task.ended.append(error)
+        if error or len(task.ended) == task.number:
+            task.bell.put(None)
+        del task, error
 
 
 def dismiss(tasks: SimpleQueue[Task | None], number: int) -> None:
