@@ -99,8 +99,6 @@ def _put_whole(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 
 def packed_in(blocks: Any, number: Any) -> Any:
     """The type of what is in a block: the kind's NamedTuple of numbers of a type, and of Vecs of them."""
-    if not isinstance(blocks, types.Array):
-        return None
     fields = blocks.dtype.fields.values()
     numbers = [VecType(number) if len(each.type.shape) == 2 else number for each in fields]
     return types.NamedTuple(numbers, rows.kind_of(blocks.dtype.fields).packed)
@@ -116,14 +114,12 @@ def packed_one(blocks: Any, block: Any, i: Any) -> Any:
     return packed_in(blocks, types.float64)
 
 
-@teach(bvh_hits.read_block, packed_block, [(types.Array, types.Integer)])
 def _read_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     first = builder.bitcast(first_number(context, builder, sig, args), LANES_IR.as_pointer())
     numbers = (builder.load(builder.gep(first, [ir.Constant(WORD, i)]), align=8) for i in count())
     return packed_of(context, builder, sig.return_type, numbers)
 
 
-@teach(bvh_hits.read_one, packed_one, [(types.Array, types.Integer, types.Integer)])
 def _read_one(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     first = builder.gep(first_number(context, builder, sig, args), [args[2]])
     numbers = (builder.load(builder.gep(first, [ir.Constant(WORD, LANES.count * i)])) for i in count())

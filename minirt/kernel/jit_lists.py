@@ -20,7 +20,7 @@ COVER = WHOLE(
     *(NUMBER[::1], GRID, NUMBER[:, ::1], NUMBER, WHOLE[::1], WHOLE[:, ::1]),
     *(SHORT[:, ::1], WHOLE, NUMBER[:, ::1], WHOLE[::1]),
 )
-FILL = types.void(SHORT[:, ::1], WHOLE[::1], WHOLE, WHOLE[::1], types.uint32[::1])
+FILL = types.void(SHORT[:, ::1], WHOLE[::1], WHOLE, WHOLE[::1], SHORT[::1])
 
 cover = compiled(lists.cover, CACHE, COVER)
 fill = compiled(lists.fill, CACHE, FILL)

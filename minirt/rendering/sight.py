@@ -101,7 +101,7 @@ def seen_by_sun(tables: Tables, grid: int, skipped: np.ndarray) -> Lists:
     views[:, 3] = -2.0
     if grid == 1:
         return one_cell(tables, views, skipped)
-    return Lists(np.zeros((len(tables.rows), 6 * grid * grid + 1), np.int64), np.zeros(0, np.uint32), views)
+    return Lists(np.zeros((len(tables.rows), 6 * grid * grid + 1), np.int64), np.zeros(0, np.int32), views)
 
 
 def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: np.ndarray) -> Lists:
@@ -132,7 +132,7 @@ def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: 
     views[:, 4], depths = by_depth(views[:, 4].copy())
     order = in_order(depths[rectangles[:used, 0]])
     starts = np.cumsum(counts)  # for now the ends
-    members = np.empty(starts[-1] if kinds else 0, np.uint32)
+    members = np.empty(starts[-1] if kinds else 0, np.int32)
     kernel.fill(rectangles, order, grid.across, starts, members)
     return Lists(starts.reshape(kinds, stride), members, views)
 
@@ -158,4 +158,4 @@ def one_cell(tables: Tables, views: np.ndarray, skipped: np.ndarray) -> Lists:
     kinds = tables.places[shapes, 0]
     order = np.lexsort((views[shapes, 4], kinds))
     starts = np.searchsorted(kinds[order], np.arange(len(tables.rows))[:, None] + [0, 1])
-    return Lists(starts, shapes[order].astype(np.uint32), views)
+    return Lists(starts, shapes[order].astype(np.int32), views)
