@@ -1,20 +1,19 @@
-# make run     sets everything up and shows a scene: make run SCENE=scenes/subject.rt
-# make test    sets everything up and runs the tests
-# make check   lint and types
-# make bench   time of a frame, beside others: make bench BENCH=--quick for a short run
-# make report  error against run time of some scenes: make report REPORT=--quick for a short run
-# make textures, make gallery   draws the pictures of the scenes, and those of the README's gallery
-# make bench-peers   installs what `make bench` compares with and draws by (Debian, Ubuntu)
+# make help   lists what there is to make, with the comment behind each target
 
-VENV   := .venv
-NAME   := $(VENV)/bin/miniRT
-DEV    := $(VENV)/.dev
-PYTHON ?= python3
-PIP    := $(VENV)/bin/python -m pip --disable-pip-version-check
-SCENE  ?= scenes/demo.rt
-SUDO   ?= $(if $(filter 0,$(shell id -u)),,sudo)
+VENV    := .venv
+NAME    := $(VENV)/bin/miniRT
+DEV     := $(VENV)/.dev
+PYTHON  ?= python3
+PIP     := $(VENV)/bin/python -m pip --disable-pip-version-check
+WORKERS ?= auto
+PYTEST  := $(VENV)/bin/python -m pytest --numprocesses $(WORKERS)
+SCENE   ?= scenes/demo.rt
+SUDO    ?= $(if $(filter 0,$(shell id -u)),,sudo)
 
-all: $(NAME)
+all: $(NAME)  ## install the program as .venv/bin/miniRT
+
+help:  ## list the targets
+	@awk -F ':.*## ' '/^[a-z].*:.*## / { printf "make %-17s %s\n", $$1, $$2 }' Makefile
 
 # The program is installed so that it runs the sources as they stand: only a change of its dependencies installs again.
 $(NAME): pyproject.toml
@@ -24,50 +23,58 @@ $(NAME): pyproject.toml
 	$(PIP) install --quiet --editable .
 	touch $@
 
-# What the subject calls the bonus is part of the program.
-bonus: all
+bonus: all  ## the same: what the subject calls the bonus is part of the program
 
 $(DEV): $(NAME) pyproject.toml
 	$(PIP) install --quiet --group dev
 	touch $@
 
 # Without a display the picture goes to a file.
-run: $(NAME)
+run: $(NAME)  ## show a scene: make run SCENE=scenes/subject.rt
 	@mkdir -p out
 	$(NAME) $(SCENE) --fallback out/$(basename $(notdir $(SCENE))).png
 
-test: $(DEV)
-	$(VENV)/bin/python -m pytest $(TESTS)
+test: $(DEV)  ## run all tests, or some: make test TESTS=tests/shapes
+	$(PYTEST) $(TESTS)
 
-check: $(DEV)
+quick: $(DEV)  ## run the tests that take a minute in all
+	$(PYTEST) -m "not window and not slow" $(TESTS)
+
+FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/test_invariances.py tests/test_goldens.py
+
+processors: $(DEV)  ## run the tests of compiled formulas as on processors without AVX-512 and without AVX
+	NUMBA_CPU_NAME=haswell $(PYTEST) $(FORMULAS)
+	NUMBA_CPU_NAME=generic $(PYTEST) $(FORMULAS)
+
+check: $(DEV)  ## lint and check types
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
 	$(VENV)/bin/mypy
 
-bench: $(NAME)
+bench: $(NAME)  ## time frames beside other programs: make bench BENCH=--quick for a short run
 	$(VENV)/bin/python -m tests.bench $(BENCH)
 
-REPORTED := demo figure-v4-everything eval-shadows-many
-
-report: $(NAME)
-	$(VENV)/bin/python -m minirt.report out/report/shapes $(REPORT)
-	$(foreach scene,$(REPORTED),$(NAME) scenes/$(scene).rt --report out/report/$(scene) $(REPORT) &&) true
-
-textures gallery: $(NAME)
-	$(VENV)/bin/python assets/make_$@.py
-
-bench-peers: $(NAME)
+bench-peers: $(NAME)  ## install what `make bench` compares with and draws with (Debian, Ubuntu)
 	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox
 	$(PIP) install --quiet --editable '.[report]' embreex
 
-clean:
+REPORTED := demo figure-v4-everything eval-shadows-many
+
+report: $(NAME)  ## measure error against run time: make report REPORT=--quick for a short run
+	$(VENV)/bin/python -m minirt.report out/report/shapes $(REPORT)
+	$(foreach scene,$(REPORTED),$(NAME) scenes/$(scene).rt --report out/report/$(scene) $(REPORT) &&) true
+
+textures gallery: $(NAME)  ## draw the textures of the scenes, or the README's gallery
+	$(VENV)/bin/python assets/make_$@.py
+
+clean:  ## remove what tests, tools and runs have left
 	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +
 	rm -rf out .pytest_cache .mypy_cache .ruff_cache .hypothesis build dist
 
-fclean: clean
+fclean: clean  ## remove the installed program, too
 	rm -rf $(VENV)
 
-re: fclean
+re: fclean  ## install everything anew
 	$(MAKE) all
 
-.PHONY: all bonus run test check bench report textures gallery bench-peers clean fclean re
+.PHONY: all help bonus run test quick processors check bench bench-peers report textures gallery clean fclean re

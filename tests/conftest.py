@@ -1,5 +1,34 @@
-"""One virtual screen for all tests that open windows."""
+"""How the tests run: on all processors, as on every machine, with kernels that are compiled once."""
 
+from __future__ import annotations
+
+import signal
+import threading
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+from tests import scheduling, surroundings
 from tests.windows import desktop
 
 __all__ = ["desktop"]
+
+surroundings.prepare()  # before the compiler is imported, which reads the environment once
+
+# A slow machine is no failure: hypothesis does not look at the clock.
+settings.register_profile("miniRT", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("miniRT")
+
+pytest_xdist_make_scheduler = pytest.hookimpl(optionalhook=True)(scheduling.make_scheduler)
+
+
+def pytest_configure() -> None:
+    """Let Ctrl+C reach the tests, and the programs that they start, where the caller ignores it, as `nohup make test &`
+    in a script does."""
+    if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the tests of windows first: they are one piece of work, which takes longest."""
+    items.sort(key=lambda item: not scheduling.opens_windows(item.nodeid))

@@ -13,13 +13,16 @@ import os
 import shutil
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 import llvmlite
 import numba
 from llvmlite.binding import get_host_cpu_name
 from numba.core import config
+
+if sys.platform != "win32":
+    import fcntl
 
 PACKAGE = Path(__file__).parent.parent
 SOURCES = ("kernel", "lanes", "shapes")  # all that a kernel is made of
@@ -82,3 +85,19 @@ def numba_cache(place: Path | None) -> Iterator[None]:
         yield
     finally:
         config.CACHE_DIR = before
+
+
+@contextmanager
+def locked(place: Path) -> Iterator[None]:
+    """Hold the lock of a folder: no other process has it before the block ends.
+
+    numba reads a folder's index, adds an entry and writes it again: of two processes that do so at once one could be
+    given the machine code of the other. Without a lock where the system has none, as on Windows, or refuses it.
+    """
+    with ExitStack() as held:
+        if sys.platform != "win32":
+            with suppress(OSError):
+                folder = os.open(place, os.O_RDONLY)
+                held.callback(os.close, folder)
+                fcntl.flock(folder, fcntl.LOCK_EX)
+        yield

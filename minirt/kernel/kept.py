@@ -18,7 +18,7 @@ from numba import njit
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from numba.core.codegen import JITCPUCodegen
 
-from minirt.kernel.cache import numba_cache
+from minirt.kernel.cache import locked, numba_cache
 
 # error_model: x / 0 is infinite or NaN, as in IEEE 754. fastmath: a * b + c may round once, and nothing else. _nrt: the
 # kernel allocates nothing, and without reference counting it was seen to run twice as fast.
@@ -52,6 +52,11 @@ class Keeper(FunctionCache):
         """The function for arguments of these types, or None; numba would make the target ready for compiling first."""
         with self._guard_against_spurious_io_errors():
             return self._load_overload(signature, target)
+
+    def save_overload(self, signature: Any, made: Any) -> None:
+        """Write the machine code, one process at a time."""
+        with locked(Path(self.cache_path)):
+            super().save_overload(signature, made)
 
 
 def compiled(function: Callable[..., Any], place: Path | None, *signatures: Any) -> Any:

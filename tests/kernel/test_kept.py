@@ -4,17 +4,24 @@ from __future__ import annotations
 
 import gc
 import pickle
+import sys
+import threading
 import weakref
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from numba import float64, int64
+from numba.core.caching import IndexDataCacheFile
 
-from minirt.kernel import jit, kept
+from minirt.kernel import cache, jit, kept
 from minirt.rendering import Renderer
 from minirt.rendering.frames import frame_arguments
 from minirt.rendering.packing import Packing
 from minirt.scene import Scene, parse
+from tests.waiting import HANG_LIMIT
 
 BALL = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0 2 255,60,60\n"
 FLOOR = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\npl 0,-1,0 0,1,0 9,9,99\n"
@@ -73,3 +80,45 @@ def test_few_kernels_are_in_memory_at_a_time() -> None:
     assert jit.kernel_of.cache_info().maxsize == jit.LOADED
     held = kernel(parse(BALL).scene)
     assert kernel(parse(BALL).scene) is held
+
+
+def double(x: Any) -> Any:
+    return x + x
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="folders cannot be locked there")
+def test_of_two_that_write_an_index_one_waits_for_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second comes while the first has read the index and not written it."""
+    made = kept.compiled(double, None, (float64,), (int64,))
+    with cache.numba_cache(tmp_path):
+        keepers = [kept.Keeper(double), kept.Keeper(double)]
+    jobs = [
+        partial(each.save_overload, made.signatures[i], made.overloads[made.signatures[i]])
+        for i, each in enumerate(keepers)
+    ]
+    events: list[str] = []
+    second, second_came = threading.Thread(target=jobs[1], name="second", daemon=True), threading.Event()
+    lock, write = cache.fcntl.flock, IndexDataCacheFile._save_index
+
+    def asked(*arguments: Any) -> None:
+        if threading.current_thread() is second:
+            second_came.set()
+        lock(*arguments)
+
+    def written(index: Any, overloads: Any) -> None:
+        if threading.current_thread() is second:
+            second_came.set()
+        else:
+            second.start()
+            assert second_came.wait(HANG_LIMIT)
+        write(index, overloads)
+        events.append(threading.current_thread().name)
+
+    monkeypatch.setattr(cache.fcntl, "flock", asked)
+    monkeypatch.setattr(IndexDataCacheFile, "_save_index", written)
+    jobs[0]()
+    second.join(HANG_LIMIT)
+    assert events == [threading.current_thread().name, "second"]
+    monkeypatch.undo()
+    again = kept.compiled(double, tmp_path, (float64,), (int64,))
+    assert sum(again.stats.cache_hits.values()) == 2
