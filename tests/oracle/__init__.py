@@ -19,7 +19,7 @@ For another shape add a file beside these, as short as `sphere.py`, and a line h
 from collections.abc import Sequence
 from typing import Any
 
-from mpmath import mpf
+from gmpy2 import mpfr
 
 from minirt.shapes import Shape
 from tests.oracle import (  # noqa: F401  they register their bodies
@@ -42,13 +42,13 @@ from tests.oracle.vectors import Vector, dot, exact
 __all__ = ["Body", "body", "dot", "exact", "inside", "nearest", "normal"]
 
 
-def nearest(shape: Shape, origin: Sequence[Any], direction: Sequence[Any], swell: Any = 0) -> mpf | None:
+def nearest(shape: Shape, origin: Sequence[Any], direction: Sequence[Any], swell: Any = 0) -> mpfr | None:
     """The least t > 0 at which origin + t direction lies on the surface, or None.
 
     What a formula may answer lies between the answers for a shape a little larger (`swell` > 0) and one a little
     smaller.
     """
-    found = crossings(body(shape, mpf(swell)), list(origin), list(direction))
+    found = crossings(body(shape, mpfr(swell)), list(origin), list(direction))
     return next((t for t in found if t > 0), None)
 
 

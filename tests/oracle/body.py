@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import singledispatch
 from typing import Any, NamedTuple
 
-from mpmath import fabs, mpf, sqrt
+from gmpy2 import mpfr, sqrt
 
 from minirt.shapes import Shape
 from tests.oracle.polynomial import Polynomial
@@ -34,7 +34,7 @@ def body(shape: Shape, swell: Any = 0) -> Body:
     raise TypeError(f"the oracle knows no {shape.title}")
 
 
-def crossings(each: Body, origin: Vector, direction: Vector) -> list[mpf]:
+def crossings(each: Body, origin: Vector, direction: Vector) -> list[mpfr]:
     """All t at which the line origin + t direction meets the surface, in ascending order."""
     ray = [Polynomial(o, d) for o, d in zip(exact(origin), exact(direction), strict=True)]
     walls = [as_polynomial(wall(ray)) for wall in each.walls]
@@ -52,17 +52,17 @@ def inside(each: Body, point: Vector) -> bool:
     return each.solid and all(wall(p) < 0 for wall in each.walls) and all(clip(p) <= 0 for clip in each.clips)
 
 
-def normals(each: Body, point: Vector) -> list[tuple[mpf, Vector]]:
+def normals(each: Body, point: Vector) -> list[tuple[mpfr, Vector]]:
     """The distance of a point from each wall, to first order, and the outward unit normal there; the nearest first."""
     p = exact(point)
-    slopes = [(fabs(wall(p)), gradient(wall, p)) for wall in each.walls]
+    slopes = [(abs(wall(p)), gradient(wall, p)) for wall in each.walls]
     return sorted(((height / sqrt(dot(slope, slope)), unit(slope)) for height, slope in slopes), key=lambda w: w[0])
 
 
 def gradient(wall: Implicit, point: Vector) -> Vector:
     """The slope of a wall along each axis: the coefficient of t of the polynomial along it."""
     axes = ([Polynomial(x, int(i == axis)) for i, x in enumerate(point)] for axis in range(3))
-    return [([*as_polynomial(wall(line)).coefficients, mpf(0)])[1] for line in axes]
+    return [([*as_polynomial(wall(line)).coefficients, mpfr(0)])[1] for line in axes]
 
 
 def as_polynomial(value: Any) -> Polynomial:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mpmath import mpf
+from gmpy2 import mpfr
 
 from minirt.shapes.box import Box
 from tests.oracle.body import Body, Implicit, body
@@ -23,6 +23,6 @@ def _(box: Box, swell: Any = 0) -> Body:
         return lambda p: dot(minus(p, centre), axis) - half - swell
 
     axes = [turned(exact((1, 0, 0))), axis, turned(exact((0, 0, 1)))]
-    halves = [mpf(size) / 2 for size in box.sizes]
+    halves = [mpfr(size) / 2 for size in box.sizes]
     pairs = [(v, h) for v, h in zip(axes, halves, strict=True)]
     return Body(tuple(face([side * x for x in v], h) for v, h in pairs for side in (1, -1)))

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mpmath import mpf, sqrt
+from gmpy2 import mpfr, sqrt
 
 from minirt.shapes.cone import Cone
 from tests.oracle.body import Body, body
@@ -11,7 +11,7 @@ from tests.oracle.vectors import Vector, cross, dot, exact, minus, unit
 
 @body.register
 def _(cone: Cone, swell: Any = 0) -> Body:
-    axis, slope = unit(cone.axis), mpf(cone.diameter) / 2 / mpf(cone.height)
+    axis, slope = unit(cone.axis), mpfr(cone.diameter) / 2 / mpfr(cone.height)
     back = swell * sqrt(1 + slope**2) / slope  # a cone around the cone at that distance has its apex so far behind
     apex = [x - back * a for x, a in zip(exact(cone.apex), axis, strict=True)]
 

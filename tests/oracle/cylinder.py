@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mpmath import mpf
+from gmpy2 import mpfr
 
 from minirt.shapes.cylinder import Cylinder
 from tests.oracle.body import Body, body
@@ -12,7 +12,7 @@ from tests.oracle.vectors import Vector, cross, dot, exact, minus, unit
 @body.register
 def _(cylinder: Cylinder, swell: Any = 0) -> Body:
     centre, axis = exact(cylinder.centre), unit(cylinder.axis)
-    radius, half = mpf(cylinder.diameter) / 2 + swell, mpf(cylinder.height) / 2 + swell
+    radius, half = mpfr(cylinder.diameter) / 2 + swell, mpfr(cylinder.height) / 2 + swell
 
     def side(p: Vector) -> Any:
         across = cross(minus(p, centre), axis)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mpmath import mpf
+from gmpy2 import mpfr
 
 from minirt.shapes.disc import Disc
 from tests.oracle.body import Body, body
@@ -11,7 +11,7 @@ from tests.oracle.vectors import Vector, dot, exact, minus, unit
 
 @body.register
 def _(disc: Disc, swell: Any = 0) -> Body:
-    centre, normal, radius = exact(disc.centre), unit(disc.normal), mpf(disc.diameter) / 2 + swell
+    centre, normal, radius = exact(disc.centre), unit(disc.normal), mpfr(disc.diameter) / 2 + swell
 
     def beyond(p: Vector) -> Any:
         out = minus(p, centre)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mpmath import mpf
+from gmpy2 import mpfr
 
 from minirt.shapes.hyperboloid import Hyperboloid
 from tests.oracle.body import Body, body
@@ -12,7 +12,7 @@ from tests.oracle.vectors import Vector, cross, dot, exact, minus, unit
 @body.register
 def _(hyperboloid: Hyperboloid, swell: Any = 0) -> Body:
     centre, axis = exact(hyperboloid.centre), unit(hyperboloid.axis)
-    waist, radius, half = (mpf(x) / 2 for x in (hyperboloid.waist, hyperboloid.diameter, hyperboloid.height))
+    waist, radius, half = (mpfr(x) / 2 for x in (hyperboloid.waist, hyperboloid.diameter, hyperboloid.height))
     slope = (radius**2 - waist**2) / half**2  # squared
     more = 2 * radius * swell  # moves the side by at least `swell`, everywhere
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mpmath import mpf
+from gmpy2 import mpfr
 
 from minirt.shapes.paraboloid import Paraboloid
 from tests.oracle.body import Body, body
@@ -12,7 +12,7 @@ from tests.oracle.vectors import Vector, cross, dot, exact, minus, unit
 @body.register
 def _(paraboloid: Paraboloid, swell: Any = 0) -> Body:
     vertex, axis = exact(paraboloid.vertex), unit(paraboloid.axis)
-    radius, rim = mpf(paraboloid.diameter) / 2, mpf(paraboloid.height)
+    radius, rim = mpfr(paraboloid.diameter) / 2, mpfr(paraboloid.height)
     more = 2 * radius * swell + radius**2 / rim * swell  # moves the side by at least `swell`, everywhere
 
     def height(p: Vector) -> Any:

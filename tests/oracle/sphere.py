@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mpmath import mpf
+from gmpy2 import mpfr
 
 from minirt.shapes.sphere import Sphere
 from tests.oracle.body import Body, body
@@ -11,7 +11,7 @@ from tests.oracle.vectors import Vector, dot, exact, minus
 
 @body.register
 def _(sphere: Sphere, swell: Any = 0) -> Body:
-    centre, radius = exact(sphere.centre), mpf(sphere.diameter) / 2 + swell
+    centre, radius = exact(sphere.centre), mpfr(sphere.diameter) / 2 + swell
 
     def ball(p: Vector) -> Any:
         out = minus(p, centre)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mpmath import mpf
+from gmpy2 import mpfr
 
 from minirt.shapes.square import Square
 from tests.oracle.body import Body, body
@@ -11,7 +11,7 @@ from tests.oracle.vectors import Vector, cross, dot, exact, minus, unit
 
 @body.register
 def _(square: Square, swell: Any = 0) -> Body:
-    centre, normal, half = exact(square.centre), unit(square.normal), mpf(square.side) / 2 + swell
+    centre, normal, half = exact(square.centre), unit(square.normal), mpfr(square.side) / 2 + swell
     level = cross(exact((0, 1, 0)), normal)
     right = unit(level) if any(level) else exact((1, 0, 0))
     up = cross(normal, right)

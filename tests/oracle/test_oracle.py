@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import inf
 
 import pytest
+from gmpy2 import mpfr, sqrt
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mpmath import mpf, sqrt
 
 from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
@@ -26,10 +26,10 @@ RING = Body((lambda p: (dot(p, p) + 9 - 1) ** 2 - 36 * (p[0] ** 2 + p[2] ** 2),)
 SQUARE = Body((lambda p: p[1],), (lambda p: p[0] ** 2 - 1, lambda p: p[2] ** 2 - 1), solid=False)
 PIPE = Body((lambda p: p[0] ** 2 + p[2] ** 2 - 1,), (lambda p: p[1] ** 2 - 4,))  # open at both ends
 
-numbers = st.floats(-1e6, 1e6).map(lambda x: mpf(round(x, 3)))
+numbers = st.floats(-1e6, 1e6).map(lambda x: mpfr(round(x, 3)))
 
 
-def product(roots: list[mpf], factor: mpf) -> Polynomial:
+def product(roots: list[mpfr], factor: mpfr) -> Polynomial:
     made = Polynomial(factor)
     for root in roots:
         made = made * Polynomial(-root, 1)
@@ -38,28 +38,28 @@ def product(roots: list[mpf], factor: mpf) -> Polynomial:
 
 @settings(deadline=None, derandomize=True, max_examples=150)
 @given(st.lists(numbers, min_size=1, max_size=5, unique=True), st.sampled_from([1, -3e-30, 7e20]))
-def test_the_roots_of_a_polynomial(roots: list[mpf], factor: float) -> None:
-    found = product(roots, mpf(factor)).roots()
+def test_the_roots_of_a_polynomial(roots: list[mpfr], factor: float) -> None:
+    found = product(roots, mpfr(factor)).roots()
     assert len(found) == len(roots)
     for one, other in zip(found, sorted(roots), strict=True):
-        assert abs(one - other) <= abs(other) * mpf("1e-35")
+        assert abs(one - other) <= abs(other) * mpfr("1e-35")
 
 
 def test_the_last_two_steps_may_be_of_one_size() -> None:
-    roots = [mpf(x) for x in (-935875.23, 0, 0.79, 456628.801, 480168.5)]
-    found = product(roots, mpf(7e20)).roots()
-    assert max(abs(x - y) for x, y in zip(found, roots, strict=True)) < mpf("1e-45")
+    roots = [mpfr(x) for x in (-935875.23, 0, 0.79, 456628.801, 480168.5)]
+    found = product(roots, mpfr(7e20)).roots()
+    assert max(abs(x - y) for x, y in zip(found, roots, strict=True)) < mpfr("1e-45")
 
 
 def test_roots_that_are_hard() -> None:
-    close = [mpf(1), 1 + mpf("1e-20"), mpf(5)]
-    assert max(abs(x - y) for x, y in zip(product(close, mpf(1)).roots(), close, strict=True)) < mpf("1e-38")
+    close = [mpfr(1), 1 + mpfr("1e-20"), mpfr(5)]
+    assert max(abs(x - y) for x, y in zip(product(close, mpfr(1)).roots(), close, strict=True)) < mpfr("1e-38")
     assert Polynomial(4, -4, 1).roots() == [2]  # a double root
     assert Polynomial(0, 0, 0, 1).roots() == [0]
     assert Polynomial(1, 0, 1).roots() == Polynomial(1).roots() == Polynomial(0).roots() == []
     assert Polynomial(-1, 0, 0, 1, 0).roots() == [1]  # one turn only, and a coefficient that is 0
-    small, _ = Polynomial(1, -1, mpf("1e-90")).roots()
-    assert abs(small - 1) < mpf("1e-55")
+    small, _ = Polynomial(1, -1, mpfr("1e-90")).roots()
+    assert abs(small - 1) < mpfr("1e-55")
 
 
 def test_algebra() -> None:
@@ -109,7 +109,7 @@ def test_what_is_thicker_by_a_little_is_hit_a_little_earlier() -> None:
     for shape, way in ((BALL, (0, 0, 1)), (TUBE, (0, 0, 1)), (TUBE, (0, 1, 0))):
         origin = [c - 9 * d for c, d in zip(shape.centre, way, strict=True)]
         plain, thick = oracle.nearest(shape, origin, way), oracle.nearest(shape, origin, way, 1e-20)
-        assert abs(plain - thick - mpf(1e-20)) < mpf("1e-40")
+        assert abs(plain - thick - mpfr(1e-20)) < mpfr("1e-40")
 
 
 def test_inside() -> None:
@@ -132,7 +132,7 @@ def test_normals_point_outwards() -> None:
     assert oracle.normal(FLOOR, (1, 1, 1)) == [0, 1, 0]
     assert normals(RING, [4, 0, 0]) == [(0, [1, 0, 0])]
     assert normals(RING, [2, 0, 0]) == [(0, [-1, 0, 0])]
-    on = [3 + 1 / sqrt(mpf(2)), 1 / sqrt(mpf(2)), 0]
+    on = [3 + 1 / sqrt(mpfr(2)), 1 / sqrt(mpfr(2)), 0]
     assert [float(x) for x in normals(RING, on)[0][1]] == pytest.approx([0.5**0.5, 0.5**0.5, 0])
 
 

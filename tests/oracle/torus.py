@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mpmath import mpf
+from gmpy2 import mpfr
 
 from minirt.shapes.torus import Torus
 from tests.oracle.body import Body, body
@@ -12,7 +12,7 @@ from tests.oracle.vectors import Vector, cross, dot, exact, minus, unit
 @body.register
 def _(torus: Torus, swell: Any = 0) -> Body:
     centre, axis = exact(torus.centre), unit(torus.axis)
-    ring, tube = mpf(torus.diameter) / 2, mpf(torus.tube) / 2 + swell
+    ring, tube = mpfr(torus.diameter) / 2, mpfr(torus.tube) / 2 + swell
 
     def wall(p: Vector) -> Any:
         out = minus(p, centre)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mpmath import mpf
+from gmpy2 import mpfr
 
 import minirt
 from minirt.rendering import rays
@@ -52,9 +52,9 @@ def test_rays_as_the_oracle_traces_them() -> None:
     hits = minirt.trace(scene(*shapes), origins, directions)
     assert (hits.owner >= 0).mean() > 0.2
     for i, (origin, direction) in enumerate(zip(origins, directions, strict=True)):
-        length = oracle.dot(*[[mpf(float(x)) for x in direction]] * 2) ** 0.5
+        length = oracle.dot(*[[mpfr(float(x)) for x in direction]] * 2) ** 0.5
         exact = [oracle.nearest(shape, origin, direction) for shape in shapes]
-        right = min((float(t * length), index) for index, t in enumerate([*exact, mpf("inf")]) if t is not None)
+        right = min((float(t * length), index) for index, t in enumerate([*exact, mpfr("inf")]) if t is not None)
         if np.isinf(right[0]):
             assert (hits.distance[i], hits.owner[i]) == (np.inf, -1)
             continue

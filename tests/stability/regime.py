@@ -7,7 +7,7 @@ from functools import cache, lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from mpmath import mpf
+from gmpy2 import mpfr
 from numpy.typing import NDArray
 
 from minirt.element import fields_of
@@ -54,7 +54,7 @@ class Right:
         self.around = lru_cache(None)(self.thicker_and_thinner)
 
     def at(self, i: int, j: int, swell: float = 0.0) -> float:
-        t = oracle.nearest(self.rays.shapes[i], self.rays.origins[i, j], self.rays.directions[i, j], mpf(swell))
+        t = oracle.nearest(self.rays.shapes[i], self.rays.origins[i, j], self.rays.directions[i, j], mpfr(swell))
         return np.inf if t is None else float(t)
 
     def thicker_and_thinner(self, i: int, j: int) -> tuple[float, float]:
@@ -74,10 +74,9 @@ class Right:
         return 4 * U * (t + self.away(i, j) + lever(self.rays.shapes[i])) / slope
 
     def within_thicker(self, i: int, j: int, t: float) -> bool:
-        point = [
-            mpf(o) + mpf(t) * mpf(d) for o, d in zip(self.rays.origins[i, j], self.rays.directions[i, j], strict=True)
-        ]
-        return inside(body(self.rays.shapes[i], mpf(self.swell(i, j))), point)
+        origin, direction = self.rays.origins[i, j], self.rays.directions[i, j]
+        point = [mpfr(o) + mpfr(t) * mpfr(d) for o, d in zip(origin, direction, strict=True)]
+        return inside(body(self.rays.shapes[i], mpfr(self.swell(i, j))), point)
 
     def wrong(self, t: Array, every: int = 1) -> list[str]:
         """What is wrong with the answers t for every n-th ray of a shape, infinity for a miss."""

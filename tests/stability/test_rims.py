@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mpmath import fabs, mpf, sqrt
+from gmpy2 import mpfr, sqrt
 
 from minirt.shapes import Shape
 from tests.oracle.vectors import cross, dot, exact, minus, unit
@@ -27,17 +27,17 @@ RIMS: dict[str, tuple[tuple[str, float], ...]] = {  # for each rim its height ab
 AT_THE_RIM = {kind.element.title: regime for kind, regime in REGIMES if regime.name == "at the rim"}
 
 
-def beside_rim(shape: Any, point: str, share: float, origin: Any, direction: Any) -> mpf:
+def beside_rim(shape: Any, point: str, share: float, origin: Any, direction: Any) -> mpfr:
     """How far a ray passes from a rim: from the rim's tangent where the ray crosses its plane, to first order."""
     axis, d = unit(shape.axis), exact(direction)
     p = minus(exact(origin), exact(getattr(shape, point)))
-    s = (mpf(share) * mpf(shape.height) - dot(p, axis)) / dot(d, axis)
+    s = (mpfr(share) * mpfr(shape.height) - dot(p, axis)) / dot(d, axis)
     crossed = [a + s * b for a, b in zip(p, d, strict=True)]
     radial = minus(crossed, [dot(crossed, axis) * x for x in axis])
     radius = sqrt(dot(radial, radial))
     out = [x / radius for x in radial]
     across = cross(d, cross(axis, out))  # the way and the tangent are both perpendicular to it
-    return fabs(radius - mpf(shape.diameter) / 2) * fabs(dot(out, across)) / sqrt(dot(across, across))
+    return abs(radius - mpfr(shape.diameter) / 2) * abs(dot(out, across)) / sqrt(dot(across, across))
 
 
 def beside(shape: Shape, origin: Any, direction: Any) -> float:
