@@ -18,14 +18,16 @@ class Polynomial:
     for numbers is expanded by calling it."""
 
     def __init__(self, *coefficients: Any) -> None:
-        self.coefficients = [mpfr(c) for c in coefficients]
+        self.coefficients = [c if isinstance(c, mpfr) else mpfr(c) for c in coefficients]
 
     def __add__(self, other: Any) -> Polynomial:
         pairs = zip_longest(self.coefficients, coefficients_of(other), fillvalue=mpfr(0))
         return Polynomial(*(a + b for a, b in pairs))
 
     def __mul__(self, other: Any) -> Polynomial:
-        a, b = self.coefficients, coefficients_of(other)
+        if not isinstance(other, Polynomial):
+            return Polynomial(*(c * other for c in self.coefficients))
+        a, b = self.coefficients, other.coefficients
         product = [mpfr(0)] * (len(a) + len(b) - 1)
         for i, x in enumerate(a):
             for j, y in enumerate(b):
@@ -36,7 +38,7 @@ class Polynomial:
         return self if exponent == 1 else self * self ** (exponent - 1)
 
     def __neg__(self) -> Polynomial:
-        return self * -1
+        return Polynomial(*(-c for c in self.coefficients))
 
     def __sub__(self, other: Any) -> Polynomial:
         return self + -other
