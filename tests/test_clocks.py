@@ -1,0 +1,108 @@
+"""No test looks at a clock, sleeps, or gives up a wait before `HANG_LIMIT`: read from the sources of all tests."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+TESTS = Path(__file__).parent
+CLOCKS = {
+    f"{name}{unit}"
+    for name in ("time", "monotonic", "perf_counter", "process_time", "thread_time")
+    for unit in ("", "_ns")
+}
+CLOCKS |= {"sleep"}
+WAITS = {"wait", "join", "communicate", "acquire", "result"}  # methods that take seconds
+LIMITS = {"timeout", "patience", "deadline"}  # arguments that are seconds
+MEASURES = {  # what is there to measure time, or to play for as long as somebody says
+    "waiting.py",
+    "stability/mutation.py",
+    "viewer/monkey.py",
+    *(
+        path.relative_to(TESTS).as_posix()
+        for path in (TESTS / "bench").rglob("*.py")
+        if not path.name.startswith("test_")
+    ),
+}
+
+
+def wrong(source: str) -> list[str]:
+    """The places of a source at which time counts, as line and reason."""
+    return [f"{node.lineno}: {reason}" for node in ast.walk(ast.parse(source)) for reason in reasons(node)]
+
+
+def reasons(node: ast.AST) -> Iterator[str]:
+    """What is wrong with a piece of a program."""
+    if isinstance(node, ast.ImportFrom) and node.module == "time":
+        yield from (f"imports {each.name}" for each in node.names if each.name in CLOCKS)
+    if isinstance(node, ast.Attribute) and ast.unparse(node.value) == "time" and node.attr in CLOCKS:
+        yield f"uses time.{node.attr}"
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield from (
+            f"a program that uses {name}" for name in re.findall(rf"\btime\.(?:{'|'.join(CLOCKS)})\b", node.value)
+        )
+    if isinstance(node, ast.Call):
+        yield from (
+            f"{each.arg} is {ast.unparse(each.value)}"
+            for each in node.keywords
+            if each.arg in LIMITS and is_number(each.value)
+        )
+        method = getattr(node.func, "attr", "") if not in_simulated_time(node.func) else ""
+        yield from (f"{method} for {ast.unparse(each)} s" for each in node.args if method in WAITS and is_number(each))
+        if any(isinstance(each, ast.Constant) and each.value == "sleep" for each in node.args):
+            yield "runs sleep"
+
+
+def in_simulated_time(function: ast.AST) -> bool:
+    """Whether it is a method of the window without a screen, whose seconds nobody waits for."""
+    return isinstance(function, ast.Attribute) and ast.unparse(function.value).split(".")[-1].strip("_") == "memory"
+
+
+def is_number(node: ast.AST) -> bool:
+    return isinstance(node, ast.Constant) and isinstance(node.value, (int, float)) and not isinstance(node.value, bool)
+
+
+@pytest.mark.parametrize("path", sorted(TESTS.rglob("*.py")), ids=lambda path: path.relative_to(TESTS).as_posix())
+def test_time_does_not_count(path: Path) -> None:
+    name = path.relative_to(TESTS).as_posix()
+    if name not in MEASURES and path != Path(__file__):
+        assert wrong(path.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "import time\nassert time.perf_counter() - start < 1",
+        "from time import monotonic",
+        "time.sleep(0.1)",
+        "subprocess.run([sys.executable, '-c', 'import time; time.sleep(60)'])",
+        "desktop.run('sleep', '3')",
+        "subprocess.run(command, timeout=30)",
+        "process.communicate(timeout=10)",
+        "thread.join(20)",
+        "assert started.wait(5)",
+        "@settings(deadline=500)\ndef test(): ...",
+    ],
+)
+def test_where_time_counts_it_is_found(source: str) -> None:
+    assert len(wrong(source)) == 1
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "process.communicate(timeout=HANG_LIMIT)",
+        "assert started.wait(HANG_LIMIT)",
+        "monkeypatch.setattr(timing, 'perf_counter', clock)",
+        "os.utime(path, ns=(1, 1))",
+        "', '.join(names)",
+        "bench.memory.wait(0.5)",
+        "@settings(deadline=None)\ndef test(): ...",
+    ],
+)
+def test_where_it_does_not_nothing_is_found(source: str) -> None:
+    assert wrong(source) == []
