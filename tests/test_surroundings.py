@@ -1,0 +1,101 @@
+"""The tests run alike in all surroundings: where nothing can be written, on other processors, without Ctrl+C."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests import conftest, scheduling, surroundings
+from tests.processes import run, started
+
+ROOT = Path(__file__).parent.parent
+FEATURES = "from numba.core.registry import cpu_target; print(cpu_target.target_context.codegen().magic_tuple()[2])"
+CHILD = [sys.executable, "-c", "import signal; signal.pause()"]
+PARENT = f"""
+import signal, subprocess
+child = subprocess.Popen({CHILD}, close_fds=False)
+print("both are there", flush=True)
+signal.pause()
+"""
+
+
+def prepared(monkeypatch: pytest.MonkeyPatch, **environment: str) -> dict[str, str]:
+    """What `prepare` makes of these environment variables."""
+    monkeypatch.setattr(os, "environ", environment)
+    surroundings.prepare()
+    return environment
+
+
+def test_kernels_are_kept_where_the_user_keeps_them(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    assert prepared(monkeypatch, XDG_CACHE_HOME=str(tmp_path)) == {"XDG_CACHE_HOME": str(tmp_path)}
+    monkeypatch.setattr(Path, "home", lambda: tmp_path / "me")
+    assert prepared(monkeypatch) == {}
+    assert list(tmp_path.iterdir()) == [tmp_path / "me"]
+
+
+def test_or_beside_the_sources_where_that_cannot_be_written(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    instead = {"XDG_CACHE_HOME": str(ROOT / "out" / "cache")}
+    assert prepared(monkeypatch, XDG_CACHE_HOME=str(tmp_path / "file")) == instead
+
+    def homeless() -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr(Path, "home", homeless)
+    assert prepared(monkeypatch) == instead
+
+
+def test_haswell_has_no_avx_512(monkeypatch: pytest.MonkeyPatch) -> None:
+    environment = dict(os.environ)
+    for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"):
+        environment.pop(name, None)
+    with monkeypatch.context() as patch:
+        named = prepared(patch, **environment, NUMBA_CPU_NAME="haswell")
+        chosen = prepared(patch, **environment, NUMBA_CPU_NAME="haswell", NUMBA_CPU_FEATURES="+avx")
+    assert chosen["NUMBA_CPU_FEATURES"] == "+avx"
+    done = run([sys.executable, "-c", FEATURES], env=named, text=True)
+    assert "+avx2" in done.stdout.strip().split(",")
+    assert "512" not in done.stdout
+
+
+def test_ctrl_c_reaches_the_tests_where_the_caller_ignores_it() -> None:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        conftest.pytest_configure()
+        with started([sys.executable, "-c", "import sys; print('there', flush=True); sys.stdin.read()"],
+                     stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:  # fmt: skip
+            process.stdout.readline()
+            process.send_signal(signal.SIGINT)
+            assert process.stdout.read() == b""
+        assert process.returncode == -signal.SIGINT
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def test_a_program_that_is_left_early_leaves_nothing_running() -> None:
+    """Each of the two holds the end of a pipe, whose other end is told when nobody does any more."""
+    reader, writer = os.pipe()
+
+    def left_early() -> None:
+        with started([sys.executable, "-c", PARENT], stdout=subprocess.PIPE, pass_fds=(writer,)) as parent:
+            parent.stdout.readline()
+            os.close(writer)
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        left_early()
+    with os.fdopen(reader, "rb") as file:
+        assert file.read() == b""
+
+
+def test_windows_are_one_piece_of_work_and_every_other_file_is_one() -> None:
+    walk = "tests/viewer/test_walk.py::test_a_walk"
+    assert scheduling.piece_of_work(walk) == scheduling.piece_of_work("tests/mlx/test_window.py::test_x[a]")
+    assert scheduling.piece_of_work(f"{Path(__file__).relative_to(ROOT)}::test_y[b::c]") == "tests/test_surroundings.py"
+    assert scheduling.opens_windows(walk)
+    assert not scheduling.opens_windows("tests/viewer/test_editor.py::test_z")
