@@ -7,15 +7,19 @@ import subprocess
 import sys
 from typing import Any
 
+import gmpy2
 import numpy as np
+import pytest
 from numba import njit
 
 import minirt.lanes.compiled  # noqa: F401
 from minirt.lanes import Vec, inverse_root, lane, load, unit, width
+from minirt.lanes.root import SERIES
 from tests.lanes.numbers import DTYPES, PRECISIONS
 from tests.lanes.test_operators import put
 
 AVX2 = {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": "+avx,+avx2,+fma,+bmi,+bmi2,+lzcnt,+popcnt,+sse4.2"}
+NAMES = {np.float64: "double", np.float32: "float"}  # of the types in LLVM
 
 
 @njit(error_model="numpy")
@@ -48,6 +52,38 @@ def off(dtype: Any) -> float:
 @PRECISIONS
 def test_within_two_units_in_the_last_place(dtype: Any) -> None:
     assert off(dtype) <= 2
+
+
+def refined(x: Any, estimate: Any, bits: int, series: tuple[float, ...]) -> Any:
+    """1 / sqrt(x) from an estimate of it, by the steps of `minirt.lanes.root`, each rounded to so many bits."""
+
+    def rounded(value: Any) -> Any:
+        return gmpy2.mpfr(value, bits)
+
+    with gmpy2.context(precision=500):  # exact: a fused product and sum are rounded once
+        y = rounded(estimate)
+        error = rounded(1 - x * rounded(y * y))
+        first, *rest = series
+        total = gmpy2.mpfr(first)
+        for coefficient in rest:
+            total = rounded(total * error + coefficient)
+        return rounded(rounded(y * error) * total + y)
+
+
+@PRECISIONS
+@pytest.mark.parametrize(("off", "passes"), [(2.0**-14, True), (2.0**-7, False)])
+def test_the_steps_are_precise_whatever_estimate_a_processor_makes(dtype: Any, off: float, passes: bool) -> None:
+    """Processors differ in their estimates, which are only promised to be within 2^-14. A worse one does not pass."""
+    kind = np.finfo(dtype)
+    random = np.random.default_rng(6)
+    errors = []
+    for x in random.uniform(1, 4, 500).astype(dtype):
+        with gmpy2.context(precision=500):
+            exact = 1 / gmpy2.sqrt(gmpy2.mpfr(float(x)))
+            for share in (-1, 1, random.uniform(-1, 1)):
+                found = refined(gmpy2.mpfr(float(x)), exact * (1 + share * off), kind.nmant + 1, SERIES[NAMES[dtype]])
+                errors.append(abs(float((found - exact) / float(np.spacing(dtype(float(exact)))))))
+    assert (max(errors) <= 2) == passes
 
 
 @PRECISIONS
