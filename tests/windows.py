@@ -22,7 +22,7 @@ import subprocess
 import tempfile
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -55,7 +55,11 @@ class Desktop:
     def run(self, *command: str) -> bytes:
         """Standard output of a command; CalledProcessError where it fails, TimeoutExpired where it hangs."""
         done = processes.run(command, env=self.environment)
-        done.check_returncode()
+        try:
+            done.check_returncode()
+        except subprocess.CalledProcessError as error:
+            error.add_note(done.stderr.decode(errors="replace"))
+            raise
         output: bytes = done.stdout
         return output
 
@@ -64,16 +68,19 @@ class Desktop:
         return processes.run(["wmctrl", "-m"], env=self.environment).returncode == 0
 
     @contextmanager
-    def program(self, *command: str) -> Iterator[subprocess.Popen[str]]:
-        """Start a program on this desktop, from the project's root; afterwards neither it nor its windows are left."""
-        with self._left_as_it_was():
-            pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-            with processes.started(command, env=self.environment, cwd=ROOT, text=True, **pipes) as process:
-                self._programs.append(process)
-                try:
-                    yield process
-                finally:
-                    self._programs.remove(process)
+    def program(self, *command: str, **options: Any) -> Iterator[subprocess.Popen[str]]:
+        """Start a program on this desktop, from the project's root; afterwards neither it nor its windows are left.
+
+        `options` are those of `subprocess.Popen`; by default standard output and standard error are pipes.
+        """
+        options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
+        started = processes.started(command, env=self.environment, cwd=ROOT, text=True, **options)
+        with self._left_as_it_was(), started as process:
+            self._programs.append(process)
+            try:
+                yield process
+            finally:
+                self._programs.remove(process)
 
     def find(self, title: str) -> int:
         """Wait for the window of this title, until it has the focus; AssertionError where no program is left."""
@@ -81,7 +88,7 @@ class Desktop:
 
         def look() -> bool:
             self._expect_a_program()
-            with suppress(subprocess.CalledProcessError, IndexError):  # not there yet, or on its way to another place
+            with suppress(IndexError), _windows_may_go():  # not there yet, or another one is made instead
                 found[:] = [window for window, name in self.windows() if name == title]
                 self.activate(found[0])
                 return True
@@ -162,7 +169,7 @@ class Desktop:
         finally:
             self.let_go()
             if not self._programs:
-                waiting.until(lambda: not self.windows(), "the end of all windows")
+                waiting.until(self._is_empty, "the end of all windows")
 
     def _expect_a_program(self) -> None:
         """Fail at once, and say why, where no window can come any more."""
@@ -172,6 +179,11 @@ class Desktop:
             ends = [(process.returncode, *process.communicate()) for process in self._programs]
             raise AssertionError(f"no program is left that could open a window: {ends}")
 
+    def _is_empty(self) -> bool:
+        with _windows_may_go():
+            return not self.windows()
+        return False
+
     def _active(self) -> int | None:
         """The window that has the focus."""
         with suppress(subprocess.CalledProcessError):  # there is none
@@ -180,6 +192,16 @@ class Desktop:
 
     def _is_shown(self, window: int) -> bool:
         return b"Map State: IsViewable" in self.run("xwininfo", "-id", str(window))
+
+
+@contextmanager
+def _windows_may_go() -> Iterator[None]:
+    """Leave the block where a window of it goes meanwhile, as nobody can tell when."""
+    try:
+        yield
+    except subprocess.CalledProcessError as error:
+        if b"BadWindow" not in error.stderr:
+            raise
 
 
 @pytest.fixture(scope="session")
@@ -244,7 +266,7 @@ def _display() -> Iterator[str]:
 
 
 @contextmanager
-def _server(command: list[str], **options: object) -> Iterator[None]:
+def _server(command: list[str], **options: Any) -> Iterator[None]:
     """Run a program that is asked to end, since it may have files to take away, before it is killed."""
     with processes.started(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **options) as process:
         try:
