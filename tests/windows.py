@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd", "xwininfo", "setxkbmap")
 ROOT = Path(__file__).parent.parent
+AT_ONCE = ("--delay", "0")  # for xdotool, which otherwise rests between pressing and letting go
 
 
 def until(condition: Callable[[], bool], what: str, _seconds: float = HANG_LIMIT) -> None:
@@ -64,8 +65,9 @@ class Desktop:
         return output
 
     def is_managed(self) -> bool:
-        """Whether a window manager answers."""
-        return processes.run(["wmctrl", "-m"], env=self.environment).returncode == 0
+        """Whether a window manager answers, and has its list of windows."""
+        asked = (processes.run(["wmctrl", option], env=self.environment) for option in ("-m", "-l"))
+        return all(done.returncode == 0 for done in asked)
 
     @contextmanager
     def program(self, *command: str, **options: Any) -> Iterator[subprocess.Popen[str]]:
@@ -114,14 +116,14 @@ class Desktop:
     def key(self, window: int, *names: str) -> None:
         """Press and release; xdotool's names, such as Escape, shift+Tab."""
         self.activate(window)
-        self.run("xdotool", "key", *names)
+        self.run("xdotool", "key", *AT_ONCE, *names)
 
     def keydown(self, name: str) -> None:
         self._held.append(name)
-        self.run("xdotool", "keydown", name)
+        self.run("xdotool", "keydown", *AT_ONCE, name)
 
     def keyup(self, name: str) -> None:
-        self.run("xdotool", "keyup", name)
+        self.run("xdotool", "keyup", *AT_ONCE, name)
         self._held.remove(name)
 
     def let_go(self) -> None:
@@ -134,8 +136,8 @@ class Desktop:
 
     def click(self, window: int, x: int, y: int, button: int = 1) -> None:
         """Buttons 4 to 7 turn the wheel."""
-        self.move(window, x, y)
-        self.run("xdotool", "click", str(button))
+        move = ("mousemove", "--window", str(window), str(x), str(y))
+        self.run("xdotool", *move, "click", *AT_ONCE, str(button))
 
     def resize(self, window: int, width: int, height: int) -> None:
         self.run("xdotool", "windowsize", str(window), str(width), str(height))
