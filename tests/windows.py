@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd", "xwininfo", "setxkbmap")
 ROOT = Path(__file__).parent.parent
+SCREEN = (2560, 1600)  # its size in pixels
 AT_ONCE = ("--delay", "0")  # for xdotool, which otherwise rests between pressing and letting go
 
 
@@ -84,16 +85,20 @@ class Desktop:
             finally:
                 self._programs.remove(process)
 
-    def find(self, title: str) -> int:
-        """Wait for the window of this title, until it has the focus; AssertionError where no program is left."""
+    def find(self, title: str, size: tuple[int, int] | None = None) -> int:
+        """Wait for the window of this title, and of this size, until it has the focus.
+
+        AssertionError where no program is left that could open it.
+        """
         found: list[int] = []
 
         def look() -> bool:
             self._expect_a_program()
-            with suppress(IndexError), _windows_may_go():  # not there yet, or another one is made instead
+            with _windows_may_go():  # the program may make another one instead
                 found[:] = [window for window, name in self.windows() if name == title]
-                self.activate(found[0])
-                return True
+                if found and size in (None, self.size(found[0])):
+                    self.activate(found[0])
+                    return True
             return False
 
         waiting.until(look, f"a window called {title}")
@@ -255,7 +260,8 @@ def _display() -> Iterator[str]:
         reader, writer = os.pipe()
         number = stack.enter_context(os.fdopen(reader))
         with os.fdopen(writer):
-            command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", "2560x1600x24", "-nolisten", "tcp"]
+            width, height = SCREEN
+            command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp"]
             command += ["-noreset"]  # or it starts afresh, without openbox, when its last client leaves
             command += ["-r", "-ardelay", "100", "-arinterval", "20"]  # milliseconds, where a test turns it on
             stack.enter_context(_server(command, pass_fds=(writer,)))
