@@ -1,18 +1,21 @@
 """The window contract as programs with known logs, on either back end.
 
-Each scenario is held to the same log on both by test_contract. Run as a module, this plays all of them on the screen
-and prints the logs as JSON.
+Each scenario is held to the same log on both by test_contract. Run as a module, this plays scenarios on the screen: it
+reads their names from standard input, a line each, and answers each with the log as a line of JSON.
 """
 
 from __future__ import annotations
 
+import faulthandler
 import importlib
 import json
+import sys
 import traceback
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from minirt.mlx import Mlx
 from tests.mlx.stage import Stage
+from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,7 +54,7 @@ def load() -> dict[str, Scenario]:
 def observe(name: str, mlx: Mlx) -> Log:
     """Play a scenario and return its log, with the traceback where it raised."""
     play, expected = load()[name]
-    stage = Stage(mlx, name, len(expected))
+    stage = Stage(mlx, name, expected)
     try:
         play(stage)
     except Exception:
@@ -62,4 +65,8 @@ def observe(name: str, mlx: Mlx) -> Log:
 
 
 if __name__ == "__main__":
-    print(json.dumps({name: observe(name, Mlx()) for name in load()}))
+    for line in sys.stdin:
+        # A wait in vain ends by itself; where even that hangs, this says in which line, and ends the program.
+        faulthandler.dump_traceback_later(2 * HANG_LIMIT, exit=True)
+        print(json.dumps(observe(line.strip(), Mlx())), flush=True)
+        faulthandler.cancel_dump_traceback_later()

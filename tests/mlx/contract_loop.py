@@ -25,20 +25,19 @@ def a_window_is_mapped_and_exposed_at_first(stage: Stage) -> None:
     stage.play(lambda user: user.look("looked", lambda picture: [picture[1, 1].tolist()]))
 
 
-@scenario(["hidden"], ["ticks while hidden", True], ["shown"], ["exposed", True], ["kept", [7, 8, 9]])
+@scenario(["hidden"], ["ticks while hidden"], ["shown"], ["exposed", True], ["kept", [7, 8, 9]])
 def a_minimised_window_keeps_its_picture_and_the_loop_goes_on(stage: Stage) -> None:
     ticks: list[int] = []
     exposes: list[int] = []
 
     def acts(user: User) -> None:
-        user.wait(0.1)
-        user.until(lambda: bool(ticks))
+        user.wait_until(lambda: bool(ticks), 0.1)
         user.then(lambda: stage.hook(Event.MAP_NOTIFY, "shown"))
         user.minimise()
         user.until(lambda: len(stage.log) == 1)
         user.then(ticks.clear)
-        user.wait(0.4)
-        user.then(lambda: stage.note("ticks while hidden", len(ticks) >= 5))
+        user.wait_until(lambda: len(ticks) >= 5, 0.4)
+        user.then(lambda: stage.note("ticks while hidden"))
         user.then(exposes.clear)
         user.restore()
         user.until(lambda: len(stage.log) == 3 and len(exposes) > 0)
@@ -122,12 +121,15 @@ def what_a_hook_raises_comes_out_of_the_loop(stage: Stage) -> None:
 
 @scenario(["exit", 3])
 def sys_exit_in_a_hook_comes_out_of_the_loop(stage: Stage) -> None:
+    ticks: list[int] = []
+
     def leave(_: object) -> None:
+        ticks.append(1)
         raise SystemExit(3)
 
     stage.m.mlx_loop_hook(stage.mlx, leave, None)
     try:
-        stage.play(lambda user: user.wait(1.0))
+        stage.play(lambda user: user.wait_until(lambda: bool(ticks), 1.0))
     except SystemExit as exit_:
         stage.note("exit", exit_.code)
 
@@ -147,30 +149,22 @@ def no_hook_is_called_after_loop_exit(stage: Stage) -> None:
     stage.play(lambda user: user.keys("+b -b"))
 
 
-@scenario(["rate", True], ["ticks", 5])
+@scenario(["ticks", 5])
 def the_loop_hook_ticks_until_it_is_removed(stage: Stage) -> None:
-    """About 60 times a second; a machine under load may be late, never early."""
-    times: list[float] = []
+    """Its pace is asked for with simulated time, in test_memory and test_pace."""
+    ticks: list[int] = []
 
-    def tick(param: str) -> None:
-        times.append(stage.m.mlx_time(stage.mlx))
-        if len(times) == 31:
-            stage.note(param, 0.45 < times[-1] - times[0] < 1.5)
-            times.clear()
-            stage.m.mlx_loop_hook(stage.mlx, count, "count")
-
-    def count(_: object) -> None:
-        times.append(0.0)
-        if len(times) == 5:
+    def tick(_: object) -> None:
+        ticks.append(1)
+        if len(ticks) == 5:
             stage.m.mlx_loop_hook(stage.mlx, None, None)
 
-    stage.m.mlx_loop_hook(stage.mlx, tick, "rate")
+    stage.m.mlx_loop_hook(stage.mlx, tick, None)
 
     def acts(user: User) -> None:
-        user.wait(0.6)
-        user.until(lambda: len(stage.log) == 1 and len(times) == 5)
-        user.wait(0.3)
-        user.then(lambda: stage.note("ticks", len(times)))
+        user.wait_until(lambda: len(ticks) == 5, 0.2)
+        user.rest(0.3)
+        user.then(lambda: stage.note("ticks", len(ticks)))
 
     stage.play(acts)
 
@@ -179,10 +173,7 @@ def the_loop_hook_ticks_until_it_is_removed(stage: Stage) -> None:
 def a_sleeping_loop_is_woken_from_another_thread(stage: Stage) -> None:
     main = threading.get_ident()
     stage.m.mlx_wake_hook(stage.mlx, lambda param: stage.note("woken", param, threading.get_ident() == main), "mine")
-    timer = threading.Timer(0.3, stage.m.mlx_wake, (stage.mlx,))
-    timer.start()
-    stage.play(lambda user: user.await_wake())
-    timer.join()
+    stage.play(lambda user: user.wake())
 
 
 @scenario(["clipboard", "c 1,2,3"])

@@ -160,7 +160,7 @@ def full_screen_and_back(stage: Stage) -> None:
             user.keys("+f")
             user.until(lambda number=number: len(sizes) >= number)  # type: ignore[misc]
             user.keys("-f")
-            user.wait(0.3)
+            user.find_again()
         user.keys("+z -z")
 
     def pressed(key: int, _: object) -> None:

@@ -6,15 +6,15 @@ python -m tests.mlx.dropper WINDOW x y TYPES FILE...        # TYPES: how many ar
 from __future__ import annotations
 
 import sys
-import time
 from ctypes import POINTER, c_int, c_ulong, cast, create_string_buffer
 from pathlib import Path
 from typing import Any
 
 from pyglet.libs.x11 import xlib
 
+from tests.waiting import until
+
 VERSION = 5
-PATIENCE = 10.0  # seconds for the whole of it
 
 
 class Dropper:
@@ -25,7 +25,6 @@ class Dropper:
         root = xlib.XDefaultRootWindow(self.display)
         self.window = xlib.XCreateSimpleWindow(self.display, root, 0, 0, 1, 1, 0, 0, 0)
         self.target = target
-        self.end = time.monotonic() + PATIENCE
         self.types = [self.atom(f"text/x-test-{n}") for n in range(types - 1)] + [self.atom("text/uri-list")]
 
     def atom(self, name: str) -> int:
@@ -47,14 +46,10 @@ class Dropper:
     def next(self, kind: int) -> Any:
         """The next event of that kind."""
         event = xlib.XEvent()
-        while time.monotonic() < self.end:
-            if xlib.XPending(self.display):
-                xlib.XNextEvent(self.display, event)
-                if event.type == kind:
-                    return event
-            else:
-                time.sleep(0.01)
-        raise TimeoutError(f"no event {kind}")
+        while event.type != kind:
+            until(lambda: bool(xlib.XPending(self.display)), f"an event {kind}")
+            xlib.XNextEvent(self.display, event)
+        return event
 
     def write(self, window: int, name: int, kind: int, bits: int, data: bytes) -> None:
         """Set a property of a window."""
@@ -86,8 +81,7 @@ class Dropper:
         answer.xselection.requestor, answer.xselection.selection = request.requestor, request.selection
         answer.xselection.target, answer.xselection.property = request.target, request.property
         xlib.XSendEvent(self.display, request.requestor, 0, 0, answer)
-        xlib.XSync(self.display, 0)
-        time.sleep(0.2)  # what is written goes when its owner does
+        xlib.XSync(self.display, 0)  # the target has its files and what tells it so, whatever becomes of this window
 
 
 if __name__ == "__main__":

@@ -18,14 +18,19 @@ if TYPE_CHECKING:
 
 
 class Stage:
-    """One window called `win`, 200x100; `expected` is the number of lines that the log will have."""
+    """One window called `win`, 200x100; `expected` is the log that the scenario must leave."""
 
-    def __init__(self, m: Mlx, title: str, expected: int) -> None:
+    def __init__(self, m: Mlx, title: str, expected: list[list[Any]]) -> None:
         self.m = m
         self.mlx = m.mlx_init()
         self.expected = expected
         self.log: list[list[Any]] = []
         self.win = m.mlx_new_window(self.mlx, 200, 100, title, resizable=True)
+
+    @property
+    def astray(self) -> bool:
+        """Whether the log has something that it must not have there."""
+        return self.log != self.expected[: len(self.log)]
 
     def note(self, *what: object) -> None:
         self.log.append(list(what))

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import threading
+from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 import pytest
 
+import minirt.mlx.memory as memory_module
 from minirt.mlx import Event, Key, Mlx, MlxError, Modifier
 from minirt.mlx.memory import TICK, Memory
+from tests.mlx.waker import waker
+from tests.waiting import HANG_LIMIT
+
+if TYPE_CHECKING:
+    from minirt.mlx.handles import Hook
 
 
 def test_time_is_simulated() -> None:
@@ -41,18 +49,56 @@ def test_play_steps_without_a_loop_and_raises() -> None:
         memory.play()
 
 
-def test_a_program_that_does_not_end_is_an_error() -> None:
-    for hook in (None, lambda _: None):
-        m = Mlx(Memory(patience=0.1))
-        mlx = m.mlx_init()
-        m.mlx_new_window(mlx, 10, 10, "for ever")
-        m.mlx_loop_hook(mlx, hook, None)
-        with pytest.raises(MlxError, match=r"did not end within 0\.1 s"):
-            m.mlx_loop(mlx)
+PATIENCE = 20.0  # simulated seconds
+
+
+class Clock:
+    """The machine's clock for `Memory`, which moves by as much as is waited for, and by a little when it is read."""
+
+    def __init__(self) -> None:
+        self.now = 1000.0
+
+    def monotonic(self) -> float:
+        self.now += 0.125
+        assert self.now < 2000.0, "it has no end"
+        return self.now
+
+    def event(self) -> threading.Event:
+        """An event that nobody sets."""
+        event = threading.Event()
+
+        def wait(timeout: float | None = None) -> bool:
+            assert timeout is not None, "it waits without end"
+            self.now += timeout
+            return event.is_set()
+
+        event.wait = wait  # type: ignore[method-assign]
+        return event
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """A simulated clock instead of the machine's."""
+    made = Clock()
+    monkeypatch.setattr(memory_module, "time", SimpleNamespace(monotonic=made.monotonic))
+    monkeypatch.setattr(memory_module, "threading", SimpleNamespace(Event=made.event))
+    return made
+
+
+@pytest.mark.parametrize("hook", [None, lambda _: None], ids=["asleep", "ticking"])
+def test_a_program_that_does_not_end_is_an_error(clock: Clock, hook: Hook | None) -> None:
+    m = Mlx(Memory(patience=PATIENCE))
+    mlx = m.mlx_init()
+    m.mlx_new_window(mlx, 10, 10, "for ever")
+    m.mlx_loop_hook(mlx, hook, None)
+    start = clock.now
+    with pytest.raises(MlxError, match=r"did not end within 20\.0 s"):
+        m.mlx_loop(mlx)
+    assert clock.now - start == pytest.approx(PATIENCE, abs=0.5)
 
 
 def test_the_script_can_wait_for_another_thread() -> None:
-    memory = Memory()
+    memory = Memory(patience=HANG_LIMIT)
     m = Mlx(memory)
     mlx = m.mlx_init()
     m.mlx_new_window(mlx, 10, 10, "wake")
@@ -60,20 +106,22 @@ def test_the_script_can_wait_for_another_thread() -> None:
     m.mlx_wake_hook(mlx, seen.append, "woken")
     memory.await_wake()
     memory.do(lambda: seen.append("after"))
-    timer = threading.Timer(0.05, m.mlx_wake, (mlx,))
-    timer.start()
+    thread = waker(m, mlx)
+    thread.start()
     memory.play()
-    timer.join()
+    thread.join()
     assert seen == ["woken", "after"]
 
 
-def test_waiting_in_vain_is_an_error() -> None:
-    memory = Memory(patience=0.05)
+def test_waiting_in_vain_is_an_error(clock: Clock) -> None:
+    memory = Memory(patience=PATIENCE)
     m = Mlx(memory)
     m.mlx_new_window(m.mlx_init(), 10, 10, "wake")
     memory.await_wake()
-    with pytest.raises(MlxError, match="mlx_wake"):
+    start = clock.now
+    with pytest.raises(MlxError, match=r"mlx_wake was not called within 20\.0 s"):
         memory.play()
+    assert clock.now - start == pytest.approx(PATIENCE, abs=0.5)
 
 
 def test_a_window_of_fixed_size_keeps_it() -> None:

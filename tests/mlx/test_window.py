@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import signal
+import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
-from tests.windows import until
+from tests.idle import switches, until_idle
+from tests.lines import next_line
+from tests.waiting import HANG_LIMIT, until
 
 if TYPE_CHECKING:
-    import subprocess
-
     from tests.windows import Desktop
 
 pytestmark = pytest.mark.window
 
 GRADIENT = str(Path(__file__).with_name("gradient.py"))
+REST = 10  # looks at a program that sleeps all the while
 
 SLEEPER = """
 import signal, sys, threading
@@ -30,8 +32,8 @@ from minirt.mlx import Mlx
 m = Mlx()
 mlx = m.mlx_init()
 win = m.mlx_new_window(mlx, 200, 100, "sleeper")
-helper = threading.Thread(target=threading.Event().wait, daemon=True)
-helper.start()
+m.mlx_wake_hook(mlx, lambda _: print("loops", flush=True))
+m.mlx_wake(mlx)
 {setup}
 try:
     m.mlx_loop(mlx)
@@ -40,11 +42,58 @@ except KeyboardInterrupt:
     sys.exit(130)
 """
 
+TICKS = "m.mlx_loop_hook(mlx, lambda _: None, None)"
+
+# A line on standard input sends the signal to a thread that is not the main one, which sleeps on undisturbed.
+ELSEWHERE = """
+helper = threading.Thread(target=threading.Event().wait, daemon=True)
+helper.start()
+interrupt = lambda: sys.stdin.readline() and signal.pthread_kill(helper.ident, signal.SIGINT)
+threading.Thread(target=interrupt, daemon=True).start()
+"""
+
+# After the first Ctrl+C, the next one is handled as usual.
+HANG = """
+def hang(_):
+    handler = signal.getsignal(signal.SIGINT)
+    print("hangs", flush=True)
+    while signal.getsignal(signal.SIGINT) is handler:
+        pass
+    print("hangs on", flush=True)
+    while True:
+        pass
+m.mlx_loop_hook(mlx, hang, None)
+"""
+
+OWN_HANDLER = "signal.signal(signal.SIGINT, lambda *_: (print('own'), m.mlx_loop_exit(mlx), m.mlx_wake(mlx)))"
+
+AGAIN = """
+m.mlx_release(mlx)
+m.mlx_release(mlx)
+mlx = m.mlx_init()
+win = m.mlx_new_window(mlx, 200, 100, "again")
+m.mlx_key_hook(win, lambda key, _: m.mlx_release(mlx), None)
+"""
+
+
+def sleeper(setup: str) -> tuple[str, ...]:
+    """The command of the program with these lines in it."""
+    return sys.executable, "-c", SLEEPER.format(setup=setup)
+
 
 def outcome(process: subprocess.Popen[str]) -> tuple[int, str, str]:
     """Status, standard output and standard error of a program that has to end by itself."""
-    output, errors = process.communicate(timeout=10)
+    output, errors = process.communicate(timeout=HANG_LIMIT)
     return process.returncode, output, errors
+
+
+def ctrl_c(process: subprocess.Popen[str]) -> None:
+    """Do what a terminal does."""
+    os.killpg(process.pid, signal.SIGINT)
+
+
+def until_asleep(process: subprocess.Popen[str]) -> None:
+    until_idle(process.pid, itertools.count().__next__, REST)
 
 
 def test_the_gradient_is_shown_and_escape_ends_it(desktop: Desktop) -> None:
@@ -63,74 +112,56 @@ def test_the_close_button_ends_it(desktop: Desktop) -> None:
         assert outcome(process) == (0, "", "")
 
 
-def test_a_program_without_loop_hook_sleeps(desktop: Desktop) -> None:
-    def used() -> float:
-        fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-    with desktop.program(sys.executable, GRADIENT) as process:
+def test_a_program_without_loop_hook_sleeps_while_another_ticks(desktop: Desktop) -> None:
+    with desktop.program(sys.executable, GRADIENT) as process, desktop.program(*sleeper(TICKS)) as other:
         desktop.find("gradient")
-        time.sleep(0.5)
-        before = used()
-        time.sleep(1.0)
-        assert used() - before <= 0.02
+        assert next_line(other) == "loops"
+        until_idle(process.pid, lambda: switches(other.pid), 30)
 
 
-@pytest.mark.parametrize(
-    "setup",
-    [
-        "",
-        "m.mlx_loop_hook(mlx, lambda _: None, None)",
-        # The signal comes to a thread that is not the main one, which sleeps on undisturbed.
-        "threading.Timer(0.8, lambda: signal.pthread_kill(helper.ident, signal.SIGINT)).start()",
-    ],
-    ids=["asleep", "ticking", "in another thread"],
-)
-def test_ctrl_c_ends_the_loop(desktop: Desktop, setup: str) -> None:
-    with desktop.program(sys.executable, "-c", SLEEPER.format(setup=setup)) as process:
-        desktop.find("sleeper")
-        time.sleep(0.2)
-        start = time.monotonic()
-        if "pthread_kill" not in setup:
-            process.send_signal(signal.SIGINT)
+def test_ctrl_c_ends_a_loop_that_sleeps(desktop: Desktop) -> None:
+    with desktop.program(*sleeper("")) as process:
+        assert next_line(process) == "loops"
+        until_asleep(process)
+        ctrl_c(process)
         assert outcome(process) == (130, "", "")
-        assert time.monotonic() - start < 2.0
+
+
+def test_ctrl_c_ends_a_loop_that_ticks(desktop: Desktop) -> None:
+    with desktop.program(*sleeper(TICKS)) as process:
+        assert next_line(process) == "loops"
+        ctrl_c(process)
+        assert outcome(process) == (130, "", "")
+
+
+def test_ctrl_c_in_another_thread_ends_a_loop_that_sleeps(desktop: Desktop) -> None:
+    with desktop.program(*sleeper(ELSEWHERE), stdin=subprocess.PIPE) as process:
+        assert next_line(process) == "loops"
+        until_asleep(process)
+        assert process.stdin is not None
+        process.stdin.write("now\n")
+        process.stdin.flush()
+        assert outcome(process) == (130, "", "")
 
 
 def test_a_second_ctrl_c_stops_a_hook_that_hangs(desktop: Desktop) -> None:
-    hang = """
-def hang(_):
-    print("hangs", flush=True)
-    while True:
-        pass
-m.mlx_loop_hook(mlx, hang, None)
-"""
-    with desktop.program(sys.executable, "-c", SLEEPER.format(setup=hang)) as process:
-        assert process.stdout is not None
-        assert process.stdout.readline() == "hangs\n"
-        for _ in range(2):
-            process.send_signal(signal.SIGINT)
-            time.sleep(0.2)
+    with desktop.program(*sleeper(HANG)) as process:
+        assert [next_line(process), next_line(process)] == ["loops", "hangs"]
+        ctrl_c(process)
+        assert next_line(process) == "hangs on"
+        ctrl_c(process)
         assert outcome(process) == (130, "", "")
 
 
 def test_a_handler_of_the_program_s_own_runs_at_once(desktop: Desktop) -> None:
-    handler = "signal.signal(signal.SIGINT, lambda *_: (print('own'), m.mlx_loop_exit(mlx), m.mlx_wake(mlx)))"
-    with desktop.program(sys.executable, "-c", SLEEPER.format(setup=handler)) as process:
-        desktop.find("sleeper")
-        time.sleep(0.2)
-        process.send_signal(signal.SIGINT)
+    with desktop.program(*sleeper(OWN_HANDLER)) as process:
+        assert next_line(process) == "loops"
+        until_asleep(process)
+        ctrl_c(process)
         assert outcome(process) == (0, "own\n", "")
 
 
 def test_a_display_can_be_released_and_opened_again(desktop: Desktop) -> None:
-    again = """
-m.mlx_release(mlx)
-m.mlx_release(mlx)
-mlx = m.mlx_init()
-win = m.mlx_new_window(mlx, 200, 100, "again")
-m.mlx_key_hook(win, lambda key, _: m.mlx_release(mlx), None)
-"""
-    with desktop.program(sys.executable, "-c", SLEEPER.format(setup=again)) as process:
+    with desktop.program(*sleeper(AGAIN)) as process:
         desktop.key(desktop.find("again"), "a")
         assert outcome(process) == (0, "", "")

@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 
+from tests import processes
 from tests.windows import ROOT
 
 NO_SCREEN = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
 
 
 def run(program: str) -> str:
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", program],
-        env=NO_SCREEN | {"PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        timeout=30,
-        check=False,
-    )
+    command = [sys.executable, "-W", "error", "-c", program]
+    done = processes.run(command, env=NO_SCREEN | {"PYTHONPATH": str(ROOT)}, text=True)
     assert done.stderr == ""
-    return done.stdout
+    return str(done.stdout)
 
 
 def test_the_import_loads_no_window_library() -> None:

@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 from minirt.mlx import Key, Window
+from tests.mlx.waker import waker
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,6 +33,10 @@ class User(ABC):
     def hold(self, key: str) -> None: ...
 
     @abstractmethod
+    def hold_until(self, key: str, enough: Callable[[], bool]) -> None:
+        """Hold a key down, which the platform types again and again, until `enough`."""
+
+    @abstractmethod
     def let_go(self, key: str) -> None: ...
 
     @abstractmethod
@@ -54,6 +59,10 @@ class User(ABC):
     def focus(self, window: Window) -> None: ...
 
     @abstractmethod
+    def find_again(self) -> None:
+        """Find the stage's window, which may be another one of the window system, and give it the focus."""
+
+    @abstractmethod
     def resize(self, width: int, height: int) -> None: ...
 
     @abstractmethod
@@ -66,19 +75,28 @@ class User(ABC):
     def close_button(self, window: Window | None = None) -> None: ...
 
     @abstractmethod
-    def wait(self, seconds: float) -> None: ...
-
-    @abstractmethod
     def then(self, action: Callable[[], object]) -> None:
         """Note or prepare something at this moment; calls of MiniLibX belong into hooks."""
 
     @abstractmethod
     def until(self, condition: Callable[[], bool]) -> None:
-        """Wait for what the program does."""
+        """Wait for what the program does about what the user did; no time goes by where time is simulated."""
 
     @abstractmethod
-    def await_wake(self) -> None:
-        """Wait for another thread's `mlx_wake`."""
+    def wait_until(self, condition: Callable[[], bool], seconds: float) -> None:
+        """Wait for what the program does as time goes by: so many seconds where time is simulated."""
+
+    @abstractmethod
+    def settle(self) -> None:
+        """Wait until the program has handled all that the user did."""
+
+    @abstractmethod
+    def rest(self, seconds: float) -> None:
+        """Wait until the loop sleeps; let so many seconds go by where time is simulated."""
+
+    @abstractmethod
+    def wake(self) -> None:
+        """Let another thread call `mlx_wake` when the loop sleeps."""
 
     @abstractmethod
     def look(self, name: str, see: Callable[[NDArray[np.uint8]], object]) -> None:
@@ -100,9 +118,14 @@ class MemoryUser(User):
         self._held.append(key)
         symbol = SHIFTED.get(key, key) if "shift" in self._held else key
         self._memory.press(_code(symbol), self._focus)
-        if symbol not in KEYS and "ctrl" not in self._held:
-            character = chr(_code(symbol)) if _code(symbol) < 0x100 else "\t"
-            self._memory.text(character, self._focus)
+        self._type(symbol)
+
+    def hold_until(self, key: str, enough: Callable[[], bool]) -> None:
+        self.hold(key)
+        for _ in range(10):
+            self._memory.wait(0.1)
+            self._type(key)
+        self.until(enough)
 
     def let_go(self, key: str) -> None:
         self._held.remove(key)
@@ -136,6 +159,9 @@ class MemoryUser(User):
         self._memory.focus(True, window)
         self._focus = window
 
+    def find_again(self) -> None:
+        """Nothing to do: it is the same."""
+
     def resize(self, width: int, height: int) -> None:
         self._memory.resize(width, height, self._stage.win)
 
@@ -149,9 +175,6 @@ class MemoryUser(User):
     def close_button(self, window: Window | None = None) -> None:
         self._memory.close_button(window or self._stage.win)
 
-    def wait(self, seconds: float) -> None:
-        self._memory.wait(seconds)
-
     def until(self, condition: Callable[[], bool]) -> None:
         def check() -> None:
             assert condition(), "the program did not do what the user waits for"
@@ -161,7 +184,18 @@ class MemoryUser(User):
     def then(self, action: Callable[[], object]) -> None:
         self._memory.do(action)
 
-    def await_wake(self) -> None:
+    def wait_until(self, condition: Callable[[], bool], seconds: float) -> None:
+        self._memory.wait(seconds)
+        self.until(condition)
+
+    def settle(self) -> None:
+        """Nothing to do: each step waits for the one before."""
+
+    def rest(self, seconds: float) -> None:
+        self._memory.wait(seconds)
+
+    def wake(self) -> None:
+        self._memory.do(waker(self._stage.m, self._stage.mlx).start)
         self._memory.await_wake()
 
     def look(self, name: str, see: Callable[[NDArray[np.uint8]], object]) -> None:
@@ -169,6 +203,12 @@ class MemoryUser(User):
 
     def read_title(self) -> None:
         self._memory.do(lambda: self._stage.note("title", self._stage.win.title))
+
+    def _type(self, symbol: str) -> None:
+        """Text comes with a key that prints something."""
+        if symbol not in KEYS and "ctrl" not in self._held:
+            character = chr(_code(symbol)) if _code(symbol) < 0x100 else "\t"
+            self._memory.text(character, self._focus)
 
 
 def _code(name: str) -> int:

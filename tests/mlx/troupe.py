@@ -1,0 +1,80 @@
+"""A process that plays scenarios of the window contract on the screen, one after another."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from contextlib import ExitStack
+from typing import TYPE_CHECKING
+
+from tests.mlx.contract import load
+from tests.waiting import HANG_LIMIT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from types import TracebackType
+    from typing import Self
+
+    from tests.mlx.contract import Log
+    from tests.windows import Desktop
+
+COMMAND = (sys.executable, "-W", "error", "-m", "tests.mlx.contract")
+
+
+class Troupe:
+    """One process for all scenarios. A scenario that fails leaves nothing to the next, which has another process.
+
+    `errors` is a file for what the process writes on standard error.
+    """
+
+    def __init__(self, desktop: Desktop, errors: Path) -> None:
+        self._desktop = desktop
+        self._errors = errors
+        self._process: subprocess.Popen[str] | None = None
+        self._end = ExitStack()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: BaseException | TracebackType | None) -> None:
+        """End the process; it has nothing to complain of."""
+        with self._end:
+            if self._process is not None and kind is None:
+                assert self._process.stdin is not None
+                self._process.stdin.close()
+                assert (self._process.wait(HANG_LIMIT), self._errors.read_text()) == (0, "")
+
+    def play(self, name: str) -> Log:
+        """Play a scenario and return its log; AssertionError where the process ends or complains."""
+        try:
+            log = self._ask(name)
+            assert self._errors.read_text() == ""
+        except BaseException:
+            self._stop()
+            raise
+        if log != load()[name].log:
+            self._stop()
+        return log
+
+    def _ask(self, name: str) -> Log:
+        """Send the name and wait for the answer. The process watches itself: it answers or ends."""
+        process = self._process or self._start()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdin.write(f"{name}\n")
+        process.stdin.flush()
+        answer = process.stdout.readline()
+        assert answer, f"{name} ended the process: {self._errors.read_text()}"
+        log: Log = json.loads(answer)
+        return log
+
+    def _start(self) -> subprocess.Popen[str]:
+        errors = self._end.enter_context(self._errors.open("w"))
+        program = self._desktop.program(*COMMAND, stdin=subprocess.PIPE, stderr=errors)
+        self._process = self._end.enter_context(program)
+        return self._process
+
+    def _stop(self) -> None:
+        self._process = None
+        self._end.close()
