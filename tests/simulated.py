@@ -16,7 +16,9 @@ from minirt.timing import Run
 
 PACKET = 1e-6  # seconds that a packet of rays takes
 FORMULA = 1e-3  # seconds that the first of some formulas takes for all of its rays, the second twice as many, ...
-BUSY = 0.95  # of the time the processors work: so little that it is told apart, so much that nothing counts as disturbed
+BUSY = (
+    0.95  # of the time the processors work: so little that it is told apart, so much that nothing counts as disturbed
+)
 
 
 class Clock:

@@ -40,9 +40,7 @@ def start(
     folder: Path, *arguments: str, command: Sequence[str] = PROGRAM, stderr: int = subprocess.PIPE
 ) -> AbstractContextManager[subprocess.Popen[bytes]]:
     """The program, or another one, running in a folder; it is killed when the block ends."""
-    return started(
-        [*command, *arguments], cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=stderr
-    )
+    return started([*command, *arguments], cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=stderr)
 
 
 def program(folder: Path, *arguments: str) -> Ended:
