@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import time
 from functools import partial
-from itertools import count
 
 import pytest
 
@@ -12,11 +10,29 @@ from minirt import timing
 from minirt.timing import Run, in_turn, is_disturbed, runs
 
 
-def work() -> None:
-    """A hundredth of a second of a processor."""
-    end = time.thread_time() + 0.01
-    while time.thread_time() < end:
-        pass
+class Machine:
+    """The time that has passed and that of the processors; both move on by what is done alone."""
+
+    def __init__(self) -> None:
+        self.wall, self.cpu = 100.0, 7.0
+
+    def work(self, seconds: float = 0.25, threads: int = 1) -> None:
+        """Use some processors."""
+        self.wall += seconds
+        self.cpu += seconds * threads
+
+    def wait(self, seconds: float = 0.25) -> None:
+        """Use none."""
+        self.wall += seconds
+
+
+@pytest.fixture
+def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
+    """A machine in the place of the real one."""
+    made = Machine()
+    monkeypatch.setattr(timing, "perf_counter", lambda: made.wall)
+    monkeypatch.setattr(timing, "process_time", lambda: made.cpu)
+    return made
 
 
 def test_as_many_runs_as_are_asked_for() -> None:
@@ -31,18 +47,26 @@ def test_works_take_turns() -> None:
     assert done == [0, 1] * 3
 
 
-def test_and_more_to_fill_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock = count()
-    monkeypatch.setattr(timing, "perf_counter", lambda: next(clock) * 0.25)
-    assert [run.wall for run in runs(lambda: None, 2, 1.0)] == [0.25] * 4
+def test_and_more_to_fill_the_time(machine: Machine) -> None:
+    assert runs(machine.work, 2, 1.0) == [Run(0.25, 0.25)] * 4
+    assert len(runs(machine.work, 2, 1.1)) == 5
+    assert len(runs(machine.work, 2, 0.4)) == 2
 
 
-def test_work_takes_a_processor_and_sleep_does_not() -> None:
-    best = min(runs(work, 3, 0.0))
-    assert best.wall >= best.cpu * 0.99
-    assert best.cpu == pytest.approx(0.01, rel=0.1)
-    slept = min(runs(lambda: time.sleep(0.02), 2, 0.0))
-    assert slept.wall >= 0.02 > 10 * slept.cpu
+def test_work_takes_a_processor_and_a_wait_does_not(machine: Machine) -> None:
+    assert runs(machine.work, 1, 0.0) == [Run(wall=0.25, cpu=0.25)]
+    assert runs(machine.wait, 1, 0.0) == [Run(wall=0.25, cpu=0.0)]
+    assert runs(partial(machine.work, threads=3), 1, 0.0) == [Run(wall=0.25, cpu=0.75)]
+
+
+def test_each_work_has_its_own_times(machine: Machine) -> None:
+    assert in_turn([machine.work, machine.wait], 2) == [(Run(0.25, 0.25),) * 2, (Run(0.25, 0.0),) * 2]
+
+
+def test_the_clocks_are_those_of_the_machine() -> None:
+    (run,) = runs(lambda: sum(range(100_000)), 1, 0.0)
+    assert run.wall > 0
+    assert run.cpu > 0
 
 
 def test_who_waits_is_disturbed() -> None:

@@ -1,4 +1,5 @@
-"""python -m tests.bench: how fast this program is beside others, and how its time grows with the scene."""
+"""python -m tests.bench: how fast this program is beside others, how its time grows with the scene, and what its exact
+formulas cost beside those of textbooks."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ from typing import NamedTuple
 
 from minirt.rendering.cores import usable_cores
 from minirt.report.machine import processor
-from tests.bench import scenes
+from tests.bench import formulas, scenes
 from tests.bench.measure import Cells, available, take_turns
 from tests.bench.ours import MiniRT
 from tests.bench.peers.embree import Embree
@@ -71,7 +72,10 @@ def main() -> None:
     growth = take_turns(own, grown, plan.grown_rounds, plan.seconds)
     print(table(growth, names(own), [scene.stem for scene in grown], "spheres in view"), end="\n\n")
 
-    if any(cell.disturbed for cell in (*compared.values(), *growth.values())):
+    exact = list(formulas.measured())
+    print(formulas.table(exact), formulas.MEANING, sep="\n", end="\n\n")
+
+    if any(cell.disturbed for cell in (*compared.values(), *growth.values())) or not all(row.valid for row in exact):
         print(f"{MARK} other programs needed the processors in every round")
     for system in systems:
         print(f"{system.name}: {system.how}")
@@ -85,6 +89,7 @@ def main() -> None:
         "not measured": reasons + more_reasons,
         "compared": records(compared),
         "growth": records(growth),
+        "formulas": formulas.records(exact),
     }
     (asked.out / "bench.json").write_text(json.dumps(found, indent=1) + "\n")
     draw(compared, growth, asked.out)

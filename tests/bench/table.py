@@ -31,10 +31,15 @@ def table(cells: Cells, systems: list[str], scenes: list[str], title: str = "ms 
             ratio = times(cell.ms / cells[systems[0], scene].ms)
             row.append(f"{figure(cell.ms)}{MARK if cell.disturbed else ' '} {ratio:>5}")
         rows.append(row)
+    return aligned(rows)
+
+
+def aligned(rows: list[list[str]]) -> str:
+    """Rows of cells, one below the other: the first column to the left, the others to the right."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = (
-        "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(aligned))
-        for aligned in (zip(row, widths, strict=True) for row in rows)
+        "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(cells))
+        for cells in (zip(row, widths, strict=True) for row in rows)
     )
     return "\n".join(line.rstrip() for line in lines)
 

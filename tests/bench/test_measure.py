@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
 from minirt.rendering.cores import usable_cores
+from tests.bench import measure
 from tests.bench.measure import Cell, Clock, Round, available, clock, elsewhere, take_turns
 from tests.bench.system import MissingError, Setting, System
 from tests.bench.table import figure, records, table, times
@@ -64,11 +66,40 @@ def test_what_others_use_is_what_we_do_not() -> None:
     assert elsewhere(Clock(0, 100, 10), Clock(2, 102, 13)) == 0
 
 
-def test_the_clock_runs() -> None:
-    start = clock()
-    while clock().own < start.own + 0.05:
-        pass
-    assert clock().wall > start.wall
+STAT = "cpu  {} 20 30 4000 500 6 7 8 9 10\ncpu0 1 2 3 4 5 6 7 8 9 10\nctxt 12345\n"
+
+
+@pytest.fixture
+def machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The file in which the system counts ticks, a hundredth of a second each, and its other clocks."""
+    monkeypatch.setattr(measure, "PROCESSOR_TIME", tmp_path / "stat")
+    monkeypatch.setattr(measure, "perf_counter", lambda: 77.0)
+    monkeypatch.setattr(os, "times", lambda: (1.0, 2.0, 0.25, 0.5, 9.0))
+    monkeypatch.setattr(os, "sysconf", {"SC_CLK_TCK": 100}.__getitem__)
+    return tmp_path / "stat"
+
+
+def test_the_clock_is_that_of_the_system(machine: Path) -> None:
+    """Ticks of users, nice ones, of the system, of interrupts and of other machines: not of idleness, and not those of
+    guests, which are among the first two already. Of this program what it and its children used."""
+    machine.write_text(STAT.format(100))
+    assert clock() == Clock(77.0, (100 + 20 + 30 + 6 + 7 + 8) / 100, 3.75)
+    before = clock()
+    machine.write_text(STAT.format(350))
+    assert clock().all - before.all == 2.5
+
+
+def test_where_nobody_counts_ticks_other_programs_are_idle(machine: Path) -> None:
+    assert clock() == Clock(77.0, 3.75, 3.75)
+    machine.write_text("nonsense")
+    assert clock() == Clock(77.0, 3.75, 3.75)
+
+
+def test_the_systems_own_clocks_can_be_read() -> None:
+    start, end = clock(), clock()
+    assert end.wall >= start.wall
+    assert end.all >= start.all >= 0
+    assert end.own >= start.own > 0
 
 
 def test_what_is_missing_is_told() -> None:

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import NamedTuple
+
+from tests.processes import run, started
+from tests.waiting import HANG_LIMIT
 
 ROOT = Path(__file__).parent.parent.parent
 SCENE = """A 0.2 255,255,255
@@ -30,15 +36,22 @@ def environment() -> dict[str, str]:
     return kept | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error"}
 
 
-def start(folder: Path, *arguments: str) -> subprocess.Popen[bytes]:
-    """The program, running in a folder."""
-    return subprocess.Popen(
-        [*PROGRAM, *arguments], cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
+def start(
+    folder: Path, *arguments: str, command: Sequence[str] = PROGRAM, stderr: int = subprocess.PIPE
+) -> AbstractContextManager[subprocess.Popen[bytes]]:
+    """The program, or another one, running in a folder; it is killed when the block ends."""
+    return started([*command, *arguments], cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=stderr)
 
 
 def program(folder: Path, *arguments: str) -> Ended:
     """Run the program in a folder to its end."""
-    process = start(folder, *arguments)
-    out, err = process.communicate(timeout=60)
-    return Ended(process.returncode, out, err.decode())
+    ended = run([*PROGRAM, *arguments], cwd=folder, env=environment())
+    return Ended(ended.returncode, ended.stdout, ended.stderr.decode())
+
+
+def interrupt(process: subprocess.Popen[bytes]) -> tuple[int, bytes, bytes]:
+    """Send what Ctrl+C in a terminal sends, to the program and to all that it started; its status, and what it wrote to
+    standard output and to standard error where these are pipes."""
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=HANG_LIMIT)
+    return process.returncode, out, err

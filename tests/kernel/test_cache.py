@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
-import minirt
 from minirt.kernel import cache
+from tests.kernel.copies import PACKAGE, copied, replace
+from tests.processes import run
 
-PACKAGE = Path(minirt.__file__).parent
+NOW = 1.7e9  # any time in the past
 SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\nsp 0,0,5 4 10,20,30\n"
 RENDER = """
 import minirt
@@ -34,7 +33,7 @@ def process(folder: Path, place: Path, told: str = "") -> list[str]:
     (folder / "ball.rt").write_text(SCENE)
     places = {"XDG_CACHE_HOME": str(place), "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     command = [sys.executable, "-W", "error", "-c", RENDER]
-    done = subprocess.run(command, cwd=folder, env=os.environ | places, capture_output=True, text=True, check=False)
+    done = run(command, cwd=folder, env=os.environ | places, text=True)
     assert done.returncode == 0
     assert done.stderr.startswith(told)
     assert len(done.stderr.splitlines()) == bool(told)
@@ -48,10 +47,7 @@ def files(place: Path) -> dict[str, int]:
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the package that may be edited."""
-    folder = tmp_path_factory.mktemp("copy")
-    ignored = shutil.ignore_patterns("__pycache__", "viewer", "mlx")
-    shutil.copytree(PACKAGE, folder / "minirt", ignore=ignored)
-    return folder
+    return copied(tmp_path_factory.mktemp("copy")).parent
 
 
 def test_the_next_process_finds_the_kernel_and_edited_sources_do_not(copy: Path, tmp_path: Path) -> None:
@@ -64,8 +60,7 @@ def test_the_next_process_finds_the_kernel_and_edited_sources_do_not(copy: Path,
 
     shade = copy / "minirt" / "kernel" / "shade.py"
     source = shade.read_text()
-    shade.write_text(source.replace("light.y * colour.y", "2.0 * light.y * colour.y"))
-    assert shade.read_text() != source
+    replace(shade, "light.y * colour.y", "2.0 * light.y * colour.y")
     edited, hits, misses, pixel = process(copy, tmp_path)
     assert edited != name
     assert (hits, misses, pixel) == ("0", "1", "[10, 40, 30]")
@@ -101,7 +96,7 @@ def test_old_folders_are_deleted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
         old = parent / f"kernels-{age}"
         old.mkdir(parents=True)
         (old / "file").touch()
-        os.utime(old, (time.time() - 1000 * (age + 1),) * 2)
+        os.utime(old, (NOW - 1000 * (age + 1),) * 2)
     (parent / "other").mkdir()
     place = cache.folder()
     assert place is not None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from typing import Any
 
@@ -17,6 +16,7 @@ from minirt.lanes import Vec, inverse_root, lane, load, unit, width
 from minirt.lanes.root import SERIES
 from tests.lanes.numbers import DTYPES, PRECISIONS
 from tests.lanes.test_operators import put
+from tests.processes import run
 
 AVX2 = {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": "+avx,+avx2,+fma,+bmi,+bmi2,+lzcnt,+popcnt,+sse4.2"}
 NAMES = {np.float64: "double", np.float32: "float"}  # of the types in LLVM
@@ -110,8 +110,7 @@ def test_unit_vectors(dtype: Any) -> None:
 
 def test_without_avx_512() -> None:
     program = "from tests.lanes.test_roots import DTYPES, off; print(max(map(off, DTYPES)))"
-    ended = subprocess.run(
-        [sys.executable, "-c", program], env=os.environ | AVX2, check=True, capture_output=True, text=True
-    )
+    ended = run([sys.executable, "-c", program], env=os.environ | AVX2, text=True)
+    assert ended.returncode == 0, ended.stderr
     assert float(ended.stdout) <= 1.5  # a root and a division, each rounded
     assert len(DTYPES) == 2

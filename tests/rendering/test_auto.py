@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import threading
-import time
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,6 +21,8 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, TWO
 from tests.random_scenes import random_scene
+from tests.rendering.cancelling import cancelled
+from tests.simulated import PACKET, Clock, packets, simulated
 
 Array = NDArray[np.float64]
 
@@ -156,34 +157,65 @@ def test_nothing_to_render() -> None:
     assert (pixels == (0, 0, 0, 255)).all()
 
 
-@pytest.mark.parametrize("seconds", [0.0, 0.02, 0.4])
-def test_a_time_is_kept_and_used(seconds: float) -> None:
-    reach(ALL, 1.0)
-    least = reach(ALL, 1.0)[0].seconds
-    reached = reach(ALL, seconds=seconds)[0]
-    assert reached.seconds < 1.1 * seconds + 5 * least + 0.1  # other programs may need the processors
-    assert reached.samples >= 2
-    assert reached.samples > 10 or seconds < 0.4
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """Time passes by what is rendered alone."""
+    return simulated(monkeypatch)
 
 
-def test_a_time_may_end_before_an_error_is_reached() -> None:
-    reached = reach(ALL, 1e-7, 0.1)[0]
+FIRST = 2 * packets(WIDTH, HEIGHT) * PACKET  # seconds of the clock that the first round takes, a sample in each half
+
+
+@pytest.mark.parametrize("rounds", [0.0, 0.5, 1.0, 2.0, 10.0, 100.0])
+def test_a_time_is_kept_and_used(clock: Clock, rounds: float) -> None:
+    """In times of the first round, which is always made."""
+    reached = reach(ALL, seconds=rounds * FIRST)[0]
+    assert reached.seconds == pytest.approx(clock.wall)
+    assert clock.wall <= max(rounds, 1.0) * FIRST * 1.0001
+    assert clock.wall >= 0.9 * rounds * FIRST
+    assert reached.samples == pytest.approx(2 * clock.wall / FIRST)
+
+
+def test_a_time_is_kept_where_each_round_is_twice_as_slow_as_the_one_before(
+    clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    grow, rounds = Auto.grow, list[int]()
+
+    def slower(self: Auto, new: NDArray[np.int64]) -> bool:
+        rounds.append(clock.packets)
+        clock.slowness *= 2
+        return grow(self, new)
+
+    monkeypatch.setattr(Auto, "grow", slower)
+    reach(ALL, seconds=50 * FIRST)
+    assert len(rounds) >= 3
+    assert 0.8 * 50 * FIRST < clock.wall <= 50 * FIRST
+
+
+def test_the_time_that_sorting_the_scene_takes_is_part_of_it(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
+    pack = TWO.packing.pack
+
+    def slow(*given: Any) -> Any:
+        clock.wall += 5 * FIRST
+        return pack(*given)
+
+    monkeypatch.setattr(TWO.packing, "pack", slow)
+    reached = reach(ALL, seconds=10 * FIRST)[0]
+    assert 9 * FIRST < clock.wall <= 10 * FIRST * 1.0001
+    assert reached.seconds == pytest.approx(clock.wall)
+
+
+def test_a_time_may_end_before_an_error_is_reached(clock: Clock) -> None:
+    reached = reach(ALL, 1e-7, 10 * FIRST)[0]
     assert reached.error > 1e-7
+    assert reached.seconds <= 10 * FIRST
 
 
-def test_cancelling_ends_it_soon_and_leaves_the_picture_alone() -> None:
+def test_cancelling_ends_it_and_leaves_the_picture_alone() -> None:
     renderer = Renderer(2)
     renderer.prepare(ALL)
-    pixels = np.full((HEIGHT, WIDTH, 4), 9, np.uint8)
-    answers: list[Reached | None] = []
-    thread = threading.Thread(target=lambda: answers.append(renderer.reach(ALL, pixels, 1e-6)))  # an hour
-    thread.start()
-    time.sleep(0.5)
-    start = time.perf_counter()
-    renderer.cancel()
-    thread.join(20)
-    assert time.perf_counter() - start < 1.0
-    assert answers == [None]
+    pixels = np.full((720, 1280, 4), 9, np.uint8)
+    assert cancelled(renderer, lambda: renderer.reach(ALL, pixels, 1e-9)) is None  # of which a day would not be enough
     assert (pixels == 9).all()
     assert renderer.reach(ALL, pixels, 0.1)
 

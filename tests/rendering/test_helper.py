@@ -7,14 +7,13 @@ import pickle
 import signal
 import subprocess
 import sys
-import threading
-import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Thread
 
 import numpy as np
 import pytest
 
-import minirt
 from minirt.errors import RenderError
 from minirt.rendering import helper
 from minirt.rendering.frames import frame_arguments
@@ -22,8 +21,10 @@ from minirt.rendering.helper import Helper
 from minirt.rendering.packing import Packing
 from minirt.scene import Camera, Scene
 from minirt.shapes.sphere import Sphere
+from tests.kernel.copies import PACKAGE, copied
+from tests.processes import run, started
+from tests.waiting import HANG_LIMIT, until
 
-PACKAGE = Path(minirt.__file__).parent
 SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\nsp 0,0,5 4 10,20,30\n"
 SPHERE = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Sphere((0, 0, 5), 4, (10, 20, 30))))
 PREPARE = """
@@ -42,25 +43,37 @@ stats = renderer.kernel.kernel_for(Packing().pack(scene, 8, 8)).stats
 print(sum(stats.cache_hits.values()), sum(stats.cache_misses.values()), renderer.helper.process is not None)
 print(pixels[4, 4].tolist())
 """
-WAIT = """
+PROGRAM = """
 import subprocess, sys
-child = subprocess.Popen([sys.executable, "-P", "-m", "minirt.kernel.compile"], stdin=subprocess.PIPE)
-child.stdin.write(bytes.fromhex(sys.argv[1]))
+command, arguments = sys.argv[1:]
+child = subprocess.Popen([sys.executable, "-c", command], stdin=subprocess.PIPE)
+child.stdin.write(bytes.fromhex(arguments))
 child.stdin.flush()
-print(child.pid, flush=True)
 child.wait()
+"""
+ENDLESS = """
+from threading import Event
+from minirt.kernel import compile, jit
+
+def endless(arguments):
+    print("compiling", flush=True)
+    Event().wait()
+
+jit.compile = endless
+compile.main()
 """
 
 
-def prepared(folder: Path, place: Path) -> list[str]:
+def prepared(folder: Path, place: Path, package: Path = PACKAGE) -> list[str]:
     """What a new process prints that prepares for a scene: how often the kernel was found and not, whether another
     process compiled it, and a pixel."""
     (folder / "ball.rt").write_text(SCENE)
     command = [sys.executable, "-P", "-W", "error", "-c", PREPARE]
-    environment = os.environ | {"XDG_CACHE_HOME": str(place), "PYTHONPATH": str(PACKAGE.parent)}
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    environment = os.environ | {"XDG_CACHE_HOME": str(place), "PYTHONPATH": str(package.parent)}
+    done = run(command, cwd=folder, env=environment, text=True)
     assert done.returncode == 0, done.stderr
-    return done.stdout.split("\n")
+    said: list[str] = done.stdout.split("\n")
+    return said
 
 
 def test_another_process_compiles_and_the_next_program_finds_it(tmp_path: Path) -> None:
@@ -71,14 +84,11 @@ def test_another_process_compiles_and_the_next_program_finds_it(tmp_path: Path) 
 
 
 def test_two_programs_at_once(tmp_path: Path) -> None:
-    said: list[list[str]] = []
-    threads = [threading.Thread(target=lambda: said.append(prepared(tmp_path, tmp_path / "cache"))) for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    package = copied(tmp_path)
+    with ThreadPoolExecutor(2) as pool:
+        said = list(pool.map(lambda _: prepared(tmp_path, tmp_path / "cache", package), range(2)))
     assert [each[1] for each in said] == ["[30, 20, 10, 255]"] * 2
-    assert prepared(tmp_path, tmp_path / "cache")[0] == "1 0 False"
+    assert prepared(tmp_path, tmp_path / "cache", package)[0] == "1 0 False"
 
 
 @pytest.mark.parametrize(
@@ -100,7 +110,7 @@ def test_where_no_process_can_be_started_nothing_is_done(monkeypatch: pytest.Mon
 
 
 def test_stop_ends_the_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(helper, "COMMAND", (sys.executable, "-c", "import time; time.sleep(60)"))
+    monkeypatch.setattr(helper, "COMMAND", (sys.executable, "-c", "import sys; sys.stdin.read()"))  # waits for ever
     errors: list[RenderError] = []
     made = Helper()
     made.stop()  # of nothing
@@ -110,31 +120,25 @@ def test_stop_ends_the_process(monkeypatch: pytest.MonkeyPatch) -> None:
             made.compile(())
         errors.append(caught.value)
 
-    thread = threading.Thread(target=compile)
+    thread = Thread(target=compile, daemon=True)
     thread.start()
-    start = time.monotonic()
-    while made.process is None:
-        assert time.monotonic() - start < 5
-        time.sleep(0.01)
-    start = time.monotonic()
+    until(lambda: made.process is not None, "the process")
+    assert thread.is_alive()
     made.stop()
-    thread.join(5)
+    thread.join(HANG_LIMIT)
     assert errors
-    assert time.monotonic() - start < 0.5
     assert made.process is not None
     assert made.process.poll() is not None
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills as POSIX does")
 def test_the_process_ends_when_the_program_is_killed(tmp_path: Path) -> None:
+    """Nothing else could end it: it waits for ever where it would compile."""
     arguments = pickle.dumps(frame_arguments(Packing().pack(SPHERE, 1, 1), np.zeros((1, 1, 4), np.uint8)))
     environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": str(PACKAGE.parent)}
-    command = [sys.executable, "-c", WAIT, arguments.hex()]
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as program:
+    command = [sys.executable, "-c", PROGRAM, ENDLESS, arguments.hex()]
+    with started(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as program:
         assert program.stdout is not None
-        program.stdout.readline()
+        assert program.stdout.readline() == b"compiling\n"
         os.kill(program.pid, signal.SIGKILL)
-        start = time.monotonic()
-        program.stdout.read()  # until the compiler, which inherited it, has ended too
-        assert time.monotonic() - start < 1
-    assert not list(tmp_path.rglob("*.nbc"))  # it was not simply ready
+        assert program.communicate(timeout=HANG_LIMIT)[0] == b""  # the compiler, which inherited it, has ended too

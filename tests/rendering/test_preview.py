@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import minirt
+from minirt.kernel import trace
+from minirt.kernel.rows import intersect
+from minirt.lanes import Vec
 from minirt.rendering import Renderer
-from minirt.rendering.preview import picture, preview
+from minirt.rendering.preview import BUDGET, FEWEST, RAY, SHAPE, picture, preview
 from minirt.rendering.traits import traits
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.sphere import Sphere
@@ -54,9 +57,33 @@ def test_it_has_the_proportions_of_the_window_and_is_no_larger() -> None:
     assert width / height == pytest.approx(16 / 9, rel=0.05)
 
 
-def test_it_takes_little_time_or_is_left_out() -> None:
-    for count in (1, 30, 150):
-        start = time.thread_time()
-        assert preview(balls(count), 1920, 1080) is not None
-        assert time.thread_time() - start < 0.5
+@pytest.fixture
+def tried(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """How many rays at once each formula of a shape is asked about."""
+    counts: list[int] = []
+
+    def counted(shape: Any, origin: Vec, direction: Vec) -> Any:
+        counts.append(np.size(direction.x))
+        return intersect(shape, origin, direction)
+
+    monkeypatch.setattr(trace, "intersect", counted)
+    return counts
+
+
+@pytest.mark.parametrize("count", [1, 30, 150])
+def test_it_takes_as_much_work_as_its_budget_has(count: int, tried: list[int]) -> None:
+    """Counted in rays and in calls for a shape; the budget is in seconds that these are said to take."""
+    made = preview(balls(count), 1920, 1080)
+    assert made is not None
+    height, width, _ = made.shape
+    assert FEWEST <= width * height <= 1920 * 1080
+    assert 0 < len(tried) <= 2 * count <= 300  # for the eye and for the lamp
+    assert max(tried) <= width * height
+    assert sum(tried) < 600_000
+    work = 2 * count * (SHAPE + RAY * width * height)
+    assert 0.7 * BUDGET < work <= 1.01 * BUDGET
+
+
+def test_a_scene_that_takes_more_has_none(tried: list[int]) -> None:
     assert preview(balls(10_000), 1920, 1080) is None
+    assert not tried

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -20,6 +19,7 @@ from minirt.shapes.sphere import Sphere
 from tests import oracle
 from tests.kernel.pictures import ALL, AMBIENT, EYE, RED, SHAPES
 from tests.kernel.trees import rays_at, some
+from tests.processes import run
 
 FLOOR = Plane((0, -1, 0), (0, 1, 0), RED)
 BALL = Sphere((0, 0, 5), 2, RED)
@@ -149,8 +149,8 @@ scene = minirt.load("scenes/subject.rt")
 minirt.render(scene, 8, 8)
 print(*(name in sys.modules for name in ("minirt.kernel.jit_bvh", "minirt.rendering.rays")))
 """
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    done = run([sys.executable, "-c", program], text=True)
     assert done.stdout.split() == ["False"] * 2
     program = "import sys, minirt; minirt.trace; print('numba' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    done = run([sys.executable, "-c", program], text=True)
     assert done.stdout.split() == ["False"]

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from minirt import timing
 from minirt.report import exact, kernels, textbook
 from minirt.report.eye import from_the_eye
 from minirt.report.kernels import Answers, Row, measured, times_as_long, verdicts
@@ -16,23 +17,26 @@ from minirt.report.poses import Rays
 from minirt.report.regimes import REGIMES, regimes_of
 from minirt.shapes import KINDS, Kind, Shape, sphere
 from minirt.shapes.box import Box
-from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
-from minirt.shapes.hyperboloid import Hyperboloid
-from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
-from minirt.shapes.triangle import Triangle
 from minirt.timing import Run
 from tests.kernel.pictures import ALL
+from tests.simulated import BUSY, FORMULA, in_turn
 
 KIND = {kind.element: kind for kind in KINDS}
 BALL = KIND[Sphere]
 EVERY = pytest.mark.parametrize(
     "kind", [KIND[element] for element in exact.SOLIDS], ids=lambda kind: kind.element.title
 )
+
+
+@pytest.fixture(autouse=True)
+def machine(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Turns whose times are known."""
+    monkeypatch.setattr(kernels, "in_turn", in_turn)
 
 
 def rays_of(kind: Kind, name: str, shapes: int = 6) -> Rays:
@@ -92,8 +96,6 @@ def test_the_own_formula_is_exact_and_float32_is_not(kind: Kind) -> None:
     assert 1e-8 < single.max_error < 1e-2
     assert own.false_misses == own.false_hits == 0
     assert 0 < own.rms_error < own.max_error
-    assert 0.01 < own.ns_ray < 1000
-    assert own.cpu_ns_ray > 0
 
 
 @EVERY
@@ -104,35 +106,37 @@ def test_float32_is_relative_to_the_eye(kind: Kind, name: str) -> None:
     assert single.rms_error < 1e-4
 
 
-# A triangle's pays for that no ray passes between two triangles.
-COSTS = {Sphere: 2.0, Triangle: 1.6} | dict.fromkeys((Plane, Cylinder, Cone, Paraboloid, Hyperboloid), 1.25)
+def test_times_are_those_of_a_ray_in_the_best_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernels, "is_disturbed", lambda run, threads: run.wall < 1.5 * FORMULA)
+    rows = rows_of(BALL, "benign")
+    rays = kernels.TIMED
+    assert list(rows) == ["miniRT", "textbook", "miniRT, float32"]
+    for times, row in enumerate(rows.values(), 1):
+        assert rays % row.rays, "of the last run a part is more than is asked for"
+        assert row.ns_ray == pytest.approx(times * FORMULA * 1e9 / (-(-rays // row.rays) * row.rays))
+        assert row.cpu_ns_ray == pytest.approx(BUSY * row.ns_ray)
+        assert row.valid == (times > 1)
+        assert row.times_textbook == pytest.approx(times / 2)
+    assert isnan(rows_of(KIND[Box], "benign")["miniRT"].times_textbook)
 
 
-@pytest.mark.parametrize("element", COSTS, ids=lambda element: element.title)
-def test_what_exact_formulas_cost_beside_those_of_textbooks(element: type[Shape]) -> None:
-    """In turn; other programs can only make a try look worse."""
-    assert set(COSTS) == set(textbook.FORMULAS)
-    assert any(rows_of(KIND[element], "benign")["miniRT"].times_textbook <= COSTS[element] for _ in range(5))
-
-
-def test_how_many_times_as_long_a_formula_takes() -> None:
-    """A turn in which the machine was slow counts no more than another."""
+def test_a_turn_in_which_the_machine_was_slow_counts_no_more_than_another() -> None:
     some, others = [Run(9, 2), Run(9, 30), Run(9, 4)], [Run(9, 1), Run(9, 10), Run(9, 4)]
     assert times_as_long(some, others) == 2
     assert isnan(times_as_long(some, []))
-    rows = rows_of(BALL, "benign")
-    assert rows["textbook"].times_textbook == 1
-    assert rows["miniRT"].times_textbook == pytest.approx(
-        rows["miniRT"].cpu_ns_ray / rows["textbook"].cpu_ns_ray, rel=0.5
-    )
-    assert isnan(rows_of(KIND[Box], "benign")["miniRT"].times_textbook)
+
+
+def test_runs_of_the_machine_take_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernels, "in_turn", timing.in_turn)
+    monkeypatch.setattr(kernels, "RUNS", 1)
+    assert all(0 < row.ns_ray < inf and 0 < row.cpu_ns_ray < inf for row in rows_of(BALL, "benign").values())
 
 
 def test_textbooks_lose_what_is_tiny_and_far() -> None:
     rows = rows_of(BALL, "tiny and far")
     assert rows["miniRT"].max_error < 1e-15
     assert rows["miniRT"].false_misses == rows["miniRT"].false_hits == 0
-    assert rows["textbook"].false_misses > 10
+    assert rows["textbook"].false_misses > 5
     assert rows["textbook"].false_hits > 5
     assert rows["miniRT, float32"].hits == 0
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from math import isfinite, isnan
+from math import inf, isfinite, isnan
 
 import numpy as np
 import pytest
@@ -17,9 +17,17 @@ from minirt.report.pictures import Budget, Row, Stage, measured
 from minirt.report.reference import Reference, passes, reference
 from minirt.scene import FurtherLight, Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
+from tests.simulated import BUSY, PACKET, Clock, packets, simulated
 
 WIDTH, HEIGHT, SAMPLES = 96, 64, 1024
-EASY = Budget(seconds=0.0, longest=60.0, tries=1)
+EASY = Budget(seconds=0.0, longest=inf, tries=1)
+ONCE = packets(WIDTH, HEIGHT) * PACKET  # seconds of the simulated clock that one sample in each pixel takes
+
+
+@pytest.fixture(autouse=True)
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """Time passes by what is rendered alone."""
+    return simulated(monkeypatch)
 
 
 @cache
@@ -84,13 +92,21 @@ def test_more_samples_are_closer_and_take_longer() -> None:
     assert one.rmse > four.rmse > sixteen.rmse
     assert one.psnr < four.psnr < sixteen.psnr
     assert one.flip > four.flip > sixteen.flip > 0
-    assert one.cpu_ms < four.cpu_ms < sixteen.cpu_ms
+    for row in (one, four, sixteen):
+        assert row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
+        assert row.cpu_ms == pytest.approx(row.samples * ONCE * 1e3 * BUSY)
 
 
-def test_knobs_do_what_they_say() -> None:
+def test_knobs_do_what_they_say(clock: Clock) -> None:
     uniform, adaptive = rows()["uniform", 16], rows()["adaptive", 16]
     assert adaptive.rmse == pytest.approx(uniform.rmse, rel=0.3)
-    assert adaptive.cpu_ms < uniform.cpu_ms
+    stage, (knob,) = Stage(ALL, WIDTH, HEIGHT, 1), (knob for knob in KNOBS if knob.name == "adaptive")
+    stage.renderer(Setting(knob, 16))
+    before = clock.packets
+    stage.light(Setting(knob, 16))
+    once = packets(WIDTH, HEIGHT)
+    assert 2 * once < clock.packets - before < 8 * once  # of 17, if all of the picture were done again
+    assert adaptive.cpu_ms == pytest.approx((clock.packets - before) * PACKET * 1e3 * BUSY)
     assert rows()["single", 4].rmse == pytest.approx(rows()["uniform", 4].rmse, rel=0.05)
     assert rows()["single", 4].rmse != rows()["uniform", 4].rmse
     brute = rows()["brute force", 4]
@@ -149,11 +165,27 @@ def test_a_setting_that_fails_stays_as_nan() -> None:
 
 
 def test_a_setting_that_takes_too_long_is_left_out() -> None:
-    one, four = rows_for(Setting(KNOBS[0], 1), Setting(KNOBS[0], 4), budget=EASY._replace(longest=1e-9))
-    assert one.wall_ms > 0
-    assert (one.valid, one.remark) == (False, "takes too long for more than the first run")
-    assert isnan(four.wall_ms)
-    assert four.remark.startswith("left out: takes about")
+    wanted = [Setting(KNOBS[0], samples) for samples in (1, 4)]
+    for longest, remarks in (
+        (0.9 * ONCE, ("takes too long for more than the first run", f"left out: takes about {4 * ONCE:.2g} s")),
+        (3.9 * ONCE, ("", f"left out: takes about {4 * ONCE:.2g} s")),
+        (4.1 * ONCE, ("", "")),
+    ):
+        made = rows_for(*wanted, budget=EASY._replace(longest=longest))
+        assert tuple(row.remark for row in made) == remarks
+        assert [row.valid for row in made] == [not remark for remark in remarks]
+        for row, remark in zip(made, remarks, strict=True):
+            left_out = remark.startswith("left out")
+            assert isnan(row.wall_ms) if left_out else row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
+
+
+def test_runs_fill_the_time_that_they_are_given(clock: Clock) -> None:
+    right()
+    for seconds, runs in ((0.0, pictures.RUNS), (9.5 * ONCE, 10)):
+        before = clock.packets
+        rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(seconds=seconds))
+        prepared, first = 1, packets(WIDTH, HEIGHT)
+        assert clock.packets - before == prepared + first + runs * packets(WIDTH, HEIGHT)
 
 
 def test_a_disturbed_measurement_is_tried_again_and_then_not_valid(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
-import signal
-import time
+import sys
 from collections.abc import Callable
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -19,12 +19,15 @@ from minirt.errors import RenderError
 from minirt.report import __main__, making, report, report_formulas
 from minirt.report.errors import HEAT
 from minirt.report.making import NO_DIAGRAM
+from minirt.report.pictures import Budget
 from minirt.report.plan import QUICK, fitting
 from minirt.scene import Scene, dump
 from minirt.shapes import KINDS
 from tests.cli.conftest import folder, run
-from tests.cli.program import Ended, start
+from tests.cli.program import Ended, interrupt, start
 from tests.kernel.pictures import ALL, AMBIENT, EYE
+from tests.simulated import PACKET, Clock, packets, simulated
+from tests.terminals import terminal
 
 __all__ = ["folder", "run"]
 Run = Callable[..., Ended]
@@ -32,9 +35,11 @@ TABLES = {"report.md", "report.json", "pictures.csv", "kernels.csv"}
 
 
 @pytest.fixture(autouse=True)
-def small(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A plan for tests, of a second."""
-    monkeypatch.setattr(making, "QUICK", QUICK._replace(shapes=1, samples=64, most=4))
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """A plan for tests, with little work, and a clock that moves on by that alone."""
+    plan = QUICK._replace(shapes=1, samples=64, most=4, budget=Budget(0.0, inf, tries=1))
+    monkeypatch.setattr(making, "QUICK", plan)
+    return simulated(monkeypatch)
 
 
 @pytest.fixture
@@ -118,12 +123,11 @@ def test_a_scene_without_shapes(tmp_path: Path) -> None:
     assert not (tmp_path / "x").exists()
 
 
-def test_a_folder_that_cannot_be_made_is_told_before_the_work(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_made_is_told_before_the_work(tmp_path: Path, clock: Clock) -> None:
     (tmp_path / "file").touch()
-    before = time.perf_counter()
     with pytest.raises(RenderError, match="file/x: cannot be made: Not a directory"):
         report(ALL, "all.rt", tmp_path / "file" / "x", (4096, 4096), 1, quick=False)
-    assert time.perf_counter() - before < 1
+    assert clock.packets == 0
 
 
 def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
@@ -154,10 +158,16 @@ def test_the_formulas_of_all_kinds(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 def test_pictures_are_as_small_as_the_time_asks() -> None:
     assert fitting(ALL, (64, 36), QUICK) == (64, 36)
-    assert fitting(ALL, (1280, 720), QUICK._replace(width=320, seconds=1e9)) == (320, 180)
-    width, height = fitting(ALL, (1280, 720), QUICK._replace(width=320, seconds=1e-3))
-    assert 1 <= width < 100
-    assert height == pytest.approx(width * 9 / 16, abs=1)
+    plan = QUICK._replace(width=320)
+    seconds = plan.samples * packets(320, 180) * PACKET
+    for given, size in (
+        (1e9, (320, 180)),
+        (1.01 * seconds, (320, 180)),
+        (0.99 * seconds, (160, 90)),
+        (seconds / 4.01, (80, 45)),
+        (seconds / 4**8, (1, 1)),
+    ):
+        assert fitting(ALL, (1280, 720), plan._replace(seconds=given)) == size
     assert fitting(ALL, (10_000, 1), QUICK) == (320, 1)
 
 
@@ -177,17 +187,44 @@ def test_the_program_refuses_a_folder_that_is_a_file(run: Run, folder: Path) -> 
     assert (ended.status, ended.out, ended.err) == (1, b"", "Error\nball.rt: cannot be made: File exists\n")
 
 
-@pytest.mark.parametrize("seconds", [0.2, 3.0])
-def test_an_interrupt_leaves_no_files(folder: Path, seconds: float) -> None:
-    process = start(folder, "ball.rt", "--report", "out", "--size", "1920x1080")
-    while not (folder / "out").exists():
-        assert process.poll() is None
-        time.sleep(0.01)
-    time.sleep(seconds)
-    assert process.poll() is None
-    process.send_signal(signal.SIGINT)
-    before = time.perf_counter()
-    out, err = process.communicate(timeout=30)
-    assert time.perf_counter() - before < 3
-    assert (process.returncode, out, err) == (130, b"", b"")
+ENDLESS = """
+import sys
+from math import inf
+from minirt import cli
+from minirt.report import kernels, making, plan
+from minirt.report.pictures import Budget
+from minirt.timing import runs
+
+def endless(work, least, seconds):
+    print("fitting", file=sys.stderr, flush=True)
+    return runs(work, 10**9, seconds)
+
+phase, short = sys.argv.pop(1), making.QUICK._replace(samples=64, seconds=1e30, budget=Budget(0.0, inf, tries=1))
+making.FULL = short
+if phase == "fitting":
+    plan.runs = endless
+elif phase == "reference":
+    making.FULL = short._replace(samples=2**20, width=1920)
+elif phase == "uniform 1":
+    making.FULL = short._replace(budget=Budget(inf, inf, tries=1))
+elif phase == "sphere, benign":
+    kernels.RUNS = 10**9
+sys.exit(cli.main())
+"""
+
+
+@pytest.mark.parametrize("phase", ["fitting", "reference", "uniform 1", "sphere, benign"])
+def test_an_interrupt_leaves_no_files(folder: Path, phase: str) -> None:
+    """In each phase of the work, which there would take hours, or for ever."""
+    arguments = "ball.rt", "--report", "out", "--size", "1920x1080"
+    with (
+        terminal() as told,
+        start(folder, *arguments, command=[sys.executable, "-c", ENDLESS, phase], stderr=told.end) as process,
+    ):
+        told.leave()
+        told.wait_for(phase.encode())
+        assert [*folder.glob("out/*")] == []
+        assert interrupt(process)[:2] == (130, b"")
+        assert told.wait_for_end().endswith(b"\r\x1b[K")
+    assert b"Traceback" not in told.text
     assert [*folder.glob("out/*")] == []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -13,6 +12,7 @@ from minirt.fields import Triple
 from minirt.scene import Ambient, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from tests.bench.system import MissingError, Setting, System
+from tests.processes import run
 
 
 def light(source: Ambient | Light | None) -> Triple:
@@ -58,9 +58,7 @@ class Command(System):
         width, height, _, folder = self.setting
         file = folder / f"{path.stem}{self.suffix}"
         file.write_text("\n".join(self.translate(load(path), width, height)) + "\n", encoding="ascii")
-        ran = subprocess.run(
-            [self.command, *self.arguments(file, self.picture(path))], capture_output=True, text=True, check=False
-        )
+        ran = run([self.command, *self.arguments(file, self.picture(path))], text=True)
         if ran.returncode:
             raise RuntimeError(f"{self.name} on {file}: {ran.stderr or ran.stdout}")
         return [self.milliseconds(ran.stdout + ran.stderr)]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import subprocess
 from pathlib import Path
 
 from tests.bench.system import MissingError, Setting, System
+from tests.processes import run
 
 HERE = Path(__file__).parent
 FLAGS = [
@@ -33,7 +33,7 @@ def build(folder: Path) -> Path:
         raise MissingError("C++ yardstick: no compiler is installed")
     folder.mkdir(parents=True, exist_ok=True)
     command = [*compiler.split(), *FLAGS, *map(str, sorted(HERE.glob("*.cpp"))), "-o", str(program)]
-    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    ran = run(command, text=True)
     if ran.returncode:
         raise MissingError(f"C++ yardstick: {compiler} cannot compile it: {ran.stderr.strip().splitlines()[0]}")
     return program
@@ -51,7 +51,7 @@ class Yardstick(System):
         """What the program prints about the scene in a file."""
         size = f"{self.setting.width}x{self.setting.height}"
         command = [str(self.program), str(path), "--size", size, "--threads", str(self.setting.threads), *arguments]
-        ran = subprocess.run(command, capture_output=True, text=True, check=False)
+        ran = run(command, text=True)
         if ran.returncode:
             raise RuntimeError(f"{self.name} on {path}: {ran.stderr}")
         printed: dict[str, float] = json.loads(ran.stdout)
