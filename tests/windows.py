@@ -7,7 +7,7 @@
         with desktop.program(sys.executable, "-m", "some.program") as program:
             window = desktop.find("its title")
             desktop.key(window, "Escape")
-            assert program.wait(10) == 0
+            assert program.wait(HANG_LIMIT) == 0
 
 Without the tools these tests are skipped; with MINIRT_REQUIRE_WINDOW=1 in the environment they fail.
 """
@@ -15,10 +15,11 @@ Without the tools these tests are skipped; with MINIRT_REQUIRE_WINDOW=1 in the e
 from __future__ import annotations
 
 import os
+import re
+import select
 import shutil
 import subprocess
 import tempfile
-import time
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,14 +27,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from tests import processes, waiting
+from tests.waiting import HANG_LIMIT
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
-TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd")
+TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd", "xwininfo", "setxkbmap")
 ROOT = Path(__file__).parent.parent
-PATIENCE = 10.0  # seconds that anything may take
+
+
+def until(condition: Callable[[], bool], what: str, _seconds: float = HANG_LIMIT) -> None:
+    """Wait as `tests.waiting.until` does, for files that still import it from here."""
+    waiting.until(condition, what)
 
 
 class Desktop:
@@ -41,46 +49,60 @@ class Desktop:
 
     def __init__(self, environment: dict[str, str]) -> None:
         self.environment = environment
+        self._programs: list[subprocess.Popen[str]] = []  # those whose blocks have not ended
+        self._held: list[str] = []  # keys
 
     def run(self, *command: str) -> bytes:
-        """Standard output of a command; raises CalledProcessError or TimeoutExpired."""
-        return subprocess.run(command, env=self.environment, capture_output=True, check=True, timeout=PATIENCE).stdout
+        """Standard output of a command; CalledProcessError where it fails, TimeoutExpired where it hangs."""
+        done = processes.run(command, env=self.environment)
+        done.check_returncode()
+        output: bytes = done.stdout
+        return output
 
     def is_managed(self) -> bool:
         """Whether a window manager answers."""
-        done = subprocess.run(
-            ["wmctrl", "-m"], env=self.environment, capture_output=True, check=False, timeout=PATIENCE
-        )
-        return done.returncode == 0
+        return processes.run(["wmctrl", "-m"], env=self.environment).returncode == 0
 
     @contextmanager
     def program(self, *command: str) -> Iterator[subprocess.Popen[str]]:
-        """Start a program on this desktop, from the project's root; it is killed if it is still there at the end."""
-        with subprocess.Popen(
-            command, env=self.environment, cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-        ) as process:
-            try:
-                yield process
-            finally:
-                process.kill()
+        """Start a program on this desktop, from the project's root; afterwards neither it nor its windows are left."""
+        with self._left_as_it_was():
+            pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+            with processes.started(command, env=self.environment, cwd=ROOT, text=True, **pipes) as process:
+                self._programs.append(process)
+                try:
+                    yield process
+                finally:
+                    self._programs.remove(process)
 
     def find(self, title: str) -> int:
-        """Wait for the window of this title, until it has the focus."""
+        """Wait for the window of this title, until it has the focus; AssertionError where no program is left."""
         found: list[int] = []
 
         def look() -> bool:
+            self._expect_a_program()
             with suppress(subprocess.CalledProcessError, IndexError):  # not there yet, or on its way to another place
-                lines = self.run("wmctrl", "-l").decode().splitlines()
-                found[:] = [int(line.split()[0], 16) for line in lines if line.split(None, 3)[3:] == [title]]
+                found[:] = [window for window, name in self.windows() if name == title]
                 self.activate(found[0])
                 return True
             return False
 
-        until(look, f"a window called {title}")
+        waiting.until(look, f"a window called {title}")
         return found[0]
 
+    def windows(self) -> list[tuple[int, str]]:
+        """The windows that the window manager knows, with their titles."""
+        rows = (line.split(None, 3) for line in self.run("wmctrl", "-l").decode().splitlines())
+        return [(int(row[0], 16), "".join(row[3:])) for row in rows]
+
     def activate(self, window: int) -> None:
-        self.run("xdotool", "windowactivate", "--sync", str(window))
+        """Bring a window to the front, and wait until it has the focus; CalledProcessError where there is none."""
+
+        def asked() -> bool:
+            self.run("xdotool", "windowactivate", str(window))
+            return self._active() == window
+
+        waiting.until(asked, f"the focus of window {window}")
 
     def key(self, window: int, *names: str) -> None:
         """Press and release; xdotool's names, such as Escape, shift+Tab."""
@@ -88,10 +110,17 @@ class Desktop:
         self.run("xdotool", "key", *names)
 
     def keydown(self, name: str) -> None:
+        self._held.append(name)
         self.run("xdotool", "keydown", name)
 
     def keyup(self, name: str) -> None:
         self.run("xdotool", "keyup", name)
+        self._held.remove(name)
+
+    def let_go(self) -> None:
+        """Let all keys go that a test which failed may still hold."""
+        while self._held:
+            self.keyup(self._held[-1])
 
     def move(self, window: int, x: int, y: int) -> None:
         self.run("xdotool", "mousemove", "--window", str(window), str(x), str(y))
@@ -103,7 +132,7 @@ class Desktop:
 
     def resize(self, window: int, width: int, height: int) -> None:
         self.run("xdotool", "windowsize", str(window), str(width), str(height))
-        until(lambda: self.size(window) == (width, height), f"a window of {width}x{height}")
+        waiting.until(lambda: self.size(window) == (width, height), f"a window of {width}x{height}")
 
     def size(self, window: int) -> tuple[int, int]:
         lines = self.run("xdotool", "getwindowgeometry", "--shell", str(window)).decode().splitlines()
@@ -111,7 +140,9 @@ class Desktop:
         return int(values["WIDTH"]), int(values["HEIGHT"])
 
     def minimise(self, window: int) -> None:
+        """Minimise a window, and wait until the window manager has done it: it would undo a later `restore`."""
         self.run("xdotool", "windowminimize", str(window))
+        waiting.until(lambda: not self._is_shown(window), f"minimised window {window}")
 
     def restore(self, window: int) -> None:
         self.activate(window)
@@ -123,14 +154,32 @@ class Desktop:
         """What the window shows: (h, w, 3) uint8, red, green, blue."""
         return _pixels(self.run("xwd", "-silent", "-id", str(window)))
 
+    @contextmanager
+    def _left_as_it_was(self) -> Iterator[None]:
+        """Afterwards no key is held and, where no program is left, no window: the next test may look for that title."""
+        try:
+            yield
+        finally:
+            self.let_go()
+            if not self._programs:
+                waiting.until(lambda: not self.windows(), "the end of all windows")
 
-def until(condition: Callable[[], bool], what: str, seconds: float = PATIENCE) -> None:
-    """Wait until `condition` holds; `what` says in the failure what did not come."""
-    deadline = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > deadline:
-            raise TimeoutError(f"{what} did not come within {seconds} s")
-        time.sleep(0.02)
+    def _expect_a_program(self) -> None:
+        """Fail at once, and say why, where no window can come any more."""
+        if self._programs and all(process.poll() is not None for process in self._programs):
+            for process in self._programs:
+                processes.kill_group(process)  # what it started may hold the pipes
+            ends = [(process.returncode, *process.communicate()) for process in self._programs]
+            raise AssertionError(f"no program is left that could open a window: {ends}")
+
+    def _active(self) -> int | None:
+        """The window that has the focus."""
+        with suppress(subprocess.CalledProcessError):  # there is none
+            return int(self.run("xdotool", "getactivewindow"))
+        return None
+
+    def _is_shown(self, window: int) -> bool:
+        return b"Map State: IsViewable" in self.run("xwininfo", "-id", str(window))
 
 
 @pytest.fixture(scope="session")
@@ -145,43 +194,64 @@ def require() -> None:
     """Skip the test where the tools are missing, or fail it if they have to be there."""
     missing = [tool for tool in TOOLS if shutil.which(tool) is None]
     if missing:
-        reason = f"tests of real windows need {', '.join(missing)}"
+        reason = f"tests of real windows need {', '.join(missing)}; install them: {install_command()}"
         if os.environ.get("MINIRT_REQUIRE_WINDOW") == "1":
             pytest.fail(reason)
         pytest.skip(reason)
+
+
+def install_command() -> str:
+    """The command of the README that installs the tools."""
+    lines: list[str] = re.findall(r"^apt-get install .*\bxvfb\b.*$", (ROOT / "README.md").read_text(), re.MULTILINE)
+    return lines[0]
 
 
 @contextmanager
 def open_desktop() -> Iterator[Desktop]:
     """Start a display on a free number and a window manager on it; both end with the block."""
     with ExitStack() as stack:
-        reader, writer = os.pipe()
-        command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", "2560x1600x24", "-nolisten", "tcp"]
-        command += ["-noreset"]  # or it starts afresh, without openbox, when its last client leaves
-        stack.enter_context(_process(command, dict(os.environ), pass_fds=(writer,)))
-        os.close(writer)
-        with os.fdopen(reader) as number:  # Xvfb writes it when it is ready, or goes and closes its end
-            name = number.readline().strip()
-        if not name:
-            raise RuntimeError("Xvfb did not start")
         home = stack.enter_context(tempfile.TemporaryDirectory())  # no configuration of this user's
         environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"}
-        environment |= {"DISPLAY": f":{name}", "PYTHONPATH": str(ROOT), "XDG_CONFIG_HOME": home, "XDG_CACHE_HOME": home}
-        stack.enter_context(_process(["openbox", "--sm-disable"], environment))
+        environment |= {"PYTHONPATH": str(ROOT), "XDG_CONFIG_HOME": home}
+        environment["DISPLAY"] = stack.enter_context(_display())
+        stack.enter_context(_server(["openbox", "--sm-disable"], env=environment | {"XDG_CACHE_HOME": home}))
         opened = Desktop(environment)
-        until(opened.is_managed, "openbox")
+        waiting.until(opened.is_managed, "openbox")
         yield opened
 
 
 @contextmanager
-def _process(command: list[str], environment: dict[str, str], pass_fds: tuple[int, ...] = ()) -> Iterator[None]:
-    with subprocess.Popen(
-        command, env=environment, pass_fds=pass_fds, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    ) as process:
+def _display() -> Iterator[str]:
+    """The name of a display that lasts as long as the block.
+
+    Its keyboard does not repeat held keys by itself: where other programs want the processor, the time between a press
+    and its release may be as long as a person's who holds the key. Tests of repetition turn it on.
+    """
+    with ExitStack() as stack:
+        reader, writer = os.pipe()
+        number = stack.enter_context(os.fdopen(reader))
+        with os.fdopen(writer):
+            command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", "2560x1600x24", "-nolisten", "tcp"]
+            command += ["-noreset"]  # or it starts afresh, without openbox, when its last client leaves
+            command += ["-r", "-ardelay", "100", "-arinterval", "20"]  # milliseconds, where a test turns it on
+            stack.enter_context(_server(command, pass_fds=(writer,)))
+        # Xvfb writes it when it is ready, or goes and closes its end.
+        waiting.until(lambda: bool(select.select([number], [], [], 0)[0]), "Xvfb's number")
+        name = number.readline().strip()
+        if not name:
+            raise RuntimeError("Xvfb did not start")
+        yield f":{name}"
+
+
+@contextmanager
+def _server(command: list[str], **options: object) -> Iterator[None]:
+    """Run a program that is asked to end, since it may have files to take away, before it is killed."""
+    with processes.started(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **options) as process:
         try:
             yield
         finally:
             process.terminate()
+            process.wait(HANG_LIMIT)
 
 
 def _pixels(dump: bytes) -> NDArray[np.uint8]:
