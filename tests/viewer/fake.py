@@ -14,6 +14,7 @@ from minirt.scene import Scene, dump, parse
 from minirt.viewer.painter import Wanted
 from minirt.viewer.replay import play
 from minirt.viewer.session import Session
+from tests.waiting import HANG_LIMIT, until
 
 TEXT = """\
 # a comment
@@ -56,7 +57,7 @@ class FakeRenderer:
 
     def prepare(self, _scene: Scene) -> None:
         self.started.set()
-        self.gate.wait()
+        self.gate.wait(HANG_LIMIT)
         if self.prepare_error:
             raise self.prepare_error
         self.ready = True
@@ -100,8 +101,7 @@ class FakeRenderer:
         if not is_wanted():
             self.cancelled += 1
             return False
-        while not self.gate.wait(0.005) and not self.cancel_asked.is_set():
-            pass
+        until(lambda: self.gate.is_set() or self.cancel_asked.is_set(), "the gate's opening")
         if self.cancel_asked.is_set():
             self.cancelled += 1
             return False

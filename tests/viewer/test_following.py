@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import time
+import threading
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from minirt.mlx import Key
 from minirt.scene import load
 from minirt.viewer import disk
-from minirt.viewer.disk import Disk, signature
+from minirt.viewer.disk import Disk, Signature, signature
 from minirt.viewer.following import file_changed
 from tests.viewer.fake import TEXT, colour_of, scene
 from tests.viewer.test_session import Bench
-from tests.windows import until
+from tests.waiting import HANG_LIMIT, until
 
 OTHER = TEXT.replace("sp 0,0,0 2", "sp 0,0,0 7")
 BROKEN = TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -7")
@@ -138,33 +140,68 @@ class TestBothChanged:
         assert bench.session.state.scene is mine
 
 
+class Watch:
+    """A watched file: the watcher takes its looks when the test says so."""
+
+    def __init__(self, path: Path) -> None:
+        self.told = 0  # how often the watcher said that the file has changed
+        self.disk = Disk(path)
+        self._allowed = threading.Semaphore(0)
+        self._taken = 0
+        self._begun = 0
+
+    def start(self) -> None:
+        self.disk.watch(self._tell)
+
+    def look(self, times: int = 1) -> None:
+        """Let the watcher look so often; returns when it begins the next look, so it has said what it had to say."""
+        self._taken += times
+        self._allowed.release(times)
+        until(lambda: self._begun == self._taken + 1, "a look at the file")
+
+    def signature(self, path: Path) -> Signature:
+        """In the place of `minirt.viewer.disk.signature`."""
+        if threading.current_thread().name == "minirt-watch":
+            self._begun += 1
+            self._allowed.acquire(timeout=HANG_LIMIT)
+        return signature(path)
+
+    def close(self) -> None:
+        self.disk.close()
+        self._allowed.release()
+
+    def _tell(self) -> None:
+        self.told += 1
+
+
 class TestDisk:
     @pytest.fixture
-    def told(self, path, monkeypatch):
-        monkeypatch.setattr(disk, "INTERVAL", 0.02)
-        times: list[float] = []
-        watched = Disk(path)
-        watched.watch(lambda: times.append(time.monotonic()))
-        yield times, watched
-        watched.close()
+    def watch(self, path, monkeypatch) -> Iterator[Watch]:
+        monkeypatch.setattr(disk, "INTERVAL", 0.001)
+        watch = Watch(path)
+        monkeypatch.setattr(disk, "signature", watch.signature)
+        watch.start()
+        yield watch
+        watch.close()
 
-    def test_a_change_is_told_once(self, path, told):
-        times, watched = told
-        time.sleep(0.1)
-        assert times == []
+    def test_a_change_is_told_once(self, path, watch):
+        watch.look(4)
+        assert watch.told == 0
         write(path, OTHER)
-        until(lambda: len(times) == 1, "word of it", 5)
-        time.sleep(0.1)
-        assert len(times) == 1
-        assert watched.changed
+        watch.look()
+        assert watch.told == 0  # it may still be written
+        watch.look()
+        assert watch.told == 1
+        watch.look(4)
+        assert watch.told == 1
+        assert watch.disk.changed
 
-    def test_what_we_wrote_ourselves_is_not_told(self, path, told):
-        times, watched = told
+    def test_what_we_wrote_ourselves_is_not_told(self, path, watch):
         path.write_text(OTHER)
-        watched.accept(signature(path))
-        time.sleep(0.2)
-        assert times == []
-        assert not watched.changed
+        watch.disk.accept(signature(path))
+        watch.look(4)
+        assert watch.told == 0
+        assert not watch.disk.changed
 
     def test_a_file_that_is_still_written_is_waited_for(self, path, monkeypatch):
         looks = [(1, 1, 1), (2, 2, 1), (3, 3, 1), (4, 4, 1), (4, 4, 1), (4, 4, 1), (4, 4, 1)]
@@ -179,18 +216,18 @@ class TestDisk:
         watched = Disk(path)
         told: list[int] = []
         watched.watch(lambda: told.append(len(seen)))
-        until(lambda: len(seen) > len(looks), "enough looks", 5)
+        until(lambda: len(seen) > len(looks), "enough looks")
         watched.close()
         assert told == [5]
 
-    def test_a_file_that_goes_is_no_news(self, path, told):
-        times, watched = told
+    def test_a_file_that_goes_is_no_news(self, path, watch):
         path.unlink()
-        time.sleep(0.15)
-        assert times == []
-        assert not watched.changed
+        watch.look(4)
+        assert watch.told == 0
+        assert not watch.disk.changed
         path.write_text(TEXT)
-        until(lambda: len(times) == 1, "word of it", 5)
+        watch.look(2)
+        assert watch.told == 1
 
 
 class TestDrop:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import itertools
 import threading
-import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from minirt.errors import RenderError
+from minirt.viewer import background
 from minirt.viewer.background import BackgroundPainter
 from minirt.viewer.pace import LONGEST, Pace
 from minirt.viewer.painter import Job, Outcome
 from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
-from tests.windows import until
+from tests.waiting import HANG_LIMIT, until
 
 JOB = Job(scene(), 64, 48)
 
@@ -35,7 +35,7 @@ class Bench:
             taken.extend(self.painter.take())
             return len(taken) >= count
 
-        until(enough, f"{count} outcomes", 5)
+        until(enough, f"{count} outcomes")
         return taken
 
     def start(self, job: Job) -> None:
@@ -43,7 +43,7 @@ class Bench:
         self.renderer.gate.clear()
         self.renderer.started.clear()
         self.painter.request(job)
-        assert self.renderer.started.wait(5)
+        assert self.renderer.started.wait(HANG_LIMIT)
 
 
 @pytest.fixture
@@ -51,7 +51,7 @@ def bench():
     made = Bench()
     yield made
     made.renderer.gate.set()
-    assert made.painter.close(5)
+    assert made.painter.close(HANG_LIMIT)
 
 
 def test_a_picture_comes_and_is_told(bench):
@@ -60,7 +60,7 @@ def test_a_picture_comes_and_is_told(bench):
     assert (outcome.pixels == colour_of(JOB.scene)).all()
     assert outcome.pixels.shape == (48, 64, 4)
     assert outcome.seconds > 0
-    assert bench.told.acquire(timeout=5)
+    assert bench.told.acquire(timeout=HANG_LIMIT)
     assert not bench.painter.busy
 
 
@@ -73,9 +73,8 @@ def test_of_requests_during_an_urgent_picture_the_latest_is_made(bench):
     bench.start(replace(JOB, urgent=True))
     for width in (10, 20, 64):
         bench.painter.request(replace(JOB, divisor=64 // width, urgent=True))
-    time.sleep(0.05)  # a wrong cancel would come now
     bench.renderer.gate.set()
-    until(lambda: bench.renderer.rendered == [(64, 48), (64, 48)], "two pictures", 5)
+    until(lambda: bench.renderer.rendered == [(64, 48), (64, 48)], "two pictures")
     assert bench.outcomes(1)[-1].job.divisor == 1
     assert bench.renderer.cancelled == 0
 
@@ -98,8 +97,8 @@ def test_a_picture_of_another_size_is_cancelled(bench):
 def test_of_pictures_that_nobody_took_the_last_is_kept(bench):
     for width in range(60, 70):
         bench.painter.request(Job(scene(), width, 48))
-        until(lambda now=width: bench.renderer.rendered[-1:] == [(now, 48)], "the picture", 5)
-        assert bench.told.acquire(timeout=5)
+        until(lambda now=width: bench.renderer.rendered[-1:] == [(now, 48)], "the picture")
+        assert bench.told.acquire(timeout=HANG_LIMIT)
     (outcome,) = bench.painter.take()
     assert outcome.job.width == 69
 
@@ -116,6 +115,11 @@ def test_an_exception_is_an_outcome_and_the_painter_lives_on(bench):
 class TestWithoutAKernel:
     """What is shown while `prepare` takes its time."""
 
+    @pytest.fixture(autouse=True)
+    def no_grace(self, monkeypatch):
+        """A kernel that is not there at once is late."""
+        monkeypatch.setattr(background, "GRACE", 0.0)
+
     @pytest.fixture
     def bench(self, bench):
         bench.renderer.ready = False
@@ -123,10 +127,10 @@ class TestWithoutAKernel:
 
     def test_compiling_is_told_while_it_lasts(self, bench):
         bench.start(JOB)
-        assert bench.told.acquire(timeout=5)
+        assert bench.told.acquire(timeout=HANG_LIMIT)
         assert bench.painter.compiling
         bench.renderer.gate.set()
-        until(lambda: not bench.painter.compiling, "the kernel", 5)
+        until(lambda: not bench.painter.compiling, "the kernel")
 
     def test_a_preview_is_followed_by_the_picture(self, bench):
         bench.start(JOB)
@@ -153,7 +157,8 @@ class TestWithoutAKernel:
         assert (outcome.job, outcome.preview) == (edited, False)
         assert bench.renderer.rendered == [(64, 48)]
 
-    def test_a_kernel_that_is_soon_there_needs_no_preview(self, bench):
+    def test_a_kernel_that_is_soon_there_needs_no_preview(self, bench, monkeypatch):
+        monkeypatch.setattr(background, "GRACE", HANG_LIMIT)
         bench.painter.request(JOB)
         (outcome,) = bench.outcomes(1)
         assert not outcome.preview
@@ -162,11 +167,12 @@ class TestWithoutAKernel:
     def test_without_a_preview_the_picture_comes_all_the_same(self, bench):
         bench.renderer.previews = False
         bench.start(JOB)
-        until(lambda: bench.painter.compiling, "the word", 5)
+        until(lambda: bench.painter.compiling, "the word")
         bench.renderer.gate.set()
         assert not bench.outcomes(1)[0].preview
 
-    def test_a_reason_why_there_is_no_kernel_is_an_outcome(self, bench):
+    def test_a_reason_why_there_is_no_kernel_is_an_outcome(self, bench, monkeypatch):
+        monkeypatch.setattr(background, "GRACE", HANG_LIMIT)
         bench.renderer.prepare_error = RenderError("no")
         bench.painter.request(JOB)
         outcomes = bench.outcomes(2)
@@ -179,18 +185,17 @@ class TestWithoutAKernel:
         bench = Bench()
         bench.renderer.ready, bench.renderer.stops = False, stops
         bench.start(JOB)
-        until(lambda: bench.painter.compiling, "the word", 5)
-        start = time.monotonic()
-        assert bench.painter.close(0.05) == stops
-        assert time.monotonic() - start < 0.3
+        until(lambda: bench.painter.compiling, "the word")
+        assert bench.painter.close(HANG_LIMIT if stops else 0.01) == stops
+        assert bench.renderer.gate.is_set() == stops  # else it would have been waited for
         bench.renderer.gate.set()
-        assert bench.painter.close(5)
+        assert bench.painter.close(HANG_LIMIT)
 
 
 def test_close_stops_a_picture():
     bench = Bench()
     bench.start(JOB)
-    assert bench.painter.close(5)
+    assert bench.painter.close(HANG_LIMIT)
     assert Bench().painter.close(0)
 
 

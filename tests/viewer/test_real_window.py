@@ -17,7 +17,9 @@ from numpy.typing import NDArray
 
 import minirt
 from minirt.rendering.adaptive import contrasts
-from tests.windows import Desktop, until
+from tests.viewer.resting import until_at_rest, until_only_one_runs
+from tests.waiting import HANG_LIMIT, until
+from tests.windows import Desktop
 
 pytestmark = pytest.mark.window
 
@@ -30,7 +32,6 @@ pl 0,-1,0 0,1,0 90,200,90
 cy 2,0,0 0,1,0 1 2 60,60,255
 """
 SIZE = (320, 240)
-COMPILED = 180.0  # seconds in which a kernel is made, also where others want the processor
 
 
 class Viewer(NamedTuple):
@@ -46,11 +47,11 @@ class Viewer(NamedTuple):
 
     def shows(self, picture: NDArray[np.uint8]) -> None:
         """Wait until the window shows exactly that."""
-        until(lambda: np.array_equal(self.desktop.screenshot(self.window), picture), "the picture", COMPILED)
+        until(lambda: np.array_equal(self.desktop.screenshot(self.window), picture), "the picture")
 
     def end(self) -> tuple[int, str, str]:
         """Status, standard output and standard error."""
-        output, errors = self.process.communicate(timeout=10)
+        output, errors = self.process.communicate(timeout=HANG_LIMIT)
         return self.process.returncode, output, errors
 
 
@@ -61,9 +62,10 @@ def viewing(
     size: tuple[int, int] = SIZE,
     cache: Path | None = None,
     more: tuple[str, ...] = (),
+    program: str = "minirt",
 ) -> Iterator[Viewer]:
     """`cache`: an empty folder, for a program that has to compile first; `more` arguments."""
-    command = [sys.executable, "-W", "error", "-m", "minirt", str(path), "--size", f"{size[0]}x{size[1]}", *more]
+    command = [sys.executable, "-W", "error", "-m", program, str(path), "--size", f"{size[0]}x{size[1]}", *more]
     if cache:
         command = ["env", f"XDG_CACHE_HOME={cache}", *command]
     path.write_text(TEXT)
@@ -103,9 +105,11 @@ def test_the_window_shows_the_refined_picture(viewer):
 def test_with_one_sample_it_is_the_picture_that_is_rendered_without_a_window(desktop, tmp_path):
     with viewing(desktop, tmp_path / "scene.rt", more=("--samples", "1")) as viewer:
         viewer.key("i", "i")
-        viewer.shows(minirt.render(minirt.load(viewer.path), *SIZE).array)
-        viewer.desktop.run("sleep", "0.5")
-        viewer.shows(picture(viewer.path, passes=()))
+        plain = minirt.render(minirt.load(viewer.path), *SIZE).array
+        assert np.array_equal(plain, picture(viewer.path, passes=()))
+        viewer.shows(plain)
+        until_at_rest(viewer.process.pid)
+        assert np.array_equal(desktop.screenshot(viewer.window), plain)
         viewer.key("Escape")
         assert viewer.end() == (0, "", "")
 
@@ -123,7 +127,7 @@ def test_the_close_button(viewer):
 def test_ctrl_c_in_the_terminal(viewer):
     viewer.key("i", "i")
     viewer.shows(picture(viewer.path))
-    os.kill(viewer.process.pid, signal.SIGINT)
+    os.killpg(viewer.process.pid, signal.SIGINT)
     assert viewer.end() == (130, "", "")
 
 
@@ -177,19 +181,21 @@ def test_hiding_and_covering_lose_nothing(viewer, desktop, tmp_path):
     assert viewer.end() == (0, "", "")
 
 
-def test_an_idle_window_costs_no_time(viewer):
+def test_an_idle_window_only_looks_at_its_file_now_and_then(viewer):
     viewer.key("i", "i")
     viewer.shows(picture(viewer.path))
-
-    def used() -> float:
-        fields = Path(f"/proc/{viewer.process.pid}/stat").read_text().rpartition(")")[2].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-    before = used()
-    viewer.desktop.run("sleep", "3")
-    assert used() - before <= 0.03
+    until_only_one_runs(viewer.process.pid, 8)
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
+
+
+def test_an_idle_window_that_does_not_watch_its_file_does_nothing(desktop, tmp_path):
+    with viewing(desktop, tmp_path / "scene.rt", more=("--no-watch",)) as viewer:
+        viewer.key("i", "i")
+        viewer.shows(picture(viewer.path))
+        until_at_rest(viewer.process.pid, 100)
+        viewer.key("Escape")
+        assert viewer.end() == (0, "", "")
 
 
 def test_a_held_key_moves_until_it_is_let_go(viewer):

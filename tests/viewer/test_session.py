@@ -18,7 +18,7 @@ from minirt.viewer.pace import LONGEST
 from minirt.viewer.painter import Job, Outcome, Painter, paint
 from minirt.viewer.session import Session
 from tests.viewer.fake import MARK, FakeRenderer, colour_of, scene
-from tests.windows import until
+from tests.waiting import HANG_LIMIT, until
 
 SIZE = (64, 48)
 
@@ -227,21 +227,21 @@ def test_no_picture_is_shown_half_made():
     bench.bare()
     renderer.gate.set()
     for n in range(1, 6):
-        until(lambda n=n: len(renderer.rendered) == n, "a picture", 5)
+        until(lambda n=n: len(renderer.rendered) == n, "a picture")
         renderer.gate.clear()
 
         def half_refined(n=n) -> bool:
             bench.memory.play()
             return len(renderer.refined) == n
 
-        until(half_refined, "a pass", 5)
+        until(half_refined, "a pass")
         whole = bench.memory.screenshot()
         assert (whole == colour_of(bench.session.state.scene)).all()
         bench.tap(Key.D)
         renderer.gate.set()
-        until(lambda n=n: renderer.cancelled == n, "the end of the pass", 5)
+        until(lambda n=n: renderer.cancelled == n, "the end of the pass")
         assert np.array_equal(bench.memory.screenshot(), whole)
-    assert bench.painter.close(5)
+    assert bench.painter.close(HANG_LIMIT)
 
 
 class SlowScreen(Memory):
@@ -295,7 +295,7 @@ def test_a_coarse_picture_is_stretched_over_the_window():
 
 def test_of_many_sizes_the_last_is_rendered():
     bench = Bench(partial(BackgroundPainter, renderer := FakeRenderer()))
-    until(lambda: renderer.rendered == [SIZE], "the first picture", 5)
+    until(lambda: renderer.rendered == [SIZE], "the first picture")
     renderer.gate.clear()
     for width in range(10, 40):
         bench.memory.resize(width, 20)
@@ -304,11 +304,12 @@ def test_of_many_sizes_the_last_is_rendered():
 
     def shown() -> bool:
         bench.memory.play()
-        return bench.session.pictures.latest.job.shows(bench.session.state.scene, 39, 20)
+        latest = bench.session.pictures.latest
+        return latest is not None and latest.job.shows(bench.session.state.scene, 39, 20)
 
-    until(shown, "the picture of the last size", 5)
+    until(shown, "the picture of the last size")
     assert {width for width, _ in renderer.rendered} <= {64, 39, 5}
-    assert bench.painter.close(5)
+    assert bench.painter.close(HANG_LIMIT)
 
 
 def test_the_old_picture_is_stretched_until_the_new_one_comes():

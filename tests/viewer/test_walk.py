@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-import os
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +12,17 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import minirt
+from minirt.mlx import Mlx
+from minirt.mlx.memory import Memory
 from minirt.scene import Scene, dump, load, parse
+from minirt.viewer.painter import Painter
 from minirt.viewer.replay import play
+from minirt.viewer.script import record
+from minirt.viewer.session import Session
 from minirt.viewer.state import State
 from tests.viewer.hands import do
-from tests.viewer.test_real_window import COMPILED, SIZE, TEXT, Viewer, resized, viewing
-from tests.windows import until
+from tests.viewer.test_real_window import SIZE, TEXT, Viewer, resized, viewing
+from tests.waiting import until
 
 pytestmark = pytest.mark.window
 
@@ -61,38 +66,59 @@ STEPS = (
 
 
 MESSAGE = 60  # rows that it may take
+STOPPED = "tests.viewer.stopped"
 
 
 class Twin:
-    """The viewer on the screen and, with the same lines, the one in memory."""
+    """The viewer on the screen, with a clock that stands still, and one in memory that does the same lines."""
 
-    def __init__(self, viewer: Viewer, folder: Path) -> None:
+    def __init__(self, viewer: Viewer, folder: Path, keys: str = "qwerty") -> None:
         self.viewer = viewer
+        folder.mkdir()
         self.path = folder / "twin.rt"
         self.path.write_text(TEXT)
+        self.keys = keys
+        self.renderer = minirt.renderer(None)
         self.lines: list[str] = []
+        self.memory = Memory()
+        m = Mlx(self.memory)
+        self.session = Session(
+            m, m.mlx_init(), self.start, path=self.path, size=SIZE, painter=partial(Painter, self.renderer),
+            pick=self.renderer.pick, keys=keys,
+        )  # fmt: skip
+
+    @property
+    def start(self) -> Scene:
+        """The scene of the file."""
+        return parse(TEXT, self.path).scene
+
+    @property
+    def state(self) -> State:
+        return self.session.state
 
     def do(self, *lines: str) -> None:
         do(self.viewer.desktop, self.viewer.window, *lines)
+        record(lines, "twin", self.memory)
+        self.memory.play()
         self.lines += lines
 
-    def state(self) -> State:
-        start = parse(TEXT, self.path).scene
-        return play(start, self.lines, renderer=minirt.renderer(None), size=SIZE, path=self.path).state
+    def replayed(self) -> State:
+        """The state after all lines at once, as `miniRT --replay` does them."""
+        return play(self.start, self.lines, renderer=self.renderer, size=SIZE, path=self.path, keys=self.keys).state
 
     def agree(self) -> None:
         """Wait until the window shows what the twin has, but for where a message is; then save, and compare the file
         line by line with how it was written before."""
-        state = self.state()
+        state = self.state
         shown = slice(0, -MESSAGE if state.message else None)
         picture, viewer = still(state.scene)[shown], self.viewer
 
         def same() -> bool:
             return np.array_equal(viewer.desktop.screenshot(viewer.window)[shown], picture)
 
-        until(same, self.lines[-1], COMPILED)
+        until(same, self.lines[-1])
         before, after = viewer.path.read_text(), dump(state.scene)
-        viewer.key("ctrl+s")
+        do(viewer.desktop, viewer.window, "press Ctrl+S")
         until(lambda: viewer.path.read_text() == after, f"the file after {self.lines[-1]}")
         changed = [line for line in difflib.ndiff(before.split("\n"), after.split("\n")) if line[0] in "+-"]
         assert len(changed) <= 2 or self.lines[-1] in ("press Ctrl+Z", "press Ctrl+Shift+Z"), changed
@@ -109,8 +135,7 @@ def still(scene: Scene, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
 
 
 def test_a_walk(desktop, tmp_path):
-    (tmp_path / "twin").mkdir()
-    with viewing(desktop, tmp_path / "scene.rt") as viewer:
+    with viewing(desktop, tmp_path / "scene.rt", program=STOPPED) as viewer:
         twin = Twin(viewer, tmp_path / "twin")
         viewer.key("i", "i")
         viewer.shows(still(load(viewer.path).scene))
@@ -118,13 +143,14 @@ def test_a_walk(desktop, tmp_path):
             twin.do(*step.split("; "))
             if step not in ("press V", "press X"):
                 twin.agree()
-        edited = twin.state().scene
+        edited = twin.state.scene
+        assert twin.replayed() == twin.state
 
         twin.do("press Tab", *["press Ctrl+Z"] * 40)
-        assert twin.state().scene.items == parse(TEXT).scene.items
+        assert twin.state.scene.items == parse(TEXT).scene.items
         twin.agree()
         twin.do(*["press Ctrl+Shift+Z"] * 40)
-        assert twin.state().scene.items == edited.items
+        assert twin.state.scene.items == edited.items
         twin.agree()
 
         viewer.path.write_text(TEXT)
@@ -186,17 +212,13 @@ def test_the_keys_of_a_layout(desktop, tmp_path, keys):
     layout, letters = LETTERS[keys]
     desktop.run("setxkbmap", layout)
     try:
-        (tmp_path / "twin").mkdir()
-        with viewing(desktop, tmp_path / "scene.rt", more=("--keys", keys)) as viewer:
+        with viewing(desktop, tmp_path / "scene.rt", more=("--keys", keys), program=STOPPED) as viewer:
             viewer.key("i", "i")
             viewer.shows(still(load(viewer.path).scene))
-            twin = Twin(viewer, tmp_path / "twin")
-            for line in [f"press {key}" for key in (*letters, *TYPED, *CHORDS)]:
-                twin.do(line)
-            start = parse(TEXT, twin.path).scene
-            played = play(
-                start, twin.lines, renderer=minirt.renderer(None), size=SIZE, path=twin.path, keys=keys
-            ).state.scene
+            twin = Twin(viewer, tmp_path / "twin", keys)
+            twin.do(*(f"press {key}" for key in (*letters, *TYPED, *CHORDS)))
+            played = twin.state.scene
+            assert played.items == twin.replayed().scene.items
             viewer.shows(still(played))
             twin.do("press ?")
             until(lambda: desktop.screenshot(viewer.window).mean() < still(played).mean() / 2, "the help")
@@ -206,19 +228,3 @@ def test_the_keys_of_a_layout(desktop, tmp_path, keys):
             assert viewer.end() == (0, "", "")
     finally:
         desktop.run("setxkbmap", "us")
-
-
-def test_the_window_idles_while_it_watches(desktop, tmp_path):
-    with viewing(desktop, tmp_path / "scene.rt") as viewer:
-        viewer.key("i", "i")
-        viewer.shows(still(load(viewer.path).scene))
-
-        def used() -> float:
-            fields = Path(f"/proc/{viewer.process.pid}/stat").read_text().rpartition(")")[2].split()
-            return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-        before = used()
-        desktop.run("sleep", "5")
-        assert used() - before <= 0.03
-        viewer.key("Escape")
-        assert viewer.end() == (0, "", "")
