@@ -30,5 +30,5 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the tests of windows first: they are one piece of work, which takes longest."""
-    items.sort(key=lambda item: not scheduling.opens_windows(item.nodeid))
+    """Put the largest pieces of work first, so that no process has one left when the others have nothing to do."""
+    items.sort(key=lambda item: scheduling.order(item.nodeid))

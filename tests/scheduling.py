@@ -1,5 +1,5 @@
-"""Which process runs which tests: files as a whole, so that what a file prepares is prepared once, and all that open
-windows in one process, where they share a screen and do not disturb each other."""
+"""Which process runs which tests: files as a whole, so that what a file prepares is prepared once. Some files are one
+piece of work: all that open windows, which share a screen, and all that compile the kernels of all scenes."""
 
 from __future__ import annotations
 
@@ -10,32 +10,36 @@ from typing import Any
 import pytest
 
 ROOT = Path(__file__).parent.parent
-WINDOWS = "windows"  # the piece of work of all files that open some
+WINDOWS, SCENES = "windows", "scenes"
+FIRST = (WINDOWS, SCENES)  # they take longest
+OF_SCENES = {"tests/test_goldens.py", "tests/stability/test_pictures.py", "tests/rendering/test_preview.py"}
 
 
 @cache
-def marked(file: str) -> bool:
+def opens_windows(file: str) -> bool:
     """Whether tests of a file open windows: whether its source has the mark."""
     return "pytest.mark.window" in (ROOT / file).read_text(encoding="utf-8")
 
 
-def opens_windows(test: str) -> bool:
-    """Whether a test, such as tests/viewer/test_walk.py::test_a_walk, is in a file that opens windows."""
-    return marked(test.split("::", maxsplit=1)[0])
-
-
 def piece_of_work(test: str) -> str:
-    """What a test is run together with: its file, or all windows."""
-    return WINDOWS if opens_windows(test) else test.split("::", maxsplit=1)[0]
+    """What a test, such as tests/shapes/test_torus.py::test_a_waist[0.1], is run together with."""
+    file = test.split("::", maxsplit=1)[0]
+    return SCENES if file in OF_SCENES else WINDOWS if opens_windows(file) else file
+
+
+def order(test: str) -> int:
+    """A number by which tests are sorted."""
+    piece = piece_of_work(test)
+    return FIRST.index(piece) if piece in FIRST else len(FIRST)
 
 
 def make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """The scheduler of pytest-xdist for these pieces of work, in the order in which pytest found them."""
+    """The scheduler of pytest-xdist for these pieces of work, in the order in which pytest has them."""
     from xdist.scheduler import LoadScopeScheduling
 
-    class Files(LoadScopeScheduling):
+    class Pieces(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
             return piece_of_work(nodeid)
 
     config.option.loadscopereorder = False
-    return Files(config, log)
+    return Pieces(config, log)

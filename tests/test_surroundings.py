@@ -93,9 +93,13 @@ def test_a_program_that_is_left_early_leaves_nothing_running() -> None:
         assert file.read() == b""
 
 
-def test_windows_are_one_piece_of_work_and_every_other_file_is_one() -> None:
-    walk = "tests/viewer/test_walk.py::test_a_walk"
-    assert scheduling.piece_of_work(walk) == scheduling.piece_of_work("tests/mlx/test_window.py::test_x[a]")
-    assert scheduling.piece_of_work(f"{Path(__file__).relative_to(ROOT)}::test_y[b::c]") == "tests/test_surroundings.py"
-    assert scheduling.opens_windows(walk)
-    assert not scheduling.opens_windows("tests/viewer/test_editor.py::test_z")
+def test_windows_and_scenes_are_pieces_of_work_and_every_other_file_is_one() -> None:
+    walk, file = "tests/viewer/test_walk.py::test_a_walk", Path(__file__).relative_to(ROOT).as_posix()
+    assert (
+        scheduling.piece_of_work(walk) == scheduling.piece_of_work("tests/mlx/test_window.py::test_x[a]") == "windows"
+    )
+    assert {scheduling.piece_of_work(f"{each}::test_y") for each in scheduling.OF_SCENES} == {"scenes"}
+    assert all((ROOT / each).is_file() for each in scheduling.OF_SCENES)
+    assert scheduling.piece_of_work(f"{file}::test_z[b::c]") == file
+    tests = [f"{file}::test_z", "tests/test_goldens.py::test_y", walk]
+    assert sorted(tests, key=scheduling.order) == tests[::-1]

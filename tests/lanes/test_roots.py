@@ -17,8 +17,8 @@ from minirt.lanes.root import SERIES
 from tests.lanes.numbers import DTYPES, PRECISIONS
 from tests.lanes.test_operators import put
 from tests.processes import run
+from tests.surroundings import FEATURES
 
-AVX2 = {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": "+avx,+avx2,+fma,+bmi,+bmi2,+lzcnt,+popcnt,+sse4.2"}
 NAMES = {np.float64: "double", np.float32: "float"}  # of the types in LLVM
 
 
@@ -110,7 +110,8 @@ def test_unit_vectors(dtype: Any) -> None:
 
 def test_without_avx_512() -> None:
     program = "from tests.lanes.test_roots import DTYPES, off; print(max(map(off, DTYPES)))"
-    ended = run([sys.executable, "-c", program], env=os.environ | AVX2, text=True)
+    haswell = {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": FEATURES["haswell"]}
+    ended = run([sys.executable, "-c", program], env=os.environ | haswell, text=True)
     assert ended.returncode == 0, ended.stderr
     assert float(ended.stdout) <= 1.5  # a root and a division, each rounded
     assert len(DTYPES) == 2
