@@ -93,7 +93,12 @@ class ScreenUser(User):
     def focus(self, window: Window) -> None:
         self._desktop.activate(self._ids[window])
 
-    def find_again(self) -> None:
+    def press_for_another_window(self, key: str) -> None:
+        old = self._id
+        with self._desktop.manager_stopped():
+            self.hold(key)
+            self.until(lambda: not self._desktop.is_there(old))
+            self.let_go(key)
         self._ids[self._stage.win] = self._desktop.find(self._stage.win.title)
 
     def resize(self, width: int, height: int) -> None:
