@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tests.mlx.stage import Stage
 
 X_NAMES = {"shift": "Shift_L", "ctrl": "Control_L", "escape": "Escape", "tab": "Tab"}
-REST = 20  # looks at a main thread that sleeps all the while
+REST = 10  # looks at a main thread that sleeps all the while
 
 
 class ScreenUser(User):
@@ -68,9 +68,11 @@ class ScreenUser(User):
 
     def hold_until(self, key: str, enough: Callable[[], bool]) -> None:
         self._call(lambda: repeat_keys(True))
-        self.hold(key)
-        self.until(enough)
-        self._call(lambda: repeat_keys(False))
+        try:
+            self.hold(key)
+            self.until(enough)
+        finally:
+            self._call(lambda: repeat_keys(False))
 
     def let_go(self, key: str) -> None:
         self._desktop.keyup(X_NAMES.get(key, key))
