@@ -1,4 +1,4 @@
-"""What counts as a program that sleeps."""
+"""Looks at a program tell whether it slept all the while."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class NothingLeftError(Exception):
 
 @pytest.fixture
 def looks(monkeypatch: pytest.MonkeyPatch) -> list[dict[int, Thread]]:
-    """What looks at a process see, one after another; `until` looks as often as there is something to see."""
+    """The threads that looks at a process see, one after another; there are no more looks than these."""
     seen: list[dict[int, Thread]] = []
 
     def look(_: int) -> dict[int, Thread]:

@@ -183,7 +183,7 @@ class Desktop:
         return processes.run(["xwininfo", "-id", str(window)], env=self.environment).returncode == 0
 
     def screenshot(self, window: int) -> NDArray[np.uint8]:
-        """What the window shows: (h, w, 3) uint8, red, green, blue."""
+        """The picture that the window shows: (h, w, 3) uint8, red, green, blue."""
         return _pixels(self.run("xwd", "-silent", "-id", str(window)))
 
     @contextmanager

@@ -59,9 +59,9 @@ class ScreenUser(User):
         except BaseException as failure:
             self._failure = failure
         finally:
-            self._desktop.let_go()
             stage.m.mlx_wake_hook(stage.mlx, lambda _: stage.m.mlx_loop_exit(stage.mlx))
             stage.m.mlx_wake(stage.mlx)
+            self._desktop.let_go()
 
     def hold(self, key: str) -> None:
         self._desktop.keydown(X_NAMES.get(key, key))

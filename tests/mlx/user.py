@@ -22,7 +22,7 @@ KEYS = {"shift": Key.SHIFT_L, "ctrl": Key.CONTROL_L}
 
 
 class User(ABC):
-    """What a user can do with the stage's window."""
+    """The acts of a user at the stage's window, and waits for the program."""
 
     def keys(self, acts: str) -> None:
         """Hold down (+) and let go (-) keys, by their names on the board."""
