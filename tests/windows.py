@@ -14,10 +14,12 @@ Without the tools these tests are skipped; with MINIRT_REQUIRE_WINDOW=1 in the e
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 import select
 import shutil
+import signal
 import subprocess
 import tempfile
 from contextlib import ExitStack, contextmanager, suppress
@@ -28,6 +30,7 @@ import numpy as np
 import pytest
 
 from tests import processes, waiting
+from tests.idle import until_idle
 from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
@@ -38,6 +41,7 @@ if TYPE_CHECKING:
 TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd", "xwininfo", "setxkbmap")
 ROOT = Path(__file__).parent.parent
 SCREEN = (2560, 1600)  # its size in pixels
+MANAGER = "MINIRT_TEST_WINDOW_MANAGER"  # in the environment: the number of the window manager's process
 AT_ONCE = ("--delay", "0")  # for xdotool, which otherwise rests between pressing and letting go
 
 
@@ -69,6 +73,17 @@ class Desktop:
         """Whether a window manager answers, and has its list of windows."""
         asked = (processes.run(["wmctrl", option], env=self.environment) for option in ("-m", "-l"))
         return all(done.returncode == 0 for done in asked)
+
+    @contextmanager
+    def manager_stopped(self) -> Iterator[None]:
+        """Meanwhile the window manager does nothing: no new window is shown, and none gets the focus."""
+        manager = int(self.environment[MANAGER])
+        until_idle(manager, itertools.count().__next__, 3)  # it must not stop while the display is its alone
+        os.kill(manager, signal.SIGSTOP)
+        try:
+            yield
+        finally:
+            os.kill(manager, signal.SIGCONT)
 
     @contextmanager
     def program(self, *command: str, **options: Any) -> Iterator[subprocess.Popen[str]]:
@@ -164,8 +179,11 @@ class Desktop:
     def close_button(self, window: int) -> None:
         self.run("wmctrl", "-i", "-c", hex(window))
 
+    def is_there(self, window: int) -> bool:
+        return processes.run(["xwininfo", "-id", str(window)], env=self.environment).returncode == 0
+
     def screenshot(self, window: int) -> NDArray[np.uint8]:
-        """What the window shows: (h, w, 3) uint8, red, green, blue."""
+        """The picture that the window shows: (h, w, 3) uint8, red, green, blue."""
         return _pixels(self.run("xwd", "-silent", "-id", str(window)))
 
     @contextmanager
@@ -243,9 +261,12 @@ def open_desktop() -> Iterator[Desktop]:
         environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"}
         environment |= {"PYTHONPATH": str(ROOT), "XDG_CONFIG_HOME": home}
         environment["DISPLAY"] = stack.enter_context(_display())
-        stack.enter_context(_server(["openbox", "--sm-disable"], env=environment | {"XDG_CACHE_HOME": home}))
-        opened = Desktop(environment)
-        waiting.until(opened.is_managed, "openbox")
+        command = ["openbox", "--sm-disable"]
+        manager = stack.enter_context(_server(command, env=environment | {"XDG_CACHE_HOME": home}))
+        opened = Desktop(environment | {MANAGER: str(manager.pid)})
+        waiting.until(lambda: opened.is_managed() or manager.poll() is not None, "openbox")
+        if manager.poll() is not None:
+            raise RuntimeError("openbox did not start")
         yield opened
 
 
@@ -274,13 +295,14 @@ def _display() -> Iterator[str]:
 
 
 @contextmanager
-def _server(command: list[str], **options: Any) -> Iterator[None]:
+def _server(command: list[str], **options: Any) -> Iterator[subprocess.Popen[bytes]]:
     """Run a program that is asked to end, since it may have files to take away, before it is killed."""
     with processes.started(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **options) as process:
         try:
-            yield
+            yield process
         finally:
             process.terminate()
+            process.send_signal(signal.SIGCONT)  # a test that was killed may have stopped it
             process.wait(HANG_LIMIT)
 
 

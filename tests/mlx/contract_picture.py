@@ -152,15 +152,13 @@ def the_old_picture_is_stretched_until_the_next(stage: Stage) -> None:
 
 @scenario(["full", [2560, 1600]], ["back", [200, 100]], ["key", 122])
 def full_screen_and_back(stage: Stage) -> None:
-    """Keys go on working: where the window is made anew, the release of the key that asked for it is lost."""
+    """Keys go on working: where the window is made anew, the release of the key that asked for it may be lost."""
     sizes: list[list[int]] = []
 
     def acts(user: User) -> None:
         for number in (1, 2):
-            user.keys("+f")
+            user.press_for_another_window("f")
             user.until(lambda number=number: len(sizes) >= number)  # type: ignore[misc]
-            user.keys("-f")
-            user.find_again()
         user.keys("+z -z")
 
     def pressed(key: int, _: object) -> None:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tests.mlx.stage import Stage
 
 X_NAMES = {"shift": "Shift_L", "ctrl": "Control_L", "escape": "Escape", "tab": "Tab"}
-REST = 20  # looks at a main thread that sleeps all the while
+REST = 10  # looks at a main thread that sleeps all the while
 
 
 class ScreenUser(User):
@@ -59,18 +59,20 @@ class ScreenUser(User):
         except BaseException as failure:
             self._failure = failure
         finally:
-            self._desktop.let_go()
             stage.m.mlx_wake_hook(stage.mlx, lambda _: stage.m.mlx_loop_exit(stage.mlx))
             stage.m.mlx_wake(stage.mlx)
+            self._desktop.let_go()
 
     def hold(self, key: str) -> None:
         self._desktop.keydown(X_NAMES.get(key, key))
 
     def hold_until(self, key: str, enough: Callable[[], bool]) -> None:
         self._call(lambda: repeat_keys(True))
-        self.hold(key)
-        self.until(enough)
-        self._call(lambda: repeat_keys(False))
+        try:
+            self.hold(key)
+            self.until(enough)
+        finally:
+            self._call(lambda: repeat_keys(False))
 
     def let_go(self, key: str) -> None:
         self._desktop.keyup(X_NAMES.get(key, key))
@@ -93,7 +95,12 @@ class ScreenUser(User):
     def focus(self, window: Window) -> None:
         self._desktop.activate(self._ids[window])
 
-    def find_again(self) -> None:
+    def press_for_another_window(self, key: str) -> None:
+        old = self._id
+        with self._desktop.manager_stopped():
+            self.hold(key)
+            self.until(lambda: not self._desktop.is_there(old))
+            self.let_go(key)
         self._ids[self._stage.win] = self._desktop.find(self._stage.win.title)
 
     def resize(self, width: int, height: int) -> None:

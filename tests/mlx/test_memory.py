@@ -85,12 +85,17 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     return made
 
 
-@pytest.mark.parametrize("hook", [None, lambda _: None], ids=["asleep", "ticking"])
+def tick(ticks: list[int]) -> None:
+    ticks.append(1)
+    assert len(ticks) < 10_000, "it has no end"
+
+
+@pytest.mark.parametrize("hook", [None, tick], ids=["asleep", "ticking"])
 def test_a_program_that_does_not_end_is_an_error(clock: Clock, hook: Hook | None) -> None:
     m = Mlx(Memory(patience=PATIENCE))
     mlx = m.mlx_init()
     m.mlx_new_window(mlx, 10, 10, "for ever")
-    m.mlx_loop_hook(mlx, hook, None)
+    m.mlx_loop_hook(mlx, hook, [])
     start = clock.now
     with pytest.raises(MlxError, match=r"did not end within 20\.0 s"):
         m.mlx_loop(mlx)

@@ -1,4 +1,4 @@
-"""What works, and what is said, where there is no screen."""
+"""Programs on a machine without a screen: imports work, and errors say what to do."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ KEYS = {"shift": Key.SHIFT_L, "ctrl": Key.CONTROL_L}
 
 
 class User(ABC):
-    """What a user can do with the stage's window."""
+    """The acts of a user at the stage's window, and waits for the program."""
 
     def keys(self, acts: str) -> None:
         """Hold down (+) and let go (-) keys, by their names on the board."""
@@ -59,8 +59,11 @@ class User(ABC):
     def focus(self, window: Window) -> None: ...
 
     @abstractmethod
-    def find_again(self) -> None:
-        """Find the stage's window, which may be another one of the window system, and give it the focus."""
+    def press_for_another_window(self, key: str) -> None:
+        """Press a key that makes another window of the window system instead of the stage's, and let it go.
+
+        It is let go when the old window is not there any more, and the new one has not got the focus yet.
+        """
 
     @abstractmethod
     def resize(self, width: int, height: int) -> None: ...
@@ -159,8 +162,9 @@ class MemoryUser(User):
         self._memory.focus(True, window)
         self._focus = window
 
-    def find_again(self) -> None:
-        """Nothing to do: it is the same."""
+    def press_for_another_window(self, key: str) -> None:
+        """Windows are never made anew here."""
+        self.keys(f"+{key} -{key}")
 
     def resize(self, width: int, height: int) -> None:
         self._memory.resize(width, height, self._stage.win)

@@ -1,0 +1,70 @@
+"""The desktop for tests of windows: how it starts, what it says where it cannot, and what it leaves."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import pytest
+
+from tests import windows
+from tests.waiting import HANG_LIMIT
+from tests.windows import Desktop, open_desktop, require
+
+WINDOW = """
+from minirt.mlx import Mlx
+m = Mlx()
+mlx = m.mlx_init()
+m.mlx_new_window(mlx, 20, 10, "small")
+m.mlx_loop(mlx)
+"""
+
+
+@pytest.fixture
+def without_xdotool_and_wmctrl(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(windows.shutil, "which", lambda tool: None if tool in ("xdotool", "wmctrl") else tool)
+
+
+def test_a_skipped_test_says_what_is_missing_and_how_to_install_it(without_xdotool_and_wmctrl, monkeypatch):
+    monkeypatch.delenv("MINIRT_REQUIRE_WINDOW", raising=False)
+    with pytest.raises(pytest.skip.Exception, match=r"need xdotool, wmctrl; .*: apt-get install .*\bxdotool wmctrl\b"):
+        require()
+
+
+def test_where_windows_are_required_it_fails(without_xdotool_and_wmctrl, monkeypatch):
+    monkeypatch.setenv("MINIRT_REQUIRE_WINDOW", "1")
+    with pytest.raises(pytest.fail.Exception, match="apt-get install"):
+        require()
+
+
+@pytest.mark.window
+def test_a_desktop_whose_window_manager_does_not_start_leaves_no_display(desktop, tmp_path, monkeypatch):
+    broken = tmp_path / "openbox"
+    broken.write_text(f'#!/bin/sh\necho "$DISPLAY" >{tmp_path}/display\nexit 1\n')
+    broken.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    with pytest.raises(RuntimeError, match="openbox did not start"), open_desktop():
+        pass
+    display = (tmp_path / "display").read_text().strip()
+    assert not Desktop(desktop.environment | {"DISPLAY": display}).is_managed()
+    assert not os.path.lexists(f"/tmp/.X{display[1:]}-lock")
+
+
+@pytest.mark.window
+def test_a_program_leaves_no_window(desktop):
+    with desktop.program(sys.executable, "-c", WINDOW) as process:
+        window = desktop.find("small")
+        assert desktop.is_there(window)
+        assert desktop.windows() == [(window, "small")]
+    assert process.wait(HANG_LIMIT) < 0
+    assert desktop.windows() == []
+    assert not desktop.is_there(window)
+
+
+@pytest.mark.window
+def test_a_program_that_opens_no_window_fails_at_once_and_says_why(desktop):
+    with (
+        desktop.program(sys.executable, "-c", "import sys; sys.exit('no such scene')"),
+        pytest.raises(AssertionError, match="no such scene"),
+    ):
+        desktop.find("small")
