@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection
 import numpy as np
 import pytest
 
-from minirt import timing
+from minirt import bench, timing
 from minirt.kernel.frame import DOWN
 from minirt.rendering import auto, renderer
 from minirt.rendering.frames import Frame
@@ -48,7 +48,7 @@ def simulated(patch: pytest.MonkeyPatch) -> Clock:
         clock.rendered(sum(map(packets_of, frames)))
 
     patch.setattr(renderer.Renderer, "run", counted)
-    for module in (timing, auto, renderer, pictures):
+    for module in (timing, auto, renderer, pictures, bench):
         patch.setattr(module, "perf_counter", lambda: clock.wall)
     patch.setattr(timing, "process_time", clock.cpu)
     patch.setattr(kernels, "in_turn", in_turn)

@@ -15,6 +15,7 @@ class Terminal:
     def __init__(self, reader: int, end: int) -> None:
         self.reader, self.end = reader, end
         self.text = b""
+        self.seen = 0  # characters of it that were waited for
         self.is_open = True
 
     def read(self) -> bytes:
@@ -32,11 +33,15 @@ class Terminal:
         return self.text
 
     def wait_for(self, words: bytes) -> None:
-        """Wait until a program has written these words; AssertionError where it ends without them."""
+        """Wait until a program has written these words, after those of the last wait; AssertionError where it ends
+        without them."""
 
         def are_there() -> bool:
-            assert words in self.read() or self.is_open, self.text
-            return words in self.text
+            self.read()
+            found = self.text.find(words, self.seen)
+            assert found >= 0 or self.is_open, self.text
+            self.seen = self.seen if found < 0 else found + len(words)
+            return found >= 0
 
         until(are_there, repr(words))
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.processes import run, started
+from tests.terminals import Terminal
 from tests.waiting import HANG_LIMIT
 
 ROOT = Path(__file__).parent.parent.parent
@@ -22,6 +23,7 @@ sp 0,0,0 2 10,0,255
 pl 0,-1,0 0,1,0 200,200,200
 """
 PROGRAM = [sys.executable, "-m", "minirt"]
+TELLING = [sys.executable, "-m", "tests.cli.telling"]
 
 
 class Ended(NamedTuple):
@@ -49,9 +51,10 @@ def program(folder: Path, *arguments: str) -> Ended:
     return Ended(ended.returncode, ended.stdout, ended.stderr.decode())
 
 
-def interrupt(process: subprocess.Popen[bytes]) -> tuple[int, bytes, bytes]:
-    """Send what Ctrl+C in a terminal sends, to the program and to all that it started; its status, and what it wrote to
-    standard output and to standard error where these are pipes."""
+def interrupt(process: subprocess.Popen[bytes], told: Terminal) -> tuple[int, bytes]:
+    """Send what Ctrl+C in its terminal sends, to the program and to all that it started; its status, and what it has
+    written to standard output. What it wrote in the terminal is `told.text`."""
     os.killpg(process.pid, signal.SIGINT)
-    out, err = process.communicate(timeout=HANG_LIMIT)
-    return process.returncode, out, err
+    told.wait_for_end()
+    out, _ = process.communicate(timeout=HANG_LIMIT)
+    return process.returncode, out

@@ -15,6 +15,7 @@ from minirt import arguments
 from minirt.kernel import whitted
 from minirt.rendering import traits
 from tests.cli.program import ROOT, SCENE, Ended
+from tests.simulated import PACKET, packets, simulated
 
 Run = Callable[..., Ended]
 
@@ -134,19 +135,30 @@ def test_the_subjects_own_example_is_read_leniently(run: Run, folder: Path) -> N
     assert (folder / "printed.png").exists()
 
 
-def test_bench_says_what_it_measured(run: Run) -> None:
+def test_bench_says_what_it_measured(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a clock on which a packet of rays takes a millisecond."""
+    clock = simulated(monkeypatch)
+    clock.slowness = 1e-3 / PACKET
     ended = run("ball.rt", "--bench", "--json", "--size", "16x9", "--threads", "2")
     assert (ended.status, ended.err) == (0, "")
-    measured = json.loads(ended.out)
-    assert [*measured] == [
-        "scene", "size", "threads", "precision", "frames", "ms_min", "ms_median", "compile_s", "load_s",
-    ]  # fmt: skip
-    assert (measured["scene"], measured["size"], measured["threads"]) == ("ball.rt", "16x9", 2)
-    assert measured["precision"] == "double"
-    assert 0 < measured["ms_min"] <= measured["ms_median"] < 1000
-    assert measured["frames"] >= 9
-    text = run("ball.rt", "--bench", "--size", "16x9").out.decode()
-    assert text.startswith("scene ball.rt, size 16x9, threads ")
+    frame = packets(16, 9)
+    assert json.loads(ended.out) == {
+        "scene": "ball.rt",
+        "size": "16x9",
+        "threads": 2,
+        "precision": "double",
+        "frames": -(-1000 // frame),  # of a second
+        "ms_min": frame,
+        "ms_median": frame,
+        "compile_s": 0.001,  # until there is a picture of one pixel
+        "load_s": 0.0,
+    }
+    clock.slowness *= 100
+    text = run("ball.rt", "--bench", "--size", "16x9", "--threads", "2").out.decode()
+    assert text == (
+        "scene ball.rt, size 16x9, threads 2, precision double, "
+        f"frames 9, ms_min {frame * 100.0}, ms_median {frame * 100.0}, compile_s 0.1, load_s 0.0\n"
+    )
 
 
 def test_version(run: Run) -> None:

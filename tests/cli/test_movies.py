@@ -10,7 +10,8 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 import minirt
-from tests.cli.program import Ended, interrupt, start
+from tests.cli.program import TELLING, Ended, interrupt, start
+from tests.cli.telling import RENDERING
 from tests.terminals import terminal
 
 Run = Callable[..., Ended]
@@ -47,12 +48,14 @@ def test_a_replay_becomes_a_film(run: Run, folder: Path) -> None:
 
 @pytest.mark.parametrize("name", ["spin.gif", "spin.png"])
 def test_an_interrupt_leaves_no_half_file(folder: Path, name: str) -> None:
-    hours = "--turntable", "3600", "--size", "640x360", "--samples", "64", "--threads", "1"
-    with terminal() as told, start(folder, "ball.rt", "-o", name, *hours, stderr=told.end) as process:
+    """In the third of many pictures."""
+    arguments = "ball.rt", "-o", name, "--turntable", "3600", "--size", "640x360", "--samples", "64", "--threads", "1"
+    with terminal() as told, start(folder, *arguments, command=TELLING, stderr=told.end) as process:
         told.leave()
         told.wait_for(b"picture 2 of 3600")
-        assert interrupt(process)[:2] == (130, b"")
-        assert b"Traceback" not in told.wait_for_end()
+        told.wait_for(RENDERING)
+        assert interrupt(process, told) == (130, b"")
+    assert b"Traceback" not in told.text
     written = [file for file in folder.iterdir() if file.name != "ball.rt"]
     assert {file.name for file in written} >= ({"spin-0001.png", "spin-0002.png"} if name == "spin.png" else set())
     assert all(file.name.startswith("spin-") for file in written)

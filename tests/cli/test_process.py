@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import environment, interrupt, program, start
+from tests.cli.program import TELLING, environment, interrupt, program, start
+from tests.cli.telling import RENDERING
 from tests.processes import run
+from tests.terminals import terminal
 from tests.waiting import HANG_LIMIT
 
 LOADED = "import sys; print(*sorted({each.split('.')[0] for each in sys.modules}), *sorted(sys.modules))"
@@ -79,11 +81,12 @@ def test_help_and_version_come_at_once(folder: Path, option: str) -> None:
 
 def test_an_interrupt_ends_a_long_render_without_a_trace(folder: Path) -> None:
     (folder / "x.png").write_bytes(b"old")
-    hours = "--size", "1920x1080", "--samples", "65536", "--threads", "2"
-    with start(folder, "ball.rt", "-o", "x.png", "-v", *hours) as process:
-        assert process.stderr is not None
-        assert process.stderr.readline().startswith(b"kernel ready after ")
-        assert interrupt(process) == (130, b"", b"")
+    arguments = "ball.rt", "-o", "x.png", "--size", "1920x1080", "--samples", "65536", "--threads", "2"  # hours
+    with terminal() as told, start(folder, *arguments, command=TELLING, stderr=told.end) as process:
+        told.leave()
+        told.wait_for(RENDERING)
+        assert interrupt(process, told) == (130, b"")
+    assert told.text.split() == [RENDERING]
     assert (folder / "x.png").read_bytes() == b"old"
     assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
 

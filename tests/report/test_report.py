@@ -25,6 +25,7 @@ from minirt.scene import Scene, dump
 from minirt.shapes import KINDS
 from tests.cli.conftest import folder, run
 from tests.cli.program import Ended, interrupt, start
+from tests.cli.telling import RENDERING
 from tests.kernel.pictures import ALL, AMBIENT, EYE
 from tests.simulated import PACKET, Clock, packets, simulated
 from tests.terminals import terminal
@@ -194,10 +195,13 @@ from minirt import cli
 from minirt.report import kernels, making, plan
 from minirt.report.pictures import Budget
 from minirt.timing import runs
+from tests.cli.telling import tell
 
 def endless(work, least, seconds):
     print("fitting", file=sys.stderr, flush=True)
     return runs(work, 10**9, seconds)
+
+tell()
 
 phase, short = sys.argv.pop(1), making.QUICK._replace(samples=64, seconds=1e30, budget=Budget(0.0, inf, tries=1))
 making.FULL = short
@@ -223,8 +227,10 @@ def test_an_interrupt_leaves_no_files(folder: Path, phase: str) -> None:
     ):
         told.leave()
         told.wait_for(phase.encode())
+        if phase != "sphere, benign":
+            told.wait_for(RENDERING)
         assert [*folder.glob("out/*")] == []
-        assert interrupt(process)[:2] == (130, b"")
-        assert told.wait_for_end().endswith(b"\r\x1b[K")
+        assert interrupt(process, told) == (130, b"")
+    assert told.text.endswith(b"\r\x1b[K")
     assert b"Traceback" not in told.text
     assert [*folder.glob("out/*")] == []

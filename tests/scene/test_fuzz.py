@@ -1,14 +1,13 @@
-"""Damaged files give a scene or a SceneError, soon, and nothing else."""
+"""Damaged files give a scene or a SceneError, and nothing else."""
 
 from __future__ import annotations
-
-from datetime import timedelta
 
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from minirt.errors import SceneError
 from minirt.scene import dump, parse
+from tests.hangs import ends
 from tests.scene.examples import CYLINDER, SUBJECT, WHOLE
 from tests.scene.strategies import texts
 
@@ -51,7 +50,6 @@ ODD += [
     "C 0,0,0 0,0,1 7",
 ]
 LIGHTS = "C 0,0,0 0,0,0 7 roll:3\nL 0,0,0 1\nL 0, 0, 0 1 2.5,0,0 // a\nL 0,0,0,0 .5 1,2,3\nl 0,0,0 1\n"  # lenient only
-SOON = timedelta(seconds=5)  # a hundred times what the slowest takes
 
 
 @st.composite
@@ -71,7 +69,8 @@ def survives(text: str | bytes) -> None:
     accepted = []
     for lenient in (False, True):
         try:
-            scene = parse(text, "test.rt", lenient).scene
+            with ends():
+                scene = parse(text, "test.rt", lenient).scene
         except SceneError as error:
             refused = error
         else:
@@ -84,13 +83,13 @@ def survives(text: str | bytes) -> None:
 
 
 @given(damaged())
-@settings(max_examples=400, deadline=SOON)
+@settings(max_examples=400)
 def test_a_damaged_file(text: str) -> None:
     survives(text)
 
 
 @given(st.text())
-@settings(max_examples=200, deadline=SOON)
+@settings(max_examples=200)
 @example("sp 0,0,0 1 1,1,1,\n,")
 @example("\r")
 @example(" ,")
@@ -99,7 +98,7 @@ def test_any_text(text: str) -> None:
 
 
 @given(st.binary())
-@settings(max_examples=200, deadline=SOON)
+@settings(max_examples=200)
 def test_any_bytes(data: bytes) -> None:
     survives(data)
 

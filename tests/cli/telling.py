@@ -1,0 +1,42 @@
+"""python -m tests.cli.telling: the program, which tells on standard error when threads are at work on a picture.
+
+So a test that interrupts it has an event to wait for.
+"""
+
+from __future__ import annotations
+
+import sys
+from threading import Thread
+from time import sleep
+from typing import Any
+
+from minirt.cli import main
+from minirt.rendering import Renderer
+from minirt.rendering.frames import Frame
+from tests.waiting import POLL
+
+RENDERING = b"rendering"
+
+
+def tell() -> None:
+    """Tell of each picture from now on, but for those of a pixel, for which kernels are compiled."""
+    run = Renderer.run
+
+    def telling(self: Renderer, frames: list[Frame], threads: int) -> None:
+        if frames[0].pixels.size > 1:
+            Thread(target=watch, args=(frames[0].next_row,), daemon=True).start()
+        run(self, frames, threads)
+
+    Renderer.run = telling  # type: ignore[method-assign]
+
+
+def watch(next_row: Any) -> None:
+    """Tell when a thread has taken the first row."""
+    while not next_row[0]:
+        sleep(POLL)
+    print(RENDERING.decode(), file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    tell()
+    sys.exit(main())
