@@ -63,12 +63,14 @@ def viewing(
     cache: Path | None = None,
     more: tuple[str, ...] = (),
     program: str = "minirt",
+    text: str = TEXT,
 ) -> Iterator[Viewer]:
-    """`cache`: an empty folder, for a program that has to compile first; `more` arguments."""
+    """A window with the scene `text`. `cache`: an empty folder, for a program that has to compile first; `more`
+    arguments; `program`: its module."""
     command = [sys.executable, "-W", "error", "-m", program, str(path), "--size", f"{size[0]}x{size[1]}", *more]
     if cache:
         command = ["env", f"XDG_CACHE_HOME={cache}", *command]
-    path.write_text(TEXT)
+    path.write_text(text)
     with desktop.program(*command) as process:
         yield Viewer(desktop, process, desktop.find(f"miniRT - {path.name}"), path)
 
