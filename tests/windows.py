@@ -14,20 +14,23 @@ Without the tools these tests are skipped; with MINIRT_REQUIRE_WINDOW=1 in the e
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 import select
 import shutil
+import signal
 import subprocess
 import tempfile
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
 from tests import processes, waiting
+from tests.idle import until_idle
 from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
@@ -37,6 +40,9 @@ if TYPE_CHECKING:
 
 TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd", "xwininfo", "setxkbmap")
 ROOT = Path(__file__).parent.parent
+SCREEN = (2560, 1600)  # its size in pixels
+MANAGER = "MINIRT_TEST_WINDOW_MANAGER"  # in the environment: the number of the window manager's process
+AT_ONCE = ("--delay", "0")  # for xdotool, which otherwise rests between pressing and letting go
 
 
 def until(condition: Callable[[], bool], what: str, _seconds: float = HANG_LIMIT) -> None:
@@ -55,36 +61,59 @@ class Desktop:
     def run(self, *command: str) -> bytes:
         """Standard output of a command; CalledProcessError where it fails, TimeoutExpired where it hangs."""
         done = processes.run(command, env=self.environment)
-        done.check_returncode()
+        try:
+            done.check_returncode()
+        except subprocess.CalledProcessError as error:
+            error.add_note(done.stderr.decode(errors="replace"))
+            raise
         output: bytes = done.stdout
         return output
 
     def is_managed(self) -> bool:
-        """Whether a window manager answers."""
-        return processes.run(["wmctrl", "-m"], env=self.environment).returncode == 0
+        """Whether a window manager answers, and has its list of windows."""
+        asked = (processes.run(["wmctrl", option], env=self.environment) for option in ("-m", "-l"))
+        return all(done.returncode == 0 for done in asked)
 
     @contextmanager
-    def program(self, *command: str) -> Iterator[subprocess.Popen[str]]:
-        """Start a program on this desktop, from the project's root; afterwards neither it nor its windows are left."""
-        with self._left_as_it_was():
-            pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-            with processes.started(command, env=self.environment, cwd=ROOT, text=True, **pipes) as process:
-                self._programs.append(process)
-                try:
-                    yield process
-                finally:
-                    self._programs.remove(process)
+    def manager_stopped(self) -> Iterator[None]:
+        """Meanwhile the window manager does nothing: no new window is shown, and none gets the focus."""
+        manager = int(self.environment[MANAGER])
+        until_idle(manager, itertools.count().__next__, 3)  # it must not stop while the display is its alone
+        os.kill(manager, signal.SIGSTOP)
+        try:
+            yield
+        finally:
+            os.kill(manager, signal.SIGCONT)
 
-    def find(self, title: str) -> int:
-        """Wait for the window of this title, until it has the focus; AssertionError where no program is left."""
+    @contextmanager
+    def program(self, *command: str, **options: Any) -> Iterator[subprocess.Popen[str]]:
+        """Start a program on this desktop, from the project's root; afterwards neither it nor its windows are left.
+
+        `options` are those of `subprocess.Popen`; by default standard output and standard error are pipes.
+        """
+        options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
+        started = processes.started(command, env=self.environment, cwd=ROOT, text=True, **options)
+        with self._left_as_it_was(), started as process:
+            self._programs.append(process)
+            try:
+                yield process
+            finally:
+                self._programs.remove(process)
+
+    def find(self, title: str, size: tuple[int, int] | None = None) -> int:
+        """Wait for the window of this title, and of this size, until it has the focus.
+
+        AssertionError where no program is left that could open it.
+        """
         found: list[int] = []
 
         def look() -> bool:
             self._expect_a_program()
-            with suppress(subprocess.CalledProcessError, IndexError):  # not there yet, or on its way to another place
+            with _windows_may_go():  # the program may make another one instead
                 found[:] = [window for window, name in self.windows() if name == title]
-                self.activate(found[0])
-                return True
+                if found and size in (None, self.size(found[0])):
+                    self.activate(found[0])
+                    return True
             return False
 
         waiting.until(look, f"a window called {title}")
@@ -107,14 +136,14 @@ class Desktop:
     def key(self, window: int, *names: str) -> None:
         """Press and release; xdotool's names, such as Escape, shift+Tab."""
         self.activate(window)
-        self.run("xdotool", "key", *names)
+        self.run("xdotool", "key", *AT_ONCE, *names)
 
     def keydown(self, name: str) -> None:
         self._held.append(name)
-        self.run("xdotool", "keydown", name)
+        self.run("xdotool", "keydown", *AT_ONCE, name)
 
     def keyup(self, name: str) -> None:
-        self.run("xdotool", "keyup", name)
+        self.run("xdotool", "keyup", *AT_ONCE, name)
         self._held.remove(name)
 
     def let_go(self) -> None:
@@ -127,8 +156,8 @@ class Desktop:
 
     def click(self, window: int, x: int, y: int, button: int = 1) -> None:
         """Buttons 4 to 7 turn the wheel."""
-        self.move(window, x, y)
-        self.run("xdotool", "click", str(button))
+        move = ("mousemove", "--window", str(window), str(x), str(y))
+        self.run("xdotool", *move, "click", *AT_ONCE, str(button))
 
     def resize(self, window: int, width: int, height: int) -> None:
         self.run("xdotool", "windowsize", str(window), str(width), str(height))
@@ -150,6 +179,9 @@ class Desktop:
     def close_button(self, window: int) -> None:
         self.run("wmctrl", "-i", "-c", hex(window))
 
+    def is_there(self, window: int) -> bool:
+        return processes.run(["xwininfo", "-id", str(window)], env=self.environment).returncode == 0
+
     def screenshot(self, window: int) -> NDArray[np.uint8]:
         """What the window shows: (h, w, 3) uint8, red, green, blue."""
         return _pixels(self.run("xwd", "-silent", "-id", str(window)))
@@ -162,7 +194,7 @@ class Desktop:
         finally:
             self.let_go()
             if not self._programs:
-                waiting.until(lambda: not self.windows(), "the end of all windows")
+                waiting.until(self._is_empty, "the end of all windows")
 
     def _expect_a_program(self) -> None:
         """Fail at once, and say why, where no window can come any more."""
@@ -172,6 +204,11 @@ class Desktop:
             ends = [(process.returncode, *process.communicate()) for process in self._programs]
             raise AssertionError(f"no program is left that could open a window: {ends}")
 
+    def _is_empty(self) -> bool:
+        with _windows_may_go():
+            return not self.windows()
+        return False
+
     def _active(self) -> int | None:
         """The window that has the focus."""
         with suppress(subprocess.CalledProcessError):  # there is none
@@ -180,6 +217,16 @@ class Desktop:
 
     def _is_shown(self, window: int) -> bool:
         return b"Map State: IsViewable" in self.run("xwininfo", "-id", str(window))
+
+
+@contextmanager
+def _windows_may_go() -> Iterator[None]:
+    """Leave the block where a window of it goes meanwhile, as nobody can tell when."""
+    try:
+        yield
+    except subprocess.CalledProcessError as error:
+        if not re.search(rb"Bad(Window|Drawable)", error.stderr):  # by where a tool was when it went
+            raise
 
 
 @pytest.fixture(scope="session")
@@ -214,9 +261,12 @@ def open_desktop() -> Iterator[Desktop]:
         environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"}
         environment |= {"PYTHONPATH": str(ROOT), "XDG_CONFIG_HOME": home}
         environment["DISPLAY"] = stack.enter_context(_display())
-        stack.enter_context(_server(["openbox", "--sm-disable"], env=environment | {"XDG_CACHE_HOME": home}))
-        opened = Desktop(environment)
-        waiting.until(opened.is_managed, "openbox")
+        command = ["openbox", "--sm-disable"]
+        manager = stack.enter_context(_server(command, env=environment | {"XDG_CACHE_HOME": home}))
+        opened = Desktop(environment | {MANAGER: str(manager.pid)})
+        waiting.until(lambda: opened.is_managed() or manager.poll() is not None, "openbox")
+        if manager.poll() is not None:
+            raise RuntimeError("openbox did not start")
         yield opened
 
 
@@ -231,7 +281,8 @@ def _display() -> Iterator[str]:
         reader, writer = os.pipe()
         number = stack.enter_context(os.fdopen(reader))
         with os.fdopen(writer):
-            command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", "2560x1600x24", "-nolisten", "tcp"]
+            width, height = SCREEN
+            command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp"]
             command += ["-noreset"]  # or it starts afresh, without openbox, when its last client leaves
             command += ["-r", "-ardelay", "100", "-arinterval", "20"]  # milliseconds, where a test turns it on
             stack.enter_context(_server(command, pass_fds=(writer,)))
@@ -244,13 +295,14 @@ def _display() -> Iterator[str]:
 
 
 @contextmanager
-def _server(command: list[str], **options: object) -> Iterator[None]:
+def _server(command: list[str], **options: Any) -> Iterator[subprocess.Popen[bytes]]:
     """Run a program that is asked to end, since it may have files to take away, before it is killed."""
     with processes.started(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **options) as process:
         try:
-            yield
+            yield process
         finally:
             process.terminate()
+            process.send_signal(signal.SIGCONT)  # a test that was killed may have stopped it
             process.wait(HANG_LIMIT)
 
 

@@ -27,39 +27,46 @@ def name(key: str) -> str:
     return "+".join([*(word.lower() for word in held), last])
 
 
-def command(window: int, text: str) -> list[str]:
-    """The arguments of xdotool that do a line."""
-    words = Line("hands", 1, text).words
+def command(window: int, words: list[str]) -> list[str]:
+    """The arguments of xdotool that do a line. It waits nowhere but where the line says so."""
     at = ["mousemove", "--window", str(window)]
     match words:
         case ["press" | "down" | "up" as how, key]:
-            found = [{"press": "key", "down": "keydown", "up": "keyup"}[how], name(key)]
+            found = [{"press": "key", "down": "keydown", "up": "keyup"}[how], "--delay", "0", name(key)]
         case ["move", place]:
             found = [*at, *place.split(",")]
         case ["click", place, *button]:
-            found = [*at, *place.split(","), "click", BUTTONS[button[0] if button else "left"]]
+            found = [*at, *place.split(","), "click", "--delay", "0", BUTTONS[button[0] if button else "left"]]
         case ["wheel", way, *count]:
-            found = ["click", "--delay", "5", "--repeat", count[0] if count else "1", BUTTONS[way]]
+            found = ["click", "--delay", "0", "--repeat", count[0] if count else "1", BUTTONS[way]]
         case ["drag", start, end, *button]:
             number = BUTTONS[button[0] if button else "left"]
             (x, y), (to_x, to_y) = (map(int, place.split(",")) for place in (start, end))
-            moves = [*at, str((x + to_x) // 2), str((y + to_y) // 2), "sleep", "0.02", *at, str(to_x), str(to_y)]
-            found = [*at, str(x), str(y), "mousedown", number, *moves, "sleep", "0.02", "mouseup", number]
+            moves = [*at, str((x + to_x) // 2), str((y + to_y) // 2), *at, str(to_x), str(to_y)]
+            found = [*at, str(x), str(y), "mousedown", number, *moves, "mouseup", number]
         case ["wait", seconds]:
             found = ["sleep", seconds]
-        case ["hide"]:
-            found = ["windowminimize", str(window)]
-        case ["show"]:
-            found = ["windowactivate", "--sync", str(window)]
         case ["resize", size]:
             found = ["windowsize", str(window), *size.split("x")]
         case _:
-            raise ValueError(text)
+            raise ValueError(words)
     return found
 
 
 def do(desktop: Desktop, window: int, *lines: str) -> None:
     """Do the lines, one after the other."""
-    arguments = [word for line in lines for word in command(window, line)]
+    arguments: list[str] = []
+    for line in lines:
+        match Line("hands", 1, line).words:
+            case ["hide" | "show" as how]:
+                xdotool(desktop, arguments)
+                arguments = []
+                (desktop.minimise if how == "hide" else desktop.restore)(window)
+            case words:
+                arguments += command(window, words)
+    xdotool(desktop, arguments)
+
+
+def xdotool(desktop: Desktop, arguments: list[str]) -> None:
     if arguments:
         desktop.run("xdotool", *arguments)

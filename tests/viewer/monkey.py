@@ -12,7 +12,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,8 +22,8 @@ from minirt.viewer.bindings import BINDINGS
 from minirt.viewer.chords import MOUSE
 from tests.viewer.hands import do
 from tests.viewer.resting import until_at_rest, until_events_are_done
-from tests.waiting import HANG_LIMIT, until
-from tests.windows import Desktop, open_desktop
+from tests.waiting import HANG_LIMIT
+from tests.windows import SCREEN, Desktop, open_desktop
 
 TEXT = """\
 A 0.2 255,255,255
@@ -39,7 +38,6 @@ KEPT_AWAY = {"quit"}
 SELDOM = {"save", "save copy", "screenshot", "reload", "toggle help", "toggle full screen", "delete"}
 FULL_SCREEN = [f"press {key}" for each in BINDINGS if each.action == "toggle full screen" for key in each.keys]
 OTHERS = (TEXT, TEXT.replace("A 0.2", "A 0.6"), "A 0.2\n", "sp", "", TEXT + "sp 1,1,1 0.5 9,99,200 mirror:0.4\n")
-SCREEN = (2560, 1600)
 BATCH = 15  # lines between two looks at the program
 FILE_CHANGES = 0.15  # how often another program writes the file then
 SETTLED = 0.5  # of the play: what the program needs to have seen everything once
@@ -110,12 +108,13 @@ class Play:
         self.lines = lines(self.chance)
         self.done = 0
         self.size = SIZE  # of the window, while it does not fill the screen
+        self.wanted = SIZE
         self.fills_screen = False
         self.find()
 
     def find(self) -> None:
         """Another window may be the program's since the screen was filled or left."""
-        self.window = self.desktop.find(f"miniRT - {self.path.name}")
+        self.window = self.desktop.find(f"miniRT - {self.path.name}", SCREEN if self.fills_screen else self.size)
 
     def batch(self) -> None:
         """Some lines, and now and then another program that writes the file."""
@@ -137,46 +136,36 @@ class Play:
             written.unlink()
 
     def do(self, *batch: str) -> None:
-        """Do lines; wait where the window manager has something to do, or where it would come too late."""
+        """Do lines; wait where the window manager has something to do, or where they say so."""
         ready: list[str] = []
         for line in batch:
-            word, _, rest = line.partition(" ")
-            if word not in ("hide", "show", "resize", "wait"):
+            word, _, size = line.partition(" ")
+            if word not in ("resize", "wait"):
                 ready.append(line)
                 continue
             do(self.desktop, self.window, *ready)
             ready.clear()
-            if word == "hide":
-                self.desktop.minimise(self.window)
-            elif word == "show":
-                self.desktop.restore(self.window)
-            elif word == "resize":
-                width, height = rest.split("x")
-                self.resize(int(width), int(height))
+            if word == "resize":
+                width, height = size.split("x")
+                self.resize((int(width), int(height)))
             else:
                 until_events_are_done(self.process.pid)
         do(self.desktop, self.window, *ready)
 
-    def resize(self, width: int, height: int) -> None:
-        """Resize the window; one that fills the screen is asked to, and has that size when it leaves the screen."""
-        self.size = width, height
+    def resize(self, size: tuple[int, int]) -> None:
+        """Resize the window; one that fills the screen is asked to in vain, and again when it has left the screen."""
+        self.wanted = size
         if self.fills_screen:
-            do(self.desktop, self.window, f"resize {width}x{height}")
+            do(self.desktop, self.window, f"resize {size[0]}x{size[1]}")
         else:
-            self.desktop.resize(self.window, width, height)
+            self.desktop.resize(self.window, *size)
+            self.size = size
 
     def await_full_screen(self) -> None:
         """Wait until the window fills the screen, or does no more, after the key for that."""
         self.fills_screen = not self.fills_screen
-
-        def changed() -> bool:
-            self.find()
-            with suppress(subprocess.CalledProcessError):  # it went while we looked
-                return (self.desktop.size(self.window) == SCREEN) == self.fills_screen
-            return False
-
-        until(changed, "the other kind of window")
-        self.resize(*self.size)
+        self.find()
+        self.resize(self.wanted)
         self.do("move 0,0")
 
     def write(self, text: str) -> None:

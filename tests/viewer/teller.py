@@ -1,6 +1,6 @@
 """The viewer, which tells what rows of the table its keys led to, in a file: a line for each.
 
-python -m tests.viewer.teller SCENE LAYOUT FILE
+python -m tests.viewer.teller LAYOUT FILE SCENE...      # one scene after the other
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from minirt.viewer.session import Session
 from tests.viewer.fake import FakeRenderer
 
 
-def main(scene: str, layout: str, file: str) -> int:
+def main(layout: str, file: str, *scenes: str) -> int:
+    """The first status that is not 0, or 0."""
     act = Session.act
 
     def told(session: Session, binding: Binding, step: float) -> None:
@@ -24,7 +25,10 @@ def main(scene: str, layout: str, file: str) -> int:
             lines.write(f"{binding.action}\n")
 
     Session.act = told  # type: ignore[method-assign]
-    return run(load(scene).scene, path=scene, size=(320, 240), keys=layout, renderer=FakeRenderer())
+    statuses = (
+        run(load(scene).scene, path=scene, size=(320, 240), keys=layout, renderer=FakeRenderer()) for scene in scenes
+    )
+    return next((status for status in statuses if status), 0)
 
 
 if __name__ == "__main__":

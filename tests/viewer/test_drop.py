@@ -9,7 +9,7 @@ import pytest
 
 import minirt
 from tests.viewer.test_real_window import TEXT, picture, viewing
-from tests.windows import until
+from tests.waiting import until
 
 pytestmark = pytest.mark.window
 

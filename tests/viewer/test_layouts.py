@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,11 +13,13 @@ from minirt.viewer.bindings import BINDINGS
 from tests.viewer.fake import TEXT
 from tests.viewer.hands import do
 from tests.viewer.test_help import LAYOUTS, MOUSE
-from tests.windows import Desktop, until
+from tests.waiting import HANG_LIMIT, until
+from tests.windows import SCREEN, Desktop
 
 pytestmark = pytest.mark.window
 
 COUNTRIES = dict(zip(LAYOUTS, ("us", "fr", "de"), strict=True))
+SIZE = (320, 240)
 LAST = ("toggle full screen", "quit")  # the window may be another afterwards, or none
 
 
@@ -32,23 +33,24 @@ def keyboard(desktop: Desktop, country: str) -> Iterator[None]:
         desktop.run("setxkbmap", "us")
 
 
-@contextmanager
-def telling(desktop: Desktop, folder: Path, keys: str) -> Iterator[tuple[subprocess.Popen[str], Path]]:
-    """The viewer, and the file into which it tells what keys led to."""
-    scene, told = folder / "scene.rt", folder / "told"
-    scene.write_text(TEXT)
-    told.write_text("")
-    command = [sys.executable, "-W", "error", "-m", "tests.viewer.teller", str(scene), keys, str(told)]
-    with keyboard(desktop, COUNTRIES[keys]), desktop.program(*command) as process:
-        yield process, told
+class Teller:
+    """The running viewer of scenes, and the file into which it tells what keys led to."""
 
+    def __init__(self, desktop: Desktop, told: Path) -> None:
+        self.desktop = desktop
+        self._told = told
 
-def press(desktop: Desktop, told: Path, keys: list[str]) -> None:
-    """Press keys, and wait until all of them led to something."""
-    window = desktop.find("miniRT - scene.rt")
-    count = len(told.read_text().splitlines()) + len(keys)
-    do(desktop, window, *(f"press {key}" for key in keys), "wait 0.2")
-    until(lambda: len(told.read_text().splitlines()) >= count, f"what {keys} led to", 20)
+    @property
+    def told(self) -> list[str]:
+        """The rows so far."""
+        return self._told.read_text().splitlines()
+
+    def press(self, scene: Path, size: tuple[int, int], *keys: str) -> None:
+        """Press keys in the window of that scene and size, and wait until all of them led to something."""
+        window = self.desktop.find(f"miniRT - {scene.name}", size)
+        count = len(self.told) + len(keys)
+        do(self.desktop, window, *(f"press {key}" for key in keys))
+        until(lambda: len(self.told) >= count, f"what {keys} led to")
 
 
 @pytest.mark.parametrize("keys", LAYOUTS)
@@ -57,18 +59,21 @@ def test_every_key_leads_to_its_row(desktop: Desktop, tmp_path: Path, keys: str)
     usual = [(key, action) for key, action in table if action not in LAST]
     assert len(usual) > 40
     full_screen, quits = ([(key, action) for key, action in table if action == last] for last in LAST)
-    with telling(desktop, tmp_path, keys) as (process, told):
-        press(desktop, told, [key for key, _ in usual])
-        for key, _ in full_screen:
-            press(desktop, told, [key])
-        press(desktop, told, [quits[0][0]])
-        assert process.communicate(timeout=20)[1] == ""
+    assert len(full_screen) == 2
+    scenes = [tmp_path / f"scene-{number}.rt" for number in range(len(quits))]  # each key that quits has its own
+    for scene in scenes:
+        scene.write_text(TEXT)
+    told = tmp_path / "told"
+    told.write_text("")
+    command = [sys.executable, "-W", "error", "-m", "tests.viewer.teller", keys, str(told), *map(str, scenes)]
+    with keyboard(desktop, COUNTRIES[keys]), desktop.program(*command) as process:
+        teller = Teller(desktop, told)
+        teller.press(scenes[0], SIZE, *(key for key, _ in usual))
+        for (key, _), size in zip(full_screen, (SIZE, SCREEN), strict=True):
+            teller.press(scenes[0], size, key)
+        for (key, _), scene in zip(quits, scenes, strict=True):
+            teller.press(scene, SIZE, key)
+        assert process.communicate(timeout=HANG_LIMIT)[1] == ""
         assert process.returncode == 0
-        pressed = [*usual, *full_screen, quits[0]]
-        led = told.read_text().splitlines()
-        assert [(key, action) for (key, _), action in zip(pressed, led, strict=True)] == pressed
-    for key, action in quits[1:]:
-        with telling(desktop, tmp_path, keys) as (process, told):
-            press(desktop, told, [key])
-            assert process.wait(20) == 0
-            assert told.read_text() == f"{action}\n"
+    pressed = [*usual, *full_screen, *quits]
+    assert [(key, action) for (key, _), action in zip(pressed, teller.told, strict=True)] == pressed
