@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -119,6 +120,12 @@ def colour_of(scene: Scene) -> tuple[int, int, int, int]:
     return blue, green, red, 255
 
 
-def played(*lines: str, text: str = TEXT, path: Path = Path("scene.rt"), keys: str = "qwerty") -> Session:
-    """The session after these recorded keys."""
-    return play(scene(text), lines, renderer=FakeRenderer(), size=(64, 48), path=path, keys=keys)
+def played(
+    *lines: str,
+    text: str = TEXT,
+    path: Path = Path("scene.rt"),
+    keys: str = "qwerty",
+    watch: Callable[[Session], object] = lambda _: None,
+) -> Session:
+    """The session after these recorded keys; `watch` as in `minirt.viewer.replay.play`."""
+    return play(scene(text), lines, renderer=FakeRenderer(), size=(64, 48), path=path, keys=keys, watch=watch)

@@ -6,13 +6,12 @@ python -m tests.viewer.monkey 20 7      # with another seed
 
 from __future__ import annotations
 
-import os
 import random
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,7 +21,9 @@ from minirt.scene import load
 from minirt.viewer.bindings import BINDINGS
 from minirt.viewer.chords import MOUSE
 from tests.viewer.hands import do
-from tests.windows import Desktop, open_desktop
+from tests.viewer.resting import until_at_rest, until_events_are_done
+from tests.waiting import HANG_LIMIT
+from tests.windows import SCREEN, Desktop, open_desktop
 
 TEXT = """\
 A 0.2 255,255,255
@@ -39,7 +40,7 @@ FULL_SCREEN = [f"press {key}" for each in BINDINGS if each.action == "toggle ful
 OTHERS = (TEXT, TEXT.replace("A 0.2", "A 0.6"), "A 0.2\n", "sp", "", TEXT + "sp 1,1,1 0.5 9,99,200 mirror:0.4\n")
 BATCH = 15  # lines between two looks at the program
 FILE_CHANGES = 0.15  # how often another program writes the file then
-SETTLED = 0.5  # of the time: what the program needs to have seen everything once
+SETTLED = 0.5  # of the play: what the program needs to have seen everything once
 FLAT = 1.05  # times the memory of then: what it may have at the end
 
 
@@ -69,6 +70,7 @@ def lines(chance: random.Random) -> Iterator[str]:
     def place() -> str:
         return f"{chance.randrange(width)},{chance.randrange(height)}"  # beside it is what belongs to others
 
+    yield f"move {place()}"  # the wheel turns where the pointer is
     while True:
         kind = chance.random()
         button = chance.choice(["", "", " right", " middle"])
@@ -86,7 +88,7 @@ def lines(chance: random.Random) -> Iterator[str]:
             yield from ("press d", "hide", "wait 0.3", "show")
         else:
             width, height = chance.randint(1, 400), chance.randint(1, 300)
-            yield from (f"resize {width}x{height}", "wait 0.3")
+            yield from (f"resize {width}x{height}", "wait 0.3", f"move {place()}")
 
 
 def memory(process: subprocess.Popen[str]) -> int:
@@ -95,16 +97,8 @@ def memory(process: subprocess.Popen[str]) -> int:
     return 1024 * int(next(line.split()[1] for line in status.splitlines() if line.startswith("VmRSS")))
 
 
-def used(process: subprocess.Popen[str]) -> float:
-    """Seconds of processor time that it has had."""
-    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
 class Play:
     """A monkey's time with a window of its own."""
-
-    FIRST_SIZE = f"resize {SIZE[0]}x{SIZE[1]}", "wait 2"
 
     def __init__(self, desktop: Desktop, process: subprocess.Popen[str], path: Path, seed: int) -> None:
         self.desktop = desktop
@@ -113,11 +107,14 @@ class Play:
         self.chance = random.Random(seed)
         self.lines = lines(self.chance)
         self.done = 0
+        self.size = SIZE  # of the window, while it does not fill the screen
+        self.wanted = SIZE
+        self.fills_screen = False
         self.find()
 
     def find(self) -> None:
         """Another window may be the program's since the screen was filled or left."""
-        self.window = self.desktop.find(f"miniRT - {self.path.name}")
+        self.window = self.desktop.find(f"miniRT - {self.path.name}", SCREEN if self.fills_screen else self.size)
 
     def batch(self) -> None:
         """Some lines, and now and then another program that writes the file."""
@@ -125,27 +122,51 @@ class Play:
         while len(batch) < BATCH and not (batch and batch[-1] in FULL_SCREEN):
             batch.append(next(self.lines))
         try:
-            do(self.desktop, self.window, *batch, "up Shift")
-        except subprocess.CalledProcessError:  # the window went while the monkey was at it
-            self.find()
-        self.wait()
+            self.do(*batch, "up Shift")
+            if batch[-1] in FULL_SCREEN:
+                self.await_full_screen()
+            until_events_are_done(self.process.pid)
+        except (subprocess.CalledProcessError, OSError, AssertionError):
+            assert self.process.poll() is None, f"{self.process.communicate()[1]}\nafter {batch}"
+            raise
         self.done += len(batch)
-        if batch[-1] in FULL_SCREEN:
-            do(self.desktop, self.window, "wait 0.5")
-            self.find()
-        assert self.process.poll() is None, f"{self.process.communicate()[1]}\nafter {batch}"
         if self.chance.random() < FILE_CHANGES:
             self.write(self.chance.choice(OTHERS))
         for written in self.path.parent.glob("scene-*"):
             written.unlink()
 
-    def wait(self) -> None:
-        """Let the program come to rest, as a person would who looks at it: what it is behind with is in a queue."""
-        for _ in range(20):
-            before = used(self.process)
-            do(self.desktop, self.window, "wait 0.1")
-            if used(self.process) - before < 0.05:
-                return
+    def do(self, *batch: str) -> None:
+        """Do lines; wait where the window manager has something to do, or where they say so."""
+        ready: list[str] = []
+        for line in batch:
+            word, _, size = line.partition(" ")
+            if word not in ("resize", "wait"):
+                ready.append(line)
+                continue
+            do(self.desktop, self.window, *ready)
+            ready.clear()
+            if word == "resize":
+                width, height = size.split("x")
+                self.resize((int(width), int(height)))
+            else:
+                until_events_are_done(self.process.pid)
+        do(self.desktop, self.window, *ready)
+
+    def resize(self, size: tuple[int, int]) -> None:
+        """Resize the window; one that fills the screen is asked to in vain, and again when it has left the screen."""
+        self.wanted = size
+        if self.fills_screen:
+            do(self.desktop, self.window, f"resize {size[0]}x{size[1]}")
+        else:
+            self.desktop.resize(self.window, *size)
+            self.size = size
+
+    def await_full_screen(self) -> None:
+        """Wait until the window fills the screen, or does no more, after the key for that."""
+        self.fills_screen = not self.fills_screen
+        self.find()
+        self.resize(self.wanted)
+        self.do("move 0,0")
 
     def write(self, text: str) -> None:
         """Be another program."""
@@ -155,41 +176,47 @@ class Play:
 
     def settled(self) -> int:
         """Bytes of memory with the scene of the file in a window of the first size."""
+        if self.fills_screen:
+            self.do(FULL_SCREEN[0])
+            self.await_full_screen()
         self.write(TEXT)
-        do(self.desktop, self.window, "press Ctrl+R", "wait 1", *self.FIRST_SIZE)
-        if self.desktop.size(self.window) != SIZE:  # which a window as large as the screen cannot have
-            do(self.desktop, self.window, FULL_SCREEN[0], "wait 1")
-            self.find()
-            do(self.desktop, self.window, *self.FIRST_SIZE)
-        assert self.desktop.size(self.window) == SIZE
+        self.do("press Ctrl+R", f"resize {SIZE[0]}x{SIZE[1]}")
+        until_at_rest(self.process.pid)
         return memory(self.process)
 
 
-def play(desktop: Desktop, seconds: float, seed: int, folder: Path) -> Report:
-    """Let the monkey play in a window; AssertionError where the program ends before it is told to."""
+def play(desktop: Desktop, share: Callable[[int], float], seed: int, folder: Path) -> Report:
+    """Let the monkey play in a window; AssertionError where the program ends before it is told to.
+
+    `share`: of the whole play, how much is over after so many lines.
+    """
     path = folder / "scene.rt"
     path.write_text(TEXT)
     Image.new("RGB", (8, 8), (200, 120, 40)).save(folder / "picture.png")
     command = [sys.executable, "-W", "error", "-m", "minirt", str(path), "--size", f"{SIZE[0]}x{SIZE[1]}"]
     with desktop.program(*command) as process:
         monkey = Play(desktop, process, path, seed)
-        start = time.monotonic()
         before = 0
-        while (spent := time.monotonic() - start) < seconds:
+        while (over := share(monkey.done)) < 1:
             monkey.batch()
-            if spent > SETTLED * seconds and not before:
+            if over > SETTLED and not before:
                 before = monkey.settled()
         after = monkey.settled()
-        monkey.find()
         desktop.key(monkey.window, "Escape")
-        output, errors = process.communicate(timeout=30)
+        output, errors = process.communicate(timeout=HANG_LIMIT)
         load(path)  # whatever was saved is a scene
         return Report(process.returncode, output, errors, before, after, monkey.done)
+
+
+def share_of_time(seconds: float) -> Callable[[int], float]:
+    """The share of so many seconds that is over, whatever the number of lines."""
+    start = time.monotonic()
+    return lambda _: (time.monotonic() - start) / seconds
 
 
 if __name__ == "__main__":
     minutes, seed = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1
     with open_desktop() as opened, tempfile.TemporaryDirectory() as room:
-        found = play(opened, 60 * minutes, seed, Path(room))
+        found = play(opened, share_of_time(60 * minutes), seed, Path(room))
     print(found)
     sys.exit(found.status != 0 or bool(found.errors) or found.after > FLAT * found.before)

@@ -9,8 +9,20 @@ from tests.waiting import until
 
 
 def until_at_rest(process: int, looks: int = 2) -> None:
-    """Wait until the program sleeps for as long as the test looks at it so often: it has done what it was told to."""
+    """Wait for a stretch in which the test looks at the program so often and none of its threads runs."""
     until_idle(process, count().__next__, looks)
+
+
+def until_events_are_done(process: int) -> None:
+    """Wait until the main thread sleeps: what the user did is not in a queue any more. Pictures may still be made."""
+    before: Thread | None = None
+
+    def asleep() -> bool:
+        nonlocal before
+        last, before = before, threads(process)[process]
+        return before.asleep and before == last
+
+    until(asleep, f"the end of what process {process} was told")
 
 
 def until_only_one_runs(process: int, times: int) -> None:
@@ -20,9 +32,9 @@ def until_only_one_runs(process: int, times: int) -> None:
     def alone() -> bool:
         nonlocal before
         now = threads(process)
-        others = [number for number in now if now[number] != before.get(number) or not now[number].asleep]
-        if len(others) > 1 or process in others or now.keys() != before.keys():
+        ran = [number for number in now if now[number] != before.get(number) or not now[number].asleep]
+        if len(ran) > 1 or process in ran or now.keys() != before.keys():
             before = now
-        return any(now[number].switches - before[number].switches >= times for number in others)
+        return any(now[number].switches - before[number].switches >= times for number in ran)
 
     until(alone, f"a stretch in which only one thread of process {process} runs, {times} times")

@@ -4,83 +4,89 @@ from __future__ import annotations
 
 import os
 import signal
-import time
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
-from tests.viewer.test_real_window import SIZE, TEXT, Viewer, picture, viewing
-from tests.windows import Desktop, until
+import minirt
+from tests.viewer.family import compilers, group
+from tests.viewer.test_real_window import SIZE, Viewer, picture, viewing
+from tests.waiting import until
+from tests.windows import Desktop
 
 pytestmark = pytest.mark.window
 
+TEXT = """\
+A 0.2 255,255,255
+C 0,1,8 0,-0.1,-0.995 60
+L 5,5,5 0.6 255,255,255
+sp 0,0,0 2 255,60,60
+pl 0,-1,0 0,1,0 90,200,90
+"""
+
+
+class FirstRun(NamedTuple):
+    """The program while it has no kernel; its compiler is stopped, so that it would never end by itself."""
+
+    viewer: Viewer
+    compiler: int  # the number of the process
+
+    def go_on(self) -> None:
+        """Let the compiler do its work."""
+        os.kill(self.compiler, signal.SIGCONT)
+
 
 @pytest.fixture
-def compiling(desktop: Desktop, tmp_path: Path) -> Iterator[Viewer]:
+def first_run(desktop: Desktop, tmp_path: Path) -> Iterator[FirstRun]:
     """The first run of the program, from the moment when it shows something; afterwards no compiler is left."""
-    with viewing(desktop, tmp_path / "first.rt", cache=tmp_path / "cache") as opened:
-        until(lambda: desktop.screenshot(opened.window).any(), "words in the black window")
-        compilers = children(opened.process.pid)
-        assert len(compilers) == 1
-        yield opened
-        until(lambda: not any(map(runs, compilers)), "the end of the compiler", 0.5)
+    with viewing(desktop, tmp_path / "first.rt", cache=tmp_path / "cache", text=TEXT) as viewer:
+        program = viewer.process.pid
+        until(lambda: bool(compilers(program)), "the compiler")
+        (compiler,) = compilers(program)
+        os.kill(compiler, signal.SIGSTOP)
+        until(lambda: desktop.screenshot(viewer.window).any(), "words in the black window")
+        yield FirstRun(viewer, compiler)
+        until(lambda: not group(program), "the end of all that the program started")
 
 
-def children(program: int) -> list[int]:
-    """The processes that a process has started."""
-    found = []
-    for folder in Path("/proc").glob("[0-9]*"):
-        with suppress(OSError):
-            if int(stat(int(folder.name))[1]) == program:
-                found.append(int(folder.name))
-    return found
+def test_escape_waits_for_no_compiler(first_run):
+    first_run.viewer.key("Escape")
+    assert first_run.viewer.end() == (0, "", "")
 
 
-def runs(process: int) -> bool:
-    """Whether a process has not ended yet, be it that nobody asked how."""
-    with suppress(OSError):
-        return stat(process)[0] != "Z"
-    return False
+def test_an_interrupt_waits_for_no_compiler(first_run):
+    os.kill(first_run.viewer.process.pid, signal.SIGINT)
+    assert first_run.viewer.end() == (130, "", "")
 
 
-def stat(process: int) -> list[str]:
-    """State and parent of a process, and more."""
-    return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+def test_ctrl_c_in_the_terminal_ends_the_compiler_too_without_a_word(first_run):
+    first_run.go_on()
+    os.killpg(first_run.viewer.process.pid, signal.SIGINT)
+    assert first_run.viewer.end() == (130, "", "")
 
 
-def test_escape(compiling):
-    start = time.monotonic()
-    compiling.key("Escape")
-    assert compiling.end() == (0, "", "")
-    assert time.monotonic() - start < 1
-
-
-def test_ctrl_c(compiling):
-    start = time.monotonic()
-    os.kill(compiling.process.pid, signal.SIGINT)
-    assert compiling.end() == (130, "", "")
-    assert time.monotonic() - start < 0.5
-
-
-def test_a_preview_comes_first_and_then_the_picture(compiling):
-    compiling.key("i", "i")
+def test_keys_work_on_a_preview_until_the_picture_comes(first_run):
+    viewer = first_run.viewer
+    viewer.key("i", "i")
     between = slice(80, SIZE[1] - 60)  # the words above and below
-    until(lambda: bool(compiling.desktop.screenshot(compiling.window)[between].any()), "the preview")
-    preview = compiling.desktop.screenshot(compiling.window)
-    right = picture(compiling.path)
-    assert (preview != right).any()
-    assert abs(preview[between].astype(int) - right[between]).mean() < 12
-    compiling.shows(right)
-    compiling.key("Escape")
-    assert compiling.end() == (0, "", "")
+    until(lambda: bool(viewer.desktop.screenshot(viewer.window)[between].any()), "the preview")
+    preview = viewer.desktop.screenshot(viewer.window)[between]
+    whole = picture(viewer.path)
+    assert (preview != whole[between]).any()
+    assert abs(preview.astype(int) - whole[between]).mean() < 12
 
-
-def test_keys_work(compiling):
-    compiling.key("i", "i", "Tab", "Tab", "Delete", "ctrl+s")
-    until(lambda: compiling.path.read_text() != TEXT, "the saved scene")
-    compiling.key("Tab")
-    compiling.shows(picture(compiling.path))
-    compiling.key("Escape")
-    assert compiling.end() == (0, "", "")
+    viewer.key("Tab", "Tab", "Tab", "Delete", "ctrl+s")
+    until(lambda: viewer.path.read_text() != TEXT, "the saved scene")
+    assert minirt.load(viewer.path).planes == ()
+    first_run.go_on()  # and then compile again: a sphere alone has another kernel
+    viewer.key("Tab")  # takes the message away
+    sphere = picture(viewer.path)
+    viewer.shows(sphere)
+    viewer.key("ctrl+z")
+    viewer.shows(whole)
+    viewer.key("ctrl+y")
+    viewer.shows(sphere)
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")

@@ -8,10 +8,12 @@ from itertools import islice
 import pytest
 
 from minirt.scene import Camera, dump, parse
+from minirt.viewer.state import State
 from tests.viewer import monkey
 from tests.viewer.fake import played
 
 HELD = 40e6  # bytes: what may come with pictures of other sizes
+LINES = 200  # of the play in a window
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -19,20 +21,26 @@ def test_in_memory(seed: int, tmp_path) -> None:
     path = tmp_path / "scene.rt"
     path.write_text(monkey.TEXT)
     acts = (line for line in monkey.lines(random.Random(seed)) if line not in monkey.FULL_SCREEN)
-    lines = [*islice(acts, 300), "show", "up Shift"]
-    session = played(*lines, text=monkey.TEXT, path=path)
-    scene = session.state.scene
+    lines = [*islice(acts, 300), "show", "up Shift", "wait 0"]
+    states: list[State] = []  # whenever time has gone by
+    undone = played(
+        *lines,
+        *["press Ctrl+Z"] * 400,
+        text=monkey.TEXT,
+        path=path,
+        watch=lambda session: states.append(session.state),
+    ).state
+    scene = states[-1].scene  # before anything was undone
     assert sum(isinstance(each, Camera) for each in scene.elements) == 1
     assert parse(dump(scene)).scene.items == scene.items
     parse(path.read_bytes(), path)
-    undone = played(*lines, *["press Ctrl+Z"] * 400, text=monkey.TEXT, path=path).state
     assert undone.past == ()
     assert undone.scene.items == parse(monkey.TEXT).scene.items
 
 
 @pytest.mark.window
 def test_in_a_window(desktop, tmp_path) -> None:
-    found = monkey.play(desktop, 8.0, 1, tmp_path)
+    found = monkey.play(desktop, lambda done: done / LINES, 1, tmp_path)
     assert (found.status, found.errors) == (0, "")
     assert found.after < found.before + HELD
-    assert found.lines > 60
+    assert found.lines >= LINES

@@ -126,6 +126,7 @@ class TestWithoutAKernel:
         return bench
 
     def test_compiling_is_told_while_it_lasts(self, bench):
+        bench.renderer.preview = lambda *_: bench.renderer.gate.wait(HANG_LIMIT) and None  # before that is there
         bench.start(JOB)
         assert bench.told.acquire(timeout=HANG_LIMIT)
         assert bench.painter.compiling

@@ -19,7 +19,7 @@ import minirt
 from minirt.rendering.adaptive import contrasts
 from tests.viewer.resting import until_at_rest, until_only_one_runs
 from tests.waiting import HANG_LIMIT, until
-from tests.windows import Desktop
+from tests.windows import SCREEN, Desktop
 
 pytestmark = pytest.mark.window
 
@@ -63,12 +63,14 @@ def viewing(
     cache: Path | None = None,
     more: tuple[str, ...] = (),
     program: str = "minirt",
+    text: str = TEXT,
 ) -> Iterator[Viewer]:
-    """`cache`: an empty folder, for a program that has to compile first; `more` arguments."""
+    """A window with the scene `text`. `cache`: an empty folder, for a program that has to compile first; `more`
+    arguments; `program`: its module."""
     command = [sys.executable, "-W", "error", "-m", program, str(path), "--size", f"{size[0]}x{size[1]}", *more]
     if cache:
         command = ["env", f"XDG_CACHE_HOME={cache}", *command]
-    path.write_text(TEXT)
+    path.write_text(text)
     with desktop.program(*command) as process:
         yield Viewer(desktop, process, desktop.find(f"miniRT - {path.name}"), path)
 
@@ -221,25 +223,12 @@ def test_a_held_key_moves_until_it_is_let_go(viewer):
 def test_full_screen_and_back(viewer):
     """Each change may open another window of the window system."""
     viewer.key("i", "i")
-    for size in ((2560, 1600), SIZE):
+    for size in (SCREEN, SIZE):
         viewer.key("F11")
-        viewer = viewer._replace(window=resized(viewer.desktop, size))
+        viewer = viewer._replace(window=viewer.desktop.find("miniRT - scene.rt", size))
         viewer.shows(picture(viewer.path, size))
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
-
-
-def resized(desktop: Desktop, size: tuple[int, int]) -> int:
-    """Wait for the viewer's window of that size."""
-
-    def right() -> bool:
-        try:
-            return desktop.size(desktop.find("miniRT - scene.rt")) == size
-        except subprocess.CalledProcessError:  # it went while we looked
-            return False
-
-    until(right, f"a window of {size}")
-    return desktop.find("miniRT - scene.rt")
 
 
 def test_the_camera_is_copied_and_a_click_selects(viewer):

@@ -21,8 +21,9 @@ from minirt.viewer.script import record
 from minirt.viewer.session import Session
 from minirt.viewer.state import State
 from tests.viewer.hands import do
-from tests.viewer.test_real_window import SIZE, TEXT, Viewer, resized, viewing
+from tests.viewer.test_real_window import SIZE, TEXT, Viewer, viewing
 from tests.waiting import until
+from tests.windows import SCREEN
 
 pytestmark = pytest.mark.window
 
@@ -170,9 +171,9 @@ def test_a_walk(desktop, tmp_path):
         viewer.key("h")
         viewer.shows(still(edited))
         again = viewer
-        for size in ((2560, 1600), SIZE):
+        for size in (SCREEN, SIZE):
             again.key("F11")
-            again = again._replace(window=resized(desktop, size))
+            again = again._replace(window=desktop.find("miniRT - scene.rt", size))
         again.shows(still(edited))
         follow(again, edited)
         again.key("Escape")
