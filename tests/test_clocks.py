@@ -53,7 +53,7 @@ def reasons(node: ast.AST) -> Iterator[str]:
         )
         method = getattr(node.func, "attr", "") if not in_simulated_time(node.func) else ""
         yield from (f"{method} for {ast.unparse(each)} s" for each in node.args if method in WAITS and is_number(each))
-        if any(isinstance(each, ast.Constant) and each.value == "sleep" for each in node.args):
+        if method == "run" and any(isinstance(each, ast.Constant) and each.value == "sleep" for each in node.args):
             yield "runs sleep"
 
 

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import sys
 from threading import Thread
-from time import sleep
 from typing import Any
 
 from minirt.cli import main
 from minirt.rendering import Renderer
 from minirt.rendering.frames import Frame
-from tests.waiting import POLL
+from tests.waiting import until
 
 RENDERING = b"rendering"
 
@@ -32,8 +31,7 @@ def tell() -> None:
 
 def watch(next_row: Any) -> None:
     """Tell when a thread has taken the first row."""
-    while not next_row[0]:
-        sleep(POLL)
+    until(lambda: bool(next_row[0]), "the first row")
     print(RENDERING.decode(), file=sys.stderr, flush=True)
 
 
