@@ -85,6 +85,6 @@ def test_linux_counts_each_time_that_a_thread_falls_asleep():
         for _ in range(3):
             os.write(process.stdin.fileno(), b"again\n")
             assert next_line(process) == "again"
-            until(lambda: threads(process.pid)[process.pid].asleep, "sleep")
+            until(lambda: threads(process.pid)[process.pid].asleep, "a program that waits for a line")
             counts.append(switches(process.pid))
     assert counts[0] < counts[1] < counts[2]

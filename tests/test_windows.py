@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
+from contextlib import ExitStack
+from pathlib import Path
 
 import pytest
 
 from tests import windows
 from tests.waiting import HANG_LIMIT
-from tests.windows import Desktop, open_desktop, require
+from tests.windows import MANAGER, Desktop, open_desktop, require
 
 WINDOW = """
 from minirt.mlx import Mlx
@@ -47,7 +50,7 @@ def test_a_desktop_whose_window_manager_does_not_start_leaves_no_display(desktop
         pass
     display = (tmp_path / "display").read_text().strip()
     assert not Desktop(desktop.environment | {"DISPLAY": display}).is_managed()
-    assert not os.path.lexists(f"/tmp/.X{display[1:]}-lock")
+    assert not Path(f"/tmp/.X11-unix/X{display[1:]}").exists()
 
 
 @pytest.mark.window
@@ -59,6 +62,26 @@ def test_a_program_leaves_no_window(desktop):
     assert process.wait(HANG_LIMIT) < 0
     assert desktop.windows() == []
     assert not desktop.is_there(window)
+
+
+@pytest.mark.window
+def test_a_program_is_over_when_the_window_manager_knows_that_its_window_is_gone(desktop, monkeypatch):
+    manager = int(desktop.environment[MANAGER])
+    looks = []
+
+    def look():
+        looks.append(1)
+        try:
+            return Desktop(desktop.environment).windows()
+        finally:
+            os.kill(manager, signal.SIGCONT)
+
+    with ExitStack() as stack:
+        with desktop.program(sys.executable, "-c", WINDOW):
+            desktop.find("small")
+            monkeypatch.setattr(desktop, "windows", look)
+            stack.enter_context(desktop.manager_stopped())
+        assert len(looks) > 1
 
 
 @pytest.mark.window
