@@ -11,6 +11,7 @@ from PIL import Image
 
 from minirt.rendering import Renderer, pick
 from minirt.rendering.pick import place
+from minirt.rendering.tables import Tables
 from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.plane import Plane
@@ -33,10 +34,10 @@ def owners(scene: Scene) -> tuple[list[Shape], np.ndarray]:
 
 def assert_picks(scene: Scene, allowed: int = 0) -> None:
     shapes, seen = owners(scene)
-    flat = Scene((scene.camera, *shapes))
+    flat, tables = Scene((scene.camera, *shapes)), Tables()
     wrong = 0
     for (y, x), index in np.ndenumerate(seen):
-        wrong += pick(flat, WIDTH, HEIGHT, x, y) is not (shapes[index] if index >= 0 else None)
+        wrong += pick(flat, WIDTH, HEIGHT, x, y, tables) is not (shapes[index] if index >= 0 else None)
     assert wrong <= allowed
 
 

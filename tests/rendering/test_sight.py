@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -29,26 +28,39 @@ from tests.shapes.regimes import ways
 WIDTH, HEIGHT = 70, 45  # five tiles by three, the last ones cut
 
 
-def members(traced: Any, starts: str, table: Any, row: Any, at: int) -> set[int]:
-    """The shapes in a list, of all kinds."""
-    found: set[int] = set()
-    for group in traced.groups:
-        ends = getattr(group, starts) if row is None else getattr(group, starts)[row]
-        found |= set(table[ends[at] : ends[at + 1]].tolist())
+def listed(starts: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The members of the lists of a kind, one list behind the other, and to which of the lists each belongs."""
+    return np.repeat(np.arange(len(starts) - 1), np.diff(starts)), table[starts[0] : starts[-1]]
+
+
+def members(traced: Any, starts: str, table: np.ndarray, row: Any = ...) -> np.ndarray:
+    """Which shapes, of all kinds, are in which of the lists: (lists, shapes)."""
+    all_starts = [getattr(group, starts)[row] for group in traced.groups]
+    found = np.zeros((len(all_starts[0]) - 1, len(traced.places)), bool)
+    for each in all_starts:
+        found[listed(each, table)] = True
     return found
 
 
-def seen_rays(traced: Any) -> list[tuple[int, int, float, bool]]:
-    """What the rays through all pixels hit: the tile, the shape and the distance, of all shapes that they meet, and
-    whether the ray is in the cone of the shape."""
+class Seen(NamedTuple):
+    """Where the rays through all pixels meet shapes: each shape that they meet."""
+
+    tile: np.ndarray
+    shape: np.ndarray
+    distance: np.ndarray
+    in_cone: np.ndarray  # whether the ray is in the cone of the shape
+
+
+def seen_rays(traced: Any) -> Seen:
+    """What the rays of a picture meet."""
     x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT)))
     origin, direction = Vec(*traced.camera[:3]), unit(towards(traced.camera, x, y))
     tile = (y // TILE * tiles(WIDTH) + x // TILE).astype(int)
-    return [
-        (int(tile[i]), index, float(t[i]), bool(np.broadcast_to(within(traced.views[index], direction), x.shape)[i]))
-        for index, (hit, t) in enumerate(meets(traced, origin, direction))
-        for i in np.flatnonzero(hit)
-    ]
+    found = [Seen(*np.zeros((4, 0), int))]
+    for index, (hit, t) in enumerate(meets(traced, origin, direction)):
+        cone = np.broadcast_to(within(traced.views[index], direction), x.shape)
+        found.append(Seen(tile[hit], np.full(hit.sum(), index), t[hit], cone[hit]))
+    return Seen(*map(np.concatenate, zip(*found, strict=True)))
 
 
 def meets(traced: Any, origin: Vec, direction: Vec) -> list[Any]:
@@ -89,11 +101,11 @@ KERNELS = pytest.mark.parametrize("kernel", [lists, jit_lists], ids=["interprete
 @pytest.mark.parametrize(("make", "seed"), SCENES)
 def test_a_tile_lists_all_that_its_rays_hit(make: Any, seed: int, kernel: Any) -> None:
     traced = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
-    lists = [members(traced, "starts", traced.seen, None, at) for at in range(tiles(WIDTH) * tiles(HEIGHT))]
-    for tile, shape, t, in_cone in seen_rays(traced):
-        assert shape in lists[tile]
-        assert in_cone
-        assert t >= traced.views[shape, 4]
+    seen, in_tile = seen_rays(traced), members(traced, "starts", traced.seen)
+    assert len(in_tile) == tiles(WIDTH) * tiles(HEIGHT)
+    assert in_tile[seen.tile, seen.shape].all()
+    assert seen.in_cone.all()
+    assert (seen.distance >= traced.views[seen.shape, 4]).all()
 
 
 def outside_scene(seed: int) -> Scene:
@@ -143,13 +155,13 @@ def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int,
         nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= around[SPREAD], nearby, directions)
         with np.errstate(all="ignore"):
             cells = cell(around, traced.grid, Vec(*nearby)) if traced.grid > 1 else np.zeros(2000)
-        lists = [members(traced, "lamp_starts", traced.lit, lamp, at) for at in range(count)]
-        assert 0 <= cells.min() <= cells.max() < count
-        left_out = {shape for shape in planes if not any(shape in each for each in lists)}
+        in_cell = members(traced, "lamp_starts", traced.lit, lamp)
+        assert 0 <= cells.min() <= cells.max() < count <= len(in_cell)
+        left_out = {shape for shape in planes if not in_cell[:, shape].any()}
         for shape, (hit, t) in enumerate(meets(traced, Vec(*row[:3]), Vec(*directions))):
             assert (t[hit] >= traced.lamp_views[lamp, shape, 4]).all()
             assert (within(traced.lamp_views[lamp, shape], Vec(*directions)) | ~hit).all()
-            assert shape in left_out or all(shape in lists[int(at)] for at in cells[hit])
+            assert shape in left_out or in_cell[cells[hit].astype(int), shape].all()
 
 
 @pytest.mark.parametrize(("make", "seed"), SCENES)
@@ -165,10 +177,9 @@ def test_lists_begin_with_the_nearest_and_name_a_shape_once(make: Any, seed: int
         assert np.isfinite(near).all()
         assert (near >= 0).all()
         for starts in every:
-            for start, end in pairwise(starts):
-                listed = found[start:end]
-                assert (np.diff(near[listed]) >= 0).all()
-                assert len(set(listed.tolist())) == end - start
+            at, shapes = listed(starts, found)
+            assert (np.diff(near[shapes])[np.diff(at) == 0] >= 0).all()
+            assert len(np.unique([at, shapes], axis=1).T) == len(shapes)
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -246,11 +257,11 @@ def test_lists_leave_something_out() -> None:
     scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Light((0, 9, 0), 1), *scattered()))
     traced = Packing().pack(scene, WIDTH, HEIGHT)
     assert traced.grid > 1
-    lists = [members(traced, "starts", traced.seen, None, at) for at in range(tiles(WIDTH) * tiles(HEIGHT))]
-    assert np.mean([len(each) for each in lists]) < 0.3 * len(scene.shapes)
-    behind = {index for index, shape in enumerate(scene.shapes) if shape.centre[2] < -2}
-    assert behind
-    assert not any(each & behind for each in lists)
+    in_tile = members(traced, "starts", traced.seen)
+    assert in_tile.mean() < 0.3
+    behind = np.array([shape.centre[2] < -2 for shape in scene.shapes])
+    assert behind.any()
+    assert not in_tile[:, behind].any()
 
 
 def scattered() -> list[Any]:
