@@ -30,5 +30,9 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the largest pieces of work first, so that no process has one left when the others have nothing to do."""
+    """Mark slow tests, and put the largest pieces of work first, so that no process has one left when the others have
+    nothing to do."""
+    for item in items:
+        if scheduling.is_slow(item.nodeid):
+            item.add_marker(pytest.mark.slow)
     items.sort(key=lambda item: scheduling.order(item.nodeid))

@@ -14,6 +14,31 @@ WINDOWS, SCENES = "windows", "scenes"
 FIRST = (WINDOWS, SCENES)  # they take longest
 OF_SCENES = {"tests/test_goldens.py", "tests/stability/test_pictures.py", "tests/rendering/test_preview.py"}
 
+# What `make quick` leaves out: these take two thirds of the time of all tests that open no window.
+SLOW = {
+    *(f"tests/stability/test_{name}.py" for name in ("mutants", "properties", "regimes", "reintersection", "surfaces")),
+    *(f"tests/kernel/test_{name}.py" for name in ("bvh_hits", "cache", "left_out")),
+    *(f"tests/rendering/test_{name}.py" for name in ("auto", "helper", "pick", "preview")),
+    *(f"tests/report/test_{name}.py" for name in ("kernels", "report")),
+    *(f"tests/scene/test_{name}.py" for name in ("fuzz", "round_trips")),
+    "tests/bench/yardstick/test_yardstick.py",
+    "tests/lanes/test_operators.py",
+    "tests/materials/test_textures.py",
+    "tests/shapes/test_mapping.py",
+    "tests/test_random_materials.py",
+    "tests/viewer/test_monkey.py",
+}
+
+
+def is_slow(test: str) -> bool:
+    """Whether a test is in one of the slow files."""
+    return file_of(test) in SLOW
+
+
+def file_of(test: str) -> str:
+    """The file of a test, such as tests/shapes/test_torus.py::test_a_waist[0.1]."""
+    return test.split("::", maxsplit=1)[0]
+
 
 @cache
 def opens_windows(file: str) -> bool:
@@ -22,8 +47,8 @@ def opens_windows(file: str) -> bool:
 
 
 def piece_of_work(test: str) -> str:
-    """What a test, such as tests/shapes/test_torus.py::test_a_waist[0.1], is run together with."""
-    file = test.split("::", maxsplit=1)[0]
+    """The name of all that a test is run together with, in one process."""
+    file = file_of(test)
     return SCENES if file in OF_SCENES else WINDOWS if opens_windows(file) else file
 
 

@@ -160,6 +160,7 @@ def test_moving_stops_at_the_end_of_the_range():
     assert after(again, "left", amount=FARTHEST).element.centre == (0, 0, 0)
 
 
+@pytest.mark.slow
 def test_a_million_turns_of_a_shape_keep_unit_length():
     axis, about = selecting(Cylinder).element.axis, (0.6, 0.0, 0.8)
     for _ in range(MILLION):
@@ -169,6 +170,7 @@ def test_a_million_turns_of_a_shape_keep_unit_length():
     assert axis == pytest.approx(turned(selecting(Cylinder).element.axis, about, 280), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_million_turns_of_the_camera_keep_unit_length():
     camera = selecting(Cylinder).scene.camera
     for _ in range(MILLION):
