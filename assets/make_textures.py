@@ -13,40 +13,51 @@ import numpy as np
 from PIL import Image
 
 FOLDER = Path(__file__).parent.parent / "scenes" / "textures"
+FACTORS, SEEDS = (73856093, 19349663, 83492791), 2654435761  # of hashes, for each axis
+BLOCK = 8192  # places of noise that are worked out at a time
 Array = np.ndarray
-STRIP = 8192  # places of which noise is computed at once: their arrays fit a processor's cache, half of the time
+
+
+def mixed(hashes: Array) -> Array:
+    """A random number in [0, 1) for each of some whole numbers, which are lost."""
+    for factor in (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53):  # Appleby, MurmurHash3
+        hashes ^= hashes >> np.uint64(33)
+        hashes *= np.uint64(factor)
+    hashes ^= hashes >> np.uint64(33)
+    return (hashes >> np.uint64(11)) * 2.0**-53
 
 
 def lattice(seed: int, x: Array, y: Array, z: Array) -> Array:
     """A random number in [0, 1) for each point of space with whole coordinates, not below 0."""
-    x, y, z = (axis.astype(np.uint64) for axis in (x, y, z))
-    mixed = x * np.uint64(73856093) ^ y * np.uint64(19349663) ^ z * np.uint64(83492791) ^ np.uint64(seed * 2654435761)
-    for factor in (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53, 1):  # Appleby, MurmurHash3
-        mixed ^= mixed >> np.uint64(33)
-        mixed *= np.uint64(factor)
-    return (mixed >> np.uint64(11)) * 2.0**-53
+    parts = (axis.astype(np.uint64) * np.uint64(factor) for axis, factor in zip((x, y, z), FACTORS, strict=True))
+    return mixed(np.bitwise_xor.reduce([*parts]) ^ np.uint64(seed * SEEDS))
 
 
 def noise(seed: int, points: Array, period: Array | None = None) -> Array:
     """Smooth noise in [0, 1] at places of space (..., 3), one bump a unit; it repeats after `period` (Perlin 1985)."""
-    places = points.reshape(-1, 3)
-    strips = np.array_split(places, len(places) // STRIP + 1)
-    return np.concatenate([noise_of_strip(seed, strip, period) for strip in strips]).reshape(points.shape[:-1])
+    each = points.reshape(-1, 3)
+    parts = [block_of_noise(seed, each[start : start + BLOCK], period) for start in range(0, len(each), BLOCK)]
+    return np.concatenate([np.zeros(0), *parts]).reshape(points.shape[:-1])
 
 
-def noise_of_strip(seed: int, points: Array, period: Array | None) -> Array:
-    """The same for so few places that the processor's cache holds all of its arrays."""
+def block_of_noise(seed: int, points: Array, period: Array | None) -> Array:
+    """The same of so few places that all that is worked out for them fits a processor's cache."""
     below = np.floor(points)
     part = points - below
     weight = part * part * (3 - 2 * part)
-    # For each axis the cells on both sides, and how much each counts.
-    sides = [below[..., axis] + corner for axis in range(3) for corner in (0, 1)]
-    shares = [weight[..., axis] if corner else 1 - weight[..., axis] for axis in range(3) for corner in (0, 1)]
-    cells = [side + 1000 if period is None else side % period[n // 2] for n, side in enumerate(sides)]
-    total = np.zeros(points.shape[:-1])
-    for i, j, k in np.ndindex(2, 2, 2):
-        value = lattice(seed, cells[i], cells[2 + j], cells[4 + k])
-        total += shares[i] * shares[2 + j] * shares[4 + k] * value
+    # For each axis what the corners on both sides add to the hash of a corner, and how much each of them counts.
+    hashes, shares = [], []
+    for axis, factor in enumerate(FACTORS):
+        for corner in (0, 1):
+            side = below[:, axis] + corner
+            cell = side + 1000 if period is None else side % period[axis]
+            hashes.append(cell.astype(np.uint64) * np.uint64(factor))
+            shares.append(weight[:, axis] if corner else 1 - weight[:, axis])
+    total = np.zeros(len(points))
+    for i, j in np.ndindex(2, 2):
+        line, share = hashes[i] ^ hashes[2 + j] ^ np.uint64(seed * SEEDS), shares[i] * shares[2 + j]
+        for k in (0, 1):
+            total += share * shares[4 + k] * mixed(line ^ hashes[4 + k])
     return total
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -68,40 +69,54 @@ def values(field: Field) -> st.SearchStrategy[object]:
     return next(make(field) for sort, make in VALUES.items() if isinstance(field, sort))
 
 
+@cache
+def chosen(kind: type[Record]) -> dict[str, st.SearchStrategy[object]]:
+    """Random values of the fields of a kind, None for attributes that may be absent. They are made once: to make them
+    takes longer than to draw from them."""
+    known = {field.name: values(field) for field in fields_of(kind)}
+    absent = [field.name for field in fields_of(kind) if field.keyed and field.default is None]
+    return {**known, **{name: st.none() | known[name] for name in absent}}
+
+
 @st.composite
 def built(draw: st.DrawFn, kind: type[Known]) -> Known:
     """Random records or elements of a kind, whose attributes may be absent."""
-    known = {field.name: values(field) for field in fields_of(kind)}
-    absent = [field.name for field in fields_of(kind) if field.keyed and field.default is None]
-    chosen = {**known, **{name: st.none() | known[name] for name in absent}}
     try:
-        return kind(**{name: draw(value) for name, value in chosen.items()})
+        return kind(**{name: draw(value) for name, value in chosen(kind).items()})
     except ElementError:
         reject()
 
 
 ANY = [built(kind) for kind in ELEMENTS.values() if not kind.once]
 ONCE = [built(kind) for kind in ELEMENTS.values() if kind.once and not kind.required]
+REQUIRED = [built(kind) for kind in ELEMENTS.values() if kind.required]
+MORE = st.lists(st.one_of(ANY), max_size=5)
+COIN = st.booleans()
+BEFORE = st.lists(st.tuples(INDENTS, COMMENTS), max_size=1)
+BEGINS, ENDINGS = st.sampled_from(["", "\ufeff"]), st.sampled_from(["", "\n", "\n\n"])
 
 
 @st.composite
 def scenes(draw: st.DrawFn) -> Scene:
     """Random scenes whose elements have no source."""
-    items = [draw(built(kind)) for kind in ELEMENTS.values() if kind.required]
-    items += [draw(each) for each in ONCE if draw(st.booleans())]
-    return Scene(draw(st.permutations(items + draw(st.lists(st.one_of(ANY), max_size=5)))))
+    items = [draw(each) for each in REQUIRED]
+    items += [draw(each) for each in ONCE if draw(COIN)]
+    return Scene(draw(st.permutations(items + draw(MORE))))
+
+
+SCENES = scenes()
 
 
 @st.composite
 def texts(draw: st.DrawFn) -> str:
     """Random scene files with blanks, comments, byte order marks and both line ends."""
     lines = []
-    for element in draw(scenes()).elements:
-        blank = draw(st.lists(st.tuples(INDENTS, COMMENTS), max_size=1))
+    for element in draw(SCENES).elements:
+        blank = draw(BEFORE)
         lines += [indent + comment + draw(ENDS) for indent, comment in blank]
         words = describe(element).split(" ")
-        if isinstance(element, Camera) and draw(st.booleans()):
+        if isinstance(element, Camera) and draw(COIN):
             words = [*words[:4], f"roll:{element.roll!r}"]
         body = "".join(word + draw(BLANKS) for word in words[:-1]) + words[-1]
         lines.append(draw(INDENTS) + body + draw(INDENTS) + draw(COMMENTS) + draw(ENDS))
-    return draw(st.sampled_from(["", "\ufeff"])) + "\n".join(lines) + draw(st.sampled_from(["", "\n", "\n\n"]))
+    return draw(BEGINS) + "\n".join(lines) + draw(ENDINGS)

@@ -51,16 +51,20 @@ ODD += [
 ]
 LIGHTS = "C 0,0,0 0,0,0 7 roll:3\nL 0,0,0 1\nL 0, 0, 0 1 2.5,0,0 // a\nL 0,0,0,0 .5 1,2,3\nl 0,0,0 1\n"  # lenient only
 
+UNDAMAGED = st.one_of(st.sampled_from([WHOLE, SUBJECT, LIGHTS]), texts())
+HOW_OFTEN, LENGTHS = st.integers(1, 4), st.integers(0, 5)
+INSERTIONS = st.one_of(st.sampled_from(ODD), st.text(max_size=3), st.none())
+
 
 @st.composite
 def damaged(draw: st.DrawFn) -> str:
     """A scene file with characters deleted, doubled, swapped or put in."""
-    text = draw(st.one_of(st.sampled_from([WHOLE, SUBJECT, LIGHTS]), texts()))
-    for _ in range(draw(st.integers(1, 4))):
+    text = draw(UNDAMAGED)
+    for _ in range(draw(HOW_OFTEN)):
         at = draw(st.integers(0, len(text)))
-        end = draw(st.integers(at, min(len(text), at + 5)))
-        insertion = draw(st.one_of(st.sampled_from(ODD), st.text(max_size=3), st.just(text[at:end] * 2)))
-        text = text[:at] + insertion + text[end:]
+        end = at + draw(LENGTHS)
+        insertion = draw(INSERTIONS)
+        text = text[:at] + (text[at:end] * 2 if insertion is None else insertion) + text[end:]
     return text
 
 
