@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -124,6 +125,7 @@ def wrong(part: str, source: str) -> set[str]:
     return ours - MAY[part] - {part}
 
 
+@cache
 def sources() -> dict[str, str]:
     """Every source of the package, by its path."""
     paths = sorted(PACKAGE.rglob("*.py"))
