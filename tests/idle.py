@@ -36,7 +36,7 @@ def threads(process: int) -> dict[int, Thread]:
 
 
 def switches(process: int, thread: int | None = None) -> int:
-    """How often a thread gave up a processor or lost it; without a number it is the main thread."""
+    """Count how often a thread gave up a processor or lost it; without a number it is the main thread."""
     return threads(process)[process if thread is None else thread].switches
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -36,8 +37,9 @@ def keyboard(desktop: Desktop, country: str) -> Iterator[None]:
 class Teller:
     """The running viewer of scenes, and the file into which it tells what keys led to."""
 
-    def __init__(self, desktop: Desktop, told: Path) -> None:
+    def __init__(self, desktop: Desktop, process: subprocess.Popen[str], told: Path) -> None:
         self.desktop = desktop
+        self.process = process
         self._told = told
 
     @property
@@ -46,11 +48,14 @@ class Teller:
         return self._told.read_text().splitlines()
 
     def press(self, scene: Path, size: tuple[int, int], *keys: str) -> None:
-        """Press keys in the window of that scene and size, and wait until all of them led to something."""
+        """Press keys in the window of that scene and size, and wait until all of them led to something.
+
+        Where the program ends instead, what it told is less than what was pressed.
+        """
         window = self.desktop.find(f"miniRT - {scene.name}", size)
         count = len(self.told) + len(keys)
         do(self.desktop, window, *(f"press {key}" for key in keys))
-        until(lambda: len(self.told) >= count, f"what {keys} led to")
+        until(lambda: len(self.told) >= count or self.process.poll() is not None, f"what {keys} led to")
 
 
 @pytest.mark.parametrize("keys", LAYOUTS)
@@ -67,7 +72,7 @@ def test_every_key_leads_to_its_row(desktop: Desktop, tmp_path: Path, keys: str)
     told.write_text("")
     command = [sys.executable, "-W", "error", "-m", "tests.viewer.teller", keys, str(told), *map(str, scenes)]
     with keyboard(desktop, COUNTRIES[keys]), desktop.program(*command) as process:
-        teller = Teller(desktop, told)
+        teller = Teller(desktop, process, told)
         teller.press(scenes[0], SIZE, *(key for key, _ in usual))
         for (key, _), size in zip(full_screen, (SIZE, SCREEN), strict=True):
             teller.press(scenes[0], size, key)
