@@ -41,6 +41,11 @@ if TYPE_CHECKING:
 TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd", "xwininfo", "setxkbmap")
 ROOT = Path(__file__).parent.parent
 SCREEN = (2560, 1600)  # its size in pixels
+STILL = """\
+<openbox_config xmlns="http://openbox.org/3.4/rc">
+  <theme><animateIconify>no</animateIconify></theme>
+</openbox_config>
+"""  # or windows that are minimised and restored fly about, and are not where the pointer is moved to
 MANAGER = "MINIRT_TEST_WINDOW_MANAGER"  # in the environment: the number of the window manager's process
 AT_ONCE = ("--delay", "0")  # for xdotool, which otherwise rests between pressing and letting go
 
@@ -169,9 +174,14 @@ class Desktop:
         return int(values["WIDTH"]), int(values["HEIGHT"])
 
     def minimise(self, window: int) -> None:
-        """Minimise a window, and wait until the window manager has done it: it would undo a later `restore`."""
+        """Minimise a window, and wait until the window manager has done it: it would undo a later `restore`, which would
+        take the focus that the window still has for that which it gets."""
         self.run("xdotool", "windowminimize", str(window))
-        waiting.until(lambda: not self._is_shown(window), f"minimised window {window}")
+
+        def done() -> bool:
+            return not self._is_shown(window) and self._active() != window
+
+        waiting.until(done, f"minimised window {window}")
 
     def restore(self, window: int) -> None:
         self.activate(window)
@@ -258,6 +268,8 @@ def open_desktop() -> Iterator[Desktop]:
     """Start a display on a free number and a window manager on it; both end with the block."""
     with ExitStack() as stack:
         home = stack.enter_context(tempfile.TemporaryDirectory())  # no configuration of this user's
+        (Path(home) / "openbox").mkdir()
+        (Path(home) / "openbox" / "rc.xml").write_text(STILL)
         environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"}
         environment |= {"PYTHONPATH": str(ROOT), "XDG_CONFIG_HOME": home}
         environment["DISPLAY"] = stack.enter_context(_display())

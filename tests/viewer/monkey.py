@@ -20,9 +20,10 @@ from PIL import Image
 from minirt.scene import load
 from minirt.viewer.bindings import BINDINGS
 from minirt.viewer.chords import MOUSE
+from tests.viewer.family import compilers
 from tests.viewer.hands import do
 from tests.viewer.resting import until_at_rest, until_events_are_done
-from tests.waiting import HANG_LIMIT
+from tests.waiting import HANG_LIMIT, until
 from tests.windows import SCREEN, Desktop, open_desktop
 
 TEXT = """\
@@ -53,6 +54,7 @@ class Report(NamedTuple):
     before: int  # bytes of memory when everything was seen once
     after: int  # bytes of memory at the end
     lines: int  # that were done
+    full_screens: int  # how often the window began or ceased to fill the screen
 
 
 def lines(chance: random.Random) -> Iterator[str]:
@@ -110,6 +112,7 @@ class Play:
         self.size = SIZE  # of the window, while it does not fill the screen
         self.wanted = SIZE
         self.fills_screen = False
+        self.full_screens = 0
         self.find()
 
     def find(self) -> None:
@@ -164,6 +167,7 @@ class Play:
     def await_full_screen(self) -> None:
         """Wait until the window fills the screen, or does no more, after the key for that."""
         self.fills_screen = not self.fills_screen
+        self.full_screens += 1
         self.find()
         self.resize(self.wanted)
         self.do("move 0,0")
@@ -175,14 +179,19 @@ class Play:
         new.replace(self.path)
 
     def settled(self) -> int:
-        """Bytes of memory with the scene of the file in a window of the first size."""
+        """Bytes of memory with the scene of the file in a window of the first size; then it has the last one again."""
+        wanted = self.wanted
+        self.desktop.restore(self.window)
         if self.fills_screen:
             self.do(FULL_SCREEN[0])
             self.await_full_screen()
         self.write(TEXT)
-        self.do("press Ctrl+R", f"resize {SIZE[0]}x{SIZE[1]}")
+        self.do("press Ctrl+R", "resize {}x{}".format(*SIZE))
+        until(lambda: not compilers(self.process.pid), "the end of the compiler")
         until_at_rest(self.process.pid)
-        return memory(self.process)
+        held = memory(self.process)
+        self.do("resize {}x{}".format(*wanted), "move 0,0")
+        return held
 
 
 def play(desktop: Desktop, share: Callable[[int], float], seed: int, folder: Path) -> Report:
@@ -205,7 +214,7 @@ def play(desktop: Desktop, share: Callable[[int], float], seed: int, folder: Pat
         desktop.key(monkey.window, "Escape")
         output, errors = process.communicate(timeout=HANG_LIMIT)
         load(path)  # whatever was saved is a scene
-        return Report(process.returncode, output, errors, before, after, monkey.done)
+        return Report(process.returncode, output, errors, before, after, monkey.done, monkey.full_screens)
 
 
 def share_of_time(seconds: float) -> Callable[[int], float]:

@@ -13,7 +13,6 @@ from tests.viewer import monkey
 from tests.viewer.fake import played
 
 HELD = 40e6  # bytes: what may come with pictures of other sizes
-LINES = 200  # of the play in a window
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -40,7 +39,14 @@ def test_in_memory(seed: int, tmp_path) -> None:
 
 @pytest.mark.window
 def test_in_a_window(desktop, tmp_path) -> None:
-    found = monkey.play(desktop, lambda done: done / LINES, 1, tmp_path)
+    found = monkey.play(desktop, lambda done: done / 180, 1, tmp_path)
     assert (found.status, found.errors) == (0, "")
     assert found.after < found.before + HELD
-    assert found.lines >= LINES
+    assert found.lines >= 180
+
+
+@pytest.mark.window
+def test_in_a_window_that_fills_the_screen_now_and_then(desktop, tmp_path) -> None:
+    found = monkey.play(desktop, lambda done: done / 105, 2, tmp_path)
+    assert (found.status, found.errors) == (0, "")
+    assert found.full_screens >= 2
