@@ -29,12 +29,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from tests import processes, waiting
+from tests import processes
 from tests.idle import until_idle
-from tests.waiting import HANG_LIMIT
+from tests.waiting import HANG_LIMIT, until
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
@@ -48,11 +48,6 @@ STILL = """\
 """  # or windows that are minimised and restored fly about, and are not where the pointer is moved to
 MANAGER = "MINIRT_TEST_WINDOW_MANAGER"  # in the environment: the number of the window manager's process
 AT_ONCE = ("--delay", "0")  # for xdotool, which otherwise rests between pressing and letting go
-
-
-def until(condition: Callable[[], bool], what: str, _seconds: float = HANG_LIMIT) -> None:
-    """Wait as `tests.waiting.until` does, for files that still import it from here."""
-    waiting.until(condition, what)
 
 
 class Desktop:
@@ -121,7 +116,7 @@ class Desktop:
                     return True
             return False
 
-        waiting.until(look, f"a window called {title}")
+        until(look, f"a window called {title}")
         return found[0]
 
     def windows(self) -> list[tuple[int, str]]:
@@ -136,7 +131,7 @@ class Desktop:
             self.run("xdotool", "windowactivate", str(window))
             return self._active() == window
 
-        waiting.until(asked, f"the focus of window {window}")
+        until(asked, f"the focus of window {window}")
 
     def key(self, window: int, *names: str) -> None:
         """Press and release; xdotool's names, such as Escape, shift+Tab."""
@@ -166,7 +161,7 @@ class Desktop:
 
     def resize(self, window: int, width: int, height: int) -> None:
         self.run("xdotool", "windowsize", str(window), str(width), str(height))
-        waiting.until(lambda: self.size(window) == (width, height), f"a window of {width}x{height}")
+        until(lambda: self.size(window) == (width, height), f"a window of {width}x{height}")
 
     def size(self, window: int) -> tuple[int, int]:
         lines = self.run("xdotool", "getwindowgeometry", "--shell", str(window)).decode().splitlines()
@@ -174,14 +169,15 @@ class Desktop:
         return int(values["WIDTH"]), int(values["HEIGHT"])
 
     def minimise(self, window: int) -> None:
-        """Minimise a window, and wait until the window manager has done it: it would undo a later `restore`, which would
-        take the focus that the window still has for that which it gets."""
+        """Minimise a window, and wait until the window manager has done it.
+
+        A `restore` before that would take the focus that the window still has for that which it gets."""
         self.run("xdotool", "windowminimize", str(window))
 
         def done() -> bool:
             return not self._is_shown(window) and self._active() != window
 
-        waiting.until(done, f"minimised window {window}")
+        until(done, f"minimised window {window}")
 
     def restore(self, window: int) -> None:
         self.activate(window)
@@ -204,7 +200,7 @@ class Desktop:
         finally:
             self.let_go()
             if not self._programs:
-                waiting.until(self._is_empty, "the end of all windows")
+                until(self._is_empty, "the end of all windows")
 
     def _expect_a_program(self) -> None:
         """Fail at once, and say why, where no window can come any more."""
@@ -276,7 +272,7 @@ def open_desktop() -> Iterator[Desktop]:
         command = ["openbox", "--sm-disable"]
         manager = stack.enter_context(_server(command, env=environment | {"XDG_CACHE_HOME": home}))
         opened = Desktop(environment | {MANAGER: str(manager.pid)})
-        waiting.until(lambda: opened.is_managed() or manager.poll() is not None, "openbox")
+        until(lambda: opened.is_managed() or manager.poll() is not None, "openbox")
         if manager.poll() is not None:
             raise RuntimeError("openbox did not start")
         yield opened
@@ -299,7 +295,7 @@ def _display() -> Iterator[str]:
             command += ["-r", "-ardelay", "100", "-arinterval", "20"]  # milliseconds, where a test turns it on
             stack.enter_context(_server(command, pass_fds=(writer,)))
         # Xvfb writes it when it is ready, or goes and closes its end.
-        waiting.until(lambda: bool(select.select([number], [], [], 0)[0]), "Xvfb's number")
+        until(lambda: bool(select.select([number], [], [], 0)[0]), "Xvfb's number")
         name = number.readline().strip()
         if not name:
             raise RuntimeError("Xvfb did not start")
