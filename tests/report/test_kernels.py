@@ -44,8 +44,8 @@ def rays_of(kind: Kind, name: str, shapes: int = 6) -> Rays:
     return regime.pose(kind, np.random.default_rng(11), shapes, 32)
 
 
-def rows_of(kind: Kind, name: str) -> dict[str, Row]:
-    return {row.formula: row for row in measured(kind, name, rays_of(kind, name))}
+def rows_of(kind: Kind, name: str, shapes: int = 6) -> dict[str, Row]:
+    return {row.formula: row for row in measured(kind, name, rays_of(kind, name, shapes))}
 
 
 def answers(*t: float, thicker: Any = (), thinner: Any = ()) -> Answers:
@@ -133,11 +133,12 @@ def test_runs_of_the_machine_take_time(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_textbooks_lose_what_is_tiny_and_far() -> None:
-    rows = rows_of(BALL, "tiny and far")
-    assert rows["miniRT"].max_error < 1e-15
-    assert rows["miniRT"].false_misses == rows["miniRT"].false_hits == 0
-    assert rows["textbook"].false_misses > 5
-    assert rows["textbook"].false_hits > 5
+    rows, more = rows_of(BALL, "tiny and far"), rows_of(BALL, "tiny and far", 12)
+    for own in (rows["miniRT"], more["miniRT"]):
+        assert own.max_error < 1e-15
+        assert own.false_misses == own.false_hits == 0
+    assert more["textbook"].false_misses > 10
+    assert more["textbook"].false_hits > 5
     assert rows["miniRT, float32"].hits == 0
 
 

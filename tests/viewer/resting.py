@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import count
 
 from tests.idle import Thread, threads, until_idle
+from tests.viewer.family import state
 from tests.waiting import until
 
 
@@ -20,9 +21,14 @@ def until_events_are_done(process: int) -> None:
     def asleep() -> bool:
         nonlocal before
         last, before = before, threads(process)[process]
-        return before.asleep and before == last
+        return has_ended(process) or (before.asleep and before == last)
 
     until(asleep, f"the end of what process {process} was told")
+
+
+def has_ended(process: int) -> bool:
+    """Whether the program runs no more; nobody needs to wait for what it does, then."""
+    return state(process)[0] in "ZX"
 
 
 def until_only_one_runs(process: int, times: int) -> None:
