@@ -133,13 +133,15 @@ def test_runs_of_the_machine_take_time(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_textbooks_lose_what_is_tiny_and_far() -> None:
-    rows, more = rows_of(BALL, "tiny and far"), rows_of(BALL, "tiny and far", 12)
-    for own in (rows["miniRT"], more["miniRT"]):
-        assert own.max_error < 1e-15
-        assert own.false_misses == own.false_hits == 0
-    assert more["textbook"].false_misses > 10
-    assert more["textbook"].false_hits > 5
-    assert rows["miniRT, float32"].hits == 0
+    """How often depends on whether the processor rounds a product and a sum once or twice: x86-64 without AVX2 twice."""
+    rows = rows_of(BALL, "tiny and far", 12)
+    own, naive, single = (rows[name] for name in ("miniRT", "textbook", "miniRT, float32"))
+    assert own.max_error < 1e-15
+    assert own.false_misses == own.false_hits == 0
+    assert naive.false_misses > 10
+    assert naive.false_hits > 5
+    assert single.false_misses > 2 * single.hits
+    assert single.false_misses > 10
 
 
 @pytest.mark.parametrize("element", [Square, Disc], ids=lambda element: element.title)
