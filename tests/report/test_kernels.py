@@ -133,7 +133,7 @@ def test_runs_of_the_machine_take_time(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_textbooks_lose_what_is_tiny_and_far() -> None:
-    """How often depends on whether the processor rounds a product and a sum once or twice: x86-64 without AVX2 twice."""
+    """How often depends on whether the processor rounds a product and a sum once or, as without AVX2, twice."""
     rows = rows_of(BALL, "tiny and far", 12)
     own, naive, single = (rows[name] for name in ("miniRT", "textbook", "miniRT, float32"))
     assert own.max_error < 1e-15
