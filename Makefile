@@ -16,11 +16,14 @@ help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z].*:.*## / { printf "make %-17s %s\n", $$1, $$2 }' Makefile
 
 # The program is installed so that it runs the sources as they stand: only a change of its dependencies installs again.
+# Where they are is told relative to the environment: Python reads that in the encoding of the locale, and could not
+# start in a folder with an umlaut under LC_ALL=C.
 $(NAME): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "miniRT needs Python 3.11 or newer: make PYTHON=python3.12")'
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) install --quiet --upgrade 'pip>=25.1'
 	$(PIP) install --quiet --editable .
+	for file in $(VENV)/lib/python*/site-packages/*minirt*.pth; do echo ../../../.. >"$$file"; done
 	touch $@
 
 bonus: all  ## the same: what the subject calls the bonus is part of the program
