@@ -10,20 +10,22 @@ PYTEST  := $(VENV)/bin/python -m pytest --numprocesses $(WORKERS)
 SCENE   ?= scenes/demo.rt
 SUDO    ?= $(if $(filter 0,$(shell id -u)),,sudo)
 
+# The program is installed so that it runs the sources as they stand: only a change of its dependencies installs again.
+# Where they are is told relative to the environment: Python reads that in the encoding of the locale, and could not
+# start in a folder with an umlaut under LC_ALL=C.
+INSTALL  = $(PIP) install --quiet --editable $(1) && \
+           for file in $(VENV)/lib/python*/site-packages/*minirt*.pth; do echo ../../../.. >"$$file"; done
+
 all: $(NAME)  ## install the program as .venv/bin/miniRT
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z].*:.*## / { printf "make %-17s %s\n", $$1, $$2 }' Makefile
 
-# The program is installed so that it runs the sources as they stand: only a change of its dependencies installs again.
-# Where they are is told relative to the environment: Python reads that in the encoding of the locale, and could not
-# start in a folder with an umlaut under LC_ALL=C.
 $(NAME): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "miniRT needs Python 3.11 or newer: make PYTHON=python3.12")'
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) install --quiet --upgrade 'pip>=25.1'
-	$(PIP) install --quiet --editable .
-	for file in $(VENV)/lib/python*/site-packages/*minirt*.pth; do echo ../../../.. >"$$file"; done
+	$(call INSTALL,.)
 	touch $@
 
 bonus: all  ## the same: what the subject calls the bonus is part of the program
@@ -59,7 +61,7 @@ bench: $(NAME)  ## time frames beside other programs: make bench BENCH=--quick f
 
 bench-peers: $(NAME)  ## install what `make bench` compares with and draws with (Debian, Ubuntu)
 	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox
-	$(PIP) install --quiet --editable '.[report]' embreex
+	$(call INSTALL,'.[report]' embreex)
 
 REPORTED := demo figure-v4-everything eval-shadows-many
 

@@ -1,0 +1,33 @@
+"""The Makefile tells what there is to make."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.processes import run
+
+ROOT = Path(__file__).parent.parent
+MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
+
+pytestmark = pytest.mark.skipif(shutil.which("make") is None, reason="needs make: apt-get install make")
+
+
+def test_help_lists_every_target() -> None:
+    done = run(["make", "--no-print-directory", "help"], cwd=ROOT, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    lines = done.stdout.splitlines()
+    told = {word for line in lines for word in line.removeprefix("make ")[:18].split()}
+    (targets,) = re.findall(r"^\.PHONY: (.*)$", MAKEFILE, re.MULTILINE)
+    assert told == set(targets.split())
+    assert all(len(line) > 25 for line in lines)
+
+
+def test_the_program_comes_first() -> None:
+    """`make` alone makes it, as the subject asks."""
+    done = run(["make", "--dry-run", "--always-make"], cwd=ROOT, text=True)
+    assert "pip" in done.stdout
+    assert done.stdout.rstrip().endswith("touch .venv/bin/miniRT")
