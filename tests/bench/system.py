@@ -7,6 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 
+INSTALL = "`make bench-peers` installs it"  # what a comparison needs, on Debian and Ubuntu
+
+
 class MissingError(Exception):
     """A system that cannot be measured here, and what it lacks."""
 

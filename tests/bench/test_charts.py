@@ -9,8 +9,9 @@ import pytest
 from PIL import Image
 
 from tests.bench.measure import Cell, Round
+from tests.bench.system import INSTALL
 
-charts = pytest.importorskip("tests.bench.charts", exc_type=ImportError)
+charts = pytest.importorskip("tests.bench.charts", reason=f"needs matplotlib; {INSTALL}", exc_type=ImportError)
 SYSTEMS = "miniRT double", "Tachyon"
 
 

@@ -9,8 +9,9 @@ import pytest
 from PIL import Image
 
 from minirt.report.pictures import Row
+from tests.bench.system import INSTALL
 
-drawing = pytest.importorskip("minirt.report.diagram", exc_type=ImportError)
+drawing = pytest.importorskip("minirt.report.diagram", reason=f"needs matplotlib; {INSTALL}", exc_type=ImportError)
 RED, BLUE = drawing.COLOURS[:2]
 
 

@@ -11,7 +11,7 @@ from minirt import load
 from minirt.fields import Triple
 from minirt.scene import Ambient, Light, Scene
 from minirt.shapes.cylinder import Cylinder
-from tests.bench.system import MissingError, Setting, System
+from tests.bench.system import INSTALL, MissingError, Setting, System
 from tests.processes import run
 
 
@@ -44,7 +44,7 @@ class Command(System):
     def __init__(self, setting: Setting) -> None:
         super().__init__(setting)
         if not shutil.which(self.command):
-            raise MissingError(f"{self.name}: {self.command} is not installed")
+            raise MissingError(f"{self.name}: {self.command} is not installed; {INSTALL}")
 
     @abstractmethod
     def arguments(self, file: Path, picture: Path) -> list[str]:

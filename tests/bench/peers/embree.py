@@ -27,7 +27,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.bench.peers.command import light
 from tests.bench.peers.triangles import cylinder, plane
-from tests.bench.system import MissingError, Setting, System
+from tests.bench.system import INSTALL, MissingError, Setting, System
 
 Floats = NDArray[np.float32]
 Words = NDArray[np.float32] | NDArray[np.uint32]
@@ -55,7 +55,7 @@ def library() -> CDLL:
     """Embree itself, which lies beside the Python package. `MissingError` where it does not."""
     found = find_spec("embreex")
     if found is None or found.origin is None:
-        raise MissingError("Embree: embreex is not installed")
+        raise MissingError(f"Embree: embreex is not installed; {INSTALL}")
     package = Path(found.origin).parent
     beside = [each for folder in (package.parent / "embreex.libs", package) for each in folder.rglob("libembree4*")]
     if not beside:

@@ -7,7 +7,7 @@ import os
 import shutil
 from pathlib import Path
 
-from tests.bench.system import MissingError, Setting, System
+from tests.bench.system import INSTALL, MissingError, Setting, System
 from tests.processes import run
 
 HERE = Path(__file__).parent
@@ -30,7 +30,7 @@ def build(folder: Path) -> Path:
         return program
     compiler = os.environ.get("CXX") or next(filter(shutil.which, ("g++", "clang++", "c++")), None)
     if compiler is None:
-        raise MissingError("C++ yardstick: no compiler is installed")
+        raise MissingError(f"C++ yardstick: no compiler is installed; {INSTALL}")
     folder.mkdir(parents=True, exist_ok=True)
     command = [*compiler.split(), *FLAGS, *map(str, sorted(HERE.glob("*.cpp"))), "-o", str(program)]
     ran = run(command, text=True)
