@@ -6,7 +6,6 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import NamedTuple
 
-
 INSTALL = "`make bench-peers` installs it"  # what a comparison needs, on Debian and Ubuntu
 
 
