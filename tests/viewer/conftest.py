@@ -1,5 +1,0 @@
-"""The desktop for tests of real windows."""
-
-from tests.windows import desktop
-
-__all__ = ["desktop"]
