@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -35,8 +37,9 @@ from minirt.scene.registry import ELEMENTS
 Known = TypeVar("Known", bound=Record)
 
 ROOT = Path(minirt.__file__).parent.parent
-PICTURES = [str(path) for path in sorted((ROOT / "assets").glob("*.png"))[:2]]
-MESH = str(ROOT / "scenes" / "meshes" / "icosahedron.obj")
+FOLDER = tempfile.TemporaryDirectory(prefix="minirt-")  # names in scenes have no blanks; the project's folder may
+PICTURES = [shutil.copy(path, FOLDER.name) for path in sorted((ROOT / "assets").glob("*.png"))[:2]]
+MESH = shutil.copy(ROOT / "scenes" / "meshes" / "icosahedron.obj", FOLDER.name)
 BLANKS = st.text(" \t", min_size=1, max_size=3)
 INDENTS = st.text(" \t", max_size=2)
 COMMENTS = st.one_of(
