@@ -17,10 +17,10 @@ OF_SCENES = {"tests/test_goldens.py", "tests/stability/test_pictures.py", "tests
 # What `make quick` leaves out: these take two thirds of the time of all tests that open no window.
 SLOW = {
     *(f"tests/stability/test_{name}.py" for name in ("mutants", "properties", "regimes", "reintersection", "surfaces")),
-    *(f"tests/kernel/test_{name}.py" for name in ("bvh_hits", "cache", "left_out")),
-    *(f"tests/rendering/test_{name}.py" for name in ("auto", "helper", "pick", "preview")),
-    *(f"tests/report/test_{name}.py" for name in ("kernels", "report")),
-    *(f"tests/scene/test_{name}.py" for name in ("fuzz", "round_trips")),
+    *(f"tests/kernel/test_{name}.py" for name in ("bvh_hits", "cache", "left_out", "skins")),
+    *(f"tests/rendering/test_{name}.py" for name in ("auto", "helper", "meshes", "pick", "preview")),
+    *(f"tests/report/test_{name}.py" for name in ("kernels", "report", "work")),
+    *(f"tests/scene/test_{name}.py" for name in ("fuzz", "plain", "round_trips")),
     "tests/bench/yardstick/test_yardstick.py",
     "tests/lanes/test_operators.py",
     "tests/materials/test_textures.py",
