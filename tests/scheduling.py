@@ -25,6 +25,8 @@ SLOW = {
     "tests/lanes/test_operators.py",
     "tests/materials/test_textures.py",
     "tests/shapes/test_mapping.py",
+    "tests/shapes/test_protocol.py",
+    "tests/viewer/test_every_kind.py",
     "tests/test_random_materials.py",
     "tests/viewer/test_monkey.py",
 }
