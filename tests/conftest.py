@@ -1,4 +1,4 @@
-"""How the tests run: on all processors, as on every machine, with kernels that are compiled once."""
+"""Set the tests up: share them out to all processors, and make them run alike on every machine."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long the exact formulas of shapes take beside those of textbooks."""
+"""Times of the exact formulas of shapes beside those of textbooks."""
 
 from __future__ import annotations
 
