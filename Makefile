@@ -45,7 +45,7 @@ test: $(DEV)  ## run all tests, or some: make test TESTS=tests/shapes
 quick: $(DEV)  ## run the tests that take a minute in all
 	$(PYTEST) -m "not window and not slow" $(TESTS)
 
-FORMULAS := tests/lanes tests/shapes tests/report/test_kernels.py tests/report/test_work.py \
+FORMULAS := tests/lanes tests/shapes tests/report/measurements/test_formula_errors.py tests/report/measurements/test_operation_counts.py \
             $(addprefix tests/kernel/test_,features.py frame.py highlight.py invariances.py single.py)
 
 processors: $(DEV)  ## run the tests of compiled formulas as on processors without AVX-512 and without AVX

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from minirt.materials import Bump, Checker, Glass, Specular
     from minirt.movie import save_movie
     from minirt.rendering import Renderer
-    from minirt.rendering.rays import Hits, trace
+    from minirt.rendering.queries.rays import Hits, trace
     from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
     from minirt.shapes.box import Box
     from minirt.shapes.cone import Cone
@@ -95,7 +95,7 @@ HOMES = {
         "minirt.scene",
     ),
     **{shape: f"minirt.shapes.{shape.lower()}" for shape in SHAPES},
-    **dict.fromkeys(("Hits", "trace"), "minirt.rendering.rays"),
+    **dict.fromkeys(("Hits", "trace"), "minirt.rendering.queries.rays"),
     "save_movie": "minirt.movie",
     "view": "minirt.viewer",
 }
@@ -144,7 +144,7 @@ def render(
 
     With `samples` "auto" each part of the picture gets as many as it needs, until the estimated error is at most
     `error` (DEFAULT_ERROR where neither is given) or `time` seconds have passed, not counting those of compiling;
-    `.reached` of the picture tells which. Errors are those of `minirt.rendering.reached`.
+    `.reached` of the picture tells which. Errors are those of `minirt.rendering.sampling.outcome`.
     """
     import numpy as np
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from minirt.arguments import SAMPLES, USAGE, WINDOW_SAMPLES, Arguments, arguments
 from minirt.errors import MiniRTError, MlxError, ReplayError
-from minirt.garbage import uncollected
+from minirt.gc_pause import uncollected
 
 if TYPE_CHECKING:
     from minirt.image import Image
@@ -153,7 +153,7 @@ def picture(scene: Scene, asked: argparse.Namespace) -> Image:
     if image.reached:
         print(image.reached, file=sys.stderr)
     if asked.precision == "single":
-        from minirt.report.stiffness import lost_in_single
+        from minirt.report.measurements.stiffness import lost_in_single
 
         for stiff in lost_in_single(scene, renderer.packing, width, height):
             print(f"notice: single precision cannot show {stiff}", file=sys.stderr)
@@ -174,7 +174,7 @@ def turntable(scene: Scene, asked: argparse.Namespace) -> int:
     """Write pictures of the scene from all around it."""
     import minirt
     from minirt.movie import with_progress
-    from minirt.viewer.film import turntable as views
+    from minirt.viewer.app.animation import turntable as views
 
     width, height = asked.size or minirt.size_of(scene)
     made = (
@@ -206,8 +206,8 @@ def write(image: Image, output: str) -> None:
 def replay(scene: Scene, asked: argparse.Namespace) -> int:
     """Play recorded keys; the last frame goes to the output, if there is one."""
     import minirt
-    from minirt.viewer.film import FPS, film
-    from minirt.viewer.replay import replay as play
+    from minirt.viewer.app.animation import FPS, film
+    from minirt.viewer.app.replay import replay as play
 
     try:
         with open(asked.replay, encoding="utf-8") as file:  # noqa: PTH123

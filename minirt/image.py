@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from minirt import atomic
+from minirt import atomic_write
 from minirt.errors import RenderError
 
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
-    from minirt.rendering.reached import Reached
+    from minirt.rendering.sampling.outcome import Reached
 
 
 def format_of(path: str | os.PathLike[str]) -> str:
@@ -64,7 +64,7 @@ class Image:
         """Write a file in the format of its extension, as a whole or not at all; RenderError where that fails."""
         data = self.encode(format_of(path))
         try:
-            atomic.write(path, data)
+            atomic_write.write(path, data)
         except OSError as error:
             raise RenderError(f"{os.fspath(path)}: cannot write: {error.strerror or error}") from None
 

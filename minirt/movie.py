@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from minirt import atomic
+from minirt import atomic_write
 from minirt.errors import RenderError
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def save_movie(pictures: Iterable[Image], path: str | os.PathLike[str], fps: flo
     if target.suffix.lower() == ".gif":
         data = gif(pictures, fps)
         try:
-            atomic.write(target, data)
+            atomic_write.write(target, data)
         except OSError as error:
             raise RenderError(f"{target}: cannot write: {error.strerror or error}") from None
         return [target]

@@ -10,9 +10,9 @@ from pathlib import Path
 from minirt.image import Image
 from minirt.scene import Scene, load
 from tests.compare import Bytes
+from tests.paths import ROOT
 from tests.reference import render, to_bytes
 
-ROOT = Path(__file__).parent.parent
 GOLDENS = Path(__file__).parent / "goldens"
 SCENES = sorted(path for path in (ROOT / "scenes").glob("*.rt") if path.stem != "subject-as-printed")
 SIZE = (320, 180)

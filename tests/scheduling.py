@@ -4,31 +4,46 @@ piece of work: all that open windows, which share a screen, and all that compile
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-ROOT = Path(__file__).parent.parent
+from tests.paths import ROOT
+
 WINDOWS, SCENES = "windows", "scenes"
 FIRST = (WINDOWS, SCENES)  # they take longest
-OF_SCENES = {"tests/test_goldens.py", "tests/stability/test_pictures.py", "tests/rendering/test_preview.py"}
+OF_SCENES = {"tests/test_goldens.py", "tests/stability/test_pictures.py", "tests/rendering/queries/test_preview.py"}
 
 # What `make quick` leaves out: these take two thirds of the time of all tests that open no window.
 SLOW = {
-    *(f"tests/stability/test_{name}.py" for name in ("mutants", "properties", "regimes", "reintersection", "surfaces")),
-    *(f"tests/kernel/test_{name}.py" for name in ("bvh_hits", "cache", "left_out", "skins")),
-    *(f"tests/rendering/test_{name}.py" for name in ("auto", "helper", "meshes", "pick", "preview")),
-    *(f"tests/report/test_{name}.py" for name in ("kernels", "report", "work")),
-    *(f"tests/scene/test_{name}.py" for name in ("fuzz", "plain", "round_trips")),
     "tests/bench/yardstick/test_yardstick.py",
+    "tests/kernel/bvh/test_queries.py",
+    "tests/kernel/compiler/test_cache_folder.py",
+    "tests/kernel/compiler/test_left_out.py",
+    "tests/kernel/shading/test_texturing.py",
     "tests/lanes/test_operators.py",
     "tests/materials/test_textures.py",
+    "tests/rendering/queries/test_pick.py",
+    "tests/rendering/queries/test_preview.py",
+    "tests/rendering/running/test_compile_process.py",
+    "tests/rendering/sampling/test_auto.py",
+    "tests/rendering/test_meshes.py",
+    "tests/report/measurements/test_formula_errors.py",
+    "tests/report/measurements/test_operation_counts.py",
+    "tests/report/test_report.py",
+    "tests/scene/test_fast.py",
+    "tests/scene/test_fuzz.py",
+    "tests/scene/test_round_trips.py",
     "tests/shapes/test_mapping.py",
     "tests/shapes/test_protocol.py",
-    "tests/viewer/test_every_kind.py",
+    "tests/stability/test_mutants.py",
+    "tests/stability/test_properties.py",
+    "tests/stability/test_regimes.py",
+    "tests/stability/test_reintersection.py",
+    "tests/stability/test_surfaces.py",
     "tests/test_random_materials.py",
-    "tests/viewer/test_monkey.py",
+    "tests/viewer/app/test_monkey.py",
+    "tests/viewer/editing/test_every_kind.py",
 }
 
 

@@ -9,9 +9,10 @@ import pytest
 
 from minirt import bench, timing
 from minirt.kernel.frame import DOWN
-from minirt.rendering import auto, renderer
-from minirt.rendering.frames import Frame
-from minirt.report import kernels, pictures
+from minirt.rendering import renderer
+from minirt.rendering.frame_arguments import Frame
+from minirt.rendering.sampling import auto
+from minirt.report.measurements import formula_errors, picture_errors
 from minirt.timing import Run
 
 PACKET = 1e-6  # seconds that a packet of rays takes
@@ -48,10 +49,10 @@ def simulated(patch: pytest.MonkeyPatch) -> Clock:
         clock.rendered(sum(map(packets_of, frames)))
 
     patch.setattr(renderer.Renderer, "run", counted)
-    for module in (timing, auto, renderer, pictures, bench):
+    for module in (timing, auto, renderer, picture_errors, bench):
         patch.setattr(module, "perf_counter", lambda: clock.wall)
     patch.setattr(timing, "process_time", clock.cpu)
-    patch.setattr(kernels, "in_turn", in_turn)
+    patch.setattr(formula_errors, "in_turn", in_turn)
     return clock
 
 

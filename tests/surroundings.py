@@ -9,7 +9,8 @@ import os
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).parent.parent
+from tests.paths import ROOT
+
 KERNELS = ROOT / "out" / "cache"  # where kernels are kept if the user's own folder cannot be written
 
 # numba takes the features of the processor at hand for any name but `generic`: what the named one does not have must

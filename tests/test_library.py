@@ -10,9 +10,9 @@ import pytest
 
 import minirt
 from minirt.scene import Resolution
+from tests.paths import SCENES
 from tests.reference import render, to_bytes
 
-SCENES = Path(__file__).parent.parent / "scenes"
 SUBJECT = SCENES / "subject.rt"
 
 

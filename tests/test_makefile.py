@@ -5,13 +5,12 @@ from __future__ import annotations
 import os
 import re
 import shutil
-from pathlib import Path
 
 import pytest
 
+from tests.paths import ROOT
 from tests.processes import run
 
-ROOT = Path(__file__).parent.parent
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 
 OUTSIDE = {name: value for name, value in os.environ.items() if not re.match("M(AKE|FLAGS)", name)}  # of another make

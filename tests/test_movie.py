@@ -13,10 +13,10 @@ from PIL import Image as pillow  # noqa: N813
 import minirt
 from minirt.errors import RenderError
 from minirt.movie import save_movie, with_progress
-from minirt.viewer.film import FPS as FILM
-from minirt.viewer.film import TICKS, film, turntable
-from minirt.viewer.lens import lens
-from minirt.viewer.measure import middle_of
+from minirt.viewer.app.animation import FPS as FILM
+from minirt.viewer.app.animation import TICKS, film, turntable
+from minirt.viewer.editing.measure import middle_of
+from minirt.viewer.editing.projection import lens
 from tests.viewer.fake import FakeRenderer, scene
 
 COLOURS = [(250, 0, 0), (0, 250, 0), (0, 0, 250)]

@@ -5,8 +5,6 @@ Each has all kinds and features, so that they share a kernel.
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -27,9 +25,8 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from tests.compare import off
+from tests.paths import SCENES
 from tests.reference import render, to_bytes
-
-SCENES = Path(__file__).parent.parent / "scenes"
 
 
 def material_scene(seed: int) -> Scene:

@@ -12,8 +12,8 @@ import minirt
 from minirt.cli import main
 from minirt.scene import dump, format_table, parse
 from minirt.viewer import keys_markdown
+from tests.paths import ROOT
 
-ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
 
 

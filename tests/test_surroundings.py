@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from tests import conftest, scheduling, surroundings
+from tests.paths import ROOT
 from tests.processes import run, started
 
-ROOT = Path(__file__).parent.parent
 FEATURES = "from numba.core.registry import cpu_target; print(cpu_target.target_context.codegen().magic_tuple()[2])"
 CHILD = [sys.executable, "-c", "import signal; signal.pause()"]
 PARENT = f"""
@@ -94,7 +94,7 @@ def test_a_program_that_is_left_early_leaves_nothing_running() -> None:
 
 
 def test_windows_and_scenes_are_pieces_of_work_and_every_other_file_is_one() -> None:
-    walk, file = "tests/viewer/test_walk.py::test_a_walk", Path(__file__).relative_to(ROOT).as_posix()
+    walk, file = "tests/viewer/app/test_walk.py::test_a_walk", Path(__file__).relative_to(ROOT).as_posix()
     assert (
         scheduling.piece_of_work(walk) == scheduling.piece_of_work("tests/mlx/test_window.py::test_x[a]") == "windows"
     )

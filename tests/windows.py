@@ -31,6 +31,7 @@ import pytest
 
 from tests import processes
 from tests.idle import until_idle
+from tests.paths import ROOT
 from tests.waiting import HANG_LIMIT, until
 
 if TYPE_CHECKING:
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd", "xwininfo", "setxkbmap")
-ROOT = Path(__file__).parent.parent
 SCREEN = (2560, 1600)  # its size in pixels
 STILL = """\
 <openbox_config xmlns="http://openbox.org/3.4/rc">

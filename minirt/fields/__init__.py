@@ -4,9 +4,9 @@ the documentation are made from the declaration.
 
 from minirt.errors import FieldError
 from minirt.fields.field import Field, PictureFile, Repair, declare
-from minirt.fields.frames import upright
 from minirt.fields.meshes import MeshField, MeshFile
 from minirt.fields.numerals import number, spelled, whole
+from minirt.fields.orientation import upright
 from minirt.fields.pictures import Paint, Picture
 from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Factor, Flag, Length, Real, Whole, clamp
 from minirt.fields.triples import Colour, Direction, Lengths, Point, Three, Triple, unit

@@ -1,1 +1,1 @@
-"""What runs for every pixel: plain functions, written once, that `minirt.kernel.jit` compiles."""
+"""What runs for every pixel: plain functions, written once, that `minirt.kernel.compiler.jit` compiles."""

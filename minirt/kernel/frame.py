@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-from minirt.kernel.counter import fetch_add
-from minirt.kernel.sky import lit_sky
+from minirt.kernel.atomic_counter import fetch_add
+from minirt.kernel.scene_arrays import Traced, placed
+from minirt.kernel.shading.environment import lit_sky
+from minirt.kernel.shading.whitted import radiance
 from minirt.kernel.trace import is_empty
-from minirt.kernel.traced import Traced, placed
-from minirt.kernel.whitted import radiance
 from minirt.lanes import Vec, lane, load, minimum, rarely, save, splat, unit, where, width
 from minirt.lanes.vec import Number
 

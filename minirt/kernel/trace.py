@@ -6,9 +6,9 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.cells import close, look_up
+from minirt.kernel.culling.light_buffer import close, look_up
 from minirt.kernel.rows import intersect, is_crowd, may_meet, read, surface
-from minirt.kernel.traced import Group, Traced
+from minirt.kernel.scene_arrays import Group, Traced
 from minirt.lanes import (
     Vec,
     any,
@@ -25,8 +25,8 @@ from minirt.lanes import (
     width,
 )
 from minirt.lanes.largest import largest
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 
 ROUNDING = 16  # of a point on a surface: unit roundoffs of its largest coordinate and of the extent of the shape
 NEARBY = 2.0**-14  # two hits so close to each other, relative to their distance, may be one place

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import pi
 
+from minirt.lanes.operations import copysign, fabs, splat, where
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import copysign, fabs, splat, where
 
 ATAN_HALF = 0.463647609000806116
 

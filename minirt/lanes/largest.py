@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from minirt.lanes.operations import fabs, maximum
 from minirt.lanes.vec import Number, Vec
-from minirt.lanes.verbs import fabs, maximum
 
 
 def largest(v: Vec) -> Number:

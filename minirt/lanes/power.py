@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from minirt.lanes.operations import exponent, floor, maximum, two_to, where
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import exponent, floor, maximum, two_to, where
 
 ROOT = 2.0**0.5
 LOWEST = -1100.0  # 2 to that is 0

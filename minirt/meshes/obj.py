@@ -11,7 +11,7 @@ from io import BytesIO
 
 import numpy as np
 
-from minirt.meshes import careful, plain
+from minirt.meshes import diagnosing, fast
 from minirt.meshes.block import Block, BrokenError, Sizes
 from minirt.meshes.triangles import Triangles, proper, squared, unit
 
@@ -28,7 +28,7 @@ def parse(data: bytes) -> Triangles:
     while lines := file.readlines(BLOCK):
         while lines[-1].endswith((b"\\\n", b"\\\r\n")) and (more := file.readline()):
             lines.append(more)
-        block = plain.read(lines, before) or careful.read(lines, before)
+        block = fast.read(lines, before) or diagnosing.read(lines, before)
         blocks.append(block)
         before = before.behind(block, len(lines))
         triangles += int((block.sizes - 2).sum())
@@ -82,4 +82,4 @@ def check_indices(whole: Block) -> None:
         corner = int(np.argmax(beyond.any(axis=1)))
         which = int(np.argmax(beyond[corner]))
         line = np.repeat(whole.lines, whole.sizes)[corner]
-        raise BrokenError(careful.absent(which, int(whole.corners[corner, which]) + 1, there[which]), int(line))
+        raise BrokenError(diagnosing.absent(which, int(whole.corners[corner, which]) + 1, there[which]), int(line))

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from minirt.kernel.cells import AHEAD, SCALE
-from minirt.kernel.traced import Traced
-from minirt.rendering.flats import idle
-from minirt.rendering.tables import Tables
-from minirt.rendering.traits import FEATURES, traits
+from minirt.kernel.culling.light_buffer import AHEAD, SCALE
+from minirt.kernel.scene_arrays import Traced
+from minirt.rendering.culling.planes import idle
+from minirt.rendering.packing.features import FEATURES, traits
+from minirt.rendering.packing.shape_arrays import Tables
 from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Shape
 

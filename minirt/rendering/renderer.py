@@ -15,19 +15,19 @@ from typing import Any
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.garbage import uncollected
-from minirt.kernel import lists
+from minirt.gc_pause import uncollected
+from minirt.kernel.culling import binning
 from minirt.kernel.frame import CANCELLED, DOWN
 from minirt.lanes import width
-from minirt.rendering.adaptive import edge_packets
-from minirt.rendering.auto import CLASSES, Auto, Task
-from minirt.rendering.cores import usable_cores
-from minirt.rendering.frames import ALL_PACKETS, NO_LINEAR, Frame, frame_arguments, memory_for, room_for_sums
-from minirt.rendering.helper import Helper
-from minirt.rendering.reached import Reached
-from minirt.rendering.sight import SMALL
-from minirt.rendering.traits import DEPTH, dressed, parts, traits
-from minirt.rendering.workers import Workers
+from minirt.rendering.culling.visibility import SMALL
+from minirt.rendering.frame_arguments import ALL_PACKETS, NO_LINEAR, Frame, frame_arguments, memory_for, room_for_sums
+from minirt.rendering.packing.features import DEPTH, dressed, parts, traits
+from minirt.rendering.running.compile_process import Helper
+from minirt.rendering.running.cores import usable_cores
+from minirt.rendering.running.thread_pool import Workers
+from minirt.rendering.sampling.adaptive import edge_packets
+from minirt.rendering.sampling.auto import CLASSES, Auto, Task
+from minirt.rendering.sampling.outcome import Reached
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
@@ -61,12 +61,12 @@ class Renderer:
     @cached_property
     def packing(self) -> Any:
         """The arrays of the last scene."""
-        return import_module("minirt.rendering.packing").Packing(precision=self.precision, depth=self.depth)
+        return import_module("minirt.rendering.scene_packing").Packing(precision=self.precision, depth=self.depth)
 
     @cached_property
     def kernel(self) -> Any:
         """The compiled code, and the compiler where it is not there yet."""
-        return import_module("minirt.kernel.jit")
+        return import_module("minirt.kernel.compiler.jit")
 
     @property
     def about(self) -> list[str]:
@@ -90,7 +90,7 @@ class Renderer:
         """`prepare`, as it is."""
         pixels = np.zeros((1, 1, 4), np.uint8)
         if scene.shapes and self.kernel.CACHE:
-            packing = import_module("minirt.rendering.packing").Packing(lists, self.precision, self.depth)
+            packing = import_module("minirt.rendering.scene_packing").Packing(binning, self.precision, self.depth)
             arguments = frame_arguments(packing.pack(small(scene), 1, 1), pixels)
             if not self.kernel.is_kept(arguments):
                 self.helper.compile(arguments)
@@ -101,8 +101,8 @@ class Renderer:
         self.helper.stop()
 
     def preview(self, scene: Scene, width: int, height: int) -> np.ndarray | None:
-        """Without a kernel, a coarse picture of a scene; see `minirt.rendering.preview`."""
-        made: np.ndarray | None = import_module("minirt.rendering.preview").preview(scene, width, height)
+        """Without a kernel, a coarse picture of a scene; see `minirt.rendering.queries.preview`."""
+        made: np.ndarray | None = import_module("minirt.rendering.queries.preview").preview(scene, width, height)
         return made
 
     def render(
@@ -168,7 +168,7 @@ class Renderer:
     def draw_sky(self, scene: Scene, pixels: np.ndarray, linear: np.ndarray) -> None:
         """The picture of a scene without shapes."""
         if scene.background and pixels.size:
-            pixels[...], light = import_module("minirt.rendering.preview").picture(scene, *pixels.shape[1::-1])
+            pixels[...], light = import_module("minirt.rendering.queries.preview").picture(scene, *pixels.shape[1::-1])
             linear[...] = light if len(linear) else linear
         else:
             pixels[...] = (0, 0, 0, 255)
@@ -182,7 +182,7 @@ class Renderer:
         linear: np.ndarray | None = None,
     ) -> Reached | None:
         """Render into `pixels` and `linear`, as `render` does, until the estimated error is as small or as many seconds
-        have passed; see `minirt.rendering.auto`. None where `cancel` ended it early; then both are as before.
+        have passed; see `minirt.rendering.sampling.auto`. None where `cancel` ended it early; then both are as before.
         """
         with self.busy:
             start, cancels = perf_counter(), self.cancels
@@ -222,9 +222,9 @@ class Renderer:
         self.not_finite += int(sum(each.memory[-1, 1] for each in own))
 
     def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
-        """What a pixel of a picture shows, see `minirt.rendering.pick`. A picture that is being made gives way; where
+        """What a pixel of a picture shows, see `minirt.rendering.queries.pick`. A picture that is being made gives way; where
         there is something else to wait for, such as the compiler, this is done without what is known of the scene."""
-        find: Callable[..., Shape | None] = import_module("minirt.rendering.pick").pick
+        find: Callable[..., Shape | None] = import_module("minirt.rendering.queries.pick").pick
         for _ in range(TRIES):
             if self.busy.acquire(timeout=PATIENCE):
                 try:

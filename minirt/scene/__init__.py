@@ -1,12 +1,12 @@
 """What a scene is: its elements, how they are read from a file and written to one, and how they are edited."""
 
 from minirt.scene.elements import Ambient, Background, Camera, Resolution
+from minirt.scene.format_table import format_table
 from minirt.scene.lights import FurtherLight, Lamp, Light, ParallelLight, SpotLight
+from minirt.scene.line_rewriting import describe
 from minirt.scene.pages import Item
 from minirt.scene.parser import Reading, load, parse
-from minirt.scene.rewriting import describe
 from minirt.scene.scene import Scene
-from minirt.scene.table import format_table
 from minirt.scene.writer import dump, save
 
 __all__ = [

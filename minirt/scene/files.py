@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from minirt import regular
+from minirt import regular_files
 from minirt.errors import FileError, Problem, SceneError
 
 SUFFIX = ".rt"
@@ -32,7 +32,7 @@ def read(path: str | os.PathLike[str]) -> bytes:
     """The bytes of a scene file."""
     check_name(path)
     try:
-        return regular.read(path, LARGEST)
+        return regular_files.read(path, LARGEST)
     except FileError as error:
         raise refused(path, error.reason) from None
 

@@ -11,16 +11,16 @@ from typing import Any, NamedTuple
 
 from minirt.element import Element, pattern
 from minirt.errors import Problem, SceneError
-from minirt.scene import files, plain
+from minirt.scene import fast, files
+from minirt.scene.diagnostics import Log
+from minirt.scene.element_reader import Slot, assign, cut, fill, identify
 from minirt.scene.elements import Ambient
 from minirt.scene.lights import FurtherLight, Light
 from minirt.scene.lines import Line, Word, line_from
-from minirt.scene.log import Log
 from minirt.scene.pages import Item
-from minirt.scene.reading import Slot, assign, cut, fill, identify
 from minirt.scene.registry import ELEMENTS
 from minirt.scene.scene import Scene
-from minirt.scene.spelling import nearest_element
+from minirt.scene.suggestions import nearest_element
 
 BLOCK = 4096  # lines that are read at once where they are plain
 
@@ -74,7 +74,7 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
     seen: dict[str, int] = {}  # identifier: the first line that has it, or seems to mean it
     for before in range(0, len(sources), BLOCK):
         block = sources[before : before + BLOCK]
-        for number, (source, known) in enumerate(zip(block, plain.read(block), strict=True), before + 1):
+        for number, (source, known) in enumerate(zip(block, fast.read(block), strict=True), before + 1):
             if known:
                 seen.setdefault(known.code, number)
                 items.append(known)

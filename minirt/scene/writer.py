@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 
-from minirt import atomic, regular
-from minirt.scene import files, plain
+from minirt import atomic_write, regular_files
+from minirt.scene import fast, files
+from minirt.scene.line_rewriting import line_of
 from minirt.scene.lines import BOM
 from minirt.scene.pages import Item
-from minirt.scene.rewriting import line_of
 from minirt.scene.scene import Scene
 
 
@@ -22,7 +22,7 @@ def dump(scene: Scene) -> str:
 def lines_of(items: tuple[Item, ...]) -> Iterator[str]:
     """The lines of a file that hold those items."""
     sources = [item if isinstance(item, str) else item.source for item in items]
-    for item, source, said in zip(items, sources, plain.read(sources), strict=True):
+    for item, source, said in zip(items, sources, fast.read(sources), strict=True):
         yield source if isinstance(item, str) or item == said else line_of(item)
 
 
@@ -34,6 +34,6 @@ def save(scene: Scene, path: str | os.PathLike[str]) -> None:
     files.check_name(path)
     data = dump(scene).encode()
     try:
-        atomic.write(path, data)
+        atomic_write.write(path, data)
     except (OSError, ValueError) as error:
-        raise files.refused(path, f"cannot be written: {regular.reason(error)}") from None
+        raise files.refused(path, f"cannot be written: {regular_files.reason(error)}") from None

@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
 from minirt.lanes import Vec, copysign, fabs, maximum, minimum, splat, where
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.extents import along, box_of_points
+from minirt.shapes.bounds import along, box_of_points
 from minirt.shapes.shape import Ball, Place, Shape
 from minirt.shapes.shape import Box as Corners
 

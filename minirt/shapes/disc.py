@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import face_on
-from minirt.shapes.extents import box_of_disc
+from minirt.shapes.bounds import box_of_disc
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Box, Place, Shape
 

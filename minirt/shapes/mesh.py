@@ -18,8 +18,8 @@ import numpy as np
 from minirt import meshes
 from minirt.fields import FARTHEST, Colour, Length, MeshField, MeshFile, Point, Triple, declare
 from minirt.lanes import Vec, cross, dot, maximum, minimum, unit, where
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 from minirt.shapes import pyramid, triangle
 from minirt.shapes.shape import Ball, Box, Place, Shape
 

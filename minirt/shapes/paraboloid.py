@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, unit, where
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.extents import across, along, box_of_boxes, box_of_disc
+from minirt.shapes.bounds import across, along, box_of_boxes, box_of_disc
 from minirt.shapes.quadric import below_zero, deepest
 from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.wrap import is_side, wrapped
+from minirt.shapes.uv_mapping import is_side, wrapped
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 from minirt.materials import Checker, Compound
 from minirt.shapes.basis import face_on
 from minirt.shapes.shape import BOARD, Ball, Place, Shape

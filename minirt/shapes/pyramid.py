@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from minirt.lanes import Vec, cross, dot, maximum, minimum, splat, unit_roundoff, where
 from minirt.lanes.largest import largest
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 
 APART = 1024  # roundings of its length by which a ray may pass beside the point, or beside a side of the pyramid
 BEHIND = 4  # roundings of the coordinates by which a start may seem to lie behind the triangle

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import inf, nan
 
 from minirt.lanes import any, copysign, maximum, minimum, rarely, splat, sqrt, where
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 
 
 def below_zero(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Number, Number]:

@@ -33,7 +33,7 @@ import numpy as np
 from minirt.element import Element
 from minirt.fields import Triple, declare
 from minirt.lanes import Vec
-from minirt.lanes.verbs import Mask
+from minirt.lanes.operations import Mask
 from minirt.materials import Bump, Checker, Compound, Glass, Mirror, NormalMap, Specular, Texture
 
 Box = tuple[Triple, Triple]  # least and greatest corner

@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
-from minirt.shapes.exact import power
+from minirt.shapes.compensated import power
 from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.wrap import TURN, turns
+from minirt.shapes.uv_mapping import TURN, turns
 
 CLOSE = 2.0**-6  # to the surface: |f|^2 / radius^2 - 1
 ROUNDING = 16  # of the same, in unit roundoffs, and more

@@ -14,10 +14,10 @@ from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import face_on
-from minirt.shapes.extents import along, box_of_points
+from minirt.shapes.bounds import along, box_of_points
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Box, Place, Shape
 

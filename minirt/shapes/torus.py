@@ -15,12 +15,12 @@ from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
 from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, splat, sqrt, unit_roundoff, where
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.extents import along, box_of_disc
+from minirt.shapes.bounds import along, box_of_disc
 from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.wrap import TURN, around, turns
+from minirt.shapes.uv_mapping import TURN, around, turns
 
 STEPS = 100  # at most, towards a root; most take less than ten
 CORNERS = 8  # of a polygon around the circle in the middle of the tube

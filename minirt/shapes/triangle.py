@@ -16,10 +16,10 @@ from typing import NamedTuple
 from minirt.fields import Colour, Point, Triple, declare, unit
 from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rounded_product, where
 from minirt.lanes import cross as product
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 from minirt.shapes import pyramid
-from minirt.shapes.extents import box_of_points
+from minirt.shapes.bounds import box_of_points
 from minirt.shapes.shape import Ball, Box, Place, Shape
 
 FLAT = 16 * 2.0**-53  # of its largest coordinate: a triangle that is no higher is none

@@ -11,8 +11,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from minirt.rendering.cores import usable_cores
-from minirt.report.machine import processor
+from minirt.rendering.running.cores import usable_cores
+from minirt.report.measurements.machine import processor
 from tests.bench import formulas, scenes
 from tests.bench.measure import Cells, available, take_turns
 from tests.bench.ours import MiniRT

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from minirt.report import kernels, textbook
-from minirt.report.kernels import Row
-from minirt.report.regimes import REGIMES
+from minirt.report.measurements import formula_errors, textbook
+from minirt.report.measurements.formula_errors import Row
+from minirt.report.measurements.regimes import REGIMES
 from minirt.shapes import KINDS
 from tests.bench.table import MARK, aligned, times
 
@@ -18,7 +18,7 @@ REGIME = next(each for each in REGIMES if each.name == "benign")  # rays that ne
 SHAPES, RAYS, SEED = 6, 32, 1  # of each kind; of each shape
 UNIT = "ns a ray"
 MEANING = (
-    f"{UNIT}: nanoseconds of one thread, the best of {kernels.RUNS} runs, of rays that start {REGIME.about} from the\n"
+    f"{UNIT}: nanoseconds of one thread, the best of {formula_errors.RUNS} runs, of rays that start {REGIME.about} from the\n"
     "shape; the ratio is of processor times, the median of runs in turn."
 )
 
@@ -30,7 +30,7 @@ def measured() -> Iterator[Row]:
             print(f"formula of the {kind.element.title}", file=sys.stderr, flush=True)
             rays = REGIME.pose(kind, np.random.default_rng(SEED), SHAPES, RAYS)
             yield from (
-                row for row in kernels.measured(kind, REGIME.name, rays) if row.formula in ("miniRT", "textbook")
+                row for row in formula_errors.measured(kind, REGIME.name, rays) if row.formula in ("miniRT", "textbook")
             )
 
 

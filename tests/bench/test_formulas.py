@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from minirt.report import kernels, textbook
-from minirt.report.kernels import Row
-from minirt.report.poses import Rays
+from minirt.report.measurements import formula_errors, textbook
+from minirt.report.measurements.formula_errors import Row
+from minirt.report.measurements.random_rays import Rays
 from minirt.shapes import Kind
 from tests.bench import formulas
 
@@ -44,7 +44,7 @@ def test_each_formula_of_a_textbook_is_measured_beside_the_exact_one(monkeypatch
         assert (regime, rays.origins.shape, {*map(type, rays.shapes)}) == ("benign", (6, 32, 3), {kind.element})
         return [row(kind.element.title, name, 2.0, 0.5) for name in ("miniRT", "textbook", "miniRT, float32")]
 
-    monkeypatch.setattr(kernels, "measured", measured)
+    monkeypatch.setattr(formula_errors, "measured", measured)
     rows = list(formulas.measured())
     assert [(each.kind, each.formula) for each in rows] == [
         (element.title, formula) for element in textbook.FORMULAS for formula in ("miniRT", "textbook")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from minirt import load
-from minirt.rendering.camera import camera_numbers
+from minirt.rendering.packing.camera import camera_numbers
 from tests.bench import scenes
 
 

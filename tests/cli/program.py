@@ -11,11 +11,11 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import NamedTuple
 
+from tests.paths import ROOT
 from tests.processes import run, started
 from tests.terminals import Terminal
 from tests.waiting import HANG_LIMIT
 
-ROOT = Path(__file__).parent.parent.parent
 SCENE = """A 0.2 255,255,255
 C 0,0,-5 0,0,1 70
 L -4,3,-3 0.7 255,255,255

@@ -12,7 +12,7 @@ from typing import Any
 
 from minirt.cli import main
 from minirt.rendering import Renderer
-from minirt.rendering.frames import Frame
+from minirt.rendering.frame_arguments import Frame
 from tests.waiting import until
 
 RENDERING = b"rendering"

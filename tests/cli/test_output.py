@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 import minirt
-from minirt import atomic
+from minirt import atomic_write
 from minirt.cli import main
 from tests.cli.program import SCENE, Ended
 
@@ -75,7 +75,7 @@ def test_an_existing_file_stays_where_writing_fails(run: Run, folder: Path, monk
     def full(descriptor: int) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(atomic.os, "fsync", full)
+    monkeypatch.setattr(atomic_write.os, "fsync", full)
     ended = run("ball.rt", "-o", "x.png", "--size", "8x6")
     assert ended == (1, b"", "Error\nx.png: cannot write: No space left on device\n")
     assert (folder / "x.png").read_bytes() == b"old"

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.kernel import frame, lists
+from minirt.kernel import frame
+from minirt.kernel.culling import binning
 from minirt.rendering import Renderer
-from minirt.rendering.camera import packet_rays
-from minirt.rendering.frames import ALL_PACKETS, memory_for, room_for_sums, sample_places
-from minirt.rendering.packing import Packing
-from minirt.rendering.traits import DEPTH
+from minirt.rendering.frame_arguments import ALL_PACKETS, memory_for, room_for_sums, sample_places
+from minirt.rendering.packing.camera import packet_rays
+from minirt.rendering.packing.features import DEPTH
+from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
@@ -76,7 +77,7 @@ def interpreted(
 ) -> tuple[Any, Array]:
     """The same by the kernel as it stands, in Python."""
     words, light = np.zeros((height, width), np.uint32), np.full((height, width, 3), np.nan)
-    traced = Packing(lists, precision, depth).pack(scene, width, height)
+    traced = Packing(binning, precision, depth).pack(scene, width, height)
     with np.errstate(all="ignore"):
         rays = packet_rays(traced.camera, sample_places(samples))
         frame.frame(

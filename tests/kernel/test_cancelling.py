@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.kernel import frame, lists
+from minirt.kernel import frame
+from minirt.kernel.culling import binning
 from minirt.kernel.frame import CANCELLED, TILE
 from minirt.lanes import Vec
-from minirt.rendering.frames import frame_arguments
-from minirt.rendering.packing import Packing
+from minirt.rendering.frame_arguments import frame_arguments
+from minirt.rendering.scene_packing import Packing
 from tests.kernel.pictures import ALL
 
 WIDTH, HEIGHT, SAMPLES = 40, 24, 2
@@ -42,7 +43,7 @@ def packets_after(looks: float, monkeypatch: pytest.MonkeyPatch) -> tuple[int, i
         return packet(*given)
 
     monkeypatch.setattr(frame, "packet", counted)
-    traced = Packing(lists).pack(ALL, WIDTH, HEIGHT)
+    traced = Packing(binning).pack(ALL, WIDTH, HEIGHT)
     given = frame_arguments(traced, np.zeros((HEIGHT, WIDTH, 4), np.uint8), SAMPLES)
     with np.errstate(all="ignore"):
         frame.frame(*given._replace(next_row=counter))

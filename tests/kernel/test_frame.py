@@ -8,10 +8,10 @@ import pytest
 from minirt.kernel import frame
 from minirt.kernel.frame import towards
 from minirt.lanes import Vec
-from minirt.rendering import Renderer, packing
-from minirt.rendering.camera import camera_numbers, pixel_rays
+from minirt.rendering import Renderer, scene_packing
+from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.scene import FurtherLight, Scene
-from minirt.scene.view import view
+from minirt.scene.camera_frame import view
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, ONE, SHAPES, TWO, interpreted, linear, picture
 
 SIZES = [(1, 1), (1, 9), (9, 1), (5, 3), (4, 2), (3, 2), (13, 11), (4, 33), (33, 8)]
@@ -123,8 +123,8 @@ def test_a_renderer_counts_the_rays_whose_light_is_not_finite(monkeypatch: pytes
     renderer, pixels = Renderer(2), np.zeros((32, 32, 4), np.uint8)
     assert renderer.render(ALL, pixels)
     assert renderer.not_finite == 0
-    light_numbers = packing.light_numbers
-    monkeypatch.setattr(packing, "light_numbers", lambda scene: light_numbers(scene) * [1, 1, 1, np.nan, 1, 1])
+    light_numbers = scene_packing.light_numbers
+    monkeypatch.setattr(scene_packing, "light_numbers", lambda scene: light_numbers(scene) * [1, 1, 1, np.nan, 1, 1])
     spoiled = Renderer(2)
     assert spoiled.render(ALL, pixels)
     assert 100 < spoiled.not_finite <= 32 * 32

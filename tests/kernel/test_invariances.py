@@ -9,7 +9,7 @@ import pytest
 
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Length, Lengths, Point
-from minirt.kernel import shade
+from minirt.kernel.shading import shade
 from minirt.lanes import splat
 from minirt.scene import FurtherLight, Scene
 from minirt.shapes.box import Box

@@ -13,7 +13,7 @@ from numba import njit
 
 import minirt.lanes.compiled  # noqa: F401
 from minirt.lanes import Vec, inverse_root, lane, load, unit, width
-from minirt.lanes.root import SERIES
+from minirt.lanes.compiled.inverse_root import SERIES
 from tests.lanes.numbers import DTYPES, PRECISIONS
 from tests.lanes.test_operators import put
 from tests.processes import run
@@ -55,7 +55,7 @@ def test_within_two_units_in_the_last_place(dtype: Any) -> None:
 
 
 def refined(x: Any, estimate: Any, bits: int, series: tuple[float, ...]) -> Any:
-    """1 / sqrt(x) from an estimate of it, by the steps of `minirt.lanes.root`, each rounded to so many bits."""
+    """1 / sqrt(x) from an estimate of it, by the steps of `minirt.lanes.compiled.inverse_root`, each rounded to so many bits."""
 
     def rounded(value: Any) -> Any:
         return gmpy2.mpfr(value, bits)

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from minirt.materials.pictures import picture
+from minirt.materials.picture_cache import picture
+from tests.paths import ROOT
 
-ROOT = Path(__file__).parent.parent.parent
 FOLDER = ROOT / "scenes" / "textures"
 NAMES = sorted(path.name for path in FOLDER.iterdir())
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,9 @@ from numpy.typing import NDArray
 from minirt.fields import MeshFile
 from minirt.meshes import Triangles, mesh
 from minirt.shapes.mesh import Mesh
+from tests.paths import SCENES
 
-FOLDER = Path(__file__).parent.parent.parent / "scenes" / "meshes"
+FOLDER = SCENES / "meshes"
 GREY = (200, 200, 200)
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from minirt.meshes import Triangles, careful, obj, plain
+from minirt.meshes import Triangles, diagnosing, fast, obj
 from minirt.meshes.block import Block, Sizes
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -18,15 +18,15 @@ Read = Callable[[str], Triangles]
 def read(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Read:
     """Reads a file in one way, and in that alone."""
     if request.param == "careful":
-        monkeypatch.setattr(plain, "read", lambda *_: None)
+        monkeypatch.setattr(fast, "read", lambda *_: None)
     else:
-        monkeypatch.setattr(careful, "read", None)
+        monkeypatch.setattr(diagnosing, "read", None)
     return lambda text: obj.parse(text.encode())
 
 
 def careful_only(text: str) -> Triangles:
     """The triangles of a file that is read line by line."""
-    assert plain.read(text.encode().splitlines(keepends=True), Sizes()) is None
+    assert fast.read(text.encode().splitlines(keepends=True), Sizes()) is None
     return obj.parse(text.encode())
 
 
@@ -137,7 +137,7 @@ def test_both_ways_read_the_same() -> None:
             numbers = random.integers(1, 21, (random.integers(3, 7), 3)) * random.choice([-1, 1], (1, 3))
             lines.append("f " + " ".join(forms.format(*row) for row in numbers.tolist()))
         data = [line.encode() + b"\n" for line in lines]
-        fast, slow = plain.read(data, Sizes(3, 4, 5, 6)), careful.read(data, Sizes(3, 4, 5, 6))
-        assert fast is not None
-        assert all(np.array_equal(one, other) for one, other in zip(fast, slow, strict=True)), forms
+        quick, slow = fast.read(data, Sizes(3, 4, 5, 6)), diagnosing.read(data, Sizes(3, 4, 5, 6))
+        assert quick is not None
+        assert all(np.array_equal(one, other) for one, other in zip(quick, slow, strict=True)), forms
         assert isinstance(slow, Block)

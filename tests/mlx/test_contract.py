@@ -9,7 +9,7 @@ import pytest
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
 from tests.mlx.contract import load, observe
-from tests.mlx.troupe import Troupe
+from tests.mlx.contract_process import Troupe
 from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:

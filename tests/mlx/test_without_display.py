@@ -6,7 +6,7 @@ import os
 import sys
 
 from tests import processes
-from tests.windows import ROOT
+from tests.paths import ROOT
 
 NO_SCREEN = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
 

@@ -16,7 +16,7 @@ from tests.reference import meshes  # noqa: F401  (what is said of each shape in
 from tests.reference.hits import first_hits
 from tests.reference.light import OFF_SURFACE, shaded
 from tests.reference.normals import normals
-from tests.reference.skin import lookup, painted, picture
+from tests.reference.texturing import lookup, painted, picture
 from tests.reference.vectors import Array, dot, length, rgb, upright
 
 DEPTH = 8  # how often light is mirrored or refracted on its way to the eye, at most

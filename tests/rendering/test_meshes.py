@@ -8,15 +8,15 @@ import pytest
 import minirt
 from minirt.fields import MeshFile
 from minirt.materials import Specular
-from minirt.rendering.packing import Packing
-from minirt.rendering.pick import covers, pick, place
-from minirt.rendering.tables import Tables
+from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.queries.pick import covers, pick, place
+from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.meshes.examples import GREY, ball, first_hits, named, soup
-from tests.rendering.test_packing import assert_same
+from tests.rendering.test_scene_packing import assert_same
 from tests.shapes.regimes import unit, ways
 
 WHITE = (255, 255, 255)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from minirt.rendering.packing import Packing
-from minirt.rendering.traits import FEATURES
+from minirt.rendering.packing.features import FEATURES
+from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes import ALL_KINDS
 from minirt.shapes.plane import Plane

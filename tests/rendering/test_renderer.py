@@ -14,7 +14,7 @@ import minirt
 from minirt.errors import RenderError
 from minirt.kernel.frame import CANCELLED
 from minirt.rendering import Renderer
-from minirt.rendering.frames import sample_places
+from minirt.rendering.frame_arguments import sample_places
 from minirt.rendering.renderer import needs
 from minirt.scene import Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, SHAPES, TWO, picture

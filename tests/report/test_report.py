@@ -16,11 +16,11 @@ from PIL import Image
 
 import minirt
 from minirt.errors import RenderError
-from minirt.report import __main__, making, report, report_formulas
-from minirt.report.errors import HEAT
-from minirt.report.making import NO_DIAGRAM
-from minirt.report.pictures import Budget
-from minirt.report.plan import QUICK, fitting
+from minirt.report import __main__, generate, report, report_formulas
+from minirt.report.generate import NO_DIAGRAM
+from minirt.report.measurements.picture_errors import Budget
+from minirt.report.measurements.plan import QUICK, fitting
+from minirt.report.output.error_image import HEAT
 from minirt.scene import Scene, dump
 from minirt.shapes import KINDS
 from tests.cli.conftest import folder, run
@@ -39,7 +39,7 @@ TABLES = {"report.md", "report.json", "pictures.csv", "kernels.csv"}
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     """A plan for tests, with little work, and a clock that moves on by that alone."""
     plan = QUICK._replace(shapes=1, samples=64, most=4, budget=Budget(0.0, inf, tries=1))
-    monkeypatch.setattr(making, "QUICK", plan)
+    monkeypatch.setattr(generate, "QUICK", plan)
     return simulated(monkeypatch)
 
 
@@ -108,7 +108,7 @@ def test_error_pictures_show_the_errors(made: Path) -> None:
 def test_without_matplotlib_the_tables_come_and_say_what_draws_the_diagram(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(making, "find_spec", lambda name: None)
+    monkeypatch.setattr(generate, "find_spec", lambda name: None)
     assert NO_DIAGRAM in report(ALL, "all.rt", tmp_path, (32, 20), 1, quick=True)
     assert "matplotlib" in NO_DIAGRAM
     assert {path.name for path in tmp_path.iterdir()} >= TABLES
@@ -138,7 +138,7 @@ def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
 
 
 def test_kinds_that_nothing_exact_is_known_of_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(making, "SOLIDS", {})
+    monkeypatch.setattr(generate, "SOLIDS", {})
     assert "formula of the sphere: none in 60 digits" in report(ALL, "all.rt", tmp_path, (16, 16), 1, quick=True)
     assert (tmp_path / "kernels.csv").read_text().strip() == ""
 
@@ -147,7 +147,7 @@ def test_the_formulas_of_all_kinds(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr("sys.argv", ["report", str(tmp_path / "shapes"), "--quick"])
     __main__.main()
     rows = json.loads((tmp_path / "shapes" / "kernels.json").read_text())
-    assert {row["kind"] for row in rows} == {kind.element.title for kind in KINDS if kind.element in making.SOLIDS}
+    assert {row["kind"] for row in rows} == {kind.element.title for kind in KINDS if kind.element in generate.SOLIDS}
     assert "| cylinder | long tube |" in (tmp_path / "shapes" / "kernels.md").read_text()
     (tmp_path / "file").touch()
     monkeypatch.setattr("sys.argv", ["report", str(tmp_path / "file")])
@@ -192,8 +192,9 @@ ENDLESS = """
 import sys
 from math import inf
 from minirt import cli
-from minirt.report import kernels, making, plan
-from minirt.report.pictures import Budget
+from minirt.report import generate
+from minirt.report.measurements import formula_errors, plan
+from minirt.report.measurements.picture_errors import Budget
 from minirt.timing import runs
 from tests.cli.telling import tell
 
@@ -203,16 +204,16 @@ def endless(work, least, seconds):
 
 tell()
 
-phase, short = sys.argv.pop(1), making.QUICK._replace(samples=64, seconds=1e30, budget=Budget(0.0, inf, tries=1))
-making.FULL = short
+phase, short = sys.argv.pop(1), generate.QUICK._replace(samples=64, seconds=1e30, budget=Budget(0.0, inf, tries=1))
+generate.FULL = short
 if phase == "fitting":
     plan.runs = endless
 elif phase == "reference":
-    making.FULL = short._replace(samples=2**20, width=1920)
+    generate.FULL = short._replace(samples=2**20, width=1920)
 elif phase == "uniform 1":
-    making.FULL = short._replace(budget=Budget(inf, inf, tries=1))
+    generate.FULL = short._replace(budget=Budget(inf, inf, tries=1))
 elif phase == "sphere, benign":
-    kernels.RUNS = 10**9
+    formula_errors.RUNS = 10**9
 sys.exit(cli.main())
 """
 

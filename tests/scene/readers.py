@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from unittest.mock import patch
 
 from minirt.errors import Problem, SceneError
-from minirt.scene import Item, plain
-from minirt.scene.log import Log
+from minirt.scene import Item, fast
+from minirt.scene.diagnostics import Log
 from minirt.scene.parser import read_lines
 
 Outcome = tuple[list[Problem], list[Problem], list[object] | tuple[Problem, ...]]
@@ -34,7 +34,7 @@ def outcome(sources: list[str], log: Log) -> tuple[list[Item], Outcome]:
 
 def read_by_both(sources: list[str], log: Log) -> list[Item]:
     """Like `read_lines`; AssertionError where the careful reader alone tells another story."""
-    with patch.object(plain, "read", none_plain):
+    with patch.object(fast, "read", none_plain):
         careful = outcome(sources, Log(log.file, log.lenient))[1]
     items, quick = outcome(sources, log)
     assert quick == careful

@@ -6,13 +6,11 @@ import shutil
 import tempfile
 from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 from typing import Any, TypeVar
 
 from hypothesis import reject
 from hypothesis import strategies as st
 
-import minirt
 from minirt.element import Record, fields_of
 from minirt.errors import ElementError
 from minirt.fields import (
@@ -33,10 +31,10 @@ from minirt.fields import (
 from minirt.materials import Compound
 from minirt.scene import Camera, Scene, describe
 from minirt.scene.registry import ELEMENTS
+from tests.paths import ROOT
 
 Known = TypeVar("Known", bound=Record)
 
-ROOT = Path(minirt.__file__).parent.parent
 FOLDER = tempfile.TemporaryDirectory(prefix="minirt-")  # names in scenes have no blanks; the project's folder may
 PICTURES = [shutil.copy(path, FOLDER.name) for path in sorted((ROOT / "assets").glob("*.png"))[:2]]
 MESH = shutil.copy(ROOT / "scenes" / "meshes" / "icosahedron.obj", FOLDER.name)

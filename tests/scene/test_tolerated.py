@@ -8,9 +8,9 @@ import pytest
 
 from minirt.fields import Real
 from minirt.scene import Camera, Light, parse
+from minirt.scene.diagnostics import Log
+from minirt.scene.element_reader import Slot, value_of
 from minirt.scene.lines import Line, Word
-from minirt.scene.log import Log
-from minirt.scene.reading import Slot, value_of
 from minirt.shapes.sphere import Sphere
 from tests.scene.examples import AMBIENT, CAMERA, LIGHT, SPHERE, WHOLE, notices, read, scene_with
 

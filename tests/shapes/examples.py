@@ -11,7 +11,7 @@ from minirt.element import fields_of
 from minirt.errors import ElementError
 from minirt.fields import Colour, Direction, Field, Length, Lengths, Point
 from minirt.kernel.trace import ROUNDING
-from minirt.rendering.parts import extent
+from minirt.rendering.packing.primitives import extent
 from minirt.shapes import Kind, Shape
 from tests.shapes.regimes import Array, Random, log, unit, ways
 from tests.shapes.ways import compiled, surfaces
@@ -76,6 +76,6 @@ def hits(kind: Kind, seed: int, size: float, offset: float, shapes: int = 100, r
 
 
 def offsets(points: Array, shapes: list[Shape]) -> Array:
-    """How far from the surface `minirt.kernel.shade` starts the way to a lamp, (m, n, 1)."""
+    """How far from the surface `minirt.kernel.shading.shade` starts the way to a lamp, (m, n, 1)."""
     extents = np.array([extent(shape) for shape in shapes])[:, None]
     return (ROUNDING * 2.0**-53 * (np.abs(points).max(axis=-1) + extents))[..., None]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from minirt.lanes import Vec, dot, fabs, sqrt
-from minirt.report.textbook import meets_cylinder, meets_sphere
+from minirt.report.measurements.textbook import meets_cylinder, meets_sphere
 from minirt.shapes.plane import PackedPlane
 from minirt.shapes.sphere import PackedSphere
 from tests.shapes.ways import on_arrays

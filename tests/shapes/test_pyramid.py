@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.kernel.shade import clearance
+from minirt.kernel.shading.shade import clearance
 from minirt.lanes import Vec
 from minirt.shapes.pyramid import may_meet
 from minirt.shapes.triangle import Triangle, watertight

@@ -7,8 +7,8 @@ import pytest
 
 from minirt.errors import ElementError
 from minirt.lanes import Vec
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.lanes.verbs import Mask
 from minirt.shapes import torus as module
 from minirt.shapes.shape import Place
 from minirt.shapes.torus import PackedTorus, Torus

@@ -10,11 +10,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-import minirt.kernel.jit  # noqa: F401  (attaches the compiler)
+import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel import rows
-from minirt.kernel.kept import FLAGS
+from minirt.kernel.compiler.code_cache import FLAGS
 from minirt.lanes import Vec, lane, load, where, width
-from minirt.rendering.parts import numbers
+from minirt.rendering.packing.primitives import numbers
 from minirt.shapes import KINDS, Kind, Shape
 
 Array = NDArray[np.float64]

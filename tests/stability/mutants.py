@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from minirt.lanes import Vec
-from minirt.report import textbook
+from minirt.report.measurements import textbook
 from minirt.shapes import Shape
 from tests.shapes import mutants
 from tests.shapes.ways import Array, Intersect, kind_of, on_arrays, vec

@@ -23,26 +23,28 @@ from typing import Any
 import pytest
 
 import minirt.shapes
-from minirt.rendering import preview
-from minirt.rendering.cores import usable_cores
+from minirt.rendering.queries import preview
+from minirt.rendering.running.cores import usable_cores
 from minirt.scene import Scene
 from tests.kernel import pictures
+from tests.paths import PACKAGE
 from tests.shapes.ways import on_arrays
 from tests.stability.mutations import Change, changes
 from tests.stability.regime import posed
 from tests.stability.table import REGIMES
 
-PACKAGE = Path(minirt.__file__).parent
-SHARED = ("quadric", "exact", "basis", "extents")  # of several shapes
-TOPICS = {"wrap": "mapping"}  # what the tests of a file are called, where not as the file
+SHARED = ("quadric", "compensated", "basis", "bounds")  # of several shapes
+TOPICS = {"uv_mapping": "mapping"}  # what the tests of a file are called, where not as the file
 FILES = (*SHARED, *TOPICS, "pyramid", *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.ALL_KINDS))
 TESTS = ("tests/shapes", "tests/stability/test_surfaces.py", "tests/stability/test_properties.py")
 # What starts threads does not survive a fork.
 UNFIT = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
-KERNEL = ("trace", "shade")
+KERNEL = {"trace": "kernel/trace.py", "shade": "kernel/shading/shade.py"}
 PICTURES = (
-    *(f"tests/kernel/test_{name}.py" for name in ("coincident", "extremes", "invariances", "lamps", "highlight")),
-    *("tests/stability/test_pictures.py", "tests/kernel/test_whitted.py", "tests/rendering/test_sight.py"),
+    *(f"tests/kernel/test_{name}.py" for name in ("coincident", "extremes", "invariances")),
+    *(f"tests/kernel/shading/test_{name}.py" for name in ("lights", "specular", "whitted")),
+    "tests/stability/test_pictures.py",
+    "tests/rendering/culling/test_visibility.py",
 )
 COMPILED = "not compiled and not every_scene and not many_shapes and not light_is_finite and not lists_begin"
 SECONDS = 120  # a change may make a loop endless
@@ -84,7 +86,7 @@ def interpreted(scene: Scene, width: int = 24, height: int = 16, samples: int = 
 
 def path_of(name: str) -> str:
     """The file of that name, in the package."""
-    return f"{'kernel' if name in KERNEL else 'shapes'}/{name}.py"
+    return KERNEL.get(name, f"shapes/{name}.py")
 
 
 def fails(name: str) -> bool:

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-import minirt.kernel.jit  # noqa: F401  (attaches the compiler)
-from minirt.kernel.kept import FLAGS
+import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
+from minirt.kernel.compiler.code_cache import FLAGS
 from minirt.shapes import KINDS, Kind
 from tests.shapes.ways import Intersect
 from tests.stability import mutants

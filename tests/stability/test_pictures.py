@@ -19,11 +19,11 @@ from minirt.shapes.sphere import Sphere
 from tests import reference
 from tests.compare import edges
 from tests.kernel.pictures import linear, picture
+from tests.paths import SCENES
 from tests.shapes.examples import example
 from tests.shapes.regimes import log, ways
 from tests.stability.test_properties import SEED, fixed, powers
 
-SCENES = Path(__file__).parent.parent.parent / "scenes"
 WHITE = (255, 255, 255)
 DARK = Ambient(0.0, WHITE)
 DIM = Ambient(0.25, WHITE)

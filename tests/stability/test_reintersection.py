@@ -1,4 +1,4 @@
-"""Rays that start on a surface as `minirt.kernel.shade` starts them do not hit it again, and do not leave a solid."""
+"""Rays that start on a surface as `minirt.kernel.shading.shade` starts them do not hit it again, and do not leave a solid."""
 
 from __future__ import annotations
 

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from minirt.rendering import pick
 from minirt.scene import Scene, dump, parse
-from minirt.viewer.painter import Wanted
-from minirt.viewer.replay import play
-from minirt.viewer.session import Session
+from minirt.viewer.app.replay import play
+from minirt.viewer.app.session import Session
+from minirt.viewer.display.painter import Wanted
 from tests.waiting import HANG_LIMIT, until
 
 TEXT = """\
@@ -127,5 +127,5 @@ def played(
     keys: str = "qwerty",
     watch: Callable[[Session], object] = lambda _: None,
 ) -> Session:
-    """The session after these recorded keys; `watch` as in `minirt.viewer.replay.play`."""
+    """The session after these recorded keys; `watch` as in `minirt.viewer.app.replay.play`."""
     return play(scene(text), lines, renderer=FakeRenderer(), size=(64, 48), path=path, keys=keys, watch=watch)

@@ -8,7 +8,9 @@ from pathlib import Path
 
 def compilers(program: int) -> list[int]:
     """The processes that compile for the program."""
-    return [each for each in processes() if parent(each) == program and "minirt.kernel.compile" in arguments(each)]
+    return [
+        each for each in processes() if parent(each) == program and "minirt.kernel.compiler.process" in arguments(each)
+    ]
 
 
 def group(program: int) -> list[int]:

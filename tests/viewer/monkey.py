@@ -18,8 +18,8 @@ from typing import NamedTuple
 from PIL import Image
 
 from minirt.scene import load
-from minirt.viewer.bindings import BINDINGS
-from minirt.viewer.chords import MOUSE
+from minirt.viewer.input.bindings import BINDINGS
+from minirt.viewer.input.chords import MOUSE
 from tests.viewer.family import compilers
 from tests.viewer.hands import do
 from tests.viewer.resting import until_at_rest, until_events_are_done

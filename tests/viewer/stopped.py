@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 
 from minirt.cli import main
-from minirt.viewer.session import Session
+from minirt.viewer.app.session import Session
 
 if __name__ == "__main__":
     Session.now = property(lambda _: 0.0)  # type: ignore[method-assign,assignment]

@@ -9,9 +9,9 @@ import sys
 from pathlib import Path
 
 from minirt.scene import load
-from minirt.viewer.bindings import Binding
-from minirt.viewer.desktop import run
-from minirt.viewer.session import Session
+from minirt.viewer.app.desktop import run
+from minirt.viewer.app.session import Session
+from minirt.viewer.input.bindings import Binding
 from tests.viewer.fake import FakeRenderer
 
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from minirt import load
-from minirt.rendering.camera import camera_numbers
+from minirt.rendering.packing.camera import camera_numbers
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane

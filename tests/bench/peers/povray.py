@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from minirt.rendering.camera import camera_numbers
+from minirt.rendering.packing.camera import camera_numbers
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane

@@ -8,9 +8,9 @@ from math import hypot
 from pathlib import Path
 
 from minirt.fields import Triple
-from minirt.rendering.camera import camera_numbers
+from minirt.rendering.packing.camera import camera_numbers
 from minirt.scene import Scene
-from minirt.scene.view import view
+from minirt.scene.camera_frame import view
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.shape import Shape

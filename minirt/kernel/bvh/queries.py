@@ -1,0 +1,171 @@
+"""Rays that share no origin against all shapes of a scene: `minirt.kernel.trace` by means of a tree."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+from minirt.kernel.atomic_counter import fetch_add
+from minirt.kernel.bvh.nodes import (
+    DIRECTION,
+    FOUND,
+    ORIGIN,
+    WIDTH,
+    Group,
+    Tree,
+    aim,
+    bits,
+    packet_memory,
+    put,
+    put_vec,
+    reach,
+    vec_at,
+)
+from minirt.kernel.bvh.traversal import walk
+from minirt.kernel.rows import intersect, kind_of, read, surface
+from minirt.kernel.scene_arrays import placed
+from minirt.kernel.trace import nearer, over_kinds
+from minirt.lanes import Vec, any, lane, load, lowest, splat, unit, where
+from minirt.lanes.largest import largest
+from minirt.lanes.operations import Mask
+from minirt.lanes.vec import Number
+
+CHUNK = 16 * WIDTH  # rays that a thread takes at a time
+
+Nearest = tuple[Number, Number, Number]  # distance, index and extent of what is hit
+
+
+def nearest(tree: Tree, origin: Vec, direction: Vec, asked: Mask) -> Nearest:
+    """As `trace.nearest`, for any rays; those that are not `asked` for hit endless shapes only."""
+    memory = packet_memory()
+    aim(memory, origin, direction)
+    nothing = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
+    best, owner, extent = over_kinds(nearest_endless, tree.groups, nothing, (tree, origin, direction))
+    put_vec(memory, FOUND, Vec(best, owner, extent))
+    walk(nearest_of_block, tree, memory, bits(asked))
+    return load(memory, FOUND), load(memory, FOUND + WIDTH), load(memory, FOUND + 2 * WIDTH)
+
+
+def nearest_endless(group: Group, state: Nearest, given: tuple[Tree, Vec, Vec]) -> Nearest:
+    """`nearest` over the shapes of one kind that have no end."""
+    tree, origin, direction = given
+    for i in range(group.endless.shape[0]):
+        index = group.endless[i]
+        shape = read(group.rows, tree.places[index, 1])
+        hit, t = intersect(shape, origin, direction)
+        state = nearer(shape, index, tree.extents[index], hit, t, origin, direction, state)
+    return state
+
+
+def nearest_of_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
+    """`nearest` of one ray over a block of shapes."""
+    origin, direction = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray)
+    hit, t = intersect(read_block(group.blocks, block), origin, direction)
+    left = bits(hit & (t <= reach(memory[FOUND + ray])))
+    if left != 0:
+        found = vec_at(memory, FOUND, ray)
+        state = found.x, found.y, found.z
+        while left != 0:
+            i = lowest(left)
+            left = left & (left - 1)
+            shape = read_one(group.blocks, block, i)  # in the cache, as its row in the table is not
+            index, extent = group.labels[block, i, 0], group.labels[block, i, 1]
+            state = nearer(shape, index, extent, True, lane(t, i), origin, direction, state)
+        memory[FOUND + ray], memory[FOUND + WIDTH + ray], memory[FOUND + 2 * WIDTH + ray] = state
+
+
+def unhidden(tree: Tree, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
+    """Of the rays that are `asked` for, those that hit nothing nearer than `distance`."""
+    memory = packet_memory()
+    aim(memory, origin, direction)
+    free = over_kinds(free_of_endless, tree.groups, asked, (tree, origin, direction, distance))
+    put(memory, FOUND, where(free, distance, -inf))
+    walk(free_of_block, tree, memory, bits(free))
+    return load(memory, FOUND) > -inf
+
+
+def free_of_endless(group: Group, free: Mask, given: tuple[Tree, Vec, Vec, Number]) -> Mask:
+    """Of the rays that are free so far, those that no shape without end of one kind stops."""
+    tree, origin, direction, distance = given
+    for i in range(group.endless.shape[0]):
+        hit, t = intersect(read(group.rows, tree.places[group.endless[i], 1]), origin, direction)
+        free = free & ~(hit & (t < distance))
+    return free
+
+
+def free_of_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
+    """Nothing matters any more to a ray, not even what is at -infinity, as soon as something stops it."""
+    hit, t = intersect(read_block(group.blocks, block), vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray))
+    memory[FOUND + ray] = where(any(hit & (t < memory[FOUND + ray])), -inf, memory[FOUND + ray])
+
+
+def read_block(blocks: Any, i: int) -> Any:
+    """The packed shapes of a block as one whose numbers are lanes."""
+    parts = (Vec(*part) if part.ndim == 2 else part for part in blocks[i])
+    return kind_of(blocks.dtype.names).packed(*parts)
+
+
+def read_one(blocks: Any, block: int, i: int) -> Any:
+    """The packed shape in lane i of a block."""
+    parts = (Vec(*part[:, i]) if part.ndim == 2 else part[i] for part in blocks[block])
+    return kind_of(blocks.dtype.names).packed(*parts)
+
+
+def trace_rays(
+    next_ray: Any, tree: Tree, origins: Any, directions: Any, distances: Any, owners: Any, points: Any, normals: Any
+) -> None:
+    """Trace rays, taking the next ones from the counter `next_ray` until none is left.
+
+    Any number of threads may do so at the same time. `origins`, `directions` of any length, `points` and `normals` are
+    (n, 3), `distances` and `owners` (n,); what belongs to a ray without a hit stays as it is.
+    """
+    tree = placed(tree)
+    count = origins.shape[0]
+    memory = packet_memory()
+    while True:
+        start = fetch_add(next_ray, CHUNK)
+        if start >= count:
+            return
+        for first in range(start, min(start + CHUNK, count), WIDTH):
+            for ray in range(WIDTH):
+                memory[FOUND + ray] = first + ray
+                for axis in range(3):
+                    memory[ORIGIN + axis * WIDTH + ray] = origins[min(first + ray, count - 1), axis]
+                    memory[DIRECTION + axis * WIDTH + ray] = directions[min(first + ray, count - 1), axis]
+            origin, direction = lanes_at(memory, ORIGIN), unit(rescaled(lanes_at(memory, DIRECTION)))
+            t, owner, _ = nearest(tree, origin, direction, load(memory, FOUND) < count)
+            put_vec(memory, ORIGIN, origin + t * direction)
+            put_vec(memory, FOUND, Vec(t, owner, t))
+            for ray in range(min(WIDTH, count - first)):
+                index = int(memory[FOUND + WIDTH + ray])
+                if index >= 0:
+                    point = vec_at(memory, ORIGIN, ray)
+                    group, row = tree.places[index, 0], tree.places[index, 1]
+                    on, normal, _ = over_kinds(surface_of_kind, tree.groups, (point, point, 0), (group, row, point))
+                    distances[first + ray], owners[first + ray] = memory[FOUND + ray], index
+                    store_vec(points, first + ray, on)
+                    store_vec(normals, first + ray, normal)
+
+
+def lanes_at(memory: Any, at: int) -> Vec:
+    """The vectors of all rays of a packet."""
+    return Vec(load(memory, at), load(memory, at + WIDTH), load(memory, at + 2 * WIDTH))
+
+
+def store_vec(vectors: Any, i: int, v: Vec) -> None:
+    vectors[i, 0], vectors[i, 1], vectors[i, 2] = v.x, v.y, v.z
+
+
+def rescaled(v: Vec) -> Vec:
+    """The vector in the direction of v whose largest coordinate is 1, however short or long v is."""
+    size = largest(v)
+    return Vec(v.x / size, v.y / size, v.z / size)
+
+
+def surface_of_kind(group: Group, state: tuple[Vec, Vec, int], given: tuple[int, int, Vec]) -> tuple[Vec, Vec, int]:
+    """`surface` of a shape, if it is of this kind; the last of the state counts the kinds."""
+    on, normal, number = state
+    wanted, row, point = given
+    if number == wanted:
+        on, normal = surface(read(group.rows, row), point)
+    return on, normal, number + 1

@@ -1,0 +1,86 @@
+"""The operators of Python, compiled, on lanes and masks."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+
+from minirt.lanes.compiled.registration import same_numbers, teach, two_numbers
+from minirt.lanes.compiled.types import CONTRACT, Lanes, Mask, splat
+
+PAIRS = ((Lanes, Lanes), (Lanes, types.Number), (types.Number, Lanes))
+
+
+def two_lanes(a: types.Type, b: types.Type) -> types.Type | None:
+    """Lanes for two numbers of which one is lanes."""
+    kind = two_numbers(a, b)
+    return kind if isinstance(kind, Lanes) else None
+
+
+def a_mask(a: types.Type, b: types.Type) -> types.Type | None:
+    """A mask for two numbers of which one is lanes."""
+    kind = two_lanes(a, b)
+    return kind and Mask(kind)
+
+
+def teach_arithmetic(function: Callable[..., Any], instruction: str) -> None:
+    @teach(function, two_lanes, PAIRS)
+    def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+        return getattr(builder, instruction)(*same_numbers(context, builder, sig, args), flags=CONTRACT)
+
+
+def teach_comparison(function: Callable[..., Any], symbol: str) -> None:
+    @teach(function, a_mask, PAIRS)
+    def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+        compare = builder.fcmp_unordered if symbol == "!=" else builder.fcmp_ordered
+        return compare(symbol, *same_numbers(context, builder, sig, args))
+
+
+def of_masks(a: types.Type, b: types.Type) -> types.Type | None:
+    """A mask for two masks, or for a mask and a truth that holds for all rays."""
+    mask = next((kind for kind in (a, b) if isinstance(kind, Mask)), None)
+    return mask if {a, b} <= {mask, types.boolean} else None
+
+
+def teach_logic(function: Callable[..., Any], instruction: str) -> None:
+    @teach(function, of_masks, [(Mask, Mask), (Mask, types.Boolean), (types.Boolean, Mask)])
+    def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+        masks = (
+            value if isinstance(kind, Mask) else splat(builder, value, sig.return_type.lanes.count)
+            for value, kind in zip(args, sig.args, strict=True)
+        )
+        return getattr(builder, instruction)(*masks)
+
+
+for _function, _instruction in (
+    (operator.add, "fadd"),
+    (operator.sub, "fsub"),
+    (operator.mul, "fmul"),
+    (operator.truediv, "fdiv"),
+):
+    teach_arithmetic(_function, _instruction)
+for _function, _symbol in (
+    (operator.lt, "<"),
+    (operator.le, "<="),
+    (operator.gt, ">"),
+    (operator.ge, ">="),
+    (operator.eq, "=="),
+    (operator.ne, "!="),
+):
+    teach_comparison(_function, _symbol)
+for _function, _instruction in ((operator.and_, "and_"), (operator.or_, "or_"), (operator.xor, "xor")):
+    teach_logic(_function, _instruction)
+
+
+@teach(operator.neg, lambda a: a if isinstance(a, Lanes) else None, [(Lanes,)])
+def _negate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.fneg(args[0])
+
+
+@teach(operator.invert, lambda a: a if isinstance(a, Mask) else None, [(Mask,)])
+def _invert(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.not_(args[0])

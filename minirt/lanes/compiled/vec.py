@@ -1,0 +1,97 @@
+"""Vec and its operators, compiled: the same instruction on three components."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+
+from minirt.lanes import operations, vec
+from minirt.lanes.compiled.inverse_root import inverse_root
+from minirt.lanes.compiled.registration import Result, same_numbers, teach
+from minirt.lanes.compiled.types import CONTRACT, VecType, common, constant, is_number, vec_of, vec_parts, widen
+
+ANY = types.Any
+
+
+def three_numbers(x: types.Type, y: types.Type, z: types.Type) -> types.Type | None:
+    return VecType(common(x, y, z)) if all(map(is_number, (x, y, z))) else None
+
+
+@teach(vec.Vec, three_numbers, [(ANY, ANY, ANY)])
+def _vec(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return vec_of(context, builder, sig.return_type, same_numbers(context, builder, sig, args))
+
+
+def components(context: Any, builder: ir.IRBuilder, sig: Any, args: Any, number: types.Type) -> list[list[Any]]:
+    """For each argument its three components as `number`; a single number counts as three equal ones."""
+    table = []
+    for value, kind in zip(args, sig.args, strict=True):
+        if isinstance(kind, VecType):
+            table.append([widen(context, builder, part, kind.number, number) for part in vec_parts(builder, value)])
+        else:
+            table.append([widen(context, builder, value, kind, number)] * 3)
+    return table
+
+
+def two_vecs(a: types.Type, b: types.Type) -> types.Type | None:
+    return VecType(common(a.number, b.number)) if isinstance(a, VecType) and isinstance(b, VecType) else None
+
+
+def vec_and_number(a: types.Type, b: types.Type) -> types.Type | None:
+    if isinstance(a, VecType) and is_number(b):
+        return VecType(common(a.number, b))
+    return None
+
+
+def number_and_vec(a: types.Type, b: types.Type) -> types.Type | None:
+    return vec_and_number(b, a)
+
+
+def teach_by_component(
+    function: Callable[..., Any], instruction: str, result: Result, pattern: tuple[Any, ...]
+) -> None:
+    @teach(function, result, [pattern])
+    def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+        table = components(context, builder, sig, args, sig.return_type.number)
+        parts = [getattr(builder, instruction)(*column, flags=CONTRACT) for column in zip(*table, strict=True)]
+        return vec_of(context, builder, sig.return_type, parts)
+
+
+teach_by_component(operator.add, "fadd", two_vecs, (VecType, VecType))
+teach_by_component(operator.sub, "fsub", two_vecs, (VecType, VecType))
+teach_by_component(operator.mul, "fmul", vec_and_number, (VecType, ANY))
+teach_by_component(operator.mul, "fmul", number_and_vec, (ANY, VecType))
+
+
+@teach(operator.truediv, vec_and_number, [(VecType, ANY)])
+def _divide(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    number = sig.return_type.number
+    parts, (divisor, *_) = components(context, builder, sig, args, number)
+    inverse = builder.fdiv(constant(divisor, 1.0), divisor)
+    return vec_of(context, builder, sig.return_type, [builder.fmul(part, inverse) for part in parts])
+
+
+@teach(operator.neg, lambda a: a if isinstance(a, VecType) else None, [(VecType,)])
+def _negate_vec(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return vec_of(context, builder, sig.return_type, [builder.fneg(part) for part in vec_parts(builder, args[0])])
+
+
+def scalar_product(builder: ir.IRBuilder, a: list[Any], b: list[Any]) -> Any:
+    x, y, z = (builder.fmul(*pair, flags=CONTRACT) for pair in zip(a, b, strict=True))
+    return builder.fadd(builder.fadd(x, y, flags=CONTRACT), z, flags=CONTRACT)
+
+
+@teach(vec.dot, lambda a, b: getattr(two_vecs(a, b), "number", None), [(VecType, VecType)])
+def _dot(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return scalar_product(builder, *components(context, builder, sig, args, sig.return_type))
+
+
+@teach(operations.unit, lambda a: a if isinstance(a, VecType) else None, [(VecType,)])
+def _unit(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    parts = vec_parts(builder, args[0])
+    factor = inverse_root(context, builder, scalar_product(builder, parts, parts))
+    return vec_of(context, builder, sig.return_type, [builder.fmul(part, factor) for part in parts])

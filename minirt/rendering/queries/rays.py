@@ -1,0 +1,117 @@
+"""Single rays through a scene: what they hit, where, and how the surface lies there."""
+
+from __future__ import annotations
+
+from functools import cache, cached_property, partial
+from importlib import import_module
+from threading import Lock
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from minirt.rendering.running.cores import usable_cores
+from minirt.rendering.running.thread_pool import Workers
+from minirt.scene import Scene
+from minirt.shapes import Shape
+
+
+class Hits(NamedTuple):
+    """What n rays hit first."""
+
+    distance: NDArray[np.float64]  # (n,) from the origin, in units of the scene; infinity where nothing is hit
+    owner: NDArray[np.int64]  # (n,) the index in `scene.shapes` of what is hit; -1 where nothing is
+    point: NDArray[np.float64]  # (n, 3) on the surface; NaN where nothing is hit
+    normal: NDArray[np.float64]  # (n, 3) of the surface, of unit length, outward where there is an outside; or NaN
+
+
+def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: int | None = None) -> Hits:
+    """Trace rays through a scene, each on its own: what it hits first, from t > 0 on.
+
+    `origins` and `directions` are (n, 3), in units of the scene; a direction may have any length but 0. A surface on
+    which a ray starts may be hit again: start it a little off. Where surfaces coincide the shape that comes first in
+    the scene is hit. The last scene stays sorted, so that further rays through it start at once. Safe to call from
+    several threads; the first call for a combination of shapes compiles for some seconds, later ones and later
+    programs do not. ValueError, naming the argument, for another shape, for a number that is infinite or NaN, and for a
+    direction of length 0.
+    """
+    starts, ways = vectors(origins, "origins"), vectors(directions, "directions")
+    if len(starts) != len(ways):
+        raise ValueError(f"directions must be as many as origins, {len(starts)}, got {len(ways)}")
+    if not ways.any(axis=1).all():
+        raise ValueError(f"directions must not be 0,0,0, got it at {int(np.argmin(ways.any(axis=1)))}")
+    return tracer(threads).trace(scene, starts, ways)
+
+
+def vectors(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    """An argument as an array of float64 (n, 3)."""
+    try:
+        given = np.asarray(values)
+    except ValueError as error:
+        raise ValueError(f"{name} must be numbers of shape (n, 3): {error}") from error
+    if given.dtype.kind not in "iuf":
+        raise ValueError(f"{name} must be numbers of shape (n, 3), got {given.dtype}")
+    array: NDArray[np.float64] = np.require(
+        given, np.float64, ["C", "A", "W"]
+    )  # else there would be a kernel for each sort
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name} must have the shape (n, 3), got {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite, got {array[~np.isfinite(array)][0]}")
+    return array
+
+
+class Tracer:
+    """Keeps threads and the tree of the last scene. Any thread may call it; rays are traced for one call at a time."""
+
+    shapes: tuple[Shape, ...] | None = None  # of the tree
+
+    def __init__(self, threads: int | None) -> None:
+        self.threads = threads or usable_cores()
+        self.busy = Lock()
+
+    @cached_property
+    def workers(self) -> Workers:
+        """The threads that trace."""
+        return Workers(self.threads)
+
+    @cached_property
+    def tables(self) -> Any:
+        """The shapes of the last scene."""
+        return import_module("minirt.rendering.packing.shape_arrays").Tables()
+
+    @cached_property
+    def kernel(self) -> Any:
+        """The compiled code, and the compiler where it is not there yet."""
+        return import_module("minirt.kernel.compiler.jit_bvh")
+
+    def trace(self, scene: Scene, origins: NDArray[np.float64], directions: NDArray[np.float64]) -> Hits:
+        """`trace`, with arguments that were checked."""
+        count = len(origins)
+        hits = Hits(
+            np.full(count, np.inf), np.full(count, -1), np.full((count, 3), np.nan), np.full((count, 3), np.nan)
+        )
+        if count and scene.shapes:
+            with self.busy:
+                if self.shapes is not scene.shapes:
+                    self.plant(scene.shapes)
+                # The caller's thread only waits, so that Ctrl+C reaches it.
+                counter = np.zeros(1, np.int64)
+                job = partial(self.kernel.trace_rays, counter, self.tree, origins, directions, *hits)
+                self.workers.run([job] * self.threads, partial(counter.fill, count))
+                there = hits.owner >= 0
+                hits.owner[there] = self.tables.owner[hits.owner[there]]
+        return hits
+
+    def plant(self, shapes: tuple[Shape, ...]) -> None:
+        """Build the tree over the shapes of a scene."""
+        self.shapes = None
+        self.tables.update(shapes)
+        self.tree = import_module("minirt.rendering.packing.bvh").tree_of(self.tables, self.kernel)
+        self.shapes = shapes
+
+
+@cache
+def tracer(threads: int | None) -> Tracer:
+    """The tracer with that many threads, kept for the next rays."""
+    return Tracer(threads)

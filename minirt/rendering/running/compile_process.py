@@ -1,0 +1,56 @@
+"""Another process that compiles, so that this one can go on with what it does."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+from contextlib import suppress
+from typing import Any
+
+from minirt.errors import RenderError
+
+COMMAND = (
+    sys.executable,
+    "-P",
+    "-m",
+    "minirt.kernel.compiler.process",
+)  # -P: nothing is imported from the current folder
+
+
+class Helper:
+    """Compiles a kernel at a time."""
+
+    process: subprocess.Popen[bytes] | None = None
+
+    def compile(self, arguments: tuple[Any, ...]) -> None:
+        """Compile the kernel for arguments of these types and keep it; do nothing where no process can be started.
+        RenderError with the reason where that fails, or where `stop` ended it."""
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join(each or os.curdir for each in sys.path)}
+        try:
+            self.process = process = subprocess.Popen(
+                COMMAND,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                env=environment,
+                creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+            )
+        except OSError:
+            return
+        assert process.stdin is not None
+        assert process.stderr is not None
+        with process:
+            with suppress(BrokenPipeError):
+                process.stdin.write(pickle.dumps(arguments))
+                process.stdin.flush()
+            told = process.stderr.read().decode(errors="replace").strip()
+        if process.returncode:
+            reason = told.splitlines()[-1] if told else f"the compiler ended with status {process.returncode}"
+            raise RenderError(f"the kernel cannot be compiled: {reason}")
+
+    def stop(self) -> None:
+        """From any thread: end the process, if there is one."""
+        if self.process:
+            self.process.kill()

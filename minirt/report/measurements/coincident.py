@@ -1,0 +1,71 @@
+"""Surfaces that lie so close to each other that rounding decides which of them is seen."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+import numpy as np
+
+from minirt.kernel.frame import towards
+from minirt.kernel.rows import kind_of_packed
+from minirt.kernel.trace import ROUNDING
+from minirt.lanes import Vec, dot, unit
+from minirt.rendering.notes import name
+from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.queries.pick import columns
+from minirt.report.measurements.stiffness import DOUBLE, SINGLE, Stiff
+from minirt.scene import Scene
+
+ACROSS, DOWN = 64, 36  # rays that are tried, over the whole picture
+LEAST = 4  # of them that show two surfaces close together; where surfaces cross, a ray may do so by chance
+MOST_SHAPES = 1000  # or parts of them, for which that is done
+TIE = 4 * ROUNDING  # unit roundoffs between surfaces that the kernel takes for one, see `minirt.kernel.trace.nearer`
+CLOSE = 1000  # times that: nearly
+
+
+def coincident(scene: Scene, tables: Tables) -> Iterator[Stiff]:
+    """Pairs of shapes of which the eye sees both surfaces in one place, or nearly."""
+    if not 2 <= len(tables.owner) <= MOST_SHAPES:
+        return
+    camera = pixel_rays(camera_numbers(scene.camera, ACROSS, DOWN), ACROSS, DOWN)
+    y, x = np.mgrid[:DOWN, :ACROSS].reshape(2, -1) + 0.5
+    eye, ways = camera[:3], unit(towards(camera, x, y))
+    with np.errstate(all="ignore"):
+        t, slopes = hits(tables, Vec(*eye), ways)
+        pair = np.argsort(t, axis=0, kind="stable")[:2]
+        near, far = np.take_along_axis(t, pair, axis=0)
+        gap = (far - near) * np.take_along_axis(slopes, pair[:1], axis=0)[0]  # between the surfaces
+        points = near * np.stack([ways.x, ways.y, ways.z])
+        reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]
+        world = np.abs(points + eye[:, None]).max(axis=0) + np.abs(eye).max()
+        double = gap / (TIE * DOUBLE * (world + tables.looks[pair, 3].max(axis=0)))
+        single = gap / (TIE * SINGLE * (np.abs(points).max(axis=0) + reach[pair].max(axis=0)))
+        close = (double <= CLOSE) | (single <= 1)
+    close &= tables.owner[pair[0]] != tables.owner[pair[1]]  # parts of a mesh have edges in common
+    pairs = Counter(zip(*np.sort(pair[:, close], axis=0).tolist(), strict=True))
+    for (one, other), count in pairs.items():
+        mine = close & (pair.min(axis=0) == one) & (pair.max(axis=0) == other)
+        ties = {"double": float(np.median(double[mine])), "single": float(np.median(single[mine]))}
+        shared = " and ".join(precision for precision, gaps in ties.items() if gaps <= 1)
+        if count >= LEAST:
+            yield Stiff(
+                f"{name(tables, one)} and {name(tables, other)}",
+                f"taken for one surface in {shared} precision: the first is shown" if shared else "nearly coincide",
+                {"share of the picture": count / t.shape[1], "gap": float(np.median(gap[mine]))}
+                | {f"in roundings, {precision}": gaps for precision, gaps in ties.items()},
+            )
+
+
+def hits(tables: Tables, eye: Vec, ways: Vec) -> tuple[np.ndarray, np.ndarray]:
+    """For each shape and ray the distance, infinity where it misses, and the cosine to the surface's normal."""
+    t, slopes = np.empty((2, len(tables.owner), len(ways.x)))
+    for index, (group, row) in enumerate(tables.places):
+        packed = columns(tables.rows[group][row : row + 1])
+        kind = kind_of_packed(type(packed))
+        hit, at = kind.intersect(packed, eye, ways)
+        _, normal = kind.surface(packed, eye + at * ways)
+        t[index] = np.where(hit, at, np.inf)
+        slopes[index] = np.abs(dot(normal, ways))
+    return t, slopes

@@ -1,0 +1,141 @@
+"""How far pictures are from the reference, and how long they take."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import inf, nan
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+
+from minirt.errors import RenderError
+from minirt.rendering import Renderer
+from minirt.report.measurements import flip
+from minirt.report.measurements.metrics import Picture, changed, psnr, rmse, shown
+from minirt.report.measurements.reference import Reference
+from minirt.report.measurements.settings import Setting
+from minirt.scene import Scene
+from minirt.timing import Run, is_disturbed, runs
+
+RUNS = 7
+
+
+class Row(NamedTuple):
+    """A setting, against the reference."""
+
+    knob: str
+    samples: int
+    rmse: float = nan  # of colours, 1 from black to white
+    psnr: float = nan  # decibels
+    flip: float = nan  # mean over the pixels
+    changed: float = nan  # pixels that differ in 8 bits
+    not_finite: float = nan  # rays whose light was infinite or NaN, and is 0 in the picture
+    wall_ms: float = nan
+    cpu_ms: float = nan
+    sort_ms: float = nan  # sorting the scene into lists, once for a scene
+    compile_s: float = nan  # or loading what was compiled before
+    valid: bool = False  # False: failed, or other programs disturbed the measurement of time
+    remark: str = ""
+
+
+class Budget(NamedTuple):
+    """What measuring may take."""
+
+    seconds: float  # that the runs of a setting fill, at least
+    longest: float  # seconds for a picture; one that would take longer is left out
+    tries: int  # rounds of runs, until one is not disturbed
+
+
+class Stage:
+    """Renders a scene in one size, with so many threads; keeps a renderer for each knob."""
+
+    def __init__(self, scene: Scene, width: int, height: int, threads: int) -> None:
+        self.scene, self.threads = scene, threads
+        self.pixels = np.zeros((height, width, 4), np.uint8)
+        self.ready: dict[str, tuple[Renderer, float, float]] = {}
+
+    def renderer(self, setting: Setting) -> tuple[Renderer, float, float]:
+        """The one of a knob; how long it took to compile, in seconds, and to sort the scene, in milliseconds."""
+        if setting.knob.name not in self.ready:
+            renderer = setting.knob.renderer(self.threads)
+            start = perf_counter()
+            renderer.prepare(self.scene)
+            compiled = perf_counter()
+            height, width, _ = self.pixels.shape
+            renderer.packing.pack(self.scene, width, height)
+            self.ready[setting.knob.name] = renderer, compiled - start, (perf_counter() - compiled) * 1e3
+        return self.ready[setting.knob.name]
+
+    def light(self, setting: Setting) -> tuple[Picture, int]:
+        """The picture of a setting, and how many of its rays brought light that is not finite."""
+        linear = np.zeros((*self.pixels.shape[:2], 3))
+        renderer, *_ = self.renderer(setting)
+        return linear, setting.knob.picture(renderer, self.scene, self.pixels, setting.samples, linear)
+
+
+def measured(
+    stage: Stage, settings: list[Setting], reference: Reference, budget: Budget, step: Callable[[str], object]
+) -> Iterator[tuple[Row, Picture | None]]:
+    """A row for each setting and its picture, None where it failed. `step` is told the name of each that begins."""
+    right = flip.seen(reference.picture)
+    cost: dict[str, float] = {}  # seconds a sample
+    for setting in settings:
+        step(setting.name)
+        knob, samples = setting.knob.name, setting.samples
+        expected = cost.get(knob, 0.0) * samples
+        if expected > budget.longest:
+            yield Row(knob, samples, remark=f"left out: takes about {expected:.2g} s"), None
+            continue
+        try:
+            row, picture = measure(stage, setting, reference, right, budget)
+        except RenderError as error:
+            yield Row(knob, samples, remark=f"failed: {error}"), None
+            continue
+        cost[knob] = row.wall_ms / 1e3 / samples
+        yield row, picture
+
+
+def measure(
+    stage: Stage, setting: Setting, reference: Reference, right: flip.Seen, budget: Budget
+) -> tuple[Row, Picture]:
+    """The row of a setting, and its picture."""
+    renderer, compile_s, sort_ms = stage.renderer(setting)
+    lights: list[tuple[Picture, int]] = []
+    (first,) = runs(lambda: lights.append(stage.light(setting)), 1, 0.0)
+    picture = shown(lights[0][0])
+    best, remark = timed(
+        lambda: setting.knob.picture(renderer, stage.scene, stage.pixels, setting.samples, None),
+        first,
+        stage.threads,
+        budget,
+    )
+    error = rmse(picture, reference.picture)
+    row = Row(
+        setting.knob.name,
+        setting.samples,
+        rmse=error,
+        psnr=psnr(error),
+        flip=float(flip.flip(flip.seen(picture), right).mean()),
+        changed=changed(picture, reference.picture),
+        not_finite=lights[0][1],
+        wall_ms=best.wall * 1e3,
+        cpu_ms=best.cpu * 1e3,
+        sort_ms=sort_ms,
+        compile_s=compile_s,
+        valid=not remark,
+        remark=remark,
+    )
+    return row, picture
+
+
+def timed(work: Callable[[], object], first: Run, threads: int, budget: Budget) -> tuple[Run, str]:
+    """The best of some runs after the first one, which warmed up, and what is wrong with it, if anything."""
+    if first.wall > budget.longest:
+        return first, "takes too long for more than the first run"
+    best = Run(inf, inf)
+    for _ in range(budget.tries):
+        best = min(best, *runs(work, RUNS, budget.seconds))
+        if not is_disturbed(best, threads):
+            return best, ""
+    return best, "other programs needed the processors"

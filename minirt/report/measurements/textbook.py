@@ -1,0 +1,152 @@
+"""The formulas that are in every textbook, to compare those of `minirt.shapes` with.
+
+They are right on paper. With the digits that a computer has they lose what is small and far away, what lies at an edge
+and what is nearly parallel. Those of a box, a square and a disc are not here, as theirs in `minirt.shapes` are those of
+textbooks; nor is that of a torus, the quartic of which textbooks leave to a library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+from typing import Any
+
+from minirt.lanes import Vec, any, cross, dot, fabs, minimum, splat, sqrt, where
+from minirt.lanes.operations import Mask
+from minirt.lanes.vec import Number
+from minirt.shapes import Shape
+from minirt.shapes.basis import to_basis
+from minirt.shapes.cone import Cone, PackedCone
+from minirt.shapes.cylinder import Cylinder, PackedCylinder
+from minirt.shapes.hyperboloid import Hyperboloid, PackedHyperboloid
+from minirt.shapes.paraboloid import PackedParaboloid, Paraboloid
+from minirt.shapes.plane import PackedPlane, Plane
+from minirt.shapes.sphere import PackedSphere, Sphere
+from minirt.shapes.triangle import PackedTriangle, Triangle
+
+EPSILON = 1e-6  # what textbooks take for zero
+
+
+def meets_sphere(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """The quadratic of |origin + t direction - centre| = radius."""
+    f = origin - sphere.centre
+    b = dot(f, direction)
+    D = b * b - (dot(f, f) - sphere.radius * sphere.radius)
+    hit = D >= 0.0
+    t = b
+    if any(hit):
+        root = sqrt(D)
+        near = -b - root
+        t = where(near > 0.0, near, root - b)
+    return hit & (t > 0.0), t
+
+
+def meets_plane(plane: PackedPlane, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """The plane's equation, unless the ray is nearly parallel."""
+    slope = dot(plane.normal, direction)
+    t = dot(plane.normal, plane.point - origin) / slope
+    return (fabs(slope) > EPSILON) & (t > 0.0), t
+
+
+def meets_cylinder(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """|p x axis|^2 = radius^2 between the caps, and the caps."""
+    p = to_basis(cylinder.u, cylinder.v, cylinder.w, origin - cylinder.centre)
+    d = to_basis(cylinder.u, cylinder.v, cylinder.w, direction)
+    square = cylinder.radius * cylinder.radius
+    c = p.x * p.x + p.y * p.y - square
+    best = sides(p, d, d.x * d.x + d.y * d.y, p.x * d.x + p.y * d.y, c, -cylinder.half, cylinder.half)
+    best = nearer(on_cap(p, d, -cylinder.half, square), best)
+    best = nearer(on_cap(p, d, cylinder.half, square), best)
+    return best < inf, best
+
+
+def meets_cone(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """|p x axis| = slope (p . axis) from the apex to the base, and the base."""
+    p = to_basis(cone.u, cone.v, cone.w, origin - cone.apex)
+    d = to_basis(cone.u, cone.v, cone.w, direction)
+    square = cone.slope * cone.slope
+    a = d.x * d.x + d.y * d.y - square * d.z * d.z
+    b = p.x * d.x + p.y * d.y - square * p.z * d.z
+    c = p.x * p.x + p.y * p.y - square * p.z * p.z
+    best = sides(p, d, a, b, c, 0.0, cone.height)
+    best = nearer(on_cap(p, d, cone.height, square * cone.height * cone.height), best)
+    return best < inf, best
+
+
+def meets_paraboloid(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """|p x axis|^2 = 2 focal (p . axis) below the rim, and the cap."""
+    p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, origin - paraboloid.vertex)
+    d = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, direction)
+    b = p.x * d.x + p.y * d.y - paraboloid.focal * d.z
+    c = p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z
+    best = sides(p, d, d.x * d.x + d.y * d.y, b, c, 0.0, paraboloid.height)
+    best = nearer(on_cap(p, d, paraboloid.height, 2.0 * paraboloid.focal * paraboloid.height), best)
+    return best < inf, best
+
+
+def meets_hyperboloid(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """|p x axis|^2 = waist^2 + slope^2 (p . axis)^2 between the caps, and the caps."""
+    p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, origin - hyperboloid.centre)
+    d = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, direction)
+    square, slope = hyperboloid.waist * hyperboloid.waist, hyperboloid.slope * hyperboloid.slope
+    a = d.x * d.x + d.y * d.y - slope * d.z * d.z
+    b = p.x * d.x + p.y * d.y - slope * p.z * d.z
+    c = p.x * p.x + p.y * p.y - square - slope * p.z * p.z
+    end = square + slope * hyperboloid.half * hyperboloid.half
+    best = sides(p, d, a, b, c, -hyperboloid.half, hyperboloid.half)
+    best = nearer(on_cap(p, d, -hyperboloid.half, end), best)
+    best = nearer(on_cap(p, d, hyperboloid.half, end), best)
+    return best < inf, best
+
+
+def meets_triangle(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Cramer's rule for t and for the shares of the corners (Moller and Trumbore, Fast, Minimum Storage Ray/Triangle
+    Intersection, 1997)."""
+    to_b, to_c, f = triangle.b - triangle.a, triangle.c - triangle.a, origin - triangle.a
+    p, q = cross(direction, to_c), cross(f, to_b)
+    determinant = dot(p, to_b)
+    inverse = 1.0 / determinant
+    of_b, of_c, t = dot(p, f) * inverse, dot(q, direction) * inverse, dot(q, to_c) * inverse
+    within = (of_b >= 0.0) & (of_c >= 0.0) & (of_b + of_c <= 1.0)
+    return (fabs(determinant) > EPSILON) & within & (t > 0.0), t
+
+
+def sides(p: Vec, d: Vec, a: Number, b: Number, c: Number, low: Number, high: Number) -> Number:
+    """The distance to the nearest point of a t^2 + 2 b t + c = 0 between two heights, or infinity."""
+    D = b * b - a * c
+    best = splat(inf, D)
+    if any(D >= 0.0):
+        root = sqrt(D)
+        best = nearer(on_side(p, d, (-b - root) / a, low, high), best)
+        best = nearer(on_side(p, d, (-b + root) / a, low, high), best)
+    return best
+
+
+def on_side(p: Vec, d: Vec, t: Number, low: Number, high: Number) -> tuple[Mask, Number]:
+    """Whether the point at t lies between two heights."""
+    height = p.z + t * d.z
+    return (t > 0.0) & (height >= low) & (height <= high), t
+
+
+def on_cap(p: Vec, d: Vec, height: Number, square: Number) -> tuple[Mask, Number]:
+    """Whether and where the plane at a height is hit within a radius, of which this is the square."""
+    t = (height - p.z) / d.z
+    x, y = p.x + t * d.x, p.y + t * d.y
+    return (t > 0.0) & (x * x + y * y <= square), t
+
+
+def nearer(found: tuple[Mask, Number], best: Number) -> Number:
+    """The lesser distance, where there is another one."""
+    hit, t = found
+    return where(hit, minimum(t, best), best)
+
+
+FORMULAS: dict[type[Shape], Callable[..., Any]] = {
+    Sphere: meets_sphere,
+    Plane: meets_plane,
+    Cylinder: meets_cylinder,
+    Cone: meets_cone,
+    Paraboloid: meets_paraboloid,
+    Hyperboloid: meets_hyperboloid,
+    Triangle: meets_triangle,
+}

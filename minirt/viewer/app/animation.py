@@ -1,0 +1,69 @@
+"""Moving pictures of what a window would show: of a camera that goes round a scene, and of a replay."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from minirt.image import Image
+from minirt.scene import Scene
+from minirt.viewer.app.replay import play
+from minirt.viewer.app.session import Session
+from minirt.viewer.display.painter import Pixels, Renderer
+from minirt.viewer.editing.measure import middle_of
+from minirt.viewer.editing.motion import orbited
+
+FPS = 12  # pictures a second of a film
+TICKS = 60  # a second, of simulated time
+ARROW = ((0, 0), (0, 17), (4, 13), (7, 20), (10, 19), (7, 12), (12, 12))  # the pointer, in pixels
+
+
+def turntable(scene: Scene, count: int) -> Iterator[Scene]:
+    """The scene seen from so many places on a circle round its middle; the next one would be the first again."""
+    pivot = middle_of(scene)
+    for number in range(count):
+        camera = orbited(scene.camera, pivot, 360.0 * number / count, 0.0)
+        yield scene.replace(scene.camera, camera) if number else scene
+
+
+def film(
+    scene: Scene,
+    lines: Iterable[str],
+    *,
+    renderer: Renderer,
+    size: tuple[int, int],
+    path: str | os.PathLike[str],
+    file: str = "replay",
+    keys: str = "qwerty",
+    lenient: bool = False,
+    samples: int = 1,
+) -> list[Image]:
+    """What the window shows while recorded keys are played, FPS times a simulated second, with the pointer where it is
+    used. ReplayError as for `minirt.viewer.app.replay.replay`."""
+    frames: list[Image] = []
+    ticks = iter(range(10**9))
+
+    def look(session: Session) -> None:
+        if next(ticks) % (TICKS // FPS) == 0:
+            frames.append(Image.from_bgra(with_pointer(session.screen.frame, session.win.pointer)))
+
+    session = play(
+        scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient, samples=samples,
+        watch=look,
+    )  # fmt: skip
+    return [*frames, Image.from_bgra(session.screen.frame)]
+
+
+def with_pointer(pixels: Pixels, at: tuple[int, int]) -> Pixels:
+    """A copy of the picture with an arrow at a pixel; at the corner, where it is before it moves, there is none."""
+    if at == (0, 0):
+        return pixels
+    from PIL import Image as pillow  # noqa: N813
+    from PIL import ImageDraw
+
+    canvas = pillow.fromarray(pixels)
+    corners = [(at[0] + x, at[1] + y) for x, y in ARROW]
+    ImageDraw.Draw(canvas).polygon(corners, fill=(255, 255, 255, 255), outline=(0, 0, 0, 255))
+    return np.asarray(canvas)

@@ -1,0 +1,107 @@
+"""What lies in memory and is passed by its address is read as if it were passed as it is."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from numba import njit
+from numba.core.errors import TypingError
+from numba.extending import register_jitable
+
+import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
+from minirt.kernel.compiler.code_cache import FLAGS
+from minirt.kernel.compiler.jit import INNER
+from minirt.kernel.scene_arrays import placed
+from minirt.kernel.trace import over_kinds
+
+Array = np.ndarray[Any, Any]
+
+
+class Inner(NamedTuple):
+    line: Any
+    number: int
+
+
+class Outer(NamedTuple):
+    table: Any
+    deep: Any
+    inner: Inner
+    parts: Any
+    absent: Any = None
+
+
+def example() -> Outer:
+    table, deep = np.arange(12.0).reshape(3, 4), np.arange(60).reshape(3, 4, 5)
+    parts = Inner(np.array([2, 3, 5]), 7), Inner(np.array([11, 13]), 17)
+    return Outer(table, deep, Inner(np.array([0.5, 0.25], np.float32), -3), parts)
+
+
+def read(outer: Any, i: int, out: Array) -> None:
+    outer = placed(outer)
+    out[0] = outer.table[i, 3] + outer.table[2, i]
+    out[1] = outer.deep[i, 2, 4]
+    out[2] = outer.deep[2, i][3]  # of a row
+    out[3] = outer.inner.line[i] * outer.inner.number
+    out[4] = outer.table.shape[0] * 100 + outer.table.shape[1] * 10 + len(outer.parts)
+    out[5] = over_kinds(weighed, outer.parts, 1.0, i)
+
+
+@register_jitable(**INNER)
+def weighed(part: Inner, state: float, i: int) -> float:
+    return 10.0 * state + part.line[i] * part.number
+
+
+def write(table: Any, i: int) -> None:
+    table = placed(table)
+    table[i, 2] = 41
+    table[1][i] = table[i, 2] + 1
+
+
+@register_jitable(**INNER)
+def asked(outer: Any) -> int:
+    if outer.absent is not None and outer.absent[0] > 1:
+        return int(outer.absent.unknown)
+    if outer.table is None:
+        return int(outer.table.unknown)
+    return 7
+
+
+def ask(outer: Any) -> int:
+    return asked(placed(outer))
+
+
+@pytest.mark.parametrize("i", [0, 1])
+def test_parts_rows_and_numbers(i: int) -> None:
+    plain, compiled = np.zeros(6), np.zeros(6)
+    read(example(), i, plain)
+    njit(**FLAGS)(read)(example(), i, compiled)
+    assert np.array_equal(compiled, plain)
+    assert len(set(plain.tolist())) == 6
+
+
+@pytest.mark.parametrize("i", [0, 2])
+def test_numbers_can_be_put_into_an_array(i: int) -> None:
+    plain, compiled = np.zeros((3, 4)), np.zeros((3, 4))
+    write(plain, i)
+    njit(**FLAGS)(write)(compiled, i)
+    assert np.array_equal(compiled, plain)
+    assert plain[i, 2] == 41
+    assert plain[1, i] == 42
+
+
+def test_arrays_whose_rows_do_not_follow_each_other_are_passed_as_they_are() -> None:
+    plain, compiled = np.zeros(6), np.zeros(6)
+    askew = example()._replace(table=np.arange(12.0).reshape(4, 3).T)
+    read(askew, 1, plain)
+    njit(**FLAGS)(read)(askew, 1, compiled)
+    assert np.array_equal(compiled, plain)
+    with pytest.raises(TypingError):
+        njit(**FLAGS)(write)(askew.table, 1)
+
+
+def test_nothing_is_compiled_for_a_part_that_is_absent() -> None:
+    assert njit(**FLAGS)(ask)(example()) == 7
+    with pytest.raises(TypingError):
+        njit(**FLAGS)(ask)(example()._replace(absent=np.ones(1)))

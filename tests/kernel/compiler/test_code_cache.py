@@ -1,0 +1,124 @@
+"""Machine code of kernels: what is written, and that memory is free again."""
+
+from __future__ import annotations
+
+import gc
+import pickle
+import sys
+import threading
+import weakref
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numba import float64, int64
+from numba.core.caching import IndexDataCacheFile
+
+from minirt.kernel.compiler import cache_folder, code_cache, jit
+from minirt.rendering import Renderer
+from minirt.rendering.frame_arguments import frame_arguments
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Scene, parse
+from tests.waiting import HANG_LIMIT
+
+BALL = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0 2 255,60,60\n"
+FLOOR = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\npl 0,-1,0 0,1,0 9,9,99\n"
+
+pytestmark = pytest.mark.skipif(jit.CACHE is None, reason="kernels cannot be kept here")
+
+
+def picture(scene: Scene) -> bytes:
+    renderer, pixels = Renderer(threads=1), np.zeros((30, 40, 4), np.uint8)
+    renderer.prepare(scene)
+    renderer.render(scene, pixels)
+    return pixels.tobytes()
+
+
+def kernel(scene: Scene) -> object:
+    return jit.kernel_for(Packing().pack(scene, 40, 30))
+
+
+def test_what_is_written_is_machine_code_and_hardly_more() -> None:
+    scene = parse(BALL).scene
+    picture(scene)
+    arguments = frame_arguments(Packing().pack(scene, 40, 30), np.zeros((30, 40, 4), np.uint8))
+    assert jit.is_kept(arguments)
+    folder = Path(jit.kernel_for(arguments[-1])._cache.cache_path)
+    for written in folder.glob("frame.frame*.nbc"):
+        (_, kind, (machine_code, names)), *_ = pickle.loads(written.read_bytes())
+        assert kind == "object"
+        assert len(machine_code) > 10_000
+        assert len(names) < 0.2 * len(machine_code)
+
+
+def test_a_kernel_that_nobody_holds_gives_its_memory_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    ball, floor = parse(BALL).scene, parse(FLOOR).scene
+    picture(ball)  # what is there with the first is never looked through again
+    engines = []
+
+    class Codegen(code_cache.JITCPUCodegen):  # type: ignore[misc]
+        def __init__(self, name: str) -> None:
+            super().__init__(name)
+            engines.append(weakref.ref(self._engine._ee))
+
+    monkeypatch.setattr(code_cache, "JITCPUCodegen", Codegen)
+    jit.kernel_of.cache_clear()
+    before = picture(floor)
+    assert len(engines) == 1
+    gc.collect()
+    assert engines[0]() is not None, "as long as it may be called"
+    jit.kernel_of.cache_clear()
+    gc.collect()
+    assert engines[0]() is None
+    assert picture(floor) == before
+    assert len(engines) == 2
+
+
+def test_few_kernels_are_in_memory_at_a_time() -> None:
+    assert jit.kernel_of.cache_info().maxsize == jit.LOADED
+    held = kernel(parse(BALL).scene)
+    assert kernel(parse(BALL).scene) is held
+
+
+def double(x: Any) -> Any:
+    return x + x
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="folders cannot be locked there")
+def test_of_two_that_write_an_index_one_waits_for_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second comes while the first has read the index and not written it."""
+    made = code_cache.compiled(double, None, (float64,), (int64,))
+    with cache_folder.numba_cache(tmp_path):
+        keepers = [code_cache.Keeper(double), code_cache.Keeper(double)]
+    jobs = [
+        partial(each.save_overload, made.signatures[i], made.overloads[made.signatures[i]])
+        for i, each in enumerate(keepers)
+    ]
+    events: list[str] = []
+    second, second_came = threading.Thread(target=jobs[1], name="second", daemon=True), threading.Event()
+    lock, write = cache_folder.fcntl.flock, IndexDataCacheFile._save_index
+
+    def asked(*arguments: Any) -> None:
+        if threading.current_thread() is second:
+            second_came.set()
+        lock(*arguments)
+
+    def written(index: Any, overloads: Any) -> None:
+        if threading.current_thread() is second:
+            second_came.set()
+        else:
+            second.start()
+            assert second_came.wait(HANG_LIMIT)
+        write(index, overloads)
+        events.append(threading.current_thread().name)
+
+    monkeypatch.setattr(cache_folder.fcntl, "flock", asked)
+    monkeypatch.setattr(IndexDataCacheFile, "_save_index", written)
+    jobs[0]()
+    second.join(HANG_LIMIT)
+    assert events == [threading.current_thread().name, "second"]
+    monkeypatch.undo()
+    again = code_cache.compiled(double, tmp_path, (float64,), (int64,))
+    assert sum(again.stats.cache_hits.values()) == 2

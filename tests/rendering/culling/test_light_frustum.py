@@ -1,0 +1,187 @@
+"""The squares of cells ahead of lamps: where they are, how fine, and that no picture shows that there are any."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from minirt.fields import MeshFile
+from minirt.kernel.compiler import jit_binning
+from minirt.kernel.culling import binning
+from minirt.kernel.culling.light_buffer import SCALE, SPREAD, cell
+from minirt.lanes import Vec
+from minirt.rendering import Renderer
+from minirt.rendering.culling import light_frustum, visibility
+from minirt.rendering.culling.light_frustum import Crowd, crowd, square_ahead
+from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.scene_packing import Packing
+from minirt.report.measurements.brute_force import BruteForce
+from minirt.scene import Ambient, Camera, Light, ParallelLight, Scene
+from minirt.shapes.mesh import Mesh
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.kernel.pictures import linear
+from tests.meshes.examples import GREY, ball, named
+from tests.shapes.regimes import ways
+
+WIDTH, HEIGHT = 96, 48
+UNIT_BALL = Crowd(np.zeros(3), 1.0)
+SPOTS: dict[str, tuple[float, float, float]] = {
+    "far": (-400, 900, -300),
+    "very far": (-4e7, 9e7, -3e7),
+    "near": (2, 4, -3),
+    "as near as it may be": (0, 1.62, 0),
+    "inside": (0.5, 0.6, -1.0),
+    "under the floor": (0, -5, 1),
+}
+
+
+def meshes(position: Any = (0, 0, 0)) -> tuple[Mesh, ...]:
+    """Some 5,000 triangles: a hollow ball, and a knot before it."""
+    return Mesh(MeshFile("ball.obj", ball(3)), position, 1.0, GREY), named("knot", position, 0.6)
+
+
+def scene(lamp: Any, *shapes: Any) -> Scene:
+    floor, beside = Plane((0, -1.2, 0), (0, 1, 0), GREY), Sphere((7, 0, 9), 3, GREY)
+    light = Light(lamp, 0.8) if isinstance(lamp, tuple) else lamp
+    return Scene((Ambient(0.1, (255, 255, 255)), Camera((0, 1.5, -4), (0, -0.3, 1), 60), light, floor, *shapes, beside))
+
+
+def everywhere(precision: str) -> Renderer:
+    """A renderer that tries every shape for every ray."""
+    renderer = Renderer(2, precision)
+    renderer.packing = BruteForce(precision=precision)
+    return renderer
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+@pytest.mark.parametrize("spot", SPOTS)
+def test_the_picture_is_that_of_brute_force(spot: str, precision: str) -> None:
+    shown = scene(SPOTS[spot], *meshes())
+    packed = Packing().pack(shown, WIDTH, HEIGHT)
+    assert (packed.around[0, SCALE] > 0) == (spot != "inside")
+    brute = linear(shown, WIDTH, HEIGHT, 2, everywhere(precision))
+    assert np.array_equal(brute, linear(shown, WIDTH, HEIGHT, 2, Renderer(2, precision)))
+    assert np.ptp(brute) > 0.1 or spot == "under the floor"
+
+
+def test_rays_to_a_parallel_lamp_come_by_no_point() -> None:
+    """Triangles above the picture have a shadow in it, without cells and without a tree."""
+    above = named("icosahedron", (0, 4, 1), 1.0).some(np.arange(6))
+    shown = scene(ParallelLight((0, -1, 0.3), 0.8, (255, 255, 255)), above)
+    packed = Packing().pack(shown, WIDTH, HEIGHT)
+    assert packed.grid == 1
+    assert packed.tree is None
+    aside = shown.replace(above, position=(0, 4, -90))
+    dark, lit = (linear(each, WIDTH, HEIGHT)[HEIGHT // 2 :] for each in (shown, aside))
+    shadow = (dark < lit).any(axis=-1)
+    assert 20 < shadow.sum() < 0.2 * shadow.size
+    assert np.array_equal(dark[~shadow], lit[~shadow])
+
+
+def square(lamp: Any, grid: int = 64, found: Crowd = UNIT_BALL) -> Any:
+    made = square_ahead(found, np.array(lamp, float), grid)
+    assert made is not None
+    return made
+
+
+@pytest.mark.parametrize("distance", [1.42, 2, 30, 1e3])
+def test_the_crowd_fills_the_square(distance: float) -> None:
+    """The slopes of the ball, by its tangents, are those of the square but for the border."""
+    grid = square((0, distance, 0))
+    edge = grid.middle_x / grid.scale_x
+    assert edge * (1 - 2 * light_frustum.BORDER / 128) == pytest.approx(np.tan(np.arcsin(1 / distance)), rel=1e-6)
+    assert np.allclose(grid.frames[0] @ grid.frames[0].T, np.eye(3), atol=1e-15)
+    assert np.allclose(grid.frames[0, 2], [0, -1, 0])
+
+
+def test_too_near_and_inside_there_is_none() -> None:
+    assert [square_ahead(UNIT_BALL, np.array([x, 0, 0]), 64) for x in (1.41, 1.0, 0.3, 0.0)] == [None] * 4
+    assert square_ahead(None, np.array([9.0, 0, 0]), 64) is None
+
+
+def test_no_cell_is_finer_than_float32_can_tell() -> None:
+    assert 1 / square((1e6, 0, 0)).scale_x == light_frustum.FINEST
+    assert 1 / square((1e3, 0, 0)).scale_x > light_frustum.FINEST
+
+
+def test_few_shapes_beside_the_crowd_do_not_matter() -> None:
+    random = np.random.default_rng(1)
+    heap = [Sphere(tuple(random.uniform(-1, 1, 3)), 0.1, GREY) for _ in range(1000)]
+    for others, count in (("few", light_frustum.BESIDE), ("many", 2 * light_frustum.BESIDE)):
+        tables = Tables()
+        far = [Sphere((100.0 * i, 5, 900), 30, GREY) for i in range(count)]
+        tables.update((*heap, *far, Plane((0, -1e9, 0), (0, 1, 0), GREY)))
+        found = crowd(tables)
+        assert found is not None
+        assert (found.radius < 30) == (others == "few")
+    few = Tables()
+    few.update(tuple(heap[:900]))
+    assert crowd(few) is None
+
+
+@pytest.mark.parametrize("lamp", [(1.43, 0, 0), (3, 4, 5), (0, 0, 500)])
+def test_the_margin_is_how_far_close_directions_reach(lamp: Any) -> None:
+    random, grid = np.random.default_rng(2), square(lamp)
+    around = visibility.around(64, grid)
+    half = grid.middle_x / grid.scale_x
+    slopes = half * random.uniform(-1, 1, (2, 200_000))
+    slopes[:, ::2] = half * np.sign(slopes[:, ::2])  # at the corners it is farthest
+    forth = np.array([*slopes, np.ones(200_000)])
+    forth /= np.linalg.norm(forth, axis=0)
+    turned = forth + np.sqrt(around[SPREAD]) * ways(random, 200_000).T
+    turned /= np.linalg.norm(turned, axis=0)
+    close = ((turned - forth) ** 2).sum(axis=0) <= around[SPREAD]
+    reach = np.abs(turned[:2] / turned[2] - slopes)[:, close].max() * grid.scale_x
+    assert 0.85 * grid.margin < reach < grid.margin
+
+
+@pytest.mark.parametrize("kernel", [binning, jit_binning], ids=["interpreted", "compiled"])
+def test_what_sticks_out_of_the_square_is_in_the_list_of_elsewhere(kernel: Any) -> None:
+    grid = square((0, 0, -10))
+    x, y, z = grid.frames[0]
+    begin, end = grid.margin - grid.middle_x, grid.middle_x - grid.margin
+    places = [(0, True), (begin + 0.01, True), (begin - 0.01, False), (end - 0.01, True), (end + 0.01, False)]
+    for at, within in [*places, (end + 9, False)]:
+        for way in (x, y):
+            point = np.array([0, 0, -10]) + 7 * (z + at / grid.scale_x * way)
+            found = covered(kernel, grid, [[*point, 0.0]])
+            assert (grid.elsewhere in found) != within
+            assert (len(found) > 1) or within or at == end + 9
+    behind, inside = [[0, 0, -20, 1.0]], [[0, 0, -10.5, 1.0]]
+    assert covered(kernel, grid, behind) == [grid.elsewhere]
+    assert len(covered(kernel, grid, inside)) == 128 * 128 + 1
+    assert grid.elsewhere in covered(kernel, grid, [[0, 0, 0, 0.1], [0, 0, -12, 0.1]])
+
+
+def covered(kernel: Any, grid: Any, balls: list[list[float]]) -> list[int]:
+    """The cells of the hull of some balls, seen from 0, 0, -10."""
+    rectangles, views, counts = np.zeros((2, 4), np.int32), np.zeros((1, 5)), np.zeros(grid.cells + 1, np.int64)
+    first, place = np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
+    given = np.array([0, 0, -10.0]), grid, np.array(balls), 0.0, first, place
+    kernel.cover(*given, rectangles, 0, views, counts)
+    return np.flatnonzero(counts).tolist()
+
+
+def test_directions_beside_and_behind_are_elsewhere() -> None:
+    grid = square((0, 0, -10))
+    around, half = visibility.around(64, grid), grid.middle_x / grid.scale_x
+    x, y, z = grid.frames[0]
+    for way in (x, -x, y, -y):
+        assert cell(around, 64, Vec(*(z + 0.999 * half * way))) < 128 * 128
+        assert cell(around, 64, Vec(*(z + 1.001 * half * way))) == grid.elsewhere
+    assert cell(around, 64, Vec(*-z)) == grid.elsewhere
+    with np.errstate(all="ignore"):
+        assert cell(around, 64, Vec(*x)) == grid.elsewhere
+    assert cell(around, 64, Vec(*(z + half * (0.5 * x - 0.25 * y) + 1e-6 * (x + y)))) == 48 * 128 + 96
+
+
+def test_a_lamp_far_away_has_short_lists() -> None:
+    """Of a cube's lists one would have all 5,000 shapes."""
+    packed = Packing().pack(scene(SPOTS["far"], *meshes()), WIDTH, HEIGHT)
+    sizes = sum(np.diff(group.lamp_starts[0]) for group in packed.groups)
+    assert sizes[128 * 128] == 1  # elsewhere: the ball that is beside the crowd
+    assert sizes.max() < 150
+    assert sizes[sizes > 1].mean() < 20

@@ -1,0 +1,324 @@
+"""The lists of what may be seen where: nothing that is hit is missing from them."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from minirt.kernel.compiler import jit_binning
+from minirt.kernel.culling import binning
+from minirt.kernel.culling.light_buffer import AHEAD, SCALE, SPREAD, cell
+from minirt.kernel.frame import TILE, tiles, towards
+from minirt.kernel.rows import kind_of, read
+from minirt.kernel.trace import NEARBY, within
+from minirt.lanes import Vec, unit
+from minirt.rendering.culling import light_frustum, visibility
+from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Camera, Light, Scene
+from minirt.shapes import KINDS
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.random_scenes import random_scene
+from tests.shapes.examples import hits
+from tests.shapes.regimes import ways
+
+WIDTH, HEIGHT = 70, 45  # five tiles by three, the last ones cut
+
+
+def listed(starts: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The members of the lists of a kind, one list behind the other, and to which of the lists each belongs."""
+    return np.repeat(np.arange(len(starts) - 1), np.diff(starts)), table[starts[0] : starts[-1]]
+
+
+def members(traced: Any, starts: str, table: np.ndarray, row: Any = ...) -> np.ndarray:
+    """Which shapes, of all kinds, are in which of the lists: (lists, shapes)."""
+    all_starts = [getattr(group, starts)[row] for group in traced.groups]
+    found = np.zeros((len(all_starts[0]) - 1, len(traced.places)), bool)
+    for each in all_starts:
+        found[listed(each, table)] = True
+    return found
+
+
+class Seen(NamedTuple):
+    """Where the rays through all pixels meet shapes: each shape that they meet."""
+
+    tile: np.ndarray
+    shape: np.ndarray
+    distance: np.ndarray
+    in_cone: np.ndarray  # whether the ray is in the cone of the shape
+
+
+def seen_rays(traced: Any) -> Seen:
+    """What the rays of a picture meet."""
+    x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT)))
+    origin, direction = Vec(*traced.camera[:3]), unit(towards(traced.camera, x, y))
+    tile = (y // TILE * tiles(WIDTH) + x // TILE).astype(int)
+    found = [Seen(*np.zeros((4, 0), int))]
+    for index, (hit, t) in enumerate(meets(traced, origin, direction)):
+        cone = np.broadcast_to(within(traced.views[index], direction), x.shape)
+        found.append(Seen(tile[hit], np.full(hit.sum(), index), t[hit], cone[hit]))
+    return Seen(*map(np.concatenate, zip(*found, strict=True)))
+
+
+def meets(traced: Any, origin: Vec, direction: Vec) -> list[Any]:
+    answers = []
+    for group, i in traced.places:
+        rows = traced.groups[group].rows
+        with np.errstate(all="ignore"):
+            answers.append(kind_of(rows.dtype.names).intersect(read(rows, i), origin, direction))
+    return answers
+
+
+def hard_scene(seed: int) -> Scene:
+    """Tiny and huge things anywhere, some at 1e8 from the origin; eye and lamp often inside or close to a surface."""
+    random = np.random.default_rng(seed)
+    offset = random.choice([0, 0, 1e8]) * random.normal(size=3)
+
+    def place(spread: float) -> Any:
+        return tuple(offset + spread * random.normal(size=3))
+
+    def way() -> Any:
+        return tuple(random.normal(size=3).clip(-1, 1))
+
+    shapes: list[Any] = [Plane(place(3), way(), (1, 2, 3)) for _ in range(random.integers(3))]
+    for _ in range(random.choice([3, 12])):
+        size = 10.0 ** random.uniform(-3, 3)
+        shapes.append(Sphere(place(5 + size / 2), size, (1, 2, 3)))
+        shapes.append(Cylinder(place(5 + size / 2), way(), size, 10.0 ** random.uniform(-3, 3), (1, 2, 3)))
+    near = [tuple(np.array(each.centre) + 0.5 * each.diameter * np.array(way())) for each in shapes[-2:]]
+    eye, lamp = near if random.random() < 0.6 else (place(5), place(5))
+    return Scene((Camera(eye, way(), random.choice([1e-3, 20, 90, 170, 179.99])), Light(lamp, 1), *shapes))
+
+
+SCENES = [*((random_scene, seed) for seed in range(12)), *((hard_scene, seed) for seed in range(40))]
+KERNELS = pytest.mark.parametrize("kernel", [binning, jit_binning], ids=["interpreted", "compiled"])
+
+
+@KERNELS
+@pytest.mark.parametrize(("make", "seed"), SCENES)
+def test_a_tile_lists_all_that_its_rays_hit(make: Any, seed: int, kernel: Any) -> None:
+    traced = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
+    seen, in_tile = seen_rays(traced), members(traced, "starts", traced.seen)
+    assert len(in_tile) == tiles(WIDTH) * tiles(HEIGHT)
+    assert in_tile[seen.tile, seen.shape].all()
+    assert seen.in_cone.all()
+    assert (seen.distance >= traced.views[seen.shape, 4]).all()
+
+
+def outside_scene(seed: int) -> Scene:
+    """The same shapes, all but a few in a heap, and a lamp that sees the heap from outside, near or far."""
+    random = np.random.default_rng(seed)
+    shapes = [each for each in hard_scene(seed).shapes if isinstance(each, Plane) or random.random() < 0.1]
+    middle, size = 10.0 ** random.uniform(0, 6) * random.normal(size=3), 10.0 ** random.uniform(-1, 2)
+    for _ in range(40):
+        place = tuple(middle + size * random.uniform(-0.5, 0.5, 3))
+        shapes.append(Sphere(place, size * 10.0 ** random.uniform(-4, -0.5), (1, 2, 3)))
+    lamp = middle + size * 10.0 ** random.uniform(0.1, 4) * unit_way(random)
+    return Scene((Camera((0, 0, 0), (0, 0, 1), 90), Light(tuple(lamp), 1), *shapes))
+
+
+def unit_way(random: np.random.Generator) -> Any:
+    way = random.normal(size=3)
+    return way / np.linalg.norm(way)
+
+
+@pytest.fixture
+def small_crowds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Squares ahead of lamps for scenes that are small enough to try everything."""
+    monkeypatch.setattr(light_frustum, "CROWD", 30)
+
+
+@KERNELS
+@pytest.mark.usefixtures("small_crowds")
+@pytest.mark.parametrize(("make", "seed"), [*SCENES, *((outside_scene, seed) for seed in range(40))])
+def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int, kernel: Any) -> None:
+    traced = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
+    random = np.random.default_rng(seed)
+    directions = random.normal(size=(3, 2000))
+    directions[:, :40] = np.round(directions[:, :40])  # along axes and diagonals too
+    directions[2, (directions == 0).all(axis=0)] = 1
+    directions /= np.linalg.norm(directions, axis=0)
+    planes = [index for index, shape in enumerate(make(seed).shapes) if shape.flat()]
+    for lamp, row in enumerate(traced.lights):
+        count, around = 6 * traced.grid**2 if traced.grid > 1 else 1, traced.around[lamp]
+        if around[SCALE] > 0:  # a half of the directions into the square, and some just beside it
+            reach = 1.1 * AHEAD / 2 * traced.grid / around[SCALE]
+            slopes = reach * random.uniform(-1, 1, (2, 1000))
+            directions[:, 1000:] = around[:9].reshape(3, 3).T @ np.array([*slopes, np.ones(1000)])
+            directions /= np.linalg.norm(directions, axis=0)
+        # The list of a cell that was looked up holds for directions close by.
+        nearby = directions + 0.99 * np.sqrt(around[SPREAD]) * ways(random, 2000).T
+        nearby /= np.linalg.norm(nearby, axis=0)
+        nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= around[SPREAD], nearby, directions)
+        with np.errstate(all="ignore"):
+            cells = cell(around, traced.grid, Vec(*nearby)) if traced.grid > 1 else np.zeros(2000)
+        in_cell = members(traced, "lamp_starts", traced.lit, lamp)
+        assert 0 <= cells.min() <= cells.max() < count <= len(in_cell)
+        left_out = {shape for shape in planes if not in_cell[:, shape].any()}
+        for shape, (hit, t) in enumerate(meets(traced, Vec(*row[:3]), Vec(*directions))):
+            assert (t[hit] >= traced.lamp_views[lamp, shape, 4]).all()
+            assert (within(traced.lamp_views[lamp, shape], Vec(*directions)) | ~hit).all()
+            assert shape in left_out or in_cell[cells[hit].astype(int), shape].all()
+
+
+@pytest.mark.parametrize(("make", "seed"), SCENES)
+def test_lists_begin_with_the_nearest_and_name_a_shape_once(make: Any, seed: int) -> None:
+    traced = Packing().pack(make(seed), WIDTH, HEIGHT)
+    for near, found, every in [
+        (traced.views[:, 4], traced.seen, [group.starts for group in traced.groups]),
+        *(
+            (near, traced.lit, [group.lamp_starts[lamp] for group in traced.groups])
+            for lamp, near in enumerate(traced.lamp_views[..., 4])
+        ),
+    ]:
+        assert np.isfinite(near).all()
+        assert (near >= 0).all()
+        for starts in every:
+            at, shapes = listed(starts, found)
+            assert (np.diff(near[shapes])[np.diff(at) == 0] >= 0).all()
+            assert len(np.unique([at, shapes], axis=1).T) == len(shapes)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_a_sphere_is_listed_about_where_it_is_seen(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    ball = Sphere(tuple(0.5 * random.normal(size=3) + (0, 0, 5)), random.uniform(0.1, 3), (1, 2, 3))
+    traced = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), ball)), 640, 640)
+    listed = np.diff(traced.groups[0].starts).reshape(40, 40) > 0
+    x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(640), np.arange(640)))
+    ((hit, _),) = meets(traced, Vec(*traced.camera[:3]), unit(towards(traced.camera, x, y)))
+    assert not hit.reshape(640, 640)[[0, -1]].any()
+    for axis in (0, 1):
+        seen, there = (np.flatnonzero(each.any(axis=axis)) for each in (hit.reshape(640, 640), listed))
+        assert there[0] in (seen[0] // TILE, seen[0] // TILE - 1)
+        assert there[-1] in (seen[-1] // TILE, seen[-1] // TILE + 1)
+
+
+def test_of_a_ball_like_a_planet_nothing_is_above_its_horizon() -> None:
+    planet = Sphere((0, -101, 3), 200, (1, 2, 3))  # its centre is hardly before the eye, and its radius far greater
+    traced = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), planet)), 320, 320)
+    listed = np.diff(traced.groups[0].starts).reshape(20, 20) > 0
+    assert listed[13:].all()
+    assert not listed[:9].any()
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "radius"), [(0, 5, 1), (3, 4, 2), (-3, 1, 2), (4, 0, 1), (4, -0.5, 1), (-9, -0.1, 2)]
+)
+def test_tangents_are_turned_from_the_way_to_the_centre_by_the_angle_that_the_disc_covers(
+    x: float, z: float, radius: float
+) -> None:
+    middle, half = np.arctan2(x, z), np.arcsin(radius / np.hypot(x, z))
+    low, high = binning.tangents(x, z, radius)
+    assert low == (pytest.approx(np.tan(middle - half)) if middle - half > -np.pi / 2 else -np.inf)
+    assert high == (pytest.approx(np.tan(middle + half)) if middle + half < np.pi / 2 else np.inf)
+
+
+@KERNELS
+def test_a_ball_without_end_is_everywhere_and_at_no_distance(kernel: Any) -> None:
+    balls, grid = np.array([[0.0, 0.0, 0.0, np.inf]]), visibility.cube(2)
+    rectangles, views, counts = np.zeros((6, 4), np.int32), np.ones((1, 5)), np.zeros(25, np.int64)
+    place = np.zeros((1, 2), np.int64)
+    for origin in (np.zeros(3), np.array([1.0, 2.0, -3.0])):
+        counts[:] = 0
+        assert kernel.cover(origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, views, counts) == 6
+        assert views[0, 3:].tolist() == [-2, 0]
+        assert counts.tolist() == [1] * 24 + [0]
+
+
+def test_around_the_eye_a_disc_is_everywhere() -> None:
+    assert binning.tangents(0.5, -0.5, 1.0) == (-np.inf, np.inf)
+
+
+def test_distances_are_less_by_what_may_be_one_place_and_by_little_more() -> None:
+    near = np.geomspace(1e-30, 1e30, 10_000)
+    rounded, depths = visibility.by_depth(near)
+    assert (rounded * (1 + NEARBY) <= near).all()
+    assert (rounded * (1 + 4 * NEARBY) > near).all()
+    assert (np.diff(depths) >= 0).all()
+    assert visibility.by_depth(np.array([0.0, 1e-50]))[0].tolist() == [0, 0]
+
+
+def test_the_order_of_depth_is_that_of_the_distances() -> None:
+    near = np.random.default_rng(8).permutation(np.geomspace(1e-3, 1e3, 10_000))
+    rounded, depths = visibility.by_depth(near)
+    order = visibility.in_order(depths)
+    assert sorted(order.tolist()) == list(range(10_000))
+    assert (np.diff(rounded[order]) >= 0).all()
+    assert (np.diff(order)[np.diff(depths[order]) == 0] > 0).all()
+
+
+def test_lists_leave_something_out() -> None:
+    traced = Packing().pack(random_scene(3), WIDTH, HEIGHT)
+    assert len(traced.seen) > 0
+    scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Light((0, 9, 0), 1), *scattered()))
+    traced = Packing().pack(scene, WIDTH, HEIGHT)
+    assert traced.grid > 1
+    in_tile = members(traced, "starts", traced.seen)
+    assert in_tile.mean() < 0.3
+    behind = np.array([shape.centre[2] < -2 for shape in scene.shapes])
+    assert behind.any()
+    assert not in_tile[:, behind].any()
+
+
+def scattered() -> list[Any]:
+    sphere = next(kind for kind in KINDS if kind.element.code == "sp")
+    return hits(sphere, 1, 0.3, 8.0, shapes=60, rays=8).shapes
+
+
+@pytest.mark.parametrize("shapes", [1, 8, 9, 200, 2_000, 10_000])
+def test_more_shapes_more_cells(shapes: int) -> None:
+    grid, half = (visibility.grid_for(tables_of(count)) for count in (shapes, max(1, shapes // 2)))
+    assert grid >= half
+    assert (grid == 1) == (shapes <= 8)
+
+
+def tables_of(count: int) -> Tables:
+    tables = Tables()
+    tables.update((Sphere((0, 0, 0), 1, (1, 2, 3)),) * count)
+    return tables
+
+
+@pytest.mark.parametrize("grid", [2, 16])
+def test_a_direction_lies_in_the_cell_that_its_face_row_and_column_say(grid: int) -> None:
+    # Through the middle of each cell, by the frames of the faces.
+    slopes = (2 * np.arange(grid) + 1) / grid - 1
+    expected = 0
+    for right, up, forward in visibility.FACES:
+        for down in slopes:
+            for across in slopes:
+                direction = forward + across * right + down * up
+                with np.errstate(all="ignore"):
+                    assert cell(visibility.NO_CELLS, grid, Vec(*map(np.float64, direction))) == expected
+                expected += 1
+
+
+@KERNELS
+@pytest.mark.parametrize("size", [1.0, 1e-3, 1e-7])
+def test_corners_and_tangents_are_in_the_cone(size: float, kernel: Any) -> None:
+    """Seen from a point, the corners of triangles and the rims of balls as small as this, and hardly more is."""
+    random = np.random.default_rng(7)
+    for _ in range(300):
+        way = unit_way(random)
+        corners = 10.0 ** random.uniform(-3, 3) * (way + size * 0.4 * random.normal(size=(3, 3)))
+        axis, cosine = seen(kernel, np.c_[corners, np.zeros(3)])
+        assert all(np.dot(axis, corner / np.linalg.norm(corner)) >= cosine for corner in corners)
+        sine = size * random.uniform(0.3, 0.99999)
+        axis, cosine = seen(kernel, np.array([[*3 * way, 3 * sine]]))
+        aside = np.cross(way, unit_way(random))
+        rim = np.sqrt(1 - sine * sine) * way + sine * aside / np.linalg.norm(aside)
+        assert np.dot(axis, rim / np.linalg.norm(rim)) >= cosine
+        wider = 1.01 * np.arcsin(sine) + 2e-7
+        assert cosine > np.cos(wider)
+
+
+def seen(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]:
+    """The cone around the hull of some balls, seen from the origin: axis and cosine."""
+    rectangles, views, counts = np.zeros((6, 4), np.int32), np.zeros((1, 5)), np.zeros(25, np.int64)
+    given = np.zeros(3), visibility.cube(2), balls, 0.0, np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
+    kernel.cover(*given, rectangles, 0, views, counts)
+    return views[0, :3], float(views[0, 3])

@@ -1,0 +1,90 @@
+"""A preview is the compiled picture, at a lower resolution."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.kernel import trace
+from minirt.kernel.rows import intersect
+from minirt.lanes import Vec
+from minirt.rendering import Renderer
+from minirt.rendering.packing.features import traits
+from minirt.rendering.queries.preview import BUDGET, FEWEST, RAY, SHAPE, picture, preview
+from minirt.scene import Ambient, Camera, Light, Scene
+from minirt.shapes.sphere import Sphere
+from tests.kernel import pictures
+from tests.paths import SCENES as FOLDER_OF_SCENES
+
+MIRRORS = ("material-mirror",)
+PLAIN = Renderer(2, depth=0)
+SCENES = sorted(FOLDER_OF_SCENES.glob("*.rt"))
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+def test_every_scene_is_as_compiled(path: Path) -> None:
+    scene = minirt.load(path, lenient=True)
+    if "bounces" in traits(scene) and path.stem not in MIRRORS:
+        return  # a preview has none, and one such scene is enough to wait for the compiler
+    pixels, light = pictures.picture(scene, 64, 36, renderer=PLAIN)
+    made, seen = picture(scene, 64, 36)
+    np.testing.assert_allclose(seen, light, rtol=0, atol=1e-12)
+    assert (made == pixels).all()
+
+
+def test_without_shapes_it_is_black() -> None:
+    made = preview(Scene((Camera((0, 0, 0), (0, 0, 1), 70),)), 64, 48)
+    assert made is not None
+    assert (made == (0, 0, 0, 255)).all()
+
+
+def balls(count: int) -> Scene:
+    row = (Sphere((x, 0, 0), 0.9, (255, 0, 0)) for x in range(count))
+    return Scene((Ambient(0.2, (255, 255, 255)), Camera((0, 0, -9), (0, 0, 1), 70), Light((0, 9, 0), 1), *row))
+
+
+def test_it_has_the_proportions_of_the_window_and_is_no_larger() -> None:
+    small = preview(balls(1), 30, 20)
+    assert small is not None
+    assert small.shape == (20, 30, 4)
+    large = preview(balls(20), 1600, 900)
+    assert large is not None
+    height, width, _ = large.shape
+    assert height < 450
+    assert width / height == pytest.approx(16 / 9, rel=0.05)
+
+
+@pytest.fixture
+def tried(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """How many rays at once each formula of a shape is asked about."""
+    counts: list[int] = []
+
+    def counted(shape: Any, origin: Vec, direction: Vec) -> Any:
+        counts.append(np.size(direction.x))
+        return intersect(shape, origin, direction)
+
+    monkeypatch.setattr(trace, "intersect", counted)
+    return counts
+
+
+@pytest.mark.parametrize("count", [1, 30, 150])
+def test_it_takes_as_much_work_as_its_budget_has(count: int, tried: list[int]) -> None:
+    """Counted in rays and in calls for a shape; the budget is in seconds that these are said to take."""
+    made = preview(balls(count), 1920, 1080)
+    assert made is not None
+    height, width, _ = made.shape
+    assert FEWEST <= width * height <= 1920 * 1080
+    assert 0 < len(tried) <= 2 * count <= 300  # for the eye and for the lamp
+    assert max(tried) <= width * height
+    assert sum(tried) < 600_000
+    work = 2 * count * (SHAPE + RAY * width * height)
+    assert 0.7 * BUDGET < work <= 1.01 * BUDGET
+
+
+def test_a_scene_that_takes_more_has_none(tried: list[int]) -> None:
+    assert preview(balls(10_000), 1920, 1080) is None
+    assert not tried

@@ -1,0 +1,156 @@
+"""Single rays through a scene, as the library traces them."""
+
+from __future__ import annotations
+
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+from gmpy2 import mpfr
+
+import minirt
+from minirt.rendering.queries import rays
+from minirt.scene import Scene
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests import oracle
+from tests.kernel.bvh.trees import rays_at, some
+from tests.kernel.pictures import ALL, AMBIENT, EYE, RED, SHAPES
+from tests.processes import run
+
+FLOOR = Plane((0, -1, 0), (0, 1, 0), RED)
+BALL = Sphere((0, 0, 5), 2, RED)
+COLUMN = Cylinder((4, 0, 0), (0, 1, 0), 2, 6, RED)
+
+
+def scene(*shapes: Any) -> Scene:
+    return Scene((AMBIENT, EYE, *shapes))
+
+
+def test_where_rays_hit() -> None:
+    hits = minirt.trace(
+        scene(BALL, FLOOR, COLUMN),
+        [[0, 0, 0], [0, 0, 5], [0, 3, 0], [0, 0, 0], [0, 0, 0], [4, 9, 0]],
+        [[0, 0, 1], [0, 1, 0], [0, -2, 0], [0, 1, 0], [3, 0, 0], [0, -1, 0]],
+    )
+    assert hits.distance.tolist() == [4, 1, 4, np.inf, 3, 6]
+    assert hits.owner.tolist() == [0, 0, 1, -1, 2, 2]
+    assert hits.owner.dtype == np.int64
+    nan = [np.nan] * 3
+    assert np.array_equal(hits.point, [[0, 0, 4], [0, 1, 5], [0, -1, 0], nan, [3, 0, 0], [4, 3, 0]], equal_nan=True)
+    # Outward, also where the ray comes from inside.
+    assert np.array_equal(hits.normal, [[0, 0, -1], [0, 1, 0], [0, 1, 0], nan, [-1, 0, 0], [0, 1, 0]], equal_nan=True)
+
+
+def test_rays_as_the_oracle_traces_them() -> None:
+    random = np.random.default_rng(8)
+    shapes = some(random, 30)
+    origins, directions = rays_at(random, shapes, 120)
+    hits = minirt.trace(scene(*shapes), origins, directions)
+    assert (hits.owner >= 0).mean() > 0.2
+    for i, (origin, direction) in enumerate(zip(origins, directions, strict=True)):
+        length = oracle.dot(*[[mpfr(float(x)) for x in direction]] * 2) ** 0.5
+        exact = [oracle.nearest(shape, origin, direction) for shape in shapes]
+        right = min((float(t * length), index) for index, t in enumerate([*exact, mpfr("inf")]) if t is not None)
+        if np.isinf(right[0]):
+            assert (hits.distance[i], hits.owner[i]) == (np.inf, -1)
+            continue
+        assert hits.owner[i] == right[1]
+        assert hits.distance[i] == pytest.approx(right[0], rel=1e-12)
+        assert np.allclose(hits.point[i], origin + hits.distance[i] * direction, atol=1e-12 * (1 + right[0]))
+        assert np.linalg.norm(hits.normal[i]) == pytest.approx(1, abs=1e-15)
+
+
+@pytest.mark.parametrize("length", [5e-324, 1e-310, 1e-200, 1e-5, 1, 3, 1e200, 1e308])
+def test_directions_may_have_any_length(length: float) -> None:
+    hits = minirt.trace(scene(BALL, FLOOR), np.zeros((2, 3)), [[0, 0, length], [0, -length, length]])
+    assert hits.distance == pytest.approx([4, 2**0.5], rel=1e-15)
+
+
+def test_there_may_be_no_rays_no_shapes_and_one_ray() -> None:
+    none = minirt.trace(scene(BALL), np.zeros((0, 3)), np.zeros((0, 3)))
+    assert [part.shape for part in none] == [(0,), (0,), (0, 3), (0, 3)]
+    assert minirt.trace(scene(), [[0, 0, 0]], [[0, 0, 1]]).owner.tolist() == [-1]
+    assert minirt.trace(scene(FLOOR), [[0, 0, 0]], [[0, -1, 0]]).owner.tolist() == [0]
+
+
+def test_the_arguments_may_be_any_numbers_in_any_order_of_memory() -> None:
+    origins, directions = np.zeros((40, 3), np.float32), np.tile([0.0, 0, 1], (40, 1))
+    fixed = directions.copy()
+    fixed.flags.writeable = False
+    orders = [directions.tolist(), fixed, np.asfortranarray(directions), np.repeat(directions, 2, axis=0)[::2]]
+    kernels = len(rays.tracer(None).kernel.trace_rays.signatures)
+    for each in orders:
+        assert (minirt.trace(scene(BALL, FLOOR), origins, each).distance == 4).all()
+    assert len(rays.tracer(None).kernel.trace_rays.signatures) <= kernels + 1
+
+
+GOOD = np.ones((4, 3))
+
+
+@pytest.mark.parametrize(
+    ("origins", "directions", "message"),
+    [
+        (np.ones(3), GOOD, r"origins must have the shape \(n, 3\), got \(3,\)"),
+        (GOOD, np.ones((4, 2)), r"directions must have the shape \(n, 3\), got \(4, 2\)"),
+        (GOOD, np.ones((5, 3)), "directions must be as many as origins, 4, got 5"),
+        (GOOD * np.nan, GOOD, "origins must be finite, got nan"),
+        (GOOD, GOOD * np.inf, "directions must be finite, got inf"),
+        (GOOD, [[1, 0, 0], [0, 0, 1], [0, -0.0, 0], [0, 1, 0]], "directions must not be 0,0,0, got it at 2"),
+        (GOOD, "up", r"directions must be numbers of shape \(n, 3\)"),
+        ([[1, 2], [3]], GOOD, r"origins must be numbers of shape \(n, 3\)"),
+        (GOOD * 1j, GOOD, r"origins must be numbers of shape \(n, 3\)"),
+    ],
+)
+def test_what_is_wrong_is_named(origins: Any, directions: Any, message: str) -> None:
+    for shapes in ((), (BALL,)):
+        with pytest.raises(ValueError, match=f"^{message}"):
+            minirt.trace(scene(*shapes), origins, directions)
+
+
+def test_one_thread_and_many_give_the_same_bits() -> None:
+    random = np.random.default_rng(3)
+    shapes = some(random, 300)
+    many = rays_at(random, shapes, 10_007)
+    one = minirt.trace(scene(*shapes), *many, threads=1)
+    for threads in (2, 5):
+        for part, same in zip(one, minirt.trace(scene(*shapes), *many, threads=threads), strict=True):
+            assert np.array_equal(part, same, equal_nan=True)
+
+
+def test_edited_scenes_are_traced_anew_and_the_same_one_is_not_sorted_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    origins, directions = np.zeros((1, 3)), np.array([[0.0, 0, 1]])
+    before = scene(BALL, FLOOR)
+    planted: list[Any] = []
+    plant = rays.Tracer.plant
+    monkeypatch.setattr(rays.Tracer, "plant", lambda tracer, shapes: planted.append(shapes) or plant(tracer, shapes))
+    for made, distance in ((before, 4), (before, 4), (before.replace(BALL, diameter=4), 3), (before, 4)):
+        assert minirt.trace(made, origins, directions).distance.tolist() == [distance]
+    assert len(planted) == 3
+
+
+def test_several_threads_may_trace_at_once() -> None:
+    scenes = [ALL.replace(ALL.spheres[0], diameter=1 + i / 4) for i in range(8)]
+    many = rays_at(np.random.default_rng(1), list(SHAPES), 2000)
+    expected = [minirt.trace(each, *many) for each in scenes]
+    with ThreadPoolExecutor(8) as pool:
+        found = list(pool.map(lambda each: minirt.trace(each, *many), scenes * 4))
+    for right, hits in zip(expected * 4, found, strict=True):
+        assert all(np.array_equal(one, other, equal_nan=True) for one, other in zip(right, hits, strict=True))
+
+
+def test_a_picture_needs_no_tree_and_no_rays_need_no_compiler() -> None:
+    program = """
+import sys, minirt
+scene = minirt.load("scenes/subject.rt")
+minirt.render(scene, 8, 8)
+print(*(name in sys.modules for name in ("minirt.kernel.compiler.jit_bvh", "minirt.rendering.queries.rays")))
+"""
+    done = run([sys.executable, "-c", program], text=True)
+    assert done.stdout.split() == ["False"] * 2
+    program = "import sys, minirt; minirt.trace; print('numba' in sys.modules)"
+    done = run([sys.executable, "-c", program], text=True)
+    assert done.stdout.split() == ["False"]

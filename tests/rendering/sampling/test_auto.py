@@ -1,0 +1,245 @@
+"""Promised errors against pictures with thousands of samples at other places of the pixels."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import minirt
+from minirt.kernel.frame import DOWN
+from minirt.rendering import Renderer
+from minirt.rendering.sampling.auto import Auto, Task
+from minirt.rendering.sampling.outcome import Reached
+from minirt.scene import Ambient, Camera, Light, Scene
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, TWO
+from tests.paths import SCENES
+from tests.random_scenes import random_scene
+from tests.rendering.cancelling import cancelled
+from tests.simulated import PACKET, Clock, packets, simulated
+
+Array = NDArray[np.float64]
+
+WIDTH, HEIGHT = 160, 90
+FACTOR = 1.5  # of what is promised
+VIEW = (Ambient(0.2, (255, 255, 255)), Camera((0, 1, -10), (0, -0.05, 1), 60), Light((-6, 9, -6), 0.7, (255, 255, 255)))
+FLOOR = Plane((0, -2, 0), (0, 1, 0), (200, 200, 200))
+FAR = (Sphere((0, 0, -50), 0.1, (9, 9, 9)), Cylinder((0, 0, -50), (0, 1, 0), 0.1, 0.1, (9, 9, 9)))  # behind the eye
+
+
+def thin() -> Scene:
+    """Cylinders of a tenth of a pixel."""
+    random = np.random.default_rng(5)
+    places = random.uniform((-5, -1, -1), (5, 4, 6), (40, 3))
+    ways = random.uniform(-1, 1, (40, 3))
+    pairs = zip(places, ways, strict=True)
+    return Scene((*VIEW, FLOOR, FAR[0], *(Cylinder(tuple(p), tuple(w), 0.01, 4, (250, 80, 40)) for p, w in pairs)))
+
+
+def tiny() -> Scene:
+    """Spheres, some of them smaller than a pixel."""
+    random = np.random.default_rng(6)
+    places = random.uniform((-5, -2, -1), (5, 4, 6), (500, 3))
+    return Scene((*VIEW, FLOOR, FAR[1], *(Sphere(tuple(p), 0.06, (90, 200, 250)) for p in places)))
+
+
+KNOWN = {
+    "all": ALL,
+    "every kind": EVERY,
+    "demo": minirt.load(SCENES / "demo.rt"),
+    "subject": minirt.load(SCENES / "subject.rt"),
+    "everything": minirt.load(SCENES / "figure-v4-everything.rt"),
+    "random": random_scene(18),
+    "thin": thin(),
+    "tiny": tiny(),
+}
+
+
+@cache
+def reference(name: str) -> Array:
+    linear = np.zeros((HEIGHT, WIDTH, 3))
+    assert TWO.render(KNOWN[name], np.zeros((HEIGHT, WIDTH, 4), np.uint8), 1500, linear)
+    return np.clip(linear, 0, 1)
+
+
+def reach(
+    scene: Scene,
+    error: float = 0.0,
+    seconds: float = np.inf,
+    size: tuple[int, int] = (HEIGHT, WIDTH),
+    renderer: Renderer = TWO,
+) -> tuple[Reached, NDArray[np.uint8], Array]:
+    pixels, linear = np.zeros((*size, 4), np.uint8), np.zeros((*size, 3))
+    reached = renderer.reach(scene, pixels, error, seconds, linear)
+    assert reached
+    return reached, pixels, linear
+
+
+def rms(difference: Array) -> float:
+    return float(np.sqrt((difference**2).mean()))
+
+
+@pytest.mark.parametrize("wanted", [0.02, 0.006, 0.002])
+@pytest.mark.parametrize("name", KNOWN)
+def test_the_true_error_is_what_was_wanted_and_what_was_told(name: str, wanted: float) -> None:
+    reached, pixels, linear = reach(KNOWN[name], wanted)
+    true = rms(np.clip(linear, 0, 1) - reference(name))
+    assert reached.error <= wanted
+    assert 1 / FACTOR < reached.error / true < FACTOR
+    assert true < FACTOR * wanted
+    assert true > wanted / FACTOR or reached.most == 2
+    assert 2 <= reached.samples <= reached.most
+    shown = pixels[..., 2::-1] / 255
+    assert np.abs(shown - np.clip(linear, 0, 1)).max() < 0.501 / 255
+
+
+def test_told_errors_are_true_on_average() -> None:
+    """Without judges that stand apart, those who stop too early would all say too little."""
+    ratios = []
+    for name, scene in KNOWN.items():
+        for wanted in (0.01, 0.003, 0.0015):
+            reached, _, linear = reach(scene, wanted)
+            ratios.append(reached.error / rms(np.clip(linear, 0, 1) - reference(name)))
+    assert 0.9 < np.median(ratios) < 1.1
+
+
+def test_fewer_samples_than_everywhere_are_enough() -> None:
+    wanted, even = 0.004, 1
+    while rms(np.clip(minirt.render(ALL, WIDTH, HEIGHT, samples=even).linear, 0, 1) - reference("all")) > wanted:
+        even += 1
+    reached = reach(ALL, wanted)[0]
+    assert reached.samples < even
+    assert reached.most > 2 * even
+
+
+def test_a_picture_that_is_good_enough_at_once() -> None:
+    reached, pixels, _ = reach(ALL, 0.5)
+    assert (reached.samples, reached.most) == (2, 2)
+    assert 0 < reached.error < 0.5
+    assert pixels[..., :3].any()
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_threads_do_not_change_a_bit(precision: str) -> None:
+    made = [reach(ALL, 0.004, size=(45, 83), renderer=Renderer(threads, precision)) for threads in (1, 2, 13, 2, 2)]
+    for reached, pixels, linear in made[1:]:
+        assert reached[:3] == made[0][0][:3]
+        assert np.array_equal(pixels, made[0][1])
+        assert np.array_equal(linear, made[0][2])
+
+
+def test_single_precision_reaches_it_too() -> None:
+    reached, _, linear = reach(ALL, 0.004, renderer=Renderer(2, "single"))
+    true = rms(np.clip(linear, 0, 1) - reference("all"))
+    assert 1 / FACTOR < true / 0.004 < FACTOR
+    assert 1 / FACTOR < reached.error / true < FACTOR
+
+
+@pytest.mark.parametrize("size", [(1, 1), (1, 50), (50, 1), (7, 9), (3, 3)])
+def test_pictures_of_any_size(size: tuple[int, int]) -> None:
+    reached, pixels, linear = reach(ALL, 0.01, size=size)
+    fine = np.zeros((*size, 3))
+    TWO.render(ALL, np.zeros_like(pixels), 1000, fine)
+    assert reached.error <= 0.01
+    assert rms(np.clip(linear, 0, 1) - np.clip(fine, 0, 1)) < 0.05
+
+
+def test_nothing_to_render() -> None:
+    reached, pixels, _ = reach(Scene((AMBIENT, EYE)), 0.01, size=(5, 7))
+    assert reached.error == 0
+    assert (pixels == (0, 0, 0, 255)).all()
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """Time passes by what is rendered alone."""
+    return simulated(monkeypatch)
+
+
+FIRST = 2 * packets(WIDTH, HEIGHT) * PACKET  # seconds of the clock that the first round takes, a sample in each half
+
+
+@pytest.mark.parametrize("rounds", [0.0, 0.5, 1.0, 2.0, 10.0, 100.0])
+def test_a_time_is_kept_and_used(clock: Clock, rounds: float) -> None:
+    """In times of the first round, which is always made."""
+    reached = reach(ALL, seconds=rounds * FIRST)[0]
+    assert reached.seconds == pytest.approx(clock.wall)
+    assert clock.wall <= max(rounds, 1.0) * FIRST * 1.0001
+    assert clock.wall >= 0.9 * rounds * FIRST
+    assert reached.samples == pytest.approx(2 * clock.wall / FIRST)
+
+
+def test_a_time_is_kept_where_each_round_is_twice_as_slow_as_the_one_before(
+    clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    grow, rounds = Auto.grow, list[int]()
+
+    def slower(self: Auto, new: NDArray[np.int64]) -> bool:
+        rounds.append(clock.packets)
+        clock.slowness *= 2
+        return grow(self, new)
+
+    monkeypatch.setattr(Auto, "grow", slower)
+    reach(ALL, seconds=50 * FIRST)
+    assert len(rounds) >= 3
+    assert 0.8 * 50 * FIRST < clock.wall <= 50 * FIRST
+
+
+def test_the_time_that_sorting_the_scene_takes_is_part_of_it(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
+    pack = TWO.packing.pack
+
+    def slow(*given: Any) -> Any:
+        clock.wall += 5 * FIRST
+        return pack(*given)
+
+    monkeypatch.setattr(TWO.packing, "pack", slow)
+    reached = reach(ALL, seconds=10 * FIRST)[0]
+    assert 9 * FIRST < clock.wall <= 10 * FIRST * 1.0001
+    assert reached.seconds == pytest.approx(clock.wall)
+
+
+def test_a_time_may_end_before_an_error_is_reached(clock: Clock) -> None:
+    reached = reach(ALL, 1e-7, 10 * FIRST)[0]
+    assert reached.error > 1e-7
+    assert reached.seconds <= 10 * FIRST
+
+
+def test_cancelling_ends_it_and_leaves_the_picture_alone() -> None:
+    renderer = Renderer(2)
+    renderer.prepare(ALL)
+    pixels = np.full((720, 1280, 4), 9, np.uint8)
+    assert cancelled(renderer, lambda: renderer.reach(ALL, pixels, 1e-9)) is None  # of which a day would not be enough
+    assert (pixels == 9).all()
+    assert renderer.reach(ALL, pixels, 0.1)
+
+
+def test_a_cancel_between_two_frames_is_heard(monkeypatch: pytest.MonkeyPatch) -> None:
+    renderer = Renderer(2)
+    grow = Auto.grow
+
+    def cancelled(self: Auto, new: NDArray[np.int64]) -> bool:
+        renderer.cancel()
+        return grow(self, new)
+
+    monkeypatch.setattr(Auto, "grow", cancelled)
+    assert renderer.reach(ALL, np.zeros((HEIGHT, WIDTH, 4), np.uint8), 1e-6) is None
+
+
+def test_each_sample_is_made_once_and_both_halves_are_shifted_apart() -> None:
+    done: list[Task] = []
+    auto = Auto(lambda tasks: not done.extend(tasks), 32, 64, 4)
+    assert auto.begin()
+    assert auto.grow(np.arange(128).reshape(8, 16) % 4)
+    count = np.zeros((2, 8, 16), int)
+    for number, task in enumerate(done):
+        assert task.places.shape[1:] == (4 * DOWN, 2)
+        count[number % 2] += task.packets * len(task.places)
+    assert np.array_equal(count[0], 2 ** (np.arange(128).reshape(8, 16) % 4))
+    assert np.array_equal(count[0], count[1])
+    assert all(not np.isclose(a.places, b.places).any() for a, b in zip(done[::2], done[1::2], strict=True))

@@ -1,0 +1,133 @@
+"""Packing: what the kernel reads is the scene, and an edit costs no more than what it changes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from minirt.kernel.rows import read
+from minirt.rendering import Renderer
+from minirt.rendering.packing import primitives
+from minirt.rendering.packing.primitives import extent
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.kernel.pictures import ALL, EYE, LAMP, SHAPES, linear
+
+
+@pytest.fixture
+def packed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What was packed so far."""
+    done: list[Any] = []
+    monkeypatch.setattr(primitives, "numbers", lambda new, numbers=primitives.numbers: done.extend(new) or numbers(new))
+    return done
+
+
+def assert_same(traced: Any, scene: Scene) -> None:
+    """As if the scene were packed for the first time."""
+    fresh = Packing().pack(scene, 24, 16)
+    for name, value in zip(fresh._fields, fresh, strict=True):
+        if name != "groups":
+            assert np.array_equal(getattr(traced, name), value), name
+    for group, expected in zip(traced.groups, fresh.groups, strict=True):
+        assert all(np.array_equal(part, right) for part, right in zip(group, expected, strict=True))
+
+
+def test_the_numbers_of_a_scene() -> None:
+    blue = (0, 51, 255)
+    lamps = Light((1, 2, 3), 0.5, blue), FurtherLight((0, 0, 0), 0.0), FurtherLight((4, 5, 6), 1.0, (0, 0, 0))
+    ball, wall = Sphere((1, 2, 3), 4, (255, 0, 51)), Plane((7, -9, 2), (0, 1, 0), blue)
+    traced = Packing().pack(Scene((Ambient(0.5, blue), EYE, *lamps, wall, ball)), 24, 16)
+    assert traced.ambient.tolist() == [0, 0.1, 0.5]
+    assert traced.lights.tolist() == [[1, 2, 3, 0, 0.1, 0.5]]  # the dark ones are left out
+    assert traced.looks.tolist() == [[0, 0.2, 1, 9], [1, 0, 0.2, 5]]
+    assert traced.places.tolist() == [[1, 0], [0, 0]]  # kinds in the order of the registry
+    ball_again = read(traced.groups[0].rows, 0)
+    assert (ball_again.centre.x, ball_again.centre.y, ball_again.centre.z, ball_again.radius) == (1, 2, 3, 2)
+
+
+def test_without_ambient_light_and_lamps() -> None:
+    traced = Packing().pack(Scene((EYE, *SHAPES)), 24, 16)
+    assert traced.ambient.tolist() == [0, 0, 0]
+    assert traced.lights.shape == (0, 6)
+
+
+@pytest.mark.parametrize(
+    ("shape", "expected"),
+    [
+        (Sphere((1, -7, 3), 4, (0, 0, 0)), 9),
+        (Plane((1, -7, 3), (0, 1, 0), (0, 0, 0)), 7),
+        (Cylinder((1, -7, 3), (0, 1, 0), 4, 6, (0, 0, 0)), 10),
+        (Cylinder((1, -7, 3), (1, 0, 0), 4, 40, (0, 0, 0)), 21),
+    ],
+)
+def test_the_extent_is_the_largest_coordinate(shape: Any, expected: float) -> None:
+    assert extent(shape) == expected
+
+
+def test_an_edit_packs_again_only_what_it_changed(packed: list[Any]) -> None:
+    keeper = Packing()
+    keeper.pack(ALL, 24, 16)
+    assert len(packed) == len(SHAPES)
+    packed.clear()
+
+    moved = ALL.replace(ALL.spheres[1], centre=(9, 9, 9))
+    keeper.pack(moved, 24, 16)
+    assert [repr(each) for each in packed] == [repr(moved.spheres[1].pack())]
+    packed.clear()
+    keeper.pack(moved, 24, 16)
+    keeper.pack(moved.replace(moved.camera, fov=30), 24, 16)
+    keeper.pack(moved.replace(moved.lights[0], brightness=0.1), 30, 20)
+    assert packed == []
+    keeper.pack(ALL, 24, 16)
+    assert [repr(each) for each in packed] == [repr(ALL.spheres[1].pack())]
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda s: s.replace(s.spheres[0], diameter=1),
+        lambda s: s.replace(s.planes[0], colour=(1, 2, 3)),
+        lambda s: s.replace(s.cylinders[1], axis=(0, 1, 0)),
+        lambda s: s.replace(s.lights[1], position=(9, 9, 9)),
+        lambda s: s.replace(s.lights[0], brightness=0),
+        lambda s: s.replace(s.camera, position=(2, 3, -8)),
+        lambda s: s.replace(s.spheres[0], Cylinder((0, 0, 0), (0, 1, 0), 1, 1, (255, 0, 0))),
+        lambda s: Scene(item for item in s.items if item is not s.spheres[0]),
+        lambda s: Scene((*s.items, Sphere((0, 1, 0), 1, (9, 9, 9)))),
+        lambda s: Scene(item for item in s.items if item not in s.planes),
+        lambda s: Scene((*s.items[:4], *reversed(s.items[4:]))),
+        lambda s: Scene(s.items[:4]),
+    ],
+)
+def test_after_an_edit_the_arrays_are_those_of_the_new_scene(edit: Any) -> None:
+    keeper = Packing()
+    for scene in (ALL, edit(ALL), ALL):
+        if scene.shapes:
+            assert_same(keeper.pack(scene, 24, 16), scene)
+
+
+def test_who_looks_at_the_arrays_of_another_scene_does_no_harm() -> None:
+    edited = ALL.replace(ALL.spheres[0], centre=(0, 3, 2))
+    keeper = Packing()
+    for scene, other in ((ALL, edited), (edited, ALL), (ALL, edited)):
+        keeper.pack(scene, 24, 16)
+        assert keeper.tables_of(other.shapes).shapes == other.shapes
+        assert keeper.notes == []
+        assert_same(keeper.pack(other, 24, 16), other)
+        keeper.tables_of(scene.shapes)
+        assert_same(keeper.pack(other, 24, 16), other)
+
+
+def test_pictures_follow_edits() -> None:
+    # One renderer keeps its arrays from picture to picture; another starts anew.
+    scene = ALL
+    for sphere in ALL.spheres:
+        scene = scene.replace(sphere, centre=(0, 3, 2))
+        assert np.array_equal(linear(scene), linear(scene, renderer=Renderer(1)))
+    scene = scene.replace(LAMP, position=(5, 6, -5)).replace(EYE, Camera((0, 1, -6), (0, 0, 1), 80))
+    assert np.array_equal(linear(scene), linear(scene, renderer=Renderer(1)))

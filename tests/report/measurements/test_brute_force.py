@@ -1,0 +1,51 @@
+"""Without lists: everything is tried, and the picture is the same, bit for bit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from minirt.errors import RenderError
+from minirt.rendering.scene_packing import Packing
+from minirt.report.measurements.brute_force import BruteForce
+from minirt.report.measurements.settings import brute_force
+from minirt.scene import Scene
+from tests.kernel.pictures import ALL, AMBIENT, EYE, SHAPES, linear
+from tests.random_scenes import random_scene
+
+WIDTH, HEIGHT = 70, 40  # 5 x 3 tiles
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_picture_is_the_same(seed: int) -> None:
+    scene = random_scene(seed) if seed else ALL
+    brute = linear(scene, WIDTH, HEIGHT, 3, brute_force(2))
+    assert np.array_equal(brute, linear(scene, WIDTH, HEIGHT, 3))
+
+
+def test_without_lamps() -> None:
+    scene = Scene((AMBIENT, EYE, *SHAPES))
+    assert np.array_equal(linear(scene, WIDTH, HEIGHT, 1, brute_force(1)), linear(scene, WIDTH, HEIGHT))
+
+
+def test_every_tile_and_every_lamp_has_every_shape() -> None:
+    traced = BruteForce().pack(ALL, WIDTH, HEIGHT)
+    for kind, group in enumerate(traced.groups):
+        mine = np.flatnonzero(traced.places[:, 0] == kind).tolist()
+        assert len(group.starts) == 15 + 1
+        for a, b in zip(group.starts, group.starts[1:], strict=False):
+            assert sorted(traced.seen[a:b]) == mine
+        assert len(group.lamp_starts) == 2
+        for a, b in group.lamp_starts:
+            assert sorted(traced.lit[a:b]) == mine
+    assert traced.grid == 1
+    assert (traced.views == [0, 0, 0, -2, 0]).all()  # no cone and no distance keeps a shape from being tried
+    assert (traced.lamp_views == [0, 0, 0, -2, 0]).all()
+    assert len(Packing().pack(ALL, WIDTH, HEIGHT).seen) < len(traced.seen)
+
+
+def test_lists_that_would_fill_the_memory_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("minirt.report.measurements.brute_force.MOST", 15 * len(ALL.shapes))
+    BruteForce().pack(ALL, WIDTH, HEIGHT)
+    with pytest.raises(RenderError, match="6 shapes in each of 18 tiles are too many"):
+        BruteForce().pack(ALL, WIDTH + 16, HEIGHT)

@@ -1,0 +1,207 @@
+"""The figures of pictures, against an independent measurement of the same."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import inf, isfinite, isnan
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.errors import RenderError
+from minirt.rendering import scene_packing
+from minirt.report.measurements import picture_errors
+from minirt.report.measurements.picture_errors import Budget, Row, Stage, measured
+from minirt.report.measurements.reference import Reference, passes, reference
+from minirt.report.measurements.settings import KNOBS, Knob, Setting, knobs_of, settings
+from minirt.scene import FurtherLight, Scene
+from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
+from tests.simulated import BUSY, PACKET, Clock, packets, simulated
+
+WIDTH, HEIGHT, SAMPLES = 96, 64, 1024
+EASY = Budget(seconds=0.0, longest=inf, tries=1)
+ONCE = packets(WIDTH, HEIGHT) * PACKET  # seconds of the simulated clock that one sample in each pixel takes
+
+
+@pytest.fixture(autouse=True)
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """Time passes by what is rendered alone."""
+    return simulated(monkeypatch)
+
+
+@cache
+def right() -> Reference:
+    return reference(ALL, WIDTH, HEIGHT, SAMPLES, seed=3)
+
+
+def light(samples: int) -> np.ndarray:
+    """The program's own picture."""
+    made = minirt.render(ALL, WIDTH, HEIGHT, samples=samples).linear
+    assert made is not None
+    return np.clip(made, 0, 1)
+
+
+def error(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.linalg.norm(a - b) / np.sqrt(a.size))
+
+
+def rows_for(*wanted: Setting, budget: Budget = EASY) -> list[Row]:
+    return [row for row, _ in measured(Stage(ALL, WIDTH, HEIGHT, 1), list(wanted), right(), budget, lambda name: None)]
+
+
+@cache
+def rows() -> dict[tuple[str, int], Row]:
+    return {(row.knob, row.samples): row for row in rows_for(*settings(ALL, 16))}
+
+
+@pytest.mark.parametrize("samples", [1, 4, 16])
+def test_the_error_is_that_of_an_independent_measurement(samples: int) -> None:
+    assert rows()["uniform", samples].rmse == pytest.approx(error(light(samples), light(1024)), rel=0.1)
+
+
+def test_changed_pixels_are_those_of_an_independent_measurement() -> None:
+    few, many = (minirt.render(ALL, WIDTH, HEIGHT, samples=samples).array for samples in (1, 1024))
+    assert rows()["uniform", 1].changed == pytest.approx((few != many).any(axis=-1).sum(), rel=0.1)
+
+
+def test_the_error_of_the_reference_is_what_it_says() -> None:
+    finer = light(16384)
+    assert right().error == pytest.approx(error(right().picture, finer), rel=0.5)
+    assert right().error < rows()["uniform", 16].rmse / 5
+
+
+def test_the_reference_follows_from_its_seed_and_has_other_places_than_the_pictures() -> None:
+    few = reference(ALL, 32, 16, 8, seed=3).picture
+    assert np.array_equal(few, reference(ALL, 32, 16, 8, seed=3).picture)
+    assert not np.array_equal(few, reference(ALL, 32, 16, 8, seed=4).picture)
+    plain = minirt.render(ALL, 32, 16, samples=8).linear
+    assert plain is not None
+    assert not np.array_equal(few, np.clip(plain, 0, 1))
+
+
+def test_the_reference_tells_how_far_it_is() -> None:
+    for samples in (2, 64, 100, 1024):
+        told: list[int] = []
+        reference(ALL, 16, 16, samples, 3, lambda told=told: told.append(1))  # type: ignore[misc]
+        assert len(told) == passes(samples)
+
+
+def test_more_samples_are_closer_and_take_longer() -> None:
+    one, four, sixteen = (rows()["uniform", samples] for samples in (1, 4, 16))
+    assert one.rmse > four.rmse > sixteen.rmse
+    assert one.psnr < four.psnr < sixteen.psnr
+    assert one.flip > four.flip > sixteen.flip > 0
+    for row in (one, four, sixteen):
+        assert row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
+        assert row.cpu_ms == pytest.approx(row.samples * ONCE * 1e3 * BUSY)
+
+
+def test_knobs_do_what_they_say(clock: Clock) -> None:
+    uniform, adaptive = rows()["uniform", 16], rows()["adaptive", 16]
+    assert adaptive.rmse == pytest.approx(uniform.rmse, rel=0.3)
+    stage, (knob,) = Stage(ALL, WIDTH, HEIGHT, 1), (knob for knob in KNOBS if knob.name == "adaptive")
+    stage.renderer(Setting(knob, 16))
+    before = clock.packets
+    stage.light(Setting(knob, 16))
+    once = packets(WIDTH, HEIGHT)
+    assert 2 * once < clock.packets - before < 8 * once  # of 17, if all of the picture were done again
+    assert adaptive.cpu_ms == pytest.approx((clock.packets - before) * PACKET * 1e3 * BUSY)
+    assert rows()["single", 4].rmse == pytest.approx(rows()["uniform", 4].rmse, rel=0.05)
+    assert rows()["single", 4].rmse != rows()["uniform", 4].rmse
+    brute = rows()["brute force", 4]
+    assert brute[1:6] == rows()["uniform", 4][1:6]  # samples and all errors
+    assert all(row.not_finite == 0 for row in rows().values())
+
+
+def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
+    mirrors = ALL.replace(ALL.shapes[0], mirror=0.5).replace(ALL.shapes[1], mirror=0.9)
+    names = [knob.name for knob in knobs_of(ALL)]
+    assert names == ["uniform", "adaptive", "single", "brute force"]
+    assert [knob.name for knob in knobs_of(mirrors)] == [*names[:2], names[3], "no bounces", "1 bounce", "3 bounces"]
+    right = reference(mirrors, WIDTH, HEIGHT, 256, seed=3)
+    wanted = [setting for setting in settings(mirrors, 16) if setting.samples == 16]
+    stage = Stage(mirrors, WIDTH, HEIGHT, 1)
+    rmse = {row.knob: row.rmse for row, _ in measured(stage, wanted, right, EASY, lambda name: None)}
+    assert rmse["no bounces"] > 2 * rmse["1 bounce"] > 4 * rmse["3 bounces"] > 4 * rmse["uniform"]
+
+
+def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
+    stage = Stage(ALL, WIDTH, HEIGHT, 1)
+    (knob,) = (knob for knob in KNOBS if knob.name == "adaptive")
+    made, _ = stage.light(Setting(knob, 4))
+    once, everywhere = minirt.render(ALL, WIDTH, HEIGHT, samples=1).linear, minirt.render(ALL, WIDTH, HEIGHT, samples=4)
+    assert once is not None
+    assert everywhere.linear is not None
+    refined = (made != once).any(axis=-1)
+    assert 0.05 < refined.mean() < 0.9
+    assert np.array_equal(made[refined], everywhere.linear[refined])
+
+
+def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two lamps as bright as no file may have: where both shine straight down, their sum is infinite."""
+    bright = Scene((AMBIENT, EYE, LAMP, FurtherLight(LAMP.position, 1.0), *SHAPES))
+    monkeypatch.setattr(
+        scene_packing, "light_numbers", lambda lamps: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps))
+    )
+    stage = Stage(bright, WIDTH, HEIGHT, 1)
+    wanted = list(settings(bright, 4))
+    rows = [row for row, _ in measured(stage, wanted, right(), EASY, lambda name: None)]
+    counts = {(row.knob, row.samples): row.not_finite for row in rows}
+    assert 0 < counts["uniform", 1] < WIDTH * HEIGHT
+    assert counts["uniform", 4] == pytest.approx(4 * counts["uniform", 1], rel=0.05)
+    assert counts["uniform", 1] < counts["adaptive", 4] < counts["uniform", 1] + counts["uniform", 4]
+    assert counts["brute force", 1] == counts["uniform", 1]
+    assert all(isfinite(row.rmse) for row in rows)
+
+
+def test_a_setting_that_fails_stays_as_nan() -> None:
+    def fails(*_: object) -> int:
+        raise RenderError("no room")
+
+    failed, good = rows_for(Setting(Knob("bad", "", picture=fails), 1), Setting(KNOBS[0], 1))
+    assert isnan(failed.rmse)
+    assert isnan(failed.wall_ms)
+    assert (failed.valid, failed.remark) == (False, "failed: no room")
+    assert good.rmse > 0
+
+
+def test_a_setting_that_takes_too_long_is_left_out() -> None:
+    wanted = [Setting(KNOBS[0], samples) for samples in (1, 4)]
+    for longest, remarks in (
+        (0.9 * ONCE, ("takes too long for more than the first run", f"left out: takes about {4 * ONCE:.2g} s")),
+        (3.9 * ONCE, ("", f"left out: takes about {4 * ONCE:.2g} s")),
+        (4.1 * ONCE, ("", "")),
+    ):
+        made = rows_for(*wanted, budget=EASY._replace(longest=longest))
+        assert tuple(row.remark for row in made) == remarks
+        assert [row.valid for row in made] == [not remark for remark in remarks]
+        for row, remark in zip(made, remarks, strict=True):
+            left_out = remark.startswith("left out")
+            assert isnan(row.wall_ms) if left_out else row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
+
+
+def test_runs_fill_the_time_that_they_are_given(clock: Clock) -> None:
+    right()
+    for seconds, runs in ((0.0, picture_errors.RUNS), (9.5 * ONCE, 10)):
+        before = clock.packets
+        rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(seconds=seconds))
+        prepared, first = 1, packets(WIDTH, HEIGHT)
+        assert clock.packets - before == prepared + first + runs * packets(WIDTH, HEIGHT)
+
+
+def test_a_disturbed_measurement_is_tried_again_and_then_not_valid(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int] = []
+    monkeypatch.setattr(picture_errors, "is_disturbed", lambda run, threads: asked.append(threads) or len(asked) < 3)
+    (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(tries=2))
+    assert (row.valid, row.remark) == (False, "other programs needed the processors")
+    assert asked == [1, 1]
+    (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(tries=2))
+    assert (row.valid, row.remark) == (True, "")
+
+
+def test_a_scene_without_shapes_is_black() -> None:
+    black = reference(Scene((AMBIENT, EYE)), 8, 4, 16, 0)
+    assert isinstance(black, Reference)
+    assert not black.picture.any()
+    assert black.error == 0

@@ -1,0 +1,241 @@
+"""Plain lines: which they are, that both readers agree on them, and that a disagreement is found.
+
+`conftest` has every text of this folder read by both readers.
+"""
+
+from __future__ import annotations
+
+import gc
+import re
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+from unittest.mock import patch
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from minirt.errors import SceneError
+from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, Real, Three, Whole, whole
+from minirt.fields.numerals import LONGEST, NUMBER, PLAIN, WHOLE, numbers, wholes
+from minirt.scene import describe, fast, parse, parser
+from minirt.scene.diagnostics import Log
+from minirt.scene.lines import line_from
+from minirt.scene.parser import read_lines
+from tests.scene.examples import CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, problems, scene_with
+from tests.scene.readers import exactly, none_plain, read_by_both
+from tests.scene.strategies import ANY
+
+COMPONENTS = [
+    "0",
+    "-0",
+    "1",
+    ".5",
+    "5.",
+    "-1e-3",
+    "0.70710678",
+    "1e400",
+    "1e-400",
+    "1e15",
+    "1.1e15",
+    "-2",
+    "256",
+    "nan",
+]
+COMPONENTS += ["255", "1_0", "+7", "--1", "", "e", "0x1", "٣", "1" * LONGEST, "1" * (LONGEST + 1), "0" * LONGEST + "1"]
+COMPONENTS += ["0" * LONGEST]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        *(SPHERE, PLANE, CYLINDER, "l 0,0,0 0.5 1,2,3", "\tsp  0,0,20\t \t12.6 10,0,255 \t", SPHERE + "\r"),
+        *(
+            SPHERE + " # a ball",
+            SPHERE + "#a , // é \t\r",
+            "sp +1,-.5,1e3 1.e-2 007,-0,+255",
+            "pl 0,0,0 0,0.9995,0 1,2,3",
+        ),
+    ],
+)
+def test_a_plain_line(line: str) -> None:
+    (element,) = fast.read([line])
+    log = Log("test.rt", lenient=False)
+    careful = parser.read_line(line_from(1, line), {}, log)
+    assert element is not None
+    assert careful is not None
+    assert exactly(element) == exactly(careful)
+    assert not log.errors + log.notices
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        *("", "#", f"# {SPHERE}", CAMERA, LIGHT, f"\ufeff{SPHERE}", "l 0,0,0 1", f"{SPHERE} 7", f"{SPHERE} roll:1"),
+        *(SPHERE + end for end in ("\r\r", "#\r\r", "\n", "# \n", "#\0", "\x85", ",", " //")),
+        *(f"sp 0,0,20 {size} 1,2,3" for size in ("0", "-1", "nan", "inf", "1e999", "1_0", "٣", "1.1e15", "0x1")),
+        *(f"sp {centre} 5 1,2,3" for centre in ("0,20", "0,0,20,1", "0,0,1e16", "0,,20", "0,0,20,", "0,0,nan")),
+        *(f"sp 0,0,20 5 {colour}" for colour in ("1,2,256", "1,2,3.0", "1,2,-1", "1,2,1e2", "#ffffff")),
+        *(f"pl 0,0,0 {normal} 1,2,3" for normal in ("0,0,0", "0,0.99,0", "0,1.1,0")),
+        *("l 0,0,0 1.5 1,2,3", f"\v{SPHERE}", "sp\xa00,0,20 5 1,2,3", "sp 0,0,20\v5 1,2,3", "Sp 0,0,20 5 1,2,3"),
+    ],
+)
+def test_a_line_that_needs_care_and_does_not_spoil_those_beside_it(line: str) -> None:
+    before, element, behind = fast.read([SPHERE, line, SPHERE])
+    assert element is None
+    assert before is not None
+    assert behind is not None
+    assert before.source == behind.source == SPHERE
+
+
+COMPONENT = st.sampled_from(COMPONENTS)
+WORD = st.one_of(COMPONENT, st.lists(COMPONENT, min_size=2, max_size=4).map(",".join))
+TRIPLE = st.lists(COMPONENT, min_size=3, max_size=3).map(",".join)
+LINES = st.lists(
+    st.one_of(
+        st.tuples(st.just("sp"), TRIPLE, COMPONENT, TRIPLE),
+        st.tuples(st.just("pl"), TRIPLE, TRIPLE, TRIPLE),
+        st.tuples(st.sampled_from(["sp", "pl", "cy", "l"]), st.lists(WORD, max_size=6)).map(lambda x: (x[0], *x[1])),
+    ).map(" ".join),
+    max_size=8,
+)
+
+
+@given(LINES, st.booleans())
+@settings(max_examples=300, deadline=None)
+def test_lines_of_good_and_bad_fields_among_each_other(lines: list[str], lenient: bool) -> None:
+    with suppress(SceneError):
+        parse(scene_with(*lines), lenient=lenient)
+
+
+@given(st.lists(st.one_of(ANY), max_size=30))
+@settings(max_examples=100, deadline=None)
+def test_what_describes_an_element_without_attributes_is_plain(elements: list[Any]) -> None:
+    lines = [describe(element) for element in elements]
+    assert list(fast.read(lines)) == [
+        each if type(each) in fast.KINDS.values() and ":" not in line else None
+        for line, each in zip(lines, elements, strict=True)
+    ]
+
+
+@given(st.text("+-.0123456789eE", min_size=1, max_size=8))
+@example("1e5")
+@example("1.")
+@example("E")
+def test_of_plain_characters_the_interpreter_takes_what_the_format_takes(text: str) -> None:
+    for read, pattern in ((numbers, NUMBER), (wholes, WHOLE)):
+        if pattern.fullmatch(text):
+            assert read([text]) == [float(text)]
+        else:
+            with pytest.raises(ValueError, match=r"could not convert|invalid literal"):
+                read([text])
+
+
+FIELDS: list[Field] = [
+    Real(doc="", low=0.0, high=1.0),
+    Real(doc="", low=0.0, high=1.0, ends="is an end"),
+    *(Length(doc=""), Whole(doc="", low=1, high=255), Point(doc=""), Direction(doc=""), Colour(doc="")),
+]
+
+
+@pytest.mark.parametrize("index", range(len(FIELDS)))
+@given(data=st.data())
+@settings(deadline=None)
+def test_a_column_has_the_values_of_its_spellings(index: int, data: st.DataObject) -> None:
+    field, column = FIELDS[index], data.draw(columns(index))
+    assert list(map(repr, field.column(column))) == list(map(repr, map(field.quiet, column)))
+
+
+@cache
+def columns(index: int) -> st.SearchStrategy[list[str]]:
+    """Plain spellings for a field."""
+    field = FIELDS[index]
+    return st.lists(st.from_regex(field.plain, fullmatch=True) | spelled(field), min_size=1, max_size=6)
+
+
+def spelled(field: Field) -> st.SearchStrategy[str]:
+    """Plain spellings, most of them of good values."""
+    one = st.sampled_from([each for each in COMPONENTS if re.fullmatch(PLAIN, each)])
+    return st.tuples(one, one, one).map(",".join) if isinstance(field, Three) else one
+
+
+def test_a_field_reads_columns_one_by_one_where_it_knows_no_better() -> None:
+    @dataclass(frozen=True, kw_only=True)
+    class Even(Field):
+        plain = PLAIN
+
+        def parse(self, text: str) -> int:
+            return whole(text)
+
+        def check(self, value: int) -> int:
+            if value % 2:
+                raise FieldError("must be even")
+            return value
+
+        def remark(self, value: int) -> str:
+            return "is nothing" if value == 0 else ""
+
+    assert Even(doc="").column(["2", "1", "e", "0", "-4"]) == [2, None, None, None, -4]
+
+
+def test_a_file_of_plain_lines_only_is_no_empty_file() -> None:
+    assert [problem.message[:13] for problem in problems(SPHERE)] == ["no ambient li", "no camera: a "]
+
+
+def careless_range(field: Any, values: Any) -> Any:
+    return values
+
+
+@pytest.mark.parametrize(
+    ("where", "name", "instead", "line"),
+    [
+        (Length, "check_all", careless_range, "sp 0,0,0 -1 1,2,3"),
+        (Three, "check_all", careless_range, "sp 0,0,0 1 1,2,300"),
+        (Direction, "check_all", careless_range, "pl 0,0,0 0,0.9995,0 1,2,3"),
+        (Direction, "check_all", lambda field, values: list(map(field.check, values)), "pl 0,0,0 0,0.5,0 1,2,3"),
+        (Three, "components", lambda _field, texts: list(map(float, texts)), "sp -0,0,0 1 1,2,3"),
+        (Colour, "components", lambda _field, texts: list(map(float, texts)), "sp 0,0,0 1 1,2,3"),
+        (Field, "quiet", lambda field, text: field.parse(text), "sp 0,0,0 0 1,2,3"),
+    ],
+)
+def test_readers_that_disagree_are_found(where: type[Field], name: str, instead: Any, line: str) -> None:
+    sources = scene_with(line).split("\n")
+    read_by_both(sources, Log("test.rt", lenient=False))
+    with patch.object(where, name, instead), pytest.raises(AssertionError):
+        read_by_both(sources, Log("test.rt", lenient=False))
+
+
+def test_the_careful_reader_sees_no_plain_line() -> None:
+    lines = [f"sp {index},0,20 1 255,0,{index % 256}" for index in range(10_000)]
+    lines[7000] = "sp 0,0,20 -1 1,2,3"
+    sources = scene_with(*lines).split("\n")
+    seen: list[int] = []
+
+    def cut(line: Any, log: Log) -> Any:
+        seen.append(line.number)
+        return careful(line, log)
+
+    careful = parser.cut
+    with patch.object(parser, "cut", cut):
+        read_lines(sources, Log("test.rt", lenient=False))
+    assert seen == [1, 2, 7003, 10_003]
+    with patch.object(parser, "cut", cut), patch.object(fast, "read", none_plain):
+        seen.clear()
+        read_lines(sources, Log("test.rt", lenient=False))
+    assert len(seen) == 10_003
+
+
+def test_the_collector_is_left_as_it_was() -> None:
+    assert gc.isenabled()
+    parse(scene_with())
+    assert gc.isenabled()
+    problems("nonsense")
+    assert gc.isenabled()
+    gc.disable()
+    try:
+        parse(scene_with())
+        assert not gc.isenabled()
+    finally:
+        gc.enable()

@@ -1,0 +1,30 @@
+"""A file that is dropped on the real window."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+import pytest
+
+import minirt
+from tests.viewer.app.test_real_window import TEXT, picture, viewing
+from tests.waiting import until
+
+pytestmark = pytest.mark.window
+
+
+@pytest.mark.parametrize("types", [1, 3, 5])
+def test_a_dropped_file_is_opened(desktop, tmp_path, types):
+    other = tmp_path / "an other.rt"
+    other.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 3"))
+    with viewing(desktop, tmp_path / "scene.rt") as viewer:
+        viewer.key("i", "i")
+        viewer.shows(picture(viewer.path))
+        desktop.run(sys.executable, "-m", "tests.mlx.dropper", str(viewer.window), "20", "20", str(types), str(other))
+        until(lambda: desktop.run("xdotool", "getwindowname", str(viewer.window)) == b"miniRT - an other.rt\n", "it")
+        viewer.key("Tab")  # takes the message away
+        viewer.shows(picture(other))
+        viewer.key("Escape")
+        assert viewer.end() == (0, "", "")
+    assert not np.array_equal(picture(other), minirt.render(minirt.load(viewer.path), 320, 240).array)

@@ -1,0 +1,244 @@
+"""The whole program in a real window."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import minirt
+from minirt.rendering.sampling.adaptive import contrasts
+from tests.viewer.resting import until_at_rest, until_only_one_runs
+from tests.waiting import HANG_LIMIT, until
+from tests.windows import SCREEN, Desktop
+
+pytestmark = pytest.mark.window
+
+TEXT = """\
+A 0.2 255,255,255
+C 0,1,8 0,-0.1,-0.995 60
+L 5,5,5 0.6 255,255,255
+sp 0,0,0 2 255,60,60
+pl 0,-1,0 0,1,0 90,200,90
+cy 2,0,0 0,1,0 1 2 60,60,255
+"""
+SIZE = (320, 240)
+
+
+class Viewer(NamedTuple):
+    """The running program and its window."""
+
+    desktop: Desktop
+    process: subprocess.Popen[str]
+    window: int
+    path: Path
+
+    def key(self, *names: str) -> None:
+        self.desktop.key(self.window, *names)
+
+    def shows(self, picture: NDArray[np.uint8]) -> None:
+        """Wait until the window shows exactly that."""
+        until(lambda: np.array_equal(self.desktop.screenshot(self.window), picture), "the picture")
+
+    def end(self) -> tuple[int, str, str]:
+        """Status, standard output and standard error."""
+        output, errors = self.process.communicate(timeout=HANG_LIMIT)
+        return self.process.returncode, output, errors
+
+
+@contextmanager
+def viewing(
+    desktop: Desktop,
+    path: Path,
+    size: tuple[int, int] = SIZE,
+    cache: Path | None = None,
+    more: tuple[str, ...] = (),
+    program: str = "minirt",
+    text: str = TEXT,
+) -> Iterator[Viewer]:
+    """A window with the scene `text`. `cache`: an empty folder, for a program that has to compile first; `more`
+    arguments; `program`: its module."""
+    command = [sys.executable, "-W", "error", "-m", program, str(path), "--size", f"{size[0]}x{size[1]}", *more]
+    if cache:
+        command = ["env", f"XDG_CACHE_HOME={cache}", *command]
+    path.write_text(text)
+    with desktop.program(*command) as process:
+        yield Viewer(desktop, process, desktop.find(f"miniRT - {path.name}"), path)
+
+
+@pytest.fixture
+def viewer(desktop: Desktop, tmp_path: Path) -> Iterator[Viewer]:
+    with viewing(desktop, tmp_path / "scene.rt") as opened:
+        yield opened
+
+
+def picture(path: Path, size: tuple[int, int] = SIZE, passes: tuple[int, ...] = (4, 16)) -> NDArray[np.uint8]:
+    """What the renderer makes of the scene in a file; refined as the window does it when nothing moves."""
+    scene, renderer = minirt.load(path), minirt.renderer(None)
+    pixels = np.zeros((size[1], size[0], 4), np.uint8)
+    renderer.render(scene, pixels)
+    for samples in passes:
+        renderer.refine(scene, pixels, samples)
+    return pixels[..., 2::-1]
+
+
+def test_the_window_shows_the_refined_picture(viewer):
+    viewer.key("i", "i")
+    refined = picture(viewer.path)
+    viewer.shows(refined)
+    plain = minirt.render(minirt.load(viewer.path), *SIZE).array
+    many = minirt.render(minirt.load(viewer.path), *SIZE, samples=16).array
+    edge = contrasts(np.dstack([plain, np.full(plain.shape[:2], 255, np.uint8)]))
+    assert np.abs(many.astype(int) - refined)[edge].mean() < 0.05 * np.abs(many.astype(int) - plain)[edge].mean()
+    assert (plain == refined).all(axis=2).mean() > 0.75
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_with_one_sample_it_is_the_picture_that_is_rendered_without_a_window(desktop, tmp_path):
+    with viewing(desktop, tmp_path / "scene.rt", more=("--samples", "1")) as viewer:
+        viewer.key("i", "i")
+        plain = minirt.render(minirt.load(viewer.path), *SIZE).array
+        assert np.array_equal(plain, picture(viewer.path, passes=()))
+        viewer.shows(plain)
+        until_at_rest(viewer.process.pid)
+        assert np.array_equal(desktop.screenshot(viewer.window), plain)
+        viewer.key("Escape")
+        assert viewer.end() == (0, "", "")
+
+
+def test_escape_at_once(viewer):
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_the_close_button(viewer):
+    viewer.desktop.close_button(viewer.window)
+    assert viewer.end() == (0, "", "")
+
+
+def test_ctrl_c_in_the_terminal(viewer):
+    viewer.key("i", "i")
+    viewer.shows(picture(viewer.path))
+    os.killpg(viewer.process.pid, signal.SIGINT)
+    assert viewer.end() == (130, "", "")
+
+
+def test_keys_edit_and_save_the_scene(viewer):
+    viewer.key("i", "i")
+    viewer.key("Tab", "Tab", "e", "plus", "ctrl+s")  # to the light, to the sphere
+    until(lambda: viewer.path.read_text() != TEXT, "the saved scene")
+    scene = minirt.load(viewer.path)
+    assert scene.spheres[0].centre[1] > 0
+    assert scene.spheres[0].diameter == pytest.approx(2.1)
+    viewer.key("Tab")  # takes the message away
+    viewer.shows(picture(viewer.path))
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_unsaved_changes_are_kept(viewer):
+    viewer.key("Tab", "Tab", "Delete", "Escape")
+    copy = viewer.path.with_name("scene.recovered.rt")
+    status, output, errors = viewer.end()
+    assert (status, errors) == (0, "")
+    assert str(copy) in output
+    assert minirt.load(copy).spheres == ()
+
+
+def test_thirty_sizes(viewer):
+    viewer.key("i", "i")
+    for n in range(30):
+        viewer.desktop.run("xdotool", "windowsize", str(viewer.window), str(200 + 13 * n), str(400 - 7 * n))
+    viewer.desktop.resize(viewer.window, 333, 222)
+    viewer.shows(picture(viewer.path, (333, 222)))
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_hiding_and_covering_lose_nothing(viewer, desktop, tmp_path):
+    viewer.key("i", "i")
+    still = picture(viewer.path)
+    viewer.shows(still)
+    desktop.minimise(viewer.window)
+    desktop.restore(viewer.window)
+    viewer.shows(still)
+    with viewing(desktop, tmp_path / "other.rt", (900, 700)) as cover:
+        for window in (viewer.window, cover.window):
+            desktop.run("xdotool", "windowmove", "--sync", str(window), "100", "100")
+        desktop.activate(cover.window)
+        cover.key("Escape")
+        assert cover.end() == (0, "", "")
+    viewer.shows(still)
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_an_idle_window_only_looks_at_its_file_now_and_then(viewer):
+    viewer.key("i", "i")
+    viewer.shows(picture(viewer.path))
+    until_only_one_runs(viewer.process.pid, 8)
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_an_idle_window_that_does_not_watch_its_file_does_nothing(desktop, tmp_path):
+    with viewing(desktop, tmp_path / "scene.rt", more=("--no-watch",)) as viewer:
+        viewer.key("i", "i")
+        viewer.shows(picture(viewer.path))
+        until_at_rest(viewer.process.pid, 100)
+        viewer.key("Escape")
+        assert viewer.end() == (0, "", "")
+
+
+def test_a_held_key_moves_until_it_is_let_go(viewer):
+    viewer.key("i", "i")
+    still = picture(viewer.path)
+    viewer.shows(still)
+    viewer.desktop.activate(viewer.window)
+    viewer.desktop.keydown("d")
+    seen = set()
+
+    def moving() -> bool:
+        seen.add(viewer.desktop.screenshot(viewer.window).tobytes())
+        return len(seen) > 5
+
+    until(moving, "five pictures")
+    viewer.desktop.keyup("d")
+    viewer.key("Home")
+    viewer.shows(still)
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_full_screen_and_back(viewer):
+    """Each change may open another window of the window system."""
+    viewer.key("i", "i")
+    for size in (SCREEN, SIZE):
+        viewer.key("F11")
+        viewer = viewer._replace(window=viewer.desktop.find("miniRT - scene.rt", size))
+        viewer.shows(picture(viewer.path, size))
+    viewer.key("Escape")
+    assert viewer.end() == (0, "", "")
+
+
+def test_the_camera_is_copied_and_a_click_selects(viewer):
+    viewer.key("i", "i")
+    still = picture(viewer.path)
+    viewer.shows(still)
+    viewer.key("ctrl+c")
+    until(lambda: not np.array_equal(viewer.desktop.screenshot(viewer.window), still), "the message")
+    viewer.desktop.click(viewer.window, 160, 130)  # the sphere
+    viewer.shows(still)
+    viewer.key("Delete", "ctrl+s", "Escape")
+    assert viewer.end() == (0, "", "")
+    assert minirt.load(viewer.path).spheres == ()

@@ -1,0 +1,144 @@
+"""The program around the session: how it ends."""
+
+from __future__ import annotations
+
+import sys
+import threading
+
+import pytest
+
+from minirt.errors import RenderError
+from minirt.mlx import Key, Mlx
+from minirt.mlx.memory import Memory
+from minirt.viewer import run
+from minirt.viewer.app import desktop
+from tests import processes
+from tests.paths import ROOT
+from tests.viewer.fake import TEXT, FakeRenderer, scene
+from tests.waiting import HANG_LIMIT
+
+
+@pytest.fixture(autouse=True)
+def patient(monkeypatch) -> None:
+    """The painter may take as long as it needs to end; where it does not, the test fails and its process goes on."""
+
+    def leave(_status: int) -> None:
+        raise AssertionError("the painter did not end")
+
+    monkeypatch.setattr(desktop, "PATIENCE", HANG_LIMIT)
+    monkeypatch.setattr(desktop, "leave", leave)
+
+
+class Script(Memory):
+    """What the user does; then the program may take as long as it needs to end."""
+
+    def __init__(self, screen: tuple[int, int] = (2560, 1600)) -> None:
+        super().__init__(screen, patience=HANG_LIMIT)
+
+
+def end(memory: Memory, path, renderer=None, size=None) -> int:
+    return run(scene(), path=path, size=size, renderer=renderer or FakeRenderer(), mlx=Mlx(memory))
+
+
+def test_escape_ends_with_0_and_says_nothing(tmp_path, capfd):
+    memory = Script()
+    memory.tap(Key.D)
+    memory.tap(Key.ESCAPE)
+    assert end(memory, tmp_path / "scene.rt") == 0
+    assert capfd.readouterr() == ("", "")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_close_button_ends_with_0(tmp_path):
+    memory = Script()
+    memory.close_button()
+    assert end(memory, tmp_path / "scene.rt") == 0
+
+
+def test_unsaved_changes_are_kept_and_named(tmp_path, capfd):
+    memory = Script()
+    for key in (Key.TAB, Key.D, Key.ESCAPE):
+        memory.tap(key)
+    assert end(memory, tmp_path / "scene.rt") == 0
+    copy = tmp_path / "scene.recovered.rt"
+    assert str(copy) in capfd.readouterr().out
+    assert copy.read_text() != TEXT
+
+
+def test_ctrl_c_ends_with_130_and_keeps_changes(tmp_path, capfd):
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    memory = Script()
+    memory.tap(Key.TAB)
+    memory.tap(Key.D)
+    memory.do(interrupt)
+    assert end(memory, tmp_path / "scene.rt") == 130
+    assert (tmp_path / "scene.recovered.rt").exists()
+    assert capfd.readouterr().err == ""
+
+
+def test_an_error_that_nobody_expects_is_a_render_error_and_no_hang(tmp_path):
+    renderer = FakeRenderer()
+    renderer.error = ValueError("odd")
+    with pytest.raises(RenderError, match="ValueError: odd"):
+        end(Script(), tmp_path / "scene.rt", renderer)
+
+
+@pytest.mark.parametrize(
+    ("asked", "text", "opened"),
+    [
+        ((40, 30), TEXT, (40, 30)),
+        (None, TEXT, (1280, 720)),
+        (None, "R 320 200\n" + TEXT, (320, 200)),
+        (None, "R 9999 9999\n" + TEXT, (800, 600)),
+    ],
+)
+def test_the_size_of_the_window(tmp_path, asked, text, opened):
+    memory = Script(screen=(800, 600) if "9999" in text else (2560, 1600))
+    seen = []
+    memory.do(lambda: seen.append((memory.windows[0].width, memory.windows[0].height, memory.windows[0].title)))
+    memory.tap(Key.ESCAPE)
+    run(scene(text), path=tmp_path / "a b.rt", size=asked, renderer=FakeRenderer(), mlx=Mlx(memory))
+    assert seen == [(*opened, "miniRT - a b.rt")]
+
+
+STUCK = """
+from concurrent.futures import ThreadPoolExecutor
+from threading import Event
+from minirt.mlx import Key, Mlx
+from minirt.mlx.memory import Memory
+from minirt.viewer import run
+from tests.viewer.fake import FakeRenderer, scene
+from tests.waiting import HANG_LIMIT
+
+class Stuck(FakeRenderer):
+    def is_ready(self, scene):
+        return False
+    def prepare(self, scene):
+        self.started.set()
+        ThreadPoolExecutor().submit(Event().wait).result()  # the interpreter would wait for this thread for ever
+
+memory, renderer = Memory(patience=HANG_LIMIT), Stuck()
+memory.do(renderer.started.wait)
+memory.tap(Key.ESCAPE)
+raise SystemExit(run(scene(), path="scene.rt", renderer=renderer, mlx=Mlx(memory)))
+"""
+
+
+def test_escape_ends_the_program_inside_the_compiler():
+    done = processes.run([sys.executable, "-c", STUCK], cwd=ROOT)
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
+
+
+def test_no_thread_is_left(tmp_path):
+    memory = Script()
+    memory.tap(Key.ESCAPE)
+    end(memory, tmp_path / "scene.rt")
+    assert not [thread for thread in threading.enumerate() if thread.name == "minirt-painter"]
+
+
+def test_importing_the_viewer_loads_neither_window_library_nor_compiler():
+    code = "import sys, minirt.viewer; print(*{'numba', 'pyglet', 'PIL'} & {*sys.modules})"
+    done = processes.run([sys.executable, "-c", code], cwd=ROOT, text=True)
+    assert (done.returncode, done.stdout.strip(), done.stderr) == (0, "", "")

@@ -1,0 +1,231 @@
+"""A person at a real window: every step has the picture that the same keys have without a window."""
+
+from __future__ import annotations
+
+import difflib
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+
+import minirt
+from minirt.mlx import Mlx
+from minirt.mlx.memory import Memory
+from minirt.scene import Scene, dump, load, parse
+from minirt.viewer.app.replay import play
+from minirt.viewer.app.session import Session
+from minirt.viewer.display.painter import Painter
+from minirt.viewer.editing.state import State
+from minirt.viewer.input.recording import record
+from tests.viewer.app.test_real_window import SIZE, TEXT, Viewer, viewing
+from tests.viewer.hands import do
+from tests.waiting import until
+from tests.windows import SCREEN
+
+pytestmark = pytest.mark.window
+
+STEPS = (
+    "click 160,130",  # the sphere
+    "drag 160,130 200,110",
+    "press e",
+    "wheel up 3",
+    "press X",
+    "drag 200,100 170,130",
+    "press V",
+    "press -",
+    "click 230,130",
+    "down Shift; drag 235,130 250,160; up Shift",
+    "press Right",
+    "press V",
+    "press +",
+    "drag 20,30 80,60 right",
+    "drag 20,30 30,20 middle",
+    "drag 20,20 30,25",
+    "press N",
+    "press N",
+    "press Shift+N",
+    "press d",
+    "press M",
+    "press M",
+    "press +",
+    "press Shift+M",
+    "press Ctrl+D",
+    "press a",
+    "press L",
+    "press q",
+    "press F",
+    "press Shift+Tab",
+    "press Delete",
+    "press C",
+    "press .",
+    "press Ctrl+Z",
+    "press Ctrl+Y",
+)
+
+
+MESSAGE = 60  # rows that it may take
+STOPPED = "tests.viewer.stopped"
+
+
+class Twin:
+    """The viewer on the screen, with a clock that stands still, and one in memory that does the same lines."""
+
+    def __init__(self, viewer: Viewer, folder: Path, keys: str = "qwerty") -> None:
+        self.viewer = viewer
+        folder.mkdir()
+        self.path = folder / "twin.rt"
+        self.path.write_text(TEXT)
+        self.keys = keys
+        self.renderer = minirt.renderer(None)
+        self.lines: list[str] = []
+        self.memory = Memory()
+        m = Mlx(self.memory)
+        self.session = Session(
+            m, m.mlx_init(), self.start, path=self.path, size=SIZE, painter=partial(Painter, self.renderer),
+            pick=self.renderer.pick, keys=keys,
+        )  # fmt: skip
+
+    @property
+    def start(self) -> Scene:
+        """The scene of the file."""
+        return parse(TEXT, self.path).scene
+
+    @property
+    def state(self) -> State:
+        return self.session.state
+
+    def do(self, *lines: str) -> None:
+        do(self.viewer.desktop, self.viewer.window, *lines)
+        record(lines, "twin", self.memory)
+        self.memory.play()
+        self.lines += lines
+
+    def replayed(self) -> State:
+        """The state after all lines at once, as `miniRT --replay` does them."""
+        return play(self.start, self.lines, renderer=self.renderer, size=SIZE, path=self.path, keys=self.keys).state
+
+    def agree(self) -> None:
+        """Wait until the window shows what the twin has, but for where a message is; then save, and compare the file
+        line by line with how it was written before."""
+        state = self.state
+        shown = slice(0, -MESSAGE if state.message else None)
+        picture, viewer = still(state.scene)[shown], self.viewer
+
+        def same() -> bool:
+            return np.array_equal(viewer.desktop.screenshot(viewer.window)[shown], picture)
+
+        until(same, self.lines[-1])
+        before, after = viewer.path.read_text(), dump(state.scene)
+        do(viewer.desktop, viewer.window, "press Ctrl+S")
+        until(lambda: viewer.path.read_text() == after, f"the file after {self.lines[-1]}")
+        changed = [line for line in difflib.ndiff(before.split("\n"), after.split("\n")) if line[0] in "+-"]
+        assert len(changed) <= 2 or self.lines[-1] in ("press Ctrl+Z", "press Ctrl+Shift+Z"), changed
+
+
+def still(scene: Scene, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
+    """The picture of a scene as the window refines it when nothing moves."""
+    renderer = minirt.renderer(None)
+    pixels = np.zeros((size[1], size[0], 4), np.uint8)
+    renderer.render(scene, pixels)
+    for samples in (4, 16):
+        renderer.refine(scene, pixels, samples)
+    return pixels[..., 2::-1]
+
+
+def test_a_walk(desktop, tmp_path):
+    with viewing(desktop, tmp_path / "scene.rt", program=STOPPED) as viewer:
+        twin = Twin(viewer, tmp_path / "twin")
+        viewer.key("i", "i")
+        viewer.shows(still(load(viewer.path).scene))
+        for step in STEPS:
+            twin.do(*step.split("; "))
+            if step not in ("press V", "press X"):
+                twin.agree()
+        edited = twin.state.scene
+        assert twin.replayed() == twin.state
+
+        twin.do("press Tab", *["press Ctrl+Z"] * 40)
+        assert twin.state.scene.items == parse(TEXT).scene.items
+        twin.agree()
+        twin.do(*["press Ctrl+Shift+Z"] * 40)
+        assert twin.state.scene.items == edited.items
+        twin.agree()
+
+        viewer.path.write_text(TEXT)
+        viewer.key("F5", "Tab")
+        viewer.shows(still(parse(TEXT).scene))
+        viewer.key("ctrl+z", "ctrl+s")
+        until(lambda: viewer.path.read_text() == dump(edited), "what was there before it was read again")
+
+        shot = viewer.path.with_name("scene-1.png")
+        viewer.key("p")
+        until(lambda: shot.exists() and shot.stat().st_size > 0, "the picture's file")
+        assert np.array_equal(np.asarray(Image.open(shot)), still(edited))
+        viewer.key("Tab")
+        viewer.shows(still(edited))
+        viewer.key("h")
+        until(lambda: desktop.screenshot(viewer.window).mean() < still(edited).mean() / 2, "the help")
+        viewer.key("h")
+        viewer.shows(still(edited))
+        again = viewer
+        for size in (SCREEN, SIZE):
+            again.key("F11")
+            again = again._replace(window=desktop.find("miniRT - scene.rt", size))
+        again.shows(still(edited))
+        follow(again, edited)
+        again.key("Escape")
+        assert again.end() == (0, "", "")
+
+
+def follow(viewer: Viewer, edited: Scene) -> None:
+    """Another program writes the file: well, then badly, then well again."""
+
+    def write(text: str) -> None:
+        viewer.path.with_name("new").write_text(text)
+        viewer.path.with_name("new").replace(viewer.path)
+
+    other = dump(edited).replace("A 0.2", "A 0.7")
+    write(other)
+    brighter = still(parse(other).scene)
+    viewer.shows(brighter)
+    write("A 0.2\n")
+    until(lambda: not np.array_equal(viewer.desktop.screenshot(viewer.window), brighter), "the banner")
+    half = slice(0, SIZE[1] // 2)  # above the banner
+    assert np.array_equal(viewer.desktop.screenshot(viewer.window)[half], brighter[half])
+    write(TEXT)
+    viewer.shows(still(parse(TEXT).scene))
+
+
+LETTERS = {
+    "qwerty": ("us", ["a", "d", "d", "w", "w", "w", "s", "q", "e", "e"]),
+    "azerty": ("fr", ["q", "d", "d", "z", "z", "z", "s", "a", "e", "e"]),
+    "qwertz": ("de", ["a", "d", "d", "w", "w", "w", "s", "q", "e", "e"]),
+}
+TYPED = [".", ".", ".", ",", "+", "+", "+", "-"]
+CHORDS = ["Ctrl+Z", "Ctrl+Z", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z", "Tab", "Tab", "v", "Shift+N", "n", "e"]
+
+
+@pytest.mark.parametrize("keys", LETTERS)
+def test_the_keys_of_a_layout(desktop, tmp_path, keys):
+    layout, letters = LETTERS[keys]
+    desktop.run("setxkbmap", layout)
+    try:
+        with viewing(desktop, tmp_path / "scene.rt", more=("--keys", keys), program=STOPPED) as viewer:
+            viewer.key("i", "i")
+            viewer.shows(still(load(viewer.path).scene))
+            twin = Twin(viewer, tmp_path / "twin", keys)
+            twin.do(*(f"press {key}" for key in (*letters, *TYPED, *CHORDS)))
+            played = twin.state.scene
+            assert played.items == twin.replayed().scene.items
+            viewer.shows(still(played))
+            twin.do("press ?")
+            until(lambda: desktop.screenshot(viewer.window).mean() < still(played).mean() / 2, "the help")
+            twin.do("press ?", "press Ctrl+S")
+            until(lambda: viewer.path.read_text() == dump(played), "the saved file")
+            viewer.key("Escape")
+            assert viewer.end() == (0, "", "")
+    finally:
+        desktop.run("setxkbmap", "us")

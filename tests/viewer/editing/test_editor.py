@@ -1,0 +1,293 @@
+"""What actions make of a scene, with answers worked out by hand."""
+
+from __future__ import annotations
+
+from math import cos, hypot, radians, sin
+
+import pytest
+
+from minirt.fields import FARTHEST, LEAST_LENGTH
+from minirt.scene import Camera, FurtherLight, Light, Scene
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from minirt.viewer.editing.editor import ANGLE, EDITS, apply
+from minirt.viewer.editing.motion import looked, turned
+from minirt.viewer.editing.state import STRIDE, State, opened
+from tests.viewer.fake import scene
+
+RED = (255, 0, 0)
+U = 2.0**-53
+MILLION = 1_000_000
+
+
+def selecting(kind: type, text: str | None = None) -> State:
+    """The state with the first element of a kind selected; the stride of a step is 1."""
+    state = opened(scene(text) if text else scene())
+    index = next(index for index, each in enumerate(state.scene.elements) if type(each) is kind)
+    return State(state.scene, index, state.home, 1 / STRIDE)
+
+
+def after(state: State, *actions: str, amount: float = 1.0) -> State:
+    for action in actions:
+        state = apply(state, action, amount)
+    return state
+
+
+def axes(state: State, frame: str) -> State:
+    while state.frame.name != frame:
+        state = apply(state, "next frame")
+    return state
+
+
+@pytest.mark.parametrize(
+    ("action", "moved"),
+    [
+        ("left", (-1, 0, 10)),
+        ("right", (1, 0, 10)),
+        ("forward", (0, 0, 9)),
+        ("back", (0, 0, 11)),
+        ("down", (0, -1, 10)),
+        ("up", (0, 1, 10)),
+    ],
+)
+def test_the_camera_moves_along_its_own_axes(action, moved):
+    assert after(selecting(Camera), action).element.position == moved
+    assert after(axes(selecting(Camera), "X"), action).element.position == moved
+
+
+def test_the_camera_moves_where_it_looks():
+    state = after(selecting(Camera), "turn right", amount=90 / ANGLE)
+    assert after(state, "forward").element.position == pytest.approx((1, 0, 10))
+    assert after(state, "right").element.position == pytest.approx((0, 0, 11))
+
+
+@pytest.mark.parametrize(("kind", "name"), [(Light, "position"), (Sphere, "centre"), (Plane, "point")])
+def test_everything_with_a_place_moves_in_the_view_and_along_the_axes(kind, name):
+    state = selecting(kind)
+    x, y, z = getattr(state.element, name)
+    assert getattr(after(state, "right", "right", "up").element, name) == (x + 2, y + 1, z)
+    assert getattr(after(state, "forward").element, name) == (x, y, z - 1)
+    for frame, expected in (("X", (x + 1, y, z)), ("Y", (x, y + 1, z)), ("Z", (x, y, z + 1))):
+        for plus, minus in (("right", "left"), ("forward", "back"), ("up", "down")):
+            moved = after(axes(state, frame), plus)
+            assert getattr(moved.element, name) == expected
+            assert getattr(after(moved, minus).element, name) == (x, y, z)
+
+
+def test_a_tenth_of_a_step():
+    assert after(selecting(Sphere), "right", amount=0.1).element.centre == pytest.approx((0.1, 0, 0))
+
+
+def test_ambient_light_has_no_place():
+    state = selecting(type(scene().ambient))
+    moved = after(state, "left")
+    assert moved.scene is state.scene
+    assert "no place" in moved.message
+
+
+@pytest.mark.parametrize(
+    ("action", "axis"),
+    [
+        ("turn right", (0, 1, 0)),  # about itself
+        ("roll right", (1, 0, 0)),
+        ("roll left", (-1, 0, 0)),
+        ("turn up", (0, 0, -1)),  # what faces the camera goes up, so the top goes away
+        ("turn down", (0, 0, 1)),
+    ],
+)
+def test_a_cylinder_turns_in_the_view(action, axis):
+    turned = after(selecting(Cylinder), action, amount=90 / ANGLE)
+    assert turned.element.axis == pytest.approx(axis, abs=1e-15)
+
+
+@pytest.mark.parametrize(("frame", "axis"), [("X", (0, 0, 1)), ("Y", (0, 1, 0)), ("Z", (-1, 0, 0))])
+def test_a_cylinder_turns_right_handed_about_an_axis(frame, axis):
+    for action in ("turn right", "turn up", "roll right"):
+        turned = after(axes(selecting(Cylinder), frame), action, amount=90 / ANGLE)
+        assert turned.element.axis == pytest.approx(axis, abs=1e-15)
+
+
+@pytest.mark.parametrize("kind", [Sphere, Light])
+def test_what_cannot_turn_says_so(kind):
+    state = selecting(kind)
+    turned = after(state, "turn left")
+    assert turned.scene is state.scene
+    assert "same from all sides" in turned.message
+
+
+def test_a_plane_has_no_size_but_a_colour():
+    state = selecting(Plane)
+    assert state.active.name == "colour"
+    assert after(state, "shrink").element.colour == (0, 247, 0)
+
+
+def test_values_take_turns():
+    state = selecting(Cylinder)
+    names = []
+    for _ in range(7):
+        names.append(state.active.name)
+        state = after(state, "next value")
+    colours = ["colour", "colour: red", "colour: green", "colour: blue"]
+    assert names == ["diameter", "height", *colours, "diameter"]
+    assert after(selecting(Cylinder), "next value", "grow").element.height == pytest.approx(4 * 1.05)
+    assert after(selecting(Camera), "grow").element.fov == 92
+    assert after(selecting(Light), "grow").element.brightness == pytest.approx(0.55)
+
+
+def test_what_has_no_value_says_so():
+    text = "R 320 200\nA 0.2 9,9,9\nC 0,0,0 0,0,1 60\n"
+    state = opened(scene(text))
+    state = State(state.scene, 0, state.home, 1.0)
+    assert "no size" in after(state, "grow").message
+    assert "no value" in after(state, "next value").message
+
+
+def test_scaling_down_stops_at_the_least_size():
+    state = selecting(Sphere)
+    for _ in range(2000):
+        state = apply(state, "shrink")
+    assert state.element.diameter == LEAST_LENGTH
+    assert "no further" in state.message or "cannot go further" in state.message
+
+
+def test_moving_stops_at_the_end_of_the_range():
+    state = after(selecting(Sphere), "right", amount=1e300)
+    assert state.element.centre == (FARTHEST, 0, 0)
+    assert "no further" in state.message
+    again = after(state, "right")
+    assert again.scene is state.scene
+    assert after(again, "left", amount=FARTHEST).element.centre == (0, 0, 0)
+
+
+@pytest.mark.slow
+def test_a_million_turns_of_a_shape_keep_unit_length():
+    axis, about = selecting(Cylinder).element.axis, (0.6, 0.0, 0.8)
+    for _ in range(MILLION):
+        axis = turned(axis, about, 0.1)
+        assert abs(hypot(*axis) - 1) <= 4 * U
+    # 100,000 degrees are 277 whole turns and 280 degrees.
+    assert axis == pytest.approx(turned(selecting(Cylinder).element.axis, about, 280), abs=1e-9)
+
+
+@pytest.mark.slow
+def test_a_million_turns_of_the_camera_keep_unit_length():
+    camera = selecting(Cylinder).scene.camera
+    for _ in range(MILLION):
+        camera = looked(camera, 0.1, 0.0)
+        assert abs(hypot(*camera.direction) - 1) <= 4 * U
+    assert camera.direction == pytest.approx((sin(radians(280)), 0, -cos(radians(280))), abs=1e-9)
+
+
+class TestStraightUp:
+    def test_is_reached_and_left_again(self):
+        for action, back, y in (("turn up", "turn down", 1.0), ("turn down", "turn up", -1.0)):
+            start = after(selecting(Camera), "turn right", amount=7)
+            end = after(start, action, amount=100)
+            assert end.element.direction[1] == y
+            assert hypot(*end.element.direction) == 1
+            assert after(end, action).scene is end.scene
+            returned = after(end, back, amount=90 / ANGLE)
+            assert returned.element.direction == pytest.approx(start.element.direction, abs=1e-15)
+
+    def test_the_heading_turns_there(self):
+        up = after(selecting(Camera), "turn up", "turn right", amount=90 / ANGLE)
+        assert up.element.direction[1] == 1
+        assert after(up, "turn down", amount=90 / ANGLE).element.direction == pytest.approx((1, 0, 0), abs=1e-15)
+
+    @pytest.mark.parametrize("y", [1, -1])
+    def test_of_a_file_is_left_without_a_jump(self, y):
+        state = selecting(Camera, f"A 0 0,0,0\nC 0,0,0 0,{y},0 60\n")
+        left = after(state, "turn down" if y > 0 else "turn up", amount=90 / ANGLE)
+        # The top of the picture is +z looking up and -z looking down; the way out leads down or up in the picture.
+        assert left.element.direction == pytest.approx((0, 0, -1), abs=1e-15)
+
+
+def test_roll_turns_the_camera_about_its_direction():
+    state = after(selecting(Camera), "roll right")
+    assert (state.element.roll, state.element.direction) == (ANGLE, (0, 0, -1))
+    assert after(state, "roll left").element.roll == 0
+    assert after(selecting(Camera), "roll right", amount=359 / ANGLE).element.roll == 359
+    assert abs(after(selecting(Camera), "roll right", amount=1e6).element.roll) <= 360
+
+
+def test_reset_brings_the_camera_back():
+    state = after(selecting(Camera), "right", "turn up", "roll left", "grow", "reset camera")
+    assert state.scene.camera == scene().camera
+    assert after(state, "reset camera").scene is state.scene
+
+
+def test_look_at_puts_the_element_in_the_middle():
+    state = after(selecting(Cylinder), "look at")
+    x, y, z = state.scene.camera.position
+    assert (x, y) == (3, 0)
+    assert 2 < z < 20
+    assert state.element == selecting(Cylinder).element
+    assert "camera" in after(selecting(Camera), "look at").message
+
+
+class TestSelection:
+    def test_goes_round(self):
+        state = selecting(Camera)
+        titles = []
+        for _ in range(6):
+            state = apply(state, "select next")
+            titles.append(state.element.title)
+        assert titles == ["light", "sphere", "plane", "cylinder", "ambient light", "camera"]
+        assert after(state, "select previous").element.title == "ambient light"
+
+    def test_leaves_out_what_cannot_be_edited(self):
+        state = selecting(Camera, "R 320 200\nA 0.2 9,9,9\nC 0,0,0 0,0,1 60\n")
+        assert after(state, "select next").element.title == "ambient light"
+
+    def test_lights(self):
+        text = "A 0 0,0,0\nC 0,0,0 0,0,1 60\nL 1,1,1 1\nl 2,2,2 1\n"
+        state = selecting(Camera, text)
+        places = []
+        for _ in range(3):
+            state = apply(state, "select light")
+            places.append(state.element.position[0])
+        assert places == [1, 2, 1]
+        assert after(state, "select camera").element is state.scene.camera
+        assert "no light" in after(selecting(Camera, "A 0 0,0,0\nC 0,0,0 0,0,1 60\n"), "select light").message
+
+
+class TestStructure:
+    def test_a_copy_stands_behind_and_is_selected(self):
+        state = after(selecting(Sphere), "duplicate")
+        assert [each.title for each in state.scene.elements[3:6]] == ["sphere", "sphere", "plane"]
+        assert state.selected == 4
+        moved = after(state, "right")
+        assert [each.centre for each in moved.scene.spheres] == [(0, 0, 0), (1, 0, 0)]
+
+    def test_the_copy_of_the_light_is_a_further_light(self):
+        state = after(selecting(Light), "duplicate")
+        assert type(state.element) is FurtherLight
+        assert state.element.position == (5, 5, 5)
+
+    @pytest.mark.parametrize("kind", [Camera, type(scene().ambient)])
+    def test_what_is_there_once_stays_so(self, kind):
+        state = selecting(kind)
+        assert after(state, "duplicate").scene is state.scene
+        assert after(state, "delete").scene is state.scene
+
+    def test_delete(self):
+        state = after(selecting(Sphere), "delete")
+        assert state.scene.spheres == ()
+        assert state.element is state.scene.camera
+        back = after(state, "undo")
+        assert back.element == Sphere((0, 0, 0), 2, RED)
+
+    def test_comments_stay(self):
+        state = after(selecting(Sphere), "duplicate", "delete")
+        assert [item for item in state.scene.items if isinstance(item, str)] == ["# a comment", "", ""]
+
+
+def test_every_action_gives_a_scene_for_every_element():
+    for text in (None, "A 0 0,0,0\nC 0,0,0 0,1,0 0 roll:3\nL 1e15,0,0 1\n", "A 1 1,1,1\nC 1e15,0,0 0,-1,0 180\n"):
+        start = opened(scene(text) if text else scene())
+        for index in range(len(start.scene.elements)):
+            for action in EDITS:
+                state = after(State(start.scene, index, start.home, start.size), action, action)
+                assert isinstance(state.scene, Scene)
+                assert 0 <= state.selected < len(state.scene.elements)

@@ -1,0 +1,79 @@
+"""Undo, redo and what is merged."""
+
+from __future__ import annotations
+
+from minirt.viewer.editing.editor import apply
+from minirt.viewer.editing.state import State, opened
+from tests.viewer.fake import scene
+
+
+def fov(state: State) -> float:
+    return state.scene.camera.fov
+
+
+def test_nudges_within_half_a_second_are_undone_together():
+    state = opened(scene())
+    for now in (0.0, 0.4, 0.9, 1.3):
+        state = apply(state, "grow", now=now)
+    assert fov(state) == 98
+    assert fov(apply(state, "undo")) == 90
+    assert fov(apply(apply(state, "undo"), "redo")) == 98
+
+
+def test_redo_ends():
+    state = apply(apply(opened(scene()), "grow"), "right")
+    for action in ("undo", "undo", "redo", "redo"):
+        state = apply(state, action)
+    assert (fov(state), state.scene.camera.position[0] > 0) == (92, True)
+    assert apply(state, "redo").message == "nothing to redo"
+    assert apply(state, "redo").scene is state.scene
+
+
+def test_a_pause_separates():
+    state = apply(apply(opened(scene()), "grow", now=0.0), "grow", now=0.6)
+    assert fov(apply(state, "undo")) == 92
+
+
+def test_another_change_separates():
+    state = opened(scene())
+    for action in ("grow", "right", "grow", "turn left"):
+        state = apply(state, action, now=0.0)
+    assert fov(state) == 94
+    positions = []
+    for _ in range(4):
+        state = apply(state, "undo")
+        positions.append((fov(state), state.scene.camera.position != (0, 0, 10)))
+    assert positions == [(94, True), (92, True), (92, False), (90, False)]
+
+
+def test_another_selection_or_value_separates():
+    for between in (["select next", "select camera"], ["next value", "next value"]):
+        state = opened(scene())
+        for action in ("grow", *between, "grow"):
+            state = apply(state, action, now=0.0)
+        assert fov(state) == 94
+        assert fov(apply(state, "undo")) == 92
+
+
+def test_redo_is_lost_by_a_change():
+    state = apply(apply(apply(opened(scene()), "grow"), "undo"), "right")
+    assert apply(state, "redo").message == "nothing to redo"
+    assert apply(opened(scene()), "undo").message == "nothing to undo"
+
+
+def test_undo_selects_what_was_changed():
+    state = opened(scene())
+    while state.element.title != "sphere":
+        state = apply(state, "select next")
+    state = apply(apply(apply(state, "grow"), "select camera"), "undo")
+    assert (state.element.title, state.element.diameter) == ("sphere", 2)
+
+
+def test_all_the_way_back_is_the_scene_of_the_file():
+    start = opened(scene())
+    state = start
+    for step, action in enumerate(("right", "turn up", "duplicate", "select next", "grow", "delete", "look at") * 5):
+        state = apply(state, action, now=float(step))
+    while state.past:
+        state = apply(state, "undo")
+    assert state.scene is start.scene

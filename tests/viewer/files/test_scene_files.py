@@ -1,0 +1,106 @@
+"""What is written and read beside the scene: saving, copies, reloading, pictures, recovery."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from minirt.scene import load
+from minirt.viewer.files.scene_files import differ, recover
+from tests.viewer.fake import TEXT, colour_of, played, scene
+
+SELECT_SPHERE = ("press Tab", "press Tab")
+
+
+@pytest.fixture
+def path(tmp_path):
+    file = tmp_path / "scene.rt"
+    file.write_text(TEXT)
+    return file
+
+
+def test_save_changes_one_line(path):
+    session = played(*SELECT_SPHERE, "press V", "press -", "press Ctrl+S", path=path)
+    before, after = TEXT.splitlines(), path.read_text().splitlines()
+    assert [(old, new) for old, new in zip(before, after, strict=True) if old != new] == [
+        ("sp 0,0,0 2 255,0,0", "sp 0,0,0 2 247,0,0")
+    ]
+    assert not differ(session.state.scene, session.saved)
+    assert str(path) in session.state.message
+
+
+def test_save_where_that_is_not_possible_is_a_message(tmp_path):
+    session = played("press d", "press Ctrl+S", path=tmp_path / "none" / "scene.rt")
+    assert "cannot be written" in session.state.message
+    assert session.saved is not session.state.scene
+
+
+def test_copies_are_numbered(path):
+    played(*SELECT_SPHERE, "press Delete", "press Ctrl+Shift+S", "press Ctrl+Shift+S", path=path)
+    assert path.read_text() == TEXT
+    for name in ("scene-1.rt", "scene-2.rt"):
+        assert load(path.with_name(name)).scene.spheres == ()
+
+
+def test_the_picture_is_saved_without_the_hud(path):
+    session = played("press P", "resize 30x20", "press d", "press F12", path=path)
+    first, second = (np.asarray(Image.open(path.with_name(f"scene-{n}.png"))) for n in (1, 2))
+    assert first.shape == (48, 64, 3)
+    assert (first == colour_of(scene())[2::-1]).all()
+    assert second.shape == (20, 30, 3)
+    assert (second == colour_of(session.state.scene)[2::-1]).all()
+
+
+def test_a_picture_that_cannot_be_written_is_a_message(tmp_path):
+    assert "cannot write" in played("press P", path=tmp_path / "none" / "scene.rt").state.message
+
+
+class TestReload:
+    def test_takes_what_the_file_holds(self, path):
+        path.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 7"))
+        session = played(*SELECT_SPHERE, "press d", "press F5", path=path)
+        assert session.state.scene.spheres[0].diameter == 7
+        assert session.state.element.title == "sphere"
+        assert (session.picture == colour_of(session.state.scene)).all()
+        assert not differ(session.state.scene, session.saved)
+
+    def test_can_be_undone(self, path):
+        session = played(*SELECT_SPHERE, "press -", "press Ctrl+R", "press Ctrl+Z", path=path)
+        assert session.state.scene.spheres[0].diameter < 2
+        assert differ(session.state.scene, session.saved)
+
+    def test_of_a_broken_file_keeps_the_picture_and_says_why(self, path):
+        path.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -2").replace("cy 3", "cy x"))
+        session = played("press d", "press F5", path=path)
+        assert f"{path}:5:10: sphere diameter must be > 0" in session.state.message
+        assert "and 1 more" in session.state.message
+        assert session.state.scene.camera.position[0] > 0
+        assert (session.picture == colour_of(session.state.scene)).all()
+        assert not np.array_equal(session.screen.frame, played("press d", path=path).screen.frame)
+
+    def test_of_a_file_with_fewer_elements(self, path):
+        path.write_text("A 0 0,0,0\nC 0,0,0 0,0,1 60\n")
+        assert played("press Shift+Tab", "press Shift+Tab", "press F5", path=path).state.element.title == "camera"
+
+
+class TestRecovery:
+    def test_is_written_beside_the_file(self, path):
+        changed = played(*SELECT_SPHERE, "press Delete", path=path).state.scene
+        copy = recover(changed, path)
+        assert copy == path.with_name("scene.recovered.rt")
+        assert load(copy).scene.items == changed.items
+
+    @pytest.mark.skipif(os.name == "nt", reason="a folder that does not exist is the same everywhere else")
+    def test_goes_elsewhere_where_that_is_not_possible(self, tmp_path):
+        copy = recover(scene(), tmp_path / "none" / "scene.rt")
+        assert copy.name == "scene.recovered.rt"
+        assert load(copy).scene.items == scene().items
+        copy.unlink()
+        copy.parent.rmdir()
+
+    def test_looking_around_is_nothing_to_lose(self):
+        assert not differ(played("press d", "press Left").state.scene, scene())
+        assert differ(played("press Tab", "press d").state.scene, scene())

@@ -1,0 +1,100 @@
+"""The one table of keys, and what is made from it."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from minirt.mlx import Button, Key, Modifier
+from minirt.viewer.app.commands import COMMANDS
+from minirt.viewer.editing.dragging import DRAGS
+from minirt.viewer.editing.editor import EDITS
+from minirt.viewer.input.bindings import BINDINGS, keys_markdown, keys_text
+from minirt.viewer.input.chords import Chord, chord, shown
+from minirt.viewer.input.keymap import Keymap, chords
+from minirt.viewer.input.layouts import LAYOUTS, detect
+
+ACTIONS = [binding.action for binding in BINDINGS]
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_no_key_is_bound_twice(layout):
+    counts = Counter(each for binding in BINDINGS for each in chords(binding, layout))
+    assert [each for each, count in counts.items() if count > 1] == []
+
+
+def test_every_row_does_something_and_everything_has_a_row():
+    known = {*EDITS, *COMMANDS, *DRAGS, "select at pointer"}
+    assert set(ACTIONS) == known
+    assert len(ACTIONS) == len(set(ACTIONS))
+    assert not set(EDITS) & set(COMMANDS)
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_every_key_of_the_table_is_found(layout):
+    keymap = Keymap(layout)
+    for binding in BINDINGS:
+        for spelling in binding.spellings(keymap.layout):
+            assert keymap.find(*chord(spelling)) is binding
+
+
+@pytest.mark.parametrize("layout", ["qwerty", "azerty"])
+def test_texts_have_every_row(layout):
+    text, table = keys_text(layout), keys_markdown()
+    for binding in BINDINGS:
+        keys = " / ".join(map(shown, binding.spellings(layout)))
+        assert any(line.split("  ")[1:2] == [keys] and line.endswith(binding.help) for line in text.splitlines())
+        assert f"| {binding.help} | {' '.join(f'`{key}`' for key in binding.keys)} |" in table
+
+
+def test_shift_makes_motions_fine_and_nothing_else():
+    keymap = Keymap()
+    assert keymap.find(Key.D, Modifier.SHIFT).action == "right"
+    assert keymap.find(Button.WHEEL_UP, Modifier.SHIFT).action == "grow"
+    assert keymap.find(Key.P, Modifier.SHIFT) is None
+    assert keymap.find(Key.TAB, Modifier.SHIFT).action == "select previous"
+
+
+def test_escape_is_found_with_anything_held():
+    everything = Modifier.SHIFT | Modifier.CTRL | Modifier.ALT
+    assert Keymap().find(Key.ESCAPE, everything).action == "quit"
+    assert Keymap().find(Key.C, Modifier.ALT) is None
+
+
+def test_azerty_moves_with_the_same_fingers():
+    keymap = Keymap("azerty")
+    found = {key.name: keymap.find(key).action for key in (Key.Q, Key.D, Key.Z, Key.S, Key.A, Key.E)}
+    assert found == {"Q": "left", "D": "right", "Z": "forward", "S": "back", "A": "down", "E": "up"}
+    assert keymap.find(Key.W) is None
+    assert keymap.find(Key.Z, Modifier.ACCEL).action == "undo"
+
+
+@pytest.mark.parametrize(("name", "layout"), [("fr_FR", "azerty"), ("de_DE", "qwerty"), (None, "qwerty")])
+def test_auto_follows_the_locale(monkeypatch, name, layout):
+    monkeypatch.setattr("locale.getlocale", lambda: (name, "UTF-8"))
+    assert detect("auto") == layout
+    assert detect("qwertz") == "qwertz"
+
+
+@pytest.mark.parametrize(
+    ("spelling", "meant"),
+    [
+        ("Tab", Chord(Key.TAB)),
+        ("a", Chord(Key.A)),
+        ("F12", Chord(Key.F12)),
+        ("PageUp", Chord(Key.PAGE_UP)),
+        ("Ctrl+Shift+S", Chord(Key.S, Modifier.ACCEL | Modifier.SHIFT)),
+        ("+", Chord("+")),
+        ("?", Chord("?")),
+        ("wheel up", Chord(Button.WHEEL_UP)),
+    ],
+)
+def test_spellings(spelling, meant):
+    assert chord(spelling) == meant
+
+
+@pytest.mark.parametrize("spelling", ["Tabb", "Hyper+A", "Ctrl+?", "", "Ctrl+", "é"])
+def test_unknown_spellings(spelling):
+    with pytest.raises(ValueError):  # noqa: PT011 - the message is the part that is unknown
+        chord(spelling)
