@@ -206,7 +206,7 @@ def write(image: Image, output: str) -> None:
 def replay(scene: Scene, asked: argparse.Namespace) -> int:
     """Play recorded keys; the last frame goes to the output, if there is one."""
     import minirt
-    from minirt.viewer.app.animation import FPS, film
+    from minirt.viewer.app.animation import FPS, animation
     from minirt.viewer.app.replay import replay as play
 
     try:
@@ -224,7 +224,7 @@ def replay(scene: Scene, asked: argparse.Namespace) -> int:
         "samples": asked.samples or SAMPLES,
     }
     if asked.output and asked.output.lower().endswith(".gif"):
-        minirt.save_movie(film(scene, lines, **how), asked.output, FPS)
+        minirt.save_movie(animation(scene, lines, **how), asked.output, FPS)
         return OK
     pixels = play(scene, lines, **how)
     if asked.output:

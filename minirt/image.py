@@ -17,7 +17,7 @@ from minirt.errors import RenderError
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
-    from minirt.rendering.sampling.outcome import Reached
+    from minirt.rendering.sampling.outcome import Outcome
 
 
 def format_of(path: str | os.PathLike[str]) -> str:
@@ -37,10 +37,10 @@ class Image:
 
     array: np.ndarray  # (h, w, 3) uint8, red green blue
     linear: np.ndarray | None = None  # (h, w, 3) float64, the light before it was clamped and rounded
-    reached: Reached | None = None  # samples and estimated error, where an error or a time was asked for
+    reached: Outcome | None = None  # samples and estimated error, where an error or a time was asked for
 
     @classmethod
-    def from_bgra(cls, pixels: np.ndarray, linear: np.ndarray | None = None, reached: Reached | None = None) -> Image:
+    def from_bgra(cls, pixels: np.ndarray, linear: np.ndarray | None = None, reached: Outcome | None = None) -> Image:
         """The picture in a framebuffer (h, w, 4) in the order blue, green, red, alpha."""
         return cls(np.ascontiguousarray(pixels[..., 2::-1]), linear, reached)
 

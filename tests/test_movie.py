@@ -14,9 +14,9 @@ import minirt
 from minirt.errors import RenderError
 from minirt.movie import save_movie, with_progress
 from minirt.viewer.app.animation import FPS as FILM
-from minirt.viewer.app.animation import TICKS, film, turntable
+from minirt.viewer.app.animation import TICKS, animation, turntable
 from minirt.viewer.editing.measure import middle_of
-from minirt.viewer.editing.projection import lens
+from minirt.viewer.editing.projection import projection
 from tests.viewer.fake import FakeRenderer, scene
 
 COLOURS = [(250, 0, 0), (0, 250, 0), (0, 0, 250)]
@@ -71,7 +71,7 @@ def test_a_turntable_goes_once_round():
     for camera in cameras:
         assert dist(camera.position, middle) == pytest.approx(dist(start.camera.position, middle))
         assert camera.position[1] == start.camera.position[1]
-        assert lens(camera, 64, 48).pixel(middle) == pytest.approx(lens(start.camera, 64, 48).pixel(middle))
+        assert projection(camera, 64, 48).pixel(middle) == pytest.approx(projection(start.camera, 64, 48).pixel(middle))
     opposite = cameras[4].position
     assert [opposite[0] + 0, opposite[2] + 10] == pytest.approx([2 * middle[0], 2 * middle[2]])
     assert dist(cameras[7].position, cameras[0].position) == pytest.approx(
@@ -81,7 +81,7 @@ def test_a_turntable_goes_once_round():
 
 def test_a_film_has_a_picture_for_each_part_of_the_time():
     lines = ["wait 1", "move 20,20", "hold d 0.5"]
-    frames = film(scene(), lines, renderer=FakeRenderer(), size=(64, 48), path="scene.rt")
+    frames = animation(scene(), lines, renderer=FakeRenderer(), size=(64, 48), path="scene.rt")
     assert abs(len(frames) - 1.5 * FILM) <= 2
     assert TICKS % FILM == 0
     assert np.array_equal(frames[0].array, frames[3].array)

@@ -6,8 +6,8 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.atomic_counter import fetch_add
-from minirt.kernel.scene_arrays import Traced, placed
-from minirt.kernel.shading.environment import lit_sky
+from minirt.kernel.scene_arrays import SceneArrays, by_reference
+from minirt.kernel.shading.environment import background_light
 from minirt.kernel.shading.whitted import radiance
 from minirt.kernel.trace import is_empty
 from minirt.lanes import Vec, lane, load, minimum, rarely, save, splat, unit, where, width
@@ -25,7 +25,7 @@ def towards(camera: Any, x: float, y: float) -> Vec:
     return corner + x * Vec(camera[6], camera[7], camera[8]) + y * Vec(camera[9], camera[10], camera[11])
 
 
-def packet(scene: Traced, memory: Any, tile: int, rays: Any, x: int, y: int) -> Vec:
+def packet(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: int, y: int) -> Vec:
     """The light of the pixels of a packet whose upper left one is x, y, along the `rays` of a sample."""
     count = width(rays)
     origin = Vec(scene.camera[0], scene.camera[1], scene.camera[2])
@@ -67,7 +67,7 @@ def level(light: Number) -> Number:
 
 
 def frame(
-    next_row: Any, pixels: Any, linear: Any, rays: Any, wanted: Any, memory: Any, sums: Any, scene: Traced
+    next_row: Any, pixels: Any, linear: Any, rays: Any, wanted: Any, memory: Any, sums: Any, scene: SceneArrays
 ) -> None:
     """Render rows of tiles, taking the next one from the counter `next_row` until none is left.
 
@@ -78,11 +78,20 @@ def frame(
     packet. `wanted` is not 0 for each packet (row, column) that is to be rendered, or has no rows where all are. A
     counter set to `CANCELLED` from outside ends the frame at the next packet.
     """
-    tiles_of_rows(next_row, placed(pixels), placed(linear), rays, placed(wanted), placed(memory), sums, placed(scene))
+    tiles_of_rows(
+        next_row,
+        by_reference(pixels),
+        by_reference(linear),
+        rays,
+        by_reference(wanted),
+        by_reference(memory),
+        sums,
+        by_reference(scene),
+    )
 
 
 def tiles_of_rows(
-    next_row: Any, pixels: Any, linear: Any, rays: Any, wanted: Any, memory: Any, sums: Any, scene: Traced
+    next_row: Any, pixels: Any, linear: Any, rays: Any, wanted: Any, memory: Any, sums: Any, scene: SceneArrays
 ) -> None:
     """The frame, tile by tile."""
     height, across = pixels.shape
@@ -96,7 +105,7 @@ def tiles_of_rows(
             return
         for left in range(0, across, TILE):
             tile = top // TILE * tiles(across) + left // TILE
-            empty = scene.dome is None and is_empty(scene, tile)
+            empty = scene.environment is None and is_empty(scene, tile)
             # All packets for each sample, not all samples for each packet: a sum that is kept through the loop takes
             # registers from what is in it, and a seventh more time.
             for sample in range(samples):
@@ -107,7 +116,7 @@ def tiles_of_rows(
                         if rarely(wanted.shape[0] > 0) and wanted[y // DOWN, x // step] == 0:
                             continue
                         if empty:
-                            store(pixels, linear, x, y, lit_sky(scene, nothing > 0.0, dark, dark))
+                            store(pixels, linear, x, y, background_light(scene, nothing > 0.0, dark, dark))
                             continue
                         light = made_finite(packet(scene, memory, tile, rays[sample], x, y), memory)
                         if rarely(samples > 1):

@@ -67,9 +67,9 @@ def shading(shape: Any, point: Vec, normal: Vec) -> Any:
     return kind_of_packed(type(shape)).shading(shape, point, normal)
 
 
-def is_crowd(rows: Rows) -> bool:
+def is_batched(rows: Rows) -> bool:
     """Whether shapes of the kind of these rows come in crowds."""
-    return kind_of(rows.dtype.names).crowd
+    return kind_of(rows.dtype.names).batched
 
 
 def may_meet(shape: Any, apex: Vec, start: Any, direction: Vec, asked: Any) -> Any:

@@ -7,8 +7,8 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.culling.light_buffer import close, look_up
-from minirt.kernel.rows import intersect, is_crowd, may_meet, read, surface
-from minirt.kernel.scene_arrays import Group, Traced
+from minirt.kernel.rows import intersect, is_batched, may_meet, read, surface
+from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.lanes import (
     Vec,
     any,
@@ -29,13 +29,13 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 
 ROUNDING = 16  # of a point on a surface: unit roundoffs of its largest coordinate and of the extent of the shape
-NEARBY = 2.0**-14  # two hits so close to each other, relative to their distance, may be one place
+COINCIDENT = 2.0**-14  # two hits so close to each other, relative to their distance, may be one place
 # Cones of a crowd that are tried in a row, so that no branch waits for them: a tenth of the time of a mesh, but with
 # few shapes more than it saves.
-AT_ONCE = 16
+BATCH = 16
 
 
-def over_kinds(step: Callable[..., Any], groups: tuple[Group, ...], state: Any, given: Any) -> Any:
+def for_each_kind(step: Callable[..., Any], groups: tuple[Group, ...], state: Any, given: Any) -> Any:
     """The state after `state = step(group, state, given)` for the shapes of each kind in turn.
 
     Compiled, it is the same steps one after the other, each with the formulas of its kind in it.
@@ -45,17 +45,17 @@ def over_kinds(step: Callable[..., Any], groups: tuple[Group, ...], state: Any, 
     return state
 
 
-def is_empty(scene: Traced, tile: int) -> bool:
+def is_empty(scene: SceneArrays, tile: int) -> bool:
     """Whether no shape can be seen in a tile of the picture."""
-    return bool(over_kinds(count_of_kind, scene.groups, 0, tile) == 0)
+    return bool(for_each_kind(count_of_kind, scene.groups, 0, tile) == 0)
 
 
 def count_of_kind(group: Group, count: int, tile: int) -> int:
     """The number of shapes of a kind in a tile, and `count`."""
-    return count + int(group.starts[tile + 1] - group.starts[tile])
+    return count + int(group.tile_starts[tile + 1] - group.tile_starts[tile])
 
 
-def nearest(scene: Traced, tile: int, origin: Vec, direction: Vec) -> tuple[Number, Number, Number]:
+def closest_hit(scene: SceneArrays, tile: int, origin: Vec, direction: Vec) -> tuple[Number, Number, Number]:
     """The distance to the first hit of each ray, the index of the shape that is hit and its extent; infinity, -1 and 0
     where none is.
 
@@ -63,67 +63,67 @@ def nearest(scene: Traced, tile: int, origin: Vec, direction: Vec) -> tuple[Numb
     with the lower index is hit, on the whole of the overlap, and the extent is the larger of the two.
     """
     nothing = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
-    best, owner, extent = over_kinds(nearest_of_kind, scene.groups, nothing, (scene, tile, origin, direction))
+    best, owner, extent = for_each_kind(closest_of_kind, scene.groups, nothing, (scene, tile, origin, direction))
     return best, owner, extent
 
 
-def nearest_of_kind(
-    group: Group, state: tuple[Number, Number, Number], given: tuple[Traced, int, Vec, Vec]
+def closest_of_kind(
+    group: Group, state: tuple[Number, Number, Number], given: tuple[SceneArrays, int, Vec, Vec]
 ) -> tuple[Number, Number, Number]:
-    """`nearest` over the shapes of one kind, where others gave `state`."""
-    return (nearest_of_crowd if is_crowd(group.rows) else nearest_of_few)(group, state, given)
+    """`closest_hit` over the shapes of one kind, where others gave `state`."""
+    return (closest_batched if is_batched(group.rows) else closest_one_by_one)(group, state, given)
 
 
-def nearest_of_few(
-    group: Group, state: tuple[Number, Number, Number], given: tuple[Traced, int, Vec, Vec]
+def closest_one_by_one(
+    group: Group, state: tuple[Number, Number, Number], given: tuple[SceneArrays, int, Vec, Vec]
 ) -> tuple[Number, Number, Number]:
     """The same, shape by shape."""
     scene, tile, origin, direction = given
-    for i in range(group.starts[tile], group.starts[tile + 1]):
-        index = scene.seen[i]
-        view = scene.views[index]
+    for i in range(group.tile_starts[tile], group.tile_starts[tile + 1]):
+        index = scene.tile_shapes[i]
+        view = scene.cones[index]
         if not any(state[0] > view[4]):
             break
         everywhere = view[3] <= -1.0
-        if everywhere or rarely(within(view, direction)):
-            shape = read(group.rows, scene.places[index, 1])
+        if everywhere or rarely(in_cone(view, direction)):
+            shape = read(group.rows, scene.slots[index, 1])
             if everywhere or any(may_meet(shape, origin, None, direction, state[0] > view[4])):
                 hit, t = intersect(shape, origin, direction)
-                state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
+                state = closer_hit(shape, index, scene.colours_and_extents[index, 3], hit, t, origin, direction, state)
     return state
 
 
-def nearest_of_crowd(
-    group: Group, state: tuple[Number, Number, Number], given: tuple[Traced, int, Vec, Vec]
+def closest_batched(
+    group: Group, state: tuple[Number, Number, Number], given: tuple[SceneArrays, int, Vec, Vec]
 ) -> tuple[Number, Number, Number]:
     """The same, with the cones of some shapes tried before anything else of them."""
     scene, tile, origin, direction = given
-    start, end = int(group.starts[tile]), int(group.starts[tile + 1])
+    start, end = int(group.tile_starts[tile]), int(group.tile_starts[tile + 1])
     while start < end:
         farthest = greatest(state[0])
         met = 0
-        for i in range(start, min(start + AT_ONCE, end)):
-            view = scene.views[scene.seen[i]]
+        for i in range(start, min(start + BATCH, end)):
+            view = scene.cones[scene.tile_shapes[i]]
             if not farthest > view[4]:
                 end = i
                 break
-            met |= int(any(within(view, direction))) << (i - start)
+            met |= int(any(in_cone(view, direction))) << (i - start)
         while met != 0:
-            index = scene.seen[start + lowest(met)]
+            index = scene.tile_shapes[start + lowest(met)]
             met &= met - 1
-            view = scene.views[index]
+            view = scene.cones[index]
             asked = state[0] > view[4]
             if not any(asked):
                 return state
-            shape = read(group.rows, scene.places[index, 1])
+            shape = read(group.rows, scene.slots[index, 1])
             if view[3] <= -1.0 or any(may_meet(shape, origin, None, direction, asked)):
                 hit, t = intersect(shape, origin, direction)
-                state = nearer(shape, index, scene.looks[index, 3], hit, t, origin, direction, state)
-        start += AT_ONCE
+                state = closer_hit(shape, index, scene.colours_and_extents[index, 3], hit, t, origin, direction, state)
+        start += BATCH
     return state
 
 
-def nearer(
+def closer_hit(
     shape: Any,
     index: int,
     reach: float,
@@ -133,13 +133,13 @@ def nearer(
     direction: Vec,
     state: tuple[Number, Number, Number],
 ) -> tuple[Number, Number, Number]:
-    """The state of `nearest`, or in its place, where that is nearer, the hit of a shape of extent `reach` at t."""
+    """The state of `closest_hit`, or in its place, where that is nearer, the hit of a shape of extent `reach` at t."""
     best, owner, extent = state
     wide = splat(reach, best)
     closer = hit & (t < best)
     contested = hit & (best < inf)
     if rarely(contested):
-        contested = contested & (fabs(t - best) <= NEARBY * t)
+        contested = contested & (fabs(t - best) <= COINCIDENT * t)
     if any(contested):
         point = origin + t * direction
         _, normal = surface(shape, point)
@@ -156,79 +156,85 @@ def nearer(
     return best, owner, extent
 
 
-def within(cone: Any, direction: Vec) -> Mask:
+def in_cone(cone: Any, direction: Vec) -> Mask:
     """Whether a direction from the tip of a cone lies in it."""
     return dot(Vec(cone[0], cone[1], cone[2]), direction) >= cone[3]
 
 
-def unhidden(scene: Traced, memory: Any, lamp: int, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
+def unoccluded(
+    scene: SceneArrays, memory: Any, lamp: int, origin: Vec, direction: Vec, distance: Number, asked: Mask
+) -> Mask:
     """Of the rays towards a lamp that are `asked` for, those that hit nothing nearer than `distance`.
 
     Only shapes that the lamp sees in the direction of a ray are tried. The list of a cell holds for directions around
     it too, and `memory` (m, 4) keeps for each lamp the direction that was last looked up and its cell: mostly the rays
     of a packet, and those of the next, need no other.
     """
-    if scene.grid == 1:
-        return over_kinds(unhidden_by_kind, scene.groups, asked, (scene, lamp, 0, asked, origin, direction, distance))
+    if scene.light_buffer_cells == 1:
+        return for_each_kind(
+            unoccluded_by_kind, scene.groups, asked, (scene, lamp, 0, asked, origin, direction, distance)
+        )
     free = asked
     left = asked
     for _ in range(width(distance)):  # at most a look for each ray
         if not any(left):
             break
-        mine = left & close(memory[lamp], scene.around[lamp], direction)
+        mine = left & close(memory[lamp], scene.light_buffers[lamp], direction)
         if rarely(not any(mine)):
-            look_up(memory[lamp], scene.around[lamp], scene.grid, direction, first(left))
-            mine = left & close(memory[lamp], scene.around[lamp], direction)
+            look_up(memory[lamp], scene.light_buffers[lamp], scene.light_buffer_cells, direction, first(left))
+            mine = left & close(memory[lamp], scene.light_buffers[lamp], direction)
         given = (scene, lamp, int(memory[lamp, 3]), mine, origin, direction, distance)
-        free = over_kinds(unhidden_by_kind, scene.groups, free, given)
+        free = for_each_kind(unoccluded_by_kind, scene.groups, free, given)
         left = left & ~mine
     return free
 
 
-def unhidden_by_kind(group: Group, free: Mask, given: tuple[Traced, int, int, Mask, Vec, Vec, Number]) -> Mask:
+def unoccluded_by_kind(group: Group, free: Mask, given: tuple[SceneArrays, int, int, Mask, Vec, Vec, Number]) -> Mask:
     """Of the rays that are free so far, those that the shapes of one kind do not stop; only `mine` are tried."""
-    return (unhidden_by_crowd if is_crowd(group.rows) else unhidden_by_few)(group, free, given)
+    return (unoccluded_batched if is_batched(group.rows) else unoccluded_one_by_one)(group, free, given)
 
 
-def unhidden_by_few(group: Group, free: Mask, given: tuple[Traced, int, int, Mask, Vec, Vec, Number]) -> Mask:
+def unoccluded_one_by_one(
+    group: Group, free: Mask, given: tuple[SceneArrays, int, int, Mask, Vec, Vec, Number]
+) -> Mask:
     """The same, shape by shape."""
     scene, lamp, at, mine, origin, direction, distance = given
     place = Vec(scene.lights[lamp, 0], scene.lights[lamp, 1], scene.lights[lamp, 2])
-    for i in range(group.lamp_starts[lamp, at], group.lamp_starts[lamp, at + 1]):
-        index = scene.lit[i]
-        view = scene.lamp_views[lamp, index]
+    for i in range(group.light_starts[lamp, at], group.light_starts[lamp, at + 1]):
+        index = scene.light_shapes[i]
+        view = scene.light_cones[lamp, index]
         if not any(free & mine & (distance > view[4])):
             break
         everywhere = view[3] <= -1.0
-        if everywhere or rarely(mine & within(view, -direction)):
-            shape = read(group.rows, scene.places[index, 1])
+        if everywhere or rarely(mine & in_cone(view, -direction)):
+            shape = read(group.rows, scene.slots[index, 1])
             if everywhere or any(may_meet(shape, place, origin, direction, free & mine)):
                 hit, t = intersect(shape, origin, direction)
                 free = free & ~(mine & hit & (t < distance))
     return free
 
 
-def unhidden_by_crowd(group: Group, free: Mask, given: tuple[Traced, int, int, Mask, Vec, Vec, Number]) -> Mask:
+def unoccluded_batched(group: Group, free: Mask, given: tuple[SceneArrays, int, int, Mask, Vec, Vec, Number]) -> Mask:
     """The same, with the cones of some shapes tried before anything else of them."""
     scene, lamp, at, mine, origin, direction, distance = given
     place = Vec(scene.lights[lamp, 0], scene.lights[lamp, 1], scene.lights[lamp, 2])
-    start, end = int(group.lamp_starts[lamp, at]), int(group.lamp_starts[lamp, at + 1])
+    start, end = int(group.light_starts[lamp, at]), int(group.light_starts[lamp, at + 1])
     while start < end:
         farthest = greatest(where(free & mine, distance, -inf))
         met = 0
-        for i in range(start, min(start + AT_ONCE, end)):
-            view = scene.lamp_views[lamp, scene.lit[i]]
+        for i in range(start, min(start + BATCH, end)):
+            view = scene.light_cones[lamp, scene.light_shapes[i]]
             if not farthest > view[4]:
                 end = i
                 break
-            met |= int(any(mine & within(view, -direction))) << (i - start)
+            met |= int(any(mine & in_cone(view, -direction))) << (i - start)
         while met != 0:
-            index = scene.lit[start + lowest(met)]
+            index = scene.light_shapes[start + lowest(met)]
             met &= met - 1
-            shape = read(group.rows, scene.places[index, 1])
-            everywhere = scene.lamp_views[lamp, index, 3] <= -1.0
+            shape = read(group.rows, scene.slots[index, 1])
+            everywhere = scene.light_cones[lamp, index, 3] <= -1.0
             if everywhere or any(may_meet(shape, place, origin, direction, free & mine)):
                 hit, t = intersect(shape, origin, direction)
                 free = free & ~(mine & hit & (t < distance))
-        start += AT_ONCE
+        start += BATCH
     return free

@@ -21,13 +21,13 @@ from minirt.kernel.frame import CANCELLED, DOWN
 from minirt.lanes import width
 from minirt.rendering.culling.visibility import SMALL
 from minirt.rendering.frame_arguments import ALL_PACKETS, NO_LINEAR, Frame, frame_arguments, memory_for, room_for_sums
-from minirt.rendering.packing.features import DEPTH, dressed, parts, traits
-from minirt.rendering.running.compile_process import Helper
+from minirt.rendering.packing.features import DEPTH, features, material_features, primitive_count
+from minirt.rendering.running.compile_process import CompileProcess
 from minirt.rendering.running.cores import usable_cores
-from minirt.rendering.running.thread_pool import Workers
+from minirt.rendering.running.thread_pool import ThreadPool
 from minirt.rendering.sampling.adaptive import edge_packets
 from minirt.rendering.sampling.auto import CLASSES, Auto, Task
-from minirt.rendering.sampling.outcome import Reached
+from minirt.rendering.sampling.outcome import Outcome
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
@@ -51,12 +51,12 @@ class Renderer:
         self.not_finite = 0  # rays of the last picture whose light was infinite or NaN, and is 0 in it
         self.cancels = 0
         self.busy = Lock()
-        self.helper = Helper()
+        self.helper = CompileProcess()
 
     @cached_property
-    def workers(self) -> Workers:
+    def workers(self) -> ThreadPool:
         """The threads that render."""
-        return Workers(self.threads)
+        return ThreadPool(self.threads)
 
     @cached_property
     def packing(self) -> Any:
@@ -180,7 +180,7 @@ class Renderer:
         error: float = 0.0,
         seconds: float = inf,
         linear: np.ndarray | None = None,
-    ) -> Reached | None:
+    ) -> Outcome | None:
         """Render into `pixels` and `linear`, as `render` does, until the estimated error is as small or as many seconds
         have passed; see `minirt.rendering.sampling.auto`. None where `cancel` ended it early; then both are as before.
         """
@@ -188,7 +188,7 @@ class Renderer:
             start, cancels = perf_counter(), self.cancels
             if not scene.shapes or not pixels.size:
                 self.draw(scene, pixels, 1, NO_LINEAR, False, lambda: True)
-                return Reached(1.0, 1, 0.0, perf_counter() - start)
+                return Outcome(1.0, 1, 0.0, perf_counter() - start)
             traced = self.packing.pack(scene, pixels.shape[1], pixels.shape[0])
             given = frame_arguments(traced, pixels)
             self.not_finite = 0
@@ -243,14 +243,14 @@ class Renderer:
 def needs(scene: Scene) -> frozenset[Hashable]:
     """What there is a kernel of its own for: the kinds of shapes and the features of a scene, and for parallel light
     whether there are so many shapes that a tree is used."""
-    found = traits(scene)
-    return found | {"tree"} if "parallel" in found and parts(scene) > SMALL else found
+    found = features(scene)
+    return found | {"bvh"} if "parallel" in found and primitive_count(scene) > SMALL else found
 
 
 def small(scene: Scene) -> Scene:
     """A scene of few shapes that needs the same."""
-    examples = {(type(shape), *dressed(shape)): shape for shape in scene.shapes}.values()
+    examples = {(type(shape), *material_features(shape)): shape for shape in scene.shapes}.values()
     shapes = [shape.some(np.arange(1)) for shape in examples]
-    more = min(parts(scene), SMALL + 1) - len(shapes)
+    more = min(primitive_count(scene), SMALL + 1) - len(shapes)
     sky = (scene.background,) if scene.background else ()
     return Scene((scene.camera, *sky, *scene.lights, *shapes, *shapes[:1] * more), scene.file)

@@ -10,17 +10,17 @@ from typing import Any
 import numpy as np
 
 from minirt.kernel.culling import binning
-from minirt.kernel.scene_arrays import Group, Traced
-from minirt.rendering.culling.light_frustum import crowd
-from minirt.rendering.culling.planes import idle
+from minirt.kernel.scene_arrays import Group, SceneArrays
+from minirt.rendering.culling.light_frustum import cluster
+from minirt.rendering.culling.planes import never_occludes
 from minirt.rendering.culling.visibility import Lists, grid_for, seen_by_eye, seen_by_lamp, seen_by_sun
 from minirt.rendering.notes import notes
-from minirt.rendering.packing.bvh import tree_of
+from minirt.rendering.packing.bvh import bvh_of
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
-from minirt.rendering.packing.features import DEPTH, traits
-from minirt.rendering.packing.lights import beam_numbers, light_numbers, light_of, shining
-from minirt.rendering.packing.materials import dome_of, materials_of
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.features import DEPTH, features
+from minirt.rendering.packing.lights import light_numbers, light_of, shining, spot_numbers
+from minirt.rendering.packing.materials import environment_of, materials_of
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.single_precision import in_single
 from minirt.scene import ParallelLight, Scene
 from minirt.shapes import Shape
@@ -34,17 +34,17 @@ class Packing:
         self.kernel = kernel
         self.precision = precision
         self.depth = depth  # bounces at most
-        self.tables = Tables()
+        self.tables = ShapeArrays()
         self.known: dict[Hashable, Any] = {}  # what was worked out for the last scene, by what it was worked out from
-        self.last: tuple[Scene, int, int, Traced] | None = None
+        self.last: tuple[Scene, int, int, SceneArrays] | None = None
 
-    def tables_of(self, shapes: tuple[Shape, ...]) -> Tables:
+    def tables_of(self, shapes: tuple[Shape, ...]) -> ShapeArrays:
         """The arrays of those shapes; what was worked out for others is forgotten."""
         if self.tables.update(shapes):
             self.known, self.last = {}, None
         return self.tables
 
-    def pack(self, scene: Scene, width: int, height: int) -> Traced:
+    def pack(self, scene: Scene, width: int, height: int) -> SceneArrays:
         """The scene, seen in a picture of that size."""
         if self.last and self.last[0] is scene and self.last[1:3] == (width, height):
             return self.last[3]
@@ -54,7 +54,7 @@ class Packing:
         self.last = scene, width, height, traced
         return traced
 
-    def traced(self, scene: Scene, width: int, height: int) -> Traced:
+    def traced(self, scene: Scene, width: int, height: int) -> SceneArrays:
         """The same in double precision, anew."""
         self.kernel = self.kernel or import_module("minirt.kernel.compiler.jit_binning")
         tables = self.tables_of(scene.shapes)
@@ -64,15 +64,15 @@ class Packing:
             self.known[key] = before[key] if key in before else work(*given)
             return self.known[key]
 
-        used = traits(scene) - (set() if self.depth else {"bounces"})
+        used = features(scene) - (set() if self.depth else {"reflective"})
         camera, lamps = camera_numbers(scene.camera, width, height), shining(scene)
         lights = light_numbers(lamps)
         eye = keep((camera.tobytes(), width, height), seen_by_eye, self.kernel, tables, camera, width, height)
-        grid, most = grid_for(tables), keep("crowd", crowd, tables)
+        grid, most = grid_for(tables), keep("crowd", cluster, tables)
         seen: list[Lists] = []
         keys: list[Hashable] = []
         for lamp, place in zip(lamps, lights[:, :3], strict=True):
-            skipped = idle(tables, camera[:3], lamp)
+            skipped = never_occludes(tables, camera[:3], lamp)
             if isinstance(lamp, ParallelLight):
                 keys.append(("parallel", skipped.tobytes()))
                 seen.append(keep(keys[-1], seen_by_sun, tables, grid, skipped))
@@ -81,26 +81,26 @@ class Packing:
                 seen.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, most, place, grid, skipped))
         lamp_starts, lit, lamp_views, around = keep(tuple(keys), joined, seen, eye)
         materials = keep(("materials", used), materials_of, scene, tables.owner, used)
-        tree = "bounces" in used or ("parallel" in used and grid > 1)
+        tree = "reflective" in used or ("parallel" in used and grid > 1)
         paint: Any = scene.background and scene.background.paint
-        return Traced(
+        return SceneArrays(
             camera=pixel_rays(camera, width, height),
             ambient=light_of(scene.ambient) if scene.ambient else np.zeros(3),
             lights=lights,
-            looks=tables.looks,
-            places=tables.places,
-            seen=eye.members,
-            views=eye.views,
-            grid=grid,
-            around=around,
-            lit=lit,
-            lamp_views=lamp_views,
-            groups=tuple(map(Group, tables.rows, eye.starts, lamp_starts)),
-            beams=beam_numbers(lamps) if "beams" in used else None,
+            colours_and_extents=tables.colours_and_extents,
+            slots=tables.slots,
+            tile_shapes=eye.members,
+            cones=eye.cones,
+            light_buffer_cells=grid,
+            light_buffers=around,
+            light_shapes=lit,
+            light_cones=lamp_views,
+            groups=tuple(map(Group, tables.rows, eye.tile_starts, lamp_starts)),
+            spots=spot_numbers(lamps) if "spots" in used else None,
             depth=self.depth,
-            sky=np.divide(paint, 255) if "sky" in used else None,
-            dome=keep(("dome", paint), dome_of, scene, paint) if "dome" in used else None,
-            tree=keep("tree", tree_of, tables, self.planter) if tree else None,
+            background=np.divide(paint, 255) if "background" in used else None,
+            environment=keep(("environment", paint), environment_of, scene, paint) if "environment" in used else None,
+            bvh=keep("bvh", bvh_of, tables, self.planter) if tree else None,
             **materials._asdict(),
         )
 
@@ -123,27 +123,31 @@ class Packing:
         return told
 
 
-def may_be_single(traced: Traced) -> bool:
+def may_be_single(traced: SceneArrays) -> bool:
     """Whether float32 will do: the tree is made of float64, and float32 cannot count the pixels of a large picture."""
-    return traced.tree is None and traced.dome is None and (traced.skins is None or not len(traced.skins.pictures))
+    return (
+        traced.bvh is None
+        and traced.environment is None
+        and (traced.surface_maps is None or not len(traced.surface_maps.pictures))
+    )
 
 
 def joined(lamps: list[Lists], eye: Lists) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The lists of all lamps as one: starts (kinds, m, cells + 1), members, views (m, n, 5), around (m, 11)."""
     if len(lamps) == 1:
-        return lamps[0].starts[:, None], lamps[0].members, lamps[0].views[None], lamps[0].around[None]
+        return lamps[0].tile_starts[:, None], lamps[0].members, lamps[0].cones[None], lamps[0].light_buffers[None]
     if not lamps:
         return (
-            np.zeros((len(eye.starts), 0, 1), np.int64),
+            np.zeros((len(eye.tile_starts), 0, 1), np.int64),
             eye.members[:0],
-            np.zeros((0, *eye.views.shape)),
+            np.zeros((0, *eye.cones.shape)),
             np.zeros((0, 11)),
         )
     before = np.cumsum([0, *(len(each.members) for each in lamps[:-1])])
-    starts = np.stack([each.starts + first for each, first in zip(lamps, before, strict=True)], axis=1)
+    starts = np.stack([each.tile_starts + first for each, first in zip(lamps, before, strict=True)], axis=1)
     return (
         starts,
         np.concatenate([each.members for each in lamps]),
-        np.stack([each.views for each in lamps]),
-        np.stack([each.around for each in lamps]),
+        np.stack([each.cones for each in lamps]),
+        np.stack([each.light_buffers for each in lamps]),
     )

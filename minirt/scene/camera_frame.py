@@ -8,7 +8,7 @@ from minirt.fields import Triple, upright
 from minirt.scene.elements import Camera
 
 
-def view(camera: Camera) -> tuple[Triple, Triple, Triple]:
+def camera_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
     """Unit vectors right, up and forward of the picture, perpendicular to each other.
 
     Without a roll they are upright; a roll turns right and up about forward, clockwise as the camera sees it. In the

@@ -53,7 +53,7 @@ MESH = Kind(
     mesh.mapping,
     mesh.shading,
     mesh.may_meet,
-    crowd=True,
+    batched=True,
 )
 ALL_KINDS = (*KINDS, MESH)
 

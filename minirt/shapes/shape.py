@@ -106,4 +106,4 @@ class Kind(NamedTuple):
     mapping: Callable[..., Any]
     shading: Callable[..., Any] = unbent
     may_meet: Callable[..., Any] = anywhere
-    crowd: bool = False  # whether one element is many small ones side by side
+    batched: bool = False  # whether one element is many small ones side by side

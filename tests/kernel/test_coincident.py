@@ -86,7 +86,7 @@ def test_of_many_the_first_owns_it(name: str) -> None:
 
 
 def test_a_tie_that_the_nearer_wins_does_not_pass(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(trace, "NEARBY", 0.0)
+    monkeypatch.setattr(trace, "COINCIDENT", 0.0)
     wrong = 0
     for order in permutations(SAME["planes"], 2):
         twins = scene(order[0].replace(colour=GREEN), order[1].replace(colour=BLUE))
@@ -98,7 +98,7 @@ def owners(best: np.ndarray, rival: Plane, origin: Vec, direction: Vec) -> np.nd
     """Which shape owns each place, 1 that was hit at `best` or 0, a plane that is tried after it."""
     state = best, np.ones_like(best), np.zeros_like(best)
     hit, t = plane.intersect(rival.pack(), origin, direction)
-    return trace.nearer(rival.pack(), 0, 0.0, hit, t, origin, direction, state)[1]
+    return trace.closer_hit(rival.pack(), 0, 0.0, hit, t, origin, direction, state)[1]
 
 
 def test_to_the_horizon_the_earlier_owns_it_where_two_planes_are_tilted_by_roundings() -> None:

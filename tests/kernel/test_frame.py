@@ -11,7 +11,7 @@ from minirt.lanes import Vec
 from minirt.rendering import Renderer, scene_packing
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.scene import FurtherLight, Scene
-from minirt.scene.camera_frame import view
+from minirt.scene.camera_frame import camera_frame
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, ONE, SHAPES, TWO, interpreted, linear, picture
 
 SIZES = [(1, 1), (1, 9), (9, 1), (5, 3), (4, 2), (3, 2), (13, 11), (4, 33), (33, 8)]
@@ -82,7 +82,7 @@ def test_samples_are_the_mean_of_pictures_with_finer_pixels() -> None:
 
 
 def test_the_eye_looks_forward_through_the_middle() -> None:
-    right, up, forward = map(np.array, view(EYE))
+    right, up, forward = map(np.array, camera_frame(EYE))
     numbers = pixel_rays(camera_numbers(EYE, 30, 20), 30, 20)
     half = np.tan(np.radians(30))
     for (x, y), expected in (

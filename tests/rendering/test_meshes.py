@@ -8,7 +8,7 @@ import pytest
 import minirt
 from minirt.fields import MeshFile
 from minirt.materials import Specular
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.pick import covers, pick, place
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, Light, Scene
@@ -134,13 +134,13 @@ def test_materials_are_those_of_the_mesh() -> None:
     first = named("icosahedron", specular=Specular(0.5, 20), mirror=0.25)
     second = named("icosahedron", (3, 0, 0), specular=Specular(0.1, 5))
     traced = Packing().pack(Scene((EYE, LAMP, first, Sphere((0, 3, 0), 1, GREY), second)), 32, 32)
-    assert np.array_equal(traced.gloss[:, :2], np.repeat([[0.5, 20], [0, 0], [0.1, 5]], [20, 1, 20], axis=0))
-    assert np.array_equal(traced.bounces[:, 0], np.repeat([0.25, 0, 0], [20, 1, 20]))
+    assert np.array_equal(traced.specular[:, :2], np.repeat([[0.5, 20], [0, 0], [0.1, 5]], [20, 1, 20], axis=0))
+    assert np.array_equal(traced.reflective[:, 0], np.repeat([0.25, 0, 0], [20, 1, 20]))
 
 
 def test_a_pixel_is_picked_for_the_mesh_that_it_shows() -> None:
     shapes = named("knot", (1, 0, 0), 2.0), named("pot", (-3, -1, 2), 1.5), Sphere((0, 2, 0), 2, GREY)
-    scene, tables = Scene((EYE, *shapes)), Tables()
+    scene, tables = Scene((EYE, *shapes)), ShapeArrays()
     shown = [pick(scene, 40, 30, x, y, tables) for y in range(0, 30, 2) for x in range(0, 40, 2)]
     assert {*shapes, None} == set(shown)
     for x, y in ((11, 9), (15, 20), (30, 18), (0, 0)):

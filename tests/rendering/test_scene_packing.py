@@ -44,8 +44,8 @@ def test_the_numbers_of_a_scene() -> None:
     traced = Packing().pack(Scene((Ambient(0.5, blue), EYE, *lamps, wall, ball)), 24, 16)
     assert traced.ambient.tolist() == [0, 0.1, 0.5]
     assert traced.lights.tolist() == [[1, 2, 3, 0, 0.1, 0.5]]  # the dark ones are left out
-    assert traced.looks.tolist() == [[0, 0.2, 1, 9], [1, 0, 0.2, 5]]
-    assert traced.places.tolist() == [[1, 0], [0, 0]]  # kinds in the order of the registry
+    assert traced.colours_and_extents.tolist() == [[0, 0.2, 1, 9], [1, 0, 0.2, 5]]
+    assert traced.slots.tolist() == [[1, 0], [0, 0]]  # kinds in the order of the registry
     ball_again = read(traced.groups[0].rows, 0)
     assert (ball_again.centre.x, ball_again.centre.y, ball_again.centre.z, ball_again.radius) == (1, 2, 3, 2)
 

@@ -16,7 +16,7 @@ from minirt.fields import MeshFile
 from minirt.kernel.rows import read, row_type
 from minirt.lanes import Vec
 from minirt.meshes import Triangles
-from minirt.rendering.packing.primitives import parts_of
+from minirt.rendering.packing.primitives import primitives_of
 from minirt.shapes import ALL_KINDS, MESH, mesh
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.triangle import Triangle
@@ -67,7 +67,7 @@ def test_a_mesh_is_its_triangles() -> None:
 
 def test_balls_and_boxes_are_around_the_triangles() -> None:
     made = named("pot", (4, 5, 6), 2.0)
-    parts = parts_of([made, made])
+    parts = primitives_of([made, made])
     corners = made.rows()[:, :9].reshape(-1, 3, 3)
     assert len(parts.rows) == 2 * made.parts
     assert np.array_equal(parts.balls[: made.parts, :, :3], corners)

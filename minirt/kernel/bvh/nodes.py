@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.trace import NEARBY
+from minirt.kernel.trace import COINCIDENT
 from minirt.lanes import Vec, copysign, fabs, load, maximum, minimum, width
 from minirt.lanes.largest import largest
 from minirt.lanes.operations import Mask
@@ -52,7 +52,7 @@ class Tree(NamedTuple):
 
     nodes: Any  # flat, `NODE` numbers a node
     extents: Any  # (n,) largest coordinate of each shape
-    places: Any  # (n, 2) where each shape is: its group and its row there
+    slots: Any  # (n, 2) where each shape is: its group and its row there
     groups: Any  # a tuple of Group
 
 
@@ -114,7 +114,7 @@ def boxes_met(
 
 def reach(distance: float) -> float:
     """How far to look where all nearer than `distance`, or in the same place as it, counts."""
-    return distance * (1.0 + 2.0 * NEARBY)
+    return distance * (1.0 + 2.0 * COINCIDENT)
 
 
 # A name travels with the distance to its box in one number: it takes the place of the low half of the bits, which

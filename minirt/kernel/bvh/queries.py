@@ -21,10 +21,10 @@ from minirt.kernel.bvh.nodes import (
     reach,
     vec_at,
 )
-from minirt.kernel.bvh.traversal import walk
+from minirt.kernel.bvh.traversal import traverse
 from minirt.kernel.rows import intersect, kind_of, read, surface
-from minirt.kernel.scene_arrays import placed
-from minirt.kernel.trace import nearer, over_kinds
+from minirt.kernel.scene_arrays import by_reference
+from minirt.kernel.trace import closer_hit, for_each_kind
 from minirt.lanes import Vec, any, lane, load, lowest, splat, unit, where
 from minirt.lanes.largest import largest
 from minirt.lanes.operations import Mask
@@ -35,30 +35,30 @@ CHUNK = 16 * WIDTH  # rays that a thread takes at a time
 Nearest = tuple[Number, Number, Number]  # distance, index and extent of what is hit
 
 
-def nearest(tree: Tree, origin: Vec, direction: Vec, asked: Mask) -> Nearest:
+def closest_hit(tree: Tree, origin: Vec, direction: Vec, asked: Mask) -> Nearest:
     """As `trace.nearest`, for any rays; those that are not `asked` for hit endless shapes only."""
     memory = packet_memory()
     aim(memory, origin, direction)
     nothing = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
-    best, owner, extent = over_kinds(nearest_endless, tree.groups, nothing, (tree, origin, direction))
+    best, owner, extent = for_each_kind(nearest_endless, tree.groups, nothing, (tree, origin, direction))
     put_vec(memory, FOUND, Vec(best, owner, extent))
-    walk(nearest_of_block, tree, memory, bits(asked))
+    traverse(nearest_of_block, tree, memory, bits(asked))
     return load(memory, FOUND), load(memory, FOUND + WIDTH), load(memory, FOUND + 2 * WIDTH)
 
 
 def nearest_endless(group: Group, state: Nearest, given: tuple[Tree, Vec, Vec]) -> Nearest:
-    """`nearest` over the shapes of one kind that have no end."""
+    """`closest_hit` over the shapes of one kind that have no end."""
     tree, origin, direction = given
     for i in range(group.endless.shape[0]):
         index = group.endless[i]
-        shape = read(group.rows, tree.places[index, 1])
+        shape = read(group.rows, tree.slots[index, 1])
         hit, t = intersect(shape, origin, direction)
-        state = nearer(shape, index, tree.extents[index], hit, t, origin, direction, state)
+        state = closer_hit(shape, index, tree.extents[index], hit, t, origin, direction, state)
     return state
 
 
 def nearest_of_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
-    """`nearest` of one ray over a block of shapes."""
+    """`closest_hit` of one ray over a block of shapes."""
     origin, direction = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray)
     hit, t = intersect(read_block(group.blocks, block), origin, direction)
     left = bits(hit & (t <= reach(memory[FOUND + ray])))
@@ -70,17 +70,17 @@ def nearest_of_block(group: Group, block: int, tree: Tree, memory: Any, ray: int
             left = left & (left - 1)
             shape = read_one(group.blocks, block, i)  # in the cache, as its row in the table is not
             index, extent = group.labels[block, i, 0], group.labels[block, i, 1]
-            state = nearer(shape, index, extent, True, lane(t, i), origin, direction, state)
+            state = closer_hit(shape, index, extent, True, lane(t, i), origin, direction, state)
         memory[FOUND + ray], memory[FOUND + WIDTH + ray], memory[FOUND + 2 * WIDTH + ray] = state
 
 
-def unhidden(tree: Tree, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
+def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
     """Of the rays that are `asked` for, those that hit nothing nearer than `distance`."""
     memory = packet_memory()
     aim(memory, origin, direction)
-    free = over_kinds(free_of_endless, tree.groups, asked, (tree, origin, direction, distance))
+    free = for_each_kind(free_of_endless, tree.groups, asked, (tree, origin, direction, distance))
     put(memory, FOUND, where(free, distance, -inf))
-    walk(free_of_block, tree, memory, bits(free))
+    traverse(free_of_block, tree, memory, bits(free))
     return load(memory, FOUND) > -inf
 
 
@@ -88,7 +88,7 @@ def free_of_endless(group: Group, free: Mask, given: tuple[Tree, Vec, Vec, Numbe
     """Of the rays that are free so far, those that no shape without end of one kind stops."""
     tree, origin, direction, distance = given
     for i in range(group.endless.shape[0]):
-        hit, t = intersect(read(group.rows, tree.places[group.endless[i], 1]), origin, direction)
+        hit, t = intersect(read(group.rows, tree.slots[group.endless[i], 1]), origin, direction)
         free = free & ~(hit & (t < distance))
     return free
 
@@ -119,7 +119,7 @@ def trace_rays(
     Any number of threads may do so at the same time. `origins`, `directions` of any length, `points` and `normals` are
     (n, 3), `distances` and `owners` (n,); what belongs to a ray without a hit stays as it is.
     """
-    tree = placed(tree)
+    tree = by_reference(tree)
     count = origins.shape[0]
     memory = packet_memory()
     while True:
@@ -133,15 +133,15 @@ def trace_rays(
                     memory[ORIGIN + axis * WIDTH + ray] = origins[min(first + ray, count - 1), axis]
                     memory[DIRECTION + axis * WIDTH + ray] = directions[min(first + ray, count - 1), axis]
             origin, direction = lanes_at(memory, ORIGIN), unit(rescaled(lanes_at(memory, DIRECTION)))
-            t, owner, _ = nearest(tree, origin, direction, load(memory, FOUND) < count)
+            t, owner, _ = closest_hit(tree, origin, direction, load(memory, FOUND) < count)
             put_vec(memory, ORIGIN, origin + t * direction)
             put_vec(memory, FOUND, Vec(t, owner, t))
             for ray in range(min(WIDTH, count - first)):
                 index = int(memory[FOUND + WIDTH + ray])
                 if index >= 0:
                     point = vec_at(memory, ORIGIN, ray)
-                    group, row = tree.places[index, 0], tree.places[index, 1]
-                    on, normal, _ = over_kinds(surface_of_kind, tree.groups, (point, point, 0), (group, row, point))
+                    group, row = tree.slots[index, 0], tree.slots[index, 1]
+                    on, normal, _ = for_each_kind(surface_of_kind, tree.groups, (point, point, 0), (group, row, point))
                     distances[first + ray], owners[first + ray] = memory[FOUND + ray], index
                     store_vec(points, first + ray, on)
                     store_vec(normals, first + ray, normal)

@@ -35,11 +35,11 @@ from minirt.kernel.bvh.nodes import (
     vec_at,
     whole_at,
 )
-from minirt.kernel.trace import over_kinds
+from minirt.kernel.trace import for_each_kind
 from minirt.lanes import any, load, lowest, where
 
 
-def walk(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> None:
+def traverse(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> None:
     """`visit(group, block, tree, memory, ray)` for the leaves that each of the rays meets, the nearest first.
 
     What is beyond the distance in the first row of `FOUND`, which `visit` may lessen, is left out.
@@ -68,7 +68,7 @@ def walk(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> None
             at_node = at_node | node << ray
             at_leaf = at_leaf | leaf << ray
             waiting = waiting ^ last << ray
-        over_kinds(visit_kind, tree.groups, 0, (visit, at_leaf, tree, memory))
+        for_each_kind(visit_kind, tree.groups, 0, (visit, at_leaf, tree, memory))
 
 
 def descend(nodes: Any, memory: Any, ray: int) -> int:

@@ -20,7 +20,7 @@ from numba.extending import lower_builtin, lower_getattr_generic, register_model
 from minirt.kernel import scene_arrays, trace
 from minirt.lanes import operations
 from minirt.lanes.compiled import operations as compiled_operations
-from minirt.lanes.compiled.registration import Result, teach
+from minirt.lanes.compiled.registration import Result, register
 
 ADDRESS = ir.IntType(8).as_pointer()
 DATA, SHAPE = 4, 5  # of an array, in the order in which numba keeps them
@@ -45,7 +45,7 @@ def can_be_placed(kind: Any) -> bool:
     return isinstance(kind, types.BaseTuple) or (isinstance(kind, types.Array) and kind.layout == "C")
 
 
-@teach(scene_arrays.placed, lambda kind: Placed(kind) if can_be_placed(kind) else None, [(types.Any,)])
+@register(scene_arrays.by_reference, lambda kind: Placed(kind) if can_be_placed(kind) else None, [(types.Any,)])
 def _placed(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.bitcast(cgutils.alloca_once_value(builder, args[0]), ADDRESS)
 
@@ -95,16 +95,16 @@ def _field(context: Any, builder: ir.IRBuilder, kind: Placed, value: Any, name: 
     return value_at(context, builder, kind, value, kind.content.fields.index(name))
 
 
-@teach(len, lambda table: types.intp if isinstance(table, Placed) else None, [(Placed,)])
+@register(len, lambda table: types.intp if isinstance(table, Placed) else None, [(Placed,)])
 def _len(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return context.get_constant(types.intp, len(sig.args[0].content))
 
 
-@infer_global(trace.over_kinds)
+@infer_global(trace.for_each_kind)
 class OverKinds(AbstractTemplate):
     """The type of `over_kinds`: that of the state after the last step."""
 
-    key = trace.over_kinds
+    key = trace.for_each_kind
 
     def generic(self, args: Any, kws: Any) -> Any:
         return signature(steps_of(self.context, *args)[-1].return_type, *args)
@@ -119,7 +119,7 @@ def steps_of(context: Any, step: Any, groups: Placed, state: Any, given: Any) ->
     return found
 
 
-@lower_builtin(trace.over_kinds, types.Any, Placed, types.Any, types.Any)  # type: ignore[untyped-decorator]
+@lower_builtin(trace.for_each_kind, types.Any, Placed, types.Any, types.Any)  # type: ignore[untyped-decorator]
 def _over_kinds(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     _, groups, state, given = args
     kind = sig.args[2]
@@ -170,7 +170,7 @@ def place_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.gep(data(context, builder, table, args[0]), [at])
 
 
-@teach(operator.getitem, item, INDEXED)
+@register(operator.getitem, item, INDEXED)
 def _item(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     address = place_of(context, builder, sig, args)
     return address if isinstance(sig.return_type, types.CPointer) else builder.load(address)
@@ -181,7 +181,7 @@ def nothing(table: Any, index: Any, value: Any) -> types.Type | None:
     return types.none if is_array(table) and item(table, index) == table.content.dtype else None
 
 
-@teach(operator.setitem, nothing, [(*each, types.Any) for each in INDEXED])
+@register(operator.setitem, nothing, [(*each, types.Any) for each in INDEXED])
 def _set_item(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     value = context.cast(builder, args[2], sig.args[2], sig.args[0].content.dtype)
     builder.store(value, place_of(context, builder, sig, args))
@@ -194,7 +194,7 @@ def teach_for_placed(function: Any, result: Result, generate: Any) -> None:
     def found(table: Any, *others: Any) -> types.Type | None:
         return result(table.content, *others) if is_array(table) else None
 
-    @teach(function, found, [(Placed, types.Any), (Placed, types.Any, types.Any)])
+    @register(function, found, [(Placed, types.Any), (Placed, types.Any, types.Any)])
     def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         kind = sig.args[0].content
         array = builder.load(builder.bitcast(args[0], context.get_value_type(kind).as_pointer()))

@@ -43,7 +43,7 @@ class MachineCode(CompileResultCacheImpl):
         return super().rebuild(target.subtarget(_internal_codegen=JITCPUCodegen("kernel")), written)
 
 
-class Keeper(FunctionCache):
+class CodeCache(FunctionCache):
     """Writes and finds the machine code of a function."""
 
     _impl_class = MachineCode
@@ -66,7 +66,7 @@ def compiled(function: Callable[..., Any], place: Path | None, *signatures: Any)
     made = njit(no_cfunc_wrapper=True, **FLAGS)(function)
     if place:
         with numba_cache(place):
-            made._cache = Keeper(function)
+            made._cache = CodeCache(function)
     for signature in signatures:
         made.compile(signature)
     return made

@@ -26,10 +26,10 @@ from minirt.kernel.compiler.by_reference import Placed, data, length, teach_for_
 from minirt.kernel.compiler.code_cache import compiled
 from minirt.kernel.compiler.lean_pipeline import Inlined
 from minirt.kernel.culling import light_buffer
-from minirt.kernel.scene_arrays import Traced
+from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading import environment, lights, shade, specular, surfaces, texture_lookup, texturing, whitted
 from minirt.lanes import angle, largest, power, vec
-from minirt.lanes.compiled.registration import teach
+from minirt.lanes.compiled.registration import register
 from minirt.lanes.compiled.types import Lanes, VecType, common, constant, splat, vec_of
 from minirt.shapes import ALL_KINDS, Kind, basis, compensated, pyramid, quadric, shape, uv_mapping
 
@@ -82,14 +82,14 @@ def _mapping(shape, point, normal):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).mapping
 
 
-@overload(trace.nearest_of_kind, jit_options=INNER, strict=False)
+@overload(trace.closest_of_kind, jit_options=INNER, strict=False)
 def _nearest_of_kind(group, state, given):  # type: ignore[no-untyped-def]
-    return trace.nearest_of_crowd if kind_of_group(group).crowd else trace.nearest_of_few
+    return trace.closest_batched if kind_of_group(group).batched else trace.closest_one_by_one
 
 
-@overload(trace.unhidden_by_kind, jit_options=INNER, strict=False)
+@overload(trace.unoccluded_by_kind, jit_options=INNER, strict=False)
 def _unhidden_by_kind(group, free, given):  # type: ignore[no-untyped-def]
-    return trace.unhidden_by_crowd if kind_of_group(group).crowd else trace.unhidden_by_few
+    return trace.unoccluded_batched if kind_of_group(group).batched else trace.unoccluded_one_by_one
 
 
 def kind_of_group(group: Any) -> Kind:
@@ -122,7 +122,7 @@ def packed_type(array: Any, i: Any) -> Any:
     return types.NamedTuple(fields, rows.kind_of(array.dtype.fields).packed)
 
 
-@teach(rows.read, packed_type, [(types.Array, types.Integer)])
+@register(rows.read, packed_type, [(types.Array, types.Integer)])
 def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     address = first_number(context, builder, sig, args)
     numbers = (builder.load(builder.gep(address, [ir.Constant(ir.IntType(64), at)])) for at in count())
@@ -141,7 +141,7 @@ def packed_of(context: Any, builder: ir.IRBuilder, kind: Any, numbers: Iterator[
 teach_for_placed(rows.read, packed_type, _read)
 
 
-@teach(atomic_counter.fetch_add, lambda counter, amount: types.int64, [(types.Array, types.Integer)])
+@register(atomic_counter.fetch_add, lambda counter, amount: types.int64, [(types.Array, types.Integer)])
 def _fetch_add(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     counter = context.make_array(sig.args[0])(context, builder, value=args[0])
     amount = context.cast(builder, args[1], sig.args[1], types.int64)
@@ -153,7 +153,7 @@ def whole_block(pixels: Any, x: Any, y: Any, *levels: Any) -> Any:
     return types.none if all(isinstance(each, Lanes) for each in levels) else None
 
 
-@teach(frame.store_block, whole_block, [(Placed, types.Integer, types.Integer, Lanes, Lanes, Lanes)])
+@register(frame.store_block, whole_block, [(Placed, types.Integer, types.Integer, Lanes, Lanes, Lanes)])
 def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     word = ir.IntType(32)
     pixels = data(context, builder, sig.args[0], args[0])
@@ -177,9 +177,9 @@ def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> An
 register_jitable(**INNER)(vec.cross)
 OWN_FORM = (
     whitted.path_memory,
-    trace.over_kinds,
-    trace.nearest_of_kind,
-    trace.unhidden_by_kind,
+    trace.for_each_kind,
+    trace.closest_of_kind,
+    trace.unoccluded_by_kind,
     atomic_counter.fetch_add,
     frame.store_block,
     frame.frame,
@@ -214,7 +214,7 @@ for _module in (
 CACHE = cache_folder.folder()
 LOADED = 8  # kernels in memory, where they can be loaded again
 PAINTED = ("checks", "textures", "bumps", "normals")
-OPTIONAL = tuple(name for name, default in Traced._field_defaults.items() if default is None)
+OPTIONAL = tuple(name for name, default in SceneArrays._field_defaults.items() if default is None)
 
 
 @lru_cache(LOADED if CACHE else None)
@@ -224,16 +224,16 @@ def kernel_of(features: tuple[str, ...], *row_types: np.dtype[Any]) -> Any:
 
     Each has a folder of its own: numba's index of a folder does not bear two programs that write it at the same time.
     """
-    if "tree" in features:
+    if "bvh" in features:
         import_module("minirt.kernel.compiler.jit_bvh")
     titles = (rows.kind_of(each.names).element.title for each in row_types)
     place = CACHE and CACHE / "-".join([*titles, *features, str(row_types[0][0].base)])
     return compiled(frame.frame, place)
 
 
-def kernel_for(traced: Traced) -> Any:
+def kernel_for(traced: SceneArrays) -> Any:
     """The kernel for a scene."""
-    features = [*present(traced, OPTIONAL), *(present(traced.skins, PAINTED) if traced.skins else ())]
+    features = [*present(traced, OPTIONAL), *(present(traced.surface_maps, PAINTED) if traced.surface_maps else ())]
     return kernel_of(tuple(features), *(group.rows.dtype for group in traced.groups))
 
 

@@ -10,17 +10,17 @@ from minirt.kernel.compiler.jit import CACHE, INNER, own_functions
 from minirt.kernel.culling import binning
 
 for _function in own_functions(binning):
-    if _function not in (binning.cover, binning.fill):
+    if _function not in (binning.project_all, binning.fill_bins):
         register_jitable(**INNER)(_function)
 
 # With the types said at once they are compiled when this module is imported.
 NUMBER, WHOLE, SHORT = types.float64, types.int64, types.int32
 GRID = types.NamedTuple([NUMBER[:, :, ::1], WHOLE, WHOLE, *[NUMBER] * 5, WHOLE, WHOLE], binning.Grid)
-COVER = WHOLE(
+PROJECT_ALL = WHOLE(
     *(NUMBER[::1], GRID, NUMBER[:, ::1], NUMBER, WHOLE[::1], WHOLE[:, ::1]),
     *(SHORT[:, ::1], WHOLE, NUMBER[:, ::1], WHOLE[::1]),
 )
-FILL = types.void(SHORT[:, ::1], WHOLE[::1], WHOLE, WHOLE[::1], SHORT[::1])
+FILL_BINS = types.void(SHORT[:, ::1], WHOLE[::1], WHOLE, WHOLE[::1], SHORT[::1])
 
-cover = compiled(binning.cover, CACHE, COVER)
-fill = compiled(binning.fill, CACHE, FILL)
+project_all = compiled(binning.project_all, CACHE, PROJECT_ALL)
+fill_bins = compiled(binning.fill_bins, CACHE, FILL_BINS)

@@ -18,7 +18,7 @@ from minirt.kernel.compiler.jit import CACHE, INNER, first_number, own_functions
 from minirt.kernel.shading import whitted
 from minirt.lanes import operations
 from minirt.lanes.compiled import reductions
-from minirt.lanes.compiled.registration import teach
+from minirt.lanes.compiled.registration import register
 from minirt.lanes.compiled.types import Lanes, Mask, VecType, constant
 
 WORD = ir.IntType(64)
@@ -29,14 +29,14 @@ MEMORY = types.CPointer(types.float64)
 LINE = 64  # bytes of a line of the cache: no load of lanes needs two
 
 
-@teach(nodes.packet_memory, lambda: MEMORY, [()])
+@register(nodes.packet_memory, lambda: MEMORY, [()])
 def _packet_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     memory = cgutils.alloca_once(builder, ir.DoubleType(), size=nodes.MEMORY)
     memory.align = LINE
     return memory
 
 
-@teach(whitted.path_memory, lambda: MEMORY, [()])
+@register(whitted.path_memory, lambda: MEMORY, [()])
 def _path_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return cgutils.alloca_once(builder, ir.DoubleType(), size=whitted.MEMORY)
 
@@ -47,35 +47,35 @@ def lanes_place(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any
     return builder.bitcast(place, LANES_IR.as_pointer())
 
 
-@teach(operations.load, lambda memory, at: LANES if memory == MEMORY else None, [(types.CPointer, types.Integer)])
+@register(operations.load, lambda memory, at: LANES if memory == MEMORY else None, [(types.CPointer, types.Integer)])
 def _load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.load(lanes_place(context, builder, sig, args), align=8)
 
 
-@teach(nodes.put, lambda memory, at, x: types.none, [(types.CPointer, types.Integer, Lanes)])
+@register(nodes.put, lambda memory, at, x: types.none, [(types.CPointer, types.Integer, Lanes)])
 def _put(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     builder.store(args[2], lanes_place(context, builder, sig, args), align=8)
     return context.get_dummy_value()
 
 
-@teach(nodes.tag, lambda distance, names: LANES, [(Lanes, Lanes)])
+@register(nodes.tag, lambda distance, names: LANES, [(Lanes, Lanes)])
 def _tag(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     distance, names = (builder.bitcast(each, WORDS) for each in args)
     kept = builder.and_(distance, constant(distance, ~nodes.NAME))
     return builder.bitcast(builder.or_(kept, names), LANES_IR)
 
 
-@teach(nodes.name_of, lambda tagged: types.int64 if tagged == types.float64 else None, [(types.Float,)])
+@register(nodes.name_of, lambda tagged: types.int64 if tagged == types.float64 else None, [(types.Float,)])
 def _name_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.sext(builder.trunc(builder.bitcast(args[0], WORD), ir.IntType(32)), WORD)
 
 
-@teach(nodes.bits, lambda mask: types.int64, [(Mask,)])
+@register(nodes.bits, lambda mask: types.int64, [(Mask,)])
 def _bits(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.zext(reductions.bits(builder, args[0]), WORD)
 
 
-@teach(nodes.least, lambda x: types.float64, [(Lanes,)])
+@register(nodes.least, lambda x: types.float64, [(Lanes,)])
 def _least(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     kind = ir.FunctionType(WORD, [WORDS])
     name = f"llvm.vector.reduce.smin.v{LANES.count}i64"
@@ -89,12 +89,12 @@ def word_place(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.bitcast(place, WORD.as_pointer())
 
 
-@teach(nodes.whole_at, lambda memory, at: types.int64, [(types.CPointer, types.Integer)])
+@register(nodes.whole_at, lambda memory, at: types.int64, [(types.CPointer, types.Integer)])
 def _whole_at(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.load(word_place(context, builder, sig, args))
 
 
-@teach(nodes.put_whole, lambda memory, at, n: types.none, [(types.CPointer, types.Integer, types.Integer)])
+@register(nodes.put_whole, lambda memory, at, n: types.none, [(types.CPointer, types.Integer, types.Integer)])
 def _put_whole(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     builder.store(context.cast(builder, args[2], sig.args[2], types.int64), word_place(context, builder, sig, args))
     return context.get_dummy_value()

@@ -4,7 +4,7 @@ Seen from a point, in a frame of across, down and forward, a direction has the s
 a grid are squares of slopes. A ball covers an interval of either slope. What is left out of a cell is not met there,
 whatever the rounding: balls grow by `MARGIN`, and intervals by the margin of the grid.
 
-All memory is the caller's. Between `cover` and `fill` the rectangles are sorted by depth and the counts summed to ends.
+All memory is the caller's. Between `project_all` and `fill_bins` the rectangles are sorted by depth and the counts summed to ends.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Grid(NamedTuple):
     elsewhere: int  # the cell of all directions that are in no frame, which is among those; -1 where there is none
 
 
-def cover(
+def project_all(
     origin: Any,
     grid: Grid,
     balls: Any,
@@ -48,7 +48,7 @@ def cover(
 
     Shape i is the convex hull of `balls[first[i]:first[i + 1]]`, (b, 4) centre and radius, which grow by `slack`; its
     cells begin at `places[i, 0]` times one more than the grid has. Writes rectangles, (r, 4) shape, first cell, columns
-    and rows, from number `used` on, and answers how many there are; of shapes with a rectangle the `view`; and adds to
+    and rows, from number `used` on, and answers how many there are; of shapes with a rectangle the `bounding_cone`; and adds to
     `counts` how many rectangles cover each cell. A shape that may be met in the directions that are in no frame has a
     rectangle of that cell.
     """
@@ -57,7 +57,7 @@ def cover(
         before = used
         whole = False
         for face in range(grid.frames.shape[0]):
-            column, row, columns, rows, whole = rectangle(
+            column, row, columns, rows, whole = projected_rectangle(
                 origin, grid, face, balls, first[shape], first[shape + 1], slack
             )
             if columns > 0 and rows > 0:
@@ -79,11 +79,11 @@ def cover(
             used += 1
             counts[cell] += 1
         if used > before:
-            view(origin, balls, first[shape], first[shape + 1], slack, views[shape])
+            bounding_cone(origin, balls, first[shape], first[shape + 1], slack, views[shape])
     return used
 
 
-def rectangle(
+def projected_rectangle(
     origin: Any, grid: Grid, face: int, balls: Any, start: int, end: int, slack: float
 ) -> tuple[int, int, int, int, bool]:
     """First column, first row, columns and rows of the cells in which the convex hull of some balls, grown by `slack`,
@@ -148,7 +148,7 @@ def interval(low: float, high: float, scale: float, middle: float, margin: float
     return start, int(min(end, cells - 1.0)) + 1 - start, begin >= 0.0 and end < cells
 
 
-def view(origin: Any, balls: Any, start: int, end: int, slack: float, seen: Any) -> None:
+def bounding_cone(origin: Any, balls: Any, start: int, end: int, slack: float, seen: Any) -> None:
     """How the convex hull of some balls, grown by `slack`, looks from a point, in five numbers.
 
     A cone around it: the axis, which is the direction of its middle, and the cosine of the half-angle, or -2 where it
@@ -184,7 +184,7 @@ def view(origin: Any, balls: Any, start: int, end: int, slack: float, seen: Any)
     seen[4] = max(least, 0.0)
 
 
-def fill(rectangles: Any, order: Any, across: int, ends: Any, members: Any) -> None:
+def fill_bins(rectangles: Any, order: Any, across: int, ends: Any, members: Any) -> None:
     """Put shapes into the lists of their cells, the last of the order first; `ends` become the starts of the lists."""
     for i in range(order.shape[0] - 1, -1, -1):
         at = order[i]

@@ -8,7 +8,7 @@ from minirt.lanes.power import power
 from minirt.lanes.vec import Number
 
 
-def highlight(look: Vec, normal: Vec, towards: Vec, direction: Vec, lit: Mask) -> Number:
+def specular(look: Vec, normal: Vec, towards: Vec, direction: Vec, lit: Mask) -> Number:
     """The share of a lamp's light that is seen as a highlight along `direction`, for the rays that are `lit`.
 
     `look` is a row of `Traced.gloss`: the coefficient k, the exponent n and 1 for Blinn's form. Phong 1975: k (r.v)^n

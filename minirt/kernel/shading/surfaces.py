@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.kernel.rows import read, shading, surface
-from minirt.kernel.scene_arrays import Group, Traced
-from minirt.kernel.shading.texturing import skinned
-from minirt.kernel.trace import over_kinds
+from minirt.kernel.scene_arrays import Group, SceneArrays
+from minirt.kernel.shading.texturing import apply_maps
+from minirt.kernel.trace import for_each_kind
 from minirt.lanes import Vec, any, first, lane, rarely, splat, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
@@ -20,11 +20,11 @@ class Surface(NamedTuple):
     normal: Vec  # of the shape, outward where there is an outside
     bent: Vec  # the normal by which it is lit
     colour: Vec
-    gloss: Vec  # its row of `Traced.gloss`
-    bounces: Vec  # and of `Traced.bounces`
+    specular: Vec  # its row of `Traced.gloss`
+    reflective: Vec  # and of `Traced.bounces`
 
 
-def surfaces(scene: Traced, memory: Any, owner: Number, point: Vec, hit: Mask) -> Surface:
+def surfaces(scene: SceneArrays, memory: Any, owner: Number, point: Vec, hit: Mask) -> Surface:
     """The surfaces that rays hit within rounding of a point.
 
     The rays of a packet hit few different shapes, mostly one. The first that is asked is the last one of the packet
@@ -45,29 +45,29 @@ def surfaces(scene: Traced, memory: Any, owner: Number, point: Vec, hit: Mask) -
             where(mine, other.normal, found.normal),
             where(mine, other.bent, found.bent),
             where(mine, other.colour, found.colour),
-            where(mine, other.gloss, found.gloss),
-            where(mine, other.bounces, found.bounces),
+            where(mine, other.specular, found.specular),
+            where(mine, other.reflective, found.reflective),
         )
         left = left & ~mine
     memory[scene.lights.shape[0], 0] = index
     return found
 
 
-def surface_at(scene: Traced, index: int, point: Vec) -> Surface:
+def surface_at(scene: SceneArrays, index: int, point: Vec) -> Surface:
     """The surface of one shape, for all rays."""
-    place = scene.places[index]
-    on, normal, bent, _ = over_kinds(
+    place = scene.slots[index]
+    on, normal, bent, _ = for_each_kind(
         surface_of_kind, scene.groups, (point, point, point, 0), (place[0], place[1], point)
     )
     nothing = splat(0.0, point.x)
     gloss = bounces = Vec(nothing, nothing, nothing)
-    colour = row_of(scene.looks, index, point.x)
-    if scene.skins is not None:
-        bent, colour = skinned(scene.skins, scene.groups, index, place, on, bent, colour)
-    if scene.gloss is not None:
-        gloss = row_of(scene.gloss, index, point.x)
-    if scene.bounces is not None:
-        bounces = row_of(scene.bounces, index, point.x)
+    colour = row_of(scene.colours_and_extents, index, point.x)
+    if scene.surface_maps is not None:
+        bent, colour = apply_maps(scene.surface_maps, scene.groups, index, place, on, bent, colour)
+    if scene.specular is not None:
+        gloss = row_of(scene.specular, index, point.x)
+    if scene.reflective is not None:
+        bounces = row_of(scene.reflective, index, point.x)
     return Surface(on, normal, bent, colour, gloss, bounces)
 
 

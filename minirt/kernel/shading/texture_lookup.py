@@ -8,7 +8,7 @@ from minirt.lanes import Vec, floor, gather, maximum, minimum
 from minirt.lanes.vec import Number
 
 
-def picture_at(texels: Any, pictures: Any, which: int, u: Number, v: Number) -> Vec:
+def texture_lookup(texels: Any, pictures: Any, which: int, u: Number, v: Number) -> Vec:
     """The colour of a picture at u, v, which run from 0 to 1 from left to right and from the bottom to the top.
 
     The pixels are `texels`; `pictures` has for each picture where it begins, its width, height and channels. Bilinear:

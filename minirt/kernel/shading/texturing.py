@@ -6,13 +6,13 @@ from typing import Any, NamedTuple
 
 from minirt.kernel.rows import mapping, read
 from minirt.kernel.scene_arrays import Group
-from minirt.kernel.shading.texture_lookup import height_slopes, picture_at
-from minirt.kernel.trace import over_kinds
+from minirt.kernel.shading.texture_lookup import height_slopes, texture_lookup
+from minirt.kernel.trace import for_each_kind
 from minirt.lanes import Vec, copysign, cross, dot, fabs, floor, inverse_root, splat, unit, where
 from minirt.lanes.vec import Number
 
 
-class Skins(NamedTuple):
+class SurfaceMaps(NamedTuple):
     """What is painted on n shapes, and the pictures. Each of the first four is None where no shape has such.
 
     The numbers of the pictures begin with 1; a shape without one has 0.
@@ -30,17 +30,17 @@ class Skins(NamedTuple):
 Mapped = tuple[Number, Number, Vec, Vec, int]
 
 
-def skinned(
+def apply_maps(
     skins: Any, groups: tuple[Group, ...], index: int, place: Any, point: Vec, normal: Vec, colour: Vec
 ) -> tuple[Vec, Vec]:
     """The normal by which places of a shape are lit, and their colour; the shape is at `place`, a group and a row."""
     if skins.used[index] != 0:
         nothing = splat(0.0, point.x)
         given = place[0], place[1], point, normal
-        u, v, along_u, along_v, _ = over_kinds(mapping_of_kind, groups, (nothing, nothing, point, point, 0), given)
+        u, v, along_u, along_v, _ = for_each_kind(mapping_of_kind, groups, (nothing, nothing, point, point, 0), given)
         colour = checkered(skins.checks, index, u, v, textured(skins.textures, skins, index, u, v, colour))
-        normal = raised(skins.bumps, skins, index, u, v, along_u, along_v, normal)
-        normal = turned(skins.normals, skins, index, u, v, along_u, along_v, normal)
+        normal = bump_mapped(skins.bumps, skins, index, u, v, along_u, along_v, normal)
+        normal = normal_mapped(skins.normals, skins, index, u, v, along_u, along_v, normal)
     return normal, colour
 
 
@@ -72,10 +72,12 @@ def textured(textures: Any, skins: Any, index: int, u: Number, v: Number, colour
         return colour
     if textures[index] == 0:
         return colour
-    return picture_at(skins.texels, skins.pictures, textures[index] - 1, u, v)
+    return texture_lookup(skins.texels, skins.pictures, textures[index] - 1, u, v)
 
 
-def raised(bumps: Any, skins: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec) -> Vec:
+def bump_mapped(
+    bumps: Any, skins: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec
+) -> Vec:
     """The normal of a surface raised by the heights of a picture (Blinn, Simulation of Wrinkled Surfaces, 1978).
 
     All lengths are in widths of the picture as it lies there. Of a normal that is not that of the tangents the slope
@@ -94,14 +96,16 @@ def raised(bumps: Any, skins: Any, index: int, u: Number, v: Number, along_u: Ve
     return unit(where(area == 0.0, normal, fabs(area) * normal + change))
 
 
-def turned(normals: Any, skins: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec) -> Vec:
+def normal_mapped(
+    normals: Any, skins: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec, normal: Vec
+) -> Vec:
     """The normal that a picture has in terms of the tangents and of the plain normal: in red, green and blue what it
     has along u, v and the normal."""
     if normals is None:
         return normal
     if normals[index] == 0:
         return normal
-    seen = signed(picture_at(skins.texels, skins.pictures, normals[index] - 1, u, v))
+    seen = signed(texture_lookup(skins.texels, skins.pictures, normals[index] - 1, u, v))
     right, up = inverse_length(along_u) * along_u, inverse_length(along_v) * along_v
     found = seen.x * right + seen.y * up + seen.z * normal
     squared = dot(found, found)

@@ -15,11 +15,11 @@ import numpy as np
 
 from minirt.kernel.bvh import queries
 from minirt.kernel.bvh.nodes import put, put_vec
-from minirt.kernel.scene_arrays import Traced
-from minirt.kernel.shading.environment import beyond, lit_sky
-from minirt.kernel.shading.shade import clearance, coloured, received
+from minirt.kernel.scene_arrays import SceneArrays
+from minirt.kernel.shading.environment import background_light, environment
+from minirt.kernel.shading.shade import clearance, coloured, direct_light
 from minirt.kernel.shading.surfaces import Surface, surfaces
-from minirt.kernel.trace import nearest
+from minirt.kernel.trace import closest_hit
 from minirt.lanes import Vec, any, dot, lane, load, maximum, rarely, splat, sqrt, unit, where, width
 from minirt.lanes.operations import BYTES, Mask
 from minirt.lanes.vec import Number
@@ -31,21 +31,21 @@ ROWS = 8
 MEMORY = (DEEPEST + 2) * ROWS * BYTES // 8
 
 
-def radiance(scene: Traced, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
+def radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
     """The light that arrives at `origin` against `direction`."""
-    t, owner, extent = nearest(scene, tile, origin, direction)
-    if scene.bounces is not None:
+    t, owner, extent = closest_hit(scene, tile, origin, direction)
+    if scene.reflective is not None:
         return whitted(scene, memory, t, owner, extent, origin + 0.0 * direction, direction)
     hit = t < inf
     nothing = splat(0.0, t)
     light = Vec(nothing, nothing, nothing)
     if any(hit):
-        light, _ = leaving(scene, memory, t, owner, extent, origin, direction, hit)
-    return lit_sky(scene, hit, light, direction)
+        light, _ = shade(scene, memory, t, owner, extent, origin, direction, hit)
+    return background_light(scene, hit, light, direction)
 
 
-def leaving(
-    scene: Traced, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec, hit: Mask
+def shade(
+    scene: SceneArrays, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec, hit: Mask
 ) -> tuple[Vec, Surface]:
     """The light of their own that surfaces send back along rays that hit them, and the surfaces."""
     found = surfaces(scene, memory, owner, origin + t * direction, hit)
@@ -54,16 +54,18 @@ def leaving(
     if rarely(away):  # the side that is seen counts
         normal = where(away, -normal, normal)
         bent = where(away, -bent, bent)
-    total, shine = received(scene, memory, found, normal, bent, direction, extent, hit)
+    total, shine = direct_light(scene, memory, found, normal, bent, direction, extent, hit)
     own = coloured(total, found.colour)
-    if scene.bounces is not None:
-        own = own * maximum(1.0 - found.bounces.x - found.bounces.y, 0.0)
-    if scene.gloss is not None:
+    if scene.reflective is not None:
+        own = own * maximum(1.0 - found.reflective.x - found.reflective.y, 0.0)
+    if scene.specular is not None:
         own = own + shine
     return own, found
 
 
-def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec) -> Vec:
+def whitted(
+    scene: SceneArrays, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec
+) -> Vec:
     """The light along rays whose hits are known, and along those that they send on, depth first."""
     paths = path_memory()
     weight = splat(1.0, t)
@@ -74,8 +76,8 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
         asked = weight > 0.0
         hit = asked & (t < inf)
         if any(hit):
-            own, found = leaving(scene, memory, t, owner, extent, origin, direction, hit)
-            point, normal, bounces = found.point, found.normal, found.bounces
+            own, found = shade(scene, memory, t, owner, extent, origin, direction, hit)
+            point, normal, bounces = found.point, found.normal, found.reflective
             light = where(hit, light + weight * own, light)  # rays that do not hit may have no number here
             if level < scene.depth:
                 rounding = clearance(point, extent)
@@ -99,7 +101,7 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
                     way = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * mirroring)
                     kept = where(through > LEAST, through, 0.0)
                     waiting = keep(paths, waiting, point - rounding * facing, way, kept, level)
-        light = light + beyond(scene, where(asked & ~hit, weight, 0.0), direction)
+        light = light + environment(scene, where(asked & ~hit, weight, 0.0), direction)
         if waiting == 0:
             break
         waiting -= 1
@@ -107,7 +109,7 @@ def whitted(scene: Traced, memory: Any, t: Number, owner: Number, extent: Number
         origin, direction = vec_from(paths, at, t), vec_from(paths, at + DIRECTION * width(t), t)
         weight = load(paths, at + WEIGHT * width(t))
         level = int(lane(load(paths, at + LEVEL * width(t)), 0))
-        t, owner, extent = queries.nearest(scene.tree, origin, direction, weight > 0.0)
+        t, owner, extent = queries.closest_hit(scene.bvh, origin, direction, weight > 0.0)
     return light
 
 

@@ -10,7 +10,7 @@ from numba import types
 
 from minirt.lanes import operations
 from minirt.lanes.compiled.inverse_root import inverse_root
-from minirt.lanes.compiled.registration import one_number, same_numbers, teach, two_numbers
+from minirt.lanes.compiled.registration import one_number, register, same_numbers, two_numbers
 from minirt.lanes.compiled.types import (
     Lanes,
     Mask,
@@ -29,13 +29,13 @@ ROUNDOFF = {64: 2.0**-53, 32: 2.0**-24}  # by the size of a number in bits
 
 
 def teach_llvm(function: Callable[..., Any], name: str, arguments: int) -> None:
-    @teach(function, one_number if arguments == 1 else two_numbers, [(ANY,) * arguments])
+    @register(function, one_number if arguments == 1 else two_numbers, [(ANY,) * arguments])
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         return llvm(builder, name, *same_numbers(context, builder, sig, args))
 
 
 def teach_choice(function: Callable[..., Any], symbol: str) -> None:
-    @teach(function, two_numbers, [(ANY, ANY)])
+    @register(function, two_numbers, [(ANY, ANY)])
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         a, b = same_numbers(context, builder, sig, args)
         return builder.select(builder.fcmp_ordered(symbol, a, b), a, b)
@@ -47,7 +47,7 @@ teach_llvm(operations.floor, "floor", 1)
 teach_llvm(operations.copysign, "copysign", 2)
 
 
-@teach(operations.inverse_root, one_number, [(ANY,)])
+@register(operations.inverse_root, one_number, [(ANY,)])
 def _inverse_root(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return inverse_root(context, builder, *same_numbers(context, builder, sig, args))
 
@@ -64,7 +64,7 @@ def words_of(number: types.Float, like: Any) -> tuple[ir.Type, int, int]:
     return ir.VectorType(word, like.type.count) if lanes else word, FRACTION[number.bitwidth], BIAS[number.bitwidth]
 
 
-@teach(operations.exponent, one_number, [(ANY,)])
+@register(operations.exponent, one_number, [(ANY,)])
 def _exponent(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     (x,) = same_numbers(context, builder, sig, args)
     words, fraction, bias = words_of(single(sig.return_type), x)
@@ -73,7 +73,7 @@ def _exponent(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.sitofp(builder.sub(stored, constant(stored, bias)), x.type)
 
 
-@teach(operations.two_to, one_number, [(ANY,)])
+@register(operations.two_to, one_number, [(ANY,)])
 def _two_to(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     (x,) = same_numbers(context, builder, sig, args)
     words, fraction, bias = words_of(single(sig.return_type), x)
@@ -83,13 +83,13 @@ def _two_to(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.bitcast(stored, x.type)
 
 
-@teach(operations.rounded_product, two_numbers, [(ANY, ANY)])
+@register(operations.rounded_product, two_numbers, [(ANY, ANY)])
 def _rounded_product(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     # Without the fence the flags of the kernel allow to fuse it with a sum that follows.
     return llvm(builder, "arithmetic.fence", builder.fmul(*same_numbers(context, builder, sig, args)))
 
 
-@teach(operations.product_error, two_numbers, [(ANY, ANY)])
+@register(operations.product_error, two_numbers, [(ANY, ANY)])
 def _product_error(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     a, b = same_numbers(context, builder, sig, args)
     return llvm(builder, "fma", a, b, builder.fneg(builder.fmul(a, b)))
@@ -108,7 +108,7 @@ def chosen(mask: types.Type, a: types.Type, b: types.Type) -> types.Type | None:
     return None
 
 
-@teach(operations.where, chosen, [(ANY, ANY, ANY)])
+@register(operations.where, chosen, [(ANY, ANY, ANY)])
 def _where(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     mask, a, b = args
     if isinstance(sig.return_type, VecType):
@@ -133,13 +133,13 @@ def _where(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     )
 
 
-@teach(operations.width, lambda x: types.int64 if isinstance(x, (Lanes, types.Array)) else None, [(ANY,)])
+@register(operations.width, lambda x: types.int64 if isinstance(x, (Lanes, types.Array)) else None, [(ANY,)])
 def _width(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     kind = sig.args[0]
     return context.get_constant(types.int64, (Lanes(kind.dtype) if isinstance(kind, types.Array) else kind).count)
 
 
-@teach(
+@register(
     operations.lane,
     lambda x, ray: x.number if isinstance(x, Lanes) and isinstance(ray, types.Integer) else None,
     [(Lanes, types.Integer)],
@@ -153,7 +153,7 @@ def like_the_second(x: types.Type, like: types.Type) -> types.Type | None:
     return like if is_number(x) and isinstance(like, (Lanes, types.Float)) else None
 
 
-@teach(operations.splat, like_the_second, [(ANY, ANY)])
+@register(operations.splat, like_the_second, [(ANY, ANY)])
 def _splat(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return widen(context, builder, args[0], sig.args[0], sig.return_type)
 
@@ -163,7 +163,7 @@ def single(x: types.Type) -> types.Type | None:
     return getattr(common(x), "number", common(x)) if is_number(x) else None
 
 
-@teach(operations.unit_roundoff, single, [(ANY,)])
+@register(operations.unit_roundoff, single, [(ANY,)])
 def _unit_roundoff(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return context.get_constant(sig.return_type, ROUNDOFF[sig.return_type.bitwidth])
 
@@ -173,7 +173,7 @@ def loaded(values: types.Type, start: types.Type) -> types.Type | None:
     return Lanes(values.dtype) if isinstance(values, types.Array) and isinstance(start, types.Integer) else None
 
 
-@teach(operations.load, loaded, [(types.Array, types.Integer)])
+@register(operations.load, loaded, [(types.Array, types.Integer)])
 def _load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     values = context.make_array(sig.args[0])(context, builder, value=args[0])
     place = builder.gep(values.data, [context.cast(builder, args[1], sig.args[1], types.intp)])
@@ -186,7 +186,7 @@ def gathered(values: types.Type, places: types.Type) -> types.Type | None:
     return places if isinstance(values, types.Array) and isinstance(places, Lanes) else None
 
 
-@teach(operations.gather, gathered, [(types.Array, Lanes)])
+@register(operations.gather, gathered, [(types.Array, Lanes)])
 def _gather(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     values = context.make_array(sig.args[0])(context, builder, value=args[0])
     lanes = sig.return_type
@@ -212,7 +212,7 @@ def saved(x: types.Type, values: types.Type, start: types.Type) -> types.Type | 
     return types.none if isinstance(values, types.Array) and x == Lanes(values.dtype) else None
 
 
-@teach(operations.save, saved, [(Lanes, types.Array, types.Integer)])
+@register(operations.save, saved, [(Lanes, types.Array, types.Integer)])
 def _save(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     values = context.make_array(sig.args[1])(context, builder, value=args[1])
     place = builder.gep(values.data, [context.cast(builder, args[2], sig.args[2], types.intp)])

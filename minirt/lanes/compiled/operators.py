@@ -9,7 +9,7 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 
-from minirt.lanes.compiled.registration import same_numbers, teach, two_numbers
+from minirt.lanes.compiled.registration import register, same_numbers, two_numbers
 from minirt.lanes.compiled.types import CONTRACT, Lanes, Mask, splat
 
 PAIRS = ((Lanes, Lanes), (Lanes, types.Number), (types.Number, Lanes))
@@ -28,13 +28,13 @@ def a_mask(a: types.Type, b: types.Type) -> types.Type | None:
 
 
 def teach_arithmetic(function: Callable[..., Any], instruction: str) -> None:
-    @teach(function, two_lanes, PAIRS)
+    @register(function, two_lanes, PAIRS)
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         return getattr(builder, instruction)(*same_numbers(context, builder, sig, args), flags=CONTRACT)
 
 
 def teach_comparison(function: Callable[..., Any], symbol: str) -> None:
-    @teach(function, a_mask, PAIRS)
+    @register(function, a_mask, PAIRS)
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         compare = builder.fcmp_unordered if symbol == "!=" else builder.fcmp_ordered
         return compare(symbol, *same_numbers(context, builder, sig, args))
@@ -47,7 +47,7 @@ def of_masks(a: types.Type, b: types.Type) -> types.Type | None:
 
 
 def teach_logic(function: Callable[..., Any], instruction: str) -> None:
-    @teach(function, of_masks, [(Mask, Mask), (Mask, types.Boolean), (types.Boolean, Mask)])
+    @register(function, of_masks, [(Mask, Mask), (Mask, types.Boolean), (types.Boolean, Mask)])
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         masks = (
             value if isinstance(kind, Mask) else splat(builder, value, sig.return_type.lanes.count)
@@ -76,11 +76,11 @@ for _function, _instruction in ((operator.and_, "and_"), (operator.or_, "or_"), 
     teach_logic(_function, _instruction)
 
 
-@teach(operator.neg, lambda a: a if isinstance(a, Lanes) else None, [(Lanes,)])
+@register(operator.neg, lambda a: a if isinstance(a, Lanes) else None, [(Lanes,)])
 def _negate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.fneg(args[0])
 
 
-@teach(operator.invert, lambda a: a if isinstance(a, Mask) else None, [(Mask,)])
+@register(operator.invert, lambda a: a if isinstance(a, Mask) else None, [(Mask,)])
 def _invert(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.not_(args[0])

@@ -9,7 +9,7 @@ from llvmlite import ir
 from numba import types
 
 from minirt.lanes import operations
-from minirt.lanes.compiled.registration import teach
+from minirt.lanes.compiled.registration import register
 from minirt.lanes.compiled.types import I32, Lanes, Mask, constant
 
 ANY = types.Any
@@ -20,7 +20,7 @@ def bits(builder: ir.IRBuilder, mask: Any) -> Any:
     return builder.bitcast(mask, ir.IntType(mask.type.count))
 
 
-@teach(operations.any, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
+@register(operations.any, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
 def _any(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     if sig.args[0] == types.boolean:
         return args[0]
@@ -28,19 +28,19 @@ def _any(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.icmp_unsigned("!=", whole, ir.Constant(whole.type, 0))
 
 
-@teach(operations.rarely, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
+@register(operations.rarely, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
 def _rarely(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     bit = ir.IntType(1)
     expect = builder.module.declare_intrinsic("llvm.expect", [bit], ir.FunctionType(bit, [bit, bit]))
     return builder.call(expect, [_any(context, builder, sig, args), ir.Constant(bit, 0)])
 
 
-@teach(operations.first, lambda mask: types.int64 if isinstance(mask, Mask) else None, [(Mask,)])
+@register(operations.first, lambda mask: types.int64 if isinstance(mask, Mask) else None, [(Mask,)])
 def _first(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.cttz(builder.zext(bits(builder, args[0]), ir.IntType(64)), ir.Constant(ir.IntType(1), 1))
 
 
-@teach(operations.greatest, lambda x: x.number if isinstance(x, Lanes) else None, [(Lanes,)])
+@register(operations.greatest, lambda x: x.number if isinstance(x, Lanes) else None, [(Lanes,)])
 def _greatest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     best = constant(args[0], -inf)
     best = builder.select(builder.fcmp_ordered(">", args[0], best), args[0], best)
@@ -53,6 +53,6 @@ def _greatest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.extract_element(best, ir.Constant(I32, 0))
 
 
-@teach(operations.lowest, lambda number: types.int64 if number == types.int64 else None, [(types.Integer,)])
+@register(operations.lowest, lambda number: types.int64 if number == types.int64 else None, [(types.Integer,)])
 def _lowest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.cttz(args[0], ir.Constant(ir.IntType(1), 1))

@@ -15,7 +15,7 @@ from minirt.lanes.compiled.types import common, is_number, widen
 Result = Callable[..., types.Type | None]  # the type of the result for types of arguments; None: not for these
 
 
-def teach(function: Callable[..., Any], result: Result, patterns: Iterable[tuple[Any, ...]]) -> Callable[..., Any]:
+def register(function: Callable[..., Any], result: Result, patterns: Iterable[tuple[Any, ...]]) -> Callable[..., Any]:
     """Decorator: `function` on arguments that match one of `patterns` is what the decorated generator emits."""
 
     def generic(self: Any, args: Any, kws: Any) -> Any:

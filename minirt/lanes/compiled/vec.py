@@ -11,7 +11,7 @@ from numba import types
 
 from minirt.lanes import operations, vec
 from minirt.lanes.compiled.inverse_root import inverse_root
-from minirt.lanes.compiled.registration import Result, same_numbers, teach
+from minirt.lanes.compiled.registration import Result, register, same_numbers
 from minirt.lanes.compiled.types import CONTRACT, VecType, common, constant, is_number, vec_of, vec_parts, widen
 
 ANY = types.Any
@@ -21,7 +21,7 @@ def three_numbers(x: types.Type, y: types.Type, z: types.Type) -> types.Type | N
     return VecType(common(x, y, z)) if all(map(is_number, (x, y, z))) else None
 
 
-@teach(vec.Vec, three_numbers, [(ANY, ANY, ANY)])
+@register(vec.Vec, three_numbers, [(ANY, ANY, ANY)])
 def _vec(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return vec_of(context, builder, sig.return_type, same_numbers(context, builder, sig, args))
 
@@ -54,7 +54,7 @@ def number_and_vec(a: types.Type, b: types.Type) -> types.Type | None:
 def teach_by_component(
     function: Callable[..., Any], instruction: str, result: Result, pattern: tuple[Any, ...]
 ) -> None:
-    @teach(function, result, [pattern])
+    @register(function, result, [pattern])
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         table = components(context, builder, sig, args, sig.return_type.number)
         parts = [getattr(builder, instruction)(*column, flags=CONTRACT) for column in zip(*table, strict=True)]
@@ -67,7 +67,7 @@ teach_by_component(operator.mul, "fmul", vec_and_number, (VecType, ANY))
 teach_by_component(operator.mul, "fmul", number_and_vec, (ANY, VecType))
 
 
-@teach(operator.truediv, vec_and_number, [(VecType, ANY)])
+@register(operator.truediv, vec_and_number, [(VecType, ANY)])
 def _divide(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     number = sig.return_type.number
     parts, (divisor, *_) = components(context, builder, sig, args, number)
@@ -75,7 +75,7 @@ def _divide(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return vec_of(context, builder, sig.return_type, [builder.fmul(part, inverse) for part in parts])
 
 
-@teach(operator.neg, lambda a: a if isinstance(a, VecType) else None, [(VecType,)])
+@register(operator.neg, lambda a: a if isinstance(a, VecType) else None, [(VecType,)])
 def _negate_vec(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return vec_of(context, builder, sig.return_type, [builder.fneg(part) for part in vec_parts(builder, args[0])])
 
@@ -85,12 +85,12 @@ def scalar_product(builder: ir.IRBuilder, a: list[Any], b: list[Any]) -> Any:
     return builder.fadd(builder.fadd(x, y, flags=CONTRACT), z, flags=CONTRACT)
 
 
-@teach(vec.dot, lambda a, b: getattr(two_vecs(a, b), "number", None), [(VecType, VecType)])
+@register(vec.dot, lambda a, b: getattr(two_vecs(a, b), "number", None), [(VecType, VecType)])
 def _dot(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return scalar_product(builder, *components(context, builder, sig, args, sig.return_type))
 
 
-@teach(operations.unit, lambda a: a if isinstance(a, VecType) else None, [(VecType,)])
+@register(operations.unit, lambda a: a if isinstance(a, VecType) else None, [(VecType,)])
 def _unit(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     parts = vec_parts(builder, args[0])
     factor = inverse_root(context, builder, scalar_product(builder, parts, parts))

@@ -11,7 +11,7 @@ import numpy as np
 
 from minirt.kernel.culling.binning import Grid
 from minirt.kernel.culling.light_buffer import AHEAD
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 
 CROWD = 1000  # shapes at least: with fewer a cube takes less time
 BESIDE = 8  # shapes at most
@@ -21,14 +21,14 @@ FINEST = 2.0**-18  # slope that a cell has at least: float32 could not tell clos
 BORDER = 4  # cells on each side for what of a shape at the edge of the crowd rounding and `SPREAD` may take out of it
 
 
-class Crowd(NamedTuple):
+class Cluster(NamedTuple):
     """A ball around most of the shapes."""
 
     middle: np.ndarray
     radius: float
 
 
-def crowd(tables: Tables) -> Crowd | None:
+def cluster(tables: ShapeArrays) -> Cluster | None:
     """The crowd of a scene; None where there is none."""
     boxes = np.delete(tables.boxes, tables.flat, axis=0) if len(tables.flat) else tables.boxes
     if len(boxes) < CROWD:
@@ -37,10 +37,10 @@ def crowd(tables: Tables) -> Crowd | None:
     away = boxes[:, :3] - middle
     reach = np.sqrt(np.einsum("ij,ij->i", away, away)) + np.sqrt(3) * boxes[:, 3]
     last = len(reach) - 1 - BESIDE
-    return Crowd(middle, float(np.partition(reach, last)[last]))
+    return Cluster(middle, float(np.partition(reach, last)[last]))
 
 
-def square_ahead(found: Crowd | None, lamp: np.ndarray, grid: int) -> Grid | None:
+def square_ahead(found: Cluster | None, lamp: np.ndarray, grid: int) -> Grid | None:
     """The cells ahead of a lamp; None where a cube with `grid` cells along an edge should be around it."""
     if found is None:
         return None

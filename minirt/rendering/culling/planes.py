@@ -6,7 +6,7 @@ import numpy as np
 
 from minirt.kernel.culling.binning import MARGIN, Grid
 from minirt.rendering.packing.lights import place_of
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Lamp, ParallelLight
 from minirt.shapes import Shape
 
@@ -37,7 +37,7 @@ def never_met(planes: np.ndarray, point: np.ndarray, direction: np.ndarray) -> n
     return never
 
 
-def idle(tables: Tables, eye: np.ndarray, lamp: Lamp) -> np.ndarray:
+def never_occludes(tables: ShapeArrays, eye: np.ndarray, lamp: Lamp) -> np.ndarray:
     """Which planes hide nothing that the eye sees from a lamp; never those that the eye sees through."""
     if isinstance(lamp, ParallelLight):
         found = never_met(tables.planes, eye, -np.array(lamp.direction))

@@ -9,9 +9,9 @@ import numpy as np
 
 from minirt.kernel.culling.binning import MARGIN, Grid
 from minirt.kernel.frame import TILE, tiles
-from minirt.rendering.culling.light_frustum import SPREAD, Crowd, square_ahead
+from minirt.rendering.culling.light_frustum import SPREAD, Cluster, square_ahead
 from minirt.rendering.culling.planes import heights, runs
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 
@@ -27,7 +27,7 @@ FEW, SIDE_BY_SIDE = 200, 8
 GRIDS = ((SMALL, 1), (30, 16), (200, 32), (20_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
 # Numbers above zero are in the order of their bits, the exponent first. The order of depth knows of those of a distance
-# the upper 25, from 2^-128 on: a distance to 2^-13 of it, which is more than `minirt.kernel.trace.NEARBY`.
+# the upper 25, from 2^-128 on: a distance to 2^-13 of it, which is more than `minirt.kernel.trace.COINCIDENT`.
 DROPPED = 39
 NEAREST = (1023 - 128) << (52 - DROPPED)
 
@@ -37,13 +37,13 @@ NO_CELLS = np.zeros(11)  # around a lamp
 class Lists(NamedTuple):
     """What may be met in each cell: `members[starts[kind, cell]:starts[kind, cell + 1]]`, the nearest first."""
 
-    starts: np.ndarray  # (kinds, cells + 1)
+    tile_starts: np.ndarray  # (kinds, cells + 1)
     members: np.ndarray
-    views: np.ndarray  # (n, 5) as in `minirt.kernel.scene_arrays`
-    around: np.ndarray = NO_CELLS  # (11,)
+    cones: np.ndarray  # (n, 5) as in `minirt.kernel.scene_arrays`
+    light_buffers: np.ndarray = NO_CELLS  # (11,)
 
 
-def grid_for(tables: Tables) -> int:
+def grid_for(tables: ShapeArrays) -> int:
     """Cells along an edge of the cube around a lamp; 1 where trying all shapes is faster than looking them up."""
     shapes = sum(weight(kind, len(rows)) for kind, rows in zip(tables.numbers, tables.rows, strict=True))
     return next(cells for most, cells in GRIDS if shapes <= most)
@@ -79,45 +79,45 @@ def cube(grid: int) -> Grid:
     return Grid(FACES, grid, grid, half, half, half, half, EDGE, 6 * grid * grid, -1)
 
 
-def seen_by_eye(kernel: Any, tables: Tables, camera: np.ndarray, width: int, height: int) -> Lists:
+def seen_by_eye(kernel: Any, tables: ShapeArrays, camera: np.ndarray, width: int, height: int) -> Lists:
     """The shapes in each tile of a picture. `kernel` is `minirt.kernel.culling.binning` or its compiled form."""
     return lists(kernel, tables, camera[:3], screen(camera, width, height), np.zeros(len(tables.planes), bool))
 
 
 def seen_by_lamp(
-    kernel: Any, tables: Tables, found: Crowd | None, lamp: np.ndarray, grid: int, skipped: np.ndarray
+    kernel: Any, tables: ShapeArrays, found: Cluster | None, lamp: np.ndarray, grid: int, skipped: np.ndarray
 ) -> Lists:
     """The shapes in each cell around a lamp, but for the planes that are `skipped` (p,)."""
     ahead = square_ahead(found, lamp, grid)
     seen = lists(kernel, tables, np.array(lamp), cube(grid) if ahead is None else ahead, skipped)
     if grid == 1:
-        return one_cell(tables, seen.views, skipped)
-    return seen._replace(around=around(grid, ahead))
+        return one_cell(tables, seen.cones, skipped)
+    return seen._replace(light_buffers=around(grid, ahead))
 
 
-def seen_by_sun(tables: Tables, grid: int, skipped: np.ndarray) -> Lists:
+def seen_by_sun(tables: ShapeArrays, grid: int, skipped: np.ndarray) -> Lists:
     """What parallel light may meet: everything in one cell, or with more cells, where a tree is walked, nothing."""
-    views = np.zeros((len(tables.places), 5))
+    views = np.zeros((len(tables.slots), 5))
     views[:, 3] = -2.0
     if grid == 1:
         return one_cell(tables, views, skipped)
     return Lists(np.zeros((len(tables.rows), 6 * grid * grid + 1), np.int64), np.zeros(0, np.int32), views)
 
 
-def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: np.ndarray) -> Lists:
+def lists(kernel: Any, tables: ShapeArrays, origin: np.ndarray, grid: Grid, skipped: np.ndarray) -> Lists:
     """The shapes in each cell of a grid around a point."""
     kinds, stride = len(tables.rows), grid.cells + 1
-    views, counts = np.zeros((len(tables.places), 5)), np.zeros(kinds * stride, np.int64)
+    views, counts = np.zeros((len(tables.slots), 5)), np.zeros(kinds * stride, np.int64)
     height = heights(tables.planes, origin)
     flat = np.zeros((0, 4), np.int64)
     if not skipped.all():
         shown = ~skipped
         which, cell, columns = runs(grid, -np.sign(height[shown, None]) * tables.planes[shown, :3])
         shape = tables.flat[shown][which]
-        cell += tables.places[shape, 0] * stride
+        cell += tables.slots[shape, 0] * stride
         if grid.elsewhere >= 0:
             shape = np.concatenate([shape, tables.flat[shown]])
-            cell = np.concatenate([cell, tables.places[tables.flat[shown], 0] * stride + grid.elsewhere])
+            cell = np.concatenate([cell, tables.slots[tables.flat[shown], 0] * stride + grid.elsewhere])
             columns = np.concatenate([columns, np.ones(shown.sum(), np.int64)])
         flat = np.stack([shape, cell, columns, np.ones_like(cell)], axis=1)
         begins, ends = (np.bincount(each, minlength=len(counts)) for each in (cell, cell + columns))
@@ -126,14 +126,14 @@ def lists(kernel: Any, tables: Tables, origin: np.ndarray, grid: Grid, skipped: 
     rectangles[: len(flat)] = flat
     slack = MARGIN * float(np.abs(origin).max())
     room = rectangles, len(flat), views, counts
-    used = kernel.cover(origin, grid, tables.balls, slack, tables.first, tables.places, *room)
+    used = kernel.project_all(origin, grid, tables.balls, slack, tables.first, tables.slots, *room)
     views[tables.flat, 3] = -2.0
     views[tables.flat, 4] = np.abs(height)
     views[:, 4], depths = by_depth(views[:, 4].copy())
     order = in_order(depths[rectangles[:used, 0]])
     starts = np.cumsum(counts)  # for now the ends
     members = np.empty(starts[-1] if kinds else 0, np.int32)
-    kernel.fill(rectangles, order, grid.across, starts, members)
+    kernel.fill_bins(rectangles, order, grid.across, starts, members)
     return Lists(starts.reshape(kinds, stride), members, views)
 
 
@@ -152,10 +152,10 @@ def in_order(depths: np.ndarray) -> np.ndarray:
     return order
 
 
-def one_cell(tables: Tables, views: np.ndarray, skipped: np.ndarray) -> Lists:
+def one_cell(tables: ShapeArrays, views: np.ndarray, skipped: np.ndarray) -> Lists:
     """All shapes in a single cell."""
     shapes = np.delete(np.arange(len(views)), tables.flat[skipped])
-    kinds = tables.places[shapes, 0]
+    kinds = tables.slots[shapes, 0]
     order = np.lexsort((views[shapes, 4], kinds))
     starts = np.searchsorted(kinds[order], np.arange(len(tables.rows))[:, None] + [0, 1])
     return Lists(starts, shapes[order].astype(np.int32), views)

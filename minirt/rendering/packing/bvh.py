@@ -9,8 +9,8 @@ import numpy as np
 from minirt.kernel.bvh.build import BINS, GROUP, INDEX, Binary
 from minirt.kernel.bvh.nodes import NODE, WIDTH, Group, Tree
 from minirt.kernel.rows import kind_of, row_type
-from minirt.rendering.packing.primitives import parts_of
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.primitives import primitives_of
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Kind
 
 LINE = 64  # bytes of a line of the cache
@@ -23,44 +23,44 @@ def block_type(kind: Kind) -> np.dtype[Any]:
     return np.dtype([(name, np.float64, (*fields[name].shape, WIDTH)) for name in fields.names or ()])
 
 
-def boxes_of(tables: Tables) -> tuple[np.ndarray, np.ndarray]:
+def boxes_of(tables: ShapeArrays) -> tuple[np.ndarray, np.ndarray]:
     """The boxes of the shapes as `Binary` has them, and the indices of the shapes that have no end."""
     bounds = [shape.bounds() for shape in tables.shapes]
     endless = tables.start[np.array([index for index, box in enumerate(bounds) if not box], np.int64)]
-    bounded = np.delete(np.arange(len(tables.places)), endless)
+    bounded = np.delete(np.arange(len(tables.slots)), endless)
     corners = np.repeat([box or EMPTY for box in bounds], np.diff(tables.start), axis=0)
     for index, shape in enumerate(tables.shapes):
         if shape.parts > 1:
-            corners[tables.start[index] : tables.start[index + 1]] = parts_of([shape]).boxes
+            corners[tables.start[index] : tables.start[index + 1]] = primitives_of([shape]).boxes
     boxes = np.empty((len(bounded), 8))
     boxes[:, :3], boxes[:, 3:6] = -corners[bounded, 0], corners[bounded, 1]
-    boxes[:, INDEX], boxes[:, GROUP] = bounded, tables.places[bounded, 0]
+    boxes[:, INDEX], boxes[:, GROUP] = bounded, tables.slots[bounded, 0]
     return boxes, endless
 
 
-def tree_of(tables: Tables, kernel: Any) -> Tree:
+def bvh_of(tables: ShapeArrays, kernel: Any) -> Tree:
     """The tree over the shapes of some tables, built by the functions of `kernel`, compiled or not."""
     boxes, endless = boxes_of(tables)
     nodes, leaves = wide_nodes(boxes, kernel)
     # Each kind has its blocks in the order of the leaves.
     kinds = boxes[leaves[:, 0], GROUP]
     blocks = np.zeros(len(leaves), np.int64)
-    extents = np.ascontiguousarray(tables.looks[:, 3])
+    extents = np.ascontiguousarray(tables.colours_and_extents[:, 3])
     groups = []
     for group, rows in enumerate(tables.rows):
         mine = np.flatnonzero(kinds == group)
         blocks[mine] = np.arange(len(mine))
         start, stop = leaves[mine, :2, None].transpose(1, 0, 2)
         owners = boxes[np.minimum(start + np.arange(WIDTH), stop - 1), INDEX].astype(np.int64)
-        table = side_by_side(rows, tables.places[owners, 1])
+        table = side_by_side(rows, tables.slots[owners, 1])
         labels = np.stack([owners, extents[owners]], axis=-1)
-        groups.append(Group(rows, table, labels, endless[tables.places[endless, 0] == group]))
+        groups.append(Group(rows, table, labels, endless[tables.slots[endless, 0] == group]))
     names = nodes.reshape(-1, 7, WIDTH)[:, 6]
     leaf = names < 0
     which = (-1 - names[leaf]).astype(np.int64)
     names[leaf] = -1 - (blocks[which] * len(groups) + kinds[which])
     names[...] = names.astype(np.int32).view(np.uint32).astype(np.uint64).view(np.float64)
-    return Tree(nodes, extents, tables.places, tuple(groups))
+    return Tree(nodes, extents, tables.slots, tuple(groups))
 
 
 def wide_nodes(boxes: np.ndarray, kernel: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -12,62 +12,62 @@ from minirt.shapes import Shape
 
 # In words, each with the fields of `minirt.kernel.scene_arrays` or `minirt.kernel.shading.texturing` that it stands for.
 FEATURES = {
-    "gloss": "highlights",
-    "bounces": "mirrors and glass",
+    "specular": "highlights",
+    "reflective": "mirrors and glass",
     "checks": "checkerboards",
     "textures": "textures",
     "bumps": "bumps",
     "normals": "maps of normals",
-    "beams": "spots, parallel and fading light",
-    "sky": "a coloured background",
-    "dome": "a picture as background",
+    "spots": "spots, parallel and fading light",
+    "background": "a coloured background",
+    "environment": "a picture as background",
 }
 DEPTH = 8  # how often light is mirrored or refracted on its way, at most
 ATTRIBUTES = attrgetter("specular", "mirror", "glass", "checker", "texture", "bump", "normal_map")
 PLAIN = (None,) * 7
 
 
-def traits(scene: Scene) -> frozenset[Hashable]:
+def features(scene: Scene) -> frozenset[Hashable]:
     """The kinds of shapes in the scene, "parallel" where a lamp is, and the keys of `FEATURES` that it uses."""
-    return frozenset().union(*(page.ask(traits_of_all) for page in scene.pages))
+    return frozenset().union(*(page.ask(features_of_items) for page in scene.pages))
 
 
-def parts(scene: Scene) -> int:
+def primitive_count(scene: Scene) -> int:
     """How many things the kernel knows: shapes, of meshes the triangles."""
-    return sum(page.ask(parts_of_all) for page in scene.pages)
+    return sum(page.ask(primitive_count_of_items) for page in scene.pages)
 
 
-def parts_of_all(items: Iterable[Element | str]) -> int:
+def primitive_count_of_items(items: Iterable[Element | str]) -> int:
     """Those of some elements."""
     return sum(item.parts for item in items if isinstance(item, Shape))
 
 
-def traits_of_all(items: Iterable[Element | str]) -> frozenset[Hashable]:
+def features_of_items(items: Iterable[Element | str]) -> frozenset[Hashable]:
     """Those of some elements."""
-    return frozenset().union(*map(traits_of, items))
+    return frozenset().union(*map(features_of, items))
 
 
-def traits_of(item: Element | str) -> Iterable[Hashable]:
+def features_of(item: Element | str) -> Iterable[Hashable]:
     """Those of an element."""
     if isinstance(item, Shape):
         kind: Any = type(item)
-        return (kind,) if ATTRIBUTES(item) == PLAIN else (kind, *dressed(item))
+        return (kind,) if ATTRIBUTES(item) == PLAIN else (kind, *material_features(item))
     if isinstance(item, Lamp) and item.brightness and any(item.colour):
         if isinstance(item, ParallelLight):
-            return "beams", "parallel"
+            return "spots", "parallel"
         if isinstance(item, SpotLight) or (isinstance(item, Light) and item.fade is not None):
-            return ("beams",)
+            return ("spots",)
     if isinstance(item, Background):
-        return (("dome",) if isinstance(item.paint, str) else ("sky",)) if any(item.paint) else ()
+        return (("environment",) if isinstance(item.paint, str) else ("background",)) if any(item.paint) else ()
     return ()
 
 
-def dressed(shape: Shape) -> Iterable[str]:
+def material_features(shape: Shape) -> Iterable[str]:
     """The features that a shape uses."""
     if shape.specular and shape.specular.share:
-        yield "gloss"
+        yield "specular"
     if shape.mirror or (shape.glass and shape.glass.share):
-        yield "bounces"
+        yield "reflective"
     if shape.checker:
         yield "checks"
     if shape.texture:

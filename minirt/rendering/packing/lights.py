@@ -33,7 +33,7 @@ def place_of(lamp: Lamp) -> np.ndarray:
     return np.array(lamp.position if isinstance(lamp, Light | SpotLight) else (0.0, 0.0, 0.0))
 
 
-def beam_numbers(lamps: list[Lamp]) -> np.ndarray:
+def spot_numbers(lamps: list[Lamp]) -> np.ndarray:
     """How the light of each goes, (m, 7), see `minirt.kernel.shading.lights`."""
     return np.array([(*cone_of(lamp), *reach_of(lamp)) for lamp in lamps], np.float64).reshape(len(lamps), 7)
 

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.shading.environment import Dome
-from minirt.kernel.shading.texturing import Skins
+from minirt.kernel.shading.environment import Environment
+from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import picture_cache
 from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
 from minirt.scene import Scene
@@ -17,16 +17,16 @@ from minirt.shapes import Shape
 
 Worn = list[tuple[int, Shape]]  # the shapes that have attributes, with their numbers
 PAINTED = {"checks", "textures", "bumps", "normals"}
-WORN = {"gloss", "bounces", *PAINTED}
+WORN = {"specular", "reflective", *PAINTED}
 Reader = Callable[[Path], np.ndarray]
 
 
 class Materials(NamedTuple):
-    """Fields of `minirt.kernel.scene_arrays.Traced`."""
+    """Fields of `minirt.kernel.scene_arrays.SceneArrays`."""
 
-    gloss: Any
-    bounces: Any
-    skins: Any
+    specular: Any
+    reflective: Any
+    surface_maps: Any
 
 
 def materials_of(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
@@ -37,13 +37,13 @@ def materials_of(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materi
     worn = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     count = len(scene.shapes)
     return Materials(
-        gloss_of(worn, count)[owner] if "gloss" in used else None,
-        bounces_of(worn, count)[owner] if "bounces" in used else None,
-        skins_of(scene, worn, owner, used) if used & PAINTED else None,
+        specular_of(worn, count)[owner] if "specular" in used else None,
+        reflective_of(worn, count)[owner] if "reflective" in used else None,
+        surface_maps_of(scene, worn, owner, used) if used & PAINTED else None,
     )
 
 
-def gloss_of(worn: Worn, count: int) -> np.ndarray:
+def specular_of(worn: Worn, count: int) -> np.ndarray:
     """See `minirt.kernel.shading.specular`."""
     gloss = np.zeros((count, 3))
     for i, shape in worn:
@@ -52,7 +52,7 @@ def gloss_of(worn: Worn, count: int) -> np.ndarray:
     return gloss
 
 
-def bounces_of(worn: Worn, count: int) -> np.ndarray:
+def reflective_of(worn: Worn, count: int) -> np.ndarray:
     """See `minirt.kernel.shading.whitted`. Shares that are more than all together are made smaller alike."""
     bounces = np.tile([0.0, 0.0, 1.0], (count, 1))
     for i, shape in worn:
@@ -63,7 +63,7 @@ def bounces_of(worn: Worn, count: int) -> np.ndarray:
     return bounces
 
 
-def skins_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hashable]) -> Skins:
+def surface_maps_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hashable]) -> SurfaceMaps:
     """See `minirt.kernel.shading.texturing`."""
     count, album = len(scene.shapes), Album(scene)
     checks = np.zeros((count, 4))
@@ -79,7 +79,7 @@ def skins_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hashable]) -
         if shape.normal_map:
             normals[i] = album.number(shape.normal_map, picture_cache.picture)
         mark[i] = bool(shape.checker or shape.texture or bumps[i, 0] or shape.normal_map)
-    return Skins(
+    return SurfaceMaps(
         checks=checks[owner] if "checks" in used else None,
         textures=textures[owner] if "textures" in used else None,
         bumps=bumps[owner] if "bumps" in used else None,
@@ -89,11 +89,11 @@ def skins_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hashable]) -
     )
 
 
-def dome_of(scene: Scene, file: str) -> Dome:
+def environment_of(scene: Scene, file: str) -> Environment:
     """The picture of a background."""
     album = Album(scene)
     album.number(file, picture_cache.picture)
-    return Dome(**album.bound())
+    return Environment(**album.bound())
 
 
 class Album:
@@ -112,7 +112,7 @@ class Album:
         return self.numbers[read, file]
 
     def bound(self) -> dict[str, np.ndarray]:
-        """`texels` and `pictures` of `Skins`."""
+        """`texels` and `pictures` of `SurfaceMaps`."""
         ends = np.cumsum([page.size for page in self.pages])
         texels = [page.ravel() * np.float32(1 / 255 if page.dtype == np.uint8 else 1) for page in self.pages]
         rows = [

@@ -15,7 +15,7 @@ from minirt.shapes.mesh import Mesh
 EVERYWHERE: tuple[Ball, ...] = (((0.0, 0.0, 0.0), np.inf),)  # where a shape lies that has no end and is no plane
 
 
-class Parts(NamedTuple):
+class Primitives(NamedTuple):
     """The n parts of shapes of a kind, one shape after the other."""
 
     rows: np.ndarray  # (n, r) their packed form, number by number
@@ -23,28 +23,28 @@ class Parts(NamedTuple):
     balls: np.ndarray  # (n, b, 4) centre and radius: each lies in the hull of b balls; none around planes
 
 
-def parts_of(shapes: list[Shape]) -> Parts:
+def primitives_of(shapes: list[Shape]) -> Primitives:
     """The parts of some shapes of a kind."""
     if isinstance(shapes[0], Mesh):
         rows = [shape.rows() for shape in shapes if isinstance(shape, Mesh)]
-        return Parts(*map(np.concatenate, zip(*map(of_triangles, rows), strict=True)))
-    return Parts(numbers([shape.pack() for shape in shapes]), boxes(shapes), balls_of(shapes))
+        return Primitives(*map(np.concatenate, zip(*map(of_triangles, rows), strict=True)))
+    return Primitives(numbers([shape.pack() for shape in shapes]), boxes(shapes), balls_of(shapes))
 
 
-def of_triangles(rows: np.ndarray) -> Parts:
+def of_triangles(rows: np.ndarray) -> Primitives:
     """Those of the triangles of a mesh: the corners come first in a row."""
     corners = rows[:, :9].reshape(-1, 3, 3)
     balls = np.zeros((len(rows), 3, 4))
     balls[..., :3] = corners
     a, b, c = corners.transpose(1, 0, 2)
     low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
-    return Parts(rows, np.stack([low, high], axis=1), balls)
+    return Primitives(rows, np.stack([low, high], axis=1), balls)
 
 
 def balls_of(shapes: list[Shape]) -> np.ndarray:
     """`Parts.balls`."""
     if isinstance(shapes[0], Mesh):
-        return parts_of(shapes).balls
+        return primitives_of(shapes).balls
     hulls = [() if shape.flat() else shape.balls() or EVERYWHERE for shape in shapes]
     return np.array([[(*centre, radius) for centre, radius in hull] for hull in hulls]).reshape(len(shapes), -1, 4)
 

@@ -9,14 +9,14 @@ import numpy as np
 
 from minirt.kernel.culling.binning import MARGIN
 from minirt.kernel.rows import row_type
-from minirt.rendering.packing.primitives import balls_of, parts_of
+from minirt.rendering.packing.primitives import balls_of, primitives_of
 from minirt.shapes import ALL_KINDS, Shape
 
 PIECE = 4096  # shapes that are compared or written at once: their Python objects come and go in the processor's cache
 ONE = np.arange(1)
 
 
-class Tables:
+class ShapeArrays:
     """The last shapes that it was told of, n of them, those of each kind in rows of their own. A mesh counts for as
     many as it has parts: what is said of shapes in these arrays is said of the parts, of which `owner` (n,) tells the
     index in `shapes`, and `start` the first of each of those.
@@ -43,7 +43,7 @@ class Tables:
             others, changed = True, self.make_room(shapes)
         self.shapes = shapes
         indices = np.array(changed, np.int64)
-        groups = self.places[self.start[indices], 0]
+        groups = self.slots[self.start[indices], 0]
         for group in range(len(self.rows)):
             mine = indices[groups == group]
             parts = np.sum(self.start[mine + 1] - self.start[mine])
@@ -58,7 +58,7 @@ class Tables:
         new = shapes[start : len(shapes) - behind]
         gone = len(self.shapes) - behind
         if len(new) <= PIECE and all(type(shape) in self.numbers for shape in new):
-            kept = np.delete(self.places[:, 0], slice(self.start[start], self.start[gone]))
+            kept = np.delete(self.slots[:, 0], slice(self.start[start], self.start[gone]))
             if set(np.unique(kept)) | {self.numbers[type(shape)] for shape in new} == set(self.numbers.values()):
                 self.splice(start, gone, new)
                 return list(range(start, start + len(new)))
@@ -75,8 +75,8 @@ class Tables:
         self.rows = tuple(np.zeros(0, row_type(kind)) for kind in used)
         self.is_flat = np.array([each.flat() is not None for each in examples], bool)
         self.counts = np.array([balls_of([each]).shape[1] for each in examples], np.int64)
-        self.places, self.start, self.owner = np.zeros((0, 2), np.int64), np.zeros(1, np.int64), np.zeros(0, np.int64)
-        self.looks, self.boxes = np.zeros((0, 4)), np.zeros((0, 4))
+        self.slots, self.start, self.owner = np.zeros((0, 2), np.int64), np.zeros(1, np.int64), np.zeros(0, np.int64)
+        self.colours_and_extents, self.boxes = np.zeros((0, 4)), np.zeros((0, 4))
         self.planes, self.balls, self.first = np.zeros((0, 5)), np.zeros((0, 4)), np.zeros(1, np.int64)
         self.splice(0, 0, shapes)
         self.shapes = shapes
@@ -88,8 +88,8 @@ class Tables:
         new = np.repeat(numbers, sizes)
         sizes = np.concatenate([np.diff(self.start[: start + 1]), sizes, np.diff(self.start[gone:])])
         begin, end = self.start[start], self.start[gone]
-        before, behind = self.places[:begin, 0], self.places[:end, 0]
-        groups = np.concatenate([before, new, self.places[end:, 0]])
+        before, behind = self.slots[:begin, 0], self.slots[:end, 0]
+        groups = np.concatenate([before, new, self.slots[end:, 0]])
         self.rows = tuple(
             spliced(rows, np.sum(before == group), np.sum(behind == group), np.sum(new == group))
             for group, rows in enumerate(self.rows)
@@ -97,12 +97,12 @@ class Tables:
         flat = [np.sum(self.is_flat[part]) for part in (before, behind, new)]
         self.planes = spliced(self.planes, *flat)
         self.balls = spliced(self.balls, self.first[begin], self.first[end], self.counts[new].sum())
-        self.looks = spliced(self.looks, begin, end, len(new))
+        self.colours_and_extents = spliced(self.colours_and_extents, begin, end, len(new))
         self.boxes = spliced(self.boxes, begin, end, len(new))
-        self.places = np.zeros((len(groups), 2), np.int64)
-        self.places[:, 0] = groups
+        self.slots = np.zeros((len(groups), 2), np.int64)
+        self.slots[:, 0] = groups
         for group, rows in enumerate(self.rows):
-            self.places[groups == group, 1] = np.arange(len(rows))
+            self.slots[groups == group, 1] = np.arange(len(rows))
         self.flat = np.flatnonzero(self.is_flat[groups])
         self.first = np.concatenate([[0], np.cumsum(self.counts[groups])])
         self.start = np.concatenate([[0], np.cumsum(sizes)])
@@ -111,16 +111,16 @@ class Tables:
     def write(self, group: int, shapes: np.ndarray) -> None:
         """Put some shapes of one kind, of these indices, into the arrays."""
         members = [self.shapes[index] for index in shapes.tolist()]
-        parts = parts_of(members)
+        parts = primitives_of(members)
         sizes = self.start[shapes + 1] - self.start[shapes]
         indices = np.repeat(self.start[shapes] - np.cumsum(sizes) + sizes, sizes) + np.arange(len(parts.rows))
         rows = self.rows[group].view(np.float64).reshape(len(self.rows[group]), -1)
-        rows[self.places[indices, 1]] = parts.rows
+        rows[self.slots[indices, 1]] = parts.rows
         corners = np.ascontiguousarray(np.moveaxis(parts.boxes, 0, 2))  # (2, 3, n), an eighth of the time to reduce
         low, high = corners.min(axis=0), corners.max(axis=0)
         extents = np.maximum(np.abs(low), np.abs(high)).max(axis=0)
-        self.looks[indices, :3] = np.repeat([shape.colour for shape in members], sizes, axis=0) / 255
-        self.looks[indices, 3] = extents
+        self.colours_and_extents[indices, :3] = np.repeat([shape.colour for shape in members], sizes, axis=0) / 255
+        self.colours_and_extents[indices, 3] = extents
         self.boxes[indices, :3] = corners.mean(axis=0).T
         self.boxes[indices, 3] = (high - low).max(axis=0) / 2
         if self.is_flat[group]:

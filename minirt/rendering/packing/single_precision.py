@@ -10,34 +10,34 @@ import numpy as np
 
 from minirt.kernel.culling.light_buffer import SPREAD
 from minirt.kernel.rows import kind_of, place_fields, row_type
-from minirt.kernel.scene_arrays import Group, Traced
+from minirt.kernel.scene_arrays import Group, SceneArrays
 
 MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
 
 
-def in_single(traced: Traced, boxes: np.ndarray) -> Traced:
+def in_single(traced: SceneArrays, boxes: np.ndarray) -> SceneArrays:
     """The scene in float32, the eye at the origin; `boxes` as in `minirt.rendering.packing.shape_arrays`."""
     eye = traced.camera[:3]
-    looks = traced.looks.copy()
+    looks = traced.colours_and_extents.copy()
     looks[:, 3] = np.abs(boxes[:, :3] - eye).max(axis=1) + boxes[:, 3]
     here = np.concatenate([eye, np.zeros(3)])
-    return Traced(
+    return SceneArrays(
         camera=rounded(np.concatenate([np.zeros(3), traced.camera[3:]])),
         ambient=rounded(traced.ambient),
         lights=rounded(traced.lights - here),
-        looks=rounded(looks),
-        places=traced.places,
-        seen=traced.seen,
-        views=wider(traced.views),
-        grid=traced.grid,
-        around=narrower(traced.around),
-        lit=traced.lit,
-        lamp_views=wider(traced.lamp_views),
-        groups=tuple(Group(moved(group.rows, eye), group.starts, group.lamp_starts) for group in traced.groups),
-        beams=known(traced.beams),
-        gloss=known(traced.gloss),
-        skins=traced.skins and traced.skins._replace(checks=known(traced.skins.checks)),
-        sky=known(traced.sky),
+        colours_and_extents=rounded(looks),
+        slots=traced.slots,
+        tile_shapes=traced.tile_shapes,
+        cones=wider(traced.cones),
+        light_buffer_cells=traced.light_buffer_cells,
+        light_buffers=narrower(traced.light_buffers),
+        light_shapes=traced.light_shapes,
+        light_cones=wider(traced.light_cones),
+        groups=tuple(Group(moved(group.rows, eye), group.tile_starts, group.light_starts) for group in traced.groups),
+        spots=known(traced.spots),
+        specular=known(traced.specular),
+        surface_maps=traced.surface_maps and traced.surface_maps._replace(checks=known(traced.surface_maps.checks)),
+        background=known(traced.background),
     )
 
 

@@ -11,10 +11,10 @@ from minirt.fields import Triple
 from minirt.kernel.culling import binning
 from minirt.kernel.frame import TILE, tiles, towards
 from minirt.kernel.rows import kind_of
-from minirt.kernel.trace import NEARBY, nearest
+from minirt.kernel.trace import COINCIDENT, closest_hit
 from minirt.lanes import Vec, lane, splat, unit
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.silhouette import covered
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Scene
@@ -22,12 +22,12 @@ from minirt.shapes import ALL_KINDS, Shape
 from minirt.shapes.mesh import Mesh
 
 
-def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: Tables | None = None) -> Shape | None:
+def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: ShapeArrays | None = None) -> Shape | None:
     """The shape in the middle of pixel x, y of a picture of that size, or None where there is none.
 
     `tables` are brought up to date; those of the last picture save the time of making them.
     """
-    tables = tables or Tables()
+    tables = tables or ShapeArrays()
     tables.update(scene.shapes)
     camera = pixel_rays(camera_numbers(scene.camera, width, height), width, height)
     origin, direction = Vec(*camera[:3]), unit(towards(camera, x + 0.5, y + 0.5))
@@ -41,7 +41,7 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: Tables |
         packing = Packing(binning)
         traced = packing.pack(Scene((scene.camera, *parts), scene.file), width, height)
         rays = Vec(*(splat(part, camera) for part in (direction.x, direction.y, direction.z)))
-        _, owner, _ = nearest(traced, y // TILE * tiles(width) + x // TILE, origin, rays)
+        _, owner, _ = closest_hit(traced, y // TILE * tiles(width) + x // TILE, origin, rays)
     return tables.shapes[int(owners[packing.tables.owner[int(lane(owner, 0))]])]
 
 
@@ -74,14 +74,14 @@ def met(shape: Shape, camera: Camera, width: int, height: int, x: Any, y: Any) -
         return hit, t, origin, direction
 
 
-def in_front(tables: Tables, origin: Vec, direction: Vec) -> np.ndarray:
+def in_front(tables: ShapeArrays, origin: Vec, direction: Vec) -> np.ndarray:
     """Of the parts that a ray hits the nearest, and those so close to it that they may be in the same place."""
-    distance = np.full(len(tables.places), np.inf)
+    distance = np.full(len(tables.slots), np.inf)
     for group, rows in enumerate(tables.rows):
         hit, t = kind_of(rows.dtype.names).intersect(columns(rows), origin, direction)
-        distance[tables.places[:, 0] == group] = np.where(hit, t, np.inf)
+        distance[tables.slots[:, 0] == group] = np.where(hit, t, np.inf)
     least = distance.min(initial=np.inf)
-    return np.flatnonzero(np.isfinite(distance) & (distance <= least * (1 + 2 * NEARBY)))
+    return np.flatnonzero(np.isfinite(distance) & (distance <= least * (1 + 2 * COINCIDENT)))
 
 
 def columns(rows: Any) -> Any:

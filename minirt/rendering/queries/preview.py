@@ -11,7 +11,7 @@ import numpy as np
 
 from minirt.kernel.culling import binning
 from minirt.kernel.frame import level, towards
-from minirt.kernel.scene_arrays import Traced
+from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.whitted import radiance
 from minirt.lanes import Vec, unit
 from minirt.rendering.frame_arguments import memory_for
@@ -47,19 +47,19 @@ def picture(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarr
     return pixels, light
 
 
-def in_one_list(traced: Traced) -> Traced:
+def in_one_list(traced: SceneArrays) -> SceneArrays:
     """The scene without mirrors, with a single tile, and around each lamp a single cell, in which all shapes are."""
-    kinds = traced.places[:, 0]
+    kinds = traced.slots[:, 0]
     starts = np.searchsorted(np.sort(kinds), np.arange(len(traced.groups) + 1))
     lamps = np.arange(len(traced.lights))[:, None] * len(kinds)
-    by_lamp = [np.lexsort((near, kinds)) for near in traced.lamp_views[..., 4]]
+    by_lamp = [np.lexsort((near, kinds)) for near in traced.light_cones[..., 4]]
     return traced._replace(
-        seen=np.lexsort((traced.views[:, 4], kinds)),
-        grid=1,
-        tree=None,
-        lit=np.array(by_lamp, np.int64).ravel(),
+        tile_shapes=np.lexsort((traced.cones[:, 4], kinds)),
+        light_buffer_cells=1,
+        bvh=None,
+        light_shapes=np.array(by_lamp, np.int64).ravel(),
         groups=tuple(
-            group._replace(starts=starts[kind : kind + 2], lamp_starts=lamps + starts[kind : kind + 2])
+            group._replace(tile_starts=starts[kind : kind + 2], light_starts=lamps + starts[kind : kind + 2])
             for kind, group in enumerate(traced.groups)
         ),
     )

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from minirt.rendering.running.cores import usable_cores
-from minirt.rendering.running.thread_pool import Workers
+from minirt.rendering.running.thread_pool import ThreadPool
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
@@ -71,14 +71,14 @@ class Tracer:
         self.busy = Lock()
 
     @cached_property
-    def workers(self) -> Workers:
+    def workers(self) -> ThreadPool:
         """The threads that trace."""
-        return Workers(self.threads)
+        return ThreadPool(self.threads)
 
     @cached_property
     def tables(self) -> Any:
         """The shapes of the last scene."""
-        return import_module("minirt.rendering.packing.shape_arrays").Tables()
+        return import_module("minirt.rendering.packing.shape_arrays").ShapeArrays()
 
     @cached_property
     def kernel(self) -> Any:
@@ -97,7 +97,7 @@ class Tracer:
                     self.plant(scene.shapes)
                 # The caller's thread only waits, so that Ctrl+C reaches it.
                 counter = np.zeros(1, np.int64)
-                job = partial(self.kernel.trace_rays, counter, self.tree, origins, directions, *hits)
+                job = partial(self.kernel.trace_rays, counter, self.bvh, origins, directions, *hits)
                 self.workers.run([job] * self.threads, partial(counter.fill, count))
                 there = hits.owner >= 0
                 hits.owner[there] = self.tables.owner[hits.owner[there]]
@@ -107,7 +107,7 @@ class Tracer:
         """Build the tree over the shapes of a scene."""
         self.shapes = None
         self.tables.update(shapes)
-        self.tree = import_module("minirt.rendering.packing.bvh").tree_of(self.tables, self.kernel)
+        self.bvh = import_module("minirt.rendering.packing.bvh").bvh_of(self.tables, self.kernel)
         self.shapes = shapes
 
 

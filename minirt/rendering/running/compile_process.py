@@ -19,7 +19,7 @@ COMMAND = (
 )  # -P: nothing is imported from the current folder
 
 
-class Helper:
+class CompileProcess:
     """Compiles a kernel at a time."""
 
     process: subprocess.Popen[bytes] | None = None

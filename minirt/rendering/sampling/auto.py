@@ -20,7 +20,7 @@ import numpy as np
 from minirt.kernel.frame import DOWN
 from minirt.rendering.sampling.adaptive import edge_packets
 from minirt.rendering.sampling.allocation import CONTRASTS, allocate, coefficients
-from minirt.rendering.sampling.outcome import Reached
+from minirt.rendering.sampling.outcome import Outcome
 from minirt.rendering.sampling.replicates import Replicates
 from minirt.rendering.sampling.sobol import digital_shifts, shifted, sobol
 
@@ -54,7 +54,7 @@ class Auto:
         rows, columns = map(np.arange, self.halves.packets)
         self.classes = np.add.outer(3 * rows, columns) % CLASSES
 
-    def reach(self, error: float, seconds: float) -> Reached | None:
+    def reach(self, error: float, seconds: float) -> Outcome | None:
         """Render until the estimated error is as small or as many seconds have passed, but at least the first round.
         None when cancelled."""
         start = before = perf_counter()
@@ -76,7 +76,7 @@ class Auto:
             if not self.grow(new):
                 return None
         most, mean = 2 ** (1 + int(self.doublings.max())), 2 * self.price(self.doublings) / self.doublings.size
-        return Reached(mean, most, sqrt(squared), perf_counter() - start)
+        return Outcome(mean, most, sqrt(squared), perf_counter() - start)
 
     def begin(self) -> bool:
         """The first sample of both halves, in all packets. False when cancelled."""

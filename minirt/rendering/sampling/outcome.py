@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
-class Reached(NamedTuple):
+class Outcome(NamedTuple):
     """How good a picture is.
 
     An error is the root of the mean square, over all pixels and colours, of the difference between the light of the

@@ -8,7 +8,7 @@ import numpy as np
 
 from minirt.errors import RenderError
 from minirt.kernel.frame import tiles
-from minirt.kernel.scene_arrays import Traced
+from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 
@@ -19,33 +19,33 @@ MOST = 2**24  # entries of lists
 class BruteForce(Packing):
     """Packs scenes with all shapes in the list of every tile, and of every lamp."""
 
-    def traced(self, scene: Scene, width: int, height: int) -> Traced:
+    def traced(self, scene: Scene, width: int, height: int) -> SceneArrays:
         """RenderError where the lists would fill the memory."""
         traced, count = super().traced(scene, width, height), tiles(width) * tiles(height)
-        if count * len(traced.places) > MOST:
-            raise RenderError(f"{len(traced.places)} shapes in each of {count} tiles are too many")
+        if count * len(traced.slots) > MOST:
+            raise RenderError(f"{len(traced.slots)} shapes in each of {count} tiles are too many")
         return with_all_shapes(traced, count)
 
 
-def with_all_shapes(traced: Traced, tiles: int) -> Traced:
+def with_all_shapes(traced: SceneArrays, tiles: int) -> SceneArrays:
     """The scene with so many tiles, all shapes in each; and around each lamp one cell, likewise."""
-    kinds, lamps = traced.places[:, 0], len(traced.lights)
-    members = np.argsort(kinds, kind="stable").astype(traced.seen.dtype)
+    kinds, lamps = traced.slots[:, 0], len(traced.lights)
+    members = np.argsort(kinds, kind="stable").astype(traced.tile_shapes.dtype)
     counts = np.bincount(kinds, minlength=len(traced.groups))
     starts = np.concatenate([[0], np.cumsum(counts)])
     # The lists of a kind lie one behind the other, those of the next kind behind them.
     seen = [np.tile(members[a:b], tiles) for a, b in pairwise(starts)]
     lit = [members] * lamps
     return traced._replace(
-        seen=np.concatenate(seen),
-        views=np.broadcast_to(np.array(EVERYWHERE), traced.views.shape).copy(),
-        grid=1,
-        lit=np.concatenate([members[:0], *lit]),
-        lamp_views=np.broadcast_to(np.array(EVERYWHERE), traced.lamp_views.shape).copy(),
+        tile_shapes=np.concatenate(seen),
+        cones=np.broadcast_to(np.array(EVERYWHERE), traced.cones.shape).copy(),
+        light_buffer_cells=1,
+        light_shapes=np.concatenate([members[:0], *lit]),
+        light_cones=np.broadcast_to(np.array(EVERYWHERE), traced.light_cones.shape).copy(),
         groups=tuple(
             group._replace(
-                starts=tiles * starts[kind] + counts[kind] * np.arange(tiles + 1),
-                lamp_starts=np.arange(lamps)[:, None] * len(kinds) + starts[kind : kind + 2],
+                tile_starts=tiles * starts[kind] + counts[kind] * np.arange(tiles + 1),
+                light_starts=np.arange(lamps)[:, None] * len(kinds) + starts[kind : kind + 2],
             )
             for kind, group in enumerate(traced.groups)
         ),

@@ -13,7 +13,7 @@ from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec, dot, unit
 from minirt.rendering.notes import name
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.pick import columns
 from minirt.report.measurements.stiffness import DOUBLE, SINGLE, Stiff
 from minirt.scene import Scene
@@ -21,11 +21,13 @@ from minirt.scene import Scene
 ACROSS, DOWN = 64, 36  # rays that are tried, over the whole picture
 LEAST = 4  # of them that show two surfaces close together; where surfaces cross, a ray may do so by chance
 MOST_SHAPES = 1000  # or parts of them, for which that is done
-TIE = 4 * ROUNDING  # unit roundoffs between surfaces that the kernel takes for one, see `minirt.kernel.trace.nearer`
+TIE = (
+    4 * ROUNDING
+)  # unit roundoffs between surfaces that the kernel takes for one, see `minirt.kernel.trace.closer_hit`
 CLOSE = 1000  # times that: nearly
 
 
-def coincident(scene: Scene, tables: Tables) -> Iterator[Stiff]:
+def coincident(scene: Scene, tables: ShapeArrays) -> Iterator[Stiff]:
     """Pairs of shapes of which the eye sees both surfaces in one place, or nearly."""
     if not 2 <= len(tables.owner) <= MOST_SHAPES:
         return
@@ -40,7 +42,7 @@ def coincident(scene: Scene, tables: Tables) -> Iterator[Stiff]:
         points = near * np.stack([ways.x, ways.y, ways.z])
         reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]
         world = np.abs(points + eye[:, None]).max(axis=0) + np.abs(eye).max()
-        double = gap / (TIE * DOUBLE * (world + tables.looks[pair, 3].max(axis=0)))
+        double = gap / (TIE * DOUBLE * (world + tables.colours_and_extents[pair, 3].max(axis=0)))
         single = gap / (TIE * SINGLE * (np.abs(points).max(axis=0) + reach[pair].max(axis=0)))
         close = (double <= CLOSE) | (single <= 1)
     close &= tables.owner[pair[0]] != tables.owner[pair[1]]  # parts of a mesh have edges in common
@@ -58,10 +60,10 @@ def coincident(scene: Scene, tables: Tables) -> Iterator[Stiff]:
             )
 
 
-def hits(tables: Tables, eye: Vec, ways: Vec) -> tuple[np.ndarray, np.ndarray]:
+def hits(tables: ShapeArrays, eye: Vec, ways: Vec) -> tuple[np.ndarray, np.ndarray]:
     """For each shape and ray the distance, infinity where it misses, and the cosine to the surface's normal."""
     t, slopes = np.empty((2, len(tables.owner), len(ways.x)))
-    for index, (group, row) in enumerate(tables.places):
+    for index, (group, row) in enumerate(tables.slots):
         packed = columns(tables.rows[group][row : row + 1])
         kind = kind_of_packed(type(packed))
         hit, at = kind.intersect(packed, eye, ways)

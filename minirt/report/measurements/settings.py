@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.rendering import Renderer
-from minirt.rendering.packing.features import DEPTH, traits
+from minirt.rendering.packing.features import DEPTH, features
 from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.brute_force import BruteForce
 from minirt.scene import Scene
@@ -75,7 +75,7 @@ def knobs_of(scene: Scene) -> Iterator[Knob]:
     bounce."""
     is_single = Packing(precision="single").pack(scene, 16, 9).camera.dtype == np.float32
     yield from (knob for knob in KNOBS if is_single or knob is not SINGLE)
-    if "bounces" in traits(scene):
+    if "reflective" in features(scene):
         yield from BOUNCES
 
 

@@ -12,7 +12,7 @@ from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec
 from minirt.rendering.notes import name
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.pick import columns
 from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.sizes import sizes
@@ -45,7 +45,7 @@ class Views(NamedTuple):
     ahead: np.ndarray  # (n,) whether the nearest point is before the camera
 
 
-def stiff_shapes(scene: Scene, tables: Tables, width: int, height: int) -> Iterator[Stiff]:
+def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> Iterator[Stiff]:
     """What is stiff about the shapes of a scene, one by one, in a picture of that size."""
     camera = camera_numbers(scene.camera, width, height)
     seen = views(tables, camera)
@@ -78,7 +78,7 @@ def lost_in_single(scene: Scene, packing: Packing, width: int, height: int) -> I
                 yield each
 
 
-def worst(tables: Tables, amounts: np.ndarray, limit: float) -> Iterator[tuple[int, str]]:
+def worst(tables: ShapeArrays, amounts: np.ndarray, limit: float) -> Iterator[tuple[int, str]]:
     """The shapes with the largest amounts above a limit: indices and names, the last one with how many more there
     are."""
     order = np.argsort(-amounts, kind="stable")
@@ -90,12 +90,12 @@ def worst(tables: Tables, amounts: np.ndarray, limit: float) -> Iterator[tuple[i
         yield index, name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
 
 
-def views(tables: Tables, camera: np.ndarray) -> Views:
+def views(tables: ShapeArrays, camera: np.ndarray) -> Views:
     """How the eye and the shapes in some tables lie to each other."""
     eye, forward = camera[:3], camera[9:]
     nearest, size = np.zeros((len(tables.owner), 3)), np.full(len(tables.owner), np.inf)
     for group, packed in enumerate(tables.rows):
-        mine = np.flatnonzero(tables.places[:, 0] == group)
+        mine = np.flatnonzero(tables.slots[:, 0] == group)
         with np.errstate(all="ignore"):
             on, _ = kind_of(packed.dtype.names).surface(columns(packed), Vec(*eye))
         nearest[mine] = np.stack([np.broadcast_to(part, len(mine)) for part in (on.x, on.y, on.z)], axis=-1)
@@ -110,7 +110,7 @@ def views(tables: Tables, camera: np.ndarray) -> Views:
     return Views(
         np.linalg.norm(way, axis=1),
         size,
-        ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + tables.looks[:, 3]),
+        ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + tables.colours_and_extents[:, 3]),
         ROUNDING * SINGLE * (np.abs(way).max(axis=1) + reach),
         way @ forward > 0,
     )

@@ -28,7 +28,7 @@ def turntable(scene: Scene, count: int) -> Iterator[Scene]:
         yield scene.replace(scene.camera, camera) if number else scene
 
 
-def film(
+def animation(
     scene: Scene,
     lines: Iterable[str],
     *,

@@ -10,7 +10,7 @@ from minirt.errors import SceneError
 from minirt.scene import Scene, load, save
 from minirt.viewer.editing.state import MOST, Moment, State, opened
 from minirt.viewer.files.scene_files import differ, keep, recover, summary
-from minirt.viewer.files.watched_file import Disk, signature
+from minirt.viewer.files.watched_file import WatchedFile, signature
 from minirt.viewer.input.chords import shown
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def open_another(session: Session, path: Path) -> None:
         kept = f"; the changes that were not saved are in {recover(session.state.scene, session.path)}"
     session.disk.close()
     session.mouse.let_go()
-    session.path, session.disk = path, Disk(path)
+    session.path, session.disk = path, WatchedFile(path)
     session.watch()
     session.m.mlx_set_window_title(session.win, f"miniRT - {path.name}")
     session.saved = scene

@@ -12,7 +12,7 @@ from minirt.shapes import Shape
 from minirt.viewer.display.icons import icon_at
 from minirt.viewer.display.overlay import Level
 from minirt.viewer.editing import dragging, selection
-from minirt.viewer.editing.projection import lens
+from minirt.viewer.editing.projection import projection
 from minirt.viewer.editing.state import place_of
 from minirt.viewer.input.bindings import Binding
 from minirt.viewer.input.chords import Drag
@@ -93,7 +93,7 @@ class Mouse:
         """The place in the scene under the pointer; what is there is selected."""
         session = self.session
         state, win = session.state, session.win
-        seen = lens(state.scene.camera, win.width, win.height)
+        seen = projection(state.scene.camera, win.width, win.height)
         shown = session.screen.marks.placed(state, seen, win.scale) if session.screen.level > Level.NOTHING else []
         icon = icon_at(shown, x, y, win.scale)
         if icon:

@@ -15,14 +15,14 @@ from minirt.viewer.app import file_sync
 from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.display.painter import Painter, Pixels
-from minirt.viewer.display.refinement import Pictures
+from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen
 from minirt.viewer.editing.editor import EDITS, apply
 from minirt.viewer.editing.state import State, opened
 from minirt.viewer.files.scene_files import save_picture, summary
-from minirt.viewer.files.watched_file import Disk
+from minirt.viewer.files.watched_file import WatchedFile
 from minirt.viewer.input.bindings import Binding
-from minirt.viewer.input.key_repeat import Held
+from minirt.viewer.input.key_repeat import KeyRepeat
 from minirt.viewer.input.keymap import Keymap
 
 if TYPE_CHECKING:
@@ -59,14 +59,14 @@ class Session:
         self.pick = pick
         self.state = opened(scene)
         self.saved = scene  # what the file holds
-        self.disk = Disk(path)
+        self.disk = WatchedFile(path)
         self.watched = watch
         self.keymap = Keymap(keys)
-        self.held = Held()
+        self.held = KeyRepeat()
         self.wants_screenshot = False
         self.full_screen = False
         self.win = m.mlx_new_window(mlx, *size, f"miniRT - {path.name}", resizable=True)
-        self.pictures = Pictures(painter(lambda: m.mlx_wake(mlx)), self.win, samples)
+        self.pictures = Refinement(painter(lambda: m.mlx_wake(mlx)), self.win, samples)
         self.screen = Screen(m, self.win, self.keymap.layout)
         self.mouse = Mouse(self)
         hooks: dict[Event, Callable[..., None]] = {

@@ -14,7 +14,7 @@ DOUBT = 1.5  # times the time: what a finer picture may seem to take when it is 
 PATIENCE = 30  # ... after so many pictures in a row
 
 
-class Pace:
+class AdaptiveResolution:
     """Learns from the pictures what they cost, and from showing them what time is left for that.
 
     A picture that is twice as coarse costs a quarter, and then what every picture costs: so coarse ones tell too much

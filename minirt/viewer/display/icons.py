@@ -10,7 +10,7 @@ from minirt.fields import Colour
 from minirt.scene import Camera, Scene
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
-from minirt.viewer.editing.projection import Lens, Pixel
+from minirt.viewer.editing.projection import Pixel, Projection
 from minirt.viewer.editing.state import can_edit, place_of
 
 SIZE = 20  # pixels of a side, times the screen's scale
@@ -34,7 +34,7 @@ def signed(scene: Scene) -> list[int]:
     return sorted({index for kind in SIGNED for index in scene.places(kind)})
 
 
-def icons(scene: Scene, indices: Iterable[int], lens: Lens, scale: float) -> list[Icon]:
+def icons(scene: Scene, indices: Iterable[int], lens: Projection, scale: float) -> list[Icon]:
     """The icons of those elements, as far as they are in the picture."""
     size = round(SIZE * scale)
     corner = lens.width - size

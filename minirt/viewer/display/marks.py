@@ -15,7 +15,7 @@ from minirt.viewer.display.outline import Places, rims
 from minirt.viewer.display.painter import Pixels
 from minirt.viewer.editing.measure import ball
 from minirt.viewer.editing.motion import WORLD
-from minirt.viewer.editing.projection import Lens, Pixel, lens
+from minirt.viewer.editing.projection import Pixel, Projection, projection
 from minirt.viewer.editing.state import Frame, State
 
 GOLD, BLACK = 0xFFD75F, 0x000000
@@ -33,7 +33,7 @@ class Marks:
 
     def draw(self, pixels: Pixels, state: State, scale: float, moving: bool) -> None:
         """Draw all of it over the picture of the state's scene."""
-        seen = lens(state.scene.camera, pixels.shape[1], pixels.shape[0])
+        seen = projection(state.scene.camera, pixels.shape[1], pixels.shape[0])
         element = state.element
         if isinstance(element, Shape):
             draw_outline(pixels, *self.outline(element, state.scene.camera, pixels, QUICK if moving else CAREFUL))
@@ -49,7 +49,7 @@ class Marks:
             self._rims, self._outlined = rims(shape, camera, width, height, rays), wanted
         return self._rims
 
-    def placed(self, state: State, seen: Lens, scale: float) -> list[Icon]:
+    def placed(self, state: State, seen: Projection, scale: float) -> list[Icon]:
         """The icons that are shown: all where they are wanted, else that of the selected element."""
         return icons(state.scene, indices(state.scene, state.selected, self.icons), seen, scale)
 
@@ -72,7 +72,7 @@ def draw_outline(pixels: Pixels, outside: Places, inside: Places) -> None:
     pixels[inside] = pixels[outside] = blue_first(GOLD)
 
 
-def draw_axis(pixels: Pixels, state: State, seen: Lens) -> None:
+def draw_axis(pixels: Pixels, state: State, seen: Projection) -> None:
     """The axis that the selected element moves along, where it moves along one."""
     axis, around = WORLD.get(state.frame), anchor(state.element)
     ends = seen.segment(around, axis) if axis and around else None

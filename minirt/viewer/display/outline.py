@@ -12,7 +12,7 @@ from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
-from minirt.viewer.editing.projection import Lens, lens, minus
+from minirt.viewer.editing.projection import Projection, minus, projection
 
 Places = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns of pixels
 Box = tuple[int, int, int, int]  # left, top, right, bottom; right and bottom are outside
@@ -27,7 +27,7 @@ def rims(shape: Shape, camera: Camera, width: int, height: int, rays: int) -> tu
     """
     if isinstance(shape, Mesh):
         return rims_of(covers(shape, camera, width, height, *np.meshgrid(np.arange(width), np.arange(height))))
-    left, top, right, bottom = extent(shape, lens(camera, width, height))
+    left, top, right, bottom = extent(shape, projection(camera, width, height))
     step = max(1, ceil(((right - left) * (bottom - top) / rays) ** 0.5))
     x, y = np.meshgrid(np.arange(left, right + step, step), np.arange(top, bottom + step, step))
     grid = covers(shape, camera, width, height, x, y)
@@ -57,7 +57,7 @@ def rims_of(mask: NDArray[np.bool_]) -> tuple[Places, Places]:
     return (rows[~inside], columns[~inside]), (rows[inside], columns[inside])
 
 
-def extent(shape: Shape, seen: Lens) -> Box:
+def extent(shape: Shape, seen: Projection) -> Box:
     """What part of the picture a shape may cover."""
     edges = [edge for centre, radius in shape.balls() for edge in disc(centre, radius, seen)]
     if not edges or None in edges:
@@ -68,7 +68,7 @@ def extent(shape: Shape, seen: Lens) -> Box:
     return left, top, right, bottom
 
 
-def disc(centre: tuple[float, float, float], radius: float, seen: Lens) -> list[tuple[float, float] | None]:
+def disc(centre: tuple[float, float, float], radius: float, seen: Projection) -> list[tuple[float, float] | None]:
     """Two opposite corners of a square around what a ball covers; None where it comes near the plane of the eye."""
     depth, middle = seen.depth(centre), seen.pixel(centre)
     if middle is None or depth <= 2 * radius:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from minirt.mlx import Window
 from minirt.scene import Scene
-from minirt.viewer.display.adaptive_resolution import Pace
+from minirt.viewer.display.adaptive_resolution import AdaptiveResolution
 from minirt.viewer.display.painter import Job, Outcome, Painter
 
 
-class Pictures:
+class Refinement:
     """The pictures of one window; the last one of what does not move has so many samples a pixel."""
 
     def __init__(self, painter: Painter, win: Window, samples: int) -> None:
         self.painter = painter
-        self.pace = Pace()
+        self.pace = AdaptiveResolution()
         self.latest: Outcome | None = None  # the last one that came
         self._win = win
         self._samples = samples

@@ -23,7 +23,7 @@ from minirt.fields import (
 )
 from minirt.materials import Compound
 from minirt.scene import Scene
-from minirt.scene.camera_frame import mix, view
+from minirt.scene.camera_frame import camera_frame, mix
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.viewer.editing.motion import limited
@@ -76,7 +76,7 @@ def corners(state: State, count: int) -> list[Triple]:
     A little below the middle of the picture, so that a plane is not seen from its edge.
     """
     camera = state.scene.camera
-    right, up, forward = view(camera)
+    right, up, forward = camera_frame(camera)
     size = LARGE * state.size
     middle = mix(1.0, mix(1.0, camera.position, AWAY * state.size, forward), -size / 2, up)
     radius = size if count > 1 else 0.0

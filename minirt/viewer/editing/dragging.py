@@ -12,10 +12,10 @@ from typing import NamedTuple
 from minirt.element import Element
 from minirt.fields import Direction, Triple
 from minirt.scene import Camera
-from minirt.scene.camera_frame import mix, view
+from minirt.scene.camera_frame import camera_frame, mix
 from minirt.viewer.editing.measure import ball, middle_of
 from minirt.viewer.editing.motion import WORLD, handedness, limited, looked, orbited, rotated, translated
-from minirt.viewer.editing.projection import Lens, lens, minus
+from minirt.viewer.editing.projection import Projection, minus, projection
 from minirt.viewer.editing.state import State, named
 
 MIDDLE = 0.5  # of a pixel
@@ -26,7 +26,7 @@ TURN = 180.0  # degrees: a drag over the shorter side of the picture
 class Grip(NamedTuple):
     """What the pointer has taken hold of."""
 
-    lens: Lens
+    lens: Projection
     x: int  # of the pointer, in pixels
     y: int
     element: Element  # the selected one, as it was
@@ -36,7 +36,7 @@ class Grip(NamedTuple):
 
 def grip(state: State, width: int, height: int, x: int, y: int, point: Triple | None) -> Grip:
     """Take hold at a pixel of a picture of that size."""
-    return Grip(lens(state.scene.camera, width, height), x, y, state.element, state.scene.camera, point)
+    return Grip(projection(state.scene.camera, width, height), x, y, state.element, state.scene.camera, point)
 
 
 def dragged(state: State, action: str, held: Grip, x: int, y: int) -> State:
@@ -76,7 +76,7 @@ def turn(state: State, held: Grip, x: int, y: int) -> State:
     axis = WORLD.get(state.frame)
     if axis:
         return state.put(rotated(held.element, axis, right), *DRAG)
-    across, up, _ = view(held.camera)
+    across, up, _ = camera_frame(held.camera)
     hand = handedness(held.camera)
     return state.put(rotated(rotated(held.element, up, right * hand), across, down * hand), *DRAG)
 

@@ -13,7 +13,7 @@ from functools import partial
 from minirt.errors import ElementError
 from minirt.fields import Direction, MeshFile, Point
 from minirt.scene import Camera
-from minirt.scene.camera_frame import view
+from minirt.scene.camera_frame import camera_frame
 from minirt.viewer.editing import attributes, framing, history, selection, structure
 from minirt.viewer.editing.motion import WORLD, handedness, looked, rolled, rotated, translated
 from minirt.viewer.editing.state import Frame, State, named
@@ -41,7 +41,7 @@ def move(way: int, sign: float, state: State, amount: float, now: float) -> Stat
     if not named(type(element), Point):
         return state.say(f"{element.title} has no place to move from")
     frame = Frame.VIEW if isinstance(element, Camera) else state.frame
-    axis = WORLD.get(frame) or view(state.scene.camera)[way]
+    axis = WORLD.get(frame) or camera_frame(state.scene.camera)[way]
     moved, met = translated(element, axis, sign * amount * state.stride)
     state = state.put(moved, "move", now)
     return state.say("the end of the range: no further") if met else state
@@ -60,7 +60,7 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
     if world:
         return state.put(rotated(element, world, angle), "turn", now)
     # Seen from the camera the front goes right, up or clockwise: only up is against the right-handed turn about right.
-    about, turned = view(state.scene.camera)[axis], angle * handedness(state.scene.camera)
+    about, turned = camera_frame(state.scene.camera)[axis], angle * handedness(state.scene.camera)
     return state.put(rotated(element, about, -turned if axis == RIGHT else turned), "turn", now)
 
 

@@ -7,7 +7,7 @@ from math import atan2, cos, fmod, fsum, hypot, pi, radians, sin
 from minirt.element import Element
 from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit, upright
 from minirt.scene import Camera
-from minirt.scene.camera_frame import mix, view
+from minirt.scene.camera_frame import camera_frame, mix
 from minirt.viewer.editing.state import Frame, named
 
 WORLD: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
@@ -76,7 +76,7 @@ def orbited(camera: Camera, pivot: Triple, right: float, up: float) -> Camera:
     """The camera turned like that, and moved so that `pivot` stays in the picture where it is."""
     turned_camera = looked(camera, right, up)
     place = pivot
-    for old, new in zip(view(camera), view(turned_camera), strict=True):
+    for old, new in zip(camera_frame(camera), camera_frame(turned_camera), strict=True):
         along = sum((at - middle) * part for at, middle, part in zip(camera.position, pivot, old, strict=True))
         place = mix(1.0, place, along, new)
     return turned_camera.replace(position=limited(place))

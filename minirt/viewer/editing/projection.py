@@ -18,7 +18,7 @@ FAR = 1e3  # times that distance: how far a line is drawn
 PARALLEL = 1e-6  # square of the sine of the angle between a ray and an axis
 
 
-class Lens(NamedTuple):
+class Projection(NamedTuple):
     """A camera and the size of its picture. Pixel x, y has its middle at x + 0.5, y + 0.5."""
 
     eye: Triple
@@ -81,10 +81,10 @@ class Lens(NamedTuple):
         return (start, end) if low < high and start and end else None
 
 
-def lens(camera: Camera, width: int, height: int) -> Lens:
+def projection(camera: Camera, width: int, height: int) -> Projection:
     """The lens of a camera."""
     eye, right, up, forward = (tuple(part) for part in camera_numbers(camera, width, height).reshape(4, 3).tolist())
-    return Lens(eye, right, up, forward, width, height)
+    return Projection(eye, right, up, forward, width, height)
 
 
 def dot(a: Triple, b: Triple) -> float:

@@ -11,7 +11,7 @@ INTERVAL = 0.25  # seconds from look to look
 Signature = tuple[int, int, int] | None  # time of change, size, number of the file; None where there is none
 
 
-class Disk:
+class WatchedFile:
     """Knows the file as it was last read or written here, and tells of changes by others when asked to watch it."""
 
     def __init__(self, path: Path) -> None:

@@ -16,7 +16,7 @@ class Hold:
     given: float = 1.0  # steps done so far: the first comes with the press
 
 
-class Held:
+class KeyRepeat:
     """The keys that are down and do something for as long as they are.
 
     After t seconds a key has done max(1, RATE t) steps: one with the press, and no jump when it goes on.

@@ -10,7 +10,7 @@ from pathlib import Path
 from minirt.fields import Triple
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.scene import Scene
-from minirt.scene.camera_frame import view
+from minirt.scene.camera_frame import camera_frame
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.shape import Shape
@@ -53,7 +53,7 @@ def solid(shape: Shape, ambient: float) -> Iterator[str]:
 
 def translated(scene: Scene, width: int, height: int) -> Iterator[str]:
     """The lines of the scene in Tachyon's language. Its ambient light has no colour: the green of ours is taken."""
-    _, up, forward = view(scene.camera)
+    _, up, forward = camera_frame(scene.camera)
     upward = camera_numbers(scene.camera, width, height)[6:9]  # from the middle to the edge, at distance 1
     zoom = 0.5 / hypot(*upward)
     yield "BEGIN_SCENE"

@@ -123,7 +123,7 @@ def visited(scene: Tree, origin: Any, direction: Any, limit: float = np.inf) -> 
     met: list[int] = []
     nodes.aim(memory, *(Vec(*(np.full(WIDTH, x) for x in v)) for v in (origin, direction)))
     memory[nodes.FOUND : nodes.FOUND + WIDTH] = limit
-    traversal.walk(lambda group, block, tree, memory, ray: met.append(block), scene, memory, 1 << 5)
+    traversal.traverse(lambda group, block, tree, memory, ray: met.append(block), scene, memory, 1 << 5)
     return met
 
 
@@ -150,7 +150,7 @@ def test_what_a_hit_hides_is_not_visited(distance: float) -> None:
         met[ray] += 1
         memory[nodes.FOUND + ray] = distance
 
-    traversal.walk(hit, scene, memory, (1 << WIDTH) - 1 - 4)
+    traversal.traverse(hit, scene, memory, (1 << WIDTH) - 1 - 4)
     starts = 3.0 * np.arange(40)  # a ray visits at least the first that it meets
     right = [max(1, ((starts + 1 >= x) & (starts <= x + distance)).sum()) for x in rays[0]]
     right[2] = 0  # not asked for

@@ -13,7 +13,7 @@ import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel.bvh import queries
 from minirt.kernel.bvh.nodes import WIDTH
 from minirt.kernel.compiler.code_cache import FLAGS
-from minirt.kernel.scene_arrays import placed
+from minirt.kernel.scene_arrays import by_reference
 from minirt.lanes import Vec, lane, load, where
 from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
@@ -50,12 +50,12 @@ def shadows() -> Any:
     """`unhidden`, compiled, for n rays of unit direction, a multiple of `WIDTH`."""
 
     def run(scene: Any, o: Any, d: Any, distances: Any, free: Any) -> None:
-        tree = placed(scene)
+        tree = by_reference(scene)
         for i in range(0, distances.size, WIDTH):
             origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
             direction = Vec(load(d[0], i), load(d[1], i), load(d[2], i))
             distance = load(distances, i)
-            answer = where(queries.unhidden(tree, origin, direction, distance, distance > 0.0), 1.0, 0.0 * distance)
+            answer = where(queries.unoccluded(tree, origin, direction, distance, distance > 0.0), 1.0, 0.0 * distance)
             for ray in range(WIDTH):
                 free[i + ray] = lane(answer, ray)
 

@@ -12,8 +12,8 @@ from minirt.fields import Point
 from minirt.kernel.bvh import build, collapse
 from minirt.kernel.bvh.nodes import WIDTH, Group, Tree
 from minirt.kernel.compiler import jit_bvh
-from minirt.rendering.packing.bvh import aligned, block_type, tree_of
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.bvh import aligned, block_type, bvh_of
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import KINDS, Shape
 from tests.shapes.examples import example, place
 from tests.shapes.regimes import Array, Random, log, unit, ways
@@ -30,7 +30,7 @@ class Plain:
 def tree(shapes: list[Shape], kernel: Any = jit_bvh) -> Tree:
     """The tree over shapes."""
     with np.errstate(all="ignore"):
-        return tree_of(tables(shapes), kernel)
+        return bvh_of(tables(shapes), kernel)
 
 
 def without_boxes(shapes: list[Shape]) -> Tree:
@@ -40,13 +40,13 @@ def without_boxes(shapes: list[Shape]) -> Tree:
     groups = []
     for i, (kind, rows) in enumerate(zip(kinds, kept.rows, strict=True)):
         labels = np.zeros((0, WIDTH, 2))
-        groups.append(Group(rows, aligned(0, block_type(kind)), labels, np.flatnonzero(kept.places[:, 0] == i)))
+        groups.append(Group(rows, aligned(0, block_type(kind)), labels, np.flatnonzero(kept.slots[:, 0] == i)))
     root = np.repeat([np.inf, -np.inf, 0.0], [3 * WIDTH, 3 * WIDTH, WIDTH])
-    return Tree(root, kept.looks[:, 3].copy(), kept.places, tuple(groups))
+    return Tree(root, kept.colours_and_extents[:, 3].copy(), kept.slots, tuple(groups))
 
 
-def tables(shapes: list[Shape]) -> Tables:
-    made = Tables()
+def tables(shapes: list[Shape]) -> ShapeArrays:
+    made = ShapeArrays()
     made.update(tuple(shapes))
     return made
 

@@ -19,7 +19,7 @@ def frame(
             pixels[y, x] = colour(light.x, light.y, light.z)
 """
 LISTS = """
-def cover(
+def project_all(
     origin: Any, grid: Grid, balls: Any, slack: float, first: Any, places: Any, rectangles: Any, used: int, views: Any,
     counts: Any,
 ) -> int:
@@ -31,7 +31,7 @@ def copied(folder: Path) -> Path:
     """A copy of the package in a folder. Its pictures show nothing but the ambient light on the colour 10,20,30."""
     package = folder / "minirt"
     shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__", "viewer", "mlx"))
-    for name, function, short in (("frame", "frame", FRAME), ("culling/binning", "cover", LISTS)):
+    for name, function, short in (("frame", "frame", FRAME), ("culling/binning", "project_all", LISTS)):
         file = package / "kernel" / f"{name}.py"
         replace(file, f"def {function}(", f"def long_{function}(")
         file.write_text(file.read_text() + short)

@@ -13,8 +13,8 @@ from numba.extending import register_jitable
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel.compiler.code_cache import FLAGS
 from minirt.kernel.compiler.jit import INNER
-from minirt.kernel.scene_arrays import placed
-from minirt.kernel.trace import over_kinds
+from minirt.kernel.scene_arrays import by_reference
+from minirt.kernel.trace import for_each_kind
 
 Array = np.ndarray[Any, Any]
 
@@ -39,13 +39,13 @@ def example() -> Outer:
 
 
 def read(outer: Any, i: int, out: Array) -> None:
-    outer = placed(outer)
+    outer = by_reference(outer)
     out[0] = outer.table[i, 3] + outer.table[2, i]
     out[1] = outer.deep[i, 2, 4]
     out[2] = outer.deep[2, i][3]  # of a row
     out[3] = outer.inner.line[i] * outer.inner.number
     out[4] = outer.table.shape[0] * 100 + outer.table.shape[1] * 10 + len(outer.parts)
-    out[5] = over_kinds(weighed, outer.parts, 1.0, i)
+    out[5] = for_each_kind(weighed, outer.parts, 1.0, i)
 
 
 @register_jitable(**INNER)
@@ -54,7 +54,7 @@ def weighed(part: Inner, state: float, i: int) -> float:
 
 
 def write(table: Any, i: int) -> None:
-    table = placed(table)
+    table = by_reference(table)
     table[i, 2] = 41
     table[1][i] = table[i, 2] + 1
 
@@ -69,7 +69,7 @@ def asked(outer: Any) -> int:
 
 
 def ask(outer: Any) -> int:
-    return asked(placed(outer))
+    return asked(by_reference(outer))
 
 
 @pytest.mark.parametrize("i", [0, 1])

@@ -91,7 +91,7 @@ def test_of_two_that_write_an_index_one_waits_for_the_other(tmp_path: Path, monk
     """The second comes while the first has read the index and not written it."""
     made = code_cache.compiled(double, None, (float64,), (int64,))
     with cache_folder.numba_cache(tmp_path):
-        keepers = [code_cache.Keeper(double), code_cache.Keeper(double)]
+        keepers = [code_cache.CodeCache(double), code_cache.CodeCache(double)]
     jobs = [
         partial(each.save_overload, made.signatures[i], made.overloads[made.signatures[i]])
         for i, each in enumerate(keepers)

@@ -7,7 +7,7 @@ from math import cos, radians, sin
 import numpy as np
 import pytest
 
-from minirt.kernel.shading.specular import highlight
+from minirt.kernel.shading.specular import specular
 from minirt.lanes import Vec
 
 UP = Vec(*(np.full(16, each) for each in (0.0, 1.0, 0.0)))
@@ -19,7 +19,7 @@ def seen(lamp: float, eye: float, k: float, n: float, blinn: bool, lit: np.ndarr
     towards = Vec(*(np.full(16, each) for each in (-sin(radians(lamp)), cos(radians(lamp)), 0.0)))
     gaze = Vec(*(np.full(16, each) for each in (-sin(radians(eye)), -cos(radians(eye)), 0.0)))
     look = Vec(*(np.full(16, each) for each in (k, n, float(blinn))))
-    share = highlight(look, UP, towards, gaze, lit)
+    share = specular(look, UP, towards, gaze, lit)
     assert np.array_equal(share, np.full(16, share[0]))
     return float(share[0])
 

@@ -38,7 +38,7 @@ TEXELS, PICTURES = bound()
 @njit(**FLAGS)
 def colours_on_lanes(held: Any, pictures: Any, which: int, u: Any, v: Any, out: Any) -> None:
     for i in range(0, u.size, width(u)):
-        seen = texture_lookup.picture_at(held, pictures, which, load(u, i), load(v, i))
+        seen = texture_lookup.texture_lookup(held, pictures, which, load(u, i), load(v, i))
         save(seen.x, out[0], i)
         save(seen.y, out[1], i)
         save(seen.z, out[2], i)
@@ -60,7 +60,7 @@ def compiled(which: int, u: Array, v: Array) -> Array:
 
 def interpreted(which: int, u: Array, v: Array) -> Array:
     with np.errstate(invalid="ignore"):
-        seen = texture_lookup.picture_at(TEXELS, PICTURES, which, u, v)
+        seen = texture_lookup.texture_lookup(TEXELS, PICTURES, which, u, v)
     return np.stack([seen.x, seen.y, seen.z], axis=-1)
 
 

@@ -14,7 +14,7 @@ import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel.compiler.code_cache import FLAGS
 from minirt.kernel.shading import texturing
 from minirt.kernel.shading.texture_lookup import height_slopes
-from minirt.kernel.shading.texturing import Skins, checkered, raised, turned
+from minirt.kernel.shading.texturing import SurfaceMaps, bump_mapped, checkered, normal_mapped
 from minirt.lanes import Vec, load, save, width
 from minirt.shapes import KINDS, Kind
 from tests.kernel.pictures import Array
@@ -40,17 +40,17 @@ def page(pixels: Array) -> dict[str, Any]:
     return {"texels": pixels.ravel().astype(np.float32), "pictures": np.array([row], np.int64)}
 
 
-def skins_of(pixels: Array, strength: float = STRENGTH) -> Skins:
+def skins_of(pixels: Array, strength: float = STRENGTH) -> SurfaceMaps:
     """Those of one shape with a picture of heights, of normals."""
-    return Skins(None, None, np.array([[1, strength]]), np.array([1]), np.array([1]), **page(pixels))
+    return SurfaceMaps(None, None, np.array([[1, strength]]), np.array([1]), np.array([1]), **page(pixels))
 
 
-def relief(strength: float = STRENGTH) -> Skins:
+def relief(strength: float = STRENGTH) -> SurfaceMaps:
     places = (np.arange(SIDE) + 0.5) / SIDE
     return skins_of(height(places[None], 1 - places[:, None])[..., None], strength)
 
 
-def plain(colour: tuple[int, int, int]) -> Skins:
+def plain(colour: tuple[int, int, int]) -> SurfaceMaps:
     """A picture of one colour."""
     return skins_of(np.tile(np.array(colour) / 255, (2, 3, 1)))
 
@@ -61,7 +61,7 @@ def raised_on_lanes(worn: Any, uv: Any, a: Any, b: Any, n: Any, out: Any) -> Non
         along_u = Vec(load(a[0], i), load(a[1], i), load(a[2], i))
         along_v = Vec(load(b[0], i), load(b[1], i), load(b[2], i))
         normal = Vec(load(n[0], i), load(n[1], i), load(n[2], i))
-        bent = raised(worn.bumps, worn, 0, load(uv[0], i), load(uv[1], i), along_u, along_v, normal)
+        bent = bump_mapped(worn.bumps, worn, 0, load(uv[0], i), load(uv[1], i), along_u, along_v, normal)
         save(bent.x, out[0], i)
         save(bent.y, out[1], i)
         save(bent.z, out[2], i)
@@ -73,24 +73,24 @@ def turned_on_lanes(worn: Any, uv: Any, a: Any, b: Any, n: Any, out: Any) -> Non
         along_u = Vec(load(a[0], i), load(a[1], i), load(a[2], i))
         along_v = Vec(load(b[0], i), load(b[1], i), load(b[2], i))
         normal = Vec(load(n[0], i), load(n[1], i), load(n[2], i))
-        bent = turned(worn.normals, worn, 0, load(uv[0], i), load(uv[1], i), along_u, along_v, normal)
+        bent = normal_mapped(worn.normals, worn, 0, load(uv[0], i), load(uv[1], i), along_u, along_v, normal)
         save(bent.x, out[0], i)
         save(bent.y, out[1], i)
         save(bent.z, out[2], i)
 
 
 LANES = {"raised": raised_on_lanes, "turned": turned_on_lanes}
-PLAIN = {"raised": raised, "turned": turned}
-Bend = Callable[[str, Skins, Mapped, Array], Array]
+PLAIN = {"raised": bump_mapped, "turned": normal_mapped}
+Bend = Callable[[str, SurfaceMaps, Mapped, Array], Array]
 
 
-def as_it_stands(name: str, worn: Skins, at: Mapped, normals: Array) -> Array:
+def as_it_stands(name: str, worn: SurfaceMaps, at: Mapped, normals: Array) -> Array:
     table = worn.bumps if name == "raised" else worn.normals
     bent = PLAIN[name](table, worn, 0, at.u, at.v, vec(at.along_u), vec(at.along_v), vec(normals))
     return array(bent, normals)
 
 
-def on_lanes(name: str, worn: Skins, at: Mapped, normals: Array) -> Array:
+def on_lanes(name: str, worn: SurfaceMaps, at: Mapped, normals: Array) -> Array:
     out = np.full((3, len(normals)), np.nan)
     vectors = (np.ascontiguousarray(each.T) for each in (at.along_u, at.along_v, normals))
     LANES[name](worn, np.stack([at.u, at.v]), *vectors, out)
@@ -135,7 +135,7 @@ def test_bumps_are_lit_as_the_raised_surface(kind: Kind, bend: Bend, size: float
 
 
 WRONG: dict[str, Any] = {
-    "left as it is": ("raised", lambda *given: given[-1]),
+    "left as it is": ("bump_mapped", lambda *given: given[-1]),
     "deep in the place of high": ("copysign", lambda x, sign: -np.copysign(x, sign)),
     "heights in units of the scene": ("inverse_length", lambda v: np.ones_like(v.x)),
     "u and v changed round": ("height_slopes", lambda *given: height_slopes(*given)[::-1]),
@@ -148,7 +148,7 @@ WRONG: dict[str, Any] = {
 def test_wrong_ones_are_found(kind: Kind, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     function, wrong = WRONG[name]
     monkeypatch.setattr(texturing if function != "raised" else sys.modules[__name__], function, wrong)
-    monkeypatch.setitem(PLAIN, "raised", raised)
+    monkeypatch.setitem(PLAIN, "raised", bump_mapped)
     if (kind.element.title, function) != ("plane", "inverse_length"):  # there both are the same
         assert worst(kind, as_it_stands) > 0.02
 

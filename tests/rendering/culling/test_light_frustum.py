@@ -14,8 +14,8 @@ from minirt.kernel.culling.light_buffer import SCALE, SPREAD, cell
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.culling import light_frustum, visibility
-from minirt.rendering.culling.light_frustum import Crowd, crowd, square_ahead
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.culling.light_frustum import Cluster, cluster, square_ahead
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.brute_force import BruteForce
 from minirt.scene import Ambient, Camera, Light, ParallelLight, Scene
@@ -27,7 +27,7 @@ from tests.meshes.examples import GREY, ball, named
 from tests.shapes.regimes import ways
 
 WIDTH, HEIGHT = 96, 48
-UNIT_BALL = Crowd(np.zeros(3), 1.0)
+UNIT_BALL = Cluster(np.zeros(3), 1.0)
 SPOTS: dict[str, tuple[float, float, float]] = {
     "far": (-400, 900, -300),
     "very far": (-4e7, 9e7, -3e7),
@@ -61,7 +61,7 @@ def everywhere(precision: str) -> Renderer:
 def test_the_picture_is_that_of_brute_force(spot: str, precision: str) -> None:
     shown = scene(SPOTS[spot], *meshes())
     packed = Packing().pack(shown, WIDTH, HEIGHT)
-    assert (packed.around[0, SCALE] > 0) == (spot != "inside")
+    assert (packed.light_buffers[0, SCALE] > 0) == (spot != "inside")
     brute = linear(shown, WIDTH, HEIGHT, 2, everywhere(precision))
     assert np.array_equal(brute, linear(shown, WIDTH, HEIGHT, 2, Renderer(2, precision)))
     assert np.ptp(brute) > 0.1 or spot == "under the floor"
@@ -72,8 +72,8 @@ def test_rays_to_a_parallel_lamp_come_by_no_point() -> None:
     above = named("icosahedron", (0, 4, 1), 1.0).some(np.arange(6))
     shown = scene(ParallelLight((0, -1, 0.3), 0.8, (255, 255, 255)), above)
     packed = Packing().pack(shown, WIDTH, HEIGHT)
-    assert packed.grid == 1
-    assert packed.tree is None
+    assert packed.light_buffer_cells == 1
+    assert packed.bvh is None
     aside = shown.replace(above, position=(0, 4, -90))
     dark, lit = (linear(each, WIDTH, HEIGHT)[HEIGHT // 2 :] for each in (shown, aside))
     shadow = (dark < lit).any(axis=-1)
@@ -81,7 +81,7 @@ def test_rays_to_a_parallel_lamp_come_by_no_point() -> None:
     assert np.array_equal(dark[~shadow], lit[~shadow])
 
 
-def square(lamp: Any, grid: int = 64, found: Crowd = UNIT_BALL) -> Any:
+def square(lamp: Any, grid: int = 64, found: Cluster = UNIT_BALL) -> Any:
     made = square_ahead(found, np.array(lamp, float), grid)
     assert made is not None
     return made
@@ -111,15 +111,15 @@ def test_few_shapes_beside_the_crowd_do_not_matter() -> None:
     random = np.random.default_rng(1)
     heap = [Sphere(tuple(random.uniform(-1, 1, 3)), 0.1, GREY) for _ in range(1000)]
     for others, count in (("few", light_frustum.BESIDE), ("many", 2 * light_frustum.BESIDE)):
-        tables = Tables()
+        tables = ShapeArrays()
         far = [Sphere((100.0 * i, 5, 900), 30, GREY) for i in range(count)]
         tables.update((*heap, *far, Plane((0, -1e9, 0), (0, 1, 0), GREY)))
-        found = crowd(tables)
+        found = cluster(tables)
         assert found is not None
         assert (found.radius < 30) == (others == "few")
-    few = Tables()
+    few = ShapeArrays()
     few.update(tuple(heap[:900]))
-    assert crowd(few) is None
+    assert cluster(few) is None
 
 
 @pytest.mark.parametrize("lamp", [(1.43, 0, 0), (3, 4, 5), (0, 0, 500)])
@@ -161,7 +161,7 @@ def covered(kernel: Any, grid: Any, balls: list[list[float]]) -> list[int]:
     rectangles, views, counts = np.zeros((2, 4), np.int32), np.zeros((1, 5)), np.zeros(grid.cells + 1, np.int64)
     first, place = np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
     given = np.array([0, 0, -10.0]), grid, np.array(balls), 0.0, first, place
-    kernel.cover(*given, rectangles, 0, views, counts)
+    kernel.project_all(*given, rectangles, 0, views, counts)
     return np.flatnonzero(counts).tolist()
 
 
@@ -181,7 +181,7 @@ def test_directions_beside_and_behind_are_elsewhere() -> None:
 def test_a_lamp_far_away_has_short_lists() -> None:
     """Of a cube's lists one would have all 5,000 shapes."""
     packed = Packing().pack(scene(SPOTS["far"], *meshes()), WIDTH, HEIGHT)
-    sizes = sum(np.diff(group.lamp_starts[0]) for group in packed.groups)
+    sizes = sum(np.diff(group.light_starts[0]) for group in packed.groups)
     assert sizes[128 * 128] == 1  # elsewhere: the ball that is beside the crowd
     assert sizes.max() < 150
     assert sizes[sizes > 1].mean() < 20

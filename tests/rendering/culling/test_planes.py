@@ -10,7 +10,7 @@ import pytest
 from minirt.kernel.frame import TILE
 from minirt.rendering import Renderer, scene_packing
 from minirt.rendering.culling.planes import heights
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, FurtherLight, Light, Scene
 from minirt.shapes.plane import Plane
@@ -25,7 +25,7 @@ FLOOR = Plane((0, -1, 0), (0, 1, 0), GREY)
 def tiles_of_plane(scene: Scene, across: int = 20, down: int = 10) -> np.ndarray:
     """In which tiles the only shape of a scene is listed."""
     traced = Packing().pack(scene, across * TILE, down * TILE)
-    return np.diff(traced.groups[0].starts[: across * down + 1]).reshape(down, across) > 0
+    return np.diff(traced.groups[0].tile_starts[: across * down + 1]).reshape(down, across) > 0
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -60,7 +60,7 @@ def test_on_a_plane_within_rounding_is_neither_above_nor_below(size: float) -> N
     for _ in range(50):
         point, way = size * random.normal(size=3), random.normal(size=3)
         plane = Plane(tuple(point), tuple(way / np.abs(way).max()), GREY)
-        keeper = Tables()
+        keeper = ShapeArrays()
         keeper.update((plane,))
         along = np.cross(plane.normal, random.normal(size=3))
         above = np.array(plane.normal)
@@ -73,8 +73,10 @@ def lit_cells(scene: Scene) -> list[int]:
     """In how many cells of each lamp there is a plane."""
     traced = Packing().pack(scene, 64, 48)
     kind = [type(shape) for shape in scene.shapes].index(Plane)
-    starts = traced.groups[traced.places[kind, 0]].lamp_starts
-    return [int((np.diff(each) > 0).sum()) if traced.grid > 1 else int(each[1] - each[0]) for each in starts]
+    starts = traced.groups[traced.slots[kind, 0]].light_starts
+    return [
+        int((np.diff(each) > 0).sum()) if traced.light_buffer_cells > 1 else int(each[1] - each[0]) for each in starts
+    ]
 
 
 @pytest.mark.parametrize("balls", [1, 20])
@@ -98,7 +100,7 @@ def test_lists_follow_an_eye_that_goes_through_a_plane() -> None:
     for height in (0, -2, 0):
         scene = Scene((Camera((0, height, -9), (0, 0, 1), 60), Light((0, 5, 0), 1), FLOOR, Sphere((0, 0, 0), 1, GREY)))
         traced = keeper.pack(scene, 64, 48)
-        assert (0 in traced.lit) == (height < -1)
+        assert (0 in traced.light_shapes) == (height < -1)
 
 
 SEEDS = [seed for seed in range(60) if any(shape.flat() for shape in random_scene(seed).shapes)]
@@ -109,11 +111,11 @@ def test_pictures_are_the_same_with_all_planes_in_all_lists(monkeypatch: pytest.
     pictures = [linear(scene, 60, 40, renderer=Renderer(1)) for scene in scenes]
     dropped = []
 
-    def none(tables: Any, eye: Any, lamp: Any, ask: Any = scene_packing.idle) -> np.ndarray:
+    def none(tables: Any, eye: Any, lamp: Any, ask: Any = scene_packing.never_occludes) -> np.ndarray:
         dropped.append(ask(tables, eye, lamp).any())
         return np.zeros(len(tables.planes), bool)
 
-    monkeypatch.setattr(scene_packing, "idle", none)
+    monkeypatch.setattr(scene_packing, "never_occludes", none)
     for scene, picture in zip(scenes, pictures, strict=True):
         assert np.array_equal(linear(scene, 60, 40, renderer=Renderer(1)), picture)
     assert 0.2 < np.mean(dropped) < 0.95

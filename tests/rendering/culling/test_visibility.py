@@ -12,10 +12,10 @@ from minirt.kernel.culling import binning
 from minirt.kernel.culling.light_buffer import AHEAD, SCALE, SPREAD, cell
 from minirt.kernel.frame import TILE, tiles, towards
 from minirt.kernel.rows import kind_of, read
-from minirt.kernel.trace import NEARBY, within
+from minirt.kernel.trace import COINCIDENT, in_cone
 from minirt.lanes import Vec, unit
 from minirt.rendering.culling import light_frustum, visibility
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Light, Scene
 from minirt.shapes import KINDS
@@ -37,7 +37,7 @@ def listed(starts: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarra
 def members(traced: Any, starts: str, table: np.ndarray, row: Any = ...) -> np.ndarray:
     """Which shapes, of all kinds, are in which of the lists: (lists, shapes)."""
     all_starts = [getattr(group, starts)[row] for group in traced.groups]
-    found = np.zeros((len(all_starts[0]) - 1, len(traced.places)), bool)
+    found = np.zeros((len(all_starts[0]) - 1, len(traced.slots)), bool)
     for each in all_starts:
         found[listed(each, table)] = True
     return found
@@ -59,14 +59,14 @@ def seen_rays(traced: Any) -> Seen:
     tile = (y // TILE * tiles(WIDTH) + x // TILE).astype(int)
     found = [Seen(*np.zeros((4, 0), int))]
     for index, (hit, t) in enumerate(meets(traced, origin, direction)):
-        cone = np.broadcast_to(within(traced.views[index], direction), x.shape)
+        cone = np.broadcast_to(in_cone(traced.cones[index], direction), x.shape)
         found.append(Seen(tile[hit], np.full(hit.sum(), index), t[hit], cone[hit]))
     return Seen(*map(np.concatenate, zip(*found, strict=True)))
 
 
 def meets(traced: Any, origin: Vec, direction: Vec) -> list[Any]:
     answers = []
-    for group, i in traced.places:
+    for group, i in traced.slots:
         rows = traced.groups[group].rows
         with np.errstate(all="ignore"):
             answers.append(kind_of(rows.dtype.names).intersect(read(rows, i), origin, direction))
@@ -102,11 +102,11 @@ KERNELS = pytest.mark.parametrize("kernel", [binning, jit_binning], ids=["interp
 @pytest.mark.parametrize(("make", "seed"), SCENES)
 def test_a_tile_lists_all_that_its_rays_hit(make: Any, seed: int, kernel: Any) -> None:
     traced = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
-    seen, in_tile = seen_rays(traced), members(traced, "starts", traced.seen)
+    seen, in_tile = seen_rays(traced), members(traced, "tile_starts", traced.tile_shapes)
     assert len(in_tile) == tiles(WIDTH) * tiles(HEIGHT)
     assert in_tile[seen.tile, seen.shape].all()
     assert seen.in_cone.all()
-    assert (seen.distance >= traced.views[seen.shape, 4]).all()
+    assert (seen.distance >= traced.cones[seen.shape, 4]).all()
 
 
 def outside_scene(seed: int) -> Scene:
@@ -144,9 +144,12 @@ def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int,
     directions /= np.linalg.norm(directions, axis=0)
     planes = [index for index, shape in enumerate(make(seed).shapes) if shape.flat()]
     for lamp, row in enumerate(traced.lights):
-        count, around = 6 * traced.grid**2 if traced.grid > 1 else 1, traced.around[lamp]
+        count, around = (
+            6 * traced.light_buffer_cells**2 if traced.light_buffer_cells > 1 else 1,
+            traced.light_buffers[lamp],
+        )
         if around[SCALE] > 0:  # a half of the directions into the square, and some just beside it
-            reach = 1.1 * AHEAD / 2 * traced.grid / around[SCALE]
+            reach = 1.1 * AHEAD / 2 * traced.light_buffer_cells / around[SCALE]
             slopes = reach * random.uniform(-1, 1, (2, 1000))
             directions[:, 1000:] = around[:9].reshape(3, 3).T @ np.array([*slopes, np.ones(1000)])
             directions /= np.linalg.norm(directions, axis=0)
@@ -155,13 +158,17 @@ def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int,
         nearby /= np.linalg.norm(nearby, axis=0)
         nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= around[SPREAD], nearby, directions)
         with np.errstate(all="ignore"):
-            cells = cell(around, traced.grid, Vec(*nearby)) if traced.grid > 1 else np.zeros(2000)
-        in_cell = members(traced, "lamp_starts", traced.lit, lamp)
+            cells = (
+                cell(around, traced.light_buffer_cells, Vec(*nearby))
+                if traced.light_buffer_cells > 1
+                else np.zeros(2000)
+            )
+        in_cell = members(traced, "light_starts", traced.light_shapes, lamp)
         assert 0 <= cells.min() <= cells.max() < count <= len(in_cell)
         left_out = {shape for shape in planes if not in_cell[:, shape].any()}
         for shape, (hit, t) in enumerate(meets(traced, Vec(*row[:3]), Vec(*directions))):
-            assert (t[hit] >= traced.lamp_views[lamp, shape, 4]).all()
-            assert (within(traced.lamp_views[lamp, shape], Vec(*directions)) | ~hit).all()
+            assert (t[hit] >= traced.light_cones[lamp, shape, 4]).all()
+            assert (in_cone(traced.light_cones[lamp, shape], Vec(*directions)) | ~hit).all()
             assert shape in left_out or in_cell[cells[hit].astype(int), shape].all()
 
 
@@ -169,10 +176,10 @@ def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int,
 def test_lists_begin_with_the_nearest_and_name_a_shape_once(make: Any, seed: int) -> None:
     traced = Packing().pack(make(seed), WIDTH, HEIGHT)
     for near, found, every in [
-        (traced.views[:, 4], traced.seen, [group.starts for group in traced.groups]),
+        (traced.cones[:, 4], traced.tile_shapes, [group.tile_starts for group in traced.groups]),
         *(
-            (near, traced.lit, [group.lamp_starts[lamp] for group in traced.groups])
-            for lamp, near in enumerate(traced.lamp_views[..., 4])
+            (near, traced.light_shapes, [group.light_starts[lamp] for group in traced.groups])
+            for lamp, near in enumerate(traced.light_cones[..., 4])
         ),
     ]:
         assert np.isfinite(near).all()
@@ -188,7 +195,7 @@ def test_a_sphere_is_listed_about_where_it_is_seen(seed: int) -> None:
     random = np.random.default_rng(seed)
     ball = Sphere(tuple(0.5 * random.normal(size=3) + (0, 0, 5)), random.uniform(0.1, 3), (1, 2, 3))
     traced = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), ball)), 640, 640)
-    listed = np.diff(traced.groups[0].starts).reshape(40, 40) > 0
+    listed = np.diff(traced.groups[0].tile_starts).reshape(40, 40) > 0
     x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(640), np.arange(640)))
     ((hit, _),) = meets(traced, Vec(*traced.camera[:3]), unit(towards(traced.camera, x, y)))
     assert not hit.reshape(640, 640)[[0, -1]].any()
@@ -201,7 +208,7 @@ def test_a_sphere_is_listed_about_where_it_is_seen(seed: int) -> None:
 def test_of_a_ball_like_a_planet_nothing_is_above_its_horizon() -> None:
     planet = Sphere((0, -101, 3), 200, (1, 2, 3))  # its centre is hardly before the eye, and its radius far greater
     traced = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), planet)), 320, 320)
-    listed = np.diff(traced.groups[0].starts).reshape(20, 20) > 0
+    listed = np.diff(traced.groups[0].tile_starts).reshape(20, 20) > 0
     assert listed[13:].all()
     assert not listed[:9].any()
 
@@ -225,7 +232,7 @@ def test_a_ball_without_end_is_everywhere_and_at_no_distance(kernel: Any) -> Non
     place = np.zeros((1, 2), np.int64)
     for origin in (np.zeros(3), np.array([1.0, 2.0, -3.0])):
         counts[:] = 0
-        assert kernel.cover(origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, views, counts) == 6
+        assert kernel.project_all(origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, views, counts) == 6
         assert views[0, 3:].tolist() == [-2, 0]
         assert counts.tolist() == [1] * 24 + [0]
 
@@ -237,8 +244,8 @@ def test_around_the_eye_a_disc_is_everywhere() -> None:
 def test_distances_are_less_by_what_may_be_one_place_and_by_little_more() -> None:
     near = np.geomspace(1e-30, 1e30, 10_000)
     rounded, depths = visibility.by_depth(near)
-    assert (rounded * (1 + NEARBY) <= near).all()
-    assert (rounded * (1 + 4 * NEARBY) > near).all()
+    assert (rounded * (1 + COINCIDENT) <= near).all()
+    assert (rounded * (1 + 4 * COINCIDENT) > near).all()
     assert (np.diff(depths) >= 0).all()
     assert visibility.by_depth(np.array([0.0, 1e-50]))[0].tolist() == [0, 0]
 
@@ -254,11 +261,11 @@ def test_the_order_of_depth_is_that_of_the_distances() -> None:
 
 def test_lists_leave_something_out() -> None:
     traced = Packing().pack(random_scene(3), WIDTH, HEIGHT)
-    assert len(traced.seen) > 0
+    assert len(traced.tile_shapes) > 0
     scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Light((0, 9, 0), 1), *scattered()))
     traced = Packing().pack(scene, WIDTH, HEIGHT)
-    assert traced.grid > 1
-    in_tile = members(traced, "starts", traced.seen)
+    assert traced.light_buffer_cells > 1
+    in_tile = members(traced, "tile_starts", traced.tile_shapes)
     assert in_tile.mean() < 0.3
     behind = np.array([shape.centre[2] < -2 for shape in scene.shapes])
     assert behind.any()
@@ -277,8 +284,8 @@ def test_more_shapes_more_cells(shapes: int) -> None:
     assert (grid == 1) == (shapes <= 8)
 
 
-def tables_of(count: int) -> Tables:
-    tables = Tables()
+def tables_of(count: int) -> ShapeArrays:
+    tables = ShapeArrays()
     tables.update((Sphere((0, 0, 0), 1, (1, 2, 3)),) * count)
     return tables
 
@@ -320,5 +327,5 @@ def seen(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]:
     """The cone around the hull of some balls, seen from the origin: axis and cosine."""
     rectangles, views, counts = np.zeros((6, 4), np.int32), np.zeros((1, 5)), np.zeros(25, np.int64)
     given = np.zeros(3), visibility.cube(2), balls, 0.0, np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
-    kernel.cover(*given, rectangles, 0, views, counts)
+    kernel.project_all(*given, rectangles, 0, views, counts)
     return views[0, :3], float(views[0, 3])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from minirt.materials import Checker, Glass, Specular
 from minirt.rendering.culling.visibility import SMALL
-from minirt.rendering.packing.features import traits
+from minirt.rendering.packing.features import features
 from minirt.rendering.renderer import needs, small
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes.cylinder import Cylinder
@@ -19,7 +19,7 @@ SUN = ParallelLight((0, -1, 0), 0.5)
 
 
 def of(*elements: object) -> set[object]:
-    return set(traits(Scene((LIGHT, EYE, *elements))))  # type: ignore[arg-type]
+    return set(features(Scene((LIGHT, EYE, *elements))))  # type: ignore[arg-type]
 
 
 def test_a_plain_scene_asks_for_its_kinds_alone() -> None:
@@ -27,14 +27,14 @@ def test_a_plain_scene_asks_for_its_kinds_alone() -> None:
 
 
 def test_each_feature_is_asked_for_where_it_is_used() -> None:
-    assert of(BALL.replace(specular=Specular(0.5, 20))) == {Sphere, "gloss"}
-    assert of(BALL.replace(mirror=0.5)) == {Sphere, "bounces"}
-    assert of(BALL.replace(glass=Glass(1.5))) == {Sphere, "bounces"}
+    assert of(BALL.replace(specular=Specular(0.5, 20))) == {Sphere, "specular"}
+    assert of(BALL.replace(mirror=0.5)) == {Sphere, "reflective"}
+    assert of(BALL.replace(glass=Glass(1.5))) == {Sphere, "reflective"}
     assert of(BALL.replace(checker=Checker(0.5)), BALL) == {Sphere, "checks"}
-    assert of(Background((0, 0, 9))) == {"sky"}
-    assert of(SUN) == {"beams", "parallel"}
-    assert of(SpotLight((0, 9, 0), (0, -1, 0), 40, 1)) == {"beams"}
-    assert of(FurtherLight((0, 9, 0), 1, fade=5.0)) == {"beams"}
+    assert of(Background((0, 0, 9))) == {"background"}
+    assert of(SUN) == {"spots", "parallel"}
+    assert of(SpotLight((0, 9, 0), (0, -1, 0), 40, 1)) == {"spots"}
+    assert of(FurtherLight((0, 9, 0), 1, fade=5.0)) == {"spots"}
 
 
 def test_what_does_nothing_asks_for_nothing() -> None:
@@ -50,5 +50,5 @@ def test_a_small_scene_needs_the_same() -> None:
         scene = Scene((LIGHT, EYE, *elements))
         assert needs(small(scene)) == needs(scene)
         assert len(small(scene).shapes) <= SMALL + 2
-    assert "tree" in needs(Scene((LIGHT, EYE, *balls, SUN)))
-    assert "tree" not in needs(Scene((LIGHT, EYE, *balls)))
+    assert "bvh" in needs(Scene((LIGHT, EYE, *balls, SUN)))
+    assert "bvh" not in needs(Scene((LIGHT, EYE, *balls)))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.rendering.packing import shape_arrays
-from minirt.rendering.packing.shape_arrays import Tables, differing
+from minirt.rendering.packing.shape_arrays import ShapeArrays, differing
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
@@ -27,13 +27,13 @@ def test_what_differs_is_found(places: tuple[int, ...]) -> None:
 
 def test_many_shapes_at_once_are_the_same_numbers_as_each() -> None:
     mixed = [shape.replace(colour=(i % 256, 7, 9)) for i, shape in enumerate(SHAPES * 5)]
-    keeper = Tables()
+    keeper = ShapeArrays()
     assert keeper.update(tuple(mixed))
     for i, shape in enumerate(mixed):
-        kind, number = keeper.places[i]
+        kind, number = keeper.slots[i]
         packed = [c for part in shape.pack() for c in ((part.x, part.y, part.z) if hasattr(part, "x") else (part,))]
         assert np.hstack([np.ravel(part) for part in keeper.rows[kind][number]]).tolist() == packed
-        assert keeper.looks[i, :3].tolist() == [c / 255 for c in shape.colour]
+        assert keeper.colours_and_extents[i, :3].tolist() == [c / 255 for c in shape.colour]
         balls = keeper.balls[keeper.first[i] : keeper.first[i + 1]]
         assert balls[:, :3].tolist() == [list(centre) for centre, _ in shape.balls()]
         for ball, (centre, radius) in zip(balls, shape.balls(), strict=True):
@@ -59,7 +59,7 @@ def test_many_shapes_at_once_are_the_same_numbers_as_each() -> None:
 def test_shapes_that_come_and_go_leave_the_numbers_of_the_others(edit, monkeypatch) -> None:
     before = tuple(shape.replace(colour=(i % 256, 7, 9)) for i, shape in enumerate(SHAPES * 5))
     after = edit(before)
-    keeper, fresh = Tables(), Tables()
+    keeper, fresh = ShapeArrays(), ShapeArrays()
     keeper.update(before)
     fresh.update(after)
     written = []
@@ -67,7 +67,7 @@ def test_shapes_that_come_and_go_leave_the_numbers_of_the_others(edit, monkeypat
     monkeypatch.setattr(keeper, "write", lambda group, indices: (written.extend(indices), write(group, indices)))
     assert keeper.update(after)
     assert len(written) <= len(SHAPES)
-    for name in ("places", "looks", "boxes", "first", "balls", "flat", "planes"):
+    for name in ("slots", "colours_and_extents", "boxes", "first", "balls", "flat", "planes"):
         assert np.array_equal(getattr(keeper, name), getattr(fresh, name)), name
     for kept, made in zip(keeper.rows, fresh.rows, strict=True):
         assert np.array_equal(kept, made)
@@ -75,7 +75,7 @@ def test_shapes_that_come_and_go_leave_the_numbers_of_the_others(edit, monkeypat
 
 
 def test_a_kind_that_comes_or_goes_lays_everything_out_anew() -> None:
-    keeper = Tables()
+    keeper = ShapeArrays()
     for shapes in (MANY[:3], SHAPES, MANY[:2], (), SHAPES):
         assert keeper.update(tuple(shapes))
         assert [len(rows) for rows in keeper.rows] == [
@@ -86,7 +86,7 @@ def test_a_kind_that_comes_or_goes_lays_everything_out_anew() -> None:
 
 def test_extents_of_several() -> None:
     shapes = [Cylinder((1, -7, 3), (0, 1, 0), 4, 6, (0, 0, 0)), Cylinder((1, -7, 3), (1, 0, 0), 4, 40, (0, 0, 0))]
-    keeper = Tables()
+    keeper = ShapeArrays()
     keeper.update(tuple(shapes))
-    assert keeper.looks[:, 3].tolist() == [10, 21]
+    assert keeper.colours_and_extents[:, 3].tolist() == [10, 21]
     assert keeper.boxes.tolist() == [[1, -7, 3, 3], [1, -7, 3, 20]]

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from minirt.rendering import Renderer
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.pick import pick, place
 from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes import Shape
@@ -34,7 +34,7 @@ def owners(scene: Scene) -> tuple[list[Shape], np.ndarray]:
 
 def assert_picks(scene: Scene, allowed: int = 0) -> None:
     shapes, seen = owners(scene)
-    flat, tables = Scene((scene.camera, *shapes)), Tables()
+    flat, tables = Scene((scene.camera, *shapes)), ShapeArrays()
     wrong = 0
     for (y, x), index in np.ndenumerate(seen):
         wrong += pick(flat, WIDTH, HEIGHT, x, y, tables) is not (shapes[index] if index >= 0 else None)

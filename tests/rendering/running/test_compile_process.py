@@ -17,7 +17,7 @@ import pytest
 from minirt.errors import RenderError
 from minirt.rendering.frame_arguments import frame_arguments
 from minirt.rendering.running import compile_process
-from minirt.rendering.running.compile_process import Helper
+from minirt.rendering.running.compile_process import CompileProcess
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Scene
 from minirt.shapes.sphere import Sphere
@@ -102,12 +102,12 @@ def test_two_programs_at_once(tmp_path: Path) -> None:
 def test_what_goes_wrong_is_told(monkeypatch: pytest.MonkeyPatch, code: str, reason: str) -> None:
     monkeypatch.setattr(compile_process, "COMMAND", (sys.executable, "-c", code))
     with pytest.raises(RenderError, match=f"^the kernel cannot be compiled: {reason}$"):
-        Helper().compile(())
+        CompileProcess().compile(())
 
 
 def test_where_no_process_can_be_started_nothing_is_done(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(compile_process, "COMMAND", (str(tmp_path / "nothing"),))
-    Helper().compile(())
+    CompileProcess().compile(())
 
 
 def test_stop_ends_the_process(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -115,7 +115,7 @@ def test_stop_ends_the_process(monkeypatch: pytest.MonkeyPatch) -> None:
         compile_process, "COMMAND", (sys.executable, "-c", "import sys; sys.stdin.read()")
     )  # waits for ever
     errors: list[RenderError] = []
-    made = Helper()
+    made = CompileProcess()
     made.stop()  # of nothing
 
     def compile() -> None:

@@ -13,7 +13,7 @@ import minirt
 from minirt.kernel.frame import DOWN
 from minirt.rendering import Renderer
 from minirt.rendering.sampling.auto import Auto, Task
-from minirt.rendering.sampling.outcome import Reached
+from minirt.rendering.sampling.outcome import Outcome
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -74,7 +74,7 @@ def reach(
     seconds: float = np.inf,
     size: tuple[int, int] = (HEIGHT, WIDTH),
     renderer: Renderer = TWO,
-) -> tuple[Reached, NDArray[np.uint8], Array]:
+) -> tuple[Outcome, NDArray[np.uint8], Array]:
     pixels, linear = np.zeros((*size, 4), np.uint8), np.zeros((*size, 3))
     reached = renderer.reach(scene, pixels, error, seconds, linear)
     assert reached

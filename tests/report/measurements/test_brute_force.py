@@ -31,17 +31,17 @@ def test_without_lamps() -> None:
 def test_every_tile_and_every_lamp_has_every_shape() -> None:
     traced = BruteForce().pack(ALL, WIDTH, HEIGHT)
     for kind, group in enumerate(traced.groups):
-        mine = np.flatnonzero(traced.places[:, 0] == kind).tolist()
-        assert len(group.starts) == 15 + 1
-        for a, b in zip(group.starts, group.starts[1:], strict=False):
-            assert sorted(traced.seen[a:b]) == mine
-        assert len(group.lamp_starts) == 2
-        for a, b in group.lamp_starts:
-            assert sorted(traced.lit[a:b]) == mine
-    assert traced.grid == 1
-    assert (traced.views == [0, 0, 0, -2, 0]).all()  # no cone and no distance keeps a shape from being tried
-    assert (traced.lamp_views == [0, 0, 0, -2, 0]).all()
-    assert len(Packing().pack(ALL, WIDTH, HEIGHT).seen) < len(traced.seen)
+        mine = np.flatnonzero(traced.slots[:, 0] == kind).tolist()
+        assert len(group.tile_starts) == 15 + 1
+        for a, b in zip(group.tile_starts, group.tile_starts[1:], strict=False):
+            assert sorted(traced.tile_shapes[a:b]) == mine
+        assert len(group.light_starts) == 2
+        for a, b in group.light_starts:
+            assert sorted(traced.light_shapes[a:b]) == mine
+    assert traced.light_buffer_cells == 1
+    assert (traced.cones == [0, 0, 0, -2, 0]).all()  # no cone and no distance keeps a shape from being tried
+    assert (traced.light_cones == [0, 0, 0, -2, 0]).all()
+    assert len(Packing().pack(ALL, WIDTH, HEIGHT).tile_shapes) < len(traced.tile_shapes)
 
 
 def test_lists_that_would_fill_the_memory_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ import minirt
 from minirt.fields import MeshFile
 from minirt.kernel.frame import towards
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
-from minirt.rendering.packing.shape_arrays import Tables
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.report.measurements.coincident import ACROSS, DOWN, coincident
 from minirt.report.measurements.stiffness import Stiff, stiff_shapes
 from minirt.scene import Camera, Scene
@@ -30,8 +30,8 @@ DOUBLE, SINGLE = 2.0**-53, 2.0**-24
 HIT = "relative rounding of a hit, double"
 
 
-def tables_of(scene: Scene) -> Tables:
-    tables = Tables()
+def tables_of(scene: Scene) -> ShapeArrays:
+    tables = ShapeArrays()
     tables.update(scene.shapes)
     return tables
 

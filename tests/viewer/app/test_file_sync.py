@@ -12,7 +12,7 @@ from minirt.mlx import Key
 from minirt.scene import load
 from minirt.viewer.app.file_sync import file_changed
 from minirt.viewer.files import watched_file
-from minirt.viewer.files.watched_file import Disk, Signature, signature
+from minirt.viewer.files.watched_file import Signature, WatchedFile, signature
 from tests.viewer.app.test_session import Bench
 from tests.viewer.fake import TEXT, colour_of, scene
 from tests.waiting import HANG_LIMIT, until
@@ -31,7 +31,7 @@ def path(tmp_path):
 @pytest.fixture
 def bench(path):
     made = Bench()
-    made.session.path, made.session.disk = path, Disk(path)
+    made.session.path, made.session.disk = path, WatchedFile(path)
     made.finish(0.001)
     return made
 
@@ -145,7 +145,7 @@ class Watch:
 
     def __init__(self, path: Path) -> None:
         self.told = 0  # how often the watcher said that the file has changed
-        self.disk = Disk(path)
+        self.disk = WatchedFile(path)
         self._allowed = threading.Semaphore(0)
         self._taken = 0
         self._begun = 0
@@ -213,7 +213,7 @@ class TestDisk:
 
         monkeypatch.setattr(watched_file, "signature", look)
         monkeypatch.setattr(watched_file, "INTERVAL", 0.001)
-        watched = Disk(path)
+        watched = WatchedFile(path)
         told: list[int] = []
         watched.watch(lambda: told.append(len(seen)))
         until(lambda: len(seen) > len(looks), "enough looks")

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from minirt.scene import Camera
-from minirt.scene.camera_frame import view
+from minirt.scene.camera_frame import camera_frame
 
 ROOT = sqrt(0.5)
 
@@ -29,14 +29,14 @@ ROOT = sqrt(0.5)
     ],
 )
 def test_axes(direction, right, up):
-    got_right, got_up, got_forward = view(Camera((0, 0, 0), direction, 60))
+    got_right, got_up, got_forward = camera_frame(Camera((0, 0, 0), direction, 60))
     assert got_right == pytest.approx(right, abs=1e-15)
     assert got_up == pytest.approx(up, abs=1e-15)
     assert got_forward == pytest.approx(direction, abs=1e-15)
 
 
 def test_a_roll_is_clockwise_as_the_camera_sees_it():
-    right, up, _ = view(Camera((0, 0, 0), (0, 0, -1), 60, roll=90))
+    right, up, _ = camera_frame(Camera((0, 0, 0), (0, 0, -1), 60, roll=90))
     assert up == pytest.approx((1, 0, 0), abs=1e-15)
     assert right == pytest.approx((0, -1, 0), abs=1e-15)
 
@@ -46,7 +46,7 @@ component = st.floats(-1, 1)
 
 @given(st.tuples(component, component, component).filter(any), st.floats(-360, 360))
 def test_orthonormal_and_right_handed(direction, roll):
-    right, up, forward = view(Camera((0, 0, 0), direction, 60, roll=roll))
+    right, up, forward = camera_frame(Camera((0, 0, 0), direction, 60, roll=roll))
     for one in (right, up, forward):
         assert hypot(*one) == pytest.approx(1, abs=1e-14)
     for one, other in ((right, up), (up, forward), (forward, right)):

@@ -11,7 +11,7 @@ import pytest
 
 from minirt.errors import RenderError
 from minirt.viewer.display import background_painter
-from minirt.viewer.display.adaptive_resolution import LONGEST, Pace
+from minirt.viewer.display.adaptive_resolution import LONGEST, AdaptiveResolution
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Job, Outcome
 from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
@@ -265,7 +265,7 @@ class TestPace:
         job = Job(JOB.scene, 800, 600, divisor, urgent, samples)
         return Outcome(job, colour_of(JOB.scene) if pixels else None, seconds=seconds)
 
-    def moving(self, pace: Pace, seconds: float, always: float = 0.0) -> int:
+    def moving(self, pace: AdaptiveResolution, seconds: float, always: float = 0.0) -> int:
         """Render a picture while something moves: a whole one takes that long, and each `always` of it."""
         divisor = pace.divisor(800, 600)
         pace.learn(self.made(always + (seconds - always) / divisor**2, divisor, urgent=True))
@@ -276,25 +276,25 @@ class TestPace:
         [(0.5, 1), (0.99, 1), (1.1, 2), (3.9, 2), (4.1, 3), (8.9, 3), (9.1, 4), (16, 4), (17, 8), (1e6, 8)],
     )
     def test_as_coarse_as_needed(self, longest, divisor):
-        pace = Pace()
+        pace = AdaptiveResolution()
         pace.learn(self.made(longest * LONGEST))
         assert pace.divisor(800, 600) == divisor
         for _ in range(20):
             assert self.moving(pace, longest * LONGEST) == divisor
 
     def test_is_careful_while_nothing_is_known(self):
-        pace = Pace()
+        pace = AdaptiveResolution()
         assert pace.divisor(800, 600) == 8
         pace.learn(self.made(0.001, pixels=False))
         assert pace.divisor(800, 600) == 8
 
     def test_another_size_has_another_cost(self):
-        pace = Pace()
+        pace = AdaptiveResolution()
         pace.learn(self.made(LONGEST * 4))
         assert pace.divisor(400, 300) == 1
 
     def test_a_cancelled_picture_took_at_least_that_long(self):
-        pace = Pace()
+        pace = AdaptiveResolution()
         pace.learn(self.made(LONGEST / 2))
         pace.learn(self.made(LONGEST / 4, pixels=False))  # which says nothing
         for _ in range(2):
@@ -303,14 +303,14 @@ class TestPace:
         assert pace.divisor(800, 600) == 2
 
     def test_refined_pictures_say_nothing(self):
-        pace = Pace()
+        pace = AdaptiveResolution()
         pace.learn(self.made(LONGEST / 2))
         for _ in range(3):
             pace.learn(self.made(LONGEST * 9, samples=4))
         assert pace.divisor(800, 600) == 1
 
     def test_one_slow_picture_changes_nothing_and_two_do(self):
-        pace = Pace()
+        pace = AdaptiveResolution()
         for _ in range(3):
             pace.learn(self.made(LONGEST / 2))
         pace.learn(self.made(LONGEST * 5, urgent=True))
@@ -319,21 +319,21 @@ class TestPace:
         assert pace.divisor(800, 600) == 3
 
     def test_what_is_under_way_is_waited_for(self):
-        pace = Pace()
+        pace = AdaptiveResolution()
         pace.learn(self.made(LONGEST * 3))
         assert pace.divisor(800, 600) == 2
         pace.learn(self.made(LONGEST * 30, urgent=True))  # of before
         assert pace.divisor(800, 600) == 2
 
     def test_a_whole_picture_that_was_not_waited_for_leaves_the_pace_as_it_was(self):
-        pace = Pace()
+        pace = AdaptiveResolution()
         pace.learn(self.made(LONGEST * 3))
         self.moving(pace, LONGEST * 3)
         pace.learn(self.made(LONGEST / 100, pixels=False))
         assert pace.divisor(800, 600) == 2
 
     def test_near_the_limit_the_resolution_does_not_flicker(self):
-        pace = Pace()
+        pace = AdaptiveResolution()
         pace.learn(self.made(LONGEST * 0.98))
         used = [self.moving(pace, LONGEST * (1.02 if n // 3 % 2 else 0.98)) for n in range(200)]
         assert set(used) == {1, 2}
@@ -343,7 +343,7 @@ class TestPace:
 
     def test_a_finer_picture_is_tried_where_coarse_ones_mislead(self):
         """Each picture takes a tenth of the time, whatever its size."""
-        pace, always = Pace(), LONGEST / 10
+        pace, always = AdaptiveResolution(), LONGEST / 10
         pace.learn(self.made(LONGEST * 90))
         assert self.moving(pace, LONGEST * 90, always) == 8  # somebody else had the processor
         used = [self.moving(pace, LONGEST * 0.9, always) for _ in range(1000)]
@@ -351,14 +351,14 @@ class TestPace:
         assert sum(a != b for a, b in itertools.pairwise(used)) <= 4
 
     def test_trying_in_vain_becomes_rare(self):
-        pace = Pace()
+        pace = AdaptiveResolution()
         pace.learn(self.made(LONGEST * 1.1))
         used = [self.moving(pace, LONGEST * 1.1) for _ in range(1000)]
         assert 1 <= used.count(1) <= 12
 
     def test_what_showing_takes_is_not_left_for_rendering(self):
         for showing, divisor in ((0.1, 1), (0.4, 2), (40, 2)):  # the last is the screen's fault
-            pace = Pace()
+            pace = AdaptiveResolution()
             pace.learn_showing(LONGEST * showing)
             pace.learn(self.made(LONGEST * 0.7))
             assert pace.divisor(800, 600) == divisor

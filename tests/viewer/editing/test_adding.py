@@ -12,7 +12,7 @@ from minirt.shapes import KINDS
 from minirt.shapes.mesh import Mesh
 from minirt.viewer.editing.adding import kinds, made
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.projection import lens
+from minirt.viewer.editing.projection import projection
 from minirt.viewer.editing.state import State, opened
 from tests.viewer.fake import TEXT, played, scene
 
@@ -38,7 +38,7 @@ def test_each_is_made_from_its_fields_and_seen(kind: type, text: str) -> None:
     state = opened(scene(text))
     element = made(kind, state)
     assert type(element) is kind
-    seen = lens(state.scene.camera, 640, 360)
+    seen = projection(state.scene.camera, 640, 360)
     for field in fields_of(kind):
         if isinstance(field, Point):
             x, y = seen.pixel(getattr(element, field.name))

@@ -16,13 +16,13 @@ from minirt.fields import Direction, Picture, Point
 from minirt.materials import Compound
 from minirt.rendering.queries.pick import covers
 from minirt.scene import Background, Resolution, Scene, dump, load, parse
-from minirt.scene.camera_frame import mix, view
+from minirt.scene.camera_frame import camera_frame, mix
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 from minirt.viewer.editing.adding import kinds, made
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.projection import lens
+from minirt.viewer.editing.projection import projection
 from minirt.viewer.editing.state import State, index_of, named, opened, place_of
 from minirt.viewer.editing.values import values
 from tests.viewer.fake import played
@@ -104,14 +104,14 @@ def spot(state: State) -> tuple[int, int] | None:
         middle = seen[len(seen) // 2]
         return int(x[middle]), int(y[middle])
     place = place_of(element)
-    at = lens(camera, *SIZE).pixel(place) if place else None
+    at = projection(camera, *SIZE).pixel(place) if place else None
     return (round(at[0]), round(at[1])) if at else None
 
 
 @pytest.mark.parametrize("kind", EDITABLE, ids=lambda kind: kind.code)
 def test_it_moves_and_turns(kind: type[Element], path: Path) -> None:
     state = holding(kind, path)
-    axes = dict(zip(("right", "up", "forward"), view(state.scene.camera), strict=True))
+    axes = dict(zip(("right", "up", "forward"), camera_frame(state.scene.camera), strict=True))
     for action, axis in axes.items():
         moved = fine(apply(state, action))
         for name in named(kind, Point):

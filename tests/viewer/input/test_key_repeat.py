@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from minirt.viewer.input.key_repeat import RATE, Held
+from minirt.viewer.input.key_repeat import RATE, KeyRepeat
 
 
 def total(seconds: float, ticks: int) -> float:
-    held = Held()
+    held = KeyRepeat()
     held.press(97, "left", 10.0)
     steps = 1.0  # with the press
     for tick in range(1, ticks + 1):
@@ -28,7 +28,7 @@ def test_a_tap_is_one_step(ticks):
 
 
 def test_keys_are_independent():
-    held = Held()
+    held = KeyRepeat()
     held.press(97, "left", 0.0)
     held.press(119, "forward", 1.0)
     assert held.advance(1.0) == [("left", RATE - 1), ("forward", 0.0)]
