@@ -30,7 +30,9 @@ def measured() -> Iterator[Row]:
             print(f"formula of the {kind.element.title}", file=sys.stderr, flush=True)
             rays = REGIME.pose(kind, np.random.default_rng(SEED), SHAPES, RAYS)
             yield from (
-                row for row in formula_errors.measured(kind, REGIME.name, rays) if row.formula in ("miniRT", "textbook")
+                row
+                for row in formula_errors.measure_formulas(kind, REGIME.name, rays)
+                if row.formula in ("miniRT", "textbook")
             )
 
 

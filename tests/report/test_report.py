@@ -19,7 +19,7 @@ from minirt.errors import RenderError
 from minirt.report import __main__, generate, report, report_formulas
 from minirt.report.generate import NO_DIAGRAM
 from minirt.report.measurements.picture_errors import Budget
-from minirt.report.measurements.plan import QUICK, fitting
+from minirt.report.measurements.plan import QUICK, fitting_size
 from minirt.report.output.error_image import HEAT
 from minirt.scene import Scene, dump
 from minirt.shapes import KINDS
@@ -158,7 +158,7 @@ def test_the_formulas_of_all_kinds(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_pictures_are_as_small_as_the_time_asks() -> None:
-    assert fitting(ALL, (64, 36), QUICK) == (64, 36)
+    assert fitting_size(ALL, (64, 36), QUICK) == (64, 36)
     plan = QUICK._replace(width=320)
     seconds = plan.samples * packets(320, 180) * PACKET
     for given, size in (
@@ -168,8 +168,8 @@ def test_pictures_are_as_small_as_the_time_asks() -> None:
         (seconds / 4.01, (80, 45)),
         (seconds / 4**8, (1, 1)),
     ):
-        assert fitting(ALL, (1280, 720), plan._replace(seconds=given)) == size
-    assert fitting(ALL, (10_000, 1), QUICK) == (320, 1)
+        assert fitting_size(ALL, (1280, 720), plan._replace(seconds=given)) == size
+    assert fitting_size(ALL, (10_000, 1), QUICK) == (320, 1)
 
 
 def test_the_program_writes_a_report(run: Run, folder: Path) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.report.measurements.flip import flip, seen
+from minirt.report.measurements.flip import flip, perceived
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ def board(contrast: float, height: int = 120, width: int = 160) -> Array:
 
 
 def mean(a: Array, b: Array) -> float:
-    return float(flip(seen(a), seen(b)).mean())
+    return float(flip(perceived(a), perceived(b)).mean())
 
 
 @pytest.mark.parametrize(
@@ -46,13 +46,13 @@ def test_the_figures_of_the_authors(a: Array, b: Array, right: float) -> None:
 
 
 def test_the_same_picture_has_no_error() -> None:
-    assert not flip(seen(waves()), seen(waves())).any()
+    assert not flip(perceived(waves()), perceived(waves())).any()
 
 
 def test_an_error_is_where_the_pictures_differ() -> None:
     one, other = waves(), waves()
     other[60, 80] = 1 - other[60, 80]
-    errors = flip(seen(one), seen(other))
+    errors = flip(perceived(one), perceived(other))
     assert np.unravel_index(errors.argmax(), errors.shape) == (60, 80)
     assert errors[60, 80] > 0.3
     assert not errors[:30].any()

@@ -84,7 +84,7 @@ def test_operations_by_hand() -> None:
 def test_a_compiled_formula_is_one_function(element: type[Shape]) -> None:
     """Nothing that it calls was left outside of it: a call would pass vectors through memory."""
     for formula in (KIND[element].intersect, textbook.FORMULAS[element]):
-        shoot, _ = formula_errors.prepared(formula, rays_of(KIND[element]), KIND[element], np.float64)
+        shoot, _ = formula_errors.prepare(formula, rays_of(KIND[element]), KIND[element], np.float64)
         shoot(1)
         (code, *_) = probe(formula).inspect_llvm().values()
         body = re.search(r"^define .*?^}", code, re.MULTILINE | re.DOTALL)
