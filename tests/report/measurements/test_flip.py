@@ -12,14 +12,14 @@ Array = NDArray[np.float64]
 
 
 def waves(height: int = 120, width: int = 160) -> Array:
-    """A picture of soft and of hard edges."""
+    """Make a picture of soft and hard edges."""
     y, x = np.mgrid[:height, :width] / 40
     hard = (np.sin(3 * y) > 0) * 0.8 + 0.1
     return np.stack([np.sin(x * 2 + y) * 0.5 + 0.5, hard, np.cos(x * y) * 0.5 + 0.5], -1)
 
 
 def board(contrast: float, height: int = 120, width: int = 160) -> Array:
-    """Grey, with squares that are bluer and yellower."""
+    """Make a grey picture with bluer and yellower squares."""
     y, x = np.mgrid[:height, :width] // 4
     picture = np.full((height, width, 3), 0.5)
     picture[..., 2] += ((x + y) % 2 - 0.5) * contrast

@@ -1,4 +1,4 @@
-"""Errors of formulas that are wrong by a known amount are found, and those of the real ones are small."""
+"""Known errors of formulas are measured right, and the real formulas have small errors."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ EVERY = pytest.mark.parametrize(
 
 @pytest.fixture(autouse=True)
 def machine(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Turns whose times are known."""
+    """Simulate a machine whose runs take known times."""
     monkeypatch.setattr(formula_errors, "in_turn", in_turn)
 
 
@@ -134,7 +134,7 @@ def test_runs_of_the_machine_take_time(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_textbooks_lose_what_is_tiny_and_far() -> None:
-    """float32 loses all of it where the processor rounds a product and a sum once, and most of it where twice."""
+    """float32 loses all such shapes with fused multiply-add, and most of them without."""
     rows = rows_of(BALL, "tiny and far", 12)
     own, naive, single = (rows[name] for name in ("miniRT", "textbook", "miniRT, float32"))
     assert own.max_error < 1e-15

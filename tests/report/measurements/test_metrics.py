@@ -1,4 +1,4 @@
-"""Errors of pictures, by hand."""
+"""Error metrics of pictures, against values worked out by hand."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from minirt.report.output.error_image import HEAT, error_image
 
 
 def grey(*values: float) -> np.ndarray:
-    """A line of grey pixels."""
+    """Make a row of grey pixels."""
     return np.repeat(np.array(values)[None, :, None], 3, axis=2)
 
 

@@ -1,4 +1,4 @@
-"""What is best is not beaten in time and error both."""
+"""No setting beats one of the Pareto front in both time and error."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_by_hand() -> None:
     assert pareto_front([FAILED], 0.0) == []
 
 
-def test_who_is_closer_by_less_than_the_doubt_is_not_closer() -> None:
+def test_an_error_smaller_by_less_than_the_doubt_counts_as_equal() -> None:
     close = Point(0.0099, 30)
     assert pareto_front([*POINTS, close], 0.0) == [ROUGH, FINE, close]
     assert pareto_front([*POINTS, close], 0.001) == [ROUGH, FINE]
@@ -40,7 +40,7 @@ def test_who_is_closer_by_less_than_the_doubt_is_not_closer() -> None:
 
 
 @given(some.lists(some.builds(Point, FEW, FEW), max_size=12), FEW)
-def test_nothing_beats_it(points: list[Point], wanted: float) -> None:
+def test_nothing_beats_the_front(points: list[Point], wanted: float) -> None:
     best = pareto_front(points, 0.0)
     for point in points:
         assert any(other.rmse <= point.rmse and other.wall_ms <= point.wall_ms for other in best)

@@ -1,4 +1,4 @@
-"""The figures of pictures, against an independent measurement of the same."""
+"""The measured errors of pictures agree with an independent measurement."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ONCE = packets(WIDTH, HEIGHT) * PACKET  # seconds of the simulated clock that on
 
 @pytest.fixture(autouse=True)
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    """Time passes by what is rendered alone."""
+    """Simulate a clock that only rendering moves on."""
     return simulated(monkeypatch)
 
 
@@ -36,7 +36,7 @@ def right() -> Reference:
 
 
 def light(samples: int) -> np.ndarray:
-    """The program's own picture."""
+    """Render a picture with the program."""
     made = minirt.render(ALL, WIDTH, HEIGHT, samples=samples).linear
     assert made is not None
     return np.clip(made, 0, 1)
@@ -144,7 +144,7 @@ def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
 
 
 def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two lamps as bright as no file may have: where both shine straight down, their sum is infinite."""
+    """Two lights brighter than any file may say: where both shine straight down, their sum is infinite."""
     bright = Scene((AMBIENT, EYE, LAMP, FurtherLight(LAMP.position, 1.0), *SHAPES))
     monkeypatch.setattr(
         scene_packing, "light_numbers", lambda lamps: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps))
