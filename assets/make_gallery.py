@@ -21,7 +21,7 @@ WIDTH, HEIGHT, SAMPLES = 1280, 720, 64
 
 
 def row(name: str) -> str:
-    """Draw a scene; its line of the table."""
+    """Render a scene; return its row of the table."""
     scene = minirt.load(ROOT / "scenes" / f"{name}.rt")
     minirt.render(scene, WIDTH, HEIGHT, threads=1)  # compiled
     start = time.process_time()

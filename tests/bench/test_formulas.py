@@ -1,4 +1,4 @@
-"""The table of formulas, from invented figures."""
+"""The table of formula times, from invented figures."""
 
 from __future__ import annotations
 
@@ -50,4 +50,4 @@ def test_each_formula_of_a_textbook_is_measured_beside_the_exact_one(monkeypatch
         (element.title, formula) for element in textbook.FORMULAS for formula in ("miniRT", "textbook")
     ]
     assert formulas.table(rows).count("2.00  x0.50") == len(textbook.FORMULAS)
-    assert "nanoseconds of one thread" in formulas.MEANING
+    assert "nanoseconds on one thread" in formulas.MEANING

@@ -33,8 +33,11 @@ def diagram(rows: Iterable[Row], reference_error: float, title: str) -> bytes:
         panel.plot([row.rmse for row in best], [row.wall_ms for row in best], color="#cccccc", linewidth=7, zorder=0)
         for knob, colour, mark in zip(knobs, COLOURS, MARKS, strict=False):
             draw_setting(panel, [row for row in rows if row.knob == knob], colour, mark)
-        if reference_error > 0:
+        low, high = panel.get_xlim()
+        if low < reference_error < high:
             panel.axvline(reference_error, color="#999999", linestyle="--", linewidth=1, label="error of the reference")
+        elif reference_error > 0:
+            panel.plot([], [], " ", label=f"error of the reference: {reference_error:.1g}")
         panel.set(xlabel="error: RMSE of colours, 1 from black to white", ylabel="milliseconds per picture")
         for axis in (panel.xaxis, panel.yaxis):
             axis.set_major_locator(LogLocator(subs=(1, 2, 5)))

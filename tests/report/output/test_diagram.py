@@ -56,9 +56,19 @@ def test_points_that_are_not_valid_are_hollow() -> None:
     assert area(hollow, RED) < area(solid, RED) - 50
 
 
-def test_the_error_of_the_reference_is_a_line() -> None:
+def test_the_error_of_the_reference_is_a_line_among_the_points() -> None:
     rows = row("uniform", 1), row("uniform", 4)
-    assert uprights(drawn(*rows)) == uprights(drawn(*rows, reference=0.0)) + 1
+    without = drawn(*rows, reference=0.0)
+    assert uprights(drawn(*rows, reference=0.05)) == uprights(without) + 1
+
+
+def test_the_error_of_the_reference_takes_no_room_beside_the_points() -> None:
+    """Far left of all points it is told in the legend, and the axis stays as it is."""
+    rows = row("uniform", 1), row("uniform", 4)
+    without, beside = drawn(*rows, reference=0.0), drawn(*rows, reference=1e-5)
+    assert uprights(beside) == uprights(without)
+    assert np.array_equal(beside[-60:], without[-60:])  # the labels of the axis of errors
+    assert not np.array_equal(beside, without)
 
 
 def test_failed_settings_are_not_drawn() -> None:
