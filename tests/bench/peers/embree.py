@@ -1,4 +1,4 @@
-"""Embree 4 from the package `embreex`, called as in C: packets of 16 coherent rays, by a compiled kernel on all threads.
+"""Embree 4 from the package `embreex`, called as in C: packets of 16 coherent rays, compiled, on all threads.
 
 The package's own Python interface traces single rays on one thread, which is no fair comparison. Spheres are Embree's
 own; it has no planes and no capped cylinders, so these are triangles: 2 * 64 for the side of a cylinder, 64 for each
