@@ -45,8 +45,9 @@ test: $(DEV)  ## run all tests, or some: make test TESTS=tests/shapes
 quick: $(DEV)  ## run the tests that take a minute in all
 	$(PYTEST) -m "not window and not slow" $(TESTS)
 
-FORMULAS := tests/lanes tests/shapes tests/report/measurements/test_formula_errors.py tests/report/measurements/test_operation_counts.py \
-            $(addprefix tests/kernel/test_,features.py frame.py highlight.py invariances.py single.py)
+FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/test_frame.py \
+            tests/kernel/test_invariances.py tests/kernel/test_single.py tests/kernel/shading/test_specular.py \
+            tests/report/measurements/test_formula_errors.py tests/report/measurements/test_operation_counts.py
 
 processors: $(DEV)  ## run the tests of compiled formulas as on processors without AVX-512 and without AVX
 	NUMBA_CPU_NAME=haswell $(PYTEST) $(FORMULAS)
@@ -70,7 +71,7 @@ report: $(NAME)  ## measure error against run time: make report REPORT=--quick f
 	$(VENV)/bin/python -m minirt.report out/report/shapes $(REPORT)
 	$(foreach scene,$(REPORTED),$(NAME) scenes/$(scene).rt --report out/report/$(scene) $(REPORT) &&) true
 
-textures gallery: $(NAME)  ## draw the textures of the scenes, or the README's gallery
+textures gallery: $(NAME)  ## draw the textures of the scenes, or render the gallery
 	$(VENV)/bin/python assets/make_$@.py
 
 clean:  ## remove what tests, tools and runs have left
