@@ -19,21 +19,21 @@ CANCELLED = 2**40  # a row that no picture has
 OPAQUE = 0xFF000000  # alpha of a pixel
 
 
-def towards(camera: Any, x: float, y: float) -> Vec:
+def ray_direction(camera: Any, x: float, y: float) -> Vec:
     """The direction of the ray through a place of the picture, in pixels from its upper left corner; of any length."""
     corner = Vec(camera[3], camera[4], camera[5])
     return corner + x * Vec(camera[6], camera[7], camera[8]) + y * Vec(camera[9], camera[10], camera[11])
 
 
-def packet(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: int, y: int) -> Vec:
+def packet_radiance(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: int, y: int) -> Vec:
     """The light of the pixels of a packet whose upper left one is x, y, along the `rays` of a sample."""
     count = width(rays)
     origin = Vec(scene.camera[0], scene.camera[1], scene.camera[2])
-    direction = towards(scene.camera, x, y) + Vec(load(rays, 0), load(rays, count), load(rays, 2 * count))
+    direction = ray_direction(scene.camera, x, y) + Vec(load(rays, 0), load(rays, count), load(rays, 2 * count))
     return radiance(scene, memory, tile, origin, unit(direction))
 
 
-def added(light: Vec, sums: Any, start: int, sample: int) -> Vec:
+def accumulate(light: Vec, sums: Any, start: int, sample: int) -> Vec:
     """The light of a sample and of those before it, whose sum is kept in `sums` from index `start` on."""
     count = width(sums)
     if sample > 0:
@@ -44,7 +44,7 @@ def added(light: Vec, sums: Any, start: int, sample: int) -> Vec:
     return light
 
 
-def made_finite(light: Vec, memory: Any) -> Vec:
+def without_non_finite(light: Vec, memory: Any) -> Vec:
     """The light, which is not negative, without components that are infinite or NaN. The rays that have such are added
     up in the last row of `memory`."""
     total = light.x + light.y + light.z
@@ -52,16 +52,16 @@ def made_finite(light: Vec, memory: Any) -> Vec:
         for i in range(width(total)):
             if not lane(total, i) < inf:
                 memory[memory.shape[0] - 1, 1] += 1.0
-        light = Vec(finite(light.x), finite(light.y), finite(light.z))
+        light = Vec(finite_or_zero(light.x), finite_or_zero(light.y), finite_or_zero(light.z))
     return light
 
 
-def finite(light: Number) -> Number:
+def finite_or_zero(light: Number) -> Number:
     """Light as it is, or 0 for infinity and NaN."""
     return where(light < inf, light, 0.0)
 
 
-def level(light: Number) -> Number:
+def to_byte_range(light: Number) -> Number:
     """Light, which is not negative, as a byte, still to be cut to a whole number; what is above 1 is clamped."""
     return minimum(light, 1.0) * 255.0 + 0.5
 
@@ -78,7 +78,7 @@ def frame(
     packet. `wanted` is not 0 for each packet (row, column) that is to be rendered, or has no rows where all are. A
     counter set to `CANCELLED` from outside ends the frame at the next packet.
     """
-    tiles_of_rows(
+    render_tiles(
         next_row,
         by_reference(pixels),
         by_reference(linear),
@@ -90,7 +90,7 @@ def frame(
     )
 
 
-def tiles_of_rows(
+def render_tiles(
     next_row: Any, pixels: Any, linear: Any, rays: Any, wanted: Any, memory: Any, sums: Any, scene: SceneArrays
 ) -> None:
     """The frame, tile by tile."""
@@ -104,7 +104,7 @@ def tiles_of_rows(
         if top >= height:
             return
         for left in range(0, across, TILE):
-            tile = top // TILE * tiles(across) + left // TILE
+            tile = top // TILE * tile_count(across) + left // TILE
             empty = scene.environment is None and is_empty(scene, tile)
             # All packets for each sample, not all samples for each packet: a sum that is kept through the loop takes
             # registers from what is in it, and a seventh more time.
@@ -116,32 +116,32 @@ def tiles_of_rows(
                         if rarely(wanted.shape[0] > 0) and wanted[y // DOWN, x // step] == 0:
                             continue
                         if empty:
-                            store(pixels, linear, x, y, background_light(scene, nothing > 0.0, dark, dark))
+                            store_packet(pixels, linear, x, y, background_light(scene, nothing > 0.0, dark, dark))
                             continue
-                        light = made_finite(packet(scene, memory, tile, rays[sample], x, y), memory)
+                        light = without_non_finite(packet_radiance(scene, memory, tile, rays[sample], x, y), memory)
                         if rarely(samples > 1):
                             place = (y - top) * TILE + (x - left) * DOWN
-                            light = added(light, sums, 3 * place, sample) / samples
+                            light = accumulate(light, sums, 3 * place, sample) / samples
                         if sample == samples - 1:
-                            store(pixels, linear, x, y, light)
+                            store_packet(pixels, linear, x, y, light)
 
 
-def tiles(pixels: int) -> int:
+def tile_count(pixels: int) -> int:
     """Tiles that it takes to cover so many pixels."""
     return (pixels + TILE - 1) // TILE
 
 
-def store(pixels: Any, linear: Any, x: int, y: int, light: Vec) -> None:
+def store_packet(pixels: Any, linear: Any, x: int, y: int, light: Vec) -> None:
     """Put the light of a packet into the picture; what lies beyond its edges is dropped."""
     height, across = pixels.shape
     keep = linear.shape[0] > 0
     step = width(light.x) // DOWN
-    red, green, blue = level(light.x), level(light.y), level(light.z)
+    red, green, blue = to_byte_range(light.x), to_byte_range(light.y), to_byte_range(light.z)
     if rarely(keep or x + step > across or y + DOWN > height):
         for i in range(width(light.x)):
             column, line = x + i % step, y + i // step
             if column < across and line < height:
-                pixels[line, column] = colour(lane(red, i), lane(green, i), lane(blue, i))
+                pixels[line, column] = argb(lane(red, i), lane(green, i), lane(blue, i))
                 if keep:
                     linear[line, column, 0] = lane(light.x, i)
                     linear[line, column, 1] = lane(light.y, i)
@@ -150,7 +150,7 @@ def store(pixels: Any, linear: Any, x: int, y: int, light: Vec) -> None:
         store_block(pixels, x, y, red, green, blue)
 
 
-def colour(red: float, green: float, blue: float) -> int:
+def argb(red: float, green: float, blue: float) -> int:
     """A pixel from its levels."""
     return OPAQUE | int(red) << 16 | int(green) << 8 | int(blue)
 
@@ -159,4 +159,4 @@ def store_block(pixels: Any, x: int, y: int, red: Number, green: Number, blue: N
     """Put a whole packet into the picture; compiled, a row of it at a time."""
     step = width(red) // DOWN
     for i in range(width(red)):
-        pixels[y + i // step, x + i % step] = colour(lane(red, i), lane(green, i), lane(blue, i))
+        pixels[y + i // step, x + i % step] = argb(lane(red, i), lane(green, i), lane(blue, i))

@@ -21,18 +21,18 @@ Rows = Any  # an array of dtype `row_type(kind)`
 def row_type(kind: Kind, number: type = np.float64) -> np.dtype[Any]:
     """The dtype of the rows of a kind, made of numbers of a type."""
     hints = get_type_hints(kind.packed).items()
-    return np.dtype([(field(kind, name), number, (3,) if hint in (Vec, Place) else ()) for name, hint in hints])
+    return np.dtype([(field_name(kind, name), number, (3,) if hint in (Vec, Place) else ()) for name, hint in hints])
 
 
-def field(kind: Kind, name: str) -> str:
+def field_name(kind: Kind, name: str) -> str:
     """What a number or Vec of a packed shape is called in the rows of its kind."""
     return f"{kind.element.title}.{name}"
 
 
 @cache
-def place_fields(kind: Kind) -> tuple[str, ...]:
+def point_fields(kind: Kind) -> tuple[str, ...]:
     """The fields of the rows of a kind that are points."""
-    return tuple(field(kind, name) for name, hint in get_type_hints(kind.packed).items() if hint is Place)
+    return tuple(field_name(kind, name) for name, hint in get_type_hints(kind.packed).items() if hint is Place)
 
 
 def kind_of(fields: Any) -> Kind:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.culling.light_buffer import close, look_up
+from minirt.kernel.culling.light_buffer import is_close, remember_cell
 from minirt.kernel.rows import intersect, is_batched, may_meet, read, surface
 from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.lanes import (
@@ -47,10 +47,10 @@ def for_each_kind(step: Callable[..., Any], groups: tuple[Group, ...], state: An
 
 def is_empty(scene: SceneArrays, tile: int) -> bool:
     """Whether no shape can be seen in a tile of the picture."""
-    return bool(for_each_kind(count_of_kind, scene.groups, 0, tile) == 0)
+    return bool(for_each_kind(count_kind, scene.groups, 0, tile) == 0)
 
 
-def count_of_kind(group: Group, count: int, tile: int) -> int:
+def count_kind(group: Group, count: int, tile: int) -> int:
     """The number of shapes of a kind in a tile, and `count`."""
     return count + int(group.tile_starts[tile + 1] - group.tile_starts[tile])
 
@@ -179,10 +179,10 @@ def unoccluded(
     for _ in range(width(distance)):  # at most a look for each ray
         if not any(left):
             break
-        mine = left & close(memory[lamp], scene.light_buffers[lamp], direction)
+        mine = left & is_close(memory[lamp], scene.light_buffers[lamp], direction)
         if rarely(not any(mine)):
-            look_up(memory[lamp], scene.light_buffers[lamp], scene.light_buffer_cells, direction, first(left))
-            mine = left & close(memory[lamp], scene.light_buffers[lamp], direction)
+            remember_cell(memory[lamp], scene.light_buffers[lamp], scene.light_buffer_cells, direction, first(left))
+            mine = left & is_close(memory[lamp], scene.light_buffers[lamp], direction)
         given = (scene, lamp, int(memory[lamp, 3]), mine, origin, direction, distance)
         free = for_each_kind(unoccluded_by_kind, scene.groups, free, given)
         left = left & ~mine

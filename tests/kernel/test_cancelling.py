@@ -36,13 +36,13 @@ class Counter:
 def packets_after(looks: float, monkeypatch: pytest.MonkeyPatch) -> tuple[int, int]:
     """How many packets are traced of a frame before it is cancelled, after so many looks at the counter, and after."""
     counter, made = Counter(looks), [0, 0]
-    packet = frame.packet
+    packet = frame.packet_radiance
 
     def counted(*given: Any) -> Vec:
         made[counter.left <= 0] += 1
         return packet(*given)
 
-    monkeypatch.setattr(frame, "packet", counted)
+    monkeypatch.setattr(frame, "packet_radiance", counted)
     traced = Packing(binning).pack(ALL, WIDTH, HEIGHT)
     given = frame_arguments(traced, np.zeros((HEIGHT, WIDTH, 4), np.uint8), SAMPLES)
     with np.errstate(all="ignore"):

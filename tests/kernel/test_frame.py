@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from minirt.kernel import frame
-from minirt.kernel.frame import towards
+from minirt.kernel.frame import ray_direction
 from minirt.lanes import Vec
 from minirt.rendering import Renderer, scene_packing
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
@@ -91,7 +91,7 @@ def test_the_eye_looks_forward_through_the_middle() -> None:
         ((0, 10), forward - half * right),
         ((15, 0), forward + half * 2 / 3 * up),
     ):
-        direction = towards(numbers, x, y)
+        direction = ray_direction(numbers, x, y)
         assert np.allclose([direction.x, direction.y, direction.z], expected, atol=1e-15)
     assert tuple(numbers[:3]) == EYE.position
 
@@ -110,12 +110,12 @@ def test_light_that_is_not_finite_is_made_black_and_counted() -> None:
     light = np.full((3, 16), 0.5)
     light[0, 3], light[1, 5] = np.nan, np.inf
     memory = np.zeros((3, 4))
-    mended = frame.made_finite(Vec(*light), memory)
+    mended = frame.without_non_finite(Vec(*light), memory)
     assert memory[2, 1] == 2
     assert memory.sum() == 2
     light[0, 3] = light[1, 5] = 0.0
     assert np.array_equal(np.stack([mended.x, mended.y, mended.z]), light)
-    frame.made_finite(Vec(*light), memory)
+    frame.without_non_finite(Vec(*light), memory)
     assert memory.sum() == 2
 
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-from minirt.kernel.bvh.build import Binary, area
+from minirt.kernel.bvh.build import BinaryTree, half_area
 from minirt.kernel.bvh.nodes import MARGIN, NODE, WIDTH
 
 
-def weigh(tree: Binary, costs: Any, choices: Any) -> None:
+def weigh(tree: BinaryTree, costs: Any, choices: Any) -> None:
     """The best for each node i of the binary tree.
 
     `costs[i, k]` (m, WIDTH + 1) is the least cost of its boxes in at most k places, in units of a node that every ray
@@ -22,11 +22,11 @@ def weigh(tree: Binary, costs: Any, choices: Any) -> None:
     in a node of its own, the choice is for its `WIDTH` places.
     """
     for i in range(tree.links.shape[0] - 1, -1, -1):
-        size, first = area(tree.reaches, i), tree.links[i, 2]
+        size, first = half_area(tree.bounds, i), tree.links[i, 2]
         for k in range(WIDTH, 1, -1):
             costs[i, k], choices[i, k] = inf, 0
             if first > 0:
-                costs[i, k], choices[i, k] = best_share(costs, first, k)
+                costs[i, k], choices[i, k] = best_division(costs, first, k)
         costs[i, 1], choices[i, 1] = size, 0
         if first > 0:
             costs[i, 1], choices[i, 1] = size + costs[i, WIDTH], choices[i, WIDTH]
@@ -35,7 +35,7 @@ def weigh(tree: Binary, costs: Any, choices: Any) -> None:
                 costs[i, k], choices[i, k] = costs[i, k - 1], 0
 
 
-def best_share(costs: Any, first: int, places: int) -> tuple[float, int]:
+def best_division(costs: Any, first: int, places: int) -> tuple[float, int]:
     """The least cost of two nodes in so many places, and the places of the first of them."""
     best, share = costs[first, 1] + costs[first + 1, places - 1], 1
     for k in range(2, places):
@@ -45,7 +45,7 @@ def best_share(costs: Any, first: int, places: int) -> tuple[float, int]:
     return best, share
 
 
-def collapse(tree: Binary, choices: Any, nodes: Any, leaves: Any, todo: Any, parts: Any) -> tuple[int, int]:
+def collapse(tree: BinaryTree, choices: Any, nodes: Any, leaves: Any, todo: Any, parts: Any) -> tuple[int, int]:
     """Write the wide nodes, of which leaf i is named -1 - i, and to `leaves` which nodes of the binary tree those are.
 
     `todo` (m, 2) and `parts` (WIDTH, 2) are room to work in. Returns how many nodes and leaves there are.
@@ -55,24 +55,24 @@ def collapse(tree: Binary, choices: Any, nodes: Any, leaves: Any, todo: Any, par
     while left > 0:
         left -= 1
         binary, node = todo[left, 0], todo[left, 1]
-        count = gather(tree.links, choices, binary, parts)
+        count = collect_children(tree.links, choices, binary, parts)
         for place in range(WIDTH):
             at = node * NODE + place
             if place >= count:
-                write_box(nodes, at, tree.reaches, -1, 0.0)
+                write_child(nodes, at, tree.bounds, -1, 0.0)
             elif tree.links[parts[place, 0], 2] == 0:
-                write_box(nodes, at, tree.reaches, parts[place, 0], -1.0 - named)
+                write_child(nodes, at, tree.bounds, parts[place, 0], -1.0 - named)
                 leaves[named] = parts[place, 0]
                 named += 1
             else:
-                write_box(nodes, at, tree.reaches, parts[place, 0], float(used * NODE))
+                write_child(nodes, at, tree.bounds, parts[place, 0], float(used * NODE))
                 todo[left, 0], todo[left, 1] = parts[place, 0], used
                 left += 1
                 used += 1
     return used, named
 
 
-def gather(links: Any, choices: Any, node: int, parts: Any) -> int:
+def collect_children(links: Any, choices: Any, node: int, parts: Any) -> int:
     """The nodes of the binary tree that are the children of a wide one, and their number; a leaf is its own child,
     but none where nothing is in it."""
     parts[0, 0], parts[0, 1] = node, 1
@@ -99,7 +99,7 @@ def gather(links: Any, choices: Any, node: int, parts: Any) -> int:
             return count
 
 
-def write_box(nodes: Any, at: int, reaches: Any, i: int, name: float) -> None:
+def write_child(nodes: Any, at: int, reaches: Any, i: int, name: float) -> None:
     """A child of a wide node: its box, grown by `MARGIN`, and its name; a box that no ray meets for i = -1."""
     size = 0.0
     for k in range(6):

@@ -22,17 +22,17 @@ WIDTH = width(np.empty(0))  # children of a node, shapes in a leaf, rays in a pa
 MARGIN = 2.0**-42  # of the coordinates; a formula is wrong by less than 2**-47 of distance, place and size together
 TINY = 2.0**-500  # stands for 0 in a direction, so that no ray is parallel to the planes of boxes
 NODE = 7 * WIDTH  # numbers of a node: of its children the low x, y and z, the high x, y and z, and the names
-NAMES = 6 * WIDTH  # where those are
+REFERENCES = 6 * WIDTH  # where those are
 LEVELS = 32  # of the tree down to `WIDTH` shapes or fewer
-NAME = 0xFFFFFFFF  # the bits of a number that hold a name
+REFERENCE_BITS = 0xFFFFFFFF  # the bits of a number that hold a name
 
 # What a packet keeps on its way, in numbers of its memory: a row of lanes for each of x, y and z.
-ENTER, LEAVE, INVERSE, ORIGIN, DIRECTION, FOUND = (3 * WIDTH * i for i in range(6))  # beyond `FOUND` nothing matters
+ENTER, LEAVE, INVERSE, ORIGIN, DIRECTION, HIT = (3 * WIDTH * i for i in range(6))  # beyond `HIT` nothing matters
 NEXT = 18 * WIDTH  # the tag of the node or leaf that each ray visits next
-TOP = 19 * WIDTH  # where the last of its rows in `TODO` is, a whole number
-TODO = 20 * WIDTH  # for each level of the tree and each ray a row of tags, of the children that it has still to visit
-LEVEL = WIDTH * WIDTH
-MEMORY = TODO + (LEVELS + WIDTH) * LEVEL
+TOP = 19 * WIDTH  # where the last of its rows in `STACK` is, a whole number
+STACK = 20 * WIDTH  # for each level of the tree and each ray a row of tags, of the children that it has still to visit
+STACK_LEVEL = WIDTH * WIDTH
+MEMORY = STACK + (LEVELS + WIDTH) * STACK_LEVEL
 
 
 class Group(NamedTuple):
@@ -41,7 +41,7 @@ class Group(NamedTuple):
     rows: Any  # a row a shape
     blocks: Any  # for each number of a packed shape `WIDTH` of them; where there are fewer shapes, the last again
     labels: Any  # (blocks, WIDTH, 2) which shapes of the scene those are, and their extents
-    endless: Any  # (k,) the shapes of the scene that are in no box
+    unbounded: Any  # (k,) the shapes of the scene that are in no box
 
 
 class Tree(NamedTuple):
@@ -56,9 +56,9 @@ class Tree(NamedTuple):
     groups: Any  # a tuple of Group
 
 
-def aim(memory: Any, origin: Vec, direction: Vec) -> None:
+def store_rays(memory: Any, origin: Vec, direction: Vec) -> None:
     """Keep the rays of a packet, as the boxes are tested with them."""
-    inverse = Vec(inverse_of(direction.x), inverse_of(direction.y), inverse_of(direction.z))
+    inverse = Vec(safe_inverse(direction.x), safe_inverse(direction.y), safe_inverse(direction.z))
     slack = MARGIN * largest(origin)
     grow = Vec(copysign(slack, inverse.x), copysign(slack, inverse.y), copysign(slack, inverse.z))
     enter = origin + grow  # to move the ray forward is to move the planes that it enters by back
@@ -71,7 +71,7 @@ def aim(memory: Any, origin: Vec, direction: Vec) -> None:
     put_vec(memory, DIRECTION, direction)
 
 
-def inverse_of(x: Number) -> Number:
+def safe_inverse(x: Number) -> Number:
     """1 / x, and something large for 0, with the sign of that."""
     return 1.0 / copysign(maximum(fabs(x), TINY), x)
 
@@ -87,7 +87,7 @@ def vec_at(memory: Any, at: int, ray: int) -> Vec:
     return Vec(memory[at + ray], memory[at + WIDTH + ray], memory[at + 2 * WIDTH + ray])
 
 
-def planes_of(inverse: Vec) -> tuple[int, int, int]:
+def near_planes(inverse: Vec) -> tuple[int, int, int]:
     """Where in a node the planes are that a ray enters boxes by: the low ones along +0, the high ones along -0."""
     x = 0 if inverse.x > 0.0 else 3 * WIDTH
     y = WIDTH if inverse.y > 0.0 else 4 * WIDTH
@@ -95,7 +95,7 @@ def planes_of(inverse: Vec) -> tuple[int, int, int]:
     return x, y, z
 
 
-def boxes_met(
+def intersect_boxes(
     nodes: Any, node: int, memory: Any, ray: int, planes: tuple[int, int, int], limit: float
 ) -> tuple[Mask, Number]:
     """Which boxes of a node a ray meets up to the distance `limit`, and where it enters them."""
@@ -112,7 +112,7 @@ def boxes_met(
     return near <= far, near
 
 
-def reach(distance: float) -> float:
+def search_limit(distance: float) -> float:
     """How far to look where all nearer than `distance`, or in the same place as it, counts."""
     return distance * (1.0 + 2.0 * COINCIDENT)
 
@@ -121,17 +121,17 @@ def reach(distance: float) -> float:
 # changes the distance by less than 2**-20 of it. The order of such numbers is that of the distances.
 
 
-def leaf_of(name: int) -> int:
+def leaf_number(name: int) -> int:
     """The number of a leaf in its name."""
-    return ~name & NAME >> 1  # the compiler sees that it is not below 0
+    return ~name & REFERENCE_BITS >> 1  # the compiler sees that it is not below 0
 
 
 def tag(distance: Number, names: Number) -> Number:
     """Distances with names in their low bits."""
-    return ((distance.view(np.int64) & ~NAME) | names.view(np.int64)).view(np.float64)
+    return ((distance.view(np.int64) & ~REFERENCE_BITS) | names.view(np.int64)).view(np.float64)
 
 
-def name_of(tagged: float) -> int:
+def reference_of(tagged: float) -> int:
     """The name that is in a number."""
     return int(np.float64(tagged).view(np.int64).astype(np.int32))
 
@@ -141,7 +141,7 @@ def bits(mask: Mask) -> int:
     return sum(1 << int(ray) for ray in np.flatnonzero(mask))
 
 
-def least(x: Number) -> float:
+def least_lane(x: Number) -> float:
     """The least of some numbers that are not below 0; NaN is more than infinity."""
     return float(x.view(np.int64).min().view(np.float64))
 
@@ -151,12 +151,12 @@ def packet_memory() -> Any:
     return np.zeros(MEMORY)
 
 
-def whole_at(memory: Any, at: int) -> int:
+def integer_at(memory: Any, at: int) -> int:
     """A whole number that was kept."""
     return int(memory[at : at + 1].view(np.int64)[0])
 
 
-def put_whole(memory: Any, at: int, n: int) -> None:
+def put_integer(memory: Any, at: int, n: int) -> None:
     """Keep a whole number, in the place of another one."""
     memory[at : at + 1].view(np.int64)[0] = n
 

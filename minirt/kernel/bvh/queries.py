@@ -8,17 +8,17 @@ from typing import Any
 from minirt.kernel.atomic_counter import fetch_add
 from minirt.kernel.bvh.nodes import (
     DIRECTION,
-    FOUND,
+    HIT,
     ORIGIN,
     WIDTH,
     Group,
     Tree,
-    aim,
     bits,
     packet_memory,
     put,
     put_vec,
-    reach,
+    search_limit,
+    store_rays,
     vec_at,
 )
 from minirt.kernel.bvh.traversal import traverse
@@ -32,38 +32,38 @@ from minirt.lanes.vec import Number
 
 CHUNK = 16 * WIDTH  # rays that a thread takes at a time
 
-Nearest = tuple[Number, Number, Number]  # distance, index and extent of what is hit
+Hit = tuple[Number, Number, Number]  # distance, index and extent of what is hit
 
 
-def closest_hit(tree: Tree, origin: Vec, direction: Vec, asked: Mask) -> Nearest:
+def closest_hit(tree: Tree, origin: Vec, direction: Vec, asked: Mask) -> Hit:
     """As `trace.nearest`, for any rays; those that are not `asked` for hit endless shapes only."""
     memory = packet_memory()
-    aim(memory, origin, direction)
+    store_rays(memory, origin, direction)
     nothing = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
-    best, owner, extent = for_each_kind(nearest_endless, tree.groups, nothing, (tree, origin, direction))
-    put_vec(memory, FOUND, Vec(best, owner, extent))
-    traverse(nearest_of_block, tree, memory, bits(asked))
-    return load(memory, FOUND), load(memory, FOUND + WIDTH), load(memory, FOUND + 2 * WIDTH)
+    best, owner, extent = for_each_kind(closest_unbounded, tree.groups, nothing, (tree, origin, direction))
+    put_vec(memory, HIT, Vec(best, owner, extent))
+    traverse(closest_in_block, tree, memory, bits(asked))
+    return load(memory, HIT), load(memory, HIT + WIDTH), load(memory, HIT + 2 * WIDTH)
 
 
-def nearest_endless(group: Group, state: Nearest, given: tuple[Tree, Vec, Vec]) -> Nearest:
+def closest_unbounded(group: Group, state: Hit, given: tuple[Tree, Vec, Vec]) -> Hit:
     """`closest_hit` over the shapes of one kind that have no end."""
     tree, origin, direction = given
-    for i in range(group.endless.shape[0]):
-        index = group.endless[i]
+    for i in range(group.unbounded.shape[0]):
+        index = group.unbounded[i]
         shape = read(group.rows, tree.slots[index, 1])
         hit, t = intersect(shape, origin, direction)
         state = closer_hit(shape, index, tree.extents[index], hit, t, origin, direction, state)
     return state
 
 
-def nearest_of_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
+def closest_in_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
     """`closest_hit` of one ray over a block of shapes."""
     origin, direction = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray)
     hit, t = intersect(read_block(group.blocks, block), origin, direction)
-    left = bits(hit & (t <= reach(memory[FOUND + ray])))
+    left = bits(hit & (t <= search_limit(memory[HIT + ray])))
     if left != 0:
-        found = vec_at(memory, FOUND, ray)
+        found = vec_at(memory, HIT, ray)
         state = found.x, found.y, found.z
         while left != 0:
             i = lowest(left)
@@ -71,32 +71,32 @@ def nearest_of_block(group: Group, block: int, tree: Tree, memory: Any, ray: int
             shape = read_one(group.blocks, block, i)  # in the cache, as its row in the table is not
             index, extent = group.labels[block, i, 0], group.labels[block, i, 1]
             state = closer_hit(shape, index, extent, True, lane(t, i), origin, direction, state)
-        memory[FOUND + ray], memory[FOUND + WIDTH + ray], memory[FOUND + 2 * WIDTH + ray] = state
+        memory[HIT + ray], memory[HIT + WIDTH + ray], memory[HIT + 2 * WIDTH + ray] = state
 
 
 def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
     """Of the rays that are `asked` for, those that hit nothing nearer than `distance`."""
     memory = packet_memory()
-    aim(memory, origin, direction)
-    free = for_each_kind(free_of_endless, tree.groups, asked, (tree, origin, direction, distance))
-    put(memory, FOUND, where(free, distance, -inf))
-    traverse(free_of_block, tree, memory, bits(free))
-    return load(memory, FOUND) > -inf
+    store_rays(memory, origin, direction)
+    free = for_each_kind(unoccluded_by_unbounded, tree.groups, asked, (tree, origin, direction, distance))
+    put(memory, HIT, where(free, distance, -inf))
+    traverse(occlude_by_block, tree, memory, bits(free))
+    return load(memory, HIT) > -inf
 
 
-def free_of_endless(group: Group, free: Mask, given: tuple[Tree, Vec, Vec, Number]) -> Mask:
+def unoccluded_by_unbounded(group: Group, free: Mask, given: tuple[Tree, Vec, Vec, Number]) -> Mask:
     """Of the rays that are free so far, those that no shape without end of one kind stops."""
     tree, origin, direction, distance = given
-    for i in range(group.endless.shape[0]):
-        hit, t = intersect(read(group.rows, tree.slots[group.endless[i], 1]), origin, direction)
+    for i in range(group.unbounded.shape[0]):
+        hit, t = intersect(read(group.rows, tree.slots[group.unbounded[i], 1]), origin, direction)
         free = free & ~(hit & (t < distance))
     return free
 
 
-def free_of_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
+def occlude_by_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
     """Nothing matters any more to a ray, not even what is at -infinity, as soon as something stops it."""
     hit, t = intersect(read_block(group.blocks, block), vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray))
-    memory[FOUND + ray] = where(any(hit & (t < memory[FOUND + ray])), -inf, memory[FOUND + ray])
+    memory[HIT + ray] = where(any(hit & (t < memory[HIT + ray])), -inf, memory[HIT + ray])
 
 
 def read_block(blocks: Any, i: int) -> Any:
@@ -128,26 +128,26 @@ def trace_rays(
             return
         for first in range(start, min(start + CHUNK, count), WIDTH):
             for ray in range(WIDTH):
-                memory[FOUND + ray] = first + ray
+                memory[HIT + ray] = first + ray
                 for axis in range(3):
                     memory[ORIGIN + axis * WIDTH + ray] = origins[min(first + ray, count - 1), axis]
                     memory[DIRECTION + axis * WIDTH + ray] = directions[min(first + ray, count - 1), axis]
-            origin, direction = lanes_at(memory, ORIGIN), unit(rescaled(lanes_at(memory, DIRECTION)))
-            t, owner, _ = closest_hit(tree, origin, direction, load(memory, FOUND) < count)
+            origin, direction = vec_lanes_at(memory, ORIGIN), unit(rescale(vec_lanes_at(memory, DIRECTION)))
+            t, owner, _ = closest_hit(tree, origin, direction, load(memory, HIT) < count)
             put_vec(memory, ORIGIN, origin + t * direction)
-            put_vec(memory, FOUND, Vec(t, owner, t))
+            put_vec(memory, HIT, Vec(t, owner, t))
             for ray in range(min(WIDTH, count - first)):
-                index = int(memory[FOUND + WIDTH + ray])
+                index = int(memory[HIT + WIDTH + ray])
                 if index >= 0:
                     point = vec_at(memory, ORIGIN, ray)
                     group, row = tree.slots[index, 0], tree.slots[index, 1]
                     on, normal, _ = for_each_kind(surface_of_kind, tree.groups, (point, point, 0), (group, row, point))
-                    distances[first + ray], owners[first + ray] = memory[FOUND + ray], index
+                    distances[first + ray], owners[first + ray] = memory[HIT + ray], index
                     store_vec(points, first + ray, on)
                     store_vec(normals, first + ray, normal)
 
 
-def lanes_at(memory: Any, at: int) -> Vec:
+def vec_lanes_at(memory: Any, at: int) -> Vec:
     """The vectors of all rays of a packet."""
     return Vec(load(memory, at), load(memory, at + WIDTH), load(memory, at + 2 * WIDTH))
 
@@ -156,7 +156,7 @@ def store_vec(vectors: Any, i: int, v: Vec) -> None:
     vectors[i, 0], vectors[i, 1], vectors[i, 2] = v.x, v.y, v.z
 
 
-def rescaled(v: Vec) -> Vec:
+def rescale(v: Vec) -> Vec:
     """The vector in the direction of v whose largest coordinate is 1, however short or long v is."""
     size = largest(v)
     return Vec(v.x / size, v.y / size, v.z / size)

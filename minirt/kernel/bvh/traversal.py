@@ -13,27 +13,27 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.bvh.nodes import (
-    FOUND,
+    HIT,
     INVERSE,
-    LEVEL,
-    NAMES,
     NEXT,
-    TODO,
+    REFERENCES,
+    STACK,
+    STACK_LEVEL,
     TOP,
     WIDTH,
     Group,
     Tree,
-    boxes_met,
-    leaf_of,
-    least,
-    name_of,
-    planes_of,
+    integer_at,
+    intersect_boxes,
+    leaf_number,
+    least_lane,
+    near_planes,
     put,
-    put_whole,
-    reach,
+    put_integer,
+    reference_of,
+    search_limit,
     tag,
     vec_at,
-    whole_at,
 )
 from minirt.kernel.trace import for_each_kind
 from minirt.lanes import any, load, lowest, where
@@ -42,14 +42,14 @@ from minirt.lanes import any, load, lowest, where
 def traverse(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> None:
     """`visit(group, block, tree, memory, ray)` for the leaves that each of the rays meets, the nearest first.
 
-    What is beyond the distance in the first row of `FOUND`, which `visit` may lessen, is left out.
+    What is beyond the distance in the first row of `HIT`, which `visit` may lessen, is left out.
     """
     left = rays
     while left != 0:
         ray = lowest(left)
         left = left & (left - 1)
         memory[NEXT + ray] = 0.0  # the root
-        put_whole(memory, TOP + ray, TODO - LEVEL + ray * WIDTH)
+        put_integer(memory, TOP + ray, STACK - STACK_LEVEL + ray * WIDTH)
     at_node, waiting = rays, 0
     while True:
         left = at_node
@@ -68,45 +68,45 @@ def traverse(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> 
             at_node = at_node | node << ray
             at_leaf = at_leaf | leaf << ray
             waiting = waiting ^ last << ray
-        for_each_kind(visit_kind, tree.groups, 0, (visit, at_leaf, tree, memory))
+        for_each_kind(visit_leaves_of_kind, tree.groups, 0, (visit, at_leaf, tree, memory))
 
 
 def descend(nodes: Any, memory: Any, ray: int) -> int:
     """Let the children of a node that a ray meets wait; 1 if there are any."""
-    node = name_of(memory[NEXT + ray])
-    planes = planes_of(vec_at(memory, INVERSE, ray))
-    met, near = boxes_met(nodes, node, memory, ray, planes, reach(memory[FOUND + ray]))
-    top = whole_at(memory, TOP + ray) + LEVEL
-    put(memory, top, where(met, tag(near, load(nodes, node + NAMES)), inf))
+    node = reference_of(memory[NEXT + ray])
+    planes = near_planes(vec_at(memory, INVERSE, ray))
+    met, near = intersect_boxes(nodes, node, memory, ray, planes, search_limit(memory[HIT + ray]))
+    top = integer_at(memory, TOP + ray) + STACK_LEVEL
+    put(memory, top, where(met, tag(near, load(nodes, node + REFERENCES)), inf))
     some = int(any(met))
-    put_whole(memory, TOP + ray, top - LEVEL * (1 - some))
+    put_integer(memory, TOP + ray, top - STACK_LEVEL * (1 - some))
     return some
 
 
 def advance(memory: Any, ray: int) -> tuple[int, int, int]:
     """Take the nearest child of the last node in which some wait. Three answers, 1 or 0: whether it is a node to visit,
     whether it is a leaf to visit, and whether none waits any more."""
-    limit = reach(memory[FOUND + ray])
-    top = whole_at(memory, TOP + ray)
+    limit = search_limit(memory[HIT + ray])
+    top = integer_at(memory, TOP + ray)
     tags = load(memory, top)
-    nearest = least(tags)
+    nearest = least_lane(tags)
     others = where(tags == nearest, inf, tags)
     put(memory, top, others)
-    top = top - LEVEL * (1 - int(any(others < limit)))
-    put_whole(memory, TOP + ray, top)
+    top = top - STACK_LEVEL * (1 - int(any(others < limit)))
+    put_integer(memory, TOP + ray, top)
     memory[NEXT + ray] = nearest
     matters = nearest < limit
-    is_node = name_of(nearest) >= 0
-    return int(matters & is_node), int(matters & (not is_node)), int(top < TODO)
+    is_node = reference_of(nearest) >= 0
+    return int(matters & is_node), int(matters & (not is_node)), int(top < STACK)
 
 
-def visit_kind(group: Group, number: int, given: tuple[Callable[..., None], int, Tree, Any]) -> int:
+def visit_leaves_of_kind(group: Group, number: int, given: tuple[Callable[..., None], int, Tree, Any]) -> int:
     """Visit the leaves of one kind that rays are at; the state counts the kinds."""
     visit, left, tree, memory = given
     while left != 0:
         ray = lowest(left)
         left = left & (left - 1)
-        leaf = leaf_of(name_of(memory[NEXT + ray]))
+        leaf = leaf_number(reference_of(memory[NEXT + ray]))
         if leaf % len(tree.groups) == number:
             visit(group, leaf // len(tree.groups), tree, memory, ray)
     return number + 1

@@ -176,7 +176,7 @@ def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> An
 
 register_jitable(**INNER)(vec.cross)
 OWN_FORM = (
-    whitted.path_memory,
+    whitted.ray_stack,
     trace.for_each_kind,
     trace.closest_of_kind,
     trace.unoccluded_by_kind,

@@ -13,8 +13,8 @@ from math import inf, sqrt
 from typing import Any, NamedTuple
 
 MARGIN = 1e-12  # of the coordinates that a place is computed from, which are rounded to 1e-16
-ROUND = 1e-7  # of the sine of a cone: by how much its cosine may be wrong, as roots of differences are by 2e-8
-UNIT = 4e-15  # of a scalar product of unit vectors
+SINE_MARGIN = 1e-7  # of the sine of a cone: by how much its cosine may be wrong, as roots of differences are by 2e-8
+COSINE_MARGIN = 4e-15  # of a scalar product of unit vectors
 
 
 class Grid(NamedTuple):
@@ -112,18 +112,18 @@ def projected_rectangle(
         beside |= z <= radius
         if i + 1 == end and (left | right | above | below):
             return 0, 0, 0, 0, False
-        low, high = tangents(x, z, radius)
+        low, high = tangent_slopes(x, z, radius)
         low_x, high_x = min(low_x, low), max(high_x, high)
-        low, high = tangents(y, z, radius)
+        low, high = tangent_slopes(y, z, radius)
         low_y, high_y = min(low_y, low), max(high_y, high)
     if beside and end - start > 1:  # some of the hull may be where no ball is
         low_x, high_x, low_y, high_y = -inf, inf, -inf, inf
-    column, columns, all_across = interval(low_x, high_x, grid.scale_x, grid.middle_x, grid.margin, grid.across)
-    row, rows, all_down = interval(low_y, high_y, grid.scale_y, grid.middle_y, grid.margin, grid.down)
+    column, columns, all_across = cell_interval(low_x, high_x, grid.scale_x, grid.middle_x, grid.margin, grid.across)
+    row, rows, all_down = cell_interval(low_y, high_y, grid.scale_y, grid.middle_y, grid.margin, grid.down)
     return column, row, columns, rows, all_across and all_down
 
 
-def tangents(x: float, z: float, radius: float) -> tuple[float, float]:
+def tangent_slopes(x: float, z: float, radius: float) -> tuple[float, float]:
     """Least and greatest slope x / z of a disc, some of it before z = 0: those of the tangents from the origin, which
     are the way to its centre turned by the angle of sine radius / distance; infinite where they touch it behind."""
     squared = x * x + z * z - radius * radius
@@ -137,7 +137,9 @@ def tangents(x: float, z: float, radius: float) -> tuple[float, float]:
     return low, high
 
 
-def interval(low: float, high: float, scale: float, middle: float, margin: float, cells: int) -> tuple[int, int, bool]:
+def cell_interval(
+    low: float, high: float, scale: float, middle: float, margin: float, cells: int
+) -> tuple[int, int, bool]:
     """First cell and number of cells, of so many in a row, for the slopes from `low` to `high`; and whether those are
     all of them."""
     begin = low * scale + middle - margin
@@ -180,7 +182,7 @@ def bounding_cone(origin: Any, balls: Any, start: int, end: int, slack: float, s
         cosine = min(cosine, (along * tangent - aside * radius) / squared) if tangent > 0.0 else -2.0
     seen[0], seen[1], seen[2] = x / length, y / length, z / length
     if cosine > 0.0:
-        seen[3] = cosine - ROUND * sqrt(widest) - UNIT
+        seen[3] = cosine - SINE_MARGIN * sqrt(widest) - COSINE_MARGIN
     seen[4] = max(least, 0.0)
 
 

@@ -14,38 +14,38 @@ from minirt.lanes import Vec, dot, fabs, floor, lane, minimum, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 
-SCALE, SPREAD = 9, 10  # in `around`
-AHEAD = 2  # times the cells of a cube along an edge has the square ahead
+SCALE, TOLERANCE = 9, 10  # in `around`
+FRUSTUM_FACTOR = 2  # times the cells of a cube along an edge has the square ahead
 
 
-def close(remembered: Any, around: Any, direction: Vec) -> Mask:
+def is_close(remembered: Any, around: Any, direction: Vec) -> Mask:
     """Whether a direction is as close to the remembered one as the lists of cells allow."""
     apart = direction - Vec(remembered[0], remembered[1], remembered[2])
-    return dot(apart, apart) <= around[SPREAD]
+    return dot(apart, apart) <= around[TOLERANCE]
 
 
-def look_up(remembered: Any, around: Any, grid: int, direction: Vec, ray: int) -> None:
+def remember_cell(remembered: Any, around: Any, grid: int, direction: Vec, ray: int) -> None:
     """Remember the direction of a ray of the packet towards the lamp, and the cell that it comes through."""
     x, y, z = lane(direction.x, ray), lane(direction.y, ray), lane(direction.z, ray)
     remembered[0] = x
     remembered[1] = y
     remembered[2] = z
-    remembered[3] = cell(around, grid, Vec(-x, -y, -z))
+    remembered[3] = light_buffer_cell(around, grid, Vec(-x, -y, -z))
 
 
-def cell(around: Any, grid: int, direction: Vec) -> Number:
+def light_buffer_cell(around: Any, grid: int, direction: Vec) -> Number:
     """The cell around a lamp that a direction from it goes through."""
     x, y, z = direction.x, direction.y, direction.z
-    edge = AHEAD * grid
+    edge = FRUSTUM_FACTOR * grid
     per_slope = around[SCALE] / (around[6] * x + around[7] * y + around[8] * z)
     column = (around[0] * x + around[1] * y + around[2] * z) * per_slope + 0.5 * edge
     row = (around[3] * x + around[4] * y + around[5] * z) * per_slope + 0.5 * edge
     ahead = (per_slope > 0.0) & (minimum(column, row) >= 0.0) & (column < edge) & (row < edge)
     found = where(ahead, floor(row) * edge + floor(column), 1.0 * edge * edge)
-    return where(around[SCALE] > 0.0, found, cell_of_cube(direction, grid))
+    return where(around[SCALE] > 0.0, found, cube_cell(direction, grid))
 
 
-def cell_of_cube(direction: Vec, grid: int) -> Number:
+def cube_cell(direction: Vec, grid: int) -> Number:
     """The cell of a cube that a direction from its middle goes through: (face * grid + row) * grid + column.
 
     Faces 0 to 5 are +x, -x, +y, -y, +z, -z; on each, columns go along the next axis in the cycle x, y, z, rows along

@@ -25,25 +25,25 @@ def background_light(scene: SceneArrays, hit: Mask, light: Vec, direction: Vec) 
     if scene.background is not None:
         light = where(hit, light, Vec(scene.background[0], scene.background[1], scene.background[2]))
     if scene.environment is not None and any(~hit):
-        light = where(hit, light, painted(scene.environment, direction))
+        light = where(hit, light, environment_lookup(scene.environment, direction))
     return light
 
 
-def environment(scene: SceneArrays, weight: Number, direction: Vec) -> Vec:
+def weighted_background(scene: SceneArrays, weight: Number, direction: Vec) -> Vec:
     """The light of the sky in a direction, times a weight."""
     nothing = splat(0.0, weight)
     dark = Vec(nothing, nothing, nothing)
     return where(weight > 0.0, weight * background_light(scene, weight < 0.0, dark, direction), dark)
 
 
-def painted(dome: Environment, direction: Vec) -> Vec:
+def environment_lookup(dome: Environment, direction: Vec) -> Vec:
     """The light of a picture around the scene."""
-    u, v = longitude_and_latitude(direction)
+    u, v = equirectangular(direction)
     edge = 0.5 / dome.pictures[0, 2]  # nothing is above the upper row of pixels
     return texture_lookup(dome.texels, dome.pictures, 0, u, minimum(maximum(v, edge), 1.0 - edge))
 
 
-def longitude_and_latitude(direction: Vec) -> tuple[Number, Number]:
+def equirectangular(direction: Vec) -> tuple[Number, Number]:
     """Where a direction is in such a picture: from 0 to 1 from left to right and from below to above."""
     u = 0.5 + arctan2(-direction.x, direction.z) * (0.5 / pi)
     v = 0.5 + arctan2(direction.y, sqrt(direction.x * direction.x + direction.z * direction.z)) * (1.0 / pi)

@@ -9,7 +9,7 @@ from minirt.lanes import Vec, dot, inverse_root, maximum, minimum, splat, where
 from minirt.lanes.vec import Number
 
 
-def arrival(beams: Any, lamp: int, place: Vec, start: Vec) -> tuple[Vec, Number, Number]:
+def incident_light(beams: Any, lamp: int, place: Vec, start: Vec) -> tuple[Vec, Number, Number]:
     """Seen from a point, the direction towards a lamp at `place`, its distance and how strong its light is.
 
     `beams` (m, 7) has for each lamp the direction in which it shines, the cosine of the angle to that at which a spot
@@ -27,16 +27,16 @@ def arrival(beams: Any, lamp: int, place: Vec, start: Vec) -> tuple[Vec, Number,
     parallel = beams[lamp, 6] > 0.5
     towards = where(parallel, -axis, towards)
     distance = where(parallel, inf, distance)
-    inner = within_unit((-dot(towards, axis) - beams[lamp, 3]) * beams[lamp, 4])
-    strength = where(parallel, 1.0, smooth(inner) * maximum(1.0 - distance * beams[lamp, 5], 0.0))
+    inner = clamp_to_unit((-dot(towards, axis) - beams[lamp, 3]) * beams[lamp, 4])
+    strength = where(parallel, 1.0, smoothstep(inner) * maximum(1.0 - distance * beams[lamp, 5], 0.0))
     return towards, distance, strength
 
 
-def within_unit(x: Number) -> Number:
+def clamp_to_unit(x: Number) -> Number:
     """The nearest number in [0, 1]."""
     return minimum(maximum(x, 0.0), 1.0)
 
 
-def smooth(x: Number) -> Number:
+def smoothstep(x: Number) -> Number:
     """From 0 at 0 to 1 at 1 without a corner: Hermite's cubic."""
     return x * x * (3.0 - 2.0 * x)

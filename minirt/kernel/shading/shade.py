@@ -6,7 +6,7 @@ from typing import Any
 
 from minirt.kernel.bvh import queries
 from minirt.kernel.scene_arrays import SceneArrays
-from minirt.kernel.shading.lights import arrival
+from minirt.kernel.shading.lights import incident_light
 from minirt.kernel.shading.specular import specular
 from minirt.kernel.shading.surfaces import Surface
 from minirt.kernel.trace import ROUNDING, unoccluded
@@ -36,25 +36,27 @@ def direct_light(
     for i in range(scene.lights.shape[0]):
         lamp = Vec(scene.lights[i, 0], scene.lights[i, 1], scene.lights[i, 2])
         light = Vec(scene.lights[i, 3], scene.lights[i, 4], scene.lights[i, 5])
-        towards, distance, strength = arrival(scene.spots, i, lamp, start)
+        towards, distance, strength = incident_light(scene.spots, i, lamp, start)
         cosine = dot(bent, towards) * strength
         lit = hit & (cosine > 0.0)
         if any(lit):
             reach = distance - 4.0 * (rounding + ROUNDING * u * largest(lamp))  # a surface hides no lamp on it
-            lit = unblocked(scene, memory, i, start, towards, reach, lit)
+            lit = trace_shadow_rays(scene, memory, i, start, towards, reach, lit)
             total = total + where(lit, cosine, 0.0) * light
             if scene.specular is not None:
                 shine = shine + specular(found.specular, bent, towards, direction, lit) * strength * light
     return total, shine
 
 
-def unblocked(scene: SceneArrays, memory: Any, lamp: int, start: Vec, towards: Vec, reach: Number, lit: Mask) -> Mask:
+def trace_shadow_rays(
+    scene: SceneArrays, memory: Any, lamp: int, start: Vec, towards: Vec, reach: Number, lit: Mask
+) -> Mask:
     """`unoccluded`; the rays to a lamp whose light is parallel share no end, and walk the tree where there is one."""
     if scene.spots is None or scene.bvh is None or scene.spots[lamp, 6] < 0.5:
         return unoccluded(scene, memory, lamp, start, towards, reach, lit)
     return queries.unoccluded(scene.bvh, start, towards, reach, lit)
 
 
-def coloured(light: Vec, colour: Vec) -> Vec:
+def tint(light: Vec, colour: Vec) -> Vec:
     """Light of one colour on a surface of another."""
     return Vec(light.x * colour.x, light.y * colour.y, light.z * colour.z)

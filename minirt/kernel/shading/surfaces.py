@@ -18,7 +18,7 @@ class Surface(NamedTuple):
 
     point: Vec  # on the surface
     normal: Vec  # of the shape, outward where there is an outside
-    bent: Vec  # the normal by which it is lit
+    shading_normal: Vec  # the normal by which it is lit
     colour: Vec
     specular: Vec  # its row of `Traced.gloss`
     reflective: Vec  # and of `Traced.bounces`
@@ -43,7 +43,7 @@ def surfaces(scene: SceneArrays, memory: Any, owner: Number, point: Vec, hit: Ma
         found = Surface(
             where(mine, other.point, found.point),
             where(mine, other.normal, found.normal),
-            where(mine, other.bent, found.bent),
+            where(mine, other.shading_normal, found.shading_normal),
             where(mine, other.colour, found.colour),
             where(mine, other.specular, found.specular),
             where(mine, other.reflective, found.reflective),

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from minirt.kernel.rows import mapping, read
 from minirt.kernel.scene_arrays import Group
-from minirt.kernel.shading.texture_lookup import height_slopes, texture_lookup
+from minirt.kernel.shading.texture_lookup import height_gradient, texture_lookup
 from minirt.kernel.trace import for_each_kind
 from minirt.lanes import Vec, copysign, cross, dot, fabs, floor, inverse_root, splat, unit, where
 from minirt.lanes.vec import Number
@@ -87,7 +87,7 @@ def bump_mapped(
         return normal
     if bumps[index, 0] == 0.0:
         return normal
-    over_u, over_v = height_slopes(skins.texels, skins.pictures, int(bumps[index, 0]) - 1, u, v)
+    over_u, over_v = height_gradient(skins.texels, skins.pictures, int(bumps[index, 0]) - 1, u, v)
     per_width = inverse_length(along_u)
     right, up = per_width * along_u, per_width * along_v
     area = dot(cross(right, up), normal)
@@ -105,14 +105,14 @@ def normal_mapped(
         return normal
     if normals[index] == 0:
         return normal
-    seen = signed(texture_lookup(skins.texels, skins.pictures, normals[index] - 1, u, v))
+    seen = decode_normal(texture_lookup(skins.texels, skins.pictures, normals[index] - 1, u, v))
     right, up = inverse_length(along_u) * along_u, inverse_length(along_v) * along_v
     found = seen.x * right + seen.y * up + seen.z * normal
     squared = dot(found, found)
     return unit(where(squared > 0.0, found, normal))
 
 
-def signed(colour: Vec) -> Vec:
+def decode_normal(colour: Vec) -> Vec:
     """From colours, of which 255 is 1, to numbers of which 128 is 0 and 255 is 1."""
     zero, scale = 128.0 / 255.0, 255.0 / 127.0
     return Vec((colour.x - zero) * scale, (colour.y - zero) * scale, (colour.z - zero) * scale)

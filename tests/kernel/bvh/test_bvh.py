@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.kernel.bvh import collapse, nodes, queries, traversal
-from minirt.kernel.bvh.nodes import LEVEL, LEVELS, MARGIN, MEMORY, NODE, TODO, WIDTH, Tree, name_of
+from minirt.kernel.bvh.nodes import LEVELS, MARGIN, MEMORY, NODE, STACK, STACK_LEVEL, WIDTH, Tree, reference_of
 from minirt.kernel.compiler import jit_bvh
 from minirt.lanes import Vec
 from minirt.rendering.packing.bvh import wide_nodes
@@ -38,7 +38,7 @@ def checked(scene: Tree, shapes: list[Shape]) -> int:
             box_low, box_high = nodes[node, :3, child], nodes[node, 3:6, child]
             assert (low <= box_low).all()
             assert (box_high <= high).all()
-            name = name_of(nodes[node, 6, child])
+            name = reference_of(nodes[node, 6, child])
             if name >= 0:
                 names.append(name // NODE)
                 todo.append((name // NODE, box_low, box_high, level + 1))
@@ -55,7 +55,7 @@ def checked(scene: Tree, shapes: list[Shape]) -> int:
         assert (nodes[node, :3, empty] == np.inf).all()
         assert (nodes[node, 3:6, empty] == -np.inf).all()
     assert sorted(names) == list(range(len(nodes)))
-    endless = np.concatenate([group.endless for group in scene.groups]).tolist()
+    endless = np.concatenate([group.unbounded for group in scene.groups]).tolist()
     assert sorted(met + endless) == list(range(len(shapes)))
     return depth
 
@@ -99,7 +99,7 @@ def test_a_ray_has_room_for_all_that_it_meets() -> None:
             max(deepest[child] for child in children[node] if child > 0) if (children[node] > 0).any() else 0
         )
     assert leaves[:, 1].max() == 900 * WIDTH
-    assert TODO + deepest[0] * LEVEL <= MEMORY
+    assert STACK + deepest[0] * STACK_LEVEL <= MEMORY
 
 
 def test_few_boxes_are_met() -> None:
@@ -121,8 +121,8 @@ def visited(scene: Tree, origin: Any, direction: Any, limit: float = np.inf) -> 
     """The leaves that a ray visits, in their order, where it hits nothing."""
     memory = nodes.packet_memory()
     met: list[int] = []
-    nodes.aim(memory, *(Vec(*(np.full(WIDTH, x) for x in v)) for v in (origin, direction)))
-    memory[nodes.FOUND : nodes.FOUND + WIDTH] = limit
+    nodes.store_rays(memory, *(Vec(*(np.full(WIDTH, x) for x in v)) for v in (origin, direction)))
+    memory[nodes.HIT : nodes.HIT + WIDTH] = limit
     traversal.traverse(lambda group, block, tree, memory, ray: met.append(block), scene, memory, 1 << 5)
     return met
 
@@ -142,13 +142,13 @@ def test_what_a_hit_hides_is_not_visited(distance: float) -> None:
     scene = tree([ball(3 * i + 0.5, 0, 0, 1) for i in range(40) for _ in range(WIDTH)])
     memory = nodes.packet_memory()
     rays = [np.linspace(-1, 50, WIDTH), np.full(WIDTH, 0.1), np.full(WIDTH, 0.1)]
-    nodes.aim(memory, Vec(*rays), Vec(np.ones(WIDTH), np.zeros(WIDTH), np.zeros(WIDTH)))
-    memory[nodes.FOUND : nodes.FOUND + WIDTH] = np.inf
+    nodes.store_rays(memory, Vec(*rays), Vec(np.ones(WIDTH), np.zeros(WIDTH), np.zeros(WIDTH)))
+    memory[nodes.HIT : nodes.HIT + WIDTH] = np.inf
     met = np.zeros(WIDTH, int)
 
     def hit(group: Any, block: int, tree: Tree, memory: Any, ray: int) -> None:
         met[ray] += 1
-        memory[nodes.FOUND + ray] = distance
+        memory[nodes.HIT + ray] = distance
 
     traversal.traverse(hit, scene, memory, (1 << WIDTH) - 1 - 4)
     starts = 3.0 * np.arange(40)  # a ray visits at least the first that it meets
@@ -208,10 +208,10 @@ def test_parts_of_a_direction_may_be_0_or_minus_0(monkeypatch: pytest.MonkeyPatc
     for found in (trace(tree(shapes), *rays), trace(tree(shapes), *rays, queries.trace_rays)):
         assert found[1].tolist() == np.repeat(range(6), 4).tolist()
         assert np.array_equal(found[0], np.full(24, 9.5))
-    right = nodes.planes_of
+    right = nodes.near_planes
     tiny = lambda x: np.abs(x) if np.abs(x) * nodes.TINY == 1.0 else x  # noqa: E731  (-0 as if it were 0)
     monkeypatch.setattr(
-        traversal, "planes_of", lambda inverse: right(Vec(tiny(inverse.x), tiny(inverse.y), tiny(inverse.z)))
+        traversal, "near_planes", lambda inverse: right(Vec(tiny(inverse.x), tiny(inverse.y), tiny(inverse.z)))
     )
     assert lost(tree(shapes), shapes, rays) > 5
 
@@ -222,6 +222,6 @@ def test_rays_along_axes_meet_no_boxes_beside_them(monkeypatch: pytest.MonkeyPat
     few = [len(visited(scene, *way)) for way in ways]
     assert max(few) <= 12
     # Without a number in the place of infinity all places along the other axes are the same.
-    monkeypatch.setattr(nodes, "inverse_of", lambda x: 1.0 / x)
+    monkeypatch.setattr(nodes, "safe_inverse", lambda x: 1.0 / x)
     with np.errstate(all="ignore"):
         assert min(len(visited(scene, *way)) for way in ways) > 12

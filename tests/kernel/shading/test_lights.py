@@ -7,7 +7,7 @@ from math import cos, inf, radians, sin
 import numpy as np
 import pytest
 
-from minirt.kernel.shading.lights import arrival
+from minirt.kernel.shading.lights import incident_light
 from minirt.lanes import Vec
 from minirt.rendering.packing.lights import light_numbers, place_of, shining, spot_numbers
 from minirt.scene import Ambient, Camera, FurtherLight, Lamp, Light, ParallelLight, Scene, SpotLight
@@ -20,7 +20,7 @@ def came(lamp: Lamp, point: tuple[float, float, float]) -> tuple[np.ndarray, flo
     """The direction, the distance and the strength of a lamp's light as a point sees it."""
     spread = [np.full(16, each) for each in point]
     with np.errstate(all="ignore"):
-        towards, distance, strength = arrival(spot_numbers([lamp]), 0, Vec(*place_of(lamp)), Vec(*spread))
+        towards, distance, strength = incident_light(spot_numbers([lamp]), 0, Vec(*place_of(lamp)), Vec(*spread))
     return np.array([towards.x[0], towards.y[0], towards.z[0]]), float(distance[0]), float(strength[0])
 
 

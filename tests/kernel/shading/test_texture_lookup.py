@@ -47,7 +47,7 @@ def colours_on_lanes(held: Any, pictures: Any, which: int, u: Any, v: Any, out: 
 @njit(**FLAGS)
 def slopes_on_lanes(held: Any, pictures: Any, which: int, u: Any, v: Any, out: Any) -> None:
     for i in range(0, u.size, width(u)):
-        over_u, over_v = texture_lookup.height_slopes(held, pictures, which, load(u, i), load(v, i))
+        over_u, over_v = texture_lookup.height_gradient(held, pictures, which, load(u, i), load(v, i))
         save(over_u, out[0], i)
         save(over_v, out[1], i)
 
@@ -128,5 +128,5 @@ def test_slopes_are_differences_over_a_pixel(which: int) -> None:
     expected = np.stack([over_u[:, 0] * wide, over_v[:, 0] * high])
     lanes = np.empty((2, 160))
     slopes_on_lanes(TEXELS, PICTURES, which, u, v, lanes)
-    for got in (np.stack(texture_lookup.height_slopes(TEXELS, PICTURES, which, u, v)), lanes):
+    for got in (np.stack(texture_lookup.height_gradient(TEXELS, PICTURES, which, u, v)), lanes):
         assert np.abs(got - expected).max() < 1e-5

@@ -13,7 +13,7 @@ from numba import njit
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel.compiler.code_cache import FLAGS
 from minirt.kernel.shading import texturing
-from minirt.kernel.shading.texture_lookup import height_slopes
+from minirt.kernel.shading.texture_lookup import height_gradient
 from minirt.kernel.shading.texturing import SurfaceMaps, bump_mapped, checkered, normal_mapped
 from minirt.lanes import Vec, load, save, width
 from minirt.shapes import KINDS, Kind
@@ -138,8 +138,8 @@ WRONG: dict[str, Any] = {
     "left as it is": ("bump_mapped", lambda *given: given[-1]),
     "deep in the place of high": ("copysign", lambda x, sign: -np.copysign(x, sign)),
     "heights in units of the scene": ("inverse_length", lambda v: np.ones_like(v.x)),
-    "u and v changed round": ("height_slopes", lambda *given: height_slopes(*given)[::-1]),
-    "upside down": ("height_slopes", lambda *given: (height_slopes(*given)[0], -height_slopes(*given)[1])),
+    "u and v changed round": ("height_gradient", lambda *given: height_gradient(*given)[::-1]),
+    "upside down": ("height_gradient", lambda *given: (height_gradient(*given)[0], -height_gradient(*given)[1])),
 }
 
 

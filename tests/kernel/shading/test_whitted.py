@@ -7,7 +7,7 @@ from math import asin, cos, degrees, radians, sin
 import numpy as np
 import pytest
 
-from minirt.kernel.shading.whitted import LEAST
+from minirt.kernel.shading.whitted import MIN_WEIGHT
 from minirt.materials import Glass
 from minirt.rendering.packing.features import DEPTH
 from minirt.scene import Ambient, Background, Camera, Scene
@@ -44,7 +44,7 @@ def test_between_two_mirrors() -> None:
         right = 0.4 * sum(0.5**i * 0.5 for i in range(depth + 1)) if depth else 0.4
         assert np.allclose(light(LIGHT, AHEAD, *ends, depth=depth), right, rtol=1e-13)
     deep = light(LIGHT, AHEAD, *ends, depth=32)
-    assert np.allclose(deep, 0.4, atol=2 * LEAST)
+    assert np.allclose(deep, 0.4, atol=2 * MIN_WEIGHT)
     assert (deep < 0.4).all()  # what is left below the cut-off is not followed
 
 
