@@ -31,7 +31,7 @@ RAY_ROWS = 8
 STACK_SIZE = (MAX_DEPTH + 2) * RAY_ROWS * BYTES // 8
 
 
-def radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
+def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
     """The light that arrives at `origin` against `direction`."""
     t, owner, extent = closest_hit(scene, tile, origin, direction)
     if scene.reflective is not None:
