@@ -27,7 +27,7 @@ class SurfaceMaps(NamedTuple):
     pictures: Any  # (k, 4) for each picture its first index in `texels`, its width, height and channels
 
 
-Mapped = tuple[Number, Number, Vec, Vec, int]
+Mapped = tuple[Number, Number, Vec, Vec, int]  # u, v, the tangents along them, and a count of kinds
 
 
 def apply_maps(
