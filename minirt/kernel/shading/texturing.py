@@ -80,8 +80,8 @@ def bump_mapped(
 ) -> Vec:
     """Bump mapping: the normal of the surface raised by a height map (Blinn, Simulation of Wrinkled Surfaces, 1978).
 
-    Lengths are in widths of the picture on the surface. The surface gradient of the height is subtracted from the normal,
-    which need not be perpendicular to the tangents (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
+    Lengths are in widths of the picture on the surface. The surface gradient of the height is subtracted from the
+    normal, so that may differ from the tangents' own (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
     """
     if bumps is None:
         return normal
