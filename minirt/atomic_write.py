@@ -16,7 +16,7 @@ def write(path: str | os.PathLike[str], data: bytes) -> None:
     The file behind a symbolic link is the one that is replaced, and an existing file keeps its permissions.
     """
     target = Path(os.path.realpath(path))
-    mode = existing_mode(target)
+    mode = mode_of_existing(target)
     temporary = target.with_name(f".minirt-{secrets.token_hex(8)}.tmp")
     try:
         with temporary.open("xb") as file:
@@ -32,7 +32,7 @@ def write(path: str | os.PathLike[str], data: bytes) -> None:
         raise
 
 
-def existing_mode(target: Path) -> int | None:
+def mode_of_existing(target: Path) -> int | None:
     """The permissions of the file that is to be replaced, None where there is none; OSError where it must not be."""
     try:
         mode = target.stat().st_mode

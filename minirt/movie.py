@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 FPS = 25.0  # pictures a second
 COLOURS = 256  # of each picture of a GIF
 
-Thing = TypeVar("Thing")
+Item = TypeVar("Thing")
 
 
 def save_movie(pictures: Iterable[Image], path: str | os.PathLike[str], fps: float = FPS) -> list[Path]:
@@ -32,7 +32,7 @@ def save_movie(pictures: Iterable[Image], path: str | os.PathLike[str], fps: flo
     """
     target = Path(path)
     if target.suffix.lower() == ".gif":
-        data = gif(pictures, fps)
+        data = encode_gif(pictures, fps)
         try:
             atomic_write.write(target, data)
         except OSError as error:
@@ -48,9 +48,9 @@ def save_movie(pictures: Iterable[Image], path: str | os.PathLike[str], fps: flo
     return written
 
 
-def gif(pictures: Iterable[Image], fps: float) -> bytes:
+def encode_gif(pictures: Iterable[Image], fps: float) -> bytes:
     """The bytes of a GIF. Its time is counted in hundredths of a second."""
-    frames = [reduced(picture.pil) for picture in pictures]
+    frames = [quantised(picture.pil) for picture in pictures]
     if not frames:
         raise RenderError("a movie needs a picture")
     buffer = io.BytesIO()
@@ -59,7 +59,7 @@ def gif(pictures: Iterable[Image], fps: float) -> bytes:
     return buffer.getvalue()
 
 
-def reduced(picture: PillowImage) -> PillowImage:
+def quantised(picture: PillowImage) -> PillowImage:
     """The picture with few colours: by an octree, which keeps those of small things and takes two thirds of the bytes
     that a median cut takes."""
     from PIL.Image import Dither, Quantize
@@ -67,7 +67,7 @@ def reduced(picture: PillowImage) -> PillowImage:
     return picture.quantize(COLOURS, Quantize.FASTOCTREE, dither=Dither.NONE)
 
 
-def with_progress(things: Iterable[Thing], count: int, what: str) -> Iterator[Thing]:
+def with_progress(things: Iterable[Item], count: int, what: str) -> Iterator[Item]:
     """The things, while a terminal at standard error is told how many are done."""
     told = sys.stderr.isatty()
     for number, thing in enumerate(things, 1):

@@ -17,7 +17,7 @@ def reason(error: OSError | ValueError) -> str:
 def status(path: str | os.PathLike[str], largest: int) -> os.stat_result:
     """What is known of a regular file of at most `largest` bytes; FileError where it is something else."""
     try:
-        return checked(path, Path(path).stat(), largest)
+        return check_regular(path, Path(path).stat(), largest)
     except (OSError, ValueError) as error:
         raise FileError(path, f"cannot be read: {reason(error)}") from None
 
@@ -32,7 +32,7 @@ def read(path: str | os.PathLike[str], largest: int) -> bytes:
     try:
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with os.fdopen(descriptor, "rb") as file:
-            checked(path, os.fstat(descriptor), largest)
+            check_regular(path, os.fstat(descriptor), largest)
             data = file.read(largest + 1)
     except (OSError, ValueError) as error:
         raise FileError(path, f"cannot be read: {reason(error)}") from None
@@ -40,7 +40,7 @@ def read(path: str | os.PathLike[str], largest: int) -> bytes:
     return data
 
 
-def checked(path: str | os.PathLike[str], found: os.stat_result, largest: int) -> os.stat_result:
+def check_regular(path: str | os.PathLike[str], found: os.stat_result, largest: int) -> os.stat_result:
     """The same; FileError where it is not that of a regular file of at most `largest` bytes."""
     if stat.S_ISDIR(found.st_mode):
         raise FileError(path, "is a folder")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 
-class BrokenError(Exception):
+class ObjError(Exception):
     """What is wrong with a file, and in which line."""
 
     def __init__(self, message: str, line: int = 0) -> None:
@@ -25,7 +25,7 @@ class Block(NamedTuple):
     lines: np.ndarray  # (f,) line of each, from 1
 
 
-class Sizes(NamedTuple):
+class Counts(NamedTuple):
     """How much of a file there is before a line."""
 
     points: int = 0
@@ -33,7 +33,7 @@ class Sizes(NamedTuple):
     normals: int = 0
     lines: int = 0
 
-    def behind(self, block: Block, lines: int) -> Sizes:
+    def behind(self, block: Block, lines: int) -> Counts:
         """The same behind a block of so many lines."""
         points, uvs, normals = (before + len(new) for before, new in zip(self[:3], block[:3], strict=True))
-        return Sizes(points, uvs, normals, self.lines + lines)
+        return Counts(points, uvs, normals, self.lines + lines)

@@ -9,13 +9,13 @@ from itertools import chain
 import numpy as np
 
 from minirt.fields import FARTHEST
-from minirt.meshes.block import Block, Sizes
+from minirt.meshes.block import Block, Counts
 from minirt.meshes.diagnosing import SKIPPED
 
 Rows = list[list[bytes]]  # the words of lines
 
 
-def read(lines: list[bytes], before: Sizes) -> Block | None:
+def read(lines: list[bytes], before: Counts) -> Block | None:
     """What the lines hold, of which so much is before them; None where they call for the careful reader."""
     rows = [line.split() for line in lines]
     places: dict[bytes, list[int]] = {}
@@ -27,8 +27,8 @@ def read(lines: list[bytes], before: Sizes) -> Block | None:
         return None
     mine = {key: [rows[at] for at in places.get(key, ())] for key in (b"v", b"vt", b"vn", b"f")}
     try:
-        points, uvs, normals = table(mine[b"v"], 3, 7), table(mine[b"vt"], 2, 3), table(mine[b"vn"], 3, 3)
-        given = corners_of(mine[b"f"])
+        points, uvs, normals = number_table(mine[b"v"], 3, 7), number_table(mine[b"vt"], 2, 3), number_table(mine[b"vn"], 3, 3)
+        given = corner_table(mine[b"f"])
     except (ValueError, OverflowError):
         return None
     sizes = np.array([len(row) - 1 for row in mine[b"f"]], np.int64)
@@ -45,7 +45,7 @@ def read(lines: list[bytes], before: Sizes) -> Block | None:
     return Block(points, uvs, normals, corners, sizes, before.lines + 1 + faces)
 
 
-def table(rows: Rows, least: int, most: int) -> np.ndarray:
+def number_table(rows: Rows, least: int, most: int) -> np.ndarray:
     """The first numbers of lines that have equally many, from `least` to `most`; ValueError where they have not."""
     if not rows:
         return np.zeros((0, least))
@@ -60,7 +60,7 @@ def table(rows: Rows, least: int, most: int) -> np.ndarray:
     return np.ascontiguousarray(numbers[:, :least])
 
 
-def corners_of(faces: Rows) -> np.ndarray:
+def corner_table(faces: Rows) -> np.ndarray:
     """The numbers of all corners, (c, 3), 0 where there is none; ValueError where they are not all written alike."""
     words = list(chain.from_iterable(row[1:] for row in faces))
     text, slashes = b" ".join(words), {word.count(b"/") for word in words}

@@ -12,42 +12,42 @@ from io import BytesIO
 import numpy as np
 
 from minirt.meshes import diagnosing, fast
-from minirt.meshes.block import Block, BrokenError, Sizes
-from minirt.meshes.triangles import Triangles, proper, squared, unit
+from minirt.meshes.block import Block, ObjError, Counts
+from minirt.meshes.triangles import Triangles, non_degenerate, squared_lengths, unit
 
-BLOCK = 4 * 2**20  # bytes that are read at once
-MOST = 10_000_000  # triangles
+BLOCK_BYTES = 4 * 2**20  # bytes that are read at once
+MAX_TRIANGLES = 10_000_000  # triangles
 
-__all__ = ["BrokenError", "parse"]
+__all__ = ["ObjError", "parse"]
 
 
 def parse(data: bytes) -> Triangles:
     """The triangles of a file, but for those that are no more than a line; BrokenError where it is not a mesh."""
     file, blocks = BytesIO(data.removeprefix(b"\xef\xbb\xbf")), []
-    before, triangles = Sizes(), 0
-    while lines := file.readlines(BLOCK):
+    before, triangles = Counts(), 0
+    while lines := file.readlines(BLOCK_BYTES):
         while lines[-1].endswith((b"\\\n", b"\\\r\n")) and (more := file.readline()):
             lines.append(more)
         block = fast.read(lines, before) or diagnosing.read(lines, before)
         blocks.append(block)
         before = before.behind(block, len(lines))
         triangles += int((block.sizes - 2).sum())
-        if triangles > MOST:
-            raise BrokenError(f"has more than {MOST:,} triangles")
-    return assembled(blocks)
+        if triangles > MAX_TRIANGLES:
+            raise ObjError(f"has more than {MAX_TRIANGLES:,} triangles")
+    return assemble(blocks)
 
 
-def assembled(blocks: list[Block]) -> Triangles:
+def assemble(blocks: list[Block]) -> Triangles:
     """The triangles of the blocks of a file."""
     if not sum(len(block.sizes) for block in blocks):
-        raise BrokenError("has no faces")
+        raise ObjError("has no faces")
     whole = Block(*map(np.concatenate, zip(*blocks, strict=True)))
     check_indices(whole)
-    fans = whole.corners[fan(whole.sizes)]
+    fans = whole.corners[fan_triangulation(whole.sizes)]
     corners = fans[..., 0]
-    kept = proper(whole.points[corners])
+    kept = non_degenerate(whole.points[corners])
     if not kept.any():
-        raise BrokenError("has no triangle that is more than a line")
+        raise ObjError("has no triangle that is more than a line")
     fans, corners = fans[kept], np.ascontiguousarray(corners[kept])
     uvs = None
     if (fans[..., 1] >= 0).any():
@@ -55,18 +55,18 @@ def assembled(blocks: list[Block]) -> Triangles:
     flat = Triangles(whole.points, corners, None, uvs)
     if (fans[..., 2] < 0).all():
         return flat
-    return Triangles(whole.points, corners, smooth(whole.normals, fans[..., 2], flat.flat_normals), uvs)
+    return Triangles(whole.points, corners, corner_normals(whole.normals, fans[..., 2], flat.flat_normals), uvs)
 
 
-def smooth(normals: np.ndarray, which: np.ndarray, flat: np.ndarray) -> np.ndarray:
+def corner_normals(normals: np.ndarray, which: np.ndarray, flat: np.ndarray) -> np.ndarray:
     """Unit normals at corners (m, 3), where there is none that of the triangle."""
     given = np.concatenate([normals, np.zeros((1, 3))])  # the last is that of index -1
-    given[squared(given) > 0] = unit(given[squared(given) > 0])
+    given[squared_lengths(given) > 0] = unit(given[squared_lengths(given) > 0])
     found = given[which]
-    return np.where(squared(found)[..., None] > 0, found, flat[:, None])
+    return np.where(squared_lengths(found)[..., None] > 0, found, flat[:, None])
 
 
-def fan(sizes: np.ndarray) -> np.ndarray:
+def fan_triangulation(sizes: np.ndarray) -> np.ndarray:
     """Of faces with so many corners the places of the corners of their triangles, (m, 3)."""
     triangles = sizes - 2
     first = np.repeat(np.cumsum(sizes) - sizes, triangles)
@@ -82,4 +82,4 @@ def check_indices(whole: Block) -> None:
         corner = int(np.argmax(beyond.any(axis=1)))
         which = int(np.argmax(beyond[corner]))
         line = np.repeat(whole.lines, whole.sizes)[corner]
-        raise BrokenError(diagnosing.absent(which, int(whole.corners[corner, which]) + 1, there[which]), int(line))
+        raise ObjError(diagnosing.missing_index_message(which, int(whole.corners[corner, which]) + 1, there[which]), int(line))

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-FLAT = 16 * 2.0**-53  # of its largest coordinate: a triangle that is no higher is none
+FLATNESS = 16 * 2.0**-53  # of its largest coordinate: a triangle that is no higher is none
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +58,9 @@ class Triangles:
         """The unit normal of each, (m, 3): on the side of the corners' normals, or else where the corners are seen in
         counter-clockwise order. Of a sliver it is exact to a rounding about the longest edge, as that of a `tr`."""
         edges, across = edges_of(self.points[self.corners])
-        longest = np.argmax(squared(edges), axis=1)
+        longest = np.argmax(squared_lengths(edges), axis=1)
         edge = edges[np.arange(len(edges)), longest]
-        across -= ((across * edge).sum(axis=1) / squared(edge))[:, None] * edge
+        across -= ((across * edge).sum(axis=1) / squared_lengths(edge))[:, None] * edge
         if self.normals is not None:
             across[(self.normals.sum(axis=1) * across).sum(axis=1) < 0] *= -1
         return unit(across)
@@ -72,15 +72,15 @@ def edges_of(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return edges, np.cross(edges[:, 0], edges[:, 1])
 
 
-def proper(corners: np.ndarray) -> np.ndarray:
+def non_degenerate(corners: np.ndarray) -> np.ndarray:
     """Which triangles (m, 3, 3) are more than a line or a point."""
     edges, across = edges_of(corners)
-    longest = np.sqrt(squared(edges).max(axis=1))
-    larger: np.ndarray = np.sqrt(squared(across)) > FLAT * np.abs(corners).max(axis=(1, 2)) * longest
+    longest = np.sqrt(squared_lengths(edges).max(axis=1))
+    larger: np.ndarray = np.sqrt(squared_lengths(across)) > FLATNESS * np.abs(corners).max(axis=(1, 2)) * longest
     return larger
 
 
-def squared(vectors: np.ndarray) -> np.ndarray:
+def squared_lengths(vectors: np.ndarray) -> np.ndarray:
     """The squared lengths of vectors."""
     products: np.ndarray = np.einsum("...i,...i", vectors, vectors)
     return products
@@ -89,5 +89,5 @@ def squared(vectors: np.ndarray) -> np.ndarray:
 def unit(vectors: np.ndarray) -> np.ndarray:
     """The vectors (m, 3), none of them 0, at length 1."""
     scaled: np.ndarray = vectors / np.abs(vectors).max(axis=-1, keepdims=True)
-    scaled /= np.sqrt(squared(scaled))[..., None]
+    scaled /= np.sqrt(squared_lengths(scaled))[..., None]
     return scaled

@@ -18,12 +18,12 @@ def camera_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
     right, up = upright(x, y, z)
     if camera.roll:
         c, s = cos(radians(camera.roll)), sin(radians(camera.roll))
-        right, up = mix(c, right, -s, up), mix(s, right, c, up)
+        right, up = linear_combination(c, right, -s, up), linear_combination(s, right, c, up)
     if camera.left_handed:
-        right = mix(-1.0, right, 0.0, right)
+        right = linear_combination(-1.0, right, 0.0, right)
     return right, up, (x, y, z)
 
 
-def mix(a: float, u: Triple, b: float, v: Triple) -> Triple:
+def linear_combination(a: float, u: Triple, b: float, v: Triple) -> Triple:
     """a u + b v."""
     return a * u[0] + b * v[0], a * u[1] + b * v[1], a * u[2] + b * v[2]

@@ -7,7 +7,7 @@ from pathlib import Path
 from minirt.errors import Problem
 from minirt.scene.lines import Line
 
-MOST_ERRORS = 1000  # of one file; a file with more is something else than a scene
+MAX_ERRORS = 1000  # of one file; a file with more is something else than a scene
 
 
 class Log:
@@ -27,7 +27,7 @@ class Log:
     @property
     def full(self) -> bool:
         """Whether it is useless to read on."""
-        return len(self.errors) >= MOST_ERRORS
+        return len(self.errors) >= MAX_ERRORS
 
     def error(self, line: Line, column: int, message: str, length: int = 1) -> None:
         """Something that makes the file useless."""

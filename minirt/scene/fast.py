@@ -20,13 +20,13 @@ KINDS = {
 }
 
 
-def pattern(kind: type[Element]) -> str:
+def line_pattern(kind: type[Element]) -> str:
     """The regular expression of an element's plain lines without blanks around, in a group that is named like it."""
     fields = "".join(f"[ \\t]+{field.plain}" for field in fields_of(kind) if not field.keyed)
     return f"(?P<{kind.code}>(?:{'|'.join((kind.code, *kind.aliases))}){fields})"
 
 
-LINE = re.compile(rf"[ \t]*(?:{'|'.join(map(pattern, KINDS.values()))})[ \t]*(?:#[^\r\n\0]*)?\r?")
+LINE = re.compile(rf"[ \t]*(?:{'|'.join(map(line_pattern, KINDS.values()))})[ \t]*(?:#[^\r\n\0]*)?\r?")
 
 
 def read(sources: Sequence[str]) -> Sequence[Element | None]:
@@ -41,13 +41,13 @@ def read(sources: Sequence[str]) -> Sequence[Element | None]:
             texts[code].append(line[code])
     elements: list[Element | None] = [None] * len(sources)
     for code, lines in places.items():
-        found = alike(KINDS[code], texts[code], [sources[place] for place in lines])
+        found = read_kind(KINDS[code], texts[code], [sources[place] for place in lines])
         for place, element in zip(lines, found, strict=True):
             elements[place] = element
     return elements
 
 
-def alike(kind: type[Element], texts: list[str], sources: list[str]) -> Sequence[Element | None]:
+def read_kind(kind: type[Element], texts: list[str], sources: list[str]) -> Sequence[Element | None]:
     """The elements of one kind that are in those lines; None for each with a value that calls for the careful reader.
 
     `texts` are the lines without blanks and comments around.

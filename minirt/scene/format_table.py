@@ -11,21 +11,21 @@ from minirt.scene.registry import ELEMENTS
 def format_table() -> str:
     """Every element that a scene file may hold, and the attributes that all of a sort have, as Markdown tables."""
     shared = {field.name: field for kind in ELEMENTS.values() for field in fields_of(kind) if field.sort}
-    elements = ["| line | element | fields |", "|---|---|---|", *map(row, ELEMENTS.values()), ""]
+    elements = ["| line | element | fields |", "|---|---|---|", *map(element_row, ELEMENTS.values()), ""]
     attributes = ["| attribute | of | meaning |", "|---|---|---|", *map(attribute_row, shared.values()), ""]
     return "\n".join(elements + attributes)
 
 
-def row(kind: type[Element]) -> str:
+def element_row(kind: type[Element]) -> str:
     """The line of one element."""
     own = (field for field in fields_of(kind) if not field.sort)
-    return f"| `{pattern(kind)}` | {name(kind)} | {'<br>'.join(map(meaning, own))} |"
+    return f"| `{pattern(kind)}` | {name_and_count(kind)} | {'<br>'.join(map(field_entry, own))} |"
 
 
 def attribute_row(field: Field) -> str:
     """The line of one attribute."""
     parts = fields_of(field.record) if isinstance(field, Compound) else ()
-    told = "<br>".join([described(field), *map(meaning, parts)])
+    told = "<br>".join([description(field), *map(field_entry, parts)])
     alone = f", or `{field.keys[0]}` for `{field.keys[0]}:{field.bare}`" if field.bare else ""
     for kind in ELEMENTS.values():
         own = next((each for each in fields_of(kind) if each.name == field.name and each.bare != field.bare), None)
@@ -34,19 +34,19 @@ def attribute_row(field: Field) -> str:
     return f"| `{field.notation}`{alone}; also {aliases} | {field.sort} | {told} |"
 
 
-def name(kind: type[Element]) -> str:
+def name_and_count(kind: type[Element]) -> str:
     """What the element is called, how many of it there may be and what else its line may begin with."""
     if kind.once:
         return f"{kind.title} ({'exactly one' if kind.required else 'at most one'})"
     return f"{kind.title} (also {', '.join(f'`{alias}`' for alias in kind.aliases)})" if kind.aliases else kind.title
 
 
-def meaning(field: Field) -> str:
+def field_entry(field: Field) -> str:
     """A field with all that is to know of it."""
-    return f"`{field.notation}` {described(field)}"
+    return f"`{field.notation}` {description(field)}"
 
 
-def described(field: Field) -> str:
+def description(field: Field) -> str:
     """What it is, its range, unit and default."""
     limits = field.range if field.range.startswith(">") or not field.range else f"in {field.range}"
     unit = f"unit: {field.unit}" if field.unit else ""

@@ -10,7 +10,7 @@ from itertools import islice
 from typing import NamedTuple
 
 BOM = "\ufeff"
-MOST_WORDS = 100
+MAX_WORDS = 100
 WORD = re.compile(r"[^ \t]+")
 
 
@@ -44,7 +44,7 @@ class Word(NamedTuple):
         """The column behind the word."""
         return self.column + len(self.raw)
 
-    def place(self, part: int | None, start: int = 0) -> tuple[int, int]:
+    def span(self, part: int | None, start: int = 0) -> tuple[int, int]:
         """Column and length of a component, counted from 0, of the word from its character `start` on, or of it all."""
         if part is None:
             return self.column + start, len(self.raw) - start
@@ -60,12 +60,12 @@ def line_from(number: int, source: str) -> Line:
     return Line(number, source, text.removesuffix("\r"))
 
 
-def words(body: str) -> list[Word]:
+def split_at_blanks(body: str) -> list[Word]:
     """The first words of a line without its comment, more than any element has."""
-    return [Word(match.start() + 1, match.group()) for match in islice(WORD.finditer(body), MOST_WORDS)]
+    return [Word(match.start() + 1, match.group()) for match in islice(WORD.finditer(body), MAX_WORDS)]
 
 
-def joined(apart: list[Word], body: str) -> list[Word]:
+def join_at_commas(apart: list[Word], body: str) -> list[Word]:
     """The words with those made one that meet at a comma; nothing joins the identifier in front."""
     together = apart[:1]
     for word in apart[1:]:

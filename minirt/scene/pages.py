@@ -12,7 +12,7 @@ Item = Element | str  # a str is a line without an element, as it stands in the 
 
 Answer = TypeVar("Answer")
 
-ITEMS = 1024  # of a page that was just made; inserting makes it at most twice as long
+PAGE_LENGTH = 1024  # of a page that was just made; inserting makes it at most twice as long
 
 
 class Page:
@@ -34,7 +34,7 @@ class Page:
         found: tuple[Any, ...] = self._known[sort]
         return found
 
-    def ask(self, question: Callable[[tuple[Item, ...]], Answer]) -> Answer:
+    def cached(self, question: Callable[[tuple[Item, ...]], Answer]) -> Answer:
         """What a function says of its items."""
         if question not in self._known:
             self._known[question] = question(self.items)
@@ -48,12 +48,12 @@ class Page:
         return tuple(item for item in self.items if type(item) in fitting) if fitting else ()
 
 
-def paged(items: tuple[Item, ...]) -> Iterator[Page]:
+def split_into_pages(items: tuple[Item, ...]) -> Iterator[Page]:
     """The items in pages of the usual length."""
-    return (Page(items[start : start + ITEMS]) for start in range(0, len(items), ITEMS))
+    return (Page(items[start : start + PAGE_LENGTH]) for start in range(0, len(items), PAGE_LENGTH))
 
 
-def repaged(page: Page, at: int, instead: tuple[Item, ...]) -> Iterator[Page]:
+def replace_item(page: Page, at: int, instead: tuple[Item, ...]) -> Iterator[Page]:
     """The page, or the pages if it became too long, with other items in the place of the one at that index."""
     items = (*page.items[:at], *instead, *page.items[at + 1 :])
-    return paged(items) if len(items) > 2 * ITEMS else iter([Page(items)] if items else [])
+    return split_into_pages(items) if len(items) > 2 * PAGE_LENGTH else iter([Page(items)] if items else [])

@@ -13,7 +13,7 @@ from minirt.element import Element, pattern
 from minirt.errors import Problem, SceneError
 from minirt.scene import fast, files
 from minirt.scene.diagnostics import Log
-from minirt.scene.element_reader import Slot, assign, cut, fill, identify
+from minirt.scene.element_reader import Slot, assign_words, split_line, parse_slots, identify
 from minirt.scene.elements import Ambient
 from minirt.scene.lights import FurtherLight, Light
 from minirt.scene.lines import Line, Word, line_from
@@ -49,7 +49,7 @@ def parse(text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = 
     if isinstance(text, str):
         text = text.encode("utf-8", "surrogatepass")  # a lone surrogate is found as a byte that is not UTF-8
     log = Log(name, lenient)
-    with collector_paused():
+    with garbage_collection_paused():
         items = read_lines(files.decode(text, name).split("\n"), log)
     if log.errors:
         raise SceneError(tuple(sorted(log.errors, key=lambda error: (error.line, error.column))))
@@ -57,7 +57,7 @@ def parse(text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = 
 
 
 @contextmanager
-def collector_paused() -> Iterator[None]:
+def garbage_collection_paused() -> Iterator[None]:
     """Nothing that a reader makes is garbage in a cycle: a quarter of the time would go into looking for some."""
     enabled = gc.isenabled()
     gc.disable()
@@ -87,13 +87,13 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
                 log.error(line, 1, "too many errors: the rest of the file is not read")
                 return items
     last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
-    look_for_missing(seen, line_from(last, sources[last - 1]), log)
+    check_required(seen, line_from(last, sources[last - 1]), log)
     return items
 
 
 def read_line(line: Line, seen: dict[str, int], log: Log) -> Item | None:
     """What any line holds, None where there are errors in it."""
-    words = cut(line, log)
+    words = split_line(line, log)
     if words == []:
         return line.source
     code = identify(words[0], line, log) if words else None
@@ -113,8 +113,8 @@ def read_element(code: str, words: list[Word], first: int, line: Line, log: Log)
             log.error(line, words[0].column, message, len(code))
         elif log.tolerate(line, words[0].column, message, f"reads it as '{FurtherLight.code}'", len(code)):
             kind = FurtherLight
-    slots = assign(kind, words, line, log)
-    values = fill(kind, slots, line, log) if slots else None
+    slots = assign_words(kind, words, line, log)
+    values = parse_slots(kind, slots, line, log) if slots else None
     return assemble(kind, slots, values, line, log) if slots and values and len(log.errors) == errors else None
 
 
@@ -126,15 +126,15 @@ def assemble(kind: type[Element], slots: list[Slot], values: dict[str, Any], lin
         return element
     name, message = conflict
     slot = next(slot for slot in slots if slot.field.name == name)
-    column, length = slot.place(None)
+    column, length = slot.span(None)
     log.error(line, column, f"{kind.title} {name} {message}", length)
     return None
 
 
-def look_for_missing(seen: dict[str, int], line: Line, log: Log) -> None:
+def check_required(seen: dict[str, int], line: Line, log: Log) -> None:
     """Finds out, at the last line of a file, what it does not have."""
     if not seen:
-        raise files.refused(log.file, files.NOTHING)
+        raise files.file_error(log.file, files.NO_ELEMENTS)
     for kind in ELEMENTS.values():
         if kind.required and kind.code not in seen:
             message = f"no {kind.title}: a scene needs one line '{pattern(kind)}'"

@@ -7,13 +7,13 @@ from minirt.scene.elements import Ambient, Background, Camera, Resolution
 from minirt.scene.lights import FurtherLight, Light, ParallelLight, SpotLight
 from minirt.shapes import ALL_KINDS
 
-KNOWN: tuple[type[Element], ...] = (
+KINDS: tuple[type[Element], ...] = (
     *(Resolution, Ambient, Background, Camera),
     *(Light, FurtherLight, ParallelLight, SpotLight),
     *(kind.element for kind in ALL_KINDS),
 )
 
-ELEMENTS = {element.code: element for element in KNOWN}
+ELEMENTS = {element.code: element for element in KINDS}
 
 # The same by every word that a line may begin with.
-SPELLINGS = {**ELEMENTS, **{alias: element for element in KNOWN for alias in element.aliases}}
+SPELLINGS = {**ELEMENTS, **{alias: element for element in KINDS for alias in element.aliases}}

@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from minirt.element import Element
-from minirt.scene.chained import Chained
+from minirt.scene.concatenation import Concatenation
 from minirt.scene.elements import Ambient, Background, Camera, Resolution
 from minirt.scene.lights import Lamp
-from minirt.scene.pages import Item, Page, paged, repaged
+from minirt.scene.pages import Item, Page, split_into_pages, replace_item
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 
-ONCE = tuple(kind for kind in ELEMENTS.values() if kind.once)
+UNIQUE_KINDS = tuple(kind for kind in ELEMENTS.values() if kind.once)
 
 
 @dataclass(frozen=True, init=False)
@@ -29,18 +29,18 @@ class Scene:
     `scene.spheres`, `scene.planes` and so on are the elements of one kind.
     """
 
-    items: Chained[Item]
+    items: Concatenation[Item]
     file: Path | None  # where it was read from
     pages: tuple[Page, ...] = field(repr=False, compare=False)
 
     def __init__(self, items: Iterable[Item], file: Path | None = None) -> None:
-        self._hold(tuple(paged(tuple(items))), file)
+        self._hold(tuple(split_into_pages(tuple(items))), file)
 
     def _hold(self, pages: tuple[Page, ...], file: Path | None) -> None:
         """Become the scene of those pages."""
-        for name, value in (("items", Chained(page.items for page in pages)), ("file", file), ("pages", pages)):
+        for name, value in (("items", Concatenation(page.items for page in pages)), ("file", file), ("pages", pages)):
             object.__setattr__(self, name, value)
-        for kind in ONCE:
+        for kind in UNIQUE_KINDS:
             count = sum(type(each) is kind for page in pages if kind in page.kinds for each in page.of(kind))
             if count > 1 or (kind is Camera and count == 0):
                 raise ValueError(
@@ -48,9 +48,9 @@ class Scene:
                 )
 
     @cached_property
-    def elements(self) -> Chained[Element]:
+    def elements(self) -> Concatenation[Element]:
         """Everything but comments and blank lines, in the order of the file."""
-        return Chained(page.of(Element) for page in self.pages)
+        return Concatenation(page.of(Element) for page in self.pages)
 
     @cached_property
     def shapes(self) -> tuple[Shape, ...]:
@@ -91,7 +91,7 @@ class Scene:
         """The elements of that type or of one that is derived from it, in the order of the file."""
         return tuple(chain.from_iterable(page.of(sort) for page in self.pages))
 
-    def places(self, sort: type[Any]) -> Iterator[int]:
+    def indices_of(self, sort: type[Any]) -> Iterator[int]:
         """The indices in `elements` of those of that type; looks into no page that has none."""
         for start, elements, page in zip((0, *self.elements.ends), self.elements.parts, self.pages, strict=False):
             if page.of(sort):
@@ -125,12 +125,12 @@ class Scene:
         """The scene with other elements in the place of the item at that index of that page."""
         page = self.pages[number]
         scene = object.__new__(Scene)
-        scene._hold((*self.pages[:number], *repaged(page, at, instead), *self.pages[number + 1 :]), self.file)
+        scene._hold((*self.pages[:number], *replace_item(page, at, instead), *self.pages[number + 1 :]), self.file)
         if "shapes" in vars(self) and not any(isinstance(each, Shape) for each in (page.items[at], *instead)):
             vars(scene)["shapes"] = self.shapes
         return scene
 
-    def lighten(self) -> Scene:
+    def drop_caches(self) -> Scene:
         """Forget what takes much room and can be worked out again; for a scene that is kept, but not shown."""
         vars(self).pop("shapes", None)
         return self

@@ -12,7 +12,7 @@ GLUED = re.compile(r"([A-Za-z]+)[-+.0-9]")
 NUMERIC = re.compile(r"[-+.,]*[0-9]")
 
 # How the keys of attributes begin in other programs' scenes, where their spelling does not tell what is meant.
-ELSEWHERE = {
+FOREIGN_KEYS = {
     "refl": "mirror",
     "refr": "glass",
     "ior": "glass",
@@ -50,7 +50,7 @@ def nearest_element(word: str) -> str:
 
 def nearest_key(word: str, known: list[str]) -> str:
     """The key of `known` that `word` may mean, or nothing."""
-    meant = next((key for start, key in ELSEWHERE.items() if word.lower().startswith(start)), "")
+    meant = next((key for start, key in FOREIGN_KEYS.items() if word.lower().startswith(start)), "")
     return meant if meant in known else nearest(word, known)
 
 

@@ -36,4 +36,4 @@ def save(scene: Scene, path: str | os.PathLike[str]) -> None:
     try:
         atomic_write.write(path, data)
     except (OSError, ValueError) as error:
-        raise files.refused(path, f"cannot be written: {regular_files.reason(error)}") from None
+        raise files.file_error(path, f"cannot be written: {regular_files.reason(error)}") from None

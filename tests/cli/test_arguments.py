@@ -11,7 +11,7 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 import minirt
-from minirt import arguments
+from minirt.cli import arguments
 from minirt.kernel.shading import whitted
 from minirt.rendering.packing import features
 from tests.cli.program import SCENE, Ended

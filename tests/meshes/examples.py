@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.fields import MeshFile
-from minirt.meshes import Triangles, mesh
+from minirt.meshes import Triangles, load_mesh
 from minirt.shapes.mesh import Mesh
 from tests.paths import SCENES
 
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 def named(name: str, position: tuple[float, float, float] = (0, 0, 0), scale: float = 1.0, **how: Any) -> Mesh:
     """A mesh of scenes/meshes."""
-    return Mesh(MeshFile(f"{name}.obj", mesh(FOLDER / f"{name}.obj")), position, scale, GREY, **how)
+    return Mesh(MeshFile(f"{name}.obj", load_mesh(FOLDER / f"{name}.obj")), position, scale, GREY, **how)
 
 
 def soup(random: np.random.Generator, count: int, size: float = 1.0) -> Mesh:
@@ -33,7 +33,7 @@ def soup(random: np.random.Generator, count: int, size: float = 1.0) -> Mesh:
 @cache
 def ball(subdivisions: int) -> Triangles:
     """A sphere of triangles with the sphere's normals at the corners."""
-    made = mesh(FOLDER / "icosphere.obj" if subdivisions == 3 else FOLDER / "icosahedron.obj")
+    made = load_mesh(FOLDER / "icosphere.obj" if subdivisions == 3 else FOLDER / "icosahedron.obj")
     points = made.points / np.linalg.norm(made.points, axis=1)[:, None]
     return Triangles(points, made.corners, points[made.corners])
 

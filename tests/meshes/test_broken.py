@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from minirt.meshes import obj
-from minirt.meshes.block import BrokenError
+from minirt.meshes.block import ObjError
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\n"
 
@@ -50,23 +50,23 @@ BROKEN = {
 
 @pytest.mark.parametrize(("text", "message"), BROKEN.items(), ids=range(len(BROKEN)))
 def test_a_broken_file(text: str, message: str) -> None:
-    with pytest.raises(BrokenError) as caught:
+    with pytest.raises(ObjError) as caught:
         obj.parse(text.encode())
     assert str(caught.value) == message
 
 
 def test_bytes_that_are_no_text() -> None:
-    with pytest.raises(BrokenError, match=r"^line 1: a line begins with"):
+    with pytest.raises(ObjError, match=r"^line 1: a line begins with"):
         obj.parse(bytes(range(256)))
 
 
 def test_too_many_triangles(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(obj, "MOST", 3)
+    monkeypatch.setattr(obj, "MAX_TRIANGLES", 3)
     assert len(obj.parse((SQUARE + "f 1 2 3 4 -4\n").encode())) == 2  # one of three is a line
-    with pytest.raises(BrokenError, match=r"^has more than 3 triangles$"):
+    with pytest.raises(ObjError, match=r"^has more than 3 triangles$"):
         obj.parse((SQUARE + 4 * "f 1 2 3\n").encode())
 
 
 def test_a_line_of_a_megabyte() -> None:
-    with pytest.raises(BrokenError, match="got 1000000 characters"):
+    with pytest.raises(ObjError, match="got 1000000 characters"):
         obj.parse(b"v 0 0 " + b"1" * 1_000_000)

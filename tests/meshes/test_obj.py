@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.meshes import Triangles, diagnosing, fast, obj
-from minirt.meshes.block import Block, Sizes
+from minirt.meshes.block import Block, Counts
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 Read = Callable[[str], Triangles]
@@ -26,7 +26,7 @@ def read(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Rea
 
 def careful_only(text: str) -> Triangles:
     """The triangles of a file that is read line by line."""
-    assert fast.read(text.encode().splitlines(keepends=True), Sizes()) is None
+    assert fast.read(text.encode().splitlines(keepends=True), Counts()) is None
     return obj.parse(text.encode())
 
 
@@ -118,12 +118,12 @@ def test_blocks_are_one_file(monkeypatch: pytest.MonkeyPatch, read: Read) -> Non
     lines = [f"v {i} {i * i} 0\nf -1 -2 -3\n" if i > 1 else f"v {i} {i * i} 0\n" for i in range(50)]
     whole = read("".join(lines))
     assert len(whole) == 48
-    monkeypatch.setattr(obj, "BLOCK", 40)
+    monkeypatch.setattr(obj, "BLOCK_BYTES", 40)
     assert np.array_equal(read("".join(lines)).corners, whole.corners)
 
 
 def test_a_line_that_goes_on_is_not_cut_by_a_block(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(obj, "BLOCK", 1)
+    monkeypatch.setattr(obj, "BLOCK_BYTES", 1)
     assert len(careful_only(SQUARE + "f 1 \\\n2 \\\n3\n")) == 1
 
 
@@ -137,7 +137,7 @@ def test_both_ways_read_the_same() -> None:
             numbers = random.integers(1, 21, (random.integers(3, 7), 3)) * random.choice([-1, 1], (1, 3))
             lines.append("f " + " ".join(forms.format(*row) for row in numbers.tolist()))
         data = [line.encode() + b"\n" for line in lines]
-        quick, slow = fast.read(data, Sizes(3, 4, 5, 6)), diagnosing.read(data, Sizes(3, 4, 5, 6))
+        quick, slow = fast.read(data, Counts(3, 4, 5, 6)), diagnosing.read(data, Counts(3, 4, 5, 6))
         assert quick is not None
         assert all(np.array_equal(one, other) for one, other in zip(quick, slow, strict=True)), forms
         assert isinstance(slow, Block)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from minirt.element import Element
 from minirt.scene import Ambient, Camera, FurtherLight, Item, Light, Scene, dump, pages, parse, writer
-from minirt.scene.pages import ITEMS, Page
+from minirt.scene.pages import PAGE_LENGTH, Page
 from minirt.shapes import Shape
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
@@ -25,7 +25,7 @@ OTHERS: list[Element] = [BALL, Plane((0, 0, 0), (0, 1, 0), (1, 2, 3)), FurtherLi
 @pytest.fixture(scope="module")
 def long() -> Scene:
     """A scene of many pages."""
-    spheres = [f"sp {index},0,0 1 1,2,3" for index in range(20 * ITEMS)]
+    spheres = [f"sp {index},0,0 1 1,2,3" for index in range(20 * PAGE_LENGTH)]
     return parse(scene_with("# spheres", *spheres, "l 0,0,0 1")).scene
 
 
@@ -49,7 +49,7 @@ def test_edits_make_the_scene_that_a_list_would(data: st.DataObject) -> None:
                 instead.append(CAMERA)
             items[places[index] : places[index] + 1] = instead
             scene = scene.edit(index, *instead)
-            assert all(0 < len(page.items) <= 2 * pages.ITEMS for page in scene.pages)
+            assert all(0 < len(page.items) <= 2 * pages.PAGE_LENGTH for page in scene.pages)
     elements = [item for item in items if isinstance(item, Element)]
     assert scene == Scene(items)
     assert scene.items == tuple(items)
@@ -58,7 +58,7 @@ def test_edits_make_the_scene_that_a_list_would(data: st.DataObject) -> None:
     assert scene.lights == tuple(each for each in elements if isinstance(each, Light))
     assert scene.spheres == tuple(each for each in elements if type(each) is Sphere)
     assert scene.camera is CAMERA
-    assert list(scene.places(Light)) == [i for i, each in enumerate(elements) if isinstance(each, Light)]
+    assert list(scene.indices_of(Light)) == [i for i, each in enumerate(elements) if isinstance(each, Light)]
     assert dump(scene) == dump(Scene(items))
 
 
@@ -70,7 +70,7 @@ def test_an_empty_page_is_left_out() -> None:
 
 
 def test_an_edit_makes_one_page_anew(long: Scene) -> None:
-    for index in (5 * ITEMS, 0, len(long.elements) - 1):
+    for index in (5 * PAGE_LENGTH, 0, len(long.elements) - 1):
         element = long.elements[index]
         for changed in (long.edit(index, element), long.edit(index, element, BALL)):
             assert len(anew(changed, long)) == 1
@@ -89,23 +89,23 @@ def test_an_edit_looks_at_no_item_of_other_pages(long: Scene) -> None:
 
     known = Page._find
     with patch.object(Page, "_find", find):
-        changed = long.edit(5 * ITEMS, BALL)
-        assert changed.elements[5 * ITEMS] is BALL
+        changed = long.edit(5 * PAGE_LENGTH, BALL)
+        assert changed.elements[5 * PAGE_LENGTH] is BALL
         assert changed.camera is long.camera
     assert looked
     assert {id(page) for page in looked} == {id(page) for page in anew(changed, long)}
 
 
 def test_what_is_no_shape_leaves_the_shapes_as_they_are(long: Scene) -> None:
-    index = next(long.places(Camera))
+    index = next(long.indices_of(Camera))
     shapes = long.shapes
     assert long.edit(index, long.camera.replace(fov=20)).shapes is shapes
-    assert long.edit(next(long.places(FurtherLight))).shapes is shapes
-    assert long.edit(next(long.places(Sphere)), BALL).shapes is not shapes
+    assert long.edit(next(long.indices_of(FurtherLight))).shapes is shapes
+    assert long.edit(next(long.indices_of(Sphere)), BALL).shapes is not shapes
     assert long.edit(index, long.camera, BALL).shapes == (BALL, *shapes)
     light = len(long.elements) - 1
     assert long.edit(light, BALL).shapes == (*shapes, BALL)
-    assert long.lighten() is long
+    assert long.drop_caches() is long
     assert long.shapes == shapes
     assert long.shapes is not shapes
 

@@ -217,7 +217,7 @@ def test_the_careful_reader_sees_no_plain_line() -> None:
         seen.append(line.number)
         return careful(line, log)
 
-    careful = parser.cut
+    careful = parser.split_line
     with patch.object(parser, "cut", cut):
         read_lines(sources, Log("test.rt", lenient=False))
     assert seen == [1, 2, 7003, 10_003]

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from minirt.scene.chained import Chained
+from minirt.scene.concatenation import Concatenation
 
 PARTS = st.lists(st.lists(st.integers(0, 9), max_size=4).map(tuple), max_size=5)
 INDEX = st.integers(-25, 25)
@@ -15,7 +15,7 @@ INDEX = st.integers(-25, 25)
 @given(PARTS, INDEX, st.slices(20))
 def test_it_is_read_like_a_tuple(parts: list[tuple[int, ...]], index: int, cut: slice) -> None:
     whole = tuple(each for part in parts for each in part)
-    chain = Chained(parts)
+    chain = Concatenation(parts)
     assert (len(chain), tuple(chain), repr(chain), hash(chain)) == (len(whole), whole, repr(whole), hash(whole))
     assert chain[cut] == whole[cut]
     assert list(reversed(chain)) == list(reversed(whole))
@@ -32,7 +32,7 @@ def test_it_is_read_like_a_tuple(parts: list[tuple[int, ...]], index: int, cut: 
 @given(PARTS, PARTS)
 def test_it_equals_what_holds_the_same(parts: list[tuple[int, ...]], others: list[tuple[int, ...]]) -> None:
     whole, other = (tuple(each for part in each_parts for each in part) for each_parts in (parts, others))
-    assert (Chained(parts) == Chained(others)) == (whole == other)
-    assert (Chained(parts) == other) == (other == Chained(parts)) == (whole == other)
-    assert Chained(parts) == Chained([whole])
-    assert Chained(parts) != list(whole)
+    assert (Concatenation(parts) == Concatenation(others)) == (whole == other)
+    assert (Concatenation(parts) == other) == (other == Concatenation(parts)) == (whole == other)
+    assert Concatenation(parts) == Concatenation([whole])
+    assert Concatenation(parts) != list(whole)

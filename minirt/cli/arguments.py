@@ -6,7 +6,7 @@ import argparse
 from typing import NoReturn
 
 from minirt import DEFAULT_ERROR
-from minirt.argument_values import above_0, size, whole
+from minirt.cli.argument_values import above_0, size, whole
 
 USAGE = 2  # status: wrong arguments
 SAMPLES, WINDOW_SAMPLES = 1, 16  # where none are asked for

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TextIO
 
-from minirt.arguments import SAMPLES, USAGE, WINDOW_SAMPLES, Arguments, arguments
+from minirt.cli.arguments import SAMPLES, USAGE, WINDOW_SAMPLES, Arguments, arguments
 from minirt.errors import MiniRTError, MlxError, ReplayError
 from minirt.gc_pause import uncollected
 

@@ -10,7 +10,7 @@ from typing import TypeVar, overload
 T_co = TypeVar("T_co", covariant=True)
 
 
-class Chained(Sequence[T_co]):
+class Concatenation(Sequence[T_co]):
     """Immutable; equal to every tuple, and to every other chain, that holds the same. A slice is a tuple."""
 
     def __init__(self, parts: Iterable[tuple[T_co, ...]]) -> None:
@@ -44,9 +44,9 @@ class Chained(Sequence[T_co]):
         return self.parts[part][at]
 
     def __eq__(self, other: object) -> bool:
-        if isinstance(other, Chained) and self.parts == other.parts:
+        if isinstance(other, Concatenation) and self.parts == other.parts:
             return True
-        return isinstance(other, (Chained, tuple)) and len(self) == len(other) and tuple(self) == tuple(other)
+        return isinstance(other, (Concatenation, tuple)) and len(self) == len(other) and tuple(self) == tuple(other)
 
     def __hash__(self) -> int:
         return hash(tuple(self))
