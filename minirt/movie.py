@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 FPS = 25.0  # pictures a second
 COLOURS = 256  # of each picture of a GIF
 
-Item = TypeVar("Thing")
+T = TypeVar("T")
 
 
 def save_movie(pictures: Iterable[Image], path: str | os.PathLike[str], fps: float = FPS) -> list[Path]:
@@ -67,7 +67,7 @@ def quantised(picture: PillowImage) -> PillowImage:
     return picture.quantize(COLOURS, Quantize.FASTOCTREE, dither=Dither.NONE)
 
 
-def with_progress(things: Iterable[Item], count: int, what: str) -> Iterator[Item]:
+def with_progress(things: Iterable[T], count: int, what: str) -> Iterator[T]:
     """The things, while a terminal at standard error is told how many are done."""
     told = sys.stderr.isatty()
     for number, thing in enumerate(things, 1):

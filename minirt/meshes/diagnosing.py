@@ -8,7 +8,7 @@ import numpy as np
 
 from minirt.errors import FieldError, quoted
 from minirt.fields import FARTHEST, number, spelled, whole
-from minirt.meshes.block import Block, ObjError, Counts
+from minirt.meshes.block import Block, Counts, ObjError
 
 NUMBER_COUNTS = {"v": (3, 7, "x y z"), "vt": (1, 3, "u v"), "vn": (3, 3, "x y z")}  # at least, at most, of what
 CORNER_PARTS = ("point", "vt", "vn")  # of what a corner names

@@ -27,7 +27,11 @@ def read(lines: list[bytes], before: Counts) -> Block | None:
         return None
     mine = {key: [rows[at] for at in places.get(key, ())] for key in (b"v", b"vt", b"vn", b"f")}
     try:
-        points, uvs, normals = number_table(mine[b"v"], 3, 7), number_table(mine[b"vt"], 2, 3), number_table(mine[b"vn"], 3, 3)
+        points, uvs, normals = (
+            number_table(mine[b"v"], 3, 7),
+            number_table(mine[b"vt"], 2, 3),
+            number_table(mine[b"vn"], 3, 3),
+        )
         given = corner_table(mine[b"f"])
     except (ValueError, OverflowError):
         return None

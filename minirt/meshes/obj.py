@@ -12,7 +12,7 @@ from io import BytesIO
 import numpy as np
 
 from minirt.meshes import diagnosing, fast
-from minirt.meshes.block import Block, ObjError, Counts
+from minirt.meshes.block import Block, Counts, ObjError
 from minirt.meshes.triangles import Triangles, non_degenerate, squared_lengths, unit
 
 BLOCK_BYTES = 4 * 2**20  # bytes that are read at once
@@ -82,4 +82,6 @@ def check_indices(whole: Block) -> None:
         corner = int(np.argmax(beyond.any(axis=1)))
         which = int(np.argmax(beyond[corner]))
         line = np.repeat(whole.lines, whole.sizes)[corner]
-        raise ObjError(diagnosing.missing_index_message(which, int(whole.corners[corner, which]) + 1, there[which]), int(line))
+        raise ObjError(
+            diagnosing.missing_index_message(which, int(whole.corners[corner, which]) + 1, there[which]), int(line)
+        )

@@ -7,7 +7,7 @@ from typing import Any
 from minirt.element import Element, fields_of
 from minirt.fields import Field
 from minirt.scene.diagnostics import Log
-from minirt.scene.element_reader import Slot, assign_words, split_line, parse_slots, identify
+from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.lines import Word, line_from
 from minirt.scene.registry import ELEMENTS, SPELLINGS
 

@@ -13,7 +13,7 @@ from minirt.element import Element, pattern
 from minirt.errors import Problem, SceneError
 from minirt.scene import fast, files
 from minirt.scene.diagnostics import Log
-from minirt.scene.element_reader import Slot, assign_words, split_line, parse_slots, identify
+from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.elements import Ambient
 from minirt.scene.lights import FurtherLight, Light
 from minirt.scene.lines import Line, Word, line_from

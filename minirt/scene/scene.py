@@ -14,7 +14,7 @@ from minirt.element import Element
 from minirt.scene.concatenation import Concatenation
 from minirt.scene.elements import Ambient, Background, Camera, Resolution
 from minirt.scene.lights import Lamp
-from minirt.scene.pages import Item, Page, split_into_pages, replace_item
+from minirt.scene.pages import Item, Page, replace_item, split_into_pages
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 

@@ -78,7 +78,9 @@ def corners(state: State, count: int) -> list[Triple]:
     camera = state.scene.camera
     right, up, forward = camera_frame(camera)
     size = LARGE * state.size
-    middle = linear_combination(1.0, linear_combination(1.0, camera.position, AWAY * state.size, forward), -size / 2, up)
+    middle = linear_combination(
+        1.0, linear_combination(1.0, camera.position, AWAY * state.size, forward), -size / 2, up
+    )
     radius = size if count > 1 else 0.0
     turns = [pi / 2 + 2 * pi * corner / max(count, 1) for corner in range(count)]
     around = [linear_combination(radius * cos(turn), right, radius * sin(turn), up) for turn in turns]

@@ -102,7 +102,9 @@ def pan(state: State, held: Grip, x: int, y: int) -> State:
     ahead = linear_combination(1.0, held.camera.position, state.size, held.camera.direction)
     point = held.point or ahead
     way = minus(under(held, held.x, held.y, point), under(held, x, y, point))
-    return state.put_camera(held.camera.replace(position=limited(linear_combination(1.0, held.camera.position, 1.0, way))), *DRAG)
+    return state.put_camera(
+        held.camera.replace(position=limited(linear_combination(1.0, held.camera.position, 1.0, way))), *DRAG
+    )
 
 
 def angles(held: Grip, x: int, y: int) -> tuple[float, float]:

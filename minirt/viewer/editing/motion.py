@@ -21,7 +21,10 @@ def translated(element: Element, axis: Triple, distance: float) -> tuple[Element
         clamp(part, -FARTHEST - min(coordinates), FARTHEST - max(coordinates))
         for part, coordinates in zip(way, zip(*points.values(), strict=True), strict=True)
     ]
-    moved = {name: limited(linear_combination(1.0, point, 1.0, (kept[0], kept[1], kept[2]))) for name, point in points.items()}
+    moved = {
+        name: limited(linear_combination(1.0, point, 1.0, (kept[0], kept[1], kept[2])))
+        for name, point in points.items()
+    }
     return element.replace(**moved), kept != way
 
 
