@@ -1,4 +1,4 @@
-"""Mesh files that were read, kept for the next scene that names them."""
+"""Cache of loaded mesh files, by path and modification time."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from minirt.errors import FileError
 from minirt.meshes.obj import ObjError, parse
 from minirt.meshes.triangles import Triangles
 
-MAX_BYTES = 256 * 2**20  # bytes of a file
+MAX_BYTES = 256 * 2**20  # 256 MiB
 
-Stamp = tuple[int, int, int]  # what changes when a file does
+Stamp = tuple[int, int, int]  # inode, size and modification time (ns) of a file
 
 cache: dict[str, tuple[Stamp, Triangles]] = {}
 lock = Lock()
 
 
 def load_mesh(path: str | os.PathLike[str]) -> Triangles:
-    """The triangles of a Wavefront .obj file; the same object as long as the file is the same. FileError."""
-    found = regular_files.status(path, MAX_BYTES)
-    stamp = (found.st_ino, found.st_size, found.st_mtime_ns)
+    """Return the triangles of an .obj file, the same object until the file changes; FileError when it is no mesh."""
+    status = regular_files.status(path, MAX_BYTES)
+    stamp = (status.st_ino, status.st_size, status.st_mtime_ns)
     key = os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
     with lock:
         if key not in cache or cache[key][0] != stamp:
@@ -32,7 +32,7 @@ def load_mesh(path: str | os.PathLike[str]) -> Triangles:
 
 
 def read(path: Path) -> Triangles:
-    """The triangles of a file, read anew."""
+    """Read and parse an .obj file; FileError when it is no mesh."""
     try:
         return parse(regular_files.read(path, MAX_BYTES))
     except ObjError as error:

@@ -1,4 +1,4 @@
-"""Where a camera's picture lies in space."""
+"""Camera frame: the basis of a camera's picture in world space."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from minirt.scene.elements import Camera
 
 
 def camera_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
-    """Unit vectors right, up and forward of the picture, perpendicular to each other.
+    """Return the orthonormal vectors right, up and forward of a camera.
 
-    Without a roll they are upright; a roll turns right and up about forward, clockwise as the camera sees it. In the
-    mirrored picture of a left-handed camera right is the opposite of all that.
+    Without a roll the picture is upright. A roll turns right and up about forward, clockwise as the camera sees it.
+    A left-handed camera mirrors its picture: right is negated.
     """
     x, y, z = camera.direction
     right, up = upright(x, y, z)
@@ -25,5 +25,5 @@ def camera_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
 
 
 def linear_combination(a: float, u: Triple, b: float, v: Triple) -> Triple:
-    """a u + b v."""
+    """Return a u + b v."""
     return a * u[0] + b * v[0], a * u[1] + b * v[1], a * u[2] + b * v[2]

@@ -1,4 +1,4 @@
-"""The bytes and the characters of a scene file, and why there may be none."""
+"""Read and decode the bytes of a scene file; SceneError when it is unreadable or not text."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from minirt import regular_files
 from minirt.errors import FileError, Problem, SceneError
 
 SUFFIX = ".rt"
-MAX_BYTES = 64 * 2**20  # bytes
+MAX_BYTES = 64 * 2**20  # 64 MiB
 
 NO_ELEMENTS = "holds only blanks and comments"
 
@@ -17,19 +17,19 @@ UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks
 
 
 def file_error(path: str | os.PathLike[str], message: str) -> SceneError:
-    """The error that the whole file is of no use."""
+    """Return an error about a file as a whole, without a line."""
     return SceneError((Problem(os.fspath(path), 0, 0, "", message),))
 
 
 def check_name(path: str | os.PathLike[str]) -> None:
-    """SceneError where `path` does not end in `.rt`, or in nothing else."""
+    """SceneError when the file name does not end in `.rt`, or is nothing but `.rt`."""
     name = Path(path).name
     if not name.endswith(SUFFIX) or name == SUFFIX:
         raise file_error(path, f"the name of a scene file ends in '{SUFFIX}'")
 
 
 def read(path: str | os.PathLike[str]) -> bytes:
-    """The bytes of a scene file."""
+    """Return the bytes of a scene file; SceneError when it cannot be read."""
     check_name(path)
     try:
         return regular_files.read(path, MAX_BYTES)
@@ -38,7 +38,7 @@ def read(path: str | os.PathLike[str]) -> bytes:
 
 
 def decode(data: bytes, file: str) -> str:
-    """The text of a scene file; SceneError where it is not UTF-8 text."""
+    """Return the text of a scene file; SceneError when it is empty or not UTF-8 text."""
     if not data.strip():
         raise file_error(file, NO_ELEMENTS if data else "is empty")
     if data.startswith(UTF16):
@@ -52,11 +52,11 @@ def decode(data: bytes, file: str) -> str:
         raise byte_error(data, error.start, file, f"must be UTF-8, got the byte 0x{data[error.start]:02x}") from None
 
 
-def byte_error(data: bytes, at: int, file: str, message: str) -> SceneError:
-    """The error about the byte at index `at`."""
-    begin = data.rfind(b"\n", 0, at) + 1
-    end = data.find(b"\n", at)
+def byte_error(data: bytes, index: int, file: str, message: str) -> SceneError:
+    """Return an error about the byte at `index`, with its line and column."""
+    begin = data.rfind(b"\n", 0, index) + 1
+    end = data.find(b"\n", index)
     line = data[begin : end if end >= 0 else len(data)]
-    column = len(data[begin:at].decode("utf-8-sig" if begin == 0 else "utf-8", "replace")) + 1
+    column = len(data[begin:index].decode("utf-8-sig" if begin == 0 else "utf-8", "replace")) + 1
     text = line.decode("utf-8-sig" if begin == 0 else "utf-8", "replace")
-    return SceneError((Problem(file, data.count(b"\n", 0, at) + 1, column, text, message),))
+    return SceneError((Problem(file, data.count(b"\n", 0, index) + 1, column, text, message),))

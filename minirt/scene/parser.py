@@ -1,4 +1,4 @@
-"""Reads scene files: text -> Scene. All errors of a file are found in one run."""
+"""Parser of scene files: text -> Scene. One run finds all errors of a file."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from minirt.scene.registry import ELEMENTS
 from minirt.scene.scene import Scene
 from minirt.scene.suggestions import nearest_element
 
-BLOCK = 4096  # lines that are read at once where they are plain
+BLOCK = 4096  # lines that the fast path reads at once
 
 
 class Reading(NamedTuple):
-    """A scene, and what its reader should be told of the file."""
+    """A scene and the notices about its file."""
 
     scene: Scene
     notices: tuple[Problem, ...]
 
 
 def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Reading:
-    """Reads a scene file; SceneError with all that is wrong in it. `left_handed` mirrors its pictures."""
+    """Read a scene file; SceneError with all of its errors. `left_handed` mirrors its pictures."""
     scene, notices = parse(files.read(path), path, lenient)
     if left_handed:
         scene = scene.replace(scene.camera, left_handed=True)
@@ -41,13 +41,13 @@ def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool 
 
 
 def parse(text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = False) -> Reading:
-    """Reads the text of a scene; `file` is what errors call it. SceneError with all that is wrong in it.
+    """Parse the text of a scene; SceneError with all of its errors. `file` is the name that they show.
 
-    With `lenient`, what older scenes have (several `L`, blanks around commas and the like) gives notices.
+    `lenient` accepts, with notices, the habits of older scenes: several `L`, blanks around commas and the like.
     """
     name = os.fspath(file) or "scene"
     if isinstance(text, str):
-        text = text.encode("utf-8", "surrogatepass")  # a lone surrogate is found as a byte that is not UTF-8
+        text = text.encode("utf-8", "surrogatepass")  # a lone surrogate is reported as a byte that is not UTF-8
     log = Log(name, lenient)
     with garbage_collection_paused():
         items = read_lines(files.decode(text, name).split("\n"), log)
@@ -58,7 +58,7 @@ def parse(text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = 
 
 @contextmanager
 def garbage_collection_paused() -> Iterator[None]:
-    """Nothing that a reader makes is garbage in a cycle: a quarter of the time would go into looking for some."""
+    """Pause cyclic garbage collection: a reader makes no cycles, and the search would take a quarter of its time."""
     enabled = gc.isenabled()
     gc.disable()
     try:
@@ -69,15 +69,15 @@ def garbage_collection_paused() -> Iterator[None]:
 
 
 def read_lines(sources: list[str], log: Log) -> list[Item]:
-    """The elements of a file between its comments and blank lines."""
+    """Read all lines of a file: elements, comments and blank lines."""
     items: list[Item] = []
-    seen: dict[str, int] = {}  # identifier: the first line that has it, or seems to mean it
-    for before in range(0, len(sources), BLOCK):
-        block = sources[before : before + BLOCK]
-        for number, (source, known) in enumerate(zip(block, fast.read(block), strict=True), before + 1):
-            if known:
-                seen.setdefault(known.code, number)
-                items.append(known)
+    seen: dict[str, int] = {}  # identifier: first line that has it, or seems to mean it
+    for start in range(0, len(sources), BLOCK):
+        block = sources[start : start + BLOCK]
+        for number, (source, element) in enumerate(zip(block, fast.read(block), strict=True), start + 1):
+            if element:
+                seen.setdefault(element.code, number)
+                items.append(element)
                 continue
             line = line_from(number, source)
             item = read_line(line, seen, log)
@@ -92,7 +92,7 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
 
 
 def read_line(line: Line, seen: dict[str, int], log: Log) -> Item | None:
-    """What any line holds, None where there are errors in it."""
+    """Read any line: an element, or the line itself for a comment or a blank line; None after an error."""
     words = split_line(line, log)
     if words == []:
         return line.source
@@ -104,7 +104,7 @@ def read_line(line: Line, seen: dict[str, int], log: Log) -> Item | None:
 
 
 def read_element(code: str, words: list[Word], first: int, line: Line, log: Log) -> Element | None:
-    """The element of a line, None where there are errors in it; `first` is the first line with its identifier."""
+    """Read the element of a line; None after an error. `first` is the first line with the same identifier."""
     kind = ELEMENTS[code]
     errors = len(log.errors)
     if kind.once and first != line.number:
@@ -119,7 +119,7 @@ def read_element(code: str, words: list[Word], first: int, line: Line, log: Log)
 
 
 def assemble(kind: type[Element], slots: list[Slot], values: dict[str, Any], line: Line, log: Log) -> Element | None:
-    """The element with those values, None where they do not go together."""
+    """Make the element of the values; None, with an error, when they do not go together."""
     (element,) = kind.checked(1, {"source": [line.source], **{name: [value] for name, value in values.items()}})
     conflict = element.conflict()
     if conflict is None:
@@ -132,7 +132,7 @@ def assemble(kind: type[Element], slots: list[Slot], values: dict[str, Any], lin
 
 
 def check_required(seen: dict[str, int], line: Line, log: Log) -> None:
-    """Finds out, at the last line of a file, what it does not have."""
+    """Report, at the last line of a file, the required elements that it does not have."""
     if not seen:
         raise files.file_error(log.file, files.NO_ELEMENTS)
     for kind in ELEMENTS.values():

@@ -1,4 +1,4 @@
-"""Every element that a scene file may hold, by its identifier."""
+"""Registry of all elements of a scene file, by identifier."""
 
 from __future__ import annotations
 
@@ -15,5 +15,5 @@ KINDS: tuple[type[Element], ...] = (
 
 ELEMENTS = {element.code: element for element in KINDS}
 
-# The same by every word that a line may begin with.
+# All elements by every word that a line may begin with: identifiers and aliases.
 SPELLINGS = {**ELEMENTS, **{alias: element for element in KINDS for alias in element.aliases}}
