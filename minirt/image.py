@@ -52,7 +52,7 @@ class Image:
         return pillow.fromarray(self.array)
 
     def encode(self, name: str = "PNG") -> bytes:
-        """Return the bytes of a file in one of Pillow's formats; RenderError when the format cannot hold the picture."""
+        """Return the bytes of a file in a format of Pillow; RenderError when the format cannot hold the picture."""
         buffer = io.BytesIO()
         try:
             self.pil.save(buffer, name)

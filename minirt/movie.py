@@ -60,8 +60,8 @@ def encode_gif(pictures: Iterable[Image], fps: float) -> bytes:
 
 
 def quantised(picture: PillowImage) -> PillowImage:
-    """Reduce a picture to 256 colours by an octree, which keeps the colours of small objects and takes two thirds of the
-    bytes of a median cut."""
+    """Reduce a picture to 256 colours by an octree, which keeps the colours of small objects and takes two thirds
+    of the bytes of a median cut."""
     from PIL.Image import Dither, Quantize
 
     return picture.quantize(COLOURS, Quantize.FASTOCTREE, dither=Dither.NONE)

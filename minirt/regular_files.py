@@ -25,8 +25,8 @@ def status(path: str | os.PathLike[str], largest: int) -> os.stat_result:
 def read(path: str | os.PathLike[str], largest: int) -> bytes:
     """Return the bytes of a regular file; FileError when it has more than `largest` or cannot be read.
 
-    Anything but a regular file is refused before it is opened, and opening does not block: a FIFO or a device that takes
-    the file's place in between cannot hang the program.
+    Anything but a regular file is refused before it is opened, and opening does not block: a FIFO or a device that
+    takes the file's place in between cannot hang the program.
     """
     status(path, largest)
     try:

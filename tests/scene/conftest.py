@@ -1,4 +1,4 @@
-"""All that any test of this folder parses is read by both readers."""
+"""Every text that a test of this folder parses is read by both readers, the fast and the diagnosing one."""
 
 from __future__ import annotations
 
