@@ -1,4 +1,4 @@
-"""Files that are no meshes, and what is said of them."""
+"""Broken .obj files are refused with a message that names the line."""
 
 from __future__ import annotations
 
@@ -49,24 +49,24 @@ BROKEN = {
 
 
 @pytest.mark.parametrize(("text", "message"), BROKEN.items(), ids=range(len(BROKEN)))
-def test_a_broken_file(text: str, message: str) -> None:
+def test_a_broken_file_is_refused(text: str, message: str) -> None:
     with pytest.raises(ObjError) as caught:
         obj.parse(text.encode())
     assert str(caught.value) == message
 
 
-def test_bytes_that_are_no_text() -> None:
+def test_binary_data_is_refused() -> None:
     with pytest.raises(ObjError, match=r"^line 1: a line begins with"):
         obj.parse(bytes(range(256)))
 
 
-def test_too_many_triangles(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_with_too_many_triangles_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(obj, "MAX_TRIANGLES", 3)
-    assert len(obj.parse((SQUARE + "f 1 2 3 4 -4\n").encode())) == 2  # one of three is a line
+    assert len(obj.parse((SQUARE + "f 1 2 3 4 -4\n").encode())) == 2  # one of three is degenerate
     with pytest.raises(ObjError, match=r"^has more than 3 triangles$"):
         obj.parse((SQUARE + 4 * "f 1 2 3\n").encode())
 
 
-def test_a_line_of_a_megabyte() -> None:
+def test_a_number_of_a_million_digits_gives_a_short_message() -> None:
     with pytest.raises(ObjError, match="got 1000000 characters"):
         obj.parse(b"v 0 0 " + b"1" * 1_000_000)

@@ -69,7 +69,7 @@ def damaged(draw: st.DrawFn) -> str:
 
 
 def check_outcome(text: str | bytes) -> None:
-    """Parse a text strictly and leniently: each accepts it, or refuses it with columns in the text; lenient takes more."""
+    """Parse a text strictly and leniently: each accepts it or refuses it with columns in the text."""
     accepted = []
     for lenient in (False, True):
         try:
