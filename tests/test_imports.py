@@ -1,4 +1,4 @@
-"""Which part of the program may import which, read from the sources."""
+"""The direction of imports, read from the sources: which part of the program may import which, and no circles."""
 
 from __future__ import annotations
 
@@ -86,8 +86,11 @@ HEAVY = ("rendering", "viewer", "kernel", "mlx", "report")
 LATE = {"numba", "llvmlite", "pyglet", "PIL", *(f"minirt.{part}" for part in HEAVY)}
 
 
-def imports(source: str, late: bool = True) -> set[str]:
-    """The modules that a source imports at run time; without those inside functions, unless `late`."""
+def imports(source: str, late: bool = True, annotations: bool = False) -> set[str]:
+    """The modules that a source imports at run time.
+
+    `late`: also those that are imported inside functions. `annotations`: also those for annotations alone.
+    """
     found: set[str] = set()
 
     def visit(node: ast.AST) -> None:
@@ -98,7 +101,7 @@ def imports(source: str, late: bool = True) -> set[str]:
             found.update(f"{node.module}.{each.name}" for each in node.names)
         if isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] in ("import_module", "__import__"):
             found.update(each.value for each in node.args if isinstance(each, ast.Constant))
-        typing = isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+        typing = not annotations and isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
         if typing or (not late and isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda))):
             return
         for child in ast.iter_child_nodes(node):
@@ -155,6 +158,86 @@ def test_the_compiler_is_imported_where_it_is_attached_and_nowhere_else() -> Non
     importers = {path for path, source in sources().items() if {m.split(".")[0] for m in imports(source)} & COMPILER}
     # `compiled` only gathers the files that teach the compiler.
     assert importers == COMPILED - {"lanes/compiled/__init__.py"}
+
+
+def graph(files: dict[str, str]) -> dict[str, set[str]]:
+    """For each module of the package the modules of the package that it imports, at any time and for annotations too.
+
+    A package of modules counts as its `__init__`. The public module `minirt` itself is left out: it imports lazily.
+    """
+    modules = {module_of(path): source for path, source in files.items() if path != "__init__.py"}
+    found: dict[str, set[str]] = {}
+    for module, source in modules.items():
+        wanted = imports(source, annotations=True)
+        exact = {name if name in modules else name.rpartition(".")[0] for name in wanted}
+        found[module] = (exact & set(modules)) - {module}
+    return found
+
+
+def module_of(path: str) -> str:
+    """The module in a file of the package: `minirt.scene` for `scene/__init__.py`."""
+    return "minirt." + path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+
+
+def folders(modules: dict[str, set[str]]) -> dict[str, set[str]]:
+    """The same graph between folders; a module beside sub-folders counts as a folder of its own."""
+    inner = {name for name in modules if any(other.startswith(f"{name}.") for other in modules)}
+
+    def folder(name: str) -> str:
+        parent = name.rpartition(".")[0]
+        return name if name in inner or any(each.startswith(f"{parent}.") for each in inner) else parent
+
+    found: dict[str, set[str]] = {}
+    for name, wanted in modules.items():
+        found.setdefault(folder(name), set()).update(folder(each) for each in wanted)
+    return {name: wanted - {name} for name, wanted in found.items()}
+
+
+def circles(edges: dict[str, set[str]]) -> set[str]:
+    """The nodes of a graph that lie on a circle."""
+    return {name for name in edges if reaches(edges, name, name)}
+
+
+def reaches(edges: dict[str, set[str]], start: str, end: str) -> bool:
+    """Whether a way of one edge or more leads from one node of a graph to another."""
+    seen: set[str] = set()
+    todo = [start]
+    while todo:
+        for name in edges.get(todo.pop(), set()) - seen:
+            if name == end:
+                return True
+            seen.add(name)
+            todo.append(name)
+    return False
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    assert circles(graph(sources())) == set()
+
+
+def test_no_folders_import_each_other_in_a_circle() -> None:
+    assert circles(folders(graph(sources()))) == set()
+
+
+def test_a_planted_circle_is_found() -> None:
+    """Through a late import and an annotation, and between folders whose modules form none."""
+    planted = {
+        "mlx/a.py": "def f():\n    from minirt.mlx.b import g",
+        "mlx/b.py": "if TYPE_CHECKING:\n    from minirt.mlx.a import f",
+        "mlx/c.py": "from minirt.mlx import a",
+    }
+    assert circles(graph(planted)) == {"minirt.mlx.a", "minirt.mlx.b"}
+    planted = {
+        "kernel/frame.py": "",
+        "kernel/bvh/__init__.py": "",
+        "kernel/bvh/nodes.py": "from minirt.kernel.culling.binning import Grid",
+        "kernel/bvh/build.py": "",
+        "kernel/culling/__init__.py": "",
+        "kernel/culling/binning.py": "",
+        "kernel/culling/light_buffer.py": "import minirt.kernel.bvh.build",
+    }
+    assert circles(graph(planted)) == set()
+    assert circles(folders(graph(planted))) == {"minirt.kernel.bvh", "minirt.kernel.culling"}
 
 
 @pytest.mark.parametrize("path", ["__init__.py", *CLI, "image.py", "bench.py"])
