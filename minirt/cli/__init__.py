@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TextIO
 
-from minirt.cli.arguments import Arguments, arguments
+from minirt.cli.arguments import Arguments, argument_parser
 from minirt.cli.exit_status import FAILED, INTERRUPTED, OK, USAGE
 from minirt.errors import MiniRTError
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the program and return its exit status."""
     try:
-        return run(arguments(), argv)
+        return run(argument_parser(), argv)
     except MiniRTError as error:
         print("Error", error, sep="\n", file=sys.stderr)
         return FAILED

@@ -25,7 +25,7 @@ class Arguments(argparse.ArgumentParser):
         self.exit(status, f"Error\n{message}\n{self.format_usage()}")
 
 
-def arguments() -> Arguments:
+def argument_parser() -> Arguments:
     """Return the parser of the command line."""
     parser = Arguments(prog="miniRT", description="Show a .rt scene in a window, or render it to a file.")
     parser.add_argument("scene", nargs="*", metavar="SCENE.rt", help="the scene file")
