@@ -33,7 +33,7 @@ def format_of(path: str | os.PathLike[str]) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Image:
-    """A picture, which a notebook displays."""
+    """A picture; notebooks display it."""
 
     array: np.ndarray  # (h, w, 3) uint8, RGB
     linear: np.ndarray | None = None  # (h, w, 3) float64, radiance before clamping and rounding
@@ -69,4 +69,5 @@ class Image:
             raise RenderError(f"{os.fspath(path)}: cannot write: {error.strerror or error}") from None
 
     def _repr_png_(self) -> bytes:
+        """Return the picture as PNG; notebooks call this."""
         return self.encode()

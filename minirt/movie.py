@@ -50,7 +50,7 @@ def save_movie(pictures: Iterable[Image], path: str | os.PathLike[str], fps: flo
 
 def encode_gif(pictures: Iterable[Image], fps: float) -> bytes:
     """Return the bytes of a looping GIF; the format counts durations in hundredths of a second."""
-    frames = [quantised(picture.pil) for picture in pictures]
+    frames = [quantise(picture.pil) for picture in pictures]
     if not frames:
         raise RenderError("a movie needs a picture")
     buffer = io.BytesIO()
@@ -59,7 +59,7 @@ def encode_gif(pictures: Iterable[Image], fps: float) -> bytes:
     return buffer.getvalue()
 
 
-def quantised(picture: PillowImage) -> PillowImage:
+def quantise(picture: PillowImage) -> PillowImage:
     """Reduce a picture to 256 colours by an octree, which keeps the colours of small objects and takes two thirds
     of the bytes of a median cut."""
     from PIL.Image import Dither, Quantize

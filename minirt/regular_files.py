@@ -51,6 +51,6 @@ def check_regular(path: str | os.PathLike[str], status: os.stat_result, largest:
 
 
 def check_size(path: str | os.PathLike[str], size: int, largest: int) -> None:
-    """FileError when a file has more bytes than `largest`."""
+    """Check that a file has at most `largest` bytes; FileError otherwise."""
     if size > largest:
         raise FileError(path, f"larger than {largest // 2**20} MiB")

@@ -119,10 +119,10 @@ def test_an_edit_makes_a_new_scene(scene: minirt.Scene) -> None:
 
 def test_a_scene_can_be_made_without_a_file() -> None:
     ball = minirt.Sphere((0, 0, 5), 2, (255, 0, 0))
-    made = minirt.Scene((minirt.Ambient(1, (255, 255, 255)), minirt.Camera((0, 0, 0), (0, 0, 1), 60), ball))
-    assert minirt.render(made, 9, 9).array[4, 4].tolist() == [255, 0, 0]
-    assert minirt.render(made, 9, 9).array[0, 0].tolist() == [0, 0, 0]
-    assert pickle.loads(pickle.dumps(made)) == made
+    scene = minirt.Scene((minirt.Ambient(1, (255, 255, 255)), minirt.Camera((0, 0, 0), (0, 0, 1), 60), ball))
+    assert minirt.render(scene, 9, 9).array[4, 4].tolist() == [255, 0, 0]
+    assert minirt.render(scene, 9, 9).array[0, 0].tolist() == [0, 0, 0]
+    assert pickle.loads(pickle.dumps(scene)) == scene
 
 
 def test_an_error_has_all_problems_of_a_file(tmp_path: Path) -> None:

@@ -29,11 +29,11 @@ def uniform(colour) -> minirt.Image:
 
 def test_a_gif_has_all_pictures_and_loops(tmp_path):
     (path,) = save_movie(map(uniform, COLOURS), tmp_path / "a.gif", fps=10)
-    with pillow.open(path) as found:
-        assert (found.n_frames, found.info["duration"], found.info["loop"], found.size) == (3, 100, 0, (8, 6))
+    with pillow.open(path) as gif:
+        assert (gif.n_frames, gif.info["duration"], gif.info["loop"], gif.size) == (3, 100, 0, (8, 6))
         for number, colour in enumerate(COLOURS):
-            found.seek(number)
-            shown = np.asarray(found.convert("RGB")).astype(int)
+            gif.seek(number)
+            shown = np.asarray(gif.convert("RGB")).astype(int)
             assert np.abs(shown - colour).max() <= 4
 
 

@@ -53,8 +53,8 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
 def check_options(parser: Arguments, options: argparse.Namespace) -> None:
     """Exit with a message when the options do not go together; RenderError for an unknown picture format."""
     if len(options.scene) != 1:
-        given = f"{len(options.scene)}: {' '.join(options.scene)}".rstrip(": ")
-        parser.fail(f"expected one scene file, got {given}", FAILED)
+        found = f"{len(options.scene)}: {' '.join(options.scene)}".rstrip(": ")
+        parser.fail(f"expected one scene file, got {found}", FAILED)
     if options.output and options.output != "-":
         from minirt.image import format_of
 

@@ -31,7 +31,10 @@ def argument_parser() -> Arguments:
     parser.add_argument("scene", nargs="*", metavar="SCENE.rt", help="the scene file")
     add = parser.add_argument_group("output").add_argument
     add(
-        "-o", "--output", metavar="FILE", help="render to a picture file instead of a window; - is standard output, PNG"
+        "-o",
+        "--output",
+        metavar="FILE",
+        help="render to a picture file instead of a window; - writes PNG to standard output",
     )
     add("--size", type=size, metavar="WxH", help="size of the picture in pixels")
     add(

@@ -1,4 +1,4 @@
-"""The commands of the program, and which one the options select.
+"""Commands of the program, and their selection by options.
 
 A command takes a scene and the options, and returns an exit status.
 """

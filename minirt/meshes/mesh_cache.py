@@ -1,4 +1,4 @@
-"""Cache of loaded mesh files, by path and modification time."""
+"""Cache of loaded mesh files, by path; a file that has changed is read again."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def fan_triangulation(sizes: np.ndarray) -> np.ndarray:
 
 
 def check_indices(whole: Block) -> None:
-    """ObjError when a corner names an item that the file does not have."""
+    """Check that the file has all items that its corners name; ObjError otherwise."""
     counts = [len(whole.points), len(whole.uvs), len(whole.normals)]
     beyond = whole.corners >= counts
     if beyond.any():

@@ -1,4 +1,4 @@
-"""The elements of a scene that are neither shapes nor lamps: window size, ambient light, camera, background."""
+"""The elements of a scene that are neither shapes nor light sources: resolution, ambient light, camera, background."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class Camera(Element):
     """
 
     code, title, plural, once, required = "C", "camera", "cameras", True, True
-    position: Triple = declare(Point, "the eye")
-    direction: Triple = declare(Direction, "where it looks", instead=(0.0, 0.0, 1.0))
+    position: Triple = declare(Point, "position of the eye")
+    direction: Triple = declare(Direction, "viewing direction", instead=(0.0, 0.0, 1.0))
     fov: float = declare(
         Real,
         "horizontal field of view",
@@ -55,7 +55,7 @@ class Camera(Element):
         """Return a camera at `eye` with `target` in the middle of its picture; ValueError when they are equal."""
         x, y, z = (there - here for here, there in zip(eye, target, strict=True))
         if not any((x, y, z)):
-            raise ValueError("camera eye and target must be two places")
+            raise ValueError("camera eye and target must be two different points")
         return cls(eye, unit((x, y, z)), fov, roll)
 
 
@@ -69,4 +69,4 @@ class Background(Element):
     """
 
     code, title, plural, once = "bg", "background", "backgrounds", True
-    paint: Triple | str = declare(Paint, "colour, or a picture of the whole sky")
+    paint: Triple | str = declare(Paint, "colour, or an environment map")

@@ -32,19 +32,19 @@ LINE = re.compile(rf"[ \t]*(?:{'|'.join(map(line_pattern, KINDS.values()))})[ \t
 
 def read(sources: Sequence[str]) -> Sequence[Element | None]:
     """Parse lines as they stand in a file; None for each line that is left to the diagnosing reader."""
-    places: dict[str, list[int]] = defaultdict(list)
+    indices: dict[str, list[int]] = defaultdict(list)
     texts: dict[str, list[str]] = defaultdict(list)
-    for place, source in enumerate(sources):
+    for index, source in enumerate(sources):
         line = LINE.fullmatch(source)
         if line:
             code = line.lastgroup or ""
-            places[code].append(place)
+            indices[code].append(index)
             texts[code].append(line[code])
     elements: list[Element | None] = [None] * len(sources)
-    for code, lines in places.items():
-        parsed = read_kind(KINDS[code], texts[code], [sources[place] for place in lines])
-        for place, element in zip(lines, parsed, strict=True):
-            elements[place] = element
+    for code, lines in indices.items():
+        parsed = read_kind(KINDS[code], texts[code], [sources[index] for index in lines])
+        for index, element in zip(lines, parsed, strict=True):
+            elements[index] = element
     return elements
 
 

@@ -22,7 +22,7 @@ def file_error(path: str | os.PathLike[str], message: str) -> SceneError:
 
 
 def check_name(path: str | os.PathLike[str]) -> None:
-    """SceneError when the file name does not end in `.rt`, or is nothing but `.rt`."""
+    """Check that the file name ends in `.rt` and is more than that; SceneError otherwise."""
     name = Path(path).name
     if not name.endswith(SUFFIX) or name == SUFFIX:
         raise file_error(path, f"the name of a scene file ends in '{SUFFIX}'")

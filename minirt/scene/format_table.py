@@ -28,7 +28,7 @@ def attribute_row(field: Field) -> str:
     text = "<br>".join([description(field), *map(field_entry, parts)])
     alone = f", or `{field.keys[0]}` for `{field.keys[0]}:{field.bare}`" if field.bare else ""
     for kind in ELEMENTS.values():
-        own = next((each for each in fields_of(kind) if each.name == field.name and each.bare != field.bare), None)
+        own = next((other for other in fields_of(kind) if other.name == field.name and other.bare != field.bare), None)
         alone += f" ({kind.plural}: `{field.keys[0]}:{own.bare}`)" if own else ""
     aliases = ", ".join(f"`{alias}:`" for alias in field.aliases)
     return f"| `{field.notation}`{alone}; also {aliases} | {field.sort} | {text} |"

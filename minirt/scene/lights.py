@@ -14,7 +14,7 @@ from minirt.fields import Colour, Direction, Length, Point, Real, Triple, declar
 RATIO: dict[str, Any] = {"unit": "ratio", "low": 0.0, "high": 1.0, "step": 0.05}
 WHITE = (255, 255, 255)
 DOWN = (0.0, -1.0, 0.0)
-FADE = "less light with the distance, none at this one"
+FADE = "distance at which its light has faded to nothing"
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Light(Lamp):
     """
 
     code, title, plural, once = "L", "light", "lights", True
-    position: Triple = declare(Point, "where it stands")
+    position: Triple = declare(Point, "position of the light")
     brightness: float = declare(Real, "brightness", **RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
     fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance", initial=16.0)
@@ -52,7 +52,7 @@ class ParallelLight(Lamp):
     """`dl dx,dy,dz ratio [R,G,B]`: light along dx,dy,dz from an infinitely distant source, such as the sun."""
 
     code, title, plural = "dl", "parallel light", "parallel_lights"
-    direction: Triple = declare(Direction, "where its light goes", instead=DOWN)
+    direction: Triple = declare(Direction, "direction of its light", instead=DOWN)
     brightness: float = declare(Real, "brightness", **RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
 
@@ -67,10 +67,10 @@ class SpotLight(Lamp):
     """
 
     code, title, plural = "sl", "spot light", "spot_lights"
-    position: Triple = declare(Point, "where it stands")
-    direction: Triple = declare(Direction, "where it shines", instead=DOWN)
+    position: Triple = declare(Point, "position of the light")
+    direction: Triple = declare(Direction, "direction of its light", instead=DOWN)
     angle: float = declare(Real, "full opening angle", unit="degree", low=0.0, high=180.0, step=2.0)
     brightness: float = declare(Real, "brightness", **RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
-    rim: float = declare(Real, "outer share in which it fades", keyed=True, default=0.1, **RATIO)
+    rim: float = declare(Real, "outer share of the half-angle in which light fades", keyed=True, default=0.1, **RATIO)
     fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance", initial=16.0)

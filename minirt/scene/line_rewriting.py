@@ -40,11 +40,11 @@ def line_of(element: Element) -> str:
     if all(getattr(element, field.name) == values.get(field.name, field.default) for field in fields_of(kind)):
         return line.source
     before, _, after = line.source.partition(line.text)
-    return before + rewritten(line.text, element, words, slots, values) + after
+    return before + rewrite(line.text, element, words, slots, values) + after
 
 
-def rewritten(text: str, element: Element, words: list[Word], slots: list[Slot], values: dict[str, Any]) -> str:
-    """Return the line `text`, whose `slots` hold `values`, with the element's values instead."""
+def rewrite(text: str, element: Element, words: list[Word], slots: list[Slot], values: dict[str, Any]) -> str:
+    """Rewrite the line `text`, whose `slots` hold `values`, with the values of the element."""
     absent = [field for field in fields_of(type(element)) if field.name not in values]
     added = [field for field in absent if getattr(element, field.name) != field.default]
     # From right to left, so that the columns of the words still to be rewritten stay valid.

@@ -49,7 +49,7 @@ class Word(NamedTuple):
         if part is None:
             return self.column + start, len(self.raw) - start
         parts = self.raw[start:].split(",")
-        before = sum(len(each) + 1 for each in parts[:part])
+        before = sum(len(component) + 1 for component in parts[:part])
         blanks = len(parts[part]) - len(parts[part].lstrip())
         return self.column + start + before + blanks, len(parts[part].strip())
 

@@ -42,6 +42,7 @@ class Page:
         return answer
 
     def _find(self, sort: type[Any]) -> tuple[Any, ...]:
+        """Search the items for instances of a type."""
         matching = {kind for kind in self.kinds if issubclass(kind, sort)}
         if matching == self.kinds:
             return self.items

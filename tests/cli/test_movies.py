@@ -28,8 +28,8 @@ def test_a_turntable_begins_with_the_view_of_the_scene(run: Run, folder: Path) -
 
 def test_a_turntable_can_be_one_gif(run: Run, folder: Path) -> None:
     assert run("ball.rt", "--turntable", "5", "-o", "spin.GIF", "--size", "32x18").status == 0
-    with pillow.open(folder / "spin.GIF") as found:
-        assert (found.n_frames, found.size) == (5, (32, 18))
+    with pillow.open(folder / "spin.GIF") as movie:
+        assert (movie.n_frames, movie.size) == (5, (32, 18))
 
 
 @pytest.mark.parametrize("wrong", [("--turntable", "3"), ("--turntable", "3", "-o", "-"), ("--turntable", "0")])
@@ -42,8 +42,8 @@ def test_a_turntable_needs_a_number_and_a_file(run: Run, wrong: tuple[str, ...])
 def test_a_replay_can_be_a_gif(run: Run, folder: Path) -> None:
     (folder / "keys.txt").write_text("press I\npress I\nhold d 1\nwait 0.2\n")
     assert run("ball.rt", "--replay", "keys.txt", "-o", "film.gif", "--size", "32x18").status == 0
-    with pillow.open(folder / "film.gif") as found:
-        assert found.n_frames > 8
+    with pillow.open(folder / "film.gif") as movie:
+        assert movie.n_frames > 8
 
 
 @pytest.mark.parametrize("name", ["spin.gif", "spin.png"])
@@ -61,5 +61,5 @@ def test_an_interrupt_leaves_no_half_file(folder: Path, name: str) -> None:
     assert all(file.name.startswith("spin-") for file in written)
     assert bool(written) == (name == "spin.png")
     for file in written:
-        with pillow.open(file) as found:
-            found.load()
+        with pillow.open(file) as movie:
+            movie.load()

@@ -131,9 +131,9 @@ def test_the_scene_may_set_the_size(run: Run, folder: Path) -> None:
 def test_verbose_prints_durations_and_features(run: Run) -> None:
     ended = run("ball.rt", "-o", "x.png", "--size", "8x6", "--samples", "2", "--threads", "1", "-v")
     assert (ended.status, ended.out) == (0, b"")
-    ready, made, finite, *rest = ended.err.splitlines()
+    ready, duration, finite, *rest = ended.err.splitlines()
     assert re.fullmatch(r"kernel ready after [0-9.]+ s", ready)
-    assert re.fullmatch(r"8x6, 2 samples a pixel, 1 threads, double precision: [0-9.]+ ms", made)
+    assert re.fullmatch(r"8x6, 2 samples a pixel, 1 threads, double precision: [0-9.]+ ms", duration)
     assert finite == "rays whose light is not finite: 0"
     assert rest[0] == "kernel for spheres, planes"
     assert rest[1].startswith("kernel without cylinders")
@@ -141,9 +141,9 @@ def test_verbose_prints_durations_and_features(run: Run) -> None:
 
 def test_verbose_prints_the_samples_of_auto_only_once(run: Run) -> None:
     ended = run("ball.rt", "-o", "x.png", "--size", "40x30", "--samples", "auto", "--error", "0.1", "-v")
-    _, reached, made, finite, *_ = ended.err.splitlines()
+    _, reached, duration, finite, *_ = ended.err.splitlines()
     assert reached.startswith("2.0 samples a pixel on average, 2 at most; ")
-    assert re.fullmatch(r"40x30, [0-9]+ threads, double precision: [0-9.]+ ms", made)
+    assert re.fullmatch(r"40x30, [0-9]+ threads, double precision: [0-9.]+ ms", duration)
     assert finite == "rays whose light is not finite: 0"
 
 

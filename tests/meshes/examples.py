@@ -39,9 +39,11 @@ def ball(subdivisions: int) -> Triangles:
 
 
 def first_hits(corners: Array, origins: Array, directions: Array) -> tuple[Array, NDArray[np.int64], Array]:
-    """Return the distances of the closest hits, the triangles hit, and how near to an edge any ray passes, as a
-    barycentric coordinate: below rounding a hit is in doubt. Möller and Trumbore, Fast, Minimum Storage Ray/Triangle
-    Intersection, 1997."""
+    """Return for each ray the distance of its closest hit, the triangle, and its least distance from an edge.
+
+    The latter is a barycentric coordinate: when it is near 0, rounding decides. Möller and Trumbore, Fast, Minimum
+    Storage Ray/Triangle Intersection, 1997.
+    """
     nearest, owner = np.full(len(origins), np.inf), np.full(len(origins), -1)
     doubt = np.full(len(origins), np.inf)
     for i, (a, b, c) in enumerate(corners):

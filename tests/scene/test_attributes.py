@@ -79,8 +79,8 @@ def test_a_wrong_line_has_one_error_at_its_place(line: str, column: int, message
 
 
 def test_all_wrong_attributes_of_a_line_are_reported_in_one_run() -> None:
-    found = problems(scene_with(f"{SPHERE} mirror:2 zzz:1 glass:0 texture:no.png"))
-    assert [problem.column - len(SPHERE) for problem in found] == [9, 11, 23, 33]
+    errors = problems(scene_with(f"{SPHERE} mirror:2 zzz:1 glass:0 texture:no.png"))
+    assert [problem.column - len(SPHERE) for problem in errors] == [9, 11, 23, 33]
 
 
 def test_a_plane_has_a_normal_and_a_normal_map(folder: Path) -> None:

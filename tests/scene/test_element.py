@@ -18,18 +18,18 @@ COLUMNS = {"centre": [(0.0, 1.0, 2.0), (3.0, 4.0, 5.0)], "diameter": [1.0, 2.0],
 
 
 def test_elements_made_at_once_are_equal_frozen_and_pickled_like_single_ones() -> None:
-    made = Sphere.checked(2, {**COLUMNS, "source": ["a", "b"]})
+    batch = Sphere.checked(2, {**COLUMNS, "source": ["a", "b"]})
     built = [Sphere(*row) for row in zip(*COLUMNS.values(), strict=True)]
-    assert made == built
-    assert list(map(hash, made)) == list(map(hash, built))
-    assert [each.source for each in made] == ["a", "b"]
-    again = pickle.loads(pickle.dumps(made))
-    assert [vars(each) for each in again] == [vars(each) for each in made]
-    assert made[1].replace(diameter=9).diameter == 9
+    assert batch == built
+    assert list(map(hash, batch)) == list(map(hash, built))
+    assert [each.source for each in batch] == ["a", "b"]
+    again = pickle.loads(pickle.dumps(batch))
+    assert [vars(each) for each in again] == [vars(each) for each in batch]
+    assert batch[1].replace(diameter=9).diameter == 9
     with pytest.raises(ValueError, match="diameter"):
-        made[1].replace(diameter=-1)
+        batch[1].replace(diameter=-1)
     with pytest.raises(FrozenInstanceError):
-        made[0].diameter = 5.0  # type: ignore[misc]
+        batch[0].diameter = 5.0  # type: ignore[misc]
 
 
 @pytest.mark.skipif(sys.implementation.name != "cpython", reason="about the attributes of CPython objects")

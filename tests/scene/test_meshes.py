@@ -16,6 +16,7 @@ ONE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
+    """A folder with a mesh file in a subfolder and a broken one."""
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes" / "one.obj").write_text(ONE)
     (tmp_path / "bad.obj").write_text("v 0 0 0\nv 1 0 x\n")
@@ -23,6 +24,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def scene(folder: Path, *lines: str) -> Path:
+    """Write a scene file with `lines`."""
     path = folder / "scene.rt"
     path.write_text("\n".join([AMBIENT, CAMERA, *lines, ""]))
     return path
@@ -76,13 +78,13 @@ def test_a_wrong_mesh_line_is_refused(folder: Path, line: str, message: str) -> 
 
 
 def test_only_the_changed_fields_of_a_mesh_are_rewritten(folder: Path) -> None:
-    line = "ob  meshes/one.obj   0,0,0  1.50   9,9,9   mirror:.5  # mine"
+    line = "ob  meshes/one.obj   0,0,0  1.50   9,9,9   mirror:.5  # a mesh"
     read = load(scene(folder, line)).scene
     assert dump(read).splitlines()[2] == line
     moved = read.replace(read.meshes[0], position=(1.0, 0.0, 0.0))
-    assert dump(moved).splitlines()[2] == "ob  meshes/one.obj   1,0,0  1.50   9,9,9   mirror:.5  # mine"
+    assert dump(moved).splitlines()[2] == "ob  meshes/one.obj   1,0,0  1.50   9,9,9   mirror:.5  # a mesh"
     larger = moved.replace(moved.meshes[0], scale=3.0, mirror=None)
-    assert dump(larger).splitlines()[2] == "ob  meshes/one.obj   1,0,0  3      9,9,9  # mine"
+    assert dump(larger).splitlines()[2] == "ob  meshes/one.obj   1,0,0  3      9,9,9  # a mesh"
     assert describe(larger.meshes[0]) == "ob meshes/one.obj 1,0,0 3 9,9,9"
     again = parse(dump(larger), folder / "scene.rt").scene
     assert again.items == larger.items

@@ -82,8 +82,8 @@ def test_an_element_split_over_two_lines_is_an_error_in_both() -> None:
 
 
 def test_one_run_reports_all_errors_of_a_file_in_order() -> None:
-    found = problems("A 2 255,0,0\nC 0,0,0 0,0,2 200 rol:1\nsp 0,nan,20 -1 1,2,3,4\nspp\n\nL 0,0,0 0.5\nL 0,0,0 0.5\n")
-    assert [(each.line, each.column) for each in found] == [
+    errors = problems("A 2 255,0,0\nC 0,0,0 0,0,2 200 rol:1\nsp 0,nan,20 -1 1,2,3,4\nspp\n\nL 0,0,0 0.5\nL 0,0,0 0.5\n")
+    assert [(each.line, each.column) for each in errors] == [
         *((1, 3), (2, 13), (2, 15), (2, 19)),
         *((3, 6), (3, 13), (3, 22), (4, 1), (7, 1)),
     ]
@@ -95,9 +95,9 @@ def test_a_wrong_line_is_not_also_reported_as_missing() -> None:
 
 
 def test_reading_stops_after_1000_errors() -> None:
-    found = problems("x\n" * 100_000)
-    assert len(found) == 1001
-    assert (found[-1].line, found[-1].message) == (1000, "too many errors: the rest of the file is not read")
+    errors = problems("x\n" * 100_000)
+    assert len(errors) == 1001
+    assert (errors[-1].line, errors[-1].message) == (1000, "too many errors: the rest of the file is not read")
 
 
 @pytest.mark.parametrize("line", [SPHERE, PLANE, CYLINDER, LIGHT], ids=["sp", "pl", "cy", "L"])
