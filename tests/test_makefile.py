@@ -1,4 +1,4 @@
-"""The Makefile tells what there is to make."""
+"""The Makefile lists its targets and makes the program by default."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from minirt.arguments import arguments
+from minirt.cli.arguments import argument_parser
 from tests.make_tables import renewed
 from tests.pages import PAGES, anchors, blocks, links, name, read, without_code
 from tests.paths import PACKAGE, ROOT, TESTS
@@ -77,7 +77,7 @@ def test_targets_of_make_exist(page: str) -> None:
 
 @pytest.mark.parametrize("page", NAMES)
 def test_options_of_the_program_exist(page: str) -> None:
-    known = " ".join(arguments().format_help().split())
+    known = " ".join(argument_parser().format_help().split())
     code = "\n".join(blocks(page, "sh") + re.findall(r"`([^`\n]+)`", without_code(read(page))))
     for command in re.findall(r"\bminiRT (.*?)(?:  #|$)", code, re.MULTILINE):
         for option in re.findall(r"(?:^| )(--?[a-z-]+)", command):

@@ -23,15 +23,15 @@ from minirt.report.measurements.plan import QUICK, fitting_size
 from minirt.report.output.error_image import HEAT
 from minirt.scene import Scene, dump
 from minirt.shapes import KINDS
+from tests.cli.announcing import RENDERING
 from tests.cli.conftest import folder, run
-from tests.cli.program import Ended, interrupt, start
-from tests.cli.telling import RENDERING
+from tests.cli.program import Result, interrupt, start
 from tests.kernel.pictures import ALL, AMBIENT, EYE
 from tests.simulated import PACKET, Clock, packets, simulated
 from tests.terminals import terminal
 
 __all__ = ["folder", "run"]
-Run = Callable[..., Ended]
+Run = Callable[..., Result]
 TABLES = {"report.md", "report.json", "pictures.csv", "kernels.csv"}
 
 
@@ -196,13 +196,13 @@ from minirt.report import generate
 from minirt.report.measurements import formula_errors, plan
 from minirt.report.measurements.picture_errors import Budget
 from minirt.timing import runs
-from tests.cli.telling import tell
+from tests.cli.announcing import announce_rendering
 
 def endless(work, least, seconds):
     print("fitting", file=sys.stderr, flush=True)
     return runs(work, 10**9, seconds)
 
-tell()
+announce_rendering()
 
 phase, short = sys.argv.pop(1), generate.QUICK._replace(samples=64, seconds=1e30, budget=Budget(0.0, inf, tries=1))
 generate.FULL = short
