@@ -18,11 +18,11 @@ Answer = TypeVar("Answer")
 
 def cancelled(renderer: Renderer, work: Callable[[], Answer]) -> Answer:
     """What `work`, which makes `renderer` render, answers after a cancel that came when its first row had begun."""
-    before, answers = renderer.next_row, list[Answer]()
+    before, answers = renderer.runner.next_row, list[Answer]()
     thread = Thread(target=lambda: answers.append(work()), daemon=True)
     thread.start()
-    until(lambda: renderer.next_row is not before and renderer.next_row[0] > 0, "the first row")
-    assert renderer.next_row.max() < CANCELLED
+    until(lambda: renderer.runner.next_row is not before and renderer.runner.next_row[0] > 0, "the first row")
+    assert renderer.runner.next_row.max() < CANCELLED
     renderer.cancel()
     thread.join(HANG_LIMIT)
     (answer,) = answers

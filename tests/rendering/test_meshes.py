@@ -179,9 +179,9 @@ def test_a_mesh_around_the_eye_has_no_outline() -> None:
 
 
 def test_a_scene_of_a_large_mesh_gets_its_kernel_from_a_small_one() -> None:
-    from minirt.rendering.renderer import small
+    from minirt.rendering.renderer import minimal_scene
 
     scene = Scene((EYE, LAMP, named("knot"), Sphere((0, 3, 0), 1, GREY), named("pot")))
-    made = small(scene)
+    made = minimal_scene(scene)
     assert {type(shape) for shape in made.shapes} == {Mesh, Sphere}
     assert sum(shape.parts for shape in made.shapes) < 20

@@ -14,8 +14,8 @@ import minirt
 from minirt.errors import RenderError
 from minirt.kernel.frame import CANCELLED
 from minirt.rendering import Renderer
-from minirt.rendering.frame_arguments import sample_places
-from minirt.rendering.renderer import needs
+from minirt.rendering.frame_arguments import sample_positions
+from minirt.rendering.running.kernel_features import kernel_features
 from minirt.scene import Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, SHAPES, TWO, picture
 from tests.rendering.cancelling import ENDLESS, SAMPLES, cancelled
@@ -24,7 +24,7 @@ from tests.waiting import until
 
 @pytest.mark.parametrize("samples", [1, 2, 3, 16, 64])
 def test_samples_lie_evenly_in_the_pixel(samples: int) -> None:
-    places = sample_places(samples)
+    places = sample_positions(samples)
     assert places.shape == (samples, 2)
     assert ((places >= 0) & (places < 1)).all()
     assert np.abs(places.mean(axis=0) - 0.5).max() <= (0 if samples == 1 else 0.5 / samples)
@@ -34,7 +34,7 @@ def test_samples_lie_evenly_in_the_pixel(samples: int) -> None:
 
 
 def test_one_sample_is_in_the_centre() -> None:
-    assert sample_places(1).tolist() == [[0.5, 0.5]]
+    assert sample_positions(1).tolist() == [[0.5, 0.5]]
 
 
 @pytest.mark.parametrize("samples", [0, -1])
@@ -84,7 +84,7 @@ def test_several_threads_may_render_at_once() -> None:
 def test_an_error_in_one_thread_reaches_the_caller() -> None:
     renderer = Renderer(3)
     renderer.prepare(ALL)
-    kernel = renderer.kernel
+    kernel = renderer.kernels.jit
     turns, stopped = count(1), list[int]()
 
     def bands(counter: Any, *rest: Any) -> None:
@@ -94,11 +94,11 @@ def test_an_error_in_one_thread_reaches_the_caller() -> None:
         until(lambda: counter[0] >= CANCELLED, "the end of the other threads")
         stopped.append(turn)
 
-    renderer.kernel = SimpleNamespace(frame=kernel.frame, kernel_for=lambda _traced: bands)
+    renderer.kernels.jit = SimpleNamespace(frame=kernel.frame, kernel_for=lambda _traced: bands)
     with pytest.raises(ValueError, match="out of order"):
         renderer.render(ALL, np.zeros((40, 40, 4), np.uint8))
     assert sorted(stopped) == [1, 3]
-    renderer.kernel = kernel
+    renderer.kernels.jit = kernel
     assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
 
 
@@ -109,7 +109,7 @@ def test_it_knows_which_kernels_are_there() -> None:
     assert renderer.is_ready(ALL)
     assert renderer.is_ready(Scene((EYE, *SHAPES[:3])))
     assert not renderer.is_ready(Scene((EYE, SHAPES[0])))
-    assert needs(ALL) == {type(shape) for shape in SHAPES}
+    assert kernel_features(ALL) == {type(shape) for shape in SHAPES}
 
 
 def test_the_number_of_threads() -> None:

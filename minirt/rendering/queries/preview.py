@@ -14,7 +14,7 @@ from minirt.kernel.frame import level, towards
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.whitted import radiance
 from minirt.lanes import Vec, unit
-from minirt.rendering.frame_arguments import memory_for
+from minirt.rendering.frame_arguments import thread_memory
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 
@@ -40,11 +40,20 @@ def picture(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarr
     y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
     with np.errstate(all="ignore"):
         direction = unit(towards(traced.camera, x, y))
-        seen = radiance(traced, memory_for(traced), 0, Vec(*traced.camera[:3]), direction)
+        seen = radiance(traced, thread_memory(traced), 0, Vec(*traced.camera[:3]), direction)
     light = np.stack([seen.x, seen.y, seen.z], axis=-1).reshape(height, width, 3)
     pixels = np.full((height, width, 4), 255, np.uint8)
     pixels[..., :3] = level(light[..., ::-1])
     return pixels, light
+
+
+def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray) -> None:
+    """Draw a scene without shapes: its background, or black. `linear` may have no rows."""
+    if scene.background and pixels.size:
+        pixels[...], light = picture(scene, *pixels.shape[1::-1])
+        linear[...] = light if len(linear) else linear
+    else:
+        pixels[...] = (0, 0, 0, 255)
 
 
 def in_one_list(traced: SceneArrays) -> SceneArrays:

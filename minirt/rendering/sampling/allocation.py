@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from minirt.rendering.frame_arguments import GOLDEN
+from minirt.rendering.frame_arguments import GOLDEN_RATIO
 from minirt.rendering.sampling.replicates import Replicates
 
 FALL = 1.5  # squared error falls as this power of the number of samples
@@ -42,7 +42,7 @@ def coefficients(halves: Replicates, doublings: np.ndarray, contrast: np.ndarray
 def allocate(c: np.ndarray, doublings: np.ndarray, share: float, budget: float) -> np.ndarray:
     """The doublings that leave a `share` of the squared error, or of those that take no more than a budget, in samples
     of packets in a half, the most; never fewer than before."""
-    turns = (np.arange(c.size) * GOLDEN % 1).reshape(c.shape)  # so that not all that are alike are rounded alike
+    turns = (np.arange(c.size) * GOLDEN_RATIO % 1).reshape(c.shape)  # so that not all that are alike are rounded alike
     ideal = np.log2(np.maximum(c, np.finfo(float).tiny)) / (FALL + 1) + turns - 0.5
     limit = np.minimum(doublings + FASTEST, MOST)
     error_of, price_of = 2.0 ** (-FALL * np.arange(MOST + 1)), 2.0 ** np.arange(MOST + 1)

@@ -13,11 +13,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import inf, sqrt
 from time import perf_counter
-from typing import NamedTuple
 
 import numpy as np
 
 from minirt.kernel.frame import DOWN
+from minirt.rendering.frame_arguments import SamplePass
 from minirt.rendering.sampling.adaptive import edge_packets
 from minirt.rendering.sampling.allocation import CONTRASTS, allocate, coefficients
 from minirt.rendering.sampling.outcome import Outcome
@@ -29,16 +29,7 @@ LEAST_LEFT, MOST_LEFT = 0.25, 0.8  # of the squared error, by a round
 SPENT = 0.4  # of the time that is left, by a round
 
 
-class Task(NamedTuple):
-    """Samples at places of the pixels, (k, pixels of a packet, 2), in the packets where that is not 0."""
-
-    places: np.ndarray
-    packets: np.ndarray
-    light: np.ndarray  # takes their mean, as `linear` of `minirt.kernel.frame`
-    pixels: np.ndarray  # and this the same as colours, uint8 (h, w, 4)
-
-
-Draw = Callable[[list[Task]], bool]  # False when cancelled
+Draw = Callable[[list[SamplePass]], bool]  # False when cancelled
 
 
 class Auto:
@@ -95,16 +86,16 @@ class Auto:
         self.doublings = new
         return True
 
-    def tasks(self, new: np.ndarray, lights: np.ndarray) -> list[Task]:
+    def tasks(self, new: np.ndarray, lights: np.ndarray) -> list[SamplePass]:
         """What is missing, for both halves."""
-        found: list[Task] = []
+        found: list[SamplePass] = []
         for before, after in sorted({*zip(self.doublings.flat, new.flat, strict=True)}):
             points = sobol(int(2.0**before), 2**after)
             wanted = (self.doublings == before) & (new == after)
             for each in range(CLASSES if before < after else 0):
                 packets = (wanted & (self.classes == each)).view(np.uint8)
                 places = [shifted(points, shifts[each]) for shifts in self.shifts]
-                found += map(Task, places, (packets, packets), lights, self.pixels)
+                found += map(SamplePass, places, (packets, packets), lights, self.pixels)
         return found
 
     def contrast(self) -> np.ndarray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from minirt.materials import Checker, Glass, Specular
 from minirt.rendering.culling.visibility import SMALL
 from minirt.rendering.packing.features import features
-from minirt.rendering.renderer import needs, small
+from minirt.rendering.running.kernel_features import kernel_features, minimal_scene
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -48,7 +48,7 @@ def test_a_small_scene_needs_the_same() -> None:
     tube = Cylinder((0, 0, 0), (0, 1, 0), 1, 2, GREY, checker=Checker(0.1))
     for elements in ((BALL,), (*balls, tube, SUN), (*balls[: SMALL + 1], SUN), (BALL, SUN)):
         scene = Scene((LIGHT, EYE, *elements))
-        assert needs(small(scene)) == needs(scene)
-        assert len(small(scene).shapes) <= SMALL + 2
-    assert "bvh" in needs(Scene((LIGHT, EYE, *balls, SUN)))
-    assert "bvh" not in needs(Scene((LIGHT, EYE, *balls)))
+        assert kernel_features(minimal_scene(scene)) == kernel_features(scene)
+        assert len(minimal_scene(scene).shapes) <= SMALL + 2
+    assert "bvh" in kernel_features(Scene((LIGHT, EYE, *balls, SUN)))
+    assert "bvh" not in kernel_features(Scene((LIGHT, EYE, *balls)))

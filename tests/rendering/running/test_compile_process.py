@@ -40,8 +40,9 @@ renderer, scene, pixels = Renderer(1), minirt.load("ball.rt"), np.zeros((8, 8, 4
 renderer.prepare(scene)
 assert renderer.is_ready(scene)
 assert renderer.render(scene, pixels)
-stats = renderer.kernel.kernel_for(Packing().pack(scene, 8, 8)).stats
-print(sum(stats.cache_hits.values()), sum(stats.cache_misses.values()), renderer.helper.process is not None)
+stats = renderer.kernels.jit.kernel_for(Packing().pack(scene, 8, 8)).stats
+asked = renderer.kernels.compile_process.process is not None
+print(sum(stats.cache_hits.values()), sum(stats.cache_misses.values()), asked)
 print(pixels[4, 4].tolist())
 """
 PROGRAM = """
@@ -54,14 +55,14 @@ child.wait()
 """
 ENDLESS = """
 from threading import Event
-from minirt.kernel import compile, jit
+from minirt.kernel.compiler import jit, process
 
 def endless(arguments):
     print("compiling", flush=True)
     Event().wait()
 
 jit.compile = endless
-compile.main()
+process.main()
 """
 
 
