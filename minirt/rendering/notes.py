@@ -29,7 +29,7 @@ def notes(scene: Scene, tables: ShapeArrays, traced: SceneArrays) -> Iterator[st
     if traced.light_buffer_cells == 1:
         yield f"light buffer: none, every shape is tried ({shapes})"
     else:
-        yield f"light buffer: {' or '.join(cells(traced))} a lamp ({shapes})"
+        yield f"light buffer: {' or '.join(light_buffer_sizes(traced))} a lamp ({shapes})"
     for number, light in enumerate(scene.lights, 1):
         if not light.brightness:
             yield f"light {number} has brightness 0"
@@ -37,10 +37,10 @@ def notes(scene: Scene, tables: ShapeArrays, traced: SceneArrays) -> Iterator[st
             yield f"light {number} is black"
         else:
             for index in tables.flat[never_occludes(tables, np.array(scene.camera.position), light)].tolist():
-                yield f"{name(tables, index)} hides nothing from light {number}"
+                yield f"{shape_name(tables, index)} hides nothing from light {number}"
 
 
-def cells(traced: SceneArrays) -> Iterator[str]:
+def light_buffer_sizes(traced: SceneArrays) -> Iterator[str]:
     """What cells lamps have: around them, or ahead of them where they see all shapes there."""
     ahead, edge = traced.light_buffers[:, SCALE] > 0, AHEAD * traced.light_buffer_cells
     if not ahead.all() or not len(ahead):
@@ -54,7 +54,7 @@ def plurals(elements: set[type[Shape]]) -> str:
     return ", ".join(kind.element.plural for kind in ALL_KINDS if kind.element in elements)
 
 
-def name(tables: ShapeArrays, index: int) -> str:
+def shape_name(tables: ShapeArrays, index: int) -> str:
     """What people call a shape, or that of which it is a part: plane 2."""
     owner = int(tables.owner[index])
     kind = type(tables.shapes[owner])

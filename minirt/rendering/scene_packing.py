@@ -11,15 +11,21 @@ import numpy as np
 
 from minirt.kernel.culling import binning
 from minirt.kernel.scene_arrays import Group, SceneArrays
-from minirt.rendering.culling.light_frustum import cluster
+from minirt.rendering.culling.light_frustum import dense_cluster
 from minirt.rendering.culling.planes import never_occludes
-from minirt.rendering.culling.visibility import Lists, grid_for, seen_by_eye, seen_by_lamp, seen_by_sun
+from minirt.rendering.culling.visibility import (
+    BinnedShapes,
+    light_buffer_cells,
+    seen_by_eye,
+    seen_by_light,
+    seen_by_parallel_light,
+)
 from minirt.rendering.notes import notes
-from minirt.rendering.packing.bvh import bvh_of
+from minirt.rendering.packing.bvh import build_bvh
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.features import DEPTH, features
-from minirt.rendering.packing.lights import light_numbers, light_of, shining, spot_numbers
-from minirt.rendering.packing.materials import environment_of, materials_of
+from minirt.rendering.packing.lights import emitting_lights, intensity, positions_and_intensities, spot_parameters
+from minirt.rendering.packing.materials import pack_environment, pack_materials
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.single_precision import in_single
 from minirt.scene import ParallelLight, Scene
@@ -49,7 +55,7 @@ class Packing:
         if self.last and self.last[0] is scene and self.last[1:3] == (width, height):
             return self.last[3]
         traced = self.traced(scene, width, height)
-        if self.precision == "single" and may_be_single(traced):
+        if self.precision == "single" and fits_single(traced):
             traced = in_single(traced, self.tables.boxes)
         self.last = scene, width, height, traced
         return traced
@@ -65,27 +71,27 @@ class Packing:
             return self.known[key]
 
         used = features(scene) - (set() if self.depth else {"reflective"})
-        camera, lamps = camera_numbers(scene.camera, width, height), shining(scene)
-        lights = light_numbers(lamps)
+        camera, lamps = camera_numbers(scene.camera, width, height), emitting_lights(scene)
+        lights = positions_and_intensities(lamps)
         eye = keep((camera.tobytes(), width, height), seen_by_eye, self.kernel, tables, camera, width, height)
-        grid, most = grid_for(tables), keep("crowd", cluster, tables)
-        seen: list[Lists] = []
+        grid, most = light_buffer_cells(tables), keep("crowd", dense_cluster, tables)
+        seen: list[BinnedShapes] = []
         keys: list[Hashable] = []
         for lamp, place in zip(lamps, lights[:, :3], strict=True):
             skipped = never_occludes(tables, camera[:3], lamp)
             if isinstance(lamp, ParallelLight):
                 keys.append(("parallel", skipped.tobytes()))
-                seen.append(keep(keys[-1], seen_by_sun, tables, grid, skipped))
+                seen.append(keep(keys[-1], seen_by_parallel_light, tables, grid, skipped))
             else:
                 keys.append((place.tobytes(), skipped.tobytes()))
-                seen.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, most, place, grid, skipped))
-        lamp_starts, lit, lamp_views, around = keep(tuple(keys), joined, seen, eye)
-        materials = keep(("materials", used), materials_of, scene, tables.owner, used)
+                seen.append(keep(keys[-1], seen_by_light, self.kernel, tables, most, place, grid, skipped))
+        lamp_starts, lit, lamp_views, around = keep(tuple(keys), joined_light_buffers, seen, eye)
+        materials = keep(("materials", used), pack_materials, scene, tables.owner, used)
         tree = "reflective" in used or ("parallel" in used and grid > 1)
         paint: Any = scene.background and scene.background.paint
         return SceneArrays(
             camera=pixel_rays(camera, width, height),
-            ambient=light_of(scene.ambient) if scene.ambient else np.zeros(3),
+            ambient=intensity(scene.ambient) if scene.ambient else np.zeros(3),
             lights=lights,
             colours_and_extents=tables.colours_and_extents,
             slots=tables.slots,
@@ -96,11 +102,11 @@ class Packing:
             light_shapes=lit,
             light_cones=lamp_views,
             groups=tuple(map(Group, tables.rows, eye.tile_starts, lamp_starts)),
-            spots=spot_numbers(lamps) if "spots" in used else None,
+            spots=spot_parameters(lamps) if "spots" in used else None,
             depth=self.depth,
             background=np.divide(paint, 255) if "background" in used else None,
-            environment=keep(("environment", paint), environment_of, scene, paint) if "environment" in used else None,
-            bvh=keep("bvh", bvh_of, tables, self.planter) if tree else None,
+            environment=keep(("environment", paint), pack_environment, scene, paint) if "environment" in used else None,
+            bvh=keep("bvh", build_bvh, tables, self.planter) if tree else None,
             **materials._asdict(),
         )
 
@@ -118,12 +124,12 @@ class Packing:
             return []
         scene, _, _, traced = self.last
         told = list(notes(scene, self.tables, traced))
-        if self.precision == "single" and not may_be_single(traced):
+        if self.precision == "single" and not fits_single(traced):
             told.insert(0, "double precision: single has neither pictures nor a tree of shapes")
         return told
 
 
-def may_be_single(traced: SceneArrays) -> bool:
+def fits_single(traced: SceneArrays) -> bool:
     """Whether float32 will do: the tree is made of float64, and float32 cannot count the pixels of a large picture."""
     return (
         traced.bvh is None
@@ -132,7 +138,7 @@ def may_be_single(traced: SceneArrays) -> bool:
     )
 
 
-def joined(lamps: list[Lists], eye: Lists) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def joined_light_buffers(lamps: list[BinnedShapes], eye: BinnedShapes) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The lists of all lamps as one: starts (kinds, m, cells + 1), members, views (m, n, 5), around (m, 11)."""
     if len(lamps) == 1:
         return lamps[0].tile_starts[:, None], lamps[0].members, lamps[0].cones[None], lamps[0].light_buffers[None]

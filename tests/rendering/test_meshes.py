@@ -9,7 +9,7 @@ import minirt
 from minirt.fields import MeshFile
 from minirt.materials import Specular
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.pick import covers, pick, place
+from minirt.rendering.queries.pick import covers, pick, surface_point
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.mesh import Mesh
@@ -145,7 +145,7 @@ def test_a_pixel_is_picked_for_the_mesh_that_it_shows() -> None:
     assert {*shapes, None} == set(shown)
     for x, y in ((11, 9), (15, 20), (30, 18), (0, 0)):
         found = pick(scene, 40, 30, x, y)
-        where = found and place(found, EYE, 40, 30, x, y)
+        where = found and surface_point(found, EYE, 40, 30, x, y)
         if where:
             way = np.array(where) - EYE.position
             hits = minirt.trace(scene, [EYE.position], [way])

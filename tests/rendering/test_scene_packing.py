@@ -23,7 +23,7 @@ from tests.kernel.pictures import ALL, EYE, LAMP, SHAPES, linear
 def packed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What was packed so far."""
     done: list[Any] = []
-    monkeypatch.setattr(primitives, "numbers", lambda new, numbers=primitives.numbers: done.extend(new) or numbers(new))
+    monkeypatch.setattr(primitives, "packed_rows", lambda new, numbers=primitives.packed_rows: done.extend(new) or numbers(new))
     return done
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from minirt.kernel.culling.binning import MARGIN, Grid
-from minirt.rendering.packing.lights import place_of
+from minirt.rendering.packing.lights import light_position
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Lamp, ParallelLight
 from minirt.shapes import Shape
 
 
-def heights(planes: np.ndarray, point: np.ndarray) -> np.ndarray:
+def signed_heights(planes: np.ndarray, point: np.ndarray) -> np.ndarray:
     """How far above planes, (p, 5) as in `minirt.rendering.packing.shape_arrays`, a point is at least; below them less than zero, and
     zero where rounding may decide."""
     above = planes[:, :3] @ point - planes[:, 3]
@@ -26,34 +26,34 @@ def same_side(planes: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     Such a plane hides nothing that the one sees from the other: whatever an eye sees lies on its side of every plane,
     because the plane hides the rest.
     """
-    same: np.ndarray = heights(planes, a) * heights(planes, b) > 0
+    same: np.ndarray = signed_heights(planes, a) * signed_heights(planes, b) > 0
     return same
 
 
-def never_met(planes: np.ndarray, point: np.ndarray, direction: np.ndarray) -> np.ndarray:
+def never_hit(planes: np.ndarray, point: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """Which planes rays in a direction never meet that start on the side where a point is, whatever the rounding."""
     slopes = planes[:, :3] @ direction
-    never: np.ndarray = (heights(planes, point) * slopes > 0) & (np.abs(slopes) > MARGIN)
+    never: np.ndarray = (signed_heights(planes, point) * slopes > 0) & (np.abs(slopes) > MARGIN)
     return never
 
 
 def never_occludes(tables: ShapeArrays, eye: np.ndarray, lamp: Lamp) -> np.ndarray:
     """Which planes hide nothing that the eye sees from a lamp; never those that the eye sees through."""
     if isinstance(lamp, ParallelLight):
-        found = never_met(tables.planes, eye, -np.array(lamp.direction))
+        found = never_hit(tables.planes, eye, -np.array(lamp.direction))
     else:
-        found = same_side(tables.planes, eye, place_of(lamp))
-    opaque = np.array([not is_glass(tables.shapes[i]) for i in tables.owner[tables.flat].tolist()], bool)
+        found = same_side(tables.planes, eye, light_position(lamp))
+    opaque = np.array([not is_transparent(tables.shapes[i]) for i in tables.owner[tables.flat].tolist()], bool)
     skipped: np.ndarray = found & opaque
     return skipped
 
 
-def is_glass(shape: Shape) -> bool:
+def is_transparent(shape: Shape) -> bool:
     """Whether light goes through it."""
     return shape.glass is not None and shape.glass.share > 0
 
 
-def runs(grid: Grid, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def cell_runs(grid: Grid, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Runs of cells in which planes may be met: plane, first cell and how many of the same row. `normals` (p, 3) point
     towards the planes; one of 0, 0, 0 stands for everywhere.
 

@@ -13,7 +13,7 @@ from minirt.rendering.packing.primitives import primitives_of
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Kind
 
-LINE = 64  # bytes of a line of the cache
+CACHE_LINE = 64  # bytes of a line of the cache
 EMPTY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
@@ -23,7 +23,7 @@ def block_type(kind: Kind) -> np.dtype[Any]:
     return np.dtype([(name, np.float64, (*fields[name].shape, WIDTH)) for name in fields.names or ()])
 
 
-def boxes_of(tables: ShapeArrays) -> tuple[np.ndarray, np.ndarray]:
+def primitive_boxes(tables: ShapeArrays) -> tuple[np.ndarray, np.ndarray]:
     """The boxes of the shapes as `Binary` has them, and the indices of the shapes that have no end."""
     bounds = [shape.bounds() for shape in tables.shapes]
     endless = tables.start[np.array([index for index, box in enumerate(bounds) if not box], np.int64)]
@@ -38,9 +38,9 @@ def boxes_of(tables: ShapeArrays) -> tuple[np.ndarray, np.ndarray]:
     return boxes, endless
 
 
-def bvh_of(tables: ShapeArrays, kernel: Any) -> Tree:
+def build_bvh(tables: ShapeArrays, kernel: Any) -> Tree:
     """The tree over the shapes of some tables, built by the functions of `kernel`, compiled or not."""
-    boxes, endless = boxes_of(tables)
+    boxes, endless = primitive_boxes(tables)
     nodes, leaves = wide_nodes(boxes, kernel)
     # Each kind has its blocks in the order of the leaves.
     kinds = boxes[leaves[:, 0], GROUP]
@@ -52,7 +52,7 @@ def bvh_of(tables: ShapeArrays, kernel: Any) -> Tree:
         blocks[mine] = np.arange(len(mine))
         start, stop = leaves[mine, :2, None].transpose(1, 0, 2)
         owners = boxes[np.minimum(start + np.arange(WIDTH), stop - 1), INDEX].astype(np.int64)
-        table = side_by_side(rows, tables.slots[owners, 1])
+        table = as_blocks(rows, tables.slots[owners, 1])
         labels = np.stack([owners, extents[owners]], axis=-1)
         groups.append(Group(rows, table, labels, endless[tables.slots[endless, 0] == group]))
     names = nodes.reshape(-1, 7, WIDTH)[:, 6]
@@ -79,7 +79,7 @@ def wide_nodes(boxes: np.ndarray, kernel: Any) -> tuple[np.ndarray, np.ndarray]:
     return nodes[: used * NODE], whole[leaves[:named]]
 
 
-def side_by_side(rows: np.ndarray, places: np.ndarray) -> np.ndarray:
+def as_blocks(rows: np.ndarray, places: np.ndarray) -> np.ndarray:
     """The rows at some places (n, WIDTH) as n blocks."""
     blocks = aligned(len(places), block_type(kind_of(rows.dtype.names)))
     for name in rows.dtype.names or ():
@@ -89,6 +89,6 @@ def side_by_side(rows: np.ndarray, places: np.ndarray) -> np.ndarray:
 
 def aligned(length: int, dtype: np.dtype[Any]) -> np.ndarray:
     """An array that begins with a line of the cache, so that no load of lanes needs two."""
-    memory = np.empty(length * dtype.itemsize + LINE, np.uint8)
-    start = -memory.ctypes.data % LINE
+    memory = np.empty(length * dtype.itemsize + CACHE_LINE, np.uint8)
+    start = -memory.ctypes.data % CACHE_LINE
     return memory[start : start + length * dtype.itemsize].view(dtype)

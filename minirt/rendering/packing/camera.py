@@ -35,12 +35,12 @@ def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:
     through its upper left corner. `samples` are places in the pixel: (k, 2), or (k, width, 2) where each pixel of a
     packet has places of its own."""
     across_and_down = rays[6:].reshape(2, 3)
-    places = packet_places(width(rays)) + samples.reshape(len(samples), -1, 2).swapaxes(1, 2)
+    places = packet_pixels(width(rays)) + samples.reshape(len(samples), -1, 2).swapaxes(1, 2)
     differences: np.ndarray = across_and_down.T @ places
     return differences.reshape(len(samples), -1).astype(rays.dtype)
 
 
 @cache
-def packet_places(rays: int) -> np.ndarray:
+def packet_pixels(rays: int) -> np.ndarray:
     """Where the pixels of the rays of a packet lie in it, x and y: (2, rays)."""
     return np.stack(np.divmod(np.arange(rays), rays // DOWN)[::-1]).astype(np.float64)

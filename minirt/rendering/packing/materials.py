@@ -15,9 +15,9 @@ from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
-Worn = list[tuple[int, Shape]]  # the shapes that have attributes, with their numbers
-PAINTED = {"checks", "textures", "bumps", "normals"}
-WORN = {"specular", "reflective", *PAINTED}
+NumberedShapes = list[tuple[int, Shape]]  # the shapes that have attributes, with their numbers
+MAP_FEATURES = {"checks", "textures", "bumps", "normals"}
+MATERIAL_FEATURES = {"specular", "reflective", *MAP_FEATURES}
 Reader = Callable[[Path], np.ndarray]
 
 
@@ -29,21 +29,21 @@ class Materials(NamedTuple):
     surface_maps: Any
 
 
-def materials_of(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
+def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
     """The tables of what the kernel knows, of which `owner` (n,) tells the shape, for a scene that uses those features
     of `minirt.rendering.packing.features`."""
-    if not used & WORN:  # not even a look at each of a million shapes
+    if not used & MATERIAL_FEATURES:  # not even a look at each of a million shapes
         return Materials(None, None, None)
     worn = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     count = len(scene.shapes)
     return Materials(
-        specular_of(worn, count)[owner] if "specular" in used else None,
-        reflective_of(worn, count)[owner] if "reflective" in used else None,
-        surface_maps_of(scene, worn, owner, used) if used & PAINTED else None,
+        pack_specular(worn, count)[owner] if "specular" in used else None,
+        pack_reflective(worn, count)[owner] if "reflective" in used else None,
+        pack_surface_maps(scene, worn, owner, used) if used & MAP_FEATURES else None,
     )
 
 
-def specular_of(worn: Worn, count: int) -> np.ndarray:
+def pack_specular(worn: NumberedShapes, count: int) -> np.ndarray:
     """See `minirt.kernel.shading.specular`."""
     gloss = np.zeros((count, 3))
     for i, shape in worn:
@@ -52,7 +52,7 @@ def specular_of(worn: Worn, count: int) -> np.ndarray:
     return gloss
 
 
-def reflective_of(worn: Worn, count: int) -> np.ndarray:
+def pack_reflective(worn: NumberedShapes, count: int) -> np.ndarray:
     """See `minirt.kernel.shading.whitted`. Shares that are more than all together are made smaller alike."""
     bounces = np.tile([0.0, 0.0, 1.0], (count, 1))
     for i, shape in worn:
@@ -63,9 +63,9 @@ def reflective_of(worn: Worn, count: int) -> np.ndarray:
     return bounces
 
 
-def surface_maps_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hashable]) -> SurfaceMaps:
+def pack_surface_maps(scene: Scene, worn: NumberedShapes, owner: np.ndarray, used: Set[Hashable]) -> SurfaceMaps:
     """See `minirt.kernel.shading.texturing`."""
-    count, album = len(scene.shapes), Album(scene)
+    count, album = len(scene.shapes), TexturePool(scene)
     checks = np.zeros((count, 4))
     textures, normals, mark = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count, np.int64)
     bumps = np.zeros((count, 2))
@@ -89,14 +89,14 @@ def surface_maps_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hasha
     )
 
 
-def environment_of(scene: Scene, file: str) -> Environment:
+def pack_environment(scene: Scene, file: str) -> Environment:
     """The picture of a background."""
-    album = Album(scene)
+    album = TexturePool(scene)
     album.number(file, picture_cache.picture)
     return Environment(**album.bound())
 
 
-class Album:
+class TexturePool:
     """The pictures that a scene names, each once."""
 
     def __init__(self, scene: Scene) -> None:

@@ -27,11 +27,11 @@ def primitives_of(shapes: list[Shape]) -> Primitives:
     """The parts of some shapes of a kind."""
     if isinstance(shapes[0], Mesh):
         rows = [shape.rows() for shape in shapes if isinstance(shape, Mesh)]
-        return Primitives(*map(np.concatenate, zip(*map(of_triangles, rows), strict=True)))
-    return Primitives(numbers([shape.pack() for shape in shapes]), boxes(shapes), balls_of(shapes))
+        return Primitives(*map(np.concatenate, zip(*map(triangle_primitives, rows), strict=True)))
+    return Primitives(packed_rows([shape.pack() for shape in shapes]), bounding_boxes(shapes), bounding_balls(shapes))
 
 
-def of_triangles(rows: np.ndarray) -> Primitives:
+def triangle_primitives(rows: np.ndarray) -> Primitives:
     """Those of the triangles of a mesh: the corners come first in a row."""
     corners = rows[:, :9].reshape(-1, 3, 3)
     balls = np.zeros((len(rows), 3, 4))
@@ -41,7 +41,7 @@ def of_triangles(rows: np.ndarray) -> Primitives:
     return Primitives(rows, np.stack([low, high], axis=1), balls)
 
 
-def balls_of(shapes: list[Shape]) -> np.ndarray:
+def bounding_balls(shapes: list[Shape]) -> np.ndarray:
     """`Parts.balls`."""
     if isinstance(shapes[0], Mesh):
         return primitives_of(shapes).balls
@@ -49,7 +49,7 @@ def balls_of(shapes: list[Shape]) -> np.ndarray:
     return np.array([[(*centre, radius) for centre, radius in hull] for hull in hulls]).reshape(len(shapes), -1, 4)
 
 
-def numbers(packed: list[Any]) -> np.ndarray:
+def packed_rows(packed: list[Any]) -> np.ndarray:
     """Packed shapes of a kind, a row each."""
     columns: list[Any] = []
     for parts in zip(*packed, strict=True):
@@ -60,16 +60,16 @@ def numbers(packed: list[Any]) -> np.ndarray:
     return np.array(columns).T
 
 
-def boxes(shapes: list[Shape]) -> np.ndarray:
+def bounding_boxes(shapes: list[Shape]) -> np.ndarray:
     """For each shape of a kind the corners of the box around it, (n, 2, 3); of one without end, its points."""
-    return np.array([shape.bounds() or own_points(shape) for shape in shapes])
+    return np.array([shape.bounds() or defining_points(shape) for shape in shapes])
 
 
 def extent(shape: Shape) -> float:
     """The largest coordinate of a shape; of one without end, the largest of its points."""
-    return float(np.abs(boxes([shape])).max())
+    return float(np.abs(bounding_boxes([shape])).max())
 
 
-def own_points(shape: Shape) -> list[Any]:
+def defining_points(shape: Shape) -> list[Any]:
     """The points that a shape is given by."""
     return [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)]

@@ -9,11 +9,11 @@ import numpy as np
 
 from minirt.kernel.culling.binning import MARGIN
 from minirt.kernel.rows import row_type
-from minirt.rendering.packing.primitives import balls_of, primitives_of
+from minirt.rendering.packing.primitives import bounding_balls, primitives_of
 from minirt.shapes import ALL_KINDS, Shape
 
-PIECE = 4096  # shapes that are compared or written at once: their Python objects come and go in the processor's cache
-ONE = np.arange(1)
+CHUNK = 4096  # shapes that are compared or written at once: their Python objects come and go in the processor's cache
+FIRST = np.arange(1)
 
 
 class ShapeArrays:
@@ -38,8 +38,8 @@ class ShapeArrays:
         if shapes is self.shapes:
             return False
         others = len(shapes) != len(self.shapes)
-        changed = [] if others else differing(self.shapes, shapes)
-        if others or not all(fits(self.shapes[i], shapes[i]) for i in changed):
+        changed = [] if others else differing_indices(self.shapes, shapes)
+        if others or not all(same_size(self.shapes[i], shapes[i]) for i in changed):
             others, changed = True, self.make_room(shapes)
         self.shapes = shapes
         indices = np.array(changed, np.int64)
@@ -47,17 +47,17 @@ class ShapeArrays:
         for group in range(len(self.rows)):
             mine = indices[groups == group]
             parts = np.sum(self.start[mine + 1] - self.start[mine])
-            step = max(1, PIECE * len(mine) // max(1, parts))
+            step = max(1, CHUNK * len(mine) // max(1, parts))
             for start in range(0, len(mine), step):
                 self.write(group, mine[start : start + step])
         return others or bool(changed)
 
     def make_room(self, shapes: tuple[Shape, ...]) -> list[int]:
         """Room for other shapes; what stays in the same order keeps its numbers. Returns the indices of the others."""
-        start, behind = alike(self.shapes, shapes)
+        start, behind = common_ends(self.shapes, shapes)
         new = shapes[start : len(shapes) - behind]
         gone = len(self.shapes) - behind
-        if len(new) <= PIECE and all(type(shape) in self.numbers for shape in new):
+        if len(new) <= CHUNK and all(type(shape) in self.numbers for shape in new):
             kept = np.delete(self.slots[:, 0], slice(self.start[start], self.start[gone]))
             if set(np.unique(kept)) | {self.numbers[type(shape)] for shape in new} == set(self.numbers.values()):
                 self.splice(start, gone, new)
@@ -70,11 +70,11 @@ class ShapeArrays:
         kinds = [type(shape) for shape in shapes]
         present = set(kinds)
         used = [kind for kind in ALL_KINDS if kind.element in present]
-        examples = [shapes[kinds.index(kind.element)].some(ONE) for kind in used]
+        examples = [shapes[kinds.index(kind.element)].some(FIRST) for kind in used]
         self.numbers = {kind.element: group for group, kind in enumerate(used)}
         self.rows = tuple(np.zeros(0, row_type(kind)) for kind in used)
         self.is_flat = np.array([each.flat() is not None for each in examples], bool)
-        self.counts = np.array([balls_of([each]).shape[1] for each in examples], np.int64)
+        self.counts = np.array([bounding_balls([each]).shape[1] for each in examples], np.int64)
         self.slots, self.start, self.owner = np.zeros((0, 2), np.int64), np.zeros(1, np.int64), np.zeros(0, np.int64)
         self.colours_and_extents, self.boxes = np.zeros((0, 4)), np.zeros((0, 4))
         self.planes, self.balls, self.first = np.zeros((0, 5)), np.zeros((0, 4)), np.zeros(1, np.int64)
@@ -137,17 +137,17 @@ class ShapeArrays:
             self.balls[at.ravel()] = balls.reshape(-1, 4)
 
 
-def fits(old: Shape, new: Shape) -> bool:
+def same_size(old: Shape, new: Shape) -> bool:
     """Whether a shape has room where another was."""
     return type(old) is type(new) and old.parts == new.parts
 
 
-def differing(old: tuple[Any, ...], new: tuple[Any, ...], most: float = inf) -> list[int]:
+def differing_indices(old: tuple[Any, ...], new: tuple[Any, ...], most: float = inf) -> list[int]:
     """Where two tuples hold different objects that are not equal either, as far as the shorter one goes; from `most`
     such places on the rest is not looked at."""
     found: list[int] = []
-    for start in range(0, min(len(old), len(new)), PIECE):
-        one, other = old[start : start + PIECE], new[start : start + PIECE]
+    for start in range(0, min(len(old), len(new)), CHUNK):
+        one, other = old[start : start + CHUNK], new[start : start + CHUNK]
         if one != other:  # the same objects are equal at the speed of C
             found += [at for at, (a, b) in enumerate(zip(one, other, strict=False), start) if a is not b]
             if len(found) >= most:
@@ -155,11 +155,11 @@ def differing(old: tuple[Any, ...], new: tuple[Any, ...], most: float = inf) -> 
     return found
 
 
-def alike(old: tuple[Any, ...], new: tuple[Any, ...]) -> tuple[int, int]:
+def common_ends(old: tuple[Any, ...], new: tuple[Any, ...]) -> tuple[int, int]:
     """How many entries two tuples share at their beginning, and how many of the rest at their end."""
     shorter = min(len(old), len(new))
-    front = next(iter(differing(old, new, most=1)), shorter)
-    back = next(iter(differing(old[front:][::-1], new[front:][::-1], most=1)), shorter - front)
+    front = next(iter(differing_indices(old, new, most=1)), shorter)
+    back = next(iter(differing_indices(old[front:][::-1], new[front:][::-1], most=1)), shorter - front)
     return front, back
 
 

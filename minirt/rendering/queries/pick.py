@@ -15,7 +15,7 @@ from minirt.kernel.trace import COINCIDENT, closest_hit
 from minirt.lanes import Vec, lane, splat, unit
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.silhouette import covered
+from minirt.rendering.queries.silhouette import covered_pixels
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Scene
 from minirt.shapes import ALL_KINDS, Shape
@@ -32,7 +32,7 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: ShapeArr
     camera = pixel_rays(camera_numbers(scene.camera, width, height), width, height)
     origin, direction = Vec(*camera[:3]), unit(towards(camera, x + 0.5, y + 0.5))
     with np.errstate(all="ignore"):
-        near = in_front(tables, origin, direction)
+        near = nearest_primitives(tables, origin, direction)
         owners = np.unique(tables.owner[near])
         if len(owners) < 2:
             return tables.shapes[int(owners[0])] if len(owners) else None
@@ -45,9 +45,9 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: ShapeArr
     return tables.shapes[int(owners[packing.tables.owner[int(lane(owner, 0))]])]
 
 
-def place(shape: Shape, camera: Camera, width: int, height: int, x: int, y: int) -> Triple | None:
+def surface_point(shape: Shape, camera: Camera, width: int, height: int, x: int, y: int) -> Triple | None:
     """Where in the scene the middle of pixel x, y is on a shape; None where it is not on it."""
-    hit, t, origin, direction = met(shape, camera, width, height, x, y)
+    hit, t, origin, direction = pixel_hits(shape, camera, width, height, x, y)
     point = origin + float(t) * direction
     return (float(point.x), float(point.y), float(point.z)) if hit else None
 
@@ -56,13 +56,13 @@ def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray,
     """Whether the middles of pixels x, y show a shape where nothing is in front of it; nowhere for a mesh that reaches
     beside or behind the eye."""
     if isinstance(shape, Mesh):
-        found = covered(shape, camera, width, height)
+        found = covered_pixels(shape, camera, width, height)
         there = (x >= 0) & (x < width) & (y >= 0) & (y < height)
         return there & (found is not None and found[np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)])
-    return np.broadcast_to(met(shape, camera, width, height, x, y)[0], x.shape)
+    return np.broadcast_to(pixel_hits(shape, camera, width, height, x, y)[0], x.shape)
 
 
-def met(shape: Shape, camera: Camera, width: int, height: int, x: Any, y: Any) -> tuple[Any, Any, Vec, Vec]:
+def pixel_hits(shape: Shape, camera: Camera, width: int, height: int, x: Any, y: Any) -> tuple[Any, Any, Vec, Vec]:
     """Whether and where the rays of pixels meet a shape, their origin and their directions; of a mesh, a single ray."""
     numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
     kind = next(kind for kind in ALL_KINDS if kind.element is type(shape))
@@ -74,17 +74,17 @@ def met(shape: Shape, camera: Camera, width: int, height: int, x: Any, y: Any) -
         return hit, t, origin, direction
 
 
-def in_front(tables: ShapeArrays, origin: Vec, direction: Vec) -> np.ndarray:
+def nearest_primitives(tables: ShapeArrays, origin: Vec, direction: Vec) -> np.ndarray:
     """Of the parts that a ray hits the nearest, and those so close to it that they may be in the same place."""
     distance = np.full(len(tables.slots), np.inf)
     for group, rows in enumerate(tables.rows):
-        hit, t = kind_of(rows.dtype.names).intersect(columns(rows), origin, direction)
+        hit, t = kind_of(rows.dtype.names).intersect(packed_columns(rows), origin, direction)
         distance[tables.slots[:, 0] == group] = np.where(hit, t, np.inf)
     least = distance.min(initial=np.inf)
     return np.flatnonzero(np.isfinite(distance) & (distance <= least * (1 + 2 * COINCIDENT)))
 
 
-def columns(rows: Any) -> Any:
+def packed_columns(rows: Any) -> Any:
     """All packed shapes of a kind as one whose numbers are arrays."""
     parts = (rows[name] for name in rows.dtype.names)
     return kind_of(rows.dtype.names).packed(*(Vec(*part.T) if part.ndim > 1 else part for part in parts))

@@ -31,12 +31,12 @@ def preview(scene: Scene, width: int, height: int) -> np.ndarray | None:
     if rays < min(FEWEST, width * height):
         return None
     divisor = max(1, ceil((width * height / rays) ** 0.5))
-    return picture(scene, -(-width // divisor), -(-height // divisor))[0]
+    return render_interpreted(scene, -(-width // divisor), -(-height // divisor))[0]
 
 
-def picture(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
+def render_interpreted(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
     """The picture of that size, and its light, (h, w, 3)."""
-    traced = in_one_list(Packing(binning, depth=0).pack(scene, width, height))
+    traced = without_culling(Packing(binning, depth=0).pack(scene, width, height))
     y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
     with np.errstate(all="ignore"):
         direction = unit(towards(traced.camera, x, y))
@@ -50,13 +50,13 @@ def picture(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarr
 def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray) -> None:
     """Draw a scene without shapes: its background, or black. `linear` may have no rows."""
     if scene.background and pixels.size:
-        pixels[...], light = picture(scene, *pixels.shape[1::-1])
+        pixels[...], light = render_interpreted(scene, *pixels.shape[1::-1])
         linear[...] = light if len(linear) else linear
     else:
         pixels[...] = (0, 0, 0, 255)
 
 
-def in_one_list(traced: SceneArrays) -> SceneArrays:
+def without_culling(traced: SceneArrays) -> SceneArrays:
     """The scene without mirrors, with a single tile, and around each lamp a single cell, in which all shapes are."""
     kinds = traced.slots[:, 0]
     starts = np.searchsorted(np.sort(kinds), np.arange(len(traced.groups) + 1))

@@ -35,7 +35,7 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
     programs do not. ValueError, naming the argument, for another shape, for a number that is infinite or NaN, and for a
     direction of length 0.
     """
-    starts, ways = vectors(origins, "origins"), vectors(directions, "directions")
+    starts, ways = checked_vectors(origins, "origins"), checked_vectors(directions, "directions")
     if len(starts) != len(ways):
         raise ValueError(f"directions must be as many as origins, {len(starts)}, got {len(ways)}")
     if not ways.any(axis=1).all():
@@ -43,7 +43,7 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
     return tracer(threads).trace(scene, starts, ways)
 
 
-def vectors(values: ArrayLike, name: str) -> NDArray[np.float64]:
+def checked_vectors(values: ArrayLike, name: str) -> NDArray[np.float64]:
     """An argument as an array of float64 (n, 3)."""
     try:
         given = np.asarray(values)
@@ -107,7 +107,7 @@ class Tracer:
         """Build the tree over the shapes of a scene."""
         self.shapes = None
         self.tables.update(shapes)
-        self.bvh = import_module("minirt.rendering.packing.bvh").bvh_of(self.tables, self.kernel)
+        self.bvh = import_module("minirt.rendering.packing.bvh").build_bvh(self.tables, self.kernel)
         self.shapes = shapes
 
 

@@ -14,7 +14,7 @@ from minirt.scene import Camera
 from minirt.shapes.mesh import Mesh
 
 
-def covered(mesh: Mesh, camera: Camera, width: int, height: int) -> np.ndarray | None:
+def covered_pixels(mesh: Mesh, camera: Camera, width: int, height: int) -> np.ndarray | None:
     """Which pixels, (h, w), show the mesh in their middle where nothing is in front of it; None where some of it is
     beside or behind the eye."""
     made = mesh.triangles
@@ -26,20 +26,20 @@ def covered(mesh: Mesh, camera: Camera, width: int, height: int) -> np.ndarray |
     with np.errstate(all="ignore"):  # points that no triangle has may be anywhere
         x, y = x / depth, y / depth
     found = np.zeros((height, width), bool)
-    for facing in sides(x, y, made.corners)[: 1 if made.closed else 2]:  # behind what is closed is its other side
-        start, end = loose_edges(facing, made.corners, made.edges)
-        found |= winding(x[start], y[start], x[end], y[end], width, height) != 0
+    for facing in facing_triangles(x, y, made.corners)[: 1 if made.closed else 2]:  # behind what is closed is its other side
+        start, end = silhouette_edges(facing, made.corners, made.edges)
+        found |= winding_numbers(x[start], y[start], x[end], y[end], width, height) != 0
     return found
 
 
-def sides(x: np.ndarray, y: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def facing_triangles(x: np.ndarray, y: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Which triangles are seen from either side."""
     (ax, bx, cx), (ay, by, cy) = x[corners].T, y[corners].T
     area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
     return area > 0, area < 0
 
 
-def loose_edges(facing: np.ndarray, corners: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def silhouette_edges(facing: np.ndarray, corners: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The points where the edges of triangles begin and end that do not cancel. `edges` (m, 3) has the numbers of the
     edges of each triangle, of which those with the same two ends have the same."""
     mine = corners[facing]
@@ -49,7 +49,7 @@ def loose_edges(facing: np.ndarray, corners: np.ndarray, edges: np.ndarray) -> t
     return start[loose], end[loose]
 
 
-def winding(ax: np.ndarray, ay: np.ndarray, bx: np.ndarray, by: np.ndarray, width: int, height: int) -> np.ndarray:
+def winding_numbers(ax: np.ndarray, ay: np.ndarray, bx: np.ndarray, by: np.ndarray, width: int, height: int) -> np.ndarray:
     """How often edges wind about the middle of each pixel, (h, w)."""
     # The rows whose middle lies between the ends, the lower of which counts and the higher does not.
     first, last = (np.clip(np.ceil(each - 0.5), 0, height).astype(np.int64) for each in (ay, by))

@@ -30,8 +30,8 @@ class ThreadPool:
     def __init__(self, number: int) -> None:
         self.tasks: SimpleQueue[Task | None] = SimpleQueue()
         for _ in range(number):
-            Thread(target=work, args=(self.tasks,), name="minirt-render", daemon=True).start()
-        finalize(self, dismiss, self.tasks, number)
+            Thread(target=run_tasks, args=(self.tasks,), name="minirt-render", daemon=True).start()
+        finalize(self, stop_threads, self.tasks, number)
 
     def run(self, jobs: list[Job], cancel: Callable[[], None]) -> None:
         """Do as many jobs as there are threads, and wait for all of them; an error of one is raised.
@@ -54,7 +54,7 @@ class ThreadPool:
             raise error
 
 
-def work(tasks: SimpleQueue[Task | None]) -> None:
+def run_tasks(tasks: SimpleQueue[Task | None]) -> None:
     """What a thread does: one job after the other, until there is None."""
     while task := tasks.get():
         error = None
@@ -68,7 +68,7 @@ def work(tasks: SimpleQueue[Task | None]) -> None:
         del task, error
 
 
-def dismiss(tasks: SimpleQueue[Task | None], number: int) -> None:
+def stop_threads(tasks: SimpleQueue[Task | None], number: int) -> None:
     """Let the threads end."""
     for _ in range(number):
         tasks.put(None)

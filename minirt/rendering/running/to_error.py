@@ -10,7 +10,7 @@ from minirt.kernel.frame import CANCELLED, DOWN
 from minirt.lanes import width
 from minirt.rendering.frame_arguments import SamplePass, frame_arguments
 from minirt.rendering.running.frame_runner import FrameRunner
-from minirt.rendering.sampling.auto import CLASSES, Auto
+from minirt.rendering.sampling.auto import SHIFT_CLASSES, AutoSampler
 from minirt.rendering.sampling.outcome import Outcome
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
@@ -31,7 +31,7 @@ def reach(
     height, across, _ = pixels.shape
     arrays = packing.pack(scene, across, height)
     frame = frame_arguments(arrays, pixels)
-    threads = -(-runner.threads // CLASSES)
+    threads = -(-runner.threads // SHIFT_CLASSES)
 
     def draw(passes: list[SamplePass]) -> bool:
         counters = runner.new_counters(len(passes))
@@ -40,7 +40,7 @@ def reach(
         runner.run([frame.with_pass(samples, counters[i:]) for i, samples in enumerate(passes)], threads)
         return bool(counters.max() < CANCELLED)
 
-    auto = Auto(draw, height, across, width(arrays.camera) // DOWN)
+    auto = AutoSampler(draw, height, across, width(arrays.camera) // DOWN)
     outcome = auto.reach(error, seconds - (perf_counter() - start))
     if outcome:
         auto.halves.finish(pixels, linear)

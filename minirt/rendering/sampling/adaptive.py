@@ -23,7 +23,7 @@ def edge_packets(pixels: np.ndarray, across: int, least: int = CONTRAST) -> Iter
     time, so that whoever asks may stop in between. `pixels` is C-contiguous uint8 (h, w, 4)."""
     for top in range(0, len(pixels), STRIP):
         seen = pixels[max(top - 1, 0) : top + STRIP + 1]  # with a line above and one below
-        yield packets_of(contrasts(seen, least)[min(top, 1) :][:STRIP], across)
+        yield packets_with_any(contrasts(seen, least)[min(top, 1) :][:STRIP], across)
 
 
 def contrasts(pixels: np.ndarray, least: int = CONTRAST) -> np.ndarray:
@@ -48,7 +48,7 @@ def differ(a: np.ndarray, b: np.ndarray, least: int) -> np.ndarray:
     return differs
 
 
-def packets_of(pixels: np.ndarray, across: int) -> np.ndarray:
+def packets_with_any(pixels: np.ndarray, across: int) -> np.ndarray:
     """The packets, so many pixels across, with at least one of the pixels (h, w), as uint8 (rows, columns)."""
     height, width = pixels.shape
     rows, columns = -(-height // DOWN), -(-width // across)

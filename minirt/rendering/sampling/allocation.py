@@ -17,15 +17,15 @@ import numpy as np
 from minirt.rendering.frame_arguments import GOLDEN_RATIO
 from minirt.rendering.sampling.replicates import Replicates
 
-FALL = 1.5  # squared error falls as this power of the number of samples
+ERROR_EXPONENT = 1.5  # squared error falls as this power of the number of samples
 CONTRASTS = (1, 4, 16, 64)  # levels of 255; packets that differ by as many of them are alike
 PRIOR = 4.0  # samples that the others of its kind count as in a packet
-UNSEEN = (
+UNSEEN_ERROR = (
     1 / 16
 )  # sum of squares of a pixel that differs by a half in one of three colours, / 4 for the mean of two halves
-MOST = 15  # doublings: 65536 samples in both halves
-FASTEST = 3  # doublings in a round
-SEARCH = 14  # halvings of the interval of levels
+MOST_DOUBLINGS = 15  # doublings: 65536 samples in both halves
+DOUBLINGS_A_ROUND = 3  # doublings in a round
+BISECTIONS = 14  # halvings of the interval of levels
 
 
 def coefficients(halves: Replicates, doublings: np.ndarray, contrast: np.ndarray) -> np.ndarray:
@@ -34,18 +34,18 @@ def coefficients(halves: Replicates, doublings: np.ndarray, contrast: np.ndarray
     kinds = doublings * (len(CONTRASTS) + 1) + contrast
     counts = np.bincount(kinds.ravel())
     judges = np.bincount(kinds.ravel(), halves.judges.ravel())
-    alike = judges[kinds] + UNSEEN / samples**2
+    alike = judges[kinds] + UNSEEN_ERROR / samples**2
     known: np.ndarray = (samples * halves.guides + PRIOR * alike / counts[kinds]) / (samples + PRIOR)
-    return 2 * known * samples**FALL
+    return 2 * known * samples**ERROR_EXPONENT
 
 
 def allocate(c: np.ndarray, doublings: np.ndarray, share: float, budget: float) -> np.ndarray:
     """The doublings that leave a `share` of the squared error, or of those that take no more than a budget, in samples
     of packets in a half, the most; never fewer than before."""
     turns = (np.arange(c.size) * GOLDEN_RATIO % 1).reshape(c.shape)  # so that not all that are alike are rounded alike
-    ideal = np.log2(np.maximum(c, np.finfo(float).tiny)) / (FALL + 1) + turns - 0.5
-    limit = np.minimum(doublings + FASTEST, MOST)
-    error_of, price_of = 2.0 ** (-FALL * np.arange(MOST + 1)), 2.0 ** np.arange(MOST + 1)
+    ideal = np.log2(np.maximum(c, np.finfo(float).tiny)) / (ERROR_EXPONENT + 1) + turns - 0.5
+    limit = np.minimum(doublings + DOUBLINGS_A_ROUND, MOST_DOUBLINGS)
+    error_of, price_of = 2.0 ** (-ERROR_EXPONENT * np.arange(MOST_DOUBLINGS + 1)), 2.0 ** np.arange(MOST_DOUBLINGS + 1)
     error, price = (c * error_of[doublings]).sum(), price_of[doublings].sum()
 
     def at(level: float) -> np.ndarray:
@@ -53,7 +53,7 @@ def allocate(c: np.ndarray, doublings: np.ndarray, share: float, budget: float) 
         return rounded
 
     low, high = (ideal - limit).min() - 1, (ideal - doublings).max() + 1  # as much as may be, and nothing
-    for _ in range(SEARCH):
+    for _ in range(BISECTIONS):
         middle = (low + high) / 2
         new = at(middle)
         if (c * error_of[new]).sum() <= share * error or price_of[new].sum() - price > budget:

@@ -24,15 +24,15 @@ from minirt.rendering.sampling.outcome import Outcome
 from minirt.rendering.sampling.replicates import Replicates
 from minirt.rendering.sampling.sobol import digital_shifts, shifted, sobol
 
-CLASSES = 8  # of packets, with shifts of their own, so that an edge along a row of pixels meets as many more of them
+SHIFT_CLASSES = 8  # of packets, with shifts of their own, so that an edge along a row of pixels meets as many more of them
 LEAST_LEFT, MOST_LEFT = 0.25, 0.8  # of the squared error, by a round
-SPENT = 0.4  # of the time that is left, by a round
+SHARE_OF_TIME = 0.4  # of the time that is left, by a round
 
 
 Draw = Callable[[list[SamplePass]], bool]  # False when cancelled
 
 
-class Auto:
+class AutoSampler:
     """A picture in the making: both halves of it, and how many samples the packets have."""
 
     def __init__(self, draw: Draw, height: int, width: int, across: int) -> None:
@@ -41,9 +41,9 @@ class Auto:
         self.halves = Replicates(height, width, across)
         self.pixels = np.full((2, height, width, 4), 255, np.uint8)  # of what was last drawn in each half
         self.doublings = np.full(self.halves.packets, -1)  # a packet has 2^doublings samples in each half
-        self.shifts = digital_shifts(2, CLASSES, DOWN * across)
+        self.shifts = digital_shifts(2, SHIFT_CLASSES, DOWN * across)
         rows, columns = map(np.arange, self.halves.packets)
-        self.classes = np.add.outer(3 * rows, columns) % CLASSES
+        self.classes = np.add.outer(3 * rows, columns) % SHIFT_CLASSES
 
     def reach(self, error: float, seconds: float) -> Outcome | None:
         """Render until the estimated error is as small or as many seconds have passed, but at least the first round.
@@ -57,7 +57,7 @@ class Auto:
             left = start + seconds - now
             if left <= 0:
                 break
-            budget = SPENT * left * price / (now - before) if seconds < inf else inf
+            budget = SHARE_OF_TIME * left * price / (now - before) if seconds < inf else inf
             # Half of the way to the goal, as logarithms, since the last steps are the larger the less is known.
             share = min(max(error / sqrt(squared), LEAST_LEFT), MOST_LEFT)
             new = allocate(coefficients(self.halves, self.doublings, contrast), self.doublings, share, budget)
@@ -92,7 +92,7 @@ class Auto:
         for before, after in sorted({*zip(self.doublings.flat, new.flat, strict=True)}):
             points = sobol(int(2.0**before), 2**after)
             wanted = (self.doublings == before) & (new == after)
-            for each in range(CLASSES if before < after else 0):
+            for each in range(SHIFT_CLASSES if before < after else 0):
                 packets = (wanted & (self.classes == each)).view(np.uint8)
                 places = [shifted(points, shifts[each]) for shifts in self.shifts]
                 found += map(SamplePass, places, (packets, packets), lights, self.pixels)

@@ -6,7 +6,7 @@ from math import sqrt
 
 import numpy as np
 
-from minirt.rendering.sampling.allocation import FALL
+from minirt.rendering.sampling.allocation import ERROR_EXPONENT
 
 ROUNDING = 1 / 12  # mean square of what rounding to whole levels changes
 
@@ -19,5 +19,5 @@ def estimated_error(before: np.ndarray, after: np.ndarray, fewer: int, samples: 
     """
     far = np.maximum(before, after) - np.minimum(before, after)
     square = float(np.square(far, dtype=np.uint16).sum(dtype=np.int64)) / (far.size * 3 / 4)
-    ratio = (samples / fewer) ** FALL
+    ratio = (samples / fewer) ** ERROR_EXPONENT
     return sqrt(square / (1 + ratio) + ROUNDING) / 255

@@ -69,19 +69,19 @@ class Replicates:
             light = (self.means[0, here, : self.width] + self.means[1, here, : self.width]) / 2
             if len(linear):
                 linear[here] = light
-            pixels[here, :, 2::-1] = np.nan_to_num(shown(light)) * 255 + 0.5
+            pixels[here, :, 2::-1] = np.nan_to_num(clamped(light)) * 255 + 0.5
 
 
 def squared_errors(one: np.ndarray, other: np.ndarray, across: int) -> tuple[np.ndarray, np.ndarray]:
     """Of the mean of two halves of packets (..., DOWN, 3 * across): the sums over judges and over guides."""
-    differences = shown(one) - shown(other)
+    differences = clamped(one) - clamped(other)
     differences *= differences
     colour = np.add.outer(np.arange(DOWN), np.repeat(np.arange(across), 3)) % 2
     judges, guides = (np.einsum("...yx,yx->...", differences, (colour == each) / 4) for each in (0, 1))
     return np.nan_to_num(judges), np.nan_to_num(guides)
 
 
-def shown(light: np.ndarray) -> np.ndarray:
+def clamped(light: np.ndarray) -> np.ndarray:
     """Light as far as a picture shows it."""
     clamped: np.ndarray = np.clip(light, 0.0, 1.0)
     return clamped

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from minirt.element import fields_of
 from minirt.fields import Length, Lengths, Point
-from minirt.rendering.packing.primitives import boxes
+from minirt.rendering.packing.primitives import bounding_boxes
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 
@@ -18,7 +18,7 @@ def sizes(shapes: Sequence[Shape]) -> NDArray[np.float64]:
     """For each shape of one kind the lengths that it is given by, or the distances between the points that it is given
     by, (n, k); a plane has none, and a mesh is as large as the box around it."""
     if isinstance(shapes[0], Mesh):
-        diagonals: NDArray[np.float64] = np.linalg.norm(np.diff(boxes(list(shapes)), axis=1)[:, 0], axis=1)
+        diagonals: NDArray[np.float64] = np.linalg.norm(np.diff(bounding_boxes(list(shapes)), axis=1)[:, 0], axis=1)
         return diagonals[:, None]
 
     def columns(*sorts: type) -> list[NDArray[np.float64]]:

@@ -10,10 +10,10 @@ import numpy as np
 from minirt.kernel.rows import kind_of
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec
-from minirt.rendering.notes import name
+from minirt.rendering.notes import shape_name
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.pick import columns
+from minirt.rendering.queries.pick import packed_columns
 from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.sizes import sizes
 from minirt.scene import Scene
@@ -87,7 +87,7 @@ def worst(tables: ShapeArrays, amounts: np.ndarray, limit: float) -> Iterator[tu
     order = order[np.sort(first)]  # of each shape the worst part
     more = len(order) - LISTED
     for place, index in enumerate(order[:LISTED].tolist(), 1):
-        yield index, name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
+        yield index, shape_name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
 
 
 def views(tables: ShapeArrays, camera: np.ndarray) -> Views:
@@ -97,7 +97,7 @@ def views(tables: ShapeArrays, camera: np.ndarray) -> Views:
     for group, packed in enumerate(tables.rows):
         mine = np.flatnonzero(tables.slots[:, 0] == group)
         with np.errstate(all="ignore"):
-            on, _ = kind_of(packed.dtype.names).surface(columns(packed), Vec(*eye))
+            on, _ = kind_of(packed.dtype.names).surface(packed_columns(packed), Vec(*eye))
         nearest[mine] = np.stack([np.broadcast_to(part, len(mine)) for part in (on.x, on.y, on.z)], axis=-1)
         if not tables.is_flat[group]:  # one with an end is in its box, not everywhere on the plane that it lies in
             middle, half = tables.boxes[mine, :3], tables.boxes[mine, 3:]

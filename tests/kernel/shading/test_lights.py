@@ -9,7 +9,7 @@ import pytest
 
 from minirt.kernel.shading.lights import arrival
 from minirt.lanes import Vec
-from minirt.rendering.packing.lights import light_numbers, place_of, shining, spot_numbers
+from minirt.rendering.packing.lights import emitting_lights, light_position, positions_and_intensities, spot_parameters
 from minirt.scene import Ambient, Camera, FurtherLight, Lamp, Light, ParallelLight, Scene, SpotLight
 
 EYE = Camera((0, 0, -5), (0, 0, 1), 60)
@@ -20,7 +20,7 @@ def came(lamp: Lamp, point: tuple[float, float, float]) -> tuple[np.ndarray, flo
     """The direction, the distance and the strength of a lamp's light as a point sees it."""
     spread = [np.full(16, each) for each in point]
     with np.errstate(all="ignore"):
-        towards, distance, strength = arrival(spot_numbers([lamp]), 0, Vec(*place_of(lamp)), Vec(*spread))
+        towards, distance, strength = arrival(spot_parameters([lamp]), 0, Vec(*light_position(lamp)), Vec(*spread))
     return np.array([towards.x[0], towards.y[0], towards.z[0]]), float(distance[0]), float(strength[0])
 
 
@@ -73,5 +73,5 @@ def test_a_spot_fades_too() -> None:
 def test_lamps_that_give_no_light_are_left_out() -> None:
     lamps = Light((1, 2, 3), 0.5, (255, 0, 51)), FurtherLight((0, 0, 0), 0), SPOT.replace(colour=(0, 0, 0)), SPOT
     scene = Scene((Ambient(0.1, (255, 255, 255)), EYE, *lamps))
-    assert shining(scene) == [lamps[0], SPOT]
-    assert np.allclose(light_numbers(shining(scene)), [[1, 2, 3, 0.5, 0, 0.1], [0, 9, 0, 1, 1, 1]])
+    assert emitting_lights(scene) == [lamps[0], SPOT]
+    assert np.allclose(positions_and_intensities(emitting_lights(scene)), [[1, 2, 3, 0.5, 0, 0.1], [0, 9, 0, 1, 1, 1]])

@@ -13,7 +13,7 @@ import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel.compiler.code_cache import FLAGS
 from minirt.kernel.shading import texture_lookup
 from minirt.lanes import load, save, width
-from minirt.rendering.packing.materials import Album
+from minirt.rendering.packing.materials import TexturePool
 from tests.kernel.pictures import Array
 
 RANDOM = np.random.default_rng(1)
@@ -27,7 +27,7 @@ COLOURED = range(6)
 
 def bound() -> tuple[Any, Any]:
     """All pages as the kernel has them: texels and pictures."""
-    album = Album.__new__(Album)
+    album = TexturePool.__new__(TexturePool)
     album.pages = PAGES
     return tuple(album.bound().values())  # type: ignore[return-value]
 

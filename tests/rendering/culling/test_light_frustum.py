@@ -14,7 +14,7 @@ from minirt.kernel.culling.light_buffer import SCALE, SPREAD, cell
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.culling import light_frustum, visibility
-from minirt.rendering.culling.light_frustum import Cluster, cluster, square_ahead
+from minirt.rendering.culling.light_frustum import Cluster, dense_cluster, frustum_grid
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.brute_force import BruteForce
@@ -82,7 +82,7 @@ def test_rays_to_a_parallel_lamp_come_by_no_point() -> None:
 
 
 def square(lamp: Any, grid: int = 64, found: Cluster = UNIT_BALL) -> Any:
-    made = square_ahead(found, np.array(lamp, float), grid)
+    made = frustum_grid(found, np.array(lamp, float), grid)
     assert made is not None
     return made
 
@@ -98,34 +98,34 @@ def test_the_crowd_fills_the_square(distance: float) -> None:
 
 
 def test_too_near_and_inside_there_is_none() -> None:
-    assert [square_ahead(UNIT_BALL, np.array([x, 0, 0]), 64) for x in (1.41, 1.0, 0.3, 0.0)] == [None] * 4
-    assert square_ahead(None, np.array([9.0, 0, 0]), 64) is None
+    assert [frustum_grid(UNIT_BALL, np.array([x, 0, 0]), 64) for x in (1.41, 1.0, 0.3, 0.0)] == [None] * 4
+    assert frustum_grid(None, np.array([9.0, 0, 0]), 64) is None
 
 
 def test_no_cell_is_finer_than_float32_can_tell() -> None:
-    assert 1 / square((1e6, 0, 0)).scale_x == light_frustum.FINEST
-    assert 1 / square((1e3, 0, 0)).scale_x > light_frustum.FINEST
+    assert 1 / square((1e6, 0, 0)).scale_x == light_frustum.LEAST_SLOPE
+    assert 1 / square((1e3, 0, 0)).scale_x > light_frustum.LEAST_SLOPE
 
 
 def test_few_shapes_beside_the_crowd_do_not_matter() -> None:
     random = np.random.default_rng(1)
     heap = [Sphere(tuple(random.uniform(-1, 1, 3)), 0.1, GREY) for _ in range(1000)]
-    for others, count in (("few", light_frustum.BESIDE), ("many", 2 * light_frustum.BESIDE)):
+    for others, count in (("few", light_frustum.MOST_OUTSIDE), ("many", 2 * light_frustum.MOST_OUTSIDE)):
         tables = ShapeArrays()
         far = [Sphere((100.0 * i, 5, 900), 30, GREY) for i in range(count)]
         tables.update((*heap, *far, Plane((0, -1e9, 0), (0, 1, 0), GREY)))
-        found = cluster(tables)
+        found = dense_cluster(tables)
         assert found is not None
         assert (found.radius < 30) == (others == "few")
     few = ShapeArrays()
     few.update(tuple(heap[:900]))
-    assert cluster(few) is None
+    assert dense_cluster(few) is None
 
 
 @pytest.mark.parametrize("lamp", [(1.43, 0, 0), (3, 4, 5), (0, 0, 500)])
 def test_the_margin_is_how_far_close_directions_reach(lamp: Any) -> None:
     random, grid = np.random.default_rng(2), square(lamp)
-    around = visibility.around(64, grid)
+    around = visibility.light_buffer(64, grid)
     half = grid.middle_x / grid.scale_x
     slopes = half * random.uniform(-1, 1, (2, 200_000))
     slopes[:, ::2] = half * np.sign(slopes[:, ::2])  # at the corners it is farthest
@@ -167,7 +167,7 @@ def covered(kernel: Any, grid: Any, balls: list[list[float]]) -> list[int]:
 
 def test_directions_beside_and_behind_are_elsewhere() -> None:
     grid = square((0, 0, -10))
-    around, half = visibility.around(64, grid), grid.middle_x / grid.scale_x
+    around, half = visibility.light_buffer(64, grid), grid.middle_x / grid.scale_x
     x, y, z = grid.frames[0]
     for way in (x, -x, y, -y):
         assert cell(around, 64, Vec(*(z + 0.999 * half * way))) < 128 * 128

@@ -9,7 +9,7 @@ import pytest
 
 from minirt.kernel.frame import TILE
 from minirt.rendering import Renderer, scene_packing
-from minirt.rendering.culling.planes import heights
+from minirt.rendering.culling.planes import signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, FurtherLight, Light, Scene
@@ -64,9 +64,9 @@ def test_on_a_plane_within_rounding_is_neither_above_nor_below(size: float) -> N
         keeper.update((plane,))
         along = np.cross(plane.normal, random.normal(size=3))
         above = np.array(plane.normal)
-        assert heights(keeper.planes, point + size * along)[0] == 0
-        assert heights(keeper.planes, point + size * (along + above))[0] == pytest.approx(size, rel=1e-6)
-        assert heights(keeper.planes, point + size * (along - above))[0] == pytest.approx(-size, rel=1e-6)
+        assert signed_heights(keeper.planes, point + size * along)[0] == 0
+        assert signed_heights(keeper.planes, point + size * (along + above))[0] == pytest.approx(size, rel=1e-6)
+        assert signed_heights(keeper.planes, point + size * (along - above))[0] == pytest.approx(-size, rel=1e-6)
 
 
 def lit_cells(scene: Scene) -> list[int]:

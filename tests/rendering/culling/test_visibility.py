@@ -129,7 +129,7 @@ def unit_way(random: np.random.Generator) -> Any:
 @pytest.fixture
 def small_crowds(monkeypatch: pytest.MonkeyPatch) -> None:
     """Squares ahead of lamps for scenes that are small enough to try everything."""
-    monkeypatch.setattr(light_frustum, "CROWD", 30)
+    monkeypatch.setattr(light_frustum, "LEAST_SHAPES", 30)
 
 
 @KERNELS
@@ -227,7 +227,7 @@ def test_tangents_are_turned_from_the_way_to_the_centre_by_the_angle_that_the_di
 
 @KERNELS
 def test_a_ball_without_end_is_everywhere_and_at_no_distance(kernel: Any) -> None:
-    balls, grid = np.array([[0.0, 0.0, 0.0, np.inf]]), visibility.cube(2)
+    balls, grid = np.array([[0.0, 0.0, 0.0, np.inf]]), visibility.cube_grid(2)
     rectangles, views, counts = np.zeros((6, 4), np.int32), np.ones((1, 5)), np.zeros(25, np.int64)
     place = np.zeros((1, 2), np.int64)
     for origin in (np.zeros(3), np.array([1.0, 2.0, -3.0])):
@@ -243,17 +243,17 @@ def test_around_the_eye_a_disc_is_everywhere() -> None:
 
 def test_distances_are_less_by_what_may_be_one_place_and_by_little_more() -> None:
     near = np.geomspace(1e-30, 1e30, 10_000)
-    rounded, depths = visibility.by_depth(near)
+    rounded, depths = visibility.quantised_depths(near)
     assert (rounded * (1 + COINCIDENT) <= near).all()
     assert (rounded * (1 + 4 * COINCIDENT) > near).all()
     assert (np.diff(depths) >= 0).all()
-    assert visibility.by_depth(np.array([0.0, 1e-50]))[0].tolist() == [0, 0]
+    assert visibility.quantised_depths(np.array([0.0, 1e-50]))[0].tolist() == [0, 0]
 
 
 def test_the_order_of_depth_is_that_of_the_distances() -> None:
     near = np.random.default_rng(8).permutation(np.geomspace(1e-3, 1e3, 10_000))
-    rounded, depths = visibility.by_depth(near)
-    order = visibility.in_order(depths)
+    rounded, depths = visibility.quantised_depths(near)
+    order = visibility.depth_order(depths)
     assert sorted(order.tolist()) == list(range(10_000))
     assert (np.diff(rounded[order]) >= 0).all()
     assert (np.diff(order)[np.diff(depths[order]) == 0] > 0).all()
@@ -279,7 +279,7 @@ def scattered() -> list[Any]:
 
 @pytest.mark.parametrize("shapes", [1, 8, 9, 200, 2_000, 10_000])
 def test_more_shapes_more_cells(shapes: int) -> None:
-    grid, half = (visibility.grid_for(tables_of(count)) for count in (shapes, max(1, shapes // 2)))
+    grid, half = (visibility.light_buffer_cells(tables_of(count)) for count in (shapes, max(1, shapes // 2)))
     assert grid >= half
     assert (grid == 1) == (shapes <= 8)
 
@@ -300,7 +300,7 @@ def test_a_direction_lies_in_the_cell_that_its_face_row_and_column_say(grid: int
             for across in slopes:
                 direction = forward + across * right + down * up
                 with np.errstate(all="ignore"):
-                    assert cell(visibility.NO_CELLS, grid, Vec(*map(np.float64, direction))) == expected
+                    assert cell(visibility.NO_LIGHT_BUFFER, grid, Vec(*map(np.float64, direction))) == expected
                 expected += 1
 
 
@@ -326,6 +326,6 @@ def test_corners_and_tangents_are_in_the_cone(size: float, kernel: Any) -> None:
 def seen(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]:
     """The cone around the hull of some balls, seen from the origin: axis and cosine."""
     rectangles, views, counts = np.zeros((6, 4), np.int32), np.zeros((1, 5)), np.zeros(25, np.int64)
-    given = np.zeros(3), visibility.cube(2), balls, 0.0, np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
+    given = np.zeros(3), visibility.cube_grid(2), balls, 0.0, np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
     kernel.project_all(*given, rectangles, 0, views, counts)
     return views[0, :3], float(views[0, 3])

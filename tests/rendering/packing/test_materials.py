@@ -12,7 +12,7 @@ from minirt.errors import FileError
 from minirt.materials import Bump, Checker, Glass, Specular
 from minirt.rendering.packing import materials
 from minirt.rendering.packing.features import features
-from minirt.rendering.packing.materials import environment_of, materials_of
+from minirt.rendering.packing.materials import pack_environment, pack_materials
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.sphere import Sphere
@@ -35,16 +35,16 @@ def scene(folder: Path, *shapes: Shape) -> Scene:
 
 def test_plain_shapes_have_no_tables(tmp_path: Path) -> None:
     plain = scene(tmp_path, BALL, BALL.replace(mirror=0.0))
-    assert materials_of(plain, np.arange(2), features(plain)) == (None, None, None)
+    assert pack_materials(plain, np.arange(2), features(plain)) == (None, None, None)
 
 
 def test_nobody_looks_at_shapes_that_are_all_plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     looks: list[Shape] = []
     monkeypatch.setattr(materials, "ATTRIBUTES", lambda shape: looks.append(shape) or materials.PLAIN)
     shown = scene(tmp_path, *[BALL] * 3)
-    materials_of(shown, np.arange(3), features(shown))
+    pack_materials(shown, np.arange(3), features(shown))
     assert looks == []
-    materials_of(shown, np.arange(3), {"specular"})
+    pack_materials(shown, np.arange(3), {"specular"})
     assert looks == [BALL] * 3
 
 
@@ -56,7 +56,7 @@ def test_rows_of_shapes(tmp_path: Path) -> None:
         BALL.replace(mirror=0.5, glass=Glass(1.25)),
     )
     shown = scene(tmp_path, *shapes)
-    gloss, bounces, skins = materials_of(shown, np.arange(4), features(shown))
+    gloss, bounces, skins = pack_materials(shown, np.arange(4), features(shown))
     assert np.array_equal(gloss, [[0, 0, 0], [0.5, 20, 1], [0, 0, 0], [0, 0, 0]])
     assert np.allclose(bounces, [[0, 0, 1], [0, 0, 1], [0.25, 0.5, 1.5], [1 / 3, 2 / 3, 1.25]])
     assert np.allclose(skins.checks, [[0] * 4, [0.25, 1, 0, 0.2], [0] * 4, [0] * 4])
@@ -66,7 +66,7 @@ def test_rows_of_shapes(tmp_path: Path) -> None:
 
 def test_the_parts_of_a_shape_have_its_rows(tmp_path: Path) -> None:
     shown = scene(tmp_path, BALL, BALL.replace(mirror=0.5, checker=Checker(0.5)))
-    _, bounces, skins = materials_of(shown, np.array([0, 1, 1, 1]), features(shown))
+    _, bounces, skins = pack_materials(shown, np.array([0, 1, 1, 1]), features(shown))
     assert np.array_equal(bounces[:, 0], [0, 0.5, 0.5, 0.5])
     assert np.array_equal(skins.checks[:, 0], [0, 0.5, 0.5, 0.5])
     assert np.array_equal(skins.used, [0, 1, 1, 1])
@@ -79,7 +79,7 @@ def test_pictures_are_kept_once(folder: Path) -> None:
         BALL,
         BALL.replace(texture="a.png", normal_map="a.png", bump=Bump("b.png", 0.0)),
     )
-    skins = materials_of(shown, np.arange(3), features(shown)).surface_maps
+    skins = pack_materials(shown, np.arange(3), features(shown)).surface_maps
     assert np.array_equal(skins.textures, [1, 0, 1])
     assert np.array_equal(skins.bumps, [[2, 0.5], [0, 0], [0, 0]])
     assert np.array_equal(skins.normals, [0, 0, 1])
@@ -89,7 +89,7 @@ def test_pictures_are_kept_once(folder: Path) -> None:
 
 
 def test_a_picture_as_background(folder: Path) -> None:
-    dome = environment_of(scene(folder), "a.png")
+    dome = pack_environment(scene(folder), "a.png")
     assert np.array_equal(dome.pictures, [[0, 3, 2, 3]])
     assert len(dome.texels) == 18
 
@@ -97,4 +97,4 @@ def test_a_picture_as_background(folder: Path) -> None:
 def test_a_picture_that_is_gone_is_named(tmp_path: Path) -> None:
     shown = scene(tmp_path, BALL.replace(texture="gone.png"))
     with pytest.raises(FileError, match=r"gone\.png"):
-        materials_of(shown, np.arange(1), features(shown))
+        pack_materials(shown, np.arange(1), features(shown))

@@ -8,21 +8,21 @@ import numpy as np
 import pytest
 
 from minirt.rendering.packing import shape_arrays
-from minirt.rendering.packing.shape_arrays import ShapeArrays, differing
+from minirt.rendering.packing.shape_arrays import ShapeArrays, differing_indices
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import SHAPES
 
-MANY = tuple(Sphere((i, 2.0 * i, 3), 1 + i, (i % 256, 0, 0)) for i in range(3 * shape_arrays.PIECE))
+MANY = tuple(Sphere((i, 2.0 * i, 3), 1 + i, (i % 256, 0, 0)) for i in range(3 * shape_arrays.CHUNK))
 
 
-@pytest.mark.parametrize("places", [(), (0,), (shape_arrays.PIECE,), (7, shape_arrays.PIECE - 1, len(MANY) - 1)])
+@pytest.mark.parametrize("places", [(), (0,), (shape_arrays.CHUNK,), (7, shape_arrays.CHUNK - 1, len(MANY) - 1)])
 def test_what_differs_is_found(places: tuple[int, ...]) -> None:
     new = list(MANY)
     for place in places:
         new[place] = replace(new[place], diameter=9e9)
-    assert differing(MANY, tuple(new)) == list(places)
+    assert differing_indices(MANY, tuple(new)) == list(places)
 
 
 def test_many_shapes_at_once_are_the_same_numbers_as_each() -> None:

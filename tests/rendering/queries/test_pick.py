@@ -11,7 +11,7 @@ from PIL import Image
 
 from minirt.rendering import Renderer
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.pick import pick, place
+from minirt.rendering.queries.pick import pick, surface_point
 from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.plane import Plane
@@ -66,9 +66,9 @@ def test_coincident_surfaces_with_pictures_that_lie_elsewhere(tmp_path: Path) ->
 def test_where_on_a_shape() -> None:
     camera = Camera((0, 0, 0), (0, 0, 1), 90)
     ball = Sphere((0, 0, 5), 2, (1, 2, 3))
-    assert place(ball, camera, 101, 101, 50, 50) == pytest.approx((0, 0, 4))
-    assert place(ball, camera, 101, 101, 0, 0) is None
-    x, y, z = place(Plane((0, -1, 0), (0, 1, 0), (1, 2, 3)), camera, 100, 100, 75, 99)
+    assert surface_point(ball, camera, 101, 101, 50, 50) == pytest.approx((0, 0, 4))
+    assert surface_point(ball, camera, 101, 101, 0, 0) is None
+    x, y, z = surface_point(Plane((0, -1, 0), (0, 1, 0), (1, 2, 3)), camera, 100, 100, 75, 99)
     assert (x / z, y, y / z) == pytest.approx((-0.51, -1, -0.99))  # x goes to the left where one looks along z
 
 

@@ -14,7 +14,7 @@ from minirt.kernel.rows import intersect
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.packing.features import features
-from minirt.rendering.queries.preview import BUDGET, FEWEST, RAY, SHAPE, picture, preview
+from minirt.rendering.queries.preview import BUDGET, FEWEST, RAY, SHAPE, preview, render_interpreted
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.sphere import Sphere
 from tests.kernel import pictures
@@ -31,7 +31,7 @@ def test_every_scene_is_as_compiled(path: Path) -> None:
     if "reflective" in features(scene) and path.stem not in MIRRORS:
         return  # a preview has none, and one such scene is enough to wait for the compiler
     pixels, light = pictures.picture(scene, 64, 36, renderer=PLAIN)
-    made, seen = picture(scene, 64, 36)
+    made, seen = render_interpreted(scene, 64, 36)
     np.testing.assert_allclose(seen, light, rtol=0, atol=1e-12)
     assert (made == pixels).all()
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from minirt.kernel.frame import DOWN
 from minirt.rendering import Renderer
-from minirt.rendering.sampling.adaptive import CONTRAST, STRIP, contrasts, edge_packets, packets_of
+from minirt.rendering.sampling.adaptive import CONTRAST, STRIP, contrasts, edge_packets, packets_with_any
 from minirt.scene import Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, TWO, picture
 from tests.rendering.cancelling import ENDLESS, SAMPLES, cancelled
@@ -80,10 +80,10 @@ def test_a_packet_is_found_by_any_of_its_pixels(across: int) -> None:
             seen = np.zeros((DOWN * 2 - 1, across * 3), bool)
             if y < len(seen):
                 seen[y, x] = True
-                packets = packets_of(seen, across)
+                packets = packets_with_any(seen, across)
                 assert packets.dtype == np.uint8
                 assert np.argwhere(packets).tolist() == [[y // DOWN, x // across]]
-    assert packets_of(np.ones((5, 2 * across + 1), bool), across).shape == (2, 3)
+    assert packets_with_any(np.ones((5, 2 * across + 1), bool), across).shape == (2, 3)
 
 
 def test_strips_together_are_the_whole() -> None:
@@ -95,7 +95,7 @@ def test_strips_together_are_the_whole() -> None:
             pixels[STRIP - 1, 5, :3] = pixels[STRIP, 15, :3] = 200
         strips = list(edge_packets(pixels, 2))
         assert len(strips) == -(-height // STRIP)
-        assert np.array_equal(np.concatenate(strips), packets_of(contrasts(pixels), 2))
+        assert np.array_equal(np.concatenate(strips), packets_with_any(contrasts(pixels), 2))
 
 
 @pytest.mark.parametrize(("width", "height"), [(64, 48), (61, 47), (5, 3), (1, 1), (3, 130)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from minirt.rendering.sampling.allocation import FASTEST, MOST, allocate, coefficients
+from minirt.rendering.sampling.allocation import DOUBLINGS_A_ROUND, MOST_DOUBLINGS, allocate, coefficients
 from minirt.rendering.sampling.replicates import Replicates
 
 RANDOM = np.random.default_rng(3)
@@ -26,7 +26,7 @@ def test_it_leaves_the_share_that_is_asked_for(share: float) -> None:
     found = allocate(C, NONE, share, np.inf)
     assert 0.97 * share < error(found) / error(NONE) <= share
     assert found.min() >= 0
-    assert found.max() <= FASTEST
+    assert found.max() <= DOUBLINGS_A_ROUND
 
 
 def test_it_is_nearly_as_cheap_as_can_be() -> None:
@@ -35,7 +35,7 @@ def test_it_is_nearly_as_cheap_as_can_be() -> None:
     low, high = 0.0, 1e6
     for _ in range(100):
         middle = (low + high) / 2
-        best = np.clip(middle * C**0.4, 1, 2**FASTEST)
+        best = np.clip(middle * C**0.4, 1, 2**DOUBLINGS_A_ROUND)
         low, high = (middle, high) if (C * best**-1.5).sum() > 0.5 * error(NONE) else (low, middle)
     assert best.sum() <= price(found) < best.sum() + 0.4 * (best.sum() - C.size)
 
@@ -50,11 +50,11 @@ def test_packets_keep_what_they_have() -> None:
     old = RANDOM.integers(0, 5, C.shape)
     found = allocate(C, old, 0.5, np.inf)
     assert (found >= old).all()
-    assert (found <= old + FASTEST).all()
+    assert (found <= old + DOUBLINGS_A_ROUND).all()
 
 
 def test_what_cannot_be_better_stays() -> None:
-    full = np.full(C.shape, MOST)
+    full = np.full(C.shape, MOST_DOUBLINGS)
     assert np.array_equal(allocate(C, full, 0.1, np.inf), full)
     assert np.array_equal(allocate(np.zeros(C.shape), NONE, 0.5, np.inf), NONE)
 

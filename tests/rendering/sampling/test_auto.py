@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import minirt
 from minirt.kernel.frame import DOWN
 from minirt.rendering import Renderer
-from minirt.rendering.sampling.auto import Auto, Task
+from minirt.rendering.sampling.auto import AutoSampler, Task
 from minirt.rendering.sampling.outcome import Outcome
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.cylinder import Cylinder
@@ -178,14 +178,14 @@ def test_a_time_is_kept_and_used(clock: Clock, rounds: float) -> None:
 def test_a_time_is_kept_where_each_round_is_twice_as_slow_as_the_one_before(
     clock: Clock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    grow, rounds = Auto.grow, list[int]()
+    grow, rounds = AutoSampler.grow, list[int]()
 
-    def slower(self: Auto, new: NDArray[np.int64]) -> bool:
+    def slower(self: AutoSampler, new: NDArray[np.int64]) -> bool:
         rounds.append(clock.packets)
         clock.slowness *= 2
         return grow(self, new)
 
-    monkeypatch.setattr(Auto, "grow", slower)
+    monkeypatch.setattr(AutoSampler, "grow", slower)
     reach(ALL, seconds=50 * FIRST)
     assert len(rounds) >= 3
     assert 0.8 * 50 * FIRST < clock.wall <= 50 * FIRST
@@ -221,19 +221,19 @@ def test_cancelling_ends_it_and_leaves_the_picture_alone() -> None:
 
 def test_a_cancel_between_two_frames_is_heard(monkeypatch: pytest.MonkeyPatch) -> None:
     renderer = Renderer(2)
-    grow = Auto.grow
+    grow = AutoSampler.grow
 
-    def cancelled(self: Auto, new: NDArray[np.int64]) -> bool:
+    def cancelled(self: AutoSampler, new: NDArray[np.int64]) -> bool:
         renderer.cancel()
         return grow(self, new)
 
-    monkeypatch.setattr(Auto, "grow", cancelled)
+    monkeypatch.setattr(AutoSampler, "grow", cancelled)
     assert renderer.reach(ALL, np.zeros((HEIGHT, WIDTH, 4), np.uint8), 1e-6) is None
 
 
 def test_each_sample_is_made_once_and_both_halves_are_shifted_apart() -> None:
     done: list[Task] = []
-    auto = Auto(lambda tasks: not done.extend(tasks), 32, 64, 4)
+    auto = AutoSampler(lambda tasks: not done.extend(tasks), 32, 64, 4)
     assert auto.begin()
     assert auto.grow(np.arange(128).reshape(8, 16) % 4)
     count = np.zeros((2, 8, 16), int)
