@@ -164,7 +164,7 @@ class Renderer:
         for _ in range(TRIES):
             if self.busy.acquire(timeout=PATIENCE):
                 try:
-                    return pick.pick(scene, width, height, x, y, self.packing.tables_of(scene.shapes))
+                    return pick.pick(scene, width, height, x, y, self.packing.shape_arrays_for(scene.shapes))
                 finally:
                     self.busy.release()
             self.cancel()

@@ -126,8 +126,8 @@ def test_what_is_packed_after_edits_is_what_would_be_packed_at_first() -> None:
         scene = edit(scene)
         assert_same(packing.pack(scene, 24, 16), scene)
         sizes = [shape.parts for shape in scene.shapes]
-        assert np.array_equal(packing.tables.owner, np.repeat(np.arange(len(sizes)), sizes))
-        assert packing.tables.start.tolist() == [0, *np.cumsum(sizes)]
+        assert np.array_equal(packing.shape_arrays.owner, np.repeat(np.arange(len(sizes)), sizes))
+        assert packing.shape_arrays.first_primitive.tolist() == [0, *np.cumsum(sizes)]
 
 
 def test_materials_are_those_of_the_mesh() -> None:

@@ -23,7 +23,9 @@ from tests.kernel.pictures import ALL, EYE, LAMP, SHAPES, linear
 def packed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What was packed so far."""
     done: list[Any] = []
-    monkeypatch.setattr(primitives, "packed_rows", lambda new, numbers=primitives.packed_rows: done.extend(new) or numbers(new))
+    monkeypatch.setattr(
+        primitives, "packed_rows", lambda new, numbers=primitives.packed_rows: done.extend(new) or numbers(new)
+    )
     return done
 
 
@@ -116,10 +118,10 @@ def test_who_looks_at_the_arrays_of_another_scene_does_no_harm() -> None:
     keeper = Packing()
     for scene, other in ((ALL, edited), (edited, ALL), (ALL, edited)):
         keeper.pack(scene, 24, 16)
-        assert keeper.tables_of(other.shapes).shapes == other.shapes
+        assert keeper.shape_arrays_for(other.shapes).shapes == other.shapes
         assert keeper.notes == []
         assert_same(keeper.pack(other, 24, 16), other)
-        keeper.tables_of(scene.shapes)
+        keeper.shape_arrays_for(scene.shapes)
         assert_same(keeper.pack(other, 24, 16), other)
 
 

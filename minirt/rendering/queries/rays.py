@@ -62,7 +62,7 @@ def checked_vectors(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 class Tracer:
-    """Keeps threads and the tree of the last scene. Any thread may call it; rays are traced for one call at a time."""
+    """Keeps threads and the tree of the last scene. Any thread may call it; rays are arrays for one call at a time."""
 
     shapes: tuple[Shape, ...] | None = None  # of the tree
 
@@ -76,7 +76,7 @@ class Tracer:
         return ThreadPool(self.threads)
 
     @cached_property
-    def tables(self) -> Any:
+    def shape_arrays(self) -> Any:
         """The shapes of the last scene."""
         return import_module("minirt.rendering.packing.shape_arrays").ShapeArrays()
 
@@ -100,14 +100,14 @@ class Tracer:
                 job = partial(self.kernel.trace_rays, counter, self.bvh, origins, directions, *hits)
                 self.workers.run([job] * self.threads, partial(counter.fill, count))
                 there = hits.owner >= 0
-                hits.owner[there] = self.tables.owner[hits.owner[there]]
+                hits.owner[there] = self.shape_arrays.owner[hits.owner[there]]
         return hits
 
     def plant(self, shapes: tuple[Shape, ...]) -> None:
         """Build the tree over the shapes of a scene."""
         self.shapes = None
-        self.tables.update(shapes)
-        self.bvh = import_module("minirt.rendering.packing.bvh").build_bvh(self.tables, self.kernel)
+        self.shape_arrays.update(shapes)
+        self.bvh = import_module("minirt.rendering.packing.bvh").build_bvh(self.shape_arrays, self.kernel)
         self.shapes = shapes
 
 

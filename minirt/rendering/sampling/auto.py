@@ -24,7 +24,9 @@ from minirt.rendering.sampling.outcome import Outcome
 from minirt.rendering.sampling.replicates import Replicates
 from minirt.rendering.sampling.sobol import digital_shifts, shifted, sobol
 
-SHIFT_CLASSES = 8  # of packets, with shifts of their own, so that an edge along a row of pixels meets as many more of them
+SHIFT_CLASSES = (
+    8  # of packets, with shifts of their own, so that an edge along a row of pixels meets as many more of them
+)
 LEAST_LEFT, MOST_LEFT = 0.25, 0.8  # of the squared error, by a round
 SHARE_OF_TIME = 0.4  # of the time that is left, by a round
 

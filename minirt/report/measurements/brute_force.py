@@ -19,9 +19,9 @@ MOST = 2**24  # entries of lists
 class BruteForce(Packing):
     """Packs scenes with all shapes in the list of every tile, and of every lamp."""
 
-    def traced(self, scene: Scene, width: int, height: int) -> SceneArrays:
+    def pack_double(self, scene: Scene, width: int, height: int) -> SceneArrays:
         """RenderError where the lists would fill the memory."""
-        traced, count = super().traced(scene, width, height), tiles(width) * tiles(height)
+        traced, count = super().pack_double(scene, width, height), tiles(width) * tiles(height)
         if count * len(traced.slots) > MOST:
             raise RenderError(f"{len(traced.slots)} shapes in each of {count} tiles are too many")
         return with_all_shapes(traced, count)

@@ -73,7 +73,7 @@ def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> 
 def lost_in_single(scene: Scene, packing: Packing, width: int, height: int) -> Iterator[Stiff]:
     """What looks otherwise than it should in a picture that was made of a scene in float32."""
     if scene.shapes and packing.pack(scene, width, height).camera.dtype == np.float32:
-        for each in stiff_shapes(scene, packing.tables, width, height):
+        for each in stiff_shapes(scene, packing.shape_arrays, width, height):
             if each.figures.get("single", 0.0) > VISIBLE:
                 yield each
 
@@ -99,7 +99,7 @@ def views(tables: ShapeArrays, camera: np.ndarray) -> Views:
         with np.errstate(all="ignore"):
             on, _ = kind_of(packed.dtype.names).surface(packed_columns(packed), Vec(*eye))
         nearest[mine] = np.stack([np.broadcast_to(part, len(mine)) for part in (on.x, on.y, on.z)], axis=-1)
-        if not tables.is_flat[group]:  # one with an end is in its box, not everywhere on the plane that it lies in
+        if not tables.is_plane[group]:  # one with an end is in its box, not everywhere on the plane that it lies in
             middle, half = tables.boxes[mine, :3], tables.boxes[mine, 3:]
             nearest[mine] = np.clip(nearest[mine], middle - half, middle + half)
         owners, part_of = np.unique(tables.owner[mine], return_inverse=True)

@@ -27,9 +27,9 @@ COLOURED = range(6)
 
 def bound() -> tuple[Any, Any]:
     """All pages as the kernel has them: texels and pictures."""
-    album = TexturePool.__new__(TexturePool)
-    album.pages = PAGES
-    return tuple(album.bound().values())  # type: ignore[return-value]
+    pool = TexturePool.__new__(TexturePool)
+    pool.images = PAGES
+    return tuple(pool.arrays().values())  # type: ignore[return-value]
 
 
 TEXELS, PICTURES = bound()

@@ -34,12 +34,12 @@ def test_many_shapes_at_once_are_the_same_numbers_as_each() -> None:
         packed = [c for part in shape.pack() for c in ((part.x, part.y, part.z) if hasattr(part, "x") else (part,))]
         assert np.hstack([np.ravel(part) for part in keeper.rows[kind][number]]).tolist() == packed
         assert keeper.colours_and_extents[i, :3].tolist() == [c / 255 for c in shape.colour]
-        balls = keeper.balls[keeper.first[i] : keeper.first[i + 1]]
+        balls = keeper.balls[keeper.first_ball[i] : keeper.first_ball[i + 1]]
         assert balls[:, :3].tolist() == [list(centre) for centre, _ in shape.balls()]
         for ball, (centre, radius) in zip(balls, shape.balls(), strict=True):
             assert radius + 1e-13 * max(map(abs, centre)) < ball[3] < radius + 1e-11 * (radius + max(map(abs, centre)))
-    assert [mixed[i] for i in keeper.flat] == [shape for shape in mixed if isinstance(shape, Plane)]
-    assert [keeper.planes[i, :3].tolist() for i in range(10)] == [list(mixed[i].normal) for i in keeper.flat]
+    assert [mixed[i] for i in keeper.plane_indices] == [shape for shape in mixed if isinstance(shape, Plane)]
+    assert [keeper.planes[i, :3].tolist() for i in range(10)] == [list(mixed[i].normal) for i in keeper.plane_indices]
     assert not keeper.update(keeper.shapes)
     assert not keeper.update((*mixed,))
 
@@ -79,7 +79,7 @@ def test_a_kind_that_comes_or_goes_lays_everything_out_anew() -> None:
     for shapes in (MANY[:3], SHAPES, MANY[:2], (), SHAPES):
         assert keeper.update(tuple(shapes))
         assert [len(rows) for rows in keeper.rows] == [
-            sum(type(each) is kind for each in shapes) for kind in keeper.numbers
+            sum(type(each) is kind for each in shapes) for kind in keeper.group_numbers
         ]
         assert sum(map(len, keeper.rows)) == len(shapes)
 
