@@ -16,7 +16,7 @@ from minirt.shapes import ALL_KINDS, Shape
 
 
 def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Iterator[str]:
-    """Describe the decisions. Lights and shapes are numbered in the order of the file, each kind of shape on its own."""
+    """Describe the decisions. Lights, and the shapes of each kind, are numbered in the order of the file."""
     shapes = f"{len(shape_arrays.slots)} shape{'s' * (len(shape_arrays.slots) != 1)}"
     used = {type(shape) for shape in scene.shapes}
     yield f"kernel for {plurals(used)}"

@@ -1,5 +1,5 @@
-"""Visibility culling: bins the shapes that the eye sees into screen tiles, and those that a light sees into the cells of
-its light buffer (Haines and Greenberg, The light buffer: a shadow-testing accelerator, 1986)."""
+"""Visibility culling: bins the shapes that the eye sees into screen tiles, and the shapes that a light sees into the
+cells of its light buffer (Haines and Greenberg, The light buffer: a shadow-testing accelerator, 1986)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Features of a scene: kinds of shapes, materials and lights that the kernel is compiled for only where they are used."""
+"""Features of a scene: the shapes, materials and lights that its kernel is compiled for."""
 
 from __future__ import annotations
 

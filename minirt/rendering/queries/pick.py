@@ -70,7 +70,7 @@ def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray,
 
 
 def pixel_hits(shape: Shape, camera: Camera, width: int, height: int, x: Any, y: Any) -> tuple[Any, Any, Vec, Vec]:
-    """Whether and where rays through pixels hit a shape, their origin and their directions; for a mesh, only one ray."""
+    """Whether and where rays through pixels hit a shape, their origin and directions; for a mesh, only one ray."""
     numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
     kind = next(kind for kind in ALL_KINDS if kind.element is type(shape))
     with np.errstate(all="ignore"):

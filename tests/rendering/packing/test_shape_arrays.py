@@ -67,7 +67,7 @@ def test_shapes_that_come_and_go_leave_the_numbers_of_the_others(edit, monkeypat
     monkeypatch.setattr(keeper, "write", lambda group, indices: (written.extend(indices), write(group, indices)))
     assert keeper.update(after)
     assert len(written) <= len(SHAPES)
-    for name in ("slots", "colours_and_extents", "boxes", "first", "balls", "flat", "planes"):
+    for name in ("slots", "colours_and_extents", "boxes", "first_ball", "balls", "plane_indices", "planes"):
         assert np.array_equal(getattr(keeper, name), getattr(fresh, name)), name
     for kept, made in zip(keeper.rows, fresh.rows, strict=True):
         assert np.array_equal(kept, made)

@@ -105,7 +105,7 @@ GOOD = np.ones((4, 3))
         (GOOD * 1j, GOOD, r"origins must be numbers of shape \(n, 3\)"),
     ],
 )
-def test_what_is_wrong_is_named(origins: Any, directions: Any, message: str) -> None:
+def test_an_error_names_the_argument(origins: Any, directions: Any, message: str) -> None:
     for shapes in ((), (BALL,)):
         with pytest.raises(ValueError, match=f"^{message}"):
             minirt.trace(scene(*shapes), origins, directions)
@@ -121,15 +121,15 @@ def test_one_thread_and_many_give_the_same_bits() -> None:
             assert np.array_equal(part, same, equal_nan=True)
 
 
-def test_edited_scenes_are_traced_anew_and_the_same_one_is_not_sorted_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_bvh_is_built_anew_for_an_edited_scene_and_kept_for_the_same_one(monkeypatch: pytest.MonkeyPatch) -> None:
     origins, directions = np.zeros((1, 3)), np.array([[0.0, 0, 1]])
     before = scene(BALL, FLOOR)
-    planted: list[Any] = []
-    plant = rays.Tracer.plant
-    monkeypatch.setattr(rays.Tracer, "plant", lambda tracer, shapes: planted.append(shapes) or plant(tracer, shapes))
+    built: list[Any] = []
+    build = rays.Tracer.build_bvh
+    monkeypatch.setattr(rays.Tracer, "build_bvh", lambda tracer, shapes: built.append(shapes) or build(tracer, shapes))
     for made, distance in ((before, 4), (before, 4), (before.replace(BALL, diameter=4), 3), (before, 4)):
         assert minirt.trace(made, origins, directions).distance.tolist() == [distance]
-    assert len(planted) == 3
+    assert len(built) == 3
 
 
 def test_several_threads_may_trace_at_once() -> None:
@@ -142,7 +142,7 @@ def test_several_threads_may_trace_at_once() -> None:
         assert all(np.array_equal(one, other, equal_nan=True) for one, other in zip(right, hits, strict=True))
 
 
-def test_a_picture_needs_no_tree_and_no_rays_need_no_compiler() -> None:
+def test_a_picture_imports_no_bvh_kernel_and_an_import_no_compiler() -> None:
     program = """
 import sys, minirt
 scene = minirt.load("scenes/subject.rt")

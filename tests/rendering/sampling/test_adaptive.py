@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from minirt.kernel.frame import DOWN
 from minirt.rendering import Renderer
-from minirt.rendering.sampling.adaptive import CONTRAST, STRIP, contrasts, edge_packets, packets_with_any
+from minirt.rendering.sampling.adaptive import CONTRAST, STRIP, edge_packets, edge_pixels, packets_with_any
 from minirt.scene import Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, TWO, picture
 from tests.rendering.cancelling import ENDLESS, SAMPLES, cancelled
@@ -37,13 +37,13 @@ def error(pixels: Pixels, fine: Pixels) -> float:
 def near_edges(pixels: Pixels) -> NDArray[np.bool_]:
     """Where pixels may change: so close to one with contrast that they may be in its packet."""
     near = np.zeros(pixels.shape[:2], bool)
-    for y, x in np.argwhere(contrasts(pixels)):
+    for y, x in np.argwhere(edge_pixels(pixels)):
         near[max(y - DOWN, 0) : y + DOWN, max(x - 7, 0) : x + 8] = True
     return near
 
 
 def test_a_flat_picture_has_no_contrast() -> None:
-    assert not contrasts(flat(5, 7)).any()
+    assert not edge_pixels(flat(5, 7)).any()
 
 
 @pytest.mark.parametrize("channel", [0, 1, 2])
@@ -52,7 +52,7 @@ def test_a_pixel_that_differs_stands_out_with_its_four_neighbours(channel: int) 
         for sign in (1, -1):
             pixels = flat(6, 8)
             pixels[2, 3, channel] = 100 + sign * min(least, 100 if sign < 0 else 155)
-            edge = contrasts(pixels)
+            edge = edge_pixels(pixels)
             assert edge.sum() == found
             if found:
                 assert edge[2, 2:5].all()
@@ -62,15 +62,15 @@ def test_a_pixel_that_differs_stands_out_with_its_four_neighbours(channel: int) 
 def test_small_differences_in_all_colours_do_not_add_up() -> None:
     pixels = flat(4, 4)
     pixels[2, 2, :3] += CONTRAST
-    assert not contrasts(pixels).any()
+    assert not edge_pixels(pixels).any()
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1)])
 def test_pictures_of_one_line_or_column(shape: tuple[int, int]) -> None:
     pixels = flat(*shape)
-    assert contrasts(pixels).shape == shape
+    assert edge_pixels(pixels).shape == shape
     pixels[-1, -1, :3] = 0
-    assert contrasts(pixels).sum() == min(2, pixels.shape[0] * pixels.shape[1]) * (shape != (1, 1))
+    assert edge_pixels(pixels).sum() == min(2, pixels.shape[0] * pixels.shape[1]) * (shape != (1, 1))
 
 
 @pytest.mark.parametrize("across", [1, 2, 4])
@@ -95,7 +95,7 @@ def test_strips_together_are_the_whole() -> None:
             pixels[STRIP - 1, 5, :3] = pixels[STRIP, 15, :3] = 200
         strips = list(edge_packets(pixels, 2))
         assert len(strips) == -(-height // STRIP)
-        assert np.array_equal(np.concatenate(strips), packets_with_any(contrasts(pixels), 2))
+        assert np.array_equal(np.concatenate(strips), packets_with_any(edge_pixels(pixels), 2))
 
 
 @pytest.mark.parametrize(("width", "height"), [(64, 48), (61, 47), (5, 3), (1, 1), (3, 130)])
@@ -104,7 +104,7 @@ def test_flat_parts_keep_their_bytes_and_edges_get_all_their_samples(width: int,
     made = refined(one, 16)
     away = ~near_edges(one)
     assert np.array_equal(made[away], one[away])
-    edge = contrasts(one)
+    edge = edge_pixels(one)
     assert np.array_equal(made[edge], many[edge])
 
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 import minirt
 from minirt.kernel.frame import DOWN
 from minirt.rendering import Renderer
-from minirt.rendering.sampling.auto import AutoSampler, Task
+from minirt.rendering.frame_arguments import SamplePass
+from minirt.rendering.sampling.auto import AutoSampler
 from minirt.rendering.sampling.outcome import Outcome
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.cylinder import Cylinder
@@ -178,14 +179,14 @@ def test_a_time_is_kept_and_used(clock: Clock, rounds: float) -> None:
 def test_a_time_is_kept_where_each_round_is_twice_as_slow_as_the_one_before(
     clock: Clock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    grow, rounds = AutoSampler.grow, list[int]()
+    grow, rounds = AutoSampler.add_samples, list[int]()
 
     def slower(self: AutoSampler, new: NDArray[np.int64]) -> bool:
         rounds.append(clock.packets)
         clock.slowness *= 2
         return grow(self, new)
 
-    monkeypatch.setattr(AutoSampler, "grow", slower)
+    monkeypatch.setattr(AutoSampler, "add_samples", slower)
     reach(ALL, seconds=50 * FIRST)
     assert len(rounds) >= 3
     assert 0.8 * 50 * FIRST < clock.wall <= 50 * FIRST
@@ -221,25 +222,25 @@ def test_cancelling_ends_it_and_leaves_the_picture_alone() -> None:
 
 def test_a_cancel_between_two_frames_is_heard(monkeypatch: pytest.MonkeyPatch) -> None:
     renderer = Renderer(2)
-    grow = AutoSampler.grow
+    grow = AutoSampler.add_samples
 
     def cancelled(self: AutoSampler, new: NDArray[np.int64]) -> bool:
         renderer.cancel()
         return grow(self, new)
 
-    monkeypatch.setattr(AutoSampler, "grow", cancelled)
+    monkeypatch.setattr(AutoSampler, "add_samples", cancelled)
     assert renderer.reach(ALL, np.zeros((HEIGHT, WIDTH, 4), np.uint8), 1e-6) is None
 
 
 def test_each_sample_is_made_once_and_both_halves_are_shifted_apart() -> None:
-    done: list[Task] = []
+    done: list[SamplePass] = []
     auto = AutoSampler(lambda tasks: not done.extend(tasks), 32, 64, 4)
-    assert auto.begin()
-    assert auto.grow(np.arange(128).reshape(8, 16) % 4)
+    assert auto.first_round()
+    assert auto.add_samples(np.arange(128).reshape(8, 16) % 4)
     count = np.zeros((2, 8, 16), int)
     for number, task in enumerate(done):
-        assert task.places.shape[1:] == (4 * DOWN, 2)
-        count[number % 2] += task.packets * len(task.places)
+        assert task.positions.shape[1:] == (4 * DOWN, 2)
+        count[number % 2] += task.packets * len(task.positions)
     assert np.array_equal(count[0], 2 ** (np.arange(128).reshape(8, 16) % 4))
     assert np.array_equal(count[0], count[1])
-    assert all(not np.isclose(a.places, b.places).any() for a, b in zip(done[::2], done[1::2], strict=True))
+    assert all(not np.isclose(a.positions, b.positions).any() for a, b in zip(done[::2], done[1::2], strict=True))

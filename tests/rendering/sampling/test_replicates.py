@@ -53,10 +53,10 @@ def test_samples_are_added_by_weight_and_compared() -> None:
     before = halves.means.copy()
     wanted = RANDOM.random(halves.packets) < 0.3
     weights = RANDOM.random(halves.packets)
-    halves.fresh[:, :45, :50] = RANDOM.random((2, 45, 50, 3))
+    halves.new_means[:, :45, :50] = RANDOM.random((2, 45, 50, 3))
     halves.add(wanted, weights)
     weight = np.kron(wanted * weights, np.ones((DOWN, 4)))[None, ..., None]
-    assert np.abs(halves.means - (before * (1 - weight) + halves.fresh * weight)).max() < 1e-12
+    assert np.abs(halves.means - (before * (1 - weight) + halves.new_means * weight)).max() < 1e-12
     found = halves.judges.copy(), halves.guides.copy()
     halves.compare()
     assert np.allclose(found, (halves.judges, halves.guides))
