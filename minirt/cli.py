@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from minirt.arguments import SAMPLES, USAGE, WINDOW_SAMPLES, Arguments, arguments
 from minirt.errors import MiniRTError, MlxError, ReplayError
-from minirt.gc_pause import uncollected
+from minirt.gc_pause import gc_paused
 
 if TYPE_CHECKING:
     from minirt.image import Image
@@ -120,7 +120,7 @@ def report(scene: Scene, asked: argparse.Namespace) -> int:
 
 def headless(scene: Scene, asked: argparse.Namespace) -> int:
     """Render to the output."""
-    with uncollected():
+    with gc_paused():
         write(picture(scene, asked), asked.output)
     return OK
 
@@ -189,7 +189,7 @@ def turntable(scene: Scene, asked: argparse.Namespace) -> int:
         )
         for seen in with_progress(views(scene, asked.turntable), asked.turntable, "picture")
     )
-    with uncollected():
+    with gc_paused():
         minirt.save_movie(made, asked.output)
     return OK
 

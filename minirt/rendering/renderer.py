@@ -12,7 +12,7 @@ from time import perf_counter
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.gc_pause import uncollected
+from minirt.gc_pause import gc_paused
 from minirt.rendering.frame_arguments import NO_LINEAR
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.queries import pick, preview
@@ -69,7 +69,7 @@ class Renderer:
 
         Another process compiles, provided that the result can be cached on disk. RenderError where that fails.
         """
-        with uncollected() if not self.kernels.ready else nullcontext():
+        with gc_paused() if not self.kernels.ready else nullcontext():
             pixels = np.zeros((1, 1, 4), np.uint8)
             self.kernels.compile(scene, pixels)
             self.render(scene, pixels)

@@ -1,4 +1,4 @@
-"""Single rays through a scene, as the library traces them."""
+"""Closest-hit queries of the library, compared with 50-digit arithmetic."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def scene(*shapes: Any) -> Scene:
     return Scene((AMBIENT, EYE, *shapes))
 
 
-def test_where_rays_hit() -> None:
+def test_rays_hit_at_the_expected_distances_points_and_normals() -> None:
     hits = minirt.trace(
         scene(BALL, FLOOR, COLUMN),
         [[0, 0, 0], [0, 0, 5], [0, 3, 0], [0, 0, 0], [0, 0, 0], [4, 9, 0]],
@@ -45,7 +45,7 @@ def test_where_rays_hit() -> None:
     assert np.array_equal(hits.normal, [[0, 0, -1], [0, 1, 0], [0, 1, 0], nan, [-1, 0, 0], [0, 1, 0]], equal_nan=True)
 
 
-def test_rays_as_the_oracle_traces_them() -> None:
+def test_rays_hit_as_in_exact_arithmetic() -> None:
     random = np.random.default_rng(8)
     shapes = some(random, 30)
     origins, directions = rays_at(random, shapes, 120)
@@ -77,7 +77,7 @@ def test_there_may_be_no_rays_no_shapes_and_one_ray() -> None:
     assert minirt.trace(scene(FLOOR), [[0, 0, 0]], [[0, -1, 0]]).owner.tolist() == [0]
 
 
-def test_the_arguments_may_be_any_numbers_in_any_order_of_memory() -> None:
+def test_the_arguments_may_have_any_type_and_memory_layout() -> None:
     origins, directions = np.zeros((40, 3), np.float32), np.tile([0.0, 0, 1], (40, 1))
     fixed = directions.copy()
     fixed.flags.writeable = False
