@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import minirt
-from minirt.gc_pause import uncollected
+from minirt.gc_pause import gc_paused
 from minirt.mlx import Mlx
 from minirt.scene import Scene
 from minirt.viewer.app.session import Session
@@ -98,7 +98,7 @@ def started(
     """A session with its window open. MlxError."""
     display = m.mlx_init()
     try:
-        with uncollected():
+        with gc_paused():
             return Session(
                 m,
                 display,

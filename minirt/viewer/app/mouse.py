@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from minirt.errors import MiniRTError
 from minirt.mlx import Button
-from minirt.rendering.queries.pick import place
+from minirt.rendering.queries.pick import surface_point
 from minirt.scene import Camera
 from minirt.shapes import Shape
 from minirt.viewer.display.icons import icon_at
@@ -104,4 +104,4 @@ class Mouse:
         shape: Shape | None = session.pick(state.scene, win.width, win.height, x, y)
         if selecting:
             session.show(selection.picked(state, shape))
-        return place(shape, state.scene.camera, win.width, win.height, x, y) if shape else None
+        return surface_point(shape, state.scene.camera, win.width, win.height, x, y) if shape else None

@@ -16,7 +16,7 @@ import pytest
 from numpy.typing import NDArray
 
 import minirt
-from minirt.rendering.sampling.adaptive import contrasts
+from minirt.rendering.sampling.adaptive import edge_pixels
 from tests.viewer.resting import until_at_rest, until_only_one_runs
 from tests.waiting import HANG_LIMIT, until
 from tests.windows import SCREEN, Desktop
@@ -97,7 +97,7 @@ def test_the_window_shows_the_refined_picture(viewer):
     viewer.shows(refined)
     plain = minirt.render(minirt.load(viewer.path), *SIZE).array
     many = minirt.render(minirt.load(viewer.path), *SIZE, samples=16).array
-    edge = contrasts(np.dstack([plain, np.full(plain.shape[:2], 255, np.uint8)]))
+    edge = edge_pixels(np.dstack([plain, np.full(plain.shape[:2], 255, np.uint8)]))
     assert np.abs(many.astype(int) - refined)[edge].mean() < 0.05 * np.abs(many.astype(int) - plain)[edge].mean()
     assert (plain == refined).all(axis=2).mean() > 0.75
     viewer.key("Escape")

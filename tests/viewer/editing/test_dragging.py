@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from minirt.mlx import Key
-from minirt.rendering.queries.pick import place
+from minirt.rendering.queries.pick import surface_point
 from minirt.scene import Camera
 from minirt.viewer.editing.measure import middle_of
 from minirt.viewer.editing.projection import dot, projection
@@ -37,7 +37,7 @@ def test_places_and_pixels_are_each_others_inverse(x, y, z, fov, roll, at):
 
 def held(shape, x, y):
     """The place on a shape under a pixel."""
-    return place(shape, scene().camera, WIDTH, HEIGHT, x, y)
+    return surface_point(shape, scene().camera, WIDTH, HEIGHT, x, y)
 
 
 def test_what_is_under_the_pointer_stays_there():
@@ -59,7 +59,7 @@ def test_along_an_axis_nothing_else_changes(presses, axis):
     # No other place of the axis is nearer to the pointer's ray.
     seen = projection(session.state.scene.camera, WIDTH, HEIGHT)
     (ball,) = scene(text).spheres
-    start = place(ball, scene(text).camera, WIDTH, HEIGHT, 32, 24)
+    start = surface_point(ball, scene(text).camera, WIDTH, HEIGHT, 32, 24)
 
     def distance(step):
         point = [a + (centre[axis] + step) * (i == axis) for i, a in enumerate(start)]
