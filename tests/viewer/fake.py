@@ -14,7 +14,7 @@ from minirt.rendering import pick
 from minirt.scene import Scene, dump, parse
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.painter import Wanted
+from minirt.viewer.display.painter import IsWanted
 from tests.waiting import HANG_LIMIT, until
 
 TEXT = """\
@@ -76,7 +76,7 @@ class FakeRenderer:
         return np.full((2, 3, 4), colour_of(scene), np.uint8)
 
     def render(
-        self, scene: Scene, pixels: NDArray[np.uint8], samples: int = 1, is_wanted: Wanted = lambda: True
+        self, scene: Scene, pixels: NDArray[np.uint8], samples: int = 1, is_wanted: IsWanted = lambda: True
     ) -> bool:
         self.samples.append(samples)
         if not self.may_finish(is_wanted):
@@ -85,7 +85,7 @@ class FakeRenderer:
         self.rendered.append((pixels.shape[1], pixels.shape[0]))
         return True
 
-    def refine(self, scene: Scene, pixels: NDArray[np.uint8], samples: int, is_wanted: Wanted = lambda: True) -> bool:
+    def refine(self, scene: Scene, pixels: NDArray[np.uint8], samples: int, is_wanted: IsWanted = lambda: True) -> bool:
         """Marks as many pixels of the first row as there are samples, the first half before it can be cancelled."""
         assert (pixels[1:] == colour_of(scene)).all()
         self.refined.append(samples)
@@ -95,7 +95,7 @@ class FakeRenderer:
         pixels[0, :samples] = MARK
         return True
 
-    def may_finish(self, is_wanted: Wanted) -> bool:
+    def may_finish(self, is_wanted: IsWanted) -> bool:
         """Wait for the gate; False where the picture was cancelled."""
         self.cancel_asked.clear()
         self.started.set()

@@ -20,25 +20,25 @@ from PIL import Image
 from minirt.scene import load
 from minirt.viewer.input.bindings import BINDINGS
 from minirt.viewer.input.chords import MOUSE
-from tests.viewer.family import compilers
-from tests.viewer.hands import do
-from tests.viewer.resting import until_at_rest, until_events_are_done
+from tests.viewer.idle_waits import until_at_rest, until_events_are_done
+from tests.viewer.process_tree import compilers
+from tests.viewer.scenes import WITH_CYLINDER
+from tests.viewer.xdotool import do
 from tests.waiting import HANG_LIMIT, until
 from tests.windows import SCREEN, Desktop, open_desktop
 
-TEXT = """\
-A 0.2 255,255,255
-C 0,1,8 0,-0.1,-0.995 60
-L 5,5,5 0.6 255,255,255
-sp 0,0,0 2 255,60,60
-pl 0,-1,0 0,1,0 90,200,90
-cy 2,0,0 0,1,0 1 2 60,60,255
-"""
 SIZE = (320, 240)
 KEPT_AWAY = {"quit"}
 SELDOM = {"save", "save copy", "screenshot", "reload", "toggle help", "toggle full screen", "delete"}
 FULL_SCREEN = [f"press {key}" for each in BINDINGS if each.action == "toggle full screen" for key in each.keys]
-OTHERS = (TEXT, TEXT.replace("A 0.2", "A 0.6"), "A 0.2\n", "sp", "", TEXT + "sp 1,1,1 0.5 9,99,200 mirror:0.4\n")
+OTHERS = (
+    WITH_CYLINDER,
+    WITH_CYLINDER.replace("A 0.2", "A 0.6"),
+    "A 0.2\n",
+    "sp",
+    "",
+    WITH_CYLINDER + "sp 1,1,1 0.5 9,99,200 mirror:0.4\n",
+)
 BATCH = 15  # lines between two looks at the program
 FILE_CHANGES = 0.15  # how often another program writes the file then
 SETTLED = 0.5  # of the play: what the program needs to have seen everything once
@@ -185,7 +185,7 @@ class Play:
         if self.fills_screen:
             self.do(FULL_SCREEN[0])
             self.await_full_screen()
-        self.write(TEXT)
+        self.write(WITH_CYLINDER)
         self.do("press Ctrl+R", "resize {}x{}".format(*SIZE))
         until(lambda: not compilers(self.process.pid), "the end of the compiler")
         until_at_rest(self.process.pid)
@@ -200,7 +200,7 @@ def play(desktop: Desktop, share: Callable[[int], float], seed: int, folder: Pat
     `share`: of the whole play, how much is over after so many lines.
     """
     path = folder / "scene.rt"
-    path.write_text(TEXT)
+    path.write_text(WITH_CYLINDER)
     Image.new("RGB", (8, 8), (200, 120, 40)).save(folder / "picture.png")
     command = [sys.executable, "-W", "error", "-m", "minirt", str(path), "--size", f"{SIZE[0]}x{SIZE[1]}"]
     with desktop.program(*command) as process:

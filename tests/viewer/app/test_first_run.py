@@ -12,19 +12,12 @@ import pytest
 
 import minirt
 from tests.viewer.app.test_real_window import SIZE, Viewer, picture, viewing
-from tests.viewer.family import compilers, group
+from tests.viewer.process_tree import compilers, group
+from tests.viewer.scenes import SPHERE_ON_PLANE
 from tests.waiting import until
 from tests.windows import Desktop
 
 pytestmark = pytest.mark.window
-
-TEXT = """\
-A 0.2 255,255,255
-C 0,1,8 0,-0.1,-0.995 60
-L 5,5,5 0.6 255,255,255
-sp 0,0,0 2 255,60,60
-pl 0,-1,0 0,1,0 90,200,90
-"""
 
 
 class FirstRun(NamedTuple):
@@ -41,7 +34,7 @@ class FirstRun(NamedTuple):
 @pytest.fixture
 def first_run(desktop: Desktop, tmp_path: Path) -> Iterator[FirstRun]:
     """The first run of the program, from the moment when it shows something; afterwards no compiler is left."""
-    with viewing(desktop, tmp_path / "first.rt", cache=tmp_path / "cache", text=TEXT) as viewer:
+    with viewing(desktop, tmp_path / "first.rt", cache=tmp_path / "cache", text=SPHERE_ON_PLANE) as viewer:
         program = viewer.process.pid
         until(lambda: bool(compilers(program)), "the compiler")
         (compiler,) = compilers(program)
@@ -78,7 +71,7 @@ def test_keys_work_on_a_preview_until_the_picture_comes(first_run):
     assert abs(preview.astype(int) - whole[between]).mean() < 12
 
     viewer.key("Tab", "Tab", "Tab", "Delete", "ctrl+s")
-    until(lambda: viewer.path.read_text() != TEXT, "the saved scene")
+    until(lambda: viewer.path.read_text() != SPHERE_ON_PLANE, "the saved scene")
     assert minirt.load(viewer.path).planes == ()
     first_run.go_on()  # and then compile again: a sphere alone has another kernel
     viewer.key("Tab")  # takes the message away

@@ -11,6 +11,7 @@ from minirt.scene import Camera, dump, parse
 from minirt.viewer.editing.state import State
 from tests.viewer import monkey
 from tests.viewer.fake import played
+from tests.viewer.scenes import WITH_CYLINDER
 
 HELD = 40e6  # bytes: what may come with pictures of other sizes
 
@@ -18,14 +19,14 @@ HELD = 40e6  # bytes: what may come with pictures of other sizes
 @pytest.mark.parametrize("seed", range(4))
 def test_in_memory(seed: int, tmp_path) -> None:
     path = tmp_path / "scene.rt"
-    path.write_text(monkey.TEXT)
+    path.write_text(WITH_CYLINDER)
     acts = (line for line in monkey.lines(random.Random(seed)) if line not in monkey.FULL_SCREEN)
     lines = [*islice(acts, 300), "show", "up Shift", "wait 0"]
     states: list[State] = []  # whenever time has gone by
     undone = played(
         *lines,
         *["press Ctrl+Z"] * 400,
-        text=monkey.TEXT,
+        text=WITH_CYLINDER,
         path=path,
         watch=lambda session: states.append(session.state),
     ).state
@@ -34,7 +35,7 @@ def test_in_memory(seed: int, tmp_path) -> None:
     assert parse(dump(scene)).scene.items == scene.items
     parse(path.read_bytes(), path)
     assert undone.past == ()
-    assert undone.scene.items == parse(monkey.TEXT).scene.items
+    assert undone.scene.items == parse(WITH_CYLINDER).scene.items
 
 
 @pytest.mark.window

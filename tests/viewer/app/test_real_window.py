@@ -17,20 +17,13 @@ from numpy.typing import NDArray
 
 import minirt
 from minirt.rendering.sampling.adaptive import contrasts
-from tests.viewer.resting import until_at_rest, until_only_one_runs
+from tests.viewer.idle_waits import until_at_rest, until_only_one_runs
+from tests.viewer.scenes import WITH_CYLINDER
 from tests.waiting import HANG_LIMIT, until
 from tests.windows import SCREEN, Desktop
 
 pytestmark = pytest.mark.window
 
-TEXT = """\
-A 0.2 255,255,255
-C 0,1,8 0,-0.1,-0.995 60
-L 5,5,5 0.6 255,255,255
-sp 0,0,0 2 255,60,60
-pl 0,-1,0 0,1,0 90,200,90
-cy 2,0,0 0,1,0 1 2 60,60,255
-"""
 SIZE = (320, 240)
 
 
@@ -63,7 +56,7 @@ def viewing(
     cache: Path | None = None,
     more: tuple[str, ...] = (),
     program: str = "minirt",
-    text: str = TEXT,
+    text: str = WITH_CYLINDER,
 ) -> Iterator[Viewer]:
     """A window with the scene `text`. `cache`: an empty folder, for a program that has to compile first; `more`
     arguments; `program`: its module."""
@@ -136,7 +129,7 @@ def test_ctrl_c_in_the_terminal(viewer):
 def test_keys_edit_and_save_the_scene(viewer):
     viewer.key("i", "i")
     viewer.key("Tab", "Tab", "e", "plus", "ctrl+s")  # to the light, to the sphere
-    until(lambda: viewer.path.read_text() != TEXT, "the saved scene")
+    until(lambda: viewer.path.read_text() != WITH_CYLINDER, "the saved scene")
     scene = minirt.load(viewer.path)
     assert scene.spheres[0].centre[1] > 0
     assert scene.spheres[0].diameter == pytest.approx(2.1)

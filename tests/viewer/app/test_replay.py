@@ -37,7 +37,7 @@ def test_what_is_still_at_the_end_has_all_samples_in_all_pixels():
     assert set(renderer.samples[3:-3]) == {1}
     assert renderer.refined == []
     session = played("hold d 0.3")
-    assert set(session.pictures.painter.renderer.samples) == {1}
+    assert set(session.refinement.painter.renderer.samples) == {1}
 
 
 def test_the_hud_is_on_the_frame_and_not_on_the_picture():
@@ -97,7 +97,7 @@ def test_azerty():
 def test_a_resize_renders_anew():
     session = played("resize 40x30")
     assert session.screen.frame.shape == (30, 40, 4)
-    assert session.pictures.painter.renderer.rendered == [(64, 48), (40, 30)]
+    assert session.refinement.painter.renderer.rendered == [(64, 48), (40, 30)]
 
 
 def test_what_ends_the_session_ends_the_replay():
@@ -121,7 +121,7 @@ def test_help_and_full_screen():
 
 def test_the_camera_goes_to_the_clipboard():
     session = played("press Ctrl+C")
-    assert session.m.mlx_get_clipboard(session.win) == "C 0,0,10 0,0,-1 90"
+    assert session.mlx.mlx_get_clipboard(session.window) == "C 0,0,10 0,0,-1 90"
     assert session.state.element.title == "camera"
 
 

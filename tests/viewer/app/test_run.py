@@ -22,11 +22,11 @@ from tests.waiting import HANG_LIMIT
 def patient(monkeypatch) -> None:
     """The painter may take as long as it needs to end; where it does not, the test fails and its process goes on."""
 
-    def leave(_status: int) -> None:
+    def fail(_status: int) -> None:
         raise AssertionError("the painter did not end")
 
-    monkeypatch.setattr(desktop, "PATIENCE", HANG_LIMIT)
-    monkeypatch.setattr(desktop, "leave", leave)
+    monkeypatch.setattr(desktop, "STOP_TIMEOUT", HANG_LIMIT)
+    monkeypatch.setattr(desktop, "exit_at_once", fail)
 
 
 class Script(Memory):

@@ -15,13 +15,15 @@ import minirt
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
 from minirt.scene import Scene, dump, load, parse
+from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Painter
 from minirt.viewer.editing.state import State
 from minirt.viewer.input.recording import record
-from tests.viewer.app.test_real_window import SIZE, TEXT, Viewer, viewing
-from tests.viewer.hands import do
+from tests.viewer.app.test_real_window import SIZE, Viewer, viewing
+from tests.viewer.scenes import WITH_CYLINDER
+from tests.viewer.xdotool import do
 from tests.waiting import until
 from tests.windows import SCREEN
 
@@ -67,7 +69,7 @@ STEPS = (
 
 
 MESSAGE = 60  # rows that it may take
-STOPPED = "tests.viewer.stopped"
+STOPPED = "tests.viewer.frozen_clock"
 
 
 class Twin:
@@ -77,21 +79,22 @@ class Twin:
         self.viewer = viewer
         folder.mkdir()
         self.path = folder / "twin.rt"
-        self.path.write_text(TEXT)
+        self.path.write_text(WITH_CYLINDER)
         self.keys = keys
         self.renderer = minirt.renderer(None)
         self.lines: list[str] = []
         self.memory = Memory()
-        m = Mlx(self.memory)
+        mlx = Mlx(self.memory)
         self.session = Session(
-            m, m.mlx_init(), self.start, path=self.path, size=SIZE, painter=partial(Painter, self.renderer),
+            mlx, mlx.mlx_init(), self.start, path=self.path, size=SIZE, painter=partial(Painter, self.renderer),
             pick=self.renderer.pick, keys=keys,
         )  # fmt: skip
+        EventDispatcher(self.session).connect()
 
     @property
     def start(self) -> Scene:
         """The scene of the file."""
-        return parse(TEXT, self.path).scene
+        return parse(WITH_CYLINDER, self.path).scene
 
     @property
     def state(self) -> State:
@@ -148,15 +151,15 @@ def test_a_walk(desktop, tmp_path):
         assert twin.replayed() == twin.state
 
         twin.do("press Tab", *["press Ctrl+Z"] * 40)
-        assert twin.state.scene.items == parse(TEXT).scene.items
+        assert twin.state.scene.items == parse(WITH_CYLINDER).scene.items
         twin.agree()
         twin.do(*["press Ctrl+Shift+Z"] * 40)
         assert twin.state.scene.items == edited.items
         twin.agree()
 
-        viewer.path.write_text(TEXT)
+        viewer.path.write_text(WITH_CYLINDER)
         viewer.key("F5", "Tab")
-        viewer.shows(still(parse(TEXT).scene))
+        viewer.shows(still(parse(WITH_CYLINDER).scene))
         viewer.key("ctrl+z", "ctrl+s")
         until(lambda: viewer.path.read_text() == dump(edited), "what was there before it was read again")
 
@@ -195,8 +198,8 @@ def follow(viewer: Viewer, edited: Scene) -> None:
     until(lambda: not np.array_equal(viewer.desktop.screenshot(viewer.window), brighter), "the banner")
     half = slice(0, SIZE[1] // 2)  # above the banner
     assert np.array_equal(viewer.desktop.screenshot(viewer.window)[half], brighter[half])
-    write(TEXT)
-    viewer.shows(still(parse(TEXT).scene))
+    write(WITH_CYLINDER)
+    viewer.shows(still(parse(WITH_CYLINDER).scene))
 
 
 LETTERS = {

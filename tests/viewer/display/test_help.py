@@ -15,7 +15,7 @@ from minirt.scene import Camera, describe, dump, load
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.overlay import Level
+from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing.projection import projection
 from minirt.viewer.editing.state import Frame
 from minirt.viewer.input.bindings import BINDINGS, Binding
@@ -54,7 +54,7 @@ def camera(session: Session) -> Camera:
 
 
 def memory(session: Session) -> Memory:
-    backend = session.mlx.backend
+    backend = session.display.backend
     assert isinstance(backend, Memory)
     return backend
 
@@ -139,10 +139,10 @@ DOES: dict[str, tuple[tuple[str, ...], Seen]] = {
     "screenshot": ((), screenshot),
     "reload": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),
     "copy camera": ((), lambda _, after: memory(after).clipboard_text == describe(scene().camera)),
-    "toggle HUD": ((), lambda before, after: (before.screen.level, after.screen.level) == (Level.LINE, Level.ALL)),
+    "toggle HUD": ((), lambda before, after: after.screen.level == before.screen.level + 1 == HudLevel.ALL),
     "toggle icons": ((), lambda before, after: (before.screen.marks.icons, after.screen.marks.icons) == (False, True)),
     "toggle help": ((), lambda before, after: (before.screen.help, after.screen.help) == (False, True)),
-    "toggle full screen": ((), lambda _, after: (after.win.width, after.win.height) == memory(after).screen),
+    "toggle full screen": ((), lambda _, after: (after.window.width, after.window.height) == memory(after).screen),
     "quit": ((), lambda _, after: after.state.selected == 1),
 }
 MOUSE = {

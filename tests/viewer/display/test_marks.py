@@ -8,19 +8,19 @@ import pytest
 from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera
 from minirt.shapes import KINDS, Shape
-from minirt.viewer.display.icons import icons, signed
-from minirt.viewer.display.marks import AXES, GOLD, blue_first, draw_line
-from minirt.viewer.display.outline import rims
-from minirt.viewer.display.overlay import letters
+from minirt.viewer.display.icons import elements_with_icon, place_icons
+from minirt.viewer.display.marks import AXIS_COLOURS, GOLD, bgra, draw_line
+from minirt.viewer.display.outline import outline_pixels
+from minirt.viewer.display.overlay import text_size
 from minirt.viewer.display.painter import paint
 from minirt.viewer.editing.projection import projection
 from minirt.viewer.editing.state import Frame
 from tests.random_scenes import random_scene
-from tests.viewer.app.test_session import Bench
 from tests.viewer.fake import TEXT, colour_of, played
+from tests.viewer.session_harness import SessionHarness
 
 WIDTH, HEIGHT = 160, 90
-GOLDEN = np.array(blue_first(GOLD), np.uint8)
+GOLDEN = np.array(bgra(GOLD), np.uint8)
 
 
 def edges(shape: Shape, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
@@ -41,8 +41,9 @@ def drawn(places: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
 def test_an_outline_is_where_the_shape_ends(seed: int) -> None:
     made = random_scene(seed)
     for shape in made.shapes:
-        for found, known in zip(rims(shape, made.camera, WIDTH, HEIGHT, 10**6), edges(shape, made.camera), strict=True):
-            assert np.array_equal(drawn(found), known)
+        found = outline_pixels(shape, made.camera, WIDTH, HEIGHT, 10**6)
+        for pixels, expected in zip(found, edges(shape, made.camera), strict=True):
+            assert np.array_equal(drawn(pixels), expected)
 
 
 def test_few_rays_find_most_of_it() -> None:
@@ -52,7 +53,7 @@ def test_few_rays_find_most_of_it() -> None:
         for shape in made.shapes:
             outside, _ = edges(shape, made.camera)
             known += outside.sum()
-            found += (drawn(rims(shape, made.camera, WIDTH, HEIGHT, 300)[0]) & outside).sum()
+            found += (drawn(outline_pixels(shape, made.camera, WIDTH, HEIGHT, 300)[0]) & outside).sum()
     assert found > 0.9 * known > 0
 
 
@@ -77,51 +78,51 @@ def test_the_selected_shape_has_an_outline_and_the_picture_has_none() -> None:
 
 
 def test_the_outline_is_that_of_the_picture_while_another_is_on_its_way() -> None:
-    bench = Bench()
-    bench.session.pick = lambda scene, *_: scene.spheres[0]
-    bench.finish(0.001)
-    bench.memory.click(33, 23)
-    bench.memory.play()
-    before = bench.memory.screenshot()
-    bench.memory.text("+")
-    bench.memory.play()
-    assert np.array_equal(bench.memory.screenshot(), before)
-    bench.finish(0.001)
-    assert not np.array_equal(bench.memory.screenshot(), before)
+    harness = SessionHarness()
+    harness.session.pick = lambda scene, *_: scene.spheres[0]
+    harness.finish(0.001)
+    harness.memory.click(33, 23)
+    harness.memory.play()
+    before = harness.memory.screenshot()
+    harness.memory.text("+")
+    harness.memory.play()
+    assert np.array_equal(harness.memory.screenshot(), before)
+    harness.finish(0.001)
+    assert not np.array_equal(harness.memory.screenshot(), before)
 
 
 def test_the_outline_is_that_of_the_picture_when_an_older_one_comes() -> None:
-    bench = Bench()
-    bench.session.pick = lambda scene, *_: scene.spheres[0]
-    bench.finish(0.001)
-    bench.memory.resize(WIDTH, HEIGHT)
-    bench.memory.click(80, 45)
-    bench.memory.text("+")
-    bench.memory.play()
-    (older,) = bench.painter.open
-    bench.memory.text("+" * 9)
-    bench.memory.play()
-    bench.painter.outcomes.append(paint(bench.painter.renderer, older))
-    bench.painter.notify()
-    bench.memory.play()
-    assert bench.session.pictures.latest.job is older
-    assert bench.session.state.scene is not older.scene
+    harness = SessionHarness()
+    harness.session.pick = lambda scene, *_: scene.spheres[0]
+    harness.finish(0.001)
+    harness.memory.resize(WIDTH, HEIGHT)
+    harness.memory.click(80, 45)
+    harness.memory.text("+")
+    harness.memory.play()
+    (older,) = harness.painter.open
+    harness.memory.text("+" * 9)
+    harness.memory.play()
+    harness.painter.outcomes.append(paint(harness.painter.renderer, older))
+    harness.painter.notify()
+    harness.memory.play()
+    assert harness.session.refinement.latest.job is older
+    assert harness.session.state.scene is not older.scene
     outside, _ = edges(older.scene.spheres[0], older.scene.camera)
-    assert golden(bench.session)[outside][40:].all()
+    assert golden(harness.session)[outside][40:].all()
 
 
 @pytest.mark.parametrize(("presses", "frame"), [(1, Frame.X), (2, Frame.Y), (3, Frame.Z)])
 def test_the_axis_goes_through_the_element(presses: int, frame: Frame) -> None:
     text = "A 0 0,0,0\nC 5,4,10 -0.5,-0.4,-1 60\nsp 0,0,0 0.1 9,9,9\n"
     session = played("resize 160x120", "press Tab", *["press X"] * presses, text=text)
-    coloured = (session.screen.frame == np.array(blue_first(AXES[frame]), np.uint8)).all(axis=2)
+    coloured = (session.screen.frame == np.array(bgra(AXIS_COLOURS[frame]), np.uint8)).all(axis=2)
     seen = projection(session.state.scene.camera, 160, 120)
     ends = [(reach * (frame is Frame.X), reach * (frame is Frame.Y), reach * (frame is Frame.Z)) for reach in (-1, 1)]
     for point in ends:
         x, y = seen.pixel(point)
         assert coloured[round(y) - 2 : round(y) + 3, round(x) - 2 : round(x) + 3].any()
     camera = played("resize 160x120", *["press X"] * presses, text=text).screen.frame
-    assert not (camera == np.array(blue_first(AXES[frame]), np.uint8)).all(axis=2).any()
+    assert not (camera == np.array(bgra(AXIS_COLOURS[frame]), np.uint8)).all(axis=2).any()
 
 
 @pytest.mark.parametrize(
@@ -140,7 +141,7 @@ def test_lights_have_icons_that_can_be_clicked() -> None:
     hidden, shown = played("resize 300x200", text=text), played("resize 300x200", "press G", text=text)
     assert not np.array_equal(hidden.screen.frame, shown.screen.frame)
     state = shown.state
-    placed = icons(state.scene, signed(state.scene), projection(state.scene.camera, 300, 200), 1.0)
+    placed = place_icons(state.scene, elements_with_icon(state.scene), projection(state.scene.camera, 300, 200), 1.0)
     assert sorted(icon.code for icon in placed) == ["A", "C", "L"]
     for icon in placed:
         keys = ["resize 300x200", "press Tab", "press Tab", "press G", f"click {icon.x},{icon.y}"]
@@ -155,7 +156,7 @@ def test_lights_have_icons_that_can_be_clicked() -> None:
 
 
 def test_letters_fit_the_window_and_the_screen() -> None:
-    assert letters(1280, 720, 1.0) == 16
-    assert letters(2560, 1440, 2.0) == 32
-    assert letters(200, 120, 1.0) < 12
-    assert letters(1, 1, 3.0) == 8
+    assert text_size(1280, 720, 1.0) == 16
+    assert text_size(2560, 1440, 2.0) == 32
+    assert text_size(200, 120, 1.0) < 12
+    assert text_size(1, 1, 3.0) == 8

@@ -11,7 +11,7 @@ import pytest
 
 from minirt.errors import RenderError
 from minirt.viewer.display import background_painter
-from minirt.viewer.display.adaptive_resolution import LONGEST, AdaptiveResolution
+from minirt.viewer.display.adaptive_resolution import FRAME_TIME, AdaptiveResolution
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Job, Outcome
 from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
@@ -116,9 +116,9 @@ class TestWithoutAKernel:
     """What is shown while `prepare` takes its time."""
 
     @pytest.fixture(autouse=True)
-    def no_grace(self, monkeypatch):
+    def immediate_previews(self, monkeypatch):
         """A kernel that is not there at once is late."""
-        monkeypatch.setattr(background_painter, "GRACE", 0.0)
+        monkeypatch.setattr(background_painter, "PREVIEW_DELAY", 0.0)
 
     @pytest.fixture
     def bench(self, bench):
@@ -159,7 +159,7 @@ class TestWithoutAKernel:
         assert bench.renderer.rendered == [(64, 48)]
 
     def test_a_kernel_that_is_soon_there_needs_no_preview(self, bench, monkeypatch):
-        monkeypatch.setattr(background_painter, "GRACE", HANG_LIMIT)
+        monkeypatch.setattr(background_painter, "PREVIEW_DELAY", HANG_LIMIT)
         bench.painter.request(JOB)
         (outcome,) = bench.outcomes(1)
         assert not outcome.preview
@@ -173,7 +173,7 @@ class TestWithoutAKernel:
         assert not bench.outcomes(1)[0].preview
 
     def test_a_reason_why_there_is_no_kernel_is_an_outcome(self, bench, monkeypatch):
-        monkeypatch.setattr(background_painter, "GRACE", HANG_LIMIT)
+        monkeypatch.setattr(background_painter, "PREVIEW_DELAY", HANG_LIMIT)
         bench.renderer.prepare_error = RenderError("no")
         bench.painter.request(JOB)
         outcomes = bench.outcomes(2)
@@ -245,7 +245,7 @@ def test_a_request_just_before_the_renderer_can_be_cancelled_is_heard(bench):
 def test_the_passes(goal, passes):
     job, made = replace(JOB, goal=goal, urgent=True), []
     pixels = np.zeros(JOB.shape, np.uint8)
-    while not job.is_last:
+    while not job.is_final:
         job = job.next(pixels)
         made.append(job.samples)
         assert job.base is pixels
@@ -255,20 +255,22 @@ def test_the_passes(goal, passes):
 
 def test_after_a_coarse_picture_comes_a_whole_one():
     coarse = replace(JOB, divisor=3, goal=16, urgent=True)
-    assert not coarse.is_last
+    assert not coarse.is_final
     assert coarse.next(np.zeros(coarse.shape, np.uint8)) == replace(JOB, goal=16)
 
 
-class TestPace:
+class TestAdaptiveResolution:
     @staticmethod
-    def made(seconds: float, divisor: int = 1, pixels: bool = True, samples: int = 1, urgent: bool = False) -> Outcome:
+    def outcome(
+        seconds: float, divisor: int = 1, pixels: bool = True, samples: int = 1, urgent: bool = False
+    ) -> Outcome:
         job = Job(JOB.scene, 800, 600, divisor, urgent, samples)
         return Outcome(job, colour_of(JOB.scene) if pixels else None, seconds=seconds)
 
-    def moving(self, pace: AdaptiveResolution, seconds: float, always: float = 0.0) -> int:
+    def render_moving(self, resolution: AdaptiveResolution, seconds: float, always: float = 0.0) -> int:
         """Render a picture while something moves: a whole one takes that long, and each `always` of it."""
-        divisor = pace.divisor(800, 600)
-        pace.learn(self.made(always + (seconds - always) / divisor**2, divisor, urgent=True))
+        divisor = resolution.divisor(800, 600)
+        resolution.record(self.outcome(always + (seconds - always) / divisor**2, divisor, urgent=True))
         return divisor
 
     @pytest.mark.parametrize(
@@ -276,89 +278,89 @@ class TestPace:
         [(0.5, 1), (0.99, 1), (1.1, 2), (3.9, 2), (4.1, 3), (8.9, 3), (9.1, 4), (16, 4), (17, 8), (1e6, 8)],
     )
     def test_as_coarse_as_needed(self, longest, divisor):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(longest * LONGEST))
-        assert pace.divisor(800, 600) == divisor
+        resolution = AdaptiveResolution()
+        resolution.record(self.outcome(longest * FRAME_TIME))
+        assert resolution.divisor(800, 600) == divisor
         for _ in range(20):
-            assert self.moving(pace, longest * LONGEST) == divisor
+            assert self.render_moving(resolution, longest * FRAME_TIME) == divisor
 
     def test_is_careful_while_nothing_is_known(self):
-        pace = AdaptiveResolution()
-        assert pace.divisor(800, 600) == 8
-        pace.learn(self.made(0.001, pixels=False))
-        assert pace.divisor(800, 600) == 8
+        resolution = AdaptiveResolution()
+        assert resolution.divisor(800, 600) == 8
+        resolution.record(self.outcome(0.001, pixels=False))
+        assert resolution.divisor(800, 600) == 8
 
     def test_another_size_has_another_cost(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST * 4))
-        assert pace.divisor(400, 300) == 1
+        resolution = AdaptiveResolution()
+        resolution.record(self.outcome(FRAME_TIME * 4))
+        assert resolution.divisor(400, 300) == 1
 
     def test_a_cancelled_picture_took_at_least_that_long(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST / 2))
-        pace.learn(self.made(LONGEST / 4, pixels=False))  # which says nothing
+        resolution = AdaptiveResolution()
+        resolution.record(self.outcome(FRAME_TIME / 2))
+        resolution.record(self.outcome(FRAME_TIME / 4, pixels=False))  # which says nothing
         for _ in range(2):
-            assert pace.divisor(800, 600) == 1
-            pace.learn(self.made(LONGEST * 3, pixels=False))
-        assert pace.divisor(800, 600) == 2
+            assert resolution.divisor(800, 600) == 1
+            resolution.record(self.outcome(FRAME_TIME * 3, pixels=False))
+        assert resolution.divisor(800, 600) == 2
 
     def test_refined_pictures_say_nothing(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST / 2))
+        resolution = AdaptiveResolution()
+        resolution.record(self.outcome(FRAME_TIME / 2))
         for _ in range(3):
-            pace.learn(self.made(LONGEST * 9, samples=4))
-        assert pace.divisor(800, 600) == 1
+            resolution.record(self.outcome(FRAME_TIME * 9, samples=4))
+        assert resolution.divisor(800, 600) == 1
 
     def test_one_slow_picture_changes_nothing_and_two_do(self):
-        pace = AdaptiveResolution()
+        resolution = AdaptiveResolution()
         for _ in range(3):
-            pace.learn(self.made(LONGEST / 2))
-        pace.learn(self.made(LONGEST * 5, urgent=True))
-        assert pace.divisor(800, 600) == 1
-        pace.learn(self.made(LONGEST * 5, urgent=True))
-        assert pace.divisor(800, 600) == 3
+            resolution.record(self.outcome(FRAME_TIME / 2))
+        resolution.record(self.outcome(FRAME_TIME * 5, urgent=True))
+        assert resolution.divisor(800, 600) == 1
+        resolution.record(self.outcome(FRAME_TIME * 5, urgent=True))
+        assert resolution.divisor(800, 600) == 3
 
     def test_what_is_under_way_is_waited_for(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST * 3))
-        assert pace.divisor(800, 600) == 2
-        pace.learn(self.made(LONGEST * 30, urgent=True))  # of before
-        assert pace.divisor(800, 600) == 2
+        resolution = AdaptiveResolution()
+        resolution.record(self.outcome(FRAME_TIME * 3))
+        assert resolution.divisor(800, 600) == 2
+        resolution.record(self.outcome(FRAME_TIME * 30, urgent=True))  # of before
+        assert resolution.divisor(800, 600) == 2
 
     def test_a_whole_picture_that_was_not_waited_for_leaves_the_pace_as_it_was(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST * 3))
-        self.moving(pace, LONGEST * 3)
-        pace.learn(self.made(LONGEST / 100, pixels=False))
-        assert pace.divisor(800, 600) == 2
+        resolution = AdaptiveResolution()
+        resolution.record(self.outcome(FRAME_TIME * 3))
+        self.render_moving(resolution, FRAME_TIME * 3)
+        resolution.record(self.outcome(FRAME_TIME / 100, pixels=False))
+        assert resolution.divisor(800, 600) == 2
 
     def test_near_the_limit_the_resolution_does_not_flicker(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST * 0.98))
-        used = [self.moving(pace, LONGEST * (1.02 if n // 3 % 2 else 0.98)) for n in range(200)]
+        resolution = AdaptiveResolution()
+        resolution.record(self.outcome(FRAME_TIME * 0.98))
+        used = [self.render_moving(resolution, FRAME_TIME * (1.02 if n // 3 % 2 else 0.98)) for n in range(200)]
         assert set(used) == {1, 2}
         assert sum(a != b for a, b in itertools.pairwise(used)) <= 5
-        used = [self.moving(pace, LONGEST * 0.7) for _ in range(5)]
+        used = [self.render_moving(resolution, FRAME_TIME * 0.7) for _ in range(5)]
         assert used[-1] == 1  # with ease
 
     def test_a_finer_picture_is_tried_where_coarse_ones_mislead(self):
         """Each picture takes a tenth of the time, whatever its size."""
-        pace, always = AdaptiveResolution(), LONGEST / 10
-        pace.learn(self.made(LONGEST * 90))
-        assert self.moving(pace, LONGEST * 90, always) == 8  # somebody else had the processor
-        used = [self.moving(pace, LONGEST * 0.9, always) for _ in range(1000)]
+        resolution, always = AdaptiveResolution(), FRAME_TIME / 10
+        resolution.record(self.outcome(FRAME_TIME * 90))
+        assert self.render_moving(resolution, FRAME_TIME * 90, always) == 8  # somebody else had the processor
+        used = [self.render_moving(resolution, FRAME_TIME * 0.9, always) for _ in range(1000)]
         assert used[-1] == 1
         assert sum(a != b for a, b in itertools.pairwise(used)) <= 4
 
     def test_trying_in_vain_becomes_rare(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST * 1.1))
-        used = [self.moving(pace, LONGEST * 1.1) for _ in range(1000)]
+        resolution = AdaptiveResolution()
+        resolution.record(self.outcome(FRAME_TIME * 1.1))
+        used = [self.render_moving(resolution, FRAME_TIME * 1.1) for _ in range(1000)]
         assert 1 <= used.count(1) <= 12
 
     def test_what_showing_takes_is_not_left_for_rendering(self):
         for showing, divisor in ((0.1, 1), (0.4, 2), (40, 2)):  # the last is the screen's fault
-            pace = AdaptiveResolution()
-            pace.learn_showing(LONGEST * showing)
-            pace.learn(self.made(LONGEST * 0.7))
-            assert pace.divisor(800, 600) == divisor
+            resolution = AdaptiveResolution()
+            resolution.record_display_time(FRAME_TIME * showing)
+            resolution.record(self.outcome(FRAME_TIME * 0.7))
+            assert resolution.divisor(800, 600) == divisor

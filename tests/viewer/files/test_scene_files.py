@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from minirt.scene import load
-from minirt.viewer.files.scene_files import differ, recover
+from minirt.viewer.files.scene_files import contents_differ, save_recovery
 from tests.viewer.fake import TEXT, colour_of, played, scene
 
 SELECT_SPHERE = ("press Tab", "press Tab")
@@ -28,7 +28,7 @@ def test_save_changes_one_line(path):
     assert [(old, new) for old, new in zip(before, after, strict=True) if old != new] == [
         ("sp 0,0,0 2 255,0,0", "sp 0,0,0 2 247,0,0")
     ]
-    assert not differ(session.state.scene, session.saved)
+    assert not contents_differ(session.state.scene, session.saved)
     assert str(path) in session.state.message
 
 
@@ -65,12 +65,12 @@ class TestReload:
         assert session.state.scene.spheres[0].diameter == 7
         assert session.state.element.title == "sphere"
         assert (session.picture == colour_of(session.state.scene)).all()
-        assert not differ(session.state.scene, session.saved)
+        assert not contents_differ(session.state.scene, session.saved)
 
     def test_can_be_undone(self, path):
         session = played(*SELECT_SPHERE, "press -", "press Ctrl+R", "press Ctrl+Z", path=path)
         assert session.state.scene.spheres[0].diameter < 2
-        assert differ(session.state.scene, session.saved)
+        assert contents_differ(session.state.scene, session.saved)
 
     def test_of_a_broken_file_keeps_the_picture_and_says_why(self, path):
         path.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -2").replace("cy 3", "cy x"))
@@ -89,18 +89,18 @@ class TestReload:
 class TestRecovery:
     def test_is_written_beside_the_file(self, path):
         changed = played(*SELECT_SPHERE, "press Delete", path=path).state.scene
-        copy = recover(changed, path)
+        copy = save_recovery(changed, path)
         assert copy == path.with_name("scene.recovered.rt")
         assert load(copy).scene.items == changed.items
 
     @pytest.mark.skipif(os.name == "nt", reason="a folder that does not exist is the same everywhere else")
     def test_goes_elsewhere_where_that_is_not_possible(self, tmp_path):
-        copy = recover(scene(), tmp_path / "none" / "scene.rt")
+        copy = save_recovery(scene(), tmp_path / "none" / "scene.rt")
         assert copy.name == "scene.recovered.rt"
         assert load(copy).scene.items == scene().items
         copy.unlink()
         copy.parent.rmdir()
 
     def test_looking_around_is_nothing_to_lose(self):
-        assert not differ(played("press d", "press Left").state.scene, scene())
-        assert differ(played("press Tab", "press d").state.scene, scene())
+        assert not contents_differ(played("press d", "press Left").state.scene, scene())
+        assert contents_differ(played("press Tab", "press d").state.scene, scene())

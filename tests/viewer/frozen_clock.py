@@ -1,7 +1,7 @@
 """The program with a clock that stands still: a key that goes down and up moves one step however long that takes, and
 changes of one kind are undone together, as where lines are replayed without a wait.
 
-python -m tests.viewer.stopped ARGUMENTS    # those of miniRT
+python -m tests.viewer.frozen_clock ARGUMENTS    # those of miniRT
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import count
 
 from tests.idle import Thread, threads, until_idle
-from tests.viewer.family import state
+from tests.viewer.process_tree import state
 from tests.waiting import until
 
 

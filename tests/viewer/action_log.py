@@ -1,6 +1,6 @@
 """The viewer, which tells what rows of the table its keys led to, in a file: a line for each.
 
-python -m tests.viewer.teller LAYOUT FILE SCENE...      # one scene after the other
+python -m tests.viewer.action_log LAYOUT FILE SCENE...      # one scene after the other
 """
 
 from __future__ import annotations
@@ -10,21 +10,21 @@ from pathlib import Path
 
 from minirt.scene import load
 from minirt.viewer.app.desktop import run
-from minirt.viewer.app.session import Session
+from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.input.bindings import Binding
 from tests.viewer.fake import FakeRenderer
 
 
 def main(layout: str, file: str, *scenes: str) -> int:
     """The first status that is not 0, or 0."""
-    act = Session.act
+    perform = EventDispatcher.perform
 
-    def told(session: Session, binding: Binding, step: float) -> None:
-        act(session, binding, step)
+    def perform_and_log(dispatcher: EventDispatcher, binding: Binding, step: float) -> None:
+        perform(dispatcher, binding, step)
         with Path(file).open("a") as lines:
             lines.write(f"{binding.action}\n")
 
-    Session.act = told  # type: ignore[method-assign]
+    EventDispatcher.perform = perform_and_log  # type: ignore[method-assign]
     statuses = (
         run(load(scene).scene, path=scene, size=(320, 240), keys=layout, renderer=FakeRenderer()) for scene in scenes
     )
