@@ -1,6 +1,6 @@
-"""The viewer, which tells what rows of the table its keys led to, in a file: a line for each.
+"""The viewer as a program that logs the actions of its key bindings to a file, one per line.
 
-python -m tests.viewer.action_log LAYOUT FILE SCENE...      # one scene after the other
+python -m tests.viewer.action_log LAYOUT LOG SCENE...      # one scene after the other
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from minirt.viewer.input.bindings import Binding
 from tests.viewer.fake import FakeRenderer
 
 
-def main(layout: str, file: str, *scenes: str) -> int:
-    """The first status that is not 0, or 0."""
+def main(layout: str, log: str, *scenes: str) -> int:
+    """Show the scenes; return the first exit status that is not 0, or 0."""
     perform = EventDispatcher.perform
 
     def perform_and_log(dispatcher: EventDispatcher, binding: Binding, step: float) -> None:
         perform(dispatcher, binding, step)
-        with Path(file).open("a") as lines:
+        with Path(log).open("a") as lines:
             lines.write(f"{binding.action}\n")
 
     EventDispatcher.perform = perform_and_log  # type: ignore[method-assign]

@@ -1,7 +1,9 @@
-"""The program with a clock that stands still: a key that goes down and up moves one step however long that takes, and
-changes of one kind are undone together, as where lines are replayed without a wait.
+"""The viewer as a program whose clock stands still.
 
-python -m tests.viewer.frozen_clock ARGUMENTS    # those of miniRT
+A key that is pressed and released moves one step however long that takes, and changes of one kind are undone together,
+as in a replay without waits.
+
+python -m tests.viewer.frozen_clock ARGUMENTS    # the arguments of miniRT
 """
 
 from __future__ import annotations

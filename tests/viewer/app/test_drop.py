@@ -1,4 +1,4 @@
-"""A file that is dropped on the real window."""
+"""Drag and drop: a file that is dropped on a real window is opened."""
 
 from __future__ import annotations
 
@@ -23,8 +23,11 @@ def test_a_dropped_file_is_opened(desktop, tmp_path, types):
         viewer.key("i", "i")
         viewer.shows(picture(viewer.path))
         desktop.run(sys.executable, "-m", "tests.mlx.dropper", str(viewer.window), "20", "20", str(types), str(other))
-        until(lambda: desktop.run("xdotool", "getwindowname", str(viewer.window)) == b"miniRT - an other.rt\n", "it")
-        viewer.key("Tab")  # takes the message away
+        until(
+            lambda: desktop.run("xdotool", "getwindowname", str(viewer.window)) == b"miniRT - an other.rt\n",
+            "the title of the other file",
+        )
+        viewer.key("Tab")  # clears the message
         viewer.shows(picture(other))
         viewer.key("Escape")
         assert viewer.end() == (0, "", "")

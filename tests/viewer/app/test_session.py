@@ -1,4 +1,4 @@
-"""The viewer with a painter in the background, on a window in memory: when it renders, and when it does not."""
+"""When a session renders and draws, and when it does not, on a window in memory."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.viewer.session_harness import SIZE, SessionHarness
 from tests.waiting import HANG_LIMIT, until
 
 
-def test_the_first_picture_is_fine_and_then_nothing_is_rendered():
+def test_the_first_picture_has_full_resolution_and_is_rendered_once():
     harness = SessionHarness()
     assert harness.painter.requests == [Job(harness.session.state.scene, *SIZE)]
     harness.finish(10.0)
@@ -48,7 +48,7 @@ def test_the_loop_sleeps_unless_a_key_is_held():
     assert not harness.display.busy
 
 
-def test_slow_pictures_are_coarse_while_a_key_is_held_and_fine_afterwards():
+def test_slow_pictures_are_coarse_only_while_a_key_is_held():
     harness = SessionHarness()
     harness.finish(FRAME_TIME * 3)
     harness.memory.press(Key.D)
@@ -69,7 +69,7 @@ def test_slow_pictures_are_coarse_while_a_key_is_held_and_fine_afterwards():
     assert harness.session.refinement.latest.job == Job(harness.session.state.scene, *SIZE)
 
 
-def test_a_press_is_shown_coarse_first_where_that_is_quicker():
+def test_a_key_press_is_shown_coarse_first_if_that_is_faster():
     harness = SessionHarness()
     harness.finish(FRAME_TIME * 3)
     harness.tap(Key.D)
@@ -79,7 +79,7 @@ def test_a_press_is_shown_coarse_first_where_that_is_quicker():
     assert not harness.painter.busy
 
 
-def test_quick_pictures_stay_fine():
+def test_fast_pictures_keep_full_resolution():
     harness = SessionHarness()
     harness.finish(FRAME_TIME / 2)
     harness.memory.press(Key.D)
@@ -90,7 +90,7 @@ def test_quick_pictures_stay_fine():
     assert set(harness.painter.divisors) == {1}
 
 
-def test_what_does_not_move_is_refined_pass_by_pass_and_then_nothing_is_rendered():
+def test_a_still_picture_is_refined_pass_by_pass_until_it_is_final():
     harness = SessionHarness(samples=16)
     harness.hide_overlay()
     for marked in (0, 4, 16):
@@ -109,7 +109,7 @@ def test_what_does_not_move_is_refined_pass_by_pass_and_then_nothing_is_rendered
     assert not harness.display.busy
 
 
-def test_what_moves_again_has_one_sample_at_once():
+def test_a_new_movement_returns_to_one_sample_at_once():
     harness = SessionHarness(samples=16)
     harness.finish(0.001)
     harness.finish(0.001)
@@ -131,7 +131,7 @@ def test_what_moves_again_has_one_sample_at_once():
     assert harness.painter.samples[-3:] == [1, 4, 16]
 
 
-def test_from_coarse_to_whole_to_refined():
+def test_a_picture_goes_from_coarse_to_full_resolution_to_refined():
     harness = SessionHarness(samples=4)
     harness.finish(FRAME_TIME * 3)
     harness.finish(FRAME_TIME * 10)
@@ -151,7 +151,7 @@ def test_nothing_is_rendered_after_an_error_in_a_pass():
     assert (harness.session.picture == colour_of(scene())).all()
 
 
-def test_no_picture_is_shown_half_made():
+def test_a_cancelled_pass_is_never_shown():
     renderer = FakeRenderer()
     renderer.gate.clear()
     harness = SessionHarness(partial(BackgroundPainter, renderer), samples=16)
@@ -176,7 +176,7 @@ def test_no_picture_is_shown_half_made():
 
 
 class SlowScreen(Memory):
-    """Showing takes four tenths of the time."""
+    """A back end on which showing a picture takes four tenths of the frame time."""
 
     def show(self, window) -> None:
         super().show(window)
@@ -191,21 +191,23 @@ def test_a_slow_screen_leaves_less_time_for_rendering():
         assert harness.painter.divisors == [1, divisor]
 
 
-def test_a_picture_is_shown_before_the_next_one_is_begun(monkeypatch):
+def test_a_picture_is_shown_before_the_next_one_is_requested(monkeypatch):
     harness = SessionHarness(samples=4)
-    begun = []
+    samples_when_shown = []
     show = harness.memory.show
-    monkeypatch.setattr(harness.memory, "show", lambda win: (begun.append(harness.painter.samples), show(win)))
+    monkeypatch.setattr(
+        harness.memory, "show", lambda win: (samples_when_shown.append(harness.painter.samples), show(win))
+    )
     harness.finish(0.001)
     harness.finish(0.001)
-    assert begun == [[1], [1, 4]]
+    assert samples_when_shown == [[1], [1, 4]]
 
 
-def test_without_news_nothing_is_drawn():
+def test_an_unchanged_frame_is_not_drawn_again():
     harness = SessionHarness()
     harness.finish(0.001)
     frame = harness.session.screen.frame
-    harness.painter.outcomes.append(Outcome(Job(scene(), *SIZE)))  # cancelled: another is wanted
+    harness.painter.outcomes.append(Outcome(Job(scene(), *SIZE)))  # cancelled: it was not the last request
     harness.painter.notify()
     harness.memory.play()
     assert harness.session.screen.frame is frame
@@ -224,7 +226,7 @@ def test_a_coarse_picture_is_stretched_over_the_window():
     assert (harness.memory.screenshot() == colour_of(harness.session.state.scene)).all()
 
 
-def test_of_many_sizes_the_last_is_rendered():
+def test_of_many_window_sizes_only_the_last_is_rendered():
     harness = SessionHarness(partial(BackgroundPainter, renderer := FakeRenderer()))
     until(lambda: renderer.rendered == [SIZE], "the first picture")
     renderer.gate.clear()
@@ -253,7 +255,7 @@ def test_the_old_picture_is_stretched_until_the_new_one_comes():
     assert (harness.memory.screenshot() == colour_of(harness.session.state.scene)).all()
 
 
-def test_an_error_of_the_renderer_is_a_message_over_the_picture():
+def test_a_render_error_is_a_message_over_the_picture():
     harness = SessionHarness()
     harness.finish(0.001)
     harness.tap(Key.D)
@@ -265,30 +267,30 @@ def test_an_error_of_the_renderer_is_a_message_over_the_picture():
     assert (harness.memory.screenshot() != before).any()
     harness.memory.wait(1)
     harness.memory.play()
-    assert len(harness.painter.requests) == 2  # and is not tried again
+    assert len(harness.painter.requests) == 2  # and it is not requested again
 
 
-def test_an_error_under_the_pointer_is_a_message_over_the_picture() -> None:
+def test_an_error_of_picking_is_a_message_over_the_picture() -> None:
     harness = SessionHarness()
     harness.finish(0.001)
 
-    def gone(*_: object) -> None:
+    def fail(*_: object) -> None:
         raise FileError("brick.png", "cannot be read")
 
-    harness.session.pick = gone
+    harness.session.pick = fail
     harness.memory.click(30, 20)
     harness.memory.play()
     assert "brick.png" in harness.session.state.message
 
 
-def test_an_unknown_error_ends_the_program_with_a_known_one():
+def test_an_unknown_exception_ends_the_program_with_a_render_error():
     harness = SessionHarness()
     harness.painter.renderer.error = ZeroDivisionError("division by zero")
     with pytest.raises(RenderError, match="ZeroDivisionError: division by zero"):
         harness.finish(0.001)
 
 
-def test_a_picture_that_was_cancelled_by_nobody_is_asked_for_again():
+def test_a_picture_cancelled_without_a_newer_request_is_requested_again():
     harness = SessionHarness()
     harness.painter.open.clear()
     harness.painter.outcomes.append(Outcome(harness.painter.requests[0]))
@@ -297,7 +299,7 @@ def test_a_picture_that_was_cancelled_by_nobody_is_asked_for_again():
     assert len(harness.painter.requests) == 2
 
 
-def test_compiling_is_shown():
+def test_a_message_is_shown_while_kernels_compile():
     harness = SessionHarness()
     harness.hide_overlay()
     dark = harness.memory.screenshot()
@@ -310,7 +312,7 @@ def test_compiling_is_shown():
     assert (harness.memory.screenshot() == colour_of(scene())).all()
 
 
-def test_a_screenshot_waits_for_the_last_picture(tmp_path):
+def test_a_screenshot_waits_for_the_final_picture(tmp_path):
     harness = SessionHarness(samples=4)
     harness.session.path = tmp_path / "scene.rt"
     harness.finish(FRAME_TIME * 100)
