@@ -155,7 +155,7 @@ class SteppedWatch:
         self.file.watch(self._notify)
 
     def check(self, times: int = 1) -> None:
-        """Let the thread check the file `times` times; return when it begins the next check and has reported any change."""
+        """Allow so many checks of the file; return when the thread begins the next one and has reported any change."""
         self._checks += times
         self._allowed.release(times)
         until(lambda: self._started == self._checks + 1, "a check of the file")

@@ -183,7 +183,7 @@ def test_a_walk(desktop, tmp_path):
         resized.shows(still(edited))
         check_following(resized, edited)
         resized.key("Escape")
-        assert again.end() == (0, "", "")
+        assert resized.end() == (0, "", "")
 
 
 def check_following(viewer: Viewer, edited: Scene) -> None:
