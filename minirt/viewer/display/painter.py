@@ -42,7 +42,10 @@ class Renderer(Protocol):
         """Whether `render` can start at once because the kernel is loaded."""
 
     def render(self, scene: Scene, pixels: Pixels, samples: int = 1, *, is_wanted: IsWanted = ...) -> bool:
-        """Fill `pixels`; return False if cancelled, or if `is_wanted()` is false from when `cancel` has an effect."""
+        """Fill `pixels`; return False if cancelled.
+
+        `is_wanted` is asked once, as soon as `cancel` has effect: an earlier call of `cancel` would be lost.
+        """
 
     def refine(self, scene: Scene, pixels: Pixels, samples: int, *, is_wanted: IsWanted = ...) -> bool:
         """Render the edges in `pixels` with more samples; return False as `render` does."""

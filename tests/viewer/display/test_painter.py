@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import threading
 from dataclasses import replace
 
@@ -11,7 +10,6 @@ import pytest
 
 from minirt.errors import RenderError
 from minirt.viewer.display import background_painter
-from minirt.viewer.display.adaptive_resolution import FRAME_TIME, AdaptiveResolution
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Job, Outcome
 from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
@@ -258,113 +256,3 @@ def test_after_a_coarse_picture_follows_full_resolution():
     coarse = replace(JOB, divisor=3, goal=16, urgent=True)
     assert not coarse.is_final
     assert coarse.next(np.zeros(coarse.shape, np.uint8)) == replace(JOB, goal=16)
-
-
-class TestAdaptiveResolution:
-    @staticmethod
-    def outcome(
-        seconds: float, divisor: int = 1, pixels: bool = True, samples: int = 1, urgent: bool = False
-    ) -> Outcome:
-        job = Job(JOB.scene, 800, 600, divisor, urgent, samples)
-        return Outcome(job, colour_of(JOB.scene) if pixels else None, seconds=seconds)
-
-    def render_moving(self, resolution: AdaptiveResolution, seconds: float, always: float = 0.0) -> int:
-        """Record a picture while something moves and return its divisor.
-
-        At full resolution it takes `seconds`, of which `always` do not depend on the resolution.
-        """
-        divisor = resolution.divisor(800, 600)
-        resolution.record(self.outcome(always + (seconds - always) / divisor**2, divisor, urgent=True))
-        return divisor
-
-    @pytest.mark.parametrize(
-        ("longest", "divisor"),
-        [(0.5, 1), (0.99, 1), (1.1, 2), (3.9, 2), (4.1, 3), (8.9, 3), (9.1, 4), (16, 4), (17, 8), (1e6, 8)],
-    )
-    def test_the_divisor_is_as_small_as_the_render_time_allows(self, longest, divisor):
-        resolution = AdaptiveResolution()
-        resolution.record(self.outcome(longest * FRAME_TIME))
-        assert resolution.divisor(800, 600) == divisor
-        for _ in range(20):
-            assert self.render_moving(resolution, longest * FRAME_TIME) == divisor
-
-    def test_the_divisor_is_greatest_while_no_time_is_known(self):
-        resolution = AdaptiveResolution()
-        assert resolution.divisor(800, 600) == 8
-        resolution.record(self.outcome(0.001, pixels=False))
-        assert resolution.divisor(800, 600) == 8
-
-    def test_the_cost_scales_with_the_window(self):
-        resolution = AdaptiveResolution()
-        resolution.record(self.outcome(FRAME_TIME * 4))
-        assert resolution.divisor(400, 300) == 1
-
-    def test_a_cancelled_picture_counts_as_at_least_its_time(self):
-        resolution = AdaptiveResolution()
-        resolution.record(self.outcome(FRAME_TIME / 2))
-        resolution.record(self.outcome(FRAME_TIME / 4, pixels=False))  # too short to count
-        for _ in range(2):
-            assert resolution.divisor(800, 600) == 1
-            resolution.record(self.outcome(FRAME_TIME * 3, pixels=False))
-        assert resolution.divisor(800, 600) == 2
-
-    def test_refined_pictures_do_not_count(self):
-        resolution = AdaptiveResolution()
-        resolution.record(self.outcome(FRAME_TIME / 2))
-        for _ in range(3):
-            resolution.record(self.outcome(FRAME_TIME * 9, samples=4))
-        assert resolution.divisor(800, 600) == 1
-
-    def test_two_slow_pictures_are_needed_to_coarsen(self):
-        resolution = AdaptiveResolution()
-        for _ in range(3):
-            resolution.record(self.outcome(FRAME_TIME / 2))
-        resolution.record(self.outcome(FRAME_TIME * 5, urgent=True))
-        assert resolution.divisor(800, 600) == 1
-        resolution.record(self.outcome(FRAME_TIME * 5, urgent=True))
-        assert resolution.divisor(800, 600) == 3
-
-    def test_a_late_picture_of_the_former_divisor_does_not_coarsen_again(self):
-        resolution = AdaptiveResolution()
-        resolution.record(self.outcome(FRAME_TIME * 3))
-        assert resolution.divisor(800, 600) == 2
-        resolution.record(self.outcome(FRAME_TIME * 30, urgent=True))  # of the former divisor
-        assert resolution.divisor(800, 600) == 2
-
-    def test_a_cancelled_picture_at_full_resolution_leaves_the_divisor(self):
-        resolution = AdaptiveResolution()
-        resolution.record(self.outcome(FRAME_TIME * 3))
-        self.render_moving(resolution, FRAME_TIME * 3)
-        resolution.record(self.outcome(FRAME_TIME / 100, pixels=False))
-        assert resolution.divisor(800, 600) == 2
-
-    def test_near_the_limit_the_resolution_does_not_flicker(self):
-        resolution = AdaptiveResolution()
-        resolution.record(self.outcome(FRAME_TIME * 0.98))
-        used = [self.render_moving(resolution, FRAME_TIME * (1.02 if n // 3 % 2 else 0.98)) for n in range(200)]
-        assert set(used) == {1, 2}
-        assert sum(a != b for a, b in itertools.pairwise(used)) <= 5
-        used = [self.render_moving(resolution, FRAME_TIME * 0.7) for _ in range(5)]
-        assert used[-1] == 1  # it fits into FINER_SHARE of the time
-
-    def test_a_finer_picture_is_tried_where_coarse_ones_mislead(self):
-        """Each picture takes at least a tenth of the frame time, at any resolution."""
-        resolution, always = AdaptiveResolution(), FRAME_TIME / 10
-        resolution.record(self.outcome(FRAME_TIME * 90))
-        assert self.render_moving(resolution, FRAME_TIME * 90, always) == 8  # another program had the processor
-        used = [self.render_moving(resolution, FRAME_TIME * 0.9, always) for _ in range(1000)]
-        assert used[-1] == 1
-        assert sum(a != b for a, b in itertools.pairwise(used)) <= 4
-
-    def test_failed_trials_of_a_finer_picture_become_rare(self):
-        resolution = AdaptiveResolution()
-        resolution.record(self.outcome(FRAME_TIME * 1.1))
-        used = [self.render_moving(resolution, FRAME_TIME * 1.1) for _ in range(1000)]
-        assert 1 <= used.count(1) <= 12
-
-    def test_display_time_is_not_left_for_rendering(self):
-        for showing, divisor in ((0.1, 1), (0.4, 2), (40, 2)):  # for the last, coarser pictures would not help
-            resolution = AdaptiveResolution()
-            resolution.record_display_time(FRAME_TIME * showing)
-            resolution.record(self.outcome(FRAME_TIME * 0.7))
-            assert resolution.divisor(800, 600) == divisor
