@@ -13,8 +13,8 @@ from minirt.rendering.queries.pick import surface_point
 from minirt.scene import Camera
 from minirt.viewer.editing.measure import middle_of
 from minirt.viewer.editing.projection import dot, projection
-from tests.viewer.app.test_session import Bench
 from tests.viewer.fake import played, scene
+from tests.viewer.session_harness import SessionHarness
 
 WIDTH, HEIGHT = 64, 48
 FROM, TO = (33, 23), (45, 15)  # on the sphere; beside it
@@ -144,9 +144,9 @@ class TestUndo:
         assert len(bench.session.state.past) == 1
 
 
-def dragging() -> Bench:
+def dragging() -> SessionHarness:
     """Half way through a drag of the sphere."""
-    bench = Bench()
+    bench = SessionHarness()
     bench.session.pick = lambda scene, *_: scene.spheres[0]
     bench.memory.button_press(1, *FROM)
     bench.memory.motion(40, 20)
@@ -173,11 +173,11 @@ def test_what_ends_a_drag(end):
     after = bench.session.state.scene
     bench.memory.motion(*TO)
     bench.memory.play()
-    assert bench.session.state.scene is after or bench.session.mouse._press
+    assert bench.session.state.scene is after or bench.session.pressed
 
 
 def test_a_click_moves_nothing_although_the_hand_trembles():
-    bench = Bench()
+    bench = SessionHarness()
     bench.session.pick = lambda scene, *_: scene.spheres[0]
     bench.memory.button_press(1, *FROM)
     bench.memory.motion(FROM[0] + 3, FROM[1] - 3)
