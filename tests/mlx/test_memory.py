@@ -15,7 +15,7 @@ from tests.mlx.waker import waker
 from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
-    from minirt.mlx.handles import Hook
+    from minirt.mlx.hooks import Hook
 
 
 def test_time_is_simulated() -> None:
@@ -147,12 +147,13 @@ def test_a_window_of_fixed_size_keeps_it() -> None:
 def test_a_hidden_window_is_brought_up_to_date_when_it_is_seen_again() -> None:
     memory = Memory()
     m = Mlx(memory)
-    win = m.mlx_new_window(m.mlx_init(), 4, 3, "hidden")
+    mlx = m.mlx_init()
+    win = m.mlx_new_window(mlx, 4, 3, "hidden")
     memory.play()
     memory.minimise(True)
     memory.play()
-    m.mlx_pixel_put(win.display, win, 1, 1, 0xFFFFFFFF)
-    m.mlx_sync(win.display, m.SYNC_WIN_FLUSH, win)
+    m.mlx_pixel_put(mlx, win, 1, 1, 0xFFFFFFFF)
+    m.mlx_sync(mlx, m.SYNC_WIN_FLUSH, win)
     assert not memory.screenshot()[..., :3].any()  # a flip may take a second there
     memory.minimise(False)
     memory.play()
