@@ -12,8 +12,8 @@ from minirt.scene import Scene
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Pixels, Renderer
-from minirt.viewer.editing.measure import middle_of
-from minirt.viewer.editing.motion import orbited
+from minirt.viewer.editing.measure import scene_centre
+from minirt.viewer.editing.motion import orbit_camera
 
 FPS = 12  # pictures a second of a film
 TICKS = 60  # a second, of simulated time
@@ -22,9 +22,9 @@ ARROW = ((0, 0), (0, 17), (4, 13), (7, 20), (10, 19), (7, 12), (12, 12))  # the 
 
 def turntable(scene: Scene, count: int) -> Iterator[Scene]:
     """The scene seen from so many places on a circle round its middle; the next one would be the first again."""
-    pivot = middle_of(scene)
+    pivot = scene_centre(scene)
     for number in range(count):
-        camera = orbited(scene.camera, pivot, 360.0 * number / count, 0.0)
+        camera = orbit_camera(scene.camera, pivot, 360.0 * number / count, 0.0)
         yield scene.replace(scene.camera, camera) if number else scene
 
 

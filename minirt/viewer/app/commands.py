@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def save_a_copy(session: Session) -> None:
     """Write the scene into a new file. SceneError."""
-    session.state = session.state.say(f"saved a copy: {save_copy(session.state.scene, session.path)}")
+    session.state = session.state.with_message(f"saved a copy: {save_copy(session.state.scene, session.path)}")
 
 
 def screenshot(session: Session) -> None:
@@ -29,7 +29,7 @@ def copy_camera(session: Session) -> None:
     """Put the camera's line on the clipboard."""
     line = describe(session.state.scene.camera)
     session.m.mlx_set_clipboard(session.win, line)
-    session.state = session.state.say(f"copied: {line}")
+    session.state = session.state.with_message(f"copied: {line}")
 
 
 def toggle_hud(session: Session) -> None:

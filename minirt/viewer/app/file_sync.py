@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from minirt.errors import SceneError
 from minirt.scene import Scene, load, save
-from minirt.viewer.editing.state import MOST, Moment, State, opened
+from minirt.viewer.editing.state import MAX_UNDO, Snapshot, State, initial_state
 from minirt.viewer.files.scene_files import differ, keep, recover, summary
 from minirt.viewer.files.watched_file import WatchedFile, signature
-from minirt.viewer.input.chords import shown
+from minirt.viewer.input.chords import platform_spelling
 
 if TYPE_CHECKING:
     from minirt.viewer.app.session import Session
@@ -27,13 +27,13 @@ def save_scene(session: Session) -> None:
     session.saved = session.state.scene
     session.screen.banner = ""
     kept = f"; what another program had written is in {other}" if other else ""
-    session.state = session.state.say(f"saved: {session.path}{kept}")
+    session.state = session.state.with_message(f"saved: {session.path}{kept}")
 
 
 def reload(session: Session) -> None:
     """Read the file again; what was there before can be had back by undo. SceneError."""
     read(session)
-    session.state = session.state.say(f"read again: {session.path}")
+    session.state = session.state.with_message(f"read again: {session.path}")
 
 
 def file_changed(session: Session) -> None:
@@ -42,7 +42,9 @@ def file_changed(session: Session) -> None:
     While the file is wrong the last picture stays.
     """
     if differ(session.state.scene, session.saved):
-        session.screen.banner = UNSAVED.format(session.path.name, shown("Ctrl+R"), shown("Ctrl+S"))
+        session.screen.banner = UNSAVED.format(
+            session.path.name, platform_spelling("Ctrl+R"), platform_spelling("Ctrl+S")
+        )
         return
     try:
         read(session, keep_camera=True)
@@ -63,7 +65,7 @@ def read(session: Session, keep_camera: bool = False) -> None:
 
 def followed(old: State, scene: Scene, saved: Scene | None) -> State:
     """The state after its file became another scene; with the camera as it is where the file has that of `saved`."""
-    new = opened(scene)
+    new = initial_state(scene)
     if saved and scene.camera == saved.camera:
         new = replace(new, scene=scene.replace(scene.camera, old.scene.camera.replace(source=scene.camera.source)))
     same = old.selected < len(scene.elements) and type(scene.elements[old.selected]) is type(old.element)
@@ -72,7 +74,7 @@ def followed(old: State, scene: Scene, saved: Scene | None) -> State:
         selected=old.selected if same else new.selected,
         value=old.value if same else 0,
         frame=old.frame,
-        past=(*old.past[1 - MOST :], Moment(old.scene, old.selected)),
+        past=(*old.past[1 - MAX_UNDO :], Snapshot(old.scene, old.selected)),
     )
 
 
@@ -89,4 +91,4 @@ def open_another(session: Session, path: Path) -> None:
     session.m.mlx_set_window_title(session.win, f"miniRT - {path.name}")
     session.saved = scene
     session.screen.banner = ""
-    session.state = opened(scene).say(f"opened: {path}{kept}")
+    session.state = initial_state(scene).with_message(f"opened: {path}{kept}")

@@ -12,8 +12,8 @@ from minirt.shapes import Shape
 from minirt.viewer.display.icons import icon_at
 from minirt.viewer.display.overlay import Level
 from minirt.viewer.editing import dragging, selection
-from minirt.viewer.editing.projection import projection
-from minirt.viewer.editing.state import place_of
+from minirt.viewer.editing.projection import projection_of
+from minirt.viewer.editing.state import position_of
 from minirt.viewer.input.bindings import Binding
 from minirt.viewer.input.chords import Drag
 
@@ -32,7 +32,7 @@ class Press(NamedTuple):
     x: int
     y: int
     drag: Binding
-    grip: dragging.Grip
+    grip: dragging.DragStart
 
 
 class Mouse:
@@ -57,7 +57,7 @@ class Mouse:
             session.complain(error)
             session.show(session.state)
             return
-        held = dragging.grip(session.state.cut(), session.win.width, session.win.height, x, y, point)
+        held = dragging.start_drag(session.state.end_merging(), session.win.width, session.win.height, x, y, point)
         self._press = Press(button, x, y, drag, held)
 
     def motion(self, x: int, y: int) -> None:
@@ -66,8 +66,8 @@ class Mouse:
             session = self.session
             if not self._dragging:
                 self._dragging = True
-                session.state = session.state.cut()
-            session.show(dragging.dragged(session.state, press.drag.action, press.grip, x, y))
+                session.state = session.state.end_merging()
+            session.show(dragging.apply_drag(session.state, press.drag.action, press.grip, x, y))
 
     def release(self, button: int) -> None:
         press = self._press
@@ -80,7 +80,7 @@ class Mouse:
     def let_go(self) -> None:
         """Whatever is held is held no more."""
         if self._dragging:
-            self.session.state = self.session.state.cut()
+            self.session.state = self.session.state.end_merging()
         self._press, self._dragging = None, False
 
     def click(self, button: int) -> None:
@@ -93,15 +93,15 @@ class Mouse:
         """The place in the scene under the pointer; what is there is selected."""
         session = self.session
         state, win = session.state, session.win
-        seen = projection(state.scene.camera, win.width, win.height)
+        seen = projection_of(state.scene.camera, win.width, win.height)
         shown = session.screen.marks.placed(state, seen, win.scale) if session.screen.level > Level.NOTHING else []
         icon = icon_at(shown, x, y, win.scale)
         if icon:
             if selecting:
-                session.show(state.say("").select(icon.owner))
+                session.show(state.with_message("").select(icon.owner))
             element = state.scene.elements[icon.owner]
-            return None if isinstance(element, Camera) else place_of(element)
+            return None if isinstance(element, Camera) else position_of(element)
         shape: Shape | None = session.pick(state.scene, win.width, win.height, x, y)
         if selecting:
-            session.show(selection.picked(state, shape))
-        return surface_point(shape, state.scene.camera, win.width, win.height, x, y) if shape else None
+            session.show(selection.select_shape(state, shape))
+        return place(shape, state.scene.camera, win.width, win.height, x, y) if shape else None

@@ -12,7 +12,7 @@ from minirt.mlx.memory import Memory
 from minirt.scene import Scene
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Painter, Pixels, Renderer
-from minirt.viewer.input.recording import record
+from minirt.viewer.input.recording import add_recording
 
 
 def replay(
@@ -55,7 +55,7 @@ def play(
 ) -> Session:
     """Like `replay`; returns the session as it is at the end. `watch` sees it sixty times a simulated second."""
     memory = Memory()
-    record(lines, file, memory)
+    add_recording(lines, file, memory)
     m = Mlx(memory)
     display = m.mlx_init()
     session = Session(

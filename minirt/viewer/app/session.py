@@ -18,7 +18,7 @@ from minirt.viewer.display.painter import Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen
 from minirt.viewer.editing.editor import EDITS, apply
-from minirt.viewer.editing.state import State, opened
+from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.files.scene_files import save_picture, summary
 from minirt.viewer.files.watched_file import WatchedFile
 from minirt.viewer.input.bindings import Binding
@@ -57,7 +57,7 @@ class Session:
         self.path = path
         self.lenient = lenient
         self.pick = pick
-        self.state = opened(scene)
+        self.state = initial_state(scene)
         self.saved = scene  # what the file holds
         self.disk = WatchedFile(path)
         self.watched = watch
@@ -140,7 +140,7 @@ class Session:
         if binding.action in EDITS:
             self.show(apply(self.state, binding.action, step if binding.fine else 1.0, self.now))
             return
-        self.state = self.state.say("")
+        self.state = self.state.with_message("")
         self.guarded(COMMANDS[binding.action])
         self.show(self.state)
 
@@ -177,7 +177,7 @@ class Session:
         """Save the picture when it is wanted and complete. RenderError."""
         if self.wants_screenshot and self.pictures.complete:
             self.wants_screenshot = False
-            self.state = self.state.say(f"picture: {save_picture(self.picture, self.path)}")
+            self.state = self.state.with_message(f"picture: {save_picture(self.picture, self.path)}")
 
     def guarded(self, command: Callable[[Session], None]) -> None:
         """Do something that may fail; the reason is shown over the picture."""
@@ -190,7 +190,7 @@ class Session:
         """Show an error over the picture that is there; RenderError where it is none that miniRT knows."""
         if not isinstance(error, MiniRTError):
             raise RenderError(f"the picture cannot be made: {type(error).__name__}: {error}") from error
-        self.state = self.state.say(summary(error))
+        self.state = self.state.with_message(summary(error))
 
     def watch(self) -> None:
         """Let the loop know when the file is changed by others, where that is wanted."""

@@ -13,9 +13,9 @@ from minirt.shapes import Shape
 from minirt.viewer.display.icons import SIZE, Icon, icons, signed
 from minirt.viewer.display.outline import Places, rims
 from minirt.viewer.display.painter import Pixels
-from minirt.viewer.editing.measure import ball
-from minirt.viewer.editing.motion import WORLD
-from minirt.viewer.editing.projection import Pixel, Projection, projection
+from minirt.viewer.editing.measure import extent
+from minirt.viewer.editing.motion import WORLD_AXES
+from minirt.viewer.editing.projection import Pixel, Projection, projection_of
 from minirt.viewer.editing.state import Frame, State
 
 GOLD, BLACK = 0xFFD75F, 0x000000
@@ -33,7 +33,7 @@ class Marks:
 
     def draw(self, pixels: Pixels, state: State, scale: float, moving: bool) -> None:
         """Draw all of it over the picture of the state's scene."""
-        seen = projection(state.scene.camera, pixels.shape[1], pixels.shape[0])
+        seen = projection_of(state.scene.camera, pixels.shape[1], pixels.shape[0])
         element = state.element
         if isinstance(element, Shape):
             draw_outline(pixels, *self.outline(element, state.scene.camera, pixels, QUICK if moving else CAREFUL))
@@ -74,15 +74,15 @@ def draw_outline(pixels: Pixels, outside: Places, inside: Places) -> None:
 
 def draw_axis(pixels: Pixels, state: State, seen: Projection) -> None:
     """The axis that the selected element moves along, where it moves along one."""
-    axis, around = WORLD.get(state.frame), anchor(state.element)
-    ends = seen.segment(around, axis) if axis and around else None
+    axis, around = WORLD_AXES.get(state.frame), anchor(state.element)
+    ends = seen.visible_segment(around, axis) if axis and around else None
     if ends:
         draw_line(pixels, *ends, AXES[state.frame])
 
 
 def anchor(element: Element) -> tuple[float, float, float] | None:
     """Where an element is, None for the camera and for what is nowhere."""
-    around = None if isinstance(element, Camera) else ball(element)
+    around = None if isinstance(element, Camera) else extent(element)
     return around[0] if around else None
 
 

@@ -12,7 +12,7 @@ from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
-from minirt.viewer.editing.projection import Projection, minus, projection
+from minirt.viewer.editing.projection import Projection, projection_of, subtract
 
 Places = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns of pixels
 Box = tuple[int, int, int, int]  # left, top, right, bottom; right and bottom are outside
@@ -27,7 +27,7 @@ def rims(shape: Shape, camera: Camera, width: int, height: int, rays: int) -> tu
     """
     if isinstance(shape, Mesh):
         return rims_of(covers(shape, camera, width, height, *np.meshgrid(np.arange(width), np.arange(height))))
-    left, top, right, bottom = extent(shape, projection(camera, width, height))
+    left, top, right, bottom = extent(shape, projection_of(camera, width, height))
     step = max(1, ceil(((right - left) * (bottom - top) / rays) ** 0.5))
     x, y = np.meshgrid(np.arange(left, right + step, step), np.arange(top, bottom + step, step))
     grid = covers(shape, camera, width, height, x, y)
@@ -74,6 +74,6 @@ def disc(centre: tuple[float, float, float], radius: float, seen: Projection) ->
     if middle is None or depth <= 2 * radius:
         return [None]
     # The farther from the middle of the picture, the longer is what a ball covers: no more than by this.
-    slant = hypot(*minus(centre, seen.eye)) / depth
+    slant = hypot(*subtract(centre, seen.eye)) / depth
     reach = seen.width / 2 / hypot(*seen.right) * radius / (depth - radius) * slant
     return [(middle[0] - reach, middle[1] - reach), (middle[0] + reach, middle[1] + reach)]

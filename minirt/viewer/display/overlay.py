@@ -11,7 +11,7 @@ from minirt.mlx.text import draw_text, measure
 from minirt.scene.line_rewriting import field_text
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import Frame, State
-from minirt.viewer.input.bindings import FINE, Group, groups
+from minirt.viewer.input.bindings import FINE_NOTE, KeyGroup, key_groups
 
 INK, ACCENT, PAPER = 0xFFFFFF, 0xFFD75F, 0xA0000000  # PAPER with its opacity
 MARGIN, PADDING = 10, 4  # pixels
@@ -124,7 +124,7 @@ def write(pixels: Pixels, y: int, text: str, ink: int, size: int) -> None:
 def draw_help(pixels: Pixels, layout: str, largest: int) -> None:
     """The table of bindings over a darkened picture, in two columns, in the largest letters that have room."""
     pixels[..., :3] //= 4
-    listed = [*groups(layout), ("", [FINE])]
+    listed = [*key_groups(layout), ("", [FINE_NOTE])]
     columns = [listed[:2], listed[2:]]
     height, width = pixels.shape[:2]
     for size in range(largest, SMALLEST - 2, -1):
@@ -140,7 +140,7 @@ def draw_help(pixels: Pixels, layout: str, largest: int) -> None:
             x += step
 
 
-def column_texts(column: list[Group]) -> tuple[str, str]:
+def column_texts(column: list[KeyGroup]) -> tuple[str, str]:
     """Keys and help of some groups, as two texts with as many lines."""
     keys, helps = [], []
     for title, rows in column:

@@ -71,7 +71,7 @@ def test_the_way_one_looks_stays_unless_the_file_says_another(bench, path):
     write(path, OTHER)
     tell(bench)
     assert bench.session.state.scene.camera == moved
-    assert bench.session.state.home == scene().camera
+    assert bench.session.state.file_camera == scene().camera
     write(path, OTHER.replace("C 0,0,10", "C 0,0,20"))
     tell(bench)
     assert bench.session.state.scene.camera.position == (0, 0, 20)

@@ -7,7 +7,7 @@ import pytest
 
 from minirt.errors import ReplayError
 from minirt.viewer.app.replay import replay
-from minirt.viewer.editing.editor import ANGLE
+from minirt.viewer.editing.editor import TURN_STEP
 from minirt.viewer.input.key_repeat import RATE
 from tests.viewer.fake import FakeRenderer, colour_of, played, scene
 
@@ -61,7 +61,9 @@ def test_a_held_key_moves_in_proportion_to_time(seconds):
 def test_shift_is_a_tenth():
     coarse, fine = (played(f"hold {keys} 0.5").state.scene.camera.position[0] for keys in ("d", "Shift+d"))
     assert fine == pytest.approx(coarse / 10, rel=1e-3)
-    assert played("press Shift+Left").state.scene.camera.direction[0] == pytest.approx(-np.sin(np.radians(ANGLE / 10)))
+    assert played("press Shift+Left").state.scene.camera.direction[0] == pytest.approx(
+        -np.sin(np.radians(TURN_STEP / 10))
+    )
 
 
 @pytest.mark.parametrize(

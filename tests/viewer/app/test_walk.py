@@ -19,7 +19,7 @@ from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Painter
 from minirt.viewer.editing.state import State
-from minirt.viewer.input.recording import record
+from minirt.viewer.input.recording import add_recording
 from tests.viewer.app.test_real_window import SIZE, TEXT, Viewer, viewing
 from tests.viewer.hands import do
 from tests.waiting import until
@@ -99,7 +99,7 @@ class Twin:
 
     def do(self, *lines: str) -> None:
         do(self.viewer.desktop, self.viewer.window, *lines)
-        record(lines, "twin", self.memory)
+        add_recording(lines, "twin", self.memory)
         self.memory.play()
         self.lines += lines
 

@@ -16,7 +16,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.overlay import Level
-from minirt.viewer.editing.projection import projection
+from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import Frame
 from minirt.viewer.input.bindings import BINDINGS, Binding
 from tests.viewer.fake import TEXT, played, scene
@@ -61,7 +61,7 @@ def memory(session: Session) -> Memory:
 
 def centred(_: Session, after: Session) -> bool:
     """The light is in the middle of the picture."""
-    return projection(camera(after), 64, 48).pixel((5, 5, 5)) == pytest.approx((32, 24), abs=0.1)
+    return projection_of(camera(after), 64, 48).pixel((5, 5, 5)) == pytest.approx((32, 24), abs=0.1)
 
 
 def went_round(before: Session, after: Session) -> bool:

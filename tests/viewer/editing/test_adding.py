@@ -10,10 +10,10 @@ from minirt.scene import Camera, Resolution, dump, parse
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS
 from minirt.shapes.mesh import Mesh
-from minirt.viewer.editing.adding import kinds, made
+from minirt.viewer.editing.adding import addable_kinds, default_element
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.projection import projection
-from minirt.viewer.editing.state import State, opened
+from minirt.viewer.editing.projection import projection_of
+from minirt.viewer.editing.state import State, initial_state
 from tests.viewer.fake import TEXT, played, scene
 
 BARE = "A 0.2 255,255,255\nC 3,1,4 0.6,-0.2,0.7 50 roll:30\n"
@@ -26,19 +26,21 @@ def adding(state: State, times: int, action: str = "add") -> State:
 
 
 def test_everything_that_can_be_edited_can_be_added() -> None:
-    known = kinds(scene(BARE))
+    known = addable_kinds(scene(BARE))
     others = (Resolution, Camera, ELEMENTS["A"], Mesh)  # the last needs a file
     assert set(known) == {kind for kind in ELEMENTS.values() if kind not in others}
     assert known[: len(KINDS)] == [kind.element for kind in KINDS]
-    assert ELEMENTS["L"] not in kinds(scene())
+    assert ELEMENTS["L"] not in addable_kinds(scene())
 
 
-@pytest.mark.parametrize(("text", "kind"), [(text, kind) for text in (TEXT, BARE) for kind in kinds(scene(text))])
+@pytest.mark.parametrize(
+    ("text", "kind"), [(text, kind) for text in (TEXT, BARE) for kind in addable_kinds(scene(text))]
+)
 def test_each_is_made_from_its_fields_and_seen(kind: type, text: str) -> None:
-    state = opened(scene(text))
-    element = made(kind, state)
+    state = initial_state(scene(text))
+    element = default_element(kind, state)
     assert type(element) is kind
-    seen = projection(state.scene.camera, 640, 360)
+    seen = projection_of(state.scene.camera, 640, 360)
     for field in fields_of(kind):
         if isinstance(field, Point):
             x, y = seen.pixel(getattr(element, field.name))
@@ -49,8 +51,8 @@ def test_each_is_made_from_its_fields_and_seen(kind: type, text: str) -> None:
 
 
 def test_again_makes_the_next_kind_and_is_undone_at_once() -> None:
-    start = opened(scene())
-    known = kinds(start.scene)
+    start = initial_state(scene())
+    known = addable_kinds(start.scene)
     for times in range(1, len(known) + 2):
         state = adding(start, times)
         assert type(state.element) is known[(times - 1) % len(known)]
@@ -61,7 +63,7 @@ def test_again_makes_the_next_kind_and_is_undone_at_once() -> None:
 
 
 def test_after_an_edit_another_one_of_that_kind_is_added() -> None:
-    state = adding(opened(scene()), 3)
+    state = adding(initial_state(scene()), 3)
     kind = type(state.element)
     for action in ("right", "grow", "select camera", "undo"):
         other = adding(apply(state, action), 1)
@@ -82,7 +84,7 @@ def test_it_stands_at_the_end_of_the_file(tmp_path) -> None:
 
 
 def test_the_selection_before_comes_back() -> None:
-    state = apply(opened(scene()), "select light")
+    state = apply(initial_state(scene()), "select light")
     undone = apply(adding(state, 4), "undo")
     assert undone.element == state.element
     assert apply(undone, "redo").element == adding(state, 4).element

@@ -11,15 +11,15 @@ from hypothesis import strategies as st
 from minirt.mlx import Key
 from minirt.rendering.queries.pick import surface_point
 from minirt.scene import Camera
-from minirt.viewer.editing.measure import middle_of
-from minirt.viewer.editing.projection import dot, projection
+from minirt.viewer.editing.measure import scene_centre
+from minirt.viewer.editing.projection import dot, projection_of
 from tests.viewer.app.test_session import Bench
 from tests.viewer.fake import played, scene
 
 WIDTH, HEIGHT = 64, 48
 FROM, TO = (33, 23), (45, 15)  # on the sphere; beside it
 DRAG = "drag 33,23 45,15"
-SEEN = projection(scene().camera, WIDTH, HEIGHT)
+SEEN = projection_of(scene().camera, WIDTH, HEIGHT)
 HALF = 0.5  # the middle of a pixel
 
 numbers = st.floats(-1, 1, allow_nan=False)
@@ -27,12 +27,12 @@ numbers = st.floats(-1, 1, allow_nan=False)
 
 @given(numbers, numbers, st.floats(0.01, 1), st.floats(1, 150), st.floats(-180, 180), st.tuples(numbers, numbers))
 def test_places_and_pixels_are_each_others_inverse(x, y, z, fov, roll, at):
-    seen = projection(Camera((x, y, z), (x, y, z), fov, roll), 640, 360)
+    seen = projection_of(Camera((x, y, z), (x, y, z), fov, roll), 640, 360)
     pixel = 640 * (at[0] + 1) / 2, 360 * (at[1] + 1) / 2
-    point = seen.at_depth(*pixel, 7.0)
+    point = seen.point_at_depth(*pixel, 7.0)
     assert seen.depth(point) == pytest.approx(7)
     assert seen.pixel(point) == pytest.approx(pixel, abs=1e-6)
-    assert seen.pixel(seen.at_depth(*pixel, -7.0)) is None
+    assert seen.pixel(seen.point_at_depth(*pixel, -7.0)) is None
 
 
 def held(shape, x, y):
@@ -57,7 +57,7 @@ def test_along_an_axis_nothing_else_changes(presses, axis):
     centre = session.state.scene.spheres[0].centre
     assert [i for i in range(3) if centre[i] != 0] == [axis]
     # No other place of the axis is nearer to the pointer's ray.
-    seen = projection(session.state.scene.camera, WIDTH, HEIGHT)
+    seen = projection_of(session.state.scene.camera, WIDTH, HEIGHT)
     (ball,) = scene(text).spheres
     start = surface_point(ball, scene(text).camera, WIDTH, HEIGHT, 32, 24)
 
@@ -97,11 +97,11 @@ def test_the_camera_goes_round_what_is_selected(lines):
     before = played(*lines)
     after = played(*lines, "drag 10,10 22,16 right")
     state = before.state
-    pivot = {"sphere": (0, 0, 0), "light": (5, 5, 5)}.get(state.element.title, middle_of(state.scene))
+    pivot = {"sphere": (0, 0, 0), "light": (5, 5, 5)}.get(state.element.title, scene_centre(state.scene))
     old, new = state.scene.camera, after.state.scene.camera
     assert new != old
     assert dist(new.position, pivot) == pytest.approx(dist(old.position, pivot), rel=1e-5)
-    pixels = [projection(camera, WIDTH, HEIGHT).pixel(pivot) for camera in (old, new)]
+    pixels = [projection_of(camera, WIDTH, HEIGHT).pixel(pivot) for camera in (old, new)]
     assert pixels[0] == pytest.approx(pixels[1], abs=1e-3)
     assert after.state.element.title == state.element.title
 
@@ -115,7 +115,7 @@ def test_the_camera_slides():
     session = played("drag 33,23 45,15 middle")
     camera = session.state.scene.camera
     point = held(scene().spheres[0], *FROM)
-    assert projection(camera, WIDTH, HEIGHT).pixel(point) == pytest.approx([each + HALF for each in TO], abs=1e-3)
+    assert projection_of(camera, WIDTH, HEIGHT).pixel(point) == pytest.approx([each + HALF for each in TO], abs=1e-3)
     assert camera.direction == scene().camera.direction
     assert played("drag 5,3 9,3 middle").state.scene.camera.position[0] < 0
 

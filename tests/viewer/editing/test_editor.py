@@ -11,9 +11,9 @@ from minirt.scene import Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from minirt.viewer.editing.editor import ANGLE, EDITS, apply
-from minirt.viewer.editing.motion import looked, turned
-from minirt.viewer.editing.state import STRIDE, State, opened
+from minirt.viewer.editing.editor import EDITS, TURN_STEP, apply
+from minirt.viewer.editing.motion import rotate_direction, turn_camera
+from minirt.viewer.editing.state import STEP_SHARE, State, initial_state
 from tests.viewer.fake import scene
 
 RED = (255, 0, 0)
@@ -23,9 +23,9 @@ MILLION = 1_000_000
 
 def selecting(kind: type, text: str | None = None) -> State:
     """The state with the first element of a kind selected; the stride of a step is 1."""
-    state = opened(scene(text) if text else scene())
+    state = initial_state(scene(text) if text else scene())
     index = next(index for index, each in enumerate(state.scene.elements) if type(each) is kind)
-    return State(state.scene, index, state.home, 1 / STRIDE)
+    return State(state.scene, index, state.file_camera, 1 / STEP_SHARE)
 
 
 def after(state: State, *actions: str, amount: float = 1.0) -> State:
@@ -57,7 +57,7 @@ def test_the_camera_moves_along_its_own_axes(action, moved):
 
 
 def test_the_camera_moves_where_it_looks():
-    state = after(selecting(Camera), "turn right", amount=90 / ANGLE)
+    state = after(selecting(Camera), "turn right", amount=90 / TURN_STEP)
     assert after(state, "forward").element.position == pytest.approx((1, 0, 10))
     assert after(state, "right").element.position == pytest.approx((0, 0, 11))
 
@@ -97,14 +97,14 @@ def test_ambient_light_has_no_place():
     ],
 )
 def test_a_cylinder_turns_in_the_view(action, axis):
-    turned = after(selecting(Cylinder), action, amount=90 / ANGLE)
+    turned = after(selecting(Cylinder), action, amount=90 / TURN_STEP)
     assert turned.element.axis == pytest.approx(axis, abs=1e-15)
 
 
 @pytest.mark.parametrize(("frame", "axis"), [("X", (0, 0, 1)), ("Y", (0, 1, 0)), ("Z", (-1, 0, 0))])
 def test_a_cylinder_turns_right_handed_about_an_axis(frame, axis):
     for action in ("turn right", "turn up", "roll right"):
-        turned = after(axes(selecting(Cylinder), frame), action, amount=90 / ANGLE)
+        turned = after(axes(selecting(Cylinder), frame), action, amount=90 / TURN_STEP)
         assert turned.element.axis == pytest.approx(axis, abs=1e-15)
 
 
@@ -137,8 +137,8 @@ def test_values_take_turns():
 
 def test_what_has_no_value_says_so():
     text = "R 320 200\nA 0.2 9,9,9\nC 0,0,0 0,0,1 60\n"
-    state = opened(scene(text))
-    state = State(state.scene, 0, state.home, 1.0)
+    state = initial_state(scene(text))
+    state = State(state.scene, 0, state.file_camera, 1.0)
     assert "no size" in after(state, "grow").message
     assert "no value" in after(state, "next value").message
 
@@ -164,17 +164,17 @@ def test_moving_stops_at_the_end_of_the_range():
 def test_a_million_turns_of_a_shape_keep_unit_length():
     axis, about = selecting(Cylinder).element.axis, (0.6, 0.0, 0.8)
     for _ in range(MILLION):
-        axis = turned(axis, about, 0.1)
+        axis = rotate_direction(axis, about, 0.1)
         assert abs(hypot(*axis) - 1) <= 4 * U
     # 100,000 degrees are 277 whole turns and 280 degrees.
-    assert axis == pytest.approx(turned(selecting(Cylinder).element.axis, about, 280), abs=1e-9)
+    assert axis == pytest.approx(rotate_direction(selecting(Cylinder).element.axis, about, 280), abs=1e-9)
 
 
 @pytest.mark.slow
 def test_a_million_turns_of_the_camera_keep_unit_length():
     camera = selecting(Cylinder).scene.camera
     for _ in range(MILLION):
-        camera = looked(camera, 0.1, 0.0)
+        camera = turn_camera(camera, 0.1, 0.0)
         assert abs(hypot(*camera.direction) - 1) <= 4 * U
     assert camera.direction == pytest.approx((sin(radians(280)), 0, -cos(radians(280))), abs=1e-9)
 
@@ -187,27 +187,27 @@ class TestStraightUp:
             assert end.element.direction[1] == y
             assert hypot(*end.element.direction) == 1
             assert after(end, action).scene is end.scene
-            returned = after(end, back, amount=90 / ANGLE)
+            returned = after(end, back, amount=90 / TURN_STEP)
             assert returned.element.direction == pytest.approx(start.element.direction, abs=1e-15)
 
     def test_the_heading_turns_there(self):
-        up = after(selecting(Camera), "turn up", "turn right", amount=90 / ANGLE)
+        up = after(selecting(Camera), "turn up", "turn right", amount=90 / TURN_STEP)
         assert up.element.direction[1] == 1
-        assert after(up, "turn down", amount=90 / ANGLE).element.direction == pytest.approx((1, 0, 0), abs=1e-15)
+        assert after(up, "turn down", amount=90 / TURN_STEP).element.direction == pytest.approx((1, 0, 0), abs=1e-15)
 
     @pytest.mark.parametrize("y", [1, -1])
     def test_of_a_file_is_left_without_a_jump(self, y):
         state = selecting(Camera, f"A 0 0,0,0\nC 0,0,0 0,{y},0 60\n")
-        left = after(state, "turn down" if y > 0 else "turn up", amount=90 / ANGLE)
+        left = after(state, "turn down" if y > 0 else "turn up", amount=90 / TURN_STEP)
         # The top of the picture is +z looking up and -z looking down; the way out leads down or up in the picture.
         assert left.element.direction == pytest.approx((0, 0, -1), abs=1e-15)
 
 
 def test_roll_turns_the_camera_about_its_direction():
     state = after(selecting(Camera), "roll right")
-    assert (state.element.roll, state.element.direction) == (ANGLE, (0, 0, -1))
+    assert (state.element.roll, state.element.direction) == (TURN_STEP, (0, 0, -1))
     assert after(state, "roll left").element.roll == 0
-    assert after(selecting(Camera), "roll right", amount=359 / ANGLE).element.roll == 359
+    assert after(selecting(Camera), "roll right", amount=359 / TURN_STEP).element.roll == 359
     assert abs(after(selecting(Camera), "roll right", amount=1e6).element.roll) <= 360
 
 
@@ -285,9 +285,9 @@ class TestStructure:
 
 def test_every_action_gives_a_scene_for_every_element():
     for text in (None, "A 0 0,0,0\nC 0,0,0 0,1,0 0 roll:3\nL 1e15,0,0 1\n", "A 1 1,1,1\nC 1e15,0,0 0,-1,0 180\n"):
-        start = opened(scene(text) if text else scene())
+        start = initial_state(scene(text) if text else scene())
         for index in range(len(start.scene.elements)):
             for action in EDITS:
-                state = after(State(start.scene, index, start.home, start.size), action, action)
+                state = after(State(start.scene, index, start.file_camera, start.size), action, action)
                 assert isinstance(state.scene, Scene)
                 assert 0 <= state.selected < len(state.scene.elements)

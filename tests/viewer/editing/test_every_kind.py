@@ -20,16 +20,16 @@ from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
-from minirt.viewer.editing.adding import kinds, made
+from minirt.viewer.editing.adding import addable_kinds, default_element
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.projection import projection
-from minirt.viewer.editing.state import State, index_of, named, opened, place_of
+from minirt.viewer.editing.projection import projection_of
+from minirt.viewer.editing.state import State, field_names, index_of, initial_state, position_of
 from minirt.viewer.editing.values import values
 from tests.viewer.fake import played
 
 BARE = "A 0.2 255,255,255\nC 0,2,-20 0.1,-0.1,1 60\n"
 EDITABLE = [kind for kind in ELEMENTS.values() if kind is not Resolution]
-ADDED = [*kinds(parse(BARE).scene), Mesh]
+ADDED = [*addable_kinds(parse(BARE).scene), Mesh]
 KEYED = [(kind, field.name) for kind in EDITABLE for field in fields_of(kind) if field.keyed and field.default is None]
 SIZE = (64, 48)  # of the window of `played`
 
@@ -51,14 +51,14 @@ def path(tmp_path: Path) -> Path:
 
 def holding(kind: type[Element], path: Path) -> State:
     """A state with an element of that kind selected."""
-    state = opened(load(path).scene)
+    state = initial_state(load(path).scene)
     found = [each for each in state.scene.elements if type(each) is kind]
     if found:
         return state.select(index_of(state.scene, found[0]))
     for _ in ADDED:
         state = apply(state, "add")
         if type(state.element) is kind:
-            return state.cut()
+            return state.end_merging()
     raise AssertionError(f"{kind.title} cannot be added")
 
 
@@ -103,8 +103,8 @@ def spot(state: State) -> tuple[int, int] | None:
         assert len(seen) > 10
         middle = seen[len(seen) // 2]
         return int(x[middle]), int(y[middle])
-    place = place_of(element)
-    at = projection(camera, *SIZE).pixel(place) if place else None
+    place = position_of(element)
+    at = projection_of(camera, *SIZE).pixel(place) if place else None
     return (round(at[0]), round(at[1])) if at else None
 
 
@@ -114,14 +114,14 @@ def test_it_moves_and_turns(kind: type[Element], path: Path) -> None:
     axes = dict(zip(("right", "up", "forward"), camera_frame(state.scene.camera), strict=True))
     for action, axis in axes.items():
         moved = fine(apply(state, action))
-        for name in named(kind, Point):
-            there = linear_combination(1.0, getattr(state.element, name), state.stride, axis)
+        for name in field_names(kind, Point):
+            there = mix(1.0, getattr(state.element, name), state.stride, axis)
             assert getattr(moved.element, name) == pytest.approx(there, abs=1e-4 * state.stride)
-        assert bool(named(kind, Point)) == (moved.element != state.element) == (not moved.message)
+        assert bool(field_names(kind, Point)) == (moved.element != state.element) == (not moved.message)
     for action in ("turn right", "turn up"):
         turned = fine(apply(state, action))
-        places = [getattr(turned.element, name) for name in named(kind, Point)]
-        can = bool(named(kind, Direction)) or len(places) > 1
+        places = [getattr(turned.element, name) for name in field_names(kind, Point)]
+        can = bool(field_names(kind, Direction)) or len(places) > 1
         assert can == (turned.element != state.element) == (not turned.message)
         assert not can or apply(turned, "undo").scene.items == state.scene.items
 
@@ -139,7 +139,7 @@ def test_every_number_and_colour_is_a_value(kind: type[Element], path: Path) -> 
     state = holding(kind, path)
     active = {value.field.name for value in values(state.element)}
     given = {each.name for each in fields_of(kind) if getattr(state.element, each.name) is not None}
-    assert active == given - {*named(kind, Point), *named(kind, Direction)}
+    assert active == given - {*field_names(kind, Point), *field_names(kind, Direction)}
     for name, after in changes(state):
         field = next(value.field for value in values(state.element) if value.name == name)
         others = {each.name for each in fields_of(kind)} - {field.name}
@@ -160,16 +160,16 @@ def test_every_attribute_is_given_changed_and_taken(kind: type[Element], name: s
     assert state.active.field.name == name
     assert len(state.past) == len(start.past) + 1
 
-    own = [value for value in values(state.element) if value.field.name == name and value.colour is None]
+    own = [value for value in values(state.element) if value.field.name == name and value.channel is None]
     field = own[0].field
     assert len(own) == (len(fields_of(field.record)) if isinstance(field, Compound) else 1)
     for value in own:
-        at = replace(state, value=values(state.element).index(value)).cut()
+        at = replace(state, value=values(state.element).index(value)).end_merging()
         outcomes = [fine(apply(at, action)).element for action in ("grow", "shrink")]
         assert any(each != state.element for each in outcomes), value.name
         assert all(getattr(each, other) is None for each in outcomes for other in names if other != name)
         if isinstance(value.inner or field, Picture):
-            assert [value.of(each) for each in (state.element, *outcomes)] == ["a.png", "more/b.png", "more/b.png"]
+            assert [value.get(each) for each in (state.element, *outcomes)] == ["a.png", "more/b.png", "more/b.png"]
 
     taken = fine(apply(state, "take attribute"))
     assert taken.element == start.element
@@ -181,17 +181,17 @@ def test_every_attribute_is_given_changed_and_taken(kind: type[Element], name: s
 def test_all_attributes_at_once(kind: type[Element], path: Path) -> None:
     state = holding(kind, path)
     for number, _ in enumerate(name for of, name in KEYED if of is kind):
-        state = fine(apply(state, "give attribute", now=10.0 * number)).cut()
+        state = fine(apply(state, "give attribute", now=10.0 * number)).end_merging()
     assert all(getattr(state.element, name) is not None for of, name in KEYED if of is kind)
     assert "no attribute that can be added" in apply(state, "give attribute").message
     for _ in values(state.element):
-        state = fine(apply(state, "grow")).cut()
+        state = fine(apply(state, "grow")).end_merging()
         state = apply(state, "next value")
 
 
 def test_without_a_picture_beside_the_scene_none_is_offered(tmp_path: Path) -> None:
     scene = parse(BARE + "sp 0,0,0 1 9,9,9\n").scene
-    state = opened(Scene((*scene.elements, Background("sky.png")), tmp_path / "scene.rt")).select(2)
+    state = initial_state(Scene((*scene.elements, Background("sky.png")), tmp_path / "scene.rt")).select(2)
     names = set()
     for _ in range(6):
         state = apply(state, "give attribute")
@@ -203,7 +203,7 @@ def test_without_a_picture_beside_the_scene_none_is_offered(tmp_path: Path) -> N
 
 
 def test_again_is_only_what_follows_at_once() -> None:
-    state = opened(parse(BARE + "sp 0,0,0 1 9,9,9\n").scene)
+    state = initial_state(parse(BARE + "sp 0,0,0 1 9,9,9\n").scene)
     state = apply(state, "select next")
     shiny = apply(apply(state, "give attribute"), "grow")
     both = apply(shiny, "give attribute")
@@ -214,10 +214,10 @@ def test_again_is_only_what_follows_at_once() -> None:
 
 
 def test_what_can_be_made_needs_no_more_than_the_table() -> None:
-    state = opened(parse(BARE).scene)
+    state = initial_state(parse(BARE).scene)
     for kind in ADDED:
         if kind is Mesh:
             with pytest.raises(LookupError, match="no mesh beside"):
-                made(kind, state)
+                default_element(kind, state)
             continue
-        assert type(made(kind, state)) is kind
+        assert type(default_element(kind, state)) is kind

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.state import State, opened
+from minirt.viewer.editing.state import State, initial_state
 from tests.viewer.fake import scene
 
 
@@ -12,7 +12,7 @@ def fov(state: State) -> float:
 
 
 def test_nudges_within_half_a_second_are_undone_together():
-    state = opened(scene())
+    state = initial_state(scene())
     for now in (0.0, 0.4, 0.9, 1.3):
         state = apply(state, "grow", now=now)
     assert fov(state) == 98
@@ -21,7 +21,7 @@ def test_nudges_within_half_a_second_are_undone_together():
 
 
 def test_redo_ends():
-    state = apply(apply(opened(scene()), "grow"), "right")
+    state = apply(apply(initial_state(scene()), "grow"), "right")
     for action in ("undo", "undo", "redo", "redo"):
         state = apply(state, action)
     assert (fov(state), state.scene.camera.position[0] > 0) == (92, True)
@@ -30,12 +30,12 @@ def test_redo_ends():
 
 
 def test_a_pause_separates():
-    state = apply(apply(opened(scene()), "grow", now=0.0), "grow", now=0.6)
+    state = apply(apply(initial_state(scene()), "grow", now=0.0), "grow", now=0.6)
     assert fov(apply(state, "undo")) == 92
 
 
 def test_another_change_separates():
-    state = opened(scene())
+    state = initial_state(scene())
     for action in ("grow", "right", "grow", "turn left"):
         state = apply(state, action, now=0.0)
     assert fov(state) == 94
@@ -48,7 +48,7 @@ def test_another_change_separates():
 
 def test_another_selection_or_value_separates():
     for between in (["select next", "select camera"], ["next value", "next value"]):
-        state = opened(scene())
+        state = initial_state(scene())
         for action in ("grow", *between, "grow"):
             state = apply(state, action, now=0.0)
         assert fov(state) == 94
@@ -56,13 +56,13 @@ def test_another_selection_or_value_separates():
 
 
 def test_redo_is_lost_by_a_change():
-    state = apply(apply(apply(opened(scene()), "grow"), "undo"), "right")
+    state = apply(apply(apply(initial_state(scene()), "grow"), "undo"), "right")
     assert apply(state, "redo").message == "nothing to redo"
-    assert apply(opened(scene()), "undo").message == "nothing to undo"
+    assert apply(initial_state(scene()), "undo").message == "nothing to undo"
 
 
 def test_undo_selects_what_was_changed():
-    state = opened(scene())
+    state = initial_state(scene())
     while state.element.title != "sphere":
         state = apply(state, "select next")
     state = apply(apply(apply(state, "grow"), "select camera"), "undo")
@@ -70,7 +70,7 @@ def test_undo_selects_what_was_changed():
 
 
 def test_all_the_way_back_is_the_scene_of_the_file():
-    start = opened(scene())
+    start = initial_state(scene())
     state = start
     for step, action in enumerate(("right", "turn up", "duplicate", "select next", "grow", "delete", "look at") * 5):
         state = apply(state, action, now=float(step))

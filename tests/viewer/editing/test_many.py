@@ -11,8 +11,8 @@ from minirt.scene.pages import PAGE_LENGTH
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.display.overlay import line
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.measure import SAMPLE, size_of
-from minirt.viewer.editing.state import State, opened
+from minirt.viewer.editing.measure import SAMPLE_SIZE, scene_size
+from minirt.viewer.editing.state import State, initial_state
 
 HEAD = "A 0 0,0,0\nC 0,0,0 0,0,1 60\nL 0,0,0 1\n"
 EDITS = ("right", "turn left", "grow", "undo", "redo", "duplicate", "delete", "look at", "reset camera", "undo", "undo")
@@ -35,14 +35,14 @@ def test_an_action_asks_few_spheres_for_anything(many: Scene, action: str, selec
         asked.add(id(sphere))
         return object.__getattribute__(sphere, name)
 
-    state = apply(apply(opened(many), selected), "right")
+    state = apply(apply(initial_state(many), selected), "right")
     with patch.object(Sphere, "__getattribute__", ask):
         line(apply(state, action))
         assert len(asked) <= 2 * PAGE_LENGTH
 
 
 def test_undo_shares_all_but_a_page_of_each_scene(many: Scene) -> None:
-    state = apply(apply(opened(many), "select next"), "select next")
+    state = apply(apply(initial_state(many), "select next"), "select next")
     assert state.element is many.spheres[0]
     for step in range(21):
         state.scene.shapes  # noqa: B018 - as the renderer does, which leaves them in the scene
@@ -62,13 +62,13 @@ def test_the_size_is_that_of_a_sample(many: Scene) -> None:
 
     known = Sphere.bounds
     with patch.object(Sphere, "bounds", bounds):
-        size = size_of(many)
-    assert SAMPLE / 2 < len({id(sphere) for sphere in measured}) <= SAMPLE
+        size = scene_size(many)
+    assert SAMPLE_SIZE / 2 < len({id(sphere) for sphere in measured}) <= SAMPLE_SIZE
     assert size == pytest.approx(50, rel=0.05)
 
 
 def test_the_last_of_many_is_found(many: Scene) -> None:
-    state: State = apply(opened(many), "select previous")
+    state: State = apply(initial_state(many), "select previous")
     state = apply(apply(apply(state, "select camera"), "select light"), "select light")
     assert state.element is many.elements[-1]
     assert apply(state, "select light").element is many.lights[0]

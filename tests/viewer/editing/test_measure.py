@@ -8,8 +8,8 @@ import pytest
 
 from minirt.fields import FARTHEST, LEAST_LENGTH
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.measure import size_of
-from minirt.viewer.editing.state import opened
+from minirt.viewer.editing.measure import scene_size
+from minirt.viewer.editing.state import initial_state
 from tests.viewer.fake import scene
 
 HEAD = "A 0 0,0,0\nC 0,0,10 0,0,-1 60\n"
@@ -32,13 +32,13 @@ HEAD = "A 0 0,0,0\nC 0,0,10 0,0,-1 60\n"
     ],
 )
 def test_size(lines, size):
-    assert size_of(scene(HEAD + lines + "\n")) == pytest.approx(size)
+    assert scene_size(scene(HEAD + lines + "\n")) == pytest.approx(size)
 
 
 @pytest.mark.parametrize("fov", [1, 60, 120])
 def test_a_sphere_that_is_looked_at_fits_a_usual_window(fov):
     text = f"A 0 0,0,0\nC 50,2,9 0.6,0,0.8 {fov}\nsp 1,2,3 4 9,9,9\n"
-    state = apply(apply(opened(scene(text)), "select next"), "look at")
+    state = apply(apply(initial_state(scene(text)), "select next"), "look at")
     position = state.scene.camera.position
     distance = dist(position, (1, 2, 3))
     assert position == pytest.approx((1 - 0.6 * distance, 2, 3 - 0.8 * distance), abs=1e-5)
@@ -47,5 +47,5 @@ def test_a_sphere_that_is_looked_at_fits_a_usual_window(fov):
 
 
 def test_a_light_is_looked_at_from_nearby():
-    state = apply(apply(opened(scene(HEAD + "L 3,0,-1000 1\nsp 0,0,0 1 9,9,9\n")), "select next"), "look at")
+    state = apply(apply(initial_state(scene(HEAD + "L 3,0,-1000 1\nsp 0,0,0 1 9,9,9\n")), "select next"), "look at")
     assert 0 < dist(state.scene.camera.position, (3, 0, -1000)) < 10

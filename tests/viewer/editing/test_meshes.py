@@ -12,9 +12,9 @@ from minirt.shapes.mesh import Mesh
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.outline import rims
-from minirt.viewer.editing.adding import kinds
+from minirt.viewer.editing.adding import addable_kinds
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.state import opened
+from minirt.viewer.editing.state import initial_state
 from tests.meshes.examples import named
 from tests.viewer.display.test_marks import HEIGHT, WIDTH, drawn, edges
 from tests.viewer.fake import FakeRenderer
@@ -52,7 +52,7 @@ def test_a_mesh_is_one_stop_of_tab_and_one_line(path: Path) -> None:
 
 
 def test_all_of_it_is_undone(path: Path) -> None:
-    state = opened(load(path).scene)
+    state = initial_state(load(path).scene)
     start = state = state.select(len(state.scene.elements) - 1)
     for number, action in enumerate(("left", "grow", "next value", "grow")):
         state = apply(state, action, now=10.0 * number)
@@ -64,7 +64,7 @@ def test_all_of_it_is_undone(path: Path) -> None:
 
 
 def test_the_size_comes_before_the_file_and_the_file_can_be_another(path: Path) -> None:
-    state = opened(load(path).scene)
+    state = initial_state(load(path).scene)
     state = state.select(len(state.scene.elements) - 1)
     names = []
     for _ in range(3):
@@ -81,7 +81,7 @@ def test_the_size_comes_before_the_file_and_the_file_can_be_another(path: Path) 
 
 def test_where_there_is_one_mesh_there_is_no_other(path: Path) -> None:
     (path.parent / "more" / "b.obj").unlink()
-    state = opened(load(path).scene)
+    state = initial_state(load(path).scene)
     state = state.select(len(state.scene.elements) - 1)
     while state.active.field.name != "file":
         state = apply(state, "next value")
@@ -90,15 +90,15 @@ def test_where_there_is_one_mesh_there_is_no_other(path: Path) -> None:
 
 def test_a_mesh_is_added_where_there_is_one(path: Path) -> None:
     scene = load(path).scene
-    count = len(kinds(scene))
-    assert kinds(scene)[-1] is Mesh
+    count = len(addable_kinds(scene))
+    assert addable_kinds(scene)[-1] is Mesh
     session = played(path, *["press N"] * count)
     assert type(session.state.element) is Mesh
     assert len(session.state.scene.meshes) == 2
     for each in path.parent.rglob("*.obj"):
         each.unlink()
-    assert Mesh not in kinds(scene)
-    assert len(kinds(scene)) == count - 1
+    assert Mesh not in addable_kinds(scene)
+    assert len(addable_kinds(scene)) == count - 1
 
 
 @pytest.mark.parametrize("name", ["icosahedron", "knot"])

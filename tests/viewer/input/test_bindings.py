@@ -11,16 +11,16 @@ from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.editing.dragging import DRAGS
 from minirt.viewer.editing.editor import EDITS
 from minirt.viewer.input.bindings import BINDINGS, keys_markdown, keys_text
-from minirt.viewer.input.chords import Chord, chord, shown
-from minirt.viewer.input.keymap import Keymap, chords
-from minirt.viewer.input.layouts import LAYOUTS, detect
+from minirt.viewer.input.chords import Chord, parse_chord, platform_spelling
+from minirt.viewer.input.keymap import Keymap, chords_of
+from minirt.viewer.input.layouts import LAYOUTS, resolve_layout
 
 ACTIONS = [binding.action for binding in BINDINGS]
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_no_key_is_bound_twice(layout):
-    counts = Counter(each for binding in BINDINGS for each in chords(binding, layout))
+    counts = Counter(each for binding in BINDINGS for each in chords_of(binding, layout))
     assert [each for each, count in counts.items() if count > 1] == []
 
 
@@ -36,14 +36,14 @@ def test_every_key_of_the_table_is_found(layout):
     keymap = Keymap(layout)
     for binding in BINDINGS:
         for spelling in binding.spellings(keymap.layout):
-            assert keymap.find(*chord(spelling)) is binding
+            assert keymap.find(*parse_chord(spelling)) is binding
 
 
 @pytest.mark.parametrize("layout", ["qwerty", "azerty"])
 def test_texts_have_every_row(layout):
     text, table = keys_text(layout), keys_markdown()
     for binding in BINDINGS:
-        keys = " / ".join(map(shown, binding.spellings(layout)))
+        keys = " / ".join(map(platform_spelling, binding.spellings(layout)))
         assert any(line.split("  ")[1:2] == [keys] and line.endswith(binding.help) for line in text.splitlines())
         assert f"| {binding.help} | {' '.join(f'`{key}`' for key in binding.keys)} |" in table
 
@@ -73,8 +73,8 @@ def test_azerty_moves_with_the_same_fingers():
 @pytest.mark.parametrize(("name", "layout"), [("fr_FR", "azerty"), ("de_DE", "qwerty"), (None, "qwerty")])
 def test_auto_follows_the_locale(monkeypatch, name, layout):
     monkeypatch.setattr("locale.getlocale", lambda: (name, "UTF-8"))
-    assert detect("auto") == layout
-    assert detect("qwertz") == "qwertz"
+    assert resolve_layout("auto") == layout
+    assert resolve_layout("qwertz") == "qwertz"
 
 
 @pytest.mark.parametrize(
@@ -91,10 +91,10 @@ def test_auto_follows_the_locale(monkeypatch, name, layout):
     ],
 )
 def test_spellings(spelling, meant):
-    assert chord(spelling) == meant
+    assert parse_chord(spelling) == meant
 
 
 @pytest.mark.parametrize("spelling", ["Tabb", "Hyper+A", "Ctrl+?", "", "Ctrl+", "é"])
 def test_unknown_spellings(spelling):
     with pytest.raises(ValueError):  # noqa: PT011 - the message is the part that is unknown
-        chord(spelling)
+        parse_chord(spelling)
