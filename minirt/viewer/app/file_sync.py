@@ -72,9 +72,9 @@ def followed(old: State, scene: Scene, saved: Scene | None) -> State:
     return replace(
         new,
         selected=old.selected if same else new.selected,
-        value=old.value if same else 0,
+        value_index=old.value_index if same else 0,
         frame=old.frame,
-        past=(*old.past[1 - MAX_UNDO :], Snapshot(old.scene, old.selected)),
+        undo_stack=(*old.undo_stack[1 - MAX_UNDO :], Snapshot(old.scene, old.selected)),
     )
 
 

@@ -50,7 +50,7 @@ def draw_hud(pixels: Pixels, state: State, shown: Outcome | None, level: Level, 
         made = f"    {status(shown)}" if shown else ""
         write(pixels, MARGIN, cut(f"{line(state)}    {keys}{made}", width, size), INK, size)
         return 0
-    place = f"{state.selected + 1} of {len(state.scene.elements)}    {len(state.past)} to undo"
+    place = f"{state.selected + 1} of {len(state.scene.elements)}    {len(state.undo_stack)} to undo"
     write(pixels, MARGIN, wrapped(f"{line(state)}\n{keys}    {place}", width, size), INK, size)
     made = wrapped("\n".join((*shown.about, status(shown, rate))), width, size) if shown else ""
     room = pixels.shape[0] // 2 // measure(" ", size)[1]  # lines of half of the window

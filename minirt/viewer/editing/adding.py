@@ -58,7 +58,7 @@ def contains_kind(scene: Scene, kind: type[Element]) -> bool:
     return any(type(each) is kind for each in scene.of(kind))
 
 
-def default_element(kind: type[RecordType], state: State) -> RecordType:
+def default_record(kind: type[RecordType], state: State) -> RecordType:
     """Make a record of default values; an element is placed in front of the camera.
 
     LookupError if it needs a picture or mesh file and there is none beside the scene.
@@ -96,9 +96,9 @@ def round_point(point: Triple, stride: float) -> Triple:
 
 
 def default_value(field: Field, state: State) -> Any:
-    """Default value of a field that is not a point; LookupError as in `default_element`."""
+    """Default value of a field that is not a point; LookupError as in `default_record`."""
     if isinstance(field, Compound):
-        return field.check(field.parse(field.bare)) if field.bare else default_element(field.record, state)
+        return field.check(field.parse(field.bare)) if field.bare else default_record(field.record, state)
     if isinstance(field, (Picture, MeshField)):
         noun, files = ("picture", pictures) if isinstance(field, Picture) else ("mesh", meshes)
         return first_file(noun, files(state.scene))

@@ -36,7 +36,7 @@ def add_attribute(state: State, _amount: float, now: float) -> State:
     added = before.change(before.scene.edit(before.selected, changed), CHANGE_KIND, now)
     index = [value.field.name for value in values(changed)].index(name)
     field = values(changed)[index].field
-    return replace(added, value=index).with_message(
+    return replace(added, value_index=index).with_message(
         f"{field.doc}: {spelling(field, changed)}; again for another: {number + 1} of {len(missing)}"
     )
 
@@ -62,4 +62,4 @@ def remove_attribute(state: State, _amount: float, now: float) -> State:
     if changed == state.element:
         return state.with_message(f"{active.name} is as it is without the attribute")
     state = state.change(state.scene.edit(state.selected, changed), "", now)
-    return replace(state, value=0).with_message(f"no {active.field.title} any more")
+    return replace(state, value_index=0).with_message(f"no {active.field.title} any more")

@@ -90,7 +90,7 @@ def next_value(state: State, _amount: float, _now: float) -> State:
     count = len(values(state.element))
     if not count:
         return state.with_message(f"{state.element.title} has no value to change")
-    return replace(state, value=(state.value + 1) % count, last_change=None)
+    return replace(state, value_index=(state.value_index + 1) % count, last_change=None)
 
 
 def next_frame(state: State, _amount: float, _now: float) -> State:
@@ -120,8 +120,8 @@ EDITS: dict[str, Edit] = {
     "grow": partial(change_value, 1.0),
     "shrink": partial(change_value, -1.0),
     "next value": next_value,
-    "give attribute": attributes.add_attribute,
-    "take attribute": attributes.remove_attribute,
+    "add attribute": attributes.add_attribute,
+    "remove attribute": attributes.remove_attribute,
     "look at": framing.look_at,
     "reset camera": framing.reset_camera,
     "undo": history.undo,

@@ -44,15 +44,13 @@ class State:
     selected: int  # index into scene.elements
     file_camera: Camera  # the camera as it is in the file
     size: float  # of the scene, in scene units; movements are proportional to it
-    value: int = 0  # index of the active value in `values` of the selected element
+    value_index: int = 0  # of the active value in `values` of the selected element
     frame: Frame = Frame.VIEW
     message: str = ""
-    kind: int = 0  # of the last added element: index in `addable_kinds`
-    past: tuple[Snapshot, ...] = field(default=(), repr=False)  # undo stack, oldest first
-    future: tuple[Snapshot, ...] = field(default=(), repr=False)  # redo stack, last first
-    last_change: tuple[str, float] | None = (
-        None  # kind and time of the last change while further changes may be merged with it
-    )
+    kind_index: int = 0  # of the last added element in `addable_kinds`
+    undo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # oldest first
+    redo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # latest first
+    last_change: tuple[str, float] | None = None  # its kind and time, while further changes may be merged with it
 
     @property
     def element(self) -> Element:
@@ -63,7 +61,7 @@ class State:
     def active(self) -> Value | None:
         """The value of the selected element that keys increase and decrease; None if it has none."""
         all_values = values(self.element)
-        return all_values[self.value % len(all_values)] if all_values else None
+        return all_values[self.value_index % len(all_values)] if all_values else None
 
     @property
     def stride(self) -> float:
@@ -76,7 +74,7 @@ class State:
 
     def select(self, index: int) -> State:
         """Select another element. The next change is not merged with earlier ones."""
-        return replace(self, selected=index, value=0, last_change=None)
+        return replace(self, selected=index, value_index=0, last_change=None)
 
     def end_merging(self) -> State:
         """End merging: the next change is undone by itself."""
@@ -89,9 +87,13 @@ class State:
         """
         last = self.last_change
         merged = bool(kind) and last is not None and last[0] == kind and now - last[1] <= MERGE_SECONDS
-        past = self.past if merged else (*self.past[1 - MAX_UNDO :], Snapshot(self.scene.lighten(), self.selected))
+        past = (
+            self.undo_stack
+            if merged
+            else (*self.undo_stack[1 - MAX_UNDO :], Snapshot(self.scene.lighten(), self.selected))
+        )
         selected = self.selected if selected is None else selected
-        return replace(self, scene=scene, selected=selected, past=past, future=(), last_change=(kind, now))
+        return replace(self, scene=scene, selected=selected, undo_stack=past, redo_stack=(), last_change=(kind, now))
 
     def edit_element(self, element: Element, kind: str, now: float) -> State:
         """Replace the selected element by `element`, whose changed numbers are rounded."""

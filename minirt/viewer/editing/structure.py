@@ -9,7 +9,7 @@ from dataclasses import replace
 from minirt.element import Element, fields_of
 from minirt.scene.registry import ELEMENTS
 from minirt.viewer.editing import history
-from minirt.viewer.editing.adding import addable_kinds, default_element
+from minirt.viewer.editing.adding import addable_kinds, default_record
 from minirt.viewer.editing.state import State, index_of
 
 CHANGE_KIND = "add"  # for undo: see `State.change`
@@ -47,7 +47,7 @@ def default_elements(kinds: list[type[Element]], numbers: list[int], state: Stat
     """Yield default elements of the kinds with these numbers; kinds that need a missing file are skipped."""
     for number in numbers:
         with suppress(LookupError):
-            yield number, default_element(kinds[number], state)
+            yield number, default_record(kinds[number], state)
 
 
 def add(step: int, state: State, _amount: float, now: float) -> State:
@@ -58,9 +58,9 @@ def add(step: int, state: State, _amount: float, now: float) -> State:
     again = state.last_change is not None and state.last_change[0] == CHANGE_KIND
     before = history.undo(state) if again else state
     kinds = addable_kinds(before.scene)
-    numbers = [(state.kind + step * (again + skipped)) % len(kinds) for skipped in range(len(kinds))]
+    numbers = [(state.kind_index + step * (again + skipped)) % len(kinds) for skipped in range(len(kinds))]
     number, element = next(default_elements(kinds, numbers, before))
     last = len(before.scene.elements) - 1
     scene = before.scene.edit(last, before.scene.elements[last], element)
-    added = replace(replace(before, value=0).change(scene, CHANGE_KIND, now, last + 1), kind=number)
+    added = replace(replace(before, value_index=0).change(scene, CHANGE_KIND, now, last + 1), kind_index=number)
     return added.with_message(f"a new {element.title}; again for another kind: {number + 1} of {len(kinds)}")

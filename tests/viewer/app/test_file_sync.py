@@ -240,7 +240,7 @@ class TestDrop:
         assert session.path == other
         assert session.win.title == "miniRT - other one.rt"
         assert session.state.scene.spheres[0].diameter == 7
-        assert session.state.past == ()
+        assert session.state.undo_stack == ()
         bench.tap(Key.TAB)
         bench.tap(Key.D)
         bench.tap(Key.CONTROL_L, Key.S)

@@ -33,7 +33,7 @@ def test_in_memory(seed: int, tmp_path) -> None:
     assert sum(isinstance(each, Camera) for each in scene.elements) == 1
     assert parse(dump(scene)).scene.items == scene.items
     parse(path.read_bytes(), path)
-    assert undone.past == ()
+    assert undone.undo_stack == ()
     assert undone.scene.items == parse(monkey.TEXT).scene.items
 
 

@@ -55,7 +55,7 @@ def test_a_held_key_moves_in_proportion_to_time(seconds):
     steps = max(1, RATE * seconds)
     x, y, z = session.state.scene.camera.position
     assert (x, y, z) == pytest.approx((steps * session.state.stride, 0, 10), rel=1e-4)
-    assert len(session.state.past) == 1
+    assert len(session.state.undo_stack) == 1
 
 
 def test_shift_is_a_tenth():
@@ -105,7 +105,7 @@ def test_a_resize_renders_anew():
 def test_what_ends_the_session_ends_the_replay():
     for end in ("press Escape", "press Ctrl+q", "close", "press Ctrl+Shift+Escape"):
         session = played("press d", end, "press d", "resize 10x10")
-        assert len(session.state.past) == 1
+        assert len(session.state.undo_stack) == 1
         assert session.screen.frame.shape == (48, 64, 4)
 
 

@@ -10,7 +10,7 @@ from minirt.scene import Camera, Resolution, dump, parse
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS
 from minirt.shapes.mesh import Mesh
-from minirt.viewer.editing.adding import addable_kinds, default_element
+from minirt.viewer.editing.adding import addable_kinds, default_record
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import State, initial_state
@@ -38,7 +38,7 @@ def test_everything_that_can_be_edited_can_be_added() -> None:
 )
 def test_each_is_made_from_its_fields_and_seen(kind: type, text: str) -> None:
     state = initial_state(scene(text))
-    element = default_element(kind, state)
+    element = default_record(kind, state)
     assert type(element) is kind
     seen = projection_of(state.scene.camera, 640, 360)
     for field in fields_of(kind):
@@ -58,7 +58,7 @@ def test_again_makes_the_next_kind_and_is_undone_at_once() -> None:
         assert type(state.element) is known[(times - 1) % len(known)]
         assert len(state.scene.elements) == len(start.scene.elements) + 1
         assert apply(state, "undo").scene.items == start.scene.items
-        assert len(state.past) == 1
+        assert len(state.undo_stack) == 1
     assert type(adding(adding(start, 3), 1, "add previous").element) is known[1]
 
 

@@ -124,13 +124,13 @@ class TestUndo:
     @pytest.mark.parametrize("line", [DRAG, f"{DRAG} right", f"{DRAG} middle", "drag 5,3 20,12"])
     def test_a_drag_is_one_thing(self, line):
         session = played(line)
-        assert len(session.state.past) == 1
+        assert len(session.state.undo_stack) == 1
         assert played(line, "press Ctrl+Z").state.scene.items == scene().items
         assert played(line, "press Ctrl+Z", "press Ctrl+Y").state.scene.items == session.state.scene.items
 
     def test_two_drags_are_two(self):
-        assert len(played(DRAG, "drag 45,15 33,23").state.past) == 2
-        assert len(played("press Tab", "press Tab", "press d", DRAG, "press d").state.past) == 3
+        assert len(played(DRAG, "drag 45,15 33,23").state.undo_stack) == 2
+        assert len(played("press Tab", "press Tab", "press d", DRAG, "press d").state.undo_stack) == 3
 
     def test_whatever_the_way(self):
         there_and_back = played("drag 33,23 60,40", "press Ctrl+Z", DRAG)
@@ -141,7 +141,7 @@ class TestUndo:
         bench.memory.wait(3)
         bench.memory.motion(*TO)
         bench.memory.play()
-        assert len(bench.session.state.past) == 1
+        assert len(bench.session.state.undo_stack) == 1
 
 
 def dragging() -> Bench:
@@ -151,7 +151,7 @@ def dragging() -> Bench:
     bench.memory.button_press(1, *FROM)
     bench.memory.motion(40, 20)
     bench.memory.play()
-    assert len(bench.session.state.past) == 1
+    assert len(bench.session.state.undo_stack) == 1
     return bench
 
 
@@ -184,7 +184,7 @@ def test_a_click_moves_nothing_although_the_hand_trembles():
     bench.memory.button_release(1, FROM[0] + 3, FROM[1] - 3)
     bench.memory.play()
     assert bench.session.state.element.title == "sphere"
-    assert bench.session.state.past == ()
+    assert bench.session.state.undo_stack == ()
 
 
 def test_a_right_click_selects_the_camera_and_a_right_drag_does_not():

@@ -79,11 +79,11 @@ def test_a_tenth_of_a_step():
     assert after(selecting(Sphere), "right", amount=0.1).element.centre == pytest.approx((0.1, 0, 0))
 
 
-def test_ambient_light_has_no_place():
+def test_ambient_light_has_no_position():
     state = selecting(type(scene().ambient))
     moved = after(state, "left")
     assert moved.scene is state.scene
-    assert "no place" in moved.message
+    assert "no position" in moved.message
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
-from minirt.viewer.editing.adding import addable_kinds, default_element
+from minirt.viewer.editing.adding import addable_kinds, default_record
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import State, field_names, index_of, initial_state, position_of
@@ -154,24 +154,24 @@ def test_every_attribute_is_given_changed_and_taken(kind: type[Element], name: s
     start = state = holding(kind, path)
     names = [each for of, each in KEYED if of is kind]
     for _ in range(names.index(name) + 1):
-        state = fine(apply(state, "give attribute"))
+        state = fine(apply(state, "add attribute"))
     assert getattr(state.element, name) is not None
     assert [each for each in names if getattr(state.element, each) is not None] == [name]
     assert state.active.field.name == name
-    assert len(state.past) == len(start.past) + 1
+    assert len(state.undo_stack) == len(start.undo_stack) + 1
 
     own = [value for value in values(state.element) if value.field.name == name and value.channel is None]
     field = own[0].field
     assert len(own) == (len(fields_of(field.record)) if isinstance(field, Compound) else 1)
     for value in own:
-        at = replace(state, value=values(state.element).index(value)).end_merging()
+        at = replace(state, value_index=values(state.element).index(value)).end_merging()
         outcomes = [fine(apply(at, action)).element for action in ("grow", "shrink")]
         assert any(each != state.element for each in outcomes), value.name
         assert all(getattr(each, other) is None for each in outcomes for other in names if other != name)
         if isinstance(value.inner or field, Picture):
             assert [value.get(each) for each in (state.element, *outcomes)] == ["a.png", "more/b.png", "more/b.png"]
 
-    taken = fine(apply(state, "take attribute"))
+    taken = fine(apply(state, "remove attribute"))
     assert taken.element == start.element
     assert apply(taken, "undo").element == state.element
     assert apply(apply(taken, "undo"), "undo").element == start.element
@@ -181,9 +181,9 @@ def test_every_attribute_is_given_changed_and_taken(kind: type[Element], name: s
 def test_all_attributes_at_once(kind: type[Element], path: Path) -> None:
     state = holding(kind, path)
     for number, _ in enumerate(name for of, name in KEYED if of is kind):
-        state = fine(apply(state, "give attribute", now=10.0 * number)).end_merging()
+        state = fine(apply(state, "add attribute", now=10.0 * number)).end_merging()
     assert all(getattr(state.element, name) is not None for of, name in KEYED if of is kind)
-    assert "no attribute that can be added" in apply(state, "give attribute").message
+    assert "no attribute that can be added" in apply(state, "add attribute").message
     for _ in values(state.element):
         state = fine(apply(state, "grow")).end_merging()
         state = apply(state, "next value")
@@ -194,7 +194,7 @@ def test_without_a_picture_beside_the_scene_none_is_offered(tmp_path: Path) -> N
     state = initial_state(Scene((*scene.elements, Background("sky.png")), tmp_path / "scene.rt")).select(2)
     names = set()
     for _ in range(6):
-        state = apply(state, "give attribute")
+        state = apply(state, "add attribute")
         names.add(state.active.field.name)
     assert names == {"specular", "mirror", "glass", "checker"}
     sky = apply(state.select(3), "grow")
@@ -205,12 +205,12 @@ def test_without_a_picture_beside_the_scene_none_is_offered(tmp_path: Path) -> N
 def test_again_is_only_what_follows_at_once() -> None:
     state = initial_state(parse(BARE + "sp 0,0,0 1 9,9,9\n").scene)
     state = apply(state, "select next")
-    shiny = apply(apply(state, "give attribute"), "grow")
-    both = apply(shiny, "give attribute")
+    shiny = apply(apply(state, "add attribute"), "grow")
+    both = apply(shiny, "add attribute")
     assert (both.element.specular, both.element.mirror) == (shiny.element.specular, 0.3)
     assert shiny.element.specular.share == pytest.approx(0.55)
-    assert "no attribute" in apply(shiny.select(0), "take attribute").message
-    assert apply(both, "take attribute").element == shiny.element
+    assert "no attribute" in apply(shiny.select(0), "remove attribute").message
+    assert apply(both, "remove attribute").element == shiny.element
 
 
 def test_what_can_be_made_needs_no_more_than_the_table() -> None:
@@ -218,6 +218,6 @@ def test_what_can_be_made_needs_no_more_than_the_table() -> None:
     for kind in ADDED:
         if kind is Mesh:
             with pytest.raises(LookupError, match="no mesh beside"):
-                default_element(kind, state)
+                default_record(kind, state)
             continue
-        assert type(default_element(kind, state)) is kind
+        assert type(default_record(kind, state)) is kind

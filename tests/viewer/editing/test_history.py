@@ -74,6 +74,6 @@ def test_all_the_way_back_is_the_scene_of_the_file():
     state = start
     for step, action in enumerate(("right", "turn up", "duplicate", "select next", "grow", "delete", "look at") * 5):
         state = apply(state, action, now=float(step))
-    while state.past:
+    while state.undo_stack:
         state = apply(state, "undo")
     assert state.scene is start.scene

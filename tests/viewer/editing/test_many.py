@@ -47,10 +47,10 @@ def test_undo_shares_all_but_a_page_of_each_scene(many: Scene) -> None:
     for step in range(21):
         state.scene.shapes  # noqa: B018 - as the renderer does, which leaves them in the scene
         state = apply(state, ("right", "grow", "duplicate")[step % 3], now=float(step))
-    pages = {id(page) for moment in state.past for page in moment.scene.pages}
-    assert len(state.past) == 21
-    assert len(pages) <= len(many.pages) + len(state.past)
-    assert not any("shapes" in vars(moment.scene) for moment in state.past)
+    pages = {id(page) for moment in state.undo_stack for page in moment.scene.pages}
+    assert len(state.undo_stack) == 21
+    assert len(pages) <= len(many.pages) + len(state.undo_stack)
+    assert not any("shapes" in vars(moment.scene) for moment in state.undo_stack)
 
 
 def test_the_size_is_that_of_a_sample(many: Scene) -> None:
