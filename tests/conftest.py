@@ -8,12 +8,12 @@ import threading
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests import scheduling, surroundings
+from tests import environment, scheduling
 from tests.windows import desktop
 
 __all__ = ["desktop"]
 
-surroundings.prepare()  # before the compiler is imported, which reads the environment once
+environment.prepare()  # before the compiler is imported, which reads the environment once
 
 # A slow machine is no failure: hypothesis does not look at the clock.
 settings.register_profile("miniRT", deadline=None, suppress_health_check=[HealthCheck.too_slow])

@@ -11,8 +11,8 @@ import pytest
 from tests.paths import ROOT
 
 WINDOWS, SCENES = "windows", "scenes"
-FIRST = (WINDOWS, SCENES)  # they take longest
-OF_SCENES = {"tests/test_goldens.py", "tests/stability/test_pictures.py", "tests/rendering/queries/test_preview.py"}
+LARGEST = (WINDOWS, SCENES)  # they take longest
+SCENE_TESTS = {"tests/test_goldens.py", "tests/stability/test_pictures.py", "tests/rendering/queries/test_preview.py"}
 
 # What `make quick` leaves out: these take two thirds of the time of all tests that open no window.
 SLOW = {
@@ -63,16 +63,16 @@ def opens_windows(file: str) -> bool:
     return "pytest.mark.window" in (ROOT / file).read_text(encoding="utf-8")
 
 
-def piece_of_work(test: str) -> str:
+def work_group(test: str) -> str:
     """The name of all that a test is run together with, in one process."""
     file = file_of(test)
-    return SCENES if file in OF_SCENES else WINDOWS if opens_windows(file) else file
+    return SCENES if file in SCENE_TESTS else WINDOWS if opens_windows(file) else file
 
 
 def order(test: str) -> int:
     """A number by which tests are sorted."""
-    piece = piece_of_work(test)
-    return FIRST.index(piece) if piece in FIRST else len(FIRST)
+    piece = work_group(test)
+    return LARGEST.index(piece) if piece in LARGEST else len(LARGEST)
 
 
 def make_scheduler(config: pytest.Config, log: Any) -> Any:
@@ -81,7 +81,7 @@ def make_scheduler(config: pytest.Config, log: Any) -> Any:
 
     class Pieces(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
-            return piece_of_work(nodeid)
+            return work_group(nodeid)
 
     config.option.loadscopereorder = False
     return Pieces(config, log)

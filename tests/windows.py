@@ -41,13 +41,13 @@ if TYPE_CHECKING:
 
 TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd", "xwininfo", "setxkbmap")
 SCREEN = (2560, 1600)  # its size in pixels
-STILL = """\
+OPENBOX_CONFIG = """\
 <openbox_config xmlns="http://openbox.org/3.4/rc">
   <theme><animateIconify>no</animateIconify></theme>
 </openbox_config>
 """  # or windows that are minimised and restored fly about, and are not where the pointer is moved to
-MANAGER = "MINIRT_TEST_WINDOW_MANAGER"  # in the environment: the number of the window manager's process
-AT_ONCE = ("--delay", "0")  # for xdotool, which otherwise rests between pressing and letting go
+MANAGER_VARIABLE = "MINIRT_TEST_WINDOW_MANAGER"  # in the environment: the number of the window manager's process
+NO_DELAY = ("--delay", "0")  # for xdotool, which otherwise rests between pressing and letting go
 
 
 class Desktop:
@@ -75,9 +75,9 @@ class Desktop:
         return all(done.returncode == 0 for done in asked)
 
     @contextmanager
-    def manager_stopped(self) -> Iterator[None]:
+    def manager_paused(self) -> Iterator[None]:
         """Meanwhile the window manager does nothing: no new window is shown, and none gets the focus."""
-        manager = int(self.environment[MANAGER])
+        manager = int(self.environment[MANAGER_VARIABLE])
         until_idle(manager, itertools.count().__next__, 3)  # it must not stop while the display is its alone
         os.kill(manager, signal.SIGSTOP)
         try:
@@ -109,7 +109,7 @@ class Desktop:
 
         def look() -> bool:
             self._expect_a_program()
-            with _windows_may_go():  # the program may make another one instead
+            with _closed_windows_ignored():  # the program may make another one instead
                 found[:] = [window for window, name in self.windows() if name == title]
                 if found and size in (None, self.size(found[0])):
                     self.activate(found[0])
@@ -136,17 +136,17 @@ class Desktop:
     def key(self, window: int, *names: str) -> None:
         """Press and release; xdotool's names, such as Escape, shift+Tab."""
         self.activate(window)
-        self.run("xdotool", "key", *AT_ONCE, *names)
+        self.run("xdotool", "key", *NO_DELAY, *names)
 
     def keydown(self, name: str) -> None:
         self._held.append(name)
-        self.run("xdotool", "keydown", *AT_ONCE, name)
+        self.run("xdotool", "keydown", *NO_DELAY, name)
 
     def keyup(self, name: str) -> None:
-        self.run("xdotool", "keyup", *AT_ONCE, name)
+        self.run("xdotool", "keyup", *NO_DELAY, name)
         self._held.remove(name)
 
-    def let_go(self) -> None:
+    def release_keys(self) -> None:
         """Let all keys go that a test which failed may still hold."""
         while self._held:
             self.keyup(self._held[-1])
@@ -157,7 +157,7 @@ class Desktop:
     def click(self, window: int, x: int, y: int, button: int = 1) -> None:
         """Buttons 4 to 7 turn the wheel."""
         move = ("mousemove", "--window", str(window), str(x), str(y))
-        self.run("xdotool", *move, "click", *AT_ONCE, str(button))
+        self.run("xdotool", *move, "click", *NO_DELAY, str(button))
 
     def resize(self, window: int, width: int, height: int) -> None:
         self.run("xdotool", "windowsize", str(window), str(width), str(height))
@@ -185,7 +185,7 @@ class Desktop:
     def close_button(self, window: int) -> None:
         self.run("wmctrl", "-i", "-c", hex(window))
 
-    def is_there(self, window: int) -> bool:
+    def exists(self, window: int) -> bool:
         return processes.run(["xwininfo", "-id", str(window)], env=self.environment).returncode == 0
 
     def screenshot(self, window: int) -> NDArray[np.uint8]:
@@ -198,7 +198,7 @@ class Desktop:
         try:
             yield
         finally:
-            self.let_go()
+            self.release_keys()
             if not self._programs:
                 until(self._is_empty, "the end of all windows")
 
@@ -211,7 +211,7 @@ class Desktop:
             raise AssertionError(f"no program is left that could open a window: {ends}")
 
     def _is_empty(self) -> bool:
-        with _windows_may_go():
+        with _closed_windows_ignored():
             return not self.windows()
         return False
 
@@ -226,7 +226,7 @@ class Desktop:
 
 
 @contextmanager
-def _windows_may_go() -> Iterator[None]:
+def _closed_windows_ignored() -> Iterator[None]:
     """Leave the block where a window of it goes meanwhile, as nobody can tell when."""
     try:
         yield
@@ -238,12 +238,12 @@ def _windows_may_go() -> Iterator[None]:
 @pytest.fixture(scope="session")
 def desktop() -> Iterator[Desktop]:
     """One desktop for all tests of the session."""
-    require()
+    require_tools()
     with open_desktop() as opened:
         yield opened
 
 
-def require() -> None:
+def require_tools() -> None:
     """Skip the test where the tools are missing, or fail it if they have to be there."""
     missing = [tool for tool in TOOLS if shutil.which(tool) is None]
     if missing:
@@ -267,13 +267,13 @@ def open_desktop() -> Iterator[Desktop]:
     with ExitStack() as stack:
         home = stack.enter_context(tempfile.TemporaryDirectory())  # no configuration of this user's
         (Path(home) / "openbox").mkdir()
-        (Path(home) / "openbox" / "rc.xml").write_text(STILL)
+        (Path(home) / "openbox" / "rc.xml").write_text(OPENBOX_CONFIG)
         environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"}
         environment |= {"PYTHONPATH": str(ROOT), "XDG_CONFIG_HOME": home}
         environment["DISPLAY"] = stack.enter_context(_display())
         command = ["openbox", "--sm-disable"]
         manager = stack.enter_context(_server(command, env=environment | {"XDG_CACHE_HOME": home}))
-        opened = Desktop(environment | {MANAGER: str(manager.pid)})
+        opened = Desktop(environment | {MANAGER_VARIABLE: str(manager.pid)})
         until(lambda: opened.is_managed() or manager.poll() is not None, "openbox")
         if manager.poll() is not None:
             raise RuntimeError("openbox did not start")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests import conftest, scheduling, surroundings
+from tests import conftest, scheduling
 from tests.paths import ROOT
 from tests.processes import run, started
 
@@ -27,7 +27,7 @@ signal.pause()
 def prepared(monkeypatch: pytest.MonkeyPatch, **environment: str) -> dict[str, str]:
     """What `prepare` makes of these environment variables."""
     monkeypatch.setattr(os, "environ", environment)
-    surroundings.prepare()
+    environment.prepare()
     return environment
 
 
@@ -95,11 +95,9 @@ def test_a_program_that_is_left_early_leaves_nothing_running() -> None:
 
 def test_windows_and_scenes_are_pieces_of_work_and_every_other_file_is_one() -> None:
     walk, file = "tests/viewer/app/test_walk.py::test_a_walk", Path(__file__).relative_to(ROOT).as_posix()
-    assert (
-        scheduling.piece_of_work(walk) == scheduling.piece_of_work("tests/mlx/test_window.py::test_x[a]") == "windows"
-    )
-    assert {scheduling.piece_of_work(f"{each}::test_y") for each in scheduling.OF_SCENES} == {"scenes"}
-    assert all((ROOT / each).is_file() for each in scheduling.OF_SCENES | scheduling.SLOW)
-    assert scheduling.piece_of_work(f"{file}::test_z[b::c]") == file
+    assert scheduling.work_group(walk) == scheduling.work_group("tests/mlx/test_window.py::test_x[a]") == "windows"
+    assert {scheduling.work_group(f"{each}::test_y") for each in scheduling.SCENE_TESTS} == {"scenes"}
+    assert all((ROOT / each).is_file() for each in scheduling.SCENE_TESTS | scheduling.SLOW)
+    assert scheduling.work_group(f"{file}::test_z[b::c]") == file
     tests = [f"{file}::test_z", "tests/test_goldens.py::test_y", walk]
     assert sorted(tests, key=scheduling.order) == tests[::-1]

@@ -17,7 +17,7 @@ forbidden: set[str] = set()  # files that nobody may open now
 
 
 @contextmanager
-def ends() -> Iterator[None]:
+def must_end() -> Iterator[None]:
     """TimeoutError where the block, in the main thread, takes longer than `HANG_LIMIT`."""
 
     def too_long(number: int, frame: FrameType | None) -> None:
@@ -33,7 +33,7 @@ def ends() -> Iterator[None]:
 
 
 @contextmanager
-def unopened(*paths: Path) -> Iterator[None]:
+def must_not_open(*paths: Path) -> Iterator[None]:
     """AssertionError where the block opens one of these files, by whatever name."""
     names = {os.path.realpath(path) for path in paths}
     forbidden.update(names)
@@ -43,10 +43,10 @@ def unopened(*paths: Path) -> Iterator[None]:
         forbidden.difference_update(names)
 
 
-def refuse(event: str, given: tuple[Any, ...]) -> None:
+def audit_open(event: str, given: tuple[Any, ...]) -> None:
     """Python calls this before it does anything that has to do with the system."""
     if forbidden and event == "open" and isinstance(given[0], (str, bytes)):
         assert os.path.realpath(os.fsdecode(given[0])) not in forbidden, f"{given[0]!r} was opened"
 
 
-sys.addaudithook(refuse)
+sys.addaudithook(audit_open)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from tests.paths import ROOT
 
-KERNELS = ROOT / "out" / "cache"  # where kernels are kept if the user's own folder cannot be written
+FALLBACK_CACHE = ROOT / "out" / "cache"  # where kernels are kept if the user's own folder cannot be written
 
 # numba takes the features of the processor at hand for any name but `generic`: what the named one does not have must
 # be left out by hand, or `haswell` would still be AVX-512.
@@ -24,7 +24,7 @@ def prepare() -> None:
     if name in FEATURES:
         os.environ.setdefault("NUMBA_CPU_FEATURES", FEATURES[name])
     if not is_writable(user_cache()):
-        os.environ["XDG_CACHE_HOME"] = str(KERNELS)
+        os.environ["XDG_CACHE_HOME"] = str(FALLBACK_CACHE)
 
 
 def user_cache() -> Path | None:

@@ -17,9 +17,11 @@ from minirt.rendering.sampling import auto
 from minirt.report.measurements import formula_errors, picture_errors
 from minirt.timing import Run
 
-PACKET = 1e-6  # seconds that a packet of rays takes
-FORMULA = 1e-3  # seconds that the first of some formulas takes for all of its rays, the second twice as many, ...
-BUSY = (
+PACKET_SECONDS = 1e-6  # seconds that a packet of rays takes
+FORMULA_SECONDS = (
+    1e-3  # seconds that the first of some formulas takes for all of its rays, the second twice as many, ...
+)
+PROCESSOR_SHARE = (
     0.95  # of the time the processors work: so little that it is told apart, so much that nothing counts as disturbed
 )
 
@@ -35,14 +37,14 @@ class Clock:
     def rendered(self, packets: int) -> None:
         """Move on by what so many packets take."""
         self.packets += packets
-        self.wall += packets * self.slowness * PACKET
+        self.wall += packets * self.slowness * PACKET_SECONDS
 
     def cpu(self) -> float:
         """Seconds of the processors."""
-        return BUSY * self.wall
+        return PROCESSOR_SHARE * self.wall
 
 
-def simulated(patch: pytest.MonkeyPatch) -> Clock:
+def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
     """Put the clock in the place of the machine's wherever pictures or formulas are timed."""
     clock, run = Clock(), FrameRunner.run
 
@@ -76,5 +78,5 @@ def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[R
     for work in works:
         work()
     slowness = [10.0 if turn % 2 else 1.0 for turn in range(times)]
-    seconds = [FORMULA * number for number in range(1, len(works) + 1)]
-    return [tuple(Run(slow * each, BUSY * slow * each) for slow in slowness) for each in seconds]
+    seconds = [FORMULA_SECONDS * number for number in range(1, len(works) + 1)]
+    return [tuple(Run(slow * each, PROCESSOR_SHARE * slow * each) for slow in slowness) for each in seconds]
