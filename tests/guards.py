@@ -1,4 +1,4 @@
-"""Work that must end, and files that must not be opened."""
+"""Guards for blocks of code that must end, or must not open certain files."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from typing import Any
 
 from tests.waiting import HANG_LIMIT
 
-forbidden: set[str] = set()  # files that nobody may open now
+forbidden: set[str] = set()  # paths that must not be opened now
 
 
 @contextmanager
 def must_end() -> Iterator[None]:
-    """TimeoutError where the block, in the main thread, takes longer than `HANG_LIMIT`."""
+    """Raise TimeoutError if the block, in the main thread, takes longer than `HANG_LIMIT`."""
 
-    def too_long(number: int, frame: FrameType | None) -> None:
+    def on_alarm(number: int, frame: FrameType | None) -> None:
         raise TimeoutError(f"it did not end within {HANG_LIMIT:.0f} s")
 
-    before = signal.signal(signal.SIGALRM, too_long)
+    before = signal.signal(signal.SIGALRM, on_alarm)
     signal.setitimer(signal.ITIMER_REAL, HANG_LIMIT)
     try:
         yield
@@ -34,7 +34,7 @@ def must_end() -> Iterator[None]:
 
 @contextmanager
 def must_not_open(*paths: Path) -> Iterator[None]:
-    """AssertionError where the block opens one of these files, by whatever name."""
+    """Raise AssertionError if the block opens one of these files, by any name."""
     names = {os.path.realpath(path) for path in paths}
     forbidden.update(names)
     try:
@@ -43,10 +43,10 @@ def must_not_open(*paths: Path) -> Iterator[None]:
         forbidden.difference_update(names)
 
 
-def audit_open(event: str, given: tuple[Any, ...]) -> None:
-    """Python calls this before it does anything that has to do with the system."""
-    if forbidden and event == "open" and isinstance(given[0], (str, bytes)):
-        assert os.path.realpath(os.fsdecode(given[0])) not in forbidden, f"{given[0]!r} was opened"
+def audit_open(event: str, arguments: tuple[Any, ...]) -> None:
+    """Audit hook, which Python calls before each system operation: refuse to open forbidden files."""
+    if forbidden and event == "open" and isinstance(arguments[0], (str, bytes)):
+        assert os.path.realpath(os.fsdecode(arguments[0])) not in forbidden, f"{arguments[0]!r} was opened"
 
 
 sys.addaudithook(audit_open)

@@ -1,4 +1,4 @@
-"""The desktop for tests of windows: how it starts, what it says where it cannot, and what it leaves."""
+"""The desktop for tests of windows: its start, its errors, and its cleanup."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ m.mlx_loop(mlx)
 
 @pytest.fixture
 def without_xdotool_and_wmctrl(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pretend that two tools are not installed."""
     monkeypatch.setattr(windows.shutil, "which", lambda tool: None if tool in ("xdotool", "wmctrl") else tool)
 
 
@@ -34,7 +35,7 @@ def test_a_skipped_test_says_what_is_missing_and_how_to_install_it(without_xdoto
         require_tools()
 
 
-def test_where_windows_are_required_it_fails(without_xdotool_and_wmctrl, monkeypatch):
+def test_missing_tools_fail_the_test_if_windows_are_required(without_xdotool_and_wmctrl, monkeypatch):
     monkeypatch.setenv("MINIRT_REQUIRE_WINDOW", "1")
     with pytest.raises(pytest.fail.Exception, match="apt-get install"):
         require_tools()
@@ -65,7 +66,7 @@ def test_a_program_leaves_no_window(desktop):
 
 
 @pytest.mark.window
-def test_a_program_is_over_when_the_window_manager_knows_that_its_window_is_gone(desktop, monkeypatch):
+def test_a_program_ends_when_the_window_manager_knows_that_its_window_is_closed(desktop, monkeypatch):
     manager = int(desktop.environment[MANAGER_VARIABLE])
     looks = []
 

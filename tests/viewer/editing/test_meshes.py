@@ -1,4 +1,4 @@
-"""A mesh in the window: added by keys, selected, moved, resized, undone, saved; and other files beside the scene."""
+"""Meshes in the viewer: added, selected, moved, resized, undone, saved, and replaced by other files."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def played(path: Path, *lines: str) -> Session:
     return play(load(path).scene, lines, renderer=FakeRenderer(), size=(64, 48), path=path)
 
 
-def test_a_mesh_is_one_stop_of_tab_and_one_line(path: Path) -> None:
+def test_a_mesh_is_one_selectable_element_and_one_line(path: Path) -> None:
     session = played(path, "press Tab")
     assert type(session.state.element) is Mesh
     moved = played(path, "press Tab", "press d", "press +", "press Ctrl+S")
@@ -51,7 +51,7 @@ def test_a_mesh_is_one_stop_of_tab_and_one_line(path: Path) -> None:
     assert load(path).scene.items == moved.state.scene.items
 
 
-def test_all_of_it_is_undone(path: Path) -> None:
+def test_all_changes_of_a_mesh_are_undone(path: Path) -> None:
     state = initial_state(load(path).scene)
     start = state = state.select(len(state.scene.elements) - 1)
     for number, action in enumerate(("left", "grow", "next value", "grow")):
@@ -63,7 +63,7 @@ def test_all_of_it_is_undone(path: Path) -> None:
     assert state.scene.shapes[0].parts == 4
 
 
-def test_the_size_comes_before_the_file_and_the_file_can_be_another(path: Path) -> None:
+def test_the_size_comes_before_the_file_and_the_file_can_be_changed(path: Path) -> None:
     state = initial_state(load(path).scene)
     state = state.select(len(state.scene.elements) - 1)
     names = []
@@ -79,7 +79,7 @@ def test_the_size_comes_before_the_file_and_the_file_can_be_another(path: Path) 
     assert state.element.bounds()[1][0] != 4
 
 
-def test_where_there_is_one_mesh_there_is_no_other(path: Path) -> None:
+def test_a_single_mesh_file_cannot_be_changed(path: Path) -> None:
     (path.parent / "more" / "b.obj").unlink()
     state = initial_state(load(path).scene)
     state = state.select(len(state.scene.elements) - 1)
@@ -88,7 +88,7 @@ def test_where_there_is_one_mesh_there_is_no_other(path: Path) -> None:
     assert "no other mesh" in apply(state, "grow").message
 
 
-def test_a_mesh_is_added_where_there_is_one(path: Path) -> None:
+def test_a_mesh_can_be_added_if_there_is_a_mesh_file(path: Path) -> None:
     scene = load(path).scene
     count = len(addable_kinds(scene))
     assert addable_kinds(scene)[-1] is Mesh
@@ -102,8 +102,8 @@ def test_a_mesh_is_added_where_there_is_one(path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["icosahedron", "knot"])
-def test_its_outline_is_where_it_ends(name: str) -> None:
+def test_the_outline_of_a_mesh_is_its_silhouette(name: str) -> None:
     shape, camera = named(name, (0.5, 0.2, 0), 2.0), Camera((1, 2, -6), (-0.1, -0.3, 0.9), 70)
-    for found, known in zip(rims(shape, camera, WIDTH, HEIGHT, 100), edges(shape, camera), strict=True):
-        assert np.array_equal(drawn(found), known)
-        assert known.sum() > 50
+    for outline, expected in zip(rims(shape, camera, WIDTH, HEIGHT, 100), edges(shape, camera), strict=True):
+        assert np.array_equal(drawn(outline), expected)
+        assert expected.sum() > 50
