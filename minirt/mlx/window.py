@@ -42,7 +42,7 @@ class WindowHost(Protocol):
 class Window:
     """An open window. The size of a resizable window is that of its frame buffer.
 
-    A window of fixed size keeps the size that was asked for: if the platform shows it larger, its picture is stretched
+    A window of fixed size keeps the requested size: if the platform shows it larger, its picture is stretched
     and mouse positions are scaled back to that size.
     """
 
@@ -62,8 +62,8 @@ class Window:
     # Between the window and its back end:
     visible: bool = True
     stale: bool = True  # the screen does not show the canvas any more
-    resized: bool = False  # and the program was not told yet
-    announced: bool = False  # the program was told that the window is there
+    resized: bool = False  # a resize is not reported to the program yet
+    announced: bool = False  # the first MAP_NOTIFY was delivered
 
     def __post_init__(self) -> None:
         self._canvas = Canvas(self.width, self.height)
@@ -128,7 +128,7 @@ class Window:
         self.deliver(Event.FOCUS_IN if focused else Event.FOCUS_OUT)
 
     def on_resize(self, width: int, height: int) -> None:
-        """Note the new size of the frame buffer. The program is told at the next turn, with the latest size."""
+        """Note the new size of the frame buffer. The next turn reports the latest size to the program."""
         self.stale = True
         if self.resizable and (width, height) != (self.width, self.height):
             self.width, self.height = width, height

@@ -56,15 +56,15 @@ class Value(NamedTuple):
 
 def values(element: Element) -> tuple[Value, ...]:
     """All values of an element; channels of colours come last."""
-    whole = [
+    unsplit = [
         value for field in fields_of(type(element)) for value in values_of_field(field, getattr(element, field.name))
     ]
-    whole.sort(key=lambda value: isinstance(value.field, MeshField))  # the size of a mesh comes before its file
-    fields = ((value, value.inner or value.field) for value in whole)
+    unsplit.sort(key=lambda value: isinstance(value.field, MeshField))  # the size of a mesh comes before its file
+    fields = ((value, value.inner or value.field) for value in unsplit)
     colours = [
         value for value, field in fields if isinstance(field, Colour) and not isinstance(value.get(element), str)
     ]
-    return (*whole, *(value._replace(channel=channel) for value in colours for channel in range(3)))
+    return (*unsplit, *(value._replace(channel=channel) for value in colours for channel in range(3)))
 
 
 def values_of_field(field: Field, value: Any) -> Iterator[Value]:

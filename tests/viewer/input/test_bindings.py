@@ -25,8 +25,8 @@ def test_no_key_is_bound_twice(layout):
 
 
 def test_every_binding_has_an_action_and_every_action_a_binding():
-    known = {*EDITS, *COMMANDS, *DRAGS, "select at pointer"}
-    assert set(ACTIONS) == known
+    actions = {*EDITS, *COMMANDS, *DRAGS, "select at pointer"}
+    assert set(ACTIONS) == actions
     assert len(ACTIONS) == len(set(ACTIONS))
     assert not set(EDITS) & set(COMMANDS)
 
