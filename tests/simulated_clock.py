@@ -43,7 +43,7 @@ class Clock:
 
 def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
     """Replace the machine's clock wherever pictures or formulas are timed."""
-    clock, run = Clock(), renderer.Renderer.run
+    clock, run = Clock(), FrameRunner.run
 
     def counted(self: FrameRunner, frames: list[Frame], threads: int) -> None:
         run(self, frames, threads)
@@ -67,7 +67,7 @@ def packets_of(frame: Frame) -> int:
 
 def packets(width: int, height: int, rays: int = 16) -> int:
     """Count the packets of `rays` rays that cover a picture."""
-    return -(-height // DOWN) * -(-width // (rays // DOWN))
+    return -(-height // PACKET_HEIGHT) * -(-width // (rays // PACKET_HEIGHT))
 
 
 def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[Run, ...]]:

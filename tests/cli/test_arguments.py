@@ -136,8 +136,8 @@ def test_the_example_of_the_subject_needs_the_lenient_reader(run: Run, folder: P
     assert (folder / "printed.png").exists()
 
 
-def test_bench_says_what_it_measured(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    """By a clock on which a packet of rays takes a millisecond."""
+def test_bench_prints_its_measurements(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a simulated clock a packet of rays takes a millisecond."""
     clock = simulate_clock(monkeypatch)
     clock.slowness = 1e-3 / PACKET_SECONDS
     ended = run("ball.rt", "--bench", "--json", "--size", "16x9", "--threads", "2")

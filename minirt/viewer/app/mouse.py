@@ -104,4 +104,4 @@ class Mouse:
         shape: Shape | None = session.pick(state.scene, win.width, win.height, x, y)
         if selecting:
             session.show(selection.select_shape(state, shape))
-        return place(shape, state.scene.camera, win.width, win.height, x, y) if shape else None
+        return surface_point(shape, state.scene.camera, win.width, win.height, x, y) if shape else None

@@ -82,11 +82,13 @@ def default_points(state: State, count: int) -> list[Triple]:
     camera = state.scene.camera
     right, up, forward = camera_frame(camera)
     size = SIZE * state.size
-    middle = mix(1.0, mix(1.0, camera.position, DISTANCE * state.size, forward), -size / 2, up)
+    middle = linear_combination(
+        1.0, linear_combination(1.0, camera.position, DISTANCE * state.size, forward), -size / 2, up
+    )
     radius = size if count > 1 else 0.0
     angles = [pi / 2 + 2 * pi * corner / max(count, 1) for corner in range(count)]
-    offsets = [mix(radius * cos(angle), right, radius * sin(angle), up) for angle in angles]
-    return [round_point(clamp_point(mix(1.0, middle, 1.0, offset)), state.stride) for offset in offsets]
+    offsets = [linear_combination(radius * cos(angle), right, radius * sin(angle), up) for angle in angles]
+    return [round_point(clamp_point(linear_combination(1.0, middle, 1.0, offset)), state.stride) for offset in offsets]
 
 
 def round_point(point: Triple, stride: float) -> Triple:

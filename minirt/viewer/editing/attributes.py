@@ -37,7 +37,7 @@ def add_attribute(state: State, _amount: float, now: float) -> State:
     index = [value.field.name for value in values(changed)].index(name)
     field = values(changed)[index].field
     return replace(added, value_index=index).with_message(
-        f"{field.doc}: {spelling(field, changed)}; again for another: {number + 1} of {len(missing)}"
+        f"{field.doc}: {field_text(field, changed)}; again for another: {number + 1} of {len(missing)}"
     )
 
 

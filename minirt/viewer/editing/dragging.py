@@ -12,7 +12,7 @@ from typing import NamedTuple
 from minirt.element import Element
 from minirt.fields import Direction, Triple
 from minirt.scene import Camera
-from minirt.scene.camera_frame import camera_frame, mix
+from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.viewer.editing.measure import extent, scene_centre
 from minirt.viewer.editing.motion import (
     WORLD_AXES,
@@ -61,7 +61,7 @@ def move(state: State, start: DragStart, x: int, y: int) -> State:
         distance = start.projection.distance_along(x + PIXEL_CENTRE, y + PIXEL_CENTRE, start.point, axis)
         if distance is None:
             return state.with_message("the view is along the axis: nothing moves")
-        offset = mix(distance, axis, 0.0, axis)
+        offset = linear_combination(distance, axis, 0.0, axis)
     else:
         offset = subtract(
             point_under_pointer(start, x, y, start.point), point_under_pointer(start, start.x, start.y, start.point)
@@ -111,11 +111,11 @@ def orbit(state: State, start: DragStart, x: int, y: int) -> State:
 
 def pan(state: State, start: DragStart, x: int, y: int) -> State:
     """Move the camera parallel to its image plane, so that the point under the pointer stays there."""
-    ahead = mix(1.0, start.camera.position, state.size, start.camera.direction)
+    ahead = linear_combination(1.0, start.camera.position, state.size, start.camera.direction)
     point = start.point or ahead
     offset = subtract(point_under_pointer(start, start.x, start.y, point), point_under_pointer(start, x, y, point))
     return state.edit_camera(
-        start.camera.replace(position=clamp_point(mix(1.0, start.camera.position, 1.0, offset))), *CHANGE
+        start.camera.replace(position=clamp_point(linear_combination(1.0, start.camera.position, 1.0, offset))), *CHANGE
     )
 
 

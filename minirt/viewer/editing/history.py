@@ -29,7 +29,7 @@ def redo(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
 
 def current_snapshot(state: State) -> Snapshot:
     """Snapshot of the current scene and selection."""
-    return Snapshot(state.scene.lighten(), state.selected)
+    return Snapshot(state.scene.drop_caches(), state.selected)
 
 
 def restore(snapshot: Snapshot, state: State) -> State:

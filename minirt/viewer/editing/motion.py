@@ -7,7 +7,7 @@ from math import atan2, cos, fmod, fsum, hypot, pi, radians, sin
 from minirt.element import Element
 from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit, upright
 from minirt.scene import Camera
-from minirt.scene.camera_frame import camera_frame, mix
+from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.viewer.editing.state import Frame, field_names
 
 WORLD_AXES: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
@@ -22,7 +22,8 @@ def translate(element: Element, axis: Triple, distance: float) -> tuple[Element,
         for part, coordinates in zip(offset, zip(*points.values(), strict=True), strict=True)
     ]
     moved = {
-        name: clamp_point(mix(1.0, point, 1.0, (clamped[0], clamped[1], clamped[2]))) for name, point in points.items()
+        name: clamp_point(linear_combination(1.0, point, 1.0, (clamped[0], clamped[1], clamped[2])))
+        for name, point in points.items()
     }
     return element.replace(**moved), clamped != offset
 
@@ -41,8 +42,8 @@ def rotate(element: Element, axis: Triple, degrees: float) -> Element:
     if len(points) > 1:
         x, y, z = (fsum(part) / len(points) for part in zip(*points.values(), strict=True))
         for name, point in points.items():
-            offset = rodrigues(mix(1.0, point, -1.0, (x, y, z)), axis, degrees)
-            changes[name] = clamp_point(mix(1.0, (x, y, z), 1.0, offset))
+            offset = rodrigues(linear_combination(1.0, point, -1.0, (x, y, z)), axis, degrees)
+            changes[name] = clamp_point(linear_combination(1.0, (x, y, z), 1.0, offset))
     return element.replace(**changes)
 
 
@@ -80,7 +81,7 @@ def orbit_camera(camera: Camera, pivot: Triple, right: float, up: float) -> Came
     position = pivot
     for old, new in zip(camera_frame(camera), camera_frame(turned), strict=True):
         along = sum((a - b) * part for a, b, part in zip(camera.position, pivot, old, strict=True))
-        position = mix(1.0, position, along, new)
+        position = linear_combination(1.0, position, along, new)
     return turned.replace(position=clamp_point(position))
 
 

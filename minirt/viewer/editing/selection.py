@@ -21,7 +21,7 @@ def select_camera(state: State, _amount: float = 1.0, _now: float = 0.0) -> Stat
 
 def select_next_light(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
     """Select the next light after the selected element, cyclically."""
-    lights = list(state.scene.places(Lamp))
+    lights = list(state.scene.indices_of(Lamp))
     if not lights:
         return state.with_message("there is no light")
     return state.select(next((index for index in lights if index > state.selected), lights[0]))

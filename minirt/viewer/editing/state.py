@@ -90,7 +90,7 @@ class State:
         past = (
             self.undo_stack
             if merged
-            else (*self.undo_stack[1 - MAX_UNDO :], Snapshot(self.scene.lighten(), self.selected))
+            else (*self.undo_stack[1 - MAX_UNDO :], Snapshot(self.scene.drop_caches(), self.selected))
         )
         selected = self.selected if selected is None else selected
         return replace(self, scene=scene, selected=selected, undo_stack=past, redo_stack=(), last_change=(kind, now))

@@ -159,13 +159,11 @@ def test_a_scene_without_shapes_has_no_error() -> None:
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    """Time passes by what is rendered alone."""
+    """A clock that only rendering moves on."""
     return simulate_clock(monkeypatch)
 
 
-FIRST = (
-    2 * packets(WIDTH, HEIGHT) * PACKET_SECONDS
-)  # seconds of the clock that the first round takes, a sample in each half
+FIRST = 2 * packets(WIDTH, HEIGHT) * PACKET_SECONDS  # of the clock for the first round, a sample in each half
 
 
 @pytest.mark.parametrize("rounds", [0.0, 0.5, 1.0, 2.0, 10.0, 100.0])

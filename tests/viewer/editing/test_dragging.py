@@ -35,9 +35,9 @@ def test_projecting_to_pixels_and_back_is_the_identity(x, y, z, fov, roll, at):
     assert projection.pixel(projection.point_at_depth(*pixel, -7.0)) is None
 
 
-def surface_point(shape, x, y):
+def point_under_pixel(shape, x, y):
     """The point on a shape under a pixel."""
-    return place(shape, scene().camera, WIDTH, HEIGHT, x, y)
+    return surface_point(shape, scene().camera, WIDTH, HEIGHT, x, y)
 
 
 def test_the_point_under_the_pointer_stays_there():
@@ -46,7 +46,7 @@ def test_the_point_under_the_pointer_stays_there():
     assert session.state.element is new
     offset = [b - a for a, b in zip(old.centre, new.centre, strict=True)]
     assert dot(offset, PROJECTION.forward) == pytest.approx(0, abs=1e-9)
-    moved = tuple(a + b for a, b in zip(surface_point(old, *FROM), offset, strict=True))
+    moved = tuple(a + b for a, b in zip(point_under_pixel(old, *FROM), offset, strict=True))
     assert PROJECTION.pixel(moved) == pytest.approx([each + HALF for each in TO], abs=1e-3)
 
 
@@ -116,7 +116,7 @@ def test_orbiting_stops_straight_above():
 def test_the_camera_pans():
     session = played("drag 33,23 45,15 middle")
     camera = session.state.scene.camera
-    point = surface_point(scene().spheres[0], *FROM)
+    point = point_under_pixel(scene().spheres[0], *FROM)
     assert projection_of(camera, WIDTH, HEIGHT).pixel(point) == pytest.approx([each + HALF for each in TO], abs=1e-3)
     assert camera.direction == scene().camera.direction
     assert played("drag 5,3 9,3 middle").state.scene.camera.position[0] < 0

@@ -117,7 +117,7 @@ def test_an_element_moves_and_turns(kind: type[Element], path: Path) -> None:
     for action, axis in axes.items():
         moved = checked(apply(state, action))
         for name in field_names(kind, Point):
-            there = mix(1.0, getattr(state.element, name), state.stride, axis)
+            there = linear_combination(1.0, getattr(state.element, name), state.stride, axis)
             assert getattr(moved.element, name) == pytest.approx(there, abs=1e-4 * state.stride)
         assert bool(field_names(kind, Point)) == (moved.element != state.element) == (not moved.message)
     for action in ("turn right", "turn up"):

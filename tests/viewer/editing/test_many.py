@@ -38,7 +38,7 @@ def test_an_action_reads_few_elements(many: Scene, action: str, selected: str) -
     state = apply(apply(initial_state(many), selected), "right")
     with patch.object(Sphere, "__getattribute__", visit):
         line(apply(state, action))
-        assert len(visited) <= 2 * ITEMS
+        assert len(visited) <= 2 * PAGE_LENGTH
 
 
 def test_undo_shares_all_but_a_page_of_each_scene(many: Scene) -> None:
