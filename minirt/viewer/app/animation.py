@@ -12,8 +12,8 @@ from minirt.scene import Scene
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Pixels, Renderer
-from minirt.viewer.editing.measure import middle_of
-from minirt.viewer.editing.motion import orbited
+from minirt.viewer.editing.measure import scene_centre
+from minirt.viewer.editing.motion import orbit_camera
 
 FPS = 12  # frames per second of an animation
 TICKS = 60  # per second of simulated time
@@ -22,9 +22,9 @@ ARROW = ((0, 0), (0, 17), (4, 13), (7, 20), (10, 19), (7, 12), (12, 12))  # corn
 
 def turntable(scene: Scene, count: int) -> Iterator[Scene]:
     """Yield the scene from `count` positions on a circle around its centre; the frames repeat seamlessly."""
-    pivot = middle_of(scene)
+    pivot = scene_centre(scene)
     for number in range(count):
-        camera = orbited(scene.camera, pivot, 360.0 * number / count, 0.0)
+        camera = orbit_camera(scene.camera, pivot, 360.0 * number / count, 0.0)
         yield scene.replace(scene.camera, camera) if number else scene
 
 

@@ -13,7 +13,7 @@ from minirt.viewer.files.scene_files import save_copy
 
 def save_a_copy(session: Session) -> None:
     """Write the scene to a new file. SceneError."""
-    session.state = session.state.say(f"saved a copy: {save_copy(session.state.scene, session.path)}")
+    session.state = session.state.with_message(f"saved a copy: {save_copy(session.state.scene, session.path)}")
 
 
 def screenshot(session: Session) -> None:
@@ -26,7 +26,7 @@ def copy_camera(session: Session) -> None:
     """Copy the camera's line of the scene to the clipboard."""
     line = describe(session.state.scene.camera)
     session.mlx.mlx_set_clipboard(session.window, line)
-    session.state = session.state.say(f"copied: {line}")
+    session.state = session.state.with_message(f"copied: {line}")
 
 
 def toggle_hud(session: Session) -> None:

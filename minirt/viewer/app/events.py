@@ -96,7 +96,7 @@ class EventDispatcher:
         if binding.action in EDITS:
             session.show(apply(session.state, binding.action, step if binding.fine else 1.0, session.now))
             return
-        session.state = session.state.say("")
+        session.state = session.state.with_message("")
         session.attempt(COMMANDS[binding.action])
         session.show(session.state)
 

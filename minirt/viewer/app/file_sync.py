@@ -8,10 +8,10 @@ from pathlib import Path
 from minirt.errors import SceneError
 from minirt.scene import Scene, load, save
 from minirt.viewer.app.session import Session
-from minirt.viewer.editing.state import MOST, Moment, State, opened
+from minirt.viewer.editing.state import MAX_UNDO, Snapshot, State, initial_state
 from minirt.viewer.files.scene_files import back_up, contents_differ, error_summary, save_recovery
 from minirt.viewer.files.watched_file import WatchedFile, signature
-from minirt.viewer.input.chords import shown
+from minirt.viewer.input.chords import platform_spelling
 
 UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and keeps the other as a copy"
 
@@ -24,13 +24,13 @@ def save_scene(session: Session) -> None:
     session.saved = session.state.scene
     session.screen.banner = ""
     kept = f"; what another program had written is in {copy}" if copy else ""
-    session.state = session.state.say(f"saved: {session.path}{kept}")
+    session.state = session.state.with_message(f"saved: {session.path}{kept}")
 
 
 def reload(session: Session) -> None:
     """Read the file again; undo restores the previous scene. SceneError."""
     read_file(session)
-    session.state = session.state.say(f"read again: {session.path}")
+    session.state = session.state.with_message(f"read again: {session.path}")
 
 
 def follow_change(session: Session) -> None:
@@ -39,7 +39,9 @@ def follow_change(session: Session) -> None:
     If the file has errors, the last picture stays and a banner shows the first error.
     """
     if contents_differ(session.state.scene, session.saved):
-        session.screen.banner = UNSAVED.format(session.path.name, shown("Ctrl+R"), shown("Ctrl+S"))
+        session.screen.banner = UNSAVED.format(
+            session.path.name, platform_spelling("Ctrl+R"), platform_spelling("Ctrl+S")
+        )
         return
     try:
         read_file(session, keep_camera=True)
@@ -63,16 +65,16 @@ def state_after_reading(old: State, scene: Scene, saved: Scene | None) -> State:
 
     The current camera stays if the file has the same camera as `saved`, the scene that the file held before.
     """
-    new = opened(scene)
+    new = initial_state(scene)
     if saved and scene.camera == saved.camera:
         new = replace(new, scene=scene.replace(scene.camera, old.scene.camera.replace(source=scene.camera.source)))
     same = old.selected < len(scene.elements) and type(scene.elements[old.selected]) is type(old.element)
     return replace(
         new,
         selected=old.selected if same else new.selected,
-        value=old.value if same else 0,
+        value_index=old.value_index if same else 0,
         frame=old.frame,
-        past=(*old.past[1 - MOST :], Moment(old.scene, old.selected)),
+        undo_stack=(*old.undo_stack[1 - MAX_UNDO :], Snapshot(old.scene, old.selected)),
     )
 
 
@@ -89,4 +91,4 @@ def open_another(session: Session, path: Path) -> None:
     session.mlx.mlx_set_window_title(session.window, f"miniRT - {path.name}")
     session.saved = scene
     session.screen.banner = ""
-    session.state = opened(scene).say(f"opened: {path}{kept}")
+    session.state = initial_state(scene).with_message(f"opened: {path}{kept}")

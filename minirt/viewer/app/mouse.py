@@ -15,8 +15,8 @@ from minirt.viewer.app.session import Session
 from minirt.viewer.display.icons import icon_at
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing import dragging, selection
-from minirt.viewer.editing.projection import projection
-from minirt.viewer.editing.state import place_of
+from minirt.viewer.editing.projection import projection_of
+from minirt.viewer.editing.state import position_of
 from minirt.viewer.input.bindings import Binding
 from minirt.viewer.input.chords import Drag
 
@@ -52,7 +52,9 @@ class Mouse:
             session.show_error(error)
             session.show(session.state)
             return
-        grip = dragging.grip(session.state.cut(), session.window.width, session.window.height, x, y, point)
+        grip = dragging.start_drag(
+            session.state.end_merging(), session.window.width, session.window.height, x, y, point
+        )
         session.pressed = PressedButton(button, x, y, drag, grip)
 
     def on_motion(self, x: int, y: int) -> None:
@@ -62,8 +64,8 @@ class Mouse:
         if pressed and (pressed.dragging or max(abs(x - pressed.x), abs(y - pressed.y)) > CLICK_SLACK):
             if not pressed.dragging:
                 session.pressed = pressed._replace(dragging=True)
-                session.state = session.state.cut()
-            session.show(dragging.dragged(session.state, pressed.drag.action, pressed.grip, x, y))
+                session.state = session.state.end_merging()
+            session.show(dragging.apply_drag(session.state, pressed.drag.action, pressed.grip, x, y))
 
     def on_release(self, button: int) -> None:
         """A button goes up: a drag ends, or a click is complete."""
@@ -84,16 +86,16 @@ class Mouse:
         """Return the point of the scene under the pointer, None if there is none; select the element there."""
         session = self.session
         state, window = session.state, session.window
-        view = projection(state.scene.camera, window.width, window.height)
+        view = projection_of(state.scene.camera, window.width, window.height)
         has_icons = session.screen.level > HudLevel.NOTHING
         icons = session.screen.marks.visible_icons(state, view, window.scale) if has_icons else []
         icon = icon_at(icons, x, y, window.scale)
         if icon:
             if selecting:
-                session.show(state.say("").select(icon.owner))
+                session.show(state.with_message("").select(icon.owner))
             element = state.scene.elements[icon.owner]
-            return None if isinstance(element, Camera) else place_of(element)
+            return None if isinstance(element, Camera) else position_of(element)
         shape: Shape | None = session.pick(state.scene, window.width, window.height, x, y)
         if selecting:
-            session.show(selection.picked(state, shape))
+            session.show(selection.select_shape(state, shape))
         return surface_point(shape, state.scene.camera, window.width, window.height, x, y) if shape else None

@@ -15,5 +15,5 @@ class PressedButton(NamedTuple):
     x: int  # pixel where it was pressed
     y: int
     drag: Binding  # its row in the table
-    grip: dragging.Grip
+    grip: dragging.DragStart
     dragging: bool = False  # whether the pointer has moved far enough since

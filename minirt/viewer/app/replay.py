@@ -13,7 +13,7 @@ from minirt.scene import Scene
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Painter, Pixels, Renderer
-from minirt.viewer.input.recording import record
+from minirt.viewer.input.recording import add_recording
 
 
 def replay(
@@ -59,7 +59,7 @@ def play(
     `watch` is called with the session sixty times per simulated second.
     """
     memory = Memory()
-    record(lines, file, memory)
+    add_recording(lines, file, memory)
     mlx = Mlx(memory)
     display = mlx.mlx_init()
     session = Session(

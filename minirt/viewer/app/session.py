@@ -20,7 +20,7 @@ from minirt.viewer.app.pressed_button import PressedButton
 from minirt.viewer.display.painter import Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen
-from minirt.viewer.editing.state import State, opened
+from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.files.scene_files import error_summary, save_picture
 from minirt.viewer.files.watched_file import WatchedFile
 from minirt.viewer.input.key_repeat import KeyRepeat
@@ -61,7 +61,7 @@ class Session:
         self.path = path
         self.lenient = lenient
         self.pick = pick
-        self.state = opened(scene)
+        self.state = initial_state(scene)
         self.saved = scene  # the scene as the file holds it
         self.file = WatchedFile(path)
         self.watches_file = watch
@@ -100,7 +100,7 @@ class Session:
         if self.screenshot_pending and self.refinement.complete:
             self.screenshot_pending = False
             file = save_picture(Image.from_bgra(self.picture), self.path)
-            self.state = self.state.say(f"picture: {file}")
+            self.state = self.state.with_message(f"picture: {file}")
 
     def attempt(self, command: Callable[[Session], None]) -> None:
         """Run a command; if it fails, show the reason over the picture."""
@@ -113,12 +113,12 @@ class Session:
         """Show an error of miniRT over the picture; raise RenderError for any other exception."""
         if not isinstance(error, MiniRTError):
             raise RenderError(f"the picture cannot be made: {type(error).__name__}: {error}") from error
-        self.state = self.state.say(error_summary(error))
+        self.state = self.state.with_message(error_summary(error))
 
     def release_button(self) -> None:
         """Forget the mouse button that is down; the edits of a drag are then one undo step."""
         if self.pressed and self.pressed.dragging:
-            self.state = self.state.cut()
+            self.state = self.state.end_merging()
         self.pressed = None
 
     def watch_file(self) -> None:

@@ -11,7 +11,7 @@ from minirt.scene import Camera, Scene
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.viewer.editing.projection import Pixel, Projection
-from minirt.viewer.editing.state import can_edit, place_of
+from minirt.viewer.editing.state import can_edit, position_of
 
 SIZE = 20  # pixels of a side, times the screen's scale
 MAX_ICONS = 200  # so that a scene of many lights is still drawn at once
@@ -41,7 +41,7 @@ def place_icons(scene: Scene, indices: Iterable[int], view: Projection, scale: f
     placed: list[Icon] = []
     for index in indices:
         element = scene.elements[index]
-        point = None if isinstance(element, Camera) else place_of(element)
+        point = None if isinstance(element, Camera) else position_of(element)
         at: Pixel | None = view.pixel(point) if point else (corner, size)
         corner -= 0 if point else round(1.5 * size)
         if at and 0 <= at[0] < view.width and 0 <= at[1] < view.height and len(placed) < MAX_ICONS:

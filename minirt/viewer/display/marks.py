@@ -13,9 +13,9 @@ from minirt.shapes import Shape
 from minirt.viewer.display.icons import SIZE, Icon, elements_with_icon, place_icons
 from minirt.viewer.display.outline import PixelIndices, outline_pixels
 from minirt.viewer.display.painter import Pixels
-from minirt.viewer.editing.measure import ball
-from minirt.viewer.editing.motion import WORLD
-from minirt.viewer.editing.projection import Pixel, Projection, projection
+from minirt.viewer.editing.measure import extent
+from minirt.viewer.editing.motion import WORLD_AXES
+from minirt.viewer.editing.projection import Pixel, Projection, projection_of
 from minirt.viewer.editing.state import Frame, State
 
 GOLD, BLACK, WHITE = 0xFFD75F, 0x000000, 0xFFFFFF
@@ -33,7 +33,7 @@ class Marks:
 
     def draw(self, pixels: Pixels, state: State, scale: float, moving: bool) -> None:
         """Draw all marks over a picture of the state's scene."""
-        view = projection(state.scene.camera, pixels.shape[1], pixels.shape[0])
+        view = projection_of(state.scene.camera, pixels.shape[1], pixels.shape[0])
         element = state.element
         if isinstance(element, Shape):
             rays = MOVING_RAYS if moving else STILL_RAYS
@@ -75,15 +75,15 @@ def draw_outline(pixels: Pixels, outside: PixelIndices, inside: PixelIndices) ->
 
 def draw_axis(pixels: Pixels, state: State, view: Projection) -> None:
     """Draw the axis along which the selected element moves, if its movement is bound to one."""
-    axis, point = WORLD.get(state.frame), anchor(state.element)
-    ends = view.segment(point, axis) if axis and point else None
+    axis, point = WORLD_AXES.get(state.frame), anchor(state.element)
+    ends = view.visible_segment(point, axis) if axis and point else None
     if ends:
         draw_line(pixels, *ends, AXIS_COLOURS[state.frame])
 
 
 def anchor(element: Element) -> tuple[float, float, float] | None:
     """Return the centre of an element, None for the camera and for elements without a position."""
-    around = None if isinstance(element, Camera) else ball(element)
+    around = None if isinstance(element, Camera) else extent(element)
     return around[0] if around else None
 
 

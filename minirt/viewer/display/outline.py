@@ -15,7 +15,7 @@ from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
-from minirt.viewer.editing.projection import Projection, minus, projection
+from minirt.viewer.editing.projection import Projection, projection_of, subtract
 
 PixelIndices = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns of pixels
 Box = tuple[int, int, int, int]  # left, top, right, bottom; right and bottom are exclusive
@@ -32,7 +32,7 @@ def outline_pixels(
     """
     if isinstance(shape, Mesh):
         return mask_outline(covers(shape, camera, width, height, *np.meshgrid(np.arange(width), np.arange(height))))
-    left, top, right, bottom = screen_bounds(shape, projection(camera, width, height))
+    left, top, right, bottom = screen_bounds(shape, projection_of(camera, width, height))
     step = max(1, ceil(((right - left) * (bottom - top) / rays) ** 0.5))
     x, y = np.meshgrid(np.arange(left, right + step, step), np.arange(top, bottom + step, step))
     grid = covers(shape, camera, width, height, x, y)
@@ -81,6 +81,6 @@ def sphere_bounds(
     if middle is None or depth <= 2 * radius:
         return [None]
     # A projected sphere is an ellipse, which is longer the farther it is from the picture's centre; this bounds it.
-    slant = hypot(*minus(centre, view.eye)) / depth
+    slant = hypot(*subtract(centre, view.eye)) / depth
     reach = view.width / 2 / hypot(*view.right) * radius / (depth - radius) * slant
     return [(middle[0] - reach, middle[1] - reach), (middle[0] + reach, middle[1] + reach)]

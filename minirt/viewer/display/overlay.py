@@ -11,7 +11,7 @@ from minirt.mlx.text import draw_text, measure
 from minirt.scene.line_rewriting import field_text
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import Frame, State
-from minirt.viewer.input.bindings import FINE, Group, groups
+from minirt.viewer.input.bindings import FINE_NOTE, KeyGroup, key_groups
 
 TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACKGROUND with its opacity
 MARGIN, PADDING = 10, 4  # pixels
@@ -51,7 +51,7 @@ def draw_hud(pixels: Pixels, state: State, shown: Outcome | None, level: HudLeve
         line = fit_width(f"{element_line(state)}    {keys}{rendered}", width, size)
         draw_lines(pixels, MARGIN, line, TEXT_COLOUR, size)
         return 0
-    position = f"{state.selected + 1} of {len(state.scene.elements)}    {len(state.past)} to undo"
+    position = f"{state.selected + 1} of {len(state.scene.elements)}    {len(state.undo_stack)} to undo"
     top = wrap(f"{element_line(state)}\n{keys}    {position}", width, size)
     draw_lines(pixels, MARGIN, top, TEXT_COLOUR, size)
     bottom = wrap("\n".join((*shown.about, status(shown, rate))), width, size) if shown else ""
@@ -126,7 +126,7 @@ def draw_lines(pixels: Pixels, y: int, text: str, colour: int, size: int) -> Non
 def draw_help(pixels: Pixels, layout: str, max_size: int) -> None:
     """Draw the table of key bindings over the darkened picture, in two columns, in the largest text that fits."""
     pixels[..., :3] //= 4
-    listed = [*groups(layout), ("", [FINE])]
+    listed = [*key_groups(layout), ("", [FINE_NOTE])]
     columns = [listed[:2], listed[2:]]
     height, width = pixels.shape[:2]
     for size in range(max_size, MIN_TEXT_SIZE - 2, -1):
@@ -142,7 +142,7 @@ def draw_help(pixels: Pixels, layout: str, max_size: int) -> None:
             x += text_width
 
 
-def column_texts(column: list[Group]) -> tuple[str, str]:
+def column_texts(column: list[KeyGroup]) -> tuple[str, str]:
     """Return the keys and the help of some groups, as two texts with equally many lines."""
     keys, helps = [], []
     for title, rows in column:

@@ -23,7 +23,7 @@ from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, TWO
 from tests.paths import SCENES
 from tests.random_scenes import random_scene
 from tests.rendering.cancelling import cancelled
-from tests.simulated import PACKET, Clock, packets, simulated
+from tests.simulated_clock import PACKET_SECONDS, Clock, packets, simulate_clock
 
 Array = NDArray[np.float64]
 
@@ -160,10 +160,10 @@ def test_a_scene_without_shapes_has_no_error() -> None:
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     """A clock that only rendering moves on."""
-    return simulated(monkeypatch)
+    return simulate_clock(monkeypatch)
 
 
-FIRST = 2 * packets(WIDTH, HEIGHT) * PACKET  # seconds of the clock that the first round takes, a sample in each half
+FIRST = 2 * packets(WIDTH, HEIGHT) * PACKET_SECONDS  # of the clock for the first round, a sample in each half
 
 
 @pytest.mark.parametrize("rounds", [0.0, 0.5, 1.0, 2.0, 10.0, 100.0])

@@ -22,7 +22,9 @@ def test_a_dropped_file_is_opened(desktop, tmp_path, types):
     with viewing(desktop, tmp_path / "scene.rt") as viewer:
         viewer.key("i", "i")
         viewer.shows(picture(viewer.path))
-        desktop.run(sys.executable, "-m", "tests.mlx.dropper", str(viewer.window), "20", "20", str(types), str(other))
+        desktop.run(
+            sys.executable, "-m", "tests.mlx.drag_source", str(viewer.window), "20", "20", str(types), str(other)
+        )
         until(
             lambda: desktop.run("xdotool", "getwindowname", str(viewer.window)) == b"miniRT - an other.rt\n",
             "the title of the other file",

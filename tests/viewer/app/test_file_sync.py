@@ -66,7 +66,7 @@ def test_the_camera_stays_unless_the_file_changes_it(harness, path):
     write(path, OTHER)
     notify(harness)
     assert harness.session.state.scene.camera == moved
-    assert harness.session.state.home == scene().camera
+    assert harness.session.state.file_camera == scene().camera
     write(path, OTHER.replace("C 0,0,10", "C 0,0,20"))
     notify(harness)
     assert harness.session.state.scene.camera.position == (0, 0, 20)
@@ -145,7 +145,7 @@ class TestDrop:
         assert session.path == other
         assert session.window.title == "miniRT - other one.rt"
         assert session.state.scene.spheres[0].diameter == 7
-        assert session.state.past == ()
+        assert session.state.undo_stack == ()
         harness.tap(Key.TAB)
         harness.tap(Key.D)
         harness.tap(Key.CONTROL_L, Key.S)

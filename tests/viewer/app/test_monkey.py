@@ -34,7 +34,7 @@ def test_random_input_in_memory_loses_nothing(seed: int, tmp_path) -> None:
     assert sum(isinstance(each, Camera) for each in scene.elements) == 1
     assert parse(dump(scene)).scene.items == scene.items
     parse(path.read_bytes(), path)
-    assert undone.past == ()
+    assert undone.undo_stack == ()
     assert undone.scene.items == parse(WITH_CYLINDER).scene.items
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from minirt.errors import ReplayError
 from minirt.viewer.app.replay import replay
-from minirt.viewer.editing.editor import ANGLE
+from minirt.viewer.editing.editor import TURN_STEP
 from minirt.viewer.input.key_repeat import RATE
 from tests.viewer.fake import FakeRenderer, colour_of, played, scene
 
@@ -56,13 +56,15 @@ def test_a_held_key_moves_in_proportion_to_time(seconds):
     steps = max(1, RATE * seconds)
     x, y, z = session.state.scene.camera.position
     assert (x, y, z) == pytest.approx((steps * session.state.stride, 0, 10), rel=1e-4)
-    assert len(session.state.past) == 1
+    assert len(session.state.undo_stack) == 1
 
 
 def test_shift_makes_a_step_a_tenth():
     coarse, fine = (played(f"hold {keys} 0.5").state.scene.camera.position[0] for keys in ("d", "Shift+d"))
     assert fine == pytest.approx(coarse / 10, rel=1e-3)
-    assert played("press Shift+Left").state.scene.camera.direction[0] == pytest.approx(-np.sin(np.radians(ANGLE / 10)))
+    assert played("press Shift+Left").state.scene.camera.direction[0] == pytest.approx(
+        -np.sin(np.radians(TURN_STEP / 10))
+    )
 
 
 @pytest.mark.parametrize(
@@ -104,7 +106,7 @@ def test_a_resize_renders_anew():
 def test_quitting_the_session_ends_the_replay():
     for end in ("press Escape", "press Ctrl+q", "close", "press Ctrl+Shift+Escape"):
         session = played("press d", end, "press d", "resize 10x10")
-        assert len(session.state.past) == 1
+        assert len(session.state.undo_stack) == 1
         assert session.screen.frame.shape == (48, 64, 4)
 
 

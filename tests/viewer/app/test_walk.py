@@ -20,7 +20,7 @@ from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Painter
 from minirt.viewer.editing.state import State
-from minirt.viewer.input.recording import record
+from minirt.viewer.input.recording import add_recording
 from tests.viewer.app.test_real_window import SIZE, Viewer, viewing
 from tests.viewer.scenes import WITH_CYLINDER
 from tests.viewer.xdotool import do
@@ -103,7 +103,7 @@ class Twin:
     def do(self, *lines: str) -> None:
         """Perform lines of a recording in both."""
         do(self.viewer.desktop, self.viewer.window, *lines)
-        record(lines, "twin", self.memory)
+        add_recording(lines, "twin", self.memory)
         self.memory.play()
         self.lines += lines
 

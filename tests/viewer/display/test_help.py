@@ -16,7 +16,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.overlay import HudLevel
-from minirt.viewer.editing.projection import projection
+from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import Frame
 from minirt.viewer.input.bindings import BINDINGS, Binding
 from tests.viewer.fake import TEXT, played, scene
@@ -62,10 +62,10 @@ def memory(session: Session) -> Memory:
 
 def centred(_: Session, after: Session) -> bool:
     """Whether the light is in the centre of the picture."""
-    return projection(camera(after), 64, 48).pixel((5, 5, 5)) == pytest.approx((32, 24), abs=0.1)
+    return projection_of(camera(after), 64, 48).pixel((5, 5, 5)) == pytest.approx((32, 24), abs=0.1)
 
 
-def orbited(before: Session, after: Session) -> bool:
+def orbit_camera(before: Session, after: Session) -> bool:
     """Whether the camera has moved and keeps its distance from the sphere."""
     here, there = camera(before).position, camera(after).position
     return dist(here, there) > 1 and dist(there, (0, 0, 0)) == pytest.approx(dist(here, (0, 0, 0)))
@@ -114,13 +114,13 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "next frame": (SPHERE, lambda _, after: after.state.frame is Frame.X),
     "move by hand": ((), lambda _, after: after.state.scene.spheres[0].centre[0] > 1),
     "turn by hand": ((), lambda _, after: after.state.scene.cylinders[0].axis != (0, 1, 0)),
-    "orbit": (SPHERE, orbited),
+    "orbit": (SPHERE, orbit_camera),
     "pan": ((), panned),
     "grow": (SPHERE, resized(1)),
     "shrink": (SPHERE, resized(-1)),
     "next value": (SPHERE, lambda _, after: after.state.active.name == "colour"),
-    "give attribute": (SPHERE, lambda _, after: after.state.element.specular is not None),
-    "take attribute": ((*SPHERE, "press M"), lambda _, after: after.state.element.specular is None),
+    "add attribute": (SPHERE, lambda _, after: after.state.element.specular is not None),
+    "remove attribute": ((*SPHERE, "press M"), lambda _, after: after.state.element.specular is None),
     "look at": (("press Tab",), centred),
     "reset camera": (("press D", "press Left"), lambda _, after: camera(after) == scene().camera),
     "undo": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),

@@ -13,7 +13,7 @@ from minirt.viewer.display.marks import AXIS_COLOURS, GOLD, bgra, draw_line
 from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.display.overlay import text_size
 from minirt.viewer.display.painter import paint
-from minirt.viewer.editing.projection import projection
+from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import Frame
 from tests.random_scenes import random_scene
 from tests.viewer.fake import TEXT, colour_of, played
@@ -118,7 +118,7 @@ def test_the_movement_axis_passes_through_the_element(presses: int, frame: Frame
     text = "A 0 0,0,0\nC 5,4,10 -0.5,-0.4,-1 60\nsp 0,0,0 0.1 9,9,9\n"
     session = played("resize 160x120", "press Tab", *["press X"] * presses, text=text)
     coloured = (session.screen.frame == np.array(bgra(AXIS_COLOURS[frame]), np.uint8)).all(axis=2)
-    seen = projection(session.state.scene.camera, 160, 120)
+    seen = projection_of(session.state.scene.camera, 160, 120)
     ends = [(reach * (frame is Frame.X), reach * (frame is Frame.Y), reach * (frame is Frame.Z)) for reach in (-1, 1)]
     for point in ends:
         x, y = seen.pixel(point)
@@ -143,7 +143,7 @@ def test_lights_have_icons_that_can_be_clicked() -> None:
     hidden, shown = played("resize 300x200", text=text), played("resize 300x200", "press G", text=text)
     assert not np.array_equal(hidden.screen.frame, shown.screen.frame)
     state = shown.state
-    placed = place_icons(state.scene, elements_with_icon(state.scene), projection(state.scene.camera, 300, 200), 1.0)
+    placed = place_icons(state.scene, elements_with_icon(state.scene), projection_of(state.scene.camera, 300, 200), 1.0)
     assert sorted(icon.code for icon in placed) == ["A", "C", "L"]
     for icon in placed:
         keys = ["resize 300x200", "press Tab", "press Tab", "press G", f"click {icon.x},{icon.y}"]
@@ -153,7 +153,7 @@ def test_lights_have_icons_that_can_be_clicked() -> None:
     assert played("resize 300x200", f"click {light.x},{light.y}", text=text).state.element.code != "L"
     drag = f"drag {light.x},{light.y} {light.x - 20},{light.y}"
     moved = played("resize 300x200", "press G", drag, text=text).state.scene
-    seen = projection(moved.camera, 300, 200)
+    seen = projection_of(moved.camera, 300, 200)
     assert seen.pixel(moved.lights[0].position) == pytest.approx((light.x - 20, light.y), abs=1)
 
 

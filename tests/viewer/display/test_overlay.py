@@ -10,7 +10,7 @@ import pytest
 from minirt.viewer.display.overlay import HudLevel, draw_help, draw_hud, draw_message, element_line, status, text_size
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.state import opened
+from minirt.viewer.editing.state import initial_state
 from tests.viewer.fake import scene
 
 
@@ -32,7 +32,7 @@ def blank(width: int = 640, height: int = 480):
     ],
 )
 def test_the_line_of_the_selected_element_marks_the_active_value(actions, text):
-    state = opened(scene())
+    state = initial_state(scene())
     for action in actions:
         state = apply(state, action)
     assert element_line(state) == text
@@ -48,7 +48,7 @@ def test_the_status_line():
 def test_the_hud_leaves_the_middle_free():
     pixels = blank()
     shown = Outcome(Job(scene(), 640, 480), about=("two threads", "without three planes"))
-    bottom = draw_hud(pixels, opened(scene()), shown, HudLevel.ALL, 2e8, 16)
+    bottom = draw_hud(pixels, initial_state(scene()), shown, HudLevel.ALL, 2e8, 16)
     changed = (pixels != 255).any(axis=(1, 2))
     assert changed[:60].any()
     assert changed[-60:].any()
@@ -60,18 +60,18 @@ def test_the_hud_leaves_the_middle_free():
 def test_many_notes_fill_at_most_half_of_the_window():
     pixels = blank()
     shown = Outcome(Job(scene(), 640, 480), about=tuple(f"plane {n} hides nothing from light 1" for n in range(99)))
-    draw_hud(pixels, opened(scene()), shown, HudLevel.ALL, 0.0, 16)
+    draw_hud(pixels, initial_state(scene()), shown, HudLevel.ALL, 0.0, 16)
     assert (pixels[80:200] == 255).all()
     assert (pixels[260:460] != 255).any(axis=(1, 2)).all()
 
 
 def test_the_line_level_draws_one_line():
     pixels = blank()
-    assert draw_hud(pixels, opened(scene()), Outcome(Job(scene(), 640, 480)), HudLevel.LINE, 0.0, 16) == 0
+    assert draw_hud(pixels, initial_state(scene()), Outcome(Job(scene(), 640, 480)), HudLevel.LINE, 0.0, 16) == 0
     changed = (pixels != 255).any(axis=(1, 2))
     assert changed[:20].any()
     assert not changed[40:].any()
-    assert draw_hud(blank(), opened(scene()), None, HudLevel.NOTHING, 0.0, 16) == 0
+    assert draw_hud(blank(), initial_state(scene()), None, HudLevel.NOTHING, 0.0, 16) == 0
 
 
 def test_a_message_is_wrapped_and_drawn_above_the_status():

@@ -1,4 +1,4 @@
-"""A clock for tests, which moves on by the work that is done and by nothing else: alike on every machine."""
+"""Simulated clock, which advances by rendered packets alone, so that timings are the same on every machine."""
 
 from __future__ import annotations
 
@@ -17,33 +17,32 @@ from minirt.rendering.sampling import auto
 from minirt.report.measurements import formula_errors, picture_errors
 from minirt.timing import Run
 
-PACKET = 1e-6  # seconds that a packet of rays takes
-FORMULA = 1e-3  # seconds that the first of some formulas takes for all of its rays, the second twice as many, ...
-BUSY = (
-    0.95  # of the time the processors work: so little that it is told apart, so much that nothing counts as disturbed
-)
+PACKET_SECONDS = 1e-6  # for a packet of rays
+FORMULA_SECONDS = 1e-3  # for all rays of the first formula; the second takes twice as long, ...
+# Processor time by wall time: different enough from 1 to be told apart, but not counted as a disturbed measurement.
+PROCESSOR_SHARE = 0.95
 
 
 class Clock:
-    """The seconds that have passed, and how many packets of rays were rendered."""
+    """Simulated seconds and the number of rendered packets of rays."""
 
     def __init__(self) -> None:
         self.packets = 0
-        self.slowness = 1.0  # of the machine: how many times as long a packet takes
+        self.slowness = 1.0  # factor on the time of a packet
         self.wall = 0.0
 
     def rendered(self, packets: int) -> None:
-        """Move on by what so many packets take."""
+        """Advance by the time of a number of packets."""
         self.packets += packets
-        self.wall += packets * self.slowness * PACKET
+        self.wall += packets * self.slowness * PACKET_SECONDS
 
     def cpu(self) -> float:
-        """Seconds of the processors."""
-        return BUSY * self.wall
+        """Processor time in seconds."""
+        return PROCESSOR_SHARE * self.wall
 
 
-def simulated(patch: pytest.MonkeyPatch) -> Clock:
-    """Put the clock in the place of the machine's wherever pictures or formulas are timed."""
+def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
+    """Replace the machine's clock wherever pictures or formulas are timed."""
     clock, run = Clock(), FrameRunner.run
 
     def counted(self: FrameRunner, frames: list[Frame], threads: int) -> None:
@@ -59,7 +58,7 @@ def simulated(patch: pytest.MonkeyPatch) -> Clock:
 
 
 def packets_of(frame: Frame) -> int:
-    """The packets of rays of a frame: one for each sample in each packet of pixels that is wanted."""
+    """Count the packets of rays of a frame: one for each sample in each wanted packet of pixels."""
     height, width = frame.pixels.shape
     samples, numbers = frame.rays.shape
     wanted = np.count_nonzero(frame.wanted) if len(frame.wanted) else packets(width, height, numbers // 3)
@@ -67,14 +66,14 @@ def packets_of(frame: Frame) -> int:
 
 
 def packets(width: int, height: int, rays: int = 16) -> int:
-    """The packets of so many rays that cover a picture."""
+    """Count the packets of `rays` rays that cover a picture."""
     return -(-height // PACKET_HEIGHT) * -(-width // (rays // PACKET_HEIGHT))
 
 
 def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[Run, ...]]:
-    """As `minirt.timing.in_turn`, of formulas; each is worked out once, and every second turn is ten times as slow."""
+    """Replace `minirt.timing.in_turn` for formulas: run each once, and report every second turn ten times as slow."""
     for work in works:
         work()
     slowness = [10.0 if turn % 2 else 1.0 for turn in range(times)]
-    seconds = [FORMULA * number for number in range(1, len(works) + 1)]
-    return [tuple(Run(slow * each, BUSY * slow * each) for slow in slowness) for each in seconds]
+    seconds = [FORMULA_SECONDS * number for number in range(1, len(works) + 1)]
+    return [tuple(Run(slow * each, PROCESSOR_SHARE * slow * each) for slow in slowness) for each in seconds]
