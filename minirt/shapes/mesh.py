@@ -31,7 +31,7 @@ OPPOSED = 1e-3  # squared length of a mean of unit normals: with less they point
 class Mesh(Shape):
     """A line `ob` of a scene file."""
 
-    code, title, plural, aliases = "ob", "mesh", "meshes", ("obj",)
+    code, title, plural, aliases, batched = "ob", "mesh", "meshes", ("obj",), True
     file: MeshFile = declare(MeshField, "a Wavefront .obj file")
     position: Triple = declare(Point, "where its origin is")
     scale: float = declare(Length, "length of what is 1 in the file")

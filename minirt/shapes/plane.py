@@ -16,9 +16,9 @@ from minirt.fields import Colour, Direction, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.materials import Checker, Compound
+from minirt.materials import BOARD, Checker, Compound
 from minirt.shapes.basis import face_on
-from minirt.shapes.shape import BOARD, Ball, Place, Shape
+from minirt.shapes.shape import Ball, Place, Shape
 
 PARALLEL = 4  # unit roundoffs of the scalar product of two unit vectors
 

@@ -23,41 +23,31 @@ A mesh is many triangles, each of which the kernel keeps for itself: such a shap
 
 from __future__ import annotations
 
+import sys
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, NewType
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NewType, get_type_hints
 
 import numpy as np
 
-from minirt.element import Element
-from minirt.fields import Triple, declare
+from minirt.fields import Triple
 from minirt.lanes import Vec
 from minirt.lanes.operations import Mask
-from minirt.materials import Bump, Checker, Compound, Glass, Mirror, NormalMap, Specular, Texture
+from minirt.materials import Attributes
 
 Box = tuple[Triple, Triple]  # least and greatest corner
 Ball = tuple[Triple, float]  # centre and radius
 Place = NewType("Place", Vec)  # in a packed shape: a point, where other Vecs are directions
 
 
-SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
-BOARD: dict[str, Any] = {"record": Checker, "aliases": ("pat",)} | SHARED
-
-
 @dataclass(frozen=True, kw_only=True)
-class Shape(Element):
+class Shape(Attributes):
     """A surface that rays can hit; the last field of every shape is its colour, and all have these attributes."""
 
+    batched: ClassVar[bool] = False  # whether one element is many primitives, as a mesh is many triangles
     if TYPE_CHECKING:
         colour: Triple
-    specular: Specular | None = declare(Compound, "highlight", record=Specular, aliases=("spc",), **SHARED)
-    mirror: float | None = declare(Mirror, "share of mirrored light", aliases=("mir",), **SHARED)
-    glass: Glass | None = declare(Compound, "refracted light", record=Glass, aliases=("ref",), **SHARED)
-    checker: Checker | None = declare(Compound, "checkerboard", bare="0.125", **BOARD)
-    texture: str | None = declare(Texture, "picture in the place of the colour", aliases=("txm", "tx"), **SHARED)
-    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)
-    normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **SHARED)
 
     @property
     def parts(self) -> int:
@@ -107,3 +97,11 @@ class Kind(NamedTuple):
     shading: Callable[..., Any] = unbent
     may_meet: Callable[..., Any] = anywhere
     batched: bool = False  # whether one element is many small ones side by side
+
+
+def kind_of(element: type[Shape]) -> Kind:
+    """Make the entry of the registry for a shape from the names in its file; AttributeError where one is missing."""
+    module = sys.modules[element.__module__]
+    optional = {name: getattr(module, name) for name in ("shading", "may_meet") if hasattr(module, name)}
+    packed = get_type_hints(element.pack)["return"]
+    return Kind(element, packed, module.intersect, module.surface, module.mapping, **optional, batched=element.batched)

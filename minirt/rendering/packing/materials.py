@@ -16,8 +16,7 @@ from minirt.scene import Scene
 from minirt.shapes import Shape
 
 Worn = list[tuple[int, Shape]]  # the shapes that have attributes, with their numbers
-PAINTED = {"checks", "textures", "bumps", "normals"}
-WORN = {"specular", "reflective", *PAINTED}
+MAPS = {"checks", "textures", "bumps", "normals"}  # features that `surface_maps_of` packs
 Reader = Callable[[Path], np.ndarray]
 
 
@@ -30,17 +29,16 @@ class Materials(NamedTuple):
 
 
 def materials_of(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
-    """The tables of what the kernel knows, of which `owner` (n,) tells the shape, for a scene that uses those features
-    of `minirt.rendering.packing.features`."""
-    if not used & WORN:  # not even a look at each of a million shapes
+    """Pack the materials of a scene that uses these features of `minirt.rendering.packing.features`.
+
+    `owner` (n,) tells for each primitive of the kernel to which shape it belongs.
+    """
+    if not used & {*ROWS, *MAPS}:  # not even a look at each of a million shapes
         return Materials(None, None, None)
-    worn = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
+    shapes = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     count = len(scene.shapes)
-    return Materials(
-        specular_of(worn, count)[owner] if "specular" in used else None,
-        reflective_of(worn, count)[owner] if "reflective" in used else None,
-        surface_maps_of(scene, worn, owner, used) if used & PAINTED else None,
-    )
+    rows = {name: pack(shapes, count)[owner] if name in used else None for name, pack in ROWS.items()}
+    return Materials(**rows, surface_maps=surface_maps_of(scene, shapes, owner, used) if used & MAPS else None)
 
 
 def specular_of(worn: Worn, count: int) -> np.ndarray:
@@ -61,6 +59,12 @@ def reflective_of(worn: Worn, count: int) -> np.ndarray:
         whole = max(1.0, back + through)
         bounces[i] = back / whole, through / whole, ior
     return bounces
+
+
+ROWS = {
+    "specular": specular_of,
+    "reflective": reflective_of,
+}  # by feature: fields of `Materials`
 
 
 def surface_maps_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hashable]) -> SurfaceMaps:
