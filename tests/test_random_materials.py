@@ -17,6 +17,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -56,6 +57,7 @@ def material_scene(seed: int) -> Scene:
         Hyperboloid(place(), way(), 0.8, 0.8 + size(), 2 * size(), colour()),
         Torus(place(), way(), 2 + size(), 1.2, colour()),
         Box(place(), way(), (size(), size(), size()), colour()),
+        Ellipsoid(place(), way(), (size(), size(), size()), colour()),
         Square(place(), way(), 2 * size(), colour()),
         Disc(place(), way(), 2 * size(), colour()),
         Triangle(place(), place(), place(), colour()),

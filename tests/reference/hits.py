@@ -12,6 +12,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -20,6 +21,7 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
+from tests.reference.normals import scaled_axes
 from tests.reference.revolved import profile
 from tests.reference.vectors import Array, dot, length, turned, upright
 
@@ -63,6 +65,17 @@ def _(sphere: Sphere, origins: Array, directions: Array) -> list[Array]:
     to_centre = np.array(sphere.centre) - origins
     off_centre = length(np.cross(to_centre, directions))
     return chord(*around(dot(to_centre, directions), half_chord(sphere.diameter / 2, off_centre)))
+
+
+@crossings.register(Ellipsoid)
+def _(ellipsoid: Ellipsoid, origins: Array, directions: Array) -> list[Array]:
+    # In its own frame, scaled by its semi-axes, it is the unit sphere.
+    axes = scaled_axes(ellipsoid)
+    to_centre, along = (np.array(ellipsoid.centre) - origins) @ axes.T, directions @ axes.T
+    speed = length(along)
+    along = along / speed[..., None]
+    off_centre = length(np.cross(to_centre, along))
+    return [t / speed for t in chord(*around(dot(to_centre, along), half_chord(1.0, off_centre)))]
 
 
 @crossings.register(Cylinder)

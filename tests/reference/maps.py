@@ -11,6 +11,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -19,7 +20,7 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
-from tests.reference.normals import normals
+from tests.reference.normals import normals, scaled_axes
 from tests.reference.revolved import profile
 from tests.reference.vectors import Array, dot, length, turned, unit, upright
 
@@ -105,6 +106,15 @@ def _(sphere: Sphere, points: Array) -> Place:
     along_v = np.where(far > 0, np.pi * sphere.diameter / 2 * north / np.where(far > 0, far, 1), 0)
     around = 2 * np.pi * np.cross(up, p)
     return Place(turn(p, up, np.array([0.0, 0.0, -1.0])), 0.5 + latitude / np.pi, around, along_v)
+
+
+@place.register
+def _(ellipsoid: Ellipsoid, points: Array) -> Place:
+    # The picture of the unit sphere, stretched: tangents stretch with the points.
+    scaled = scaled_axes(ellipsoid)
+    ball = place(Sphere((0, 0, 0), 2, ellipsoid.colour), (points - np.array(ellipsoid.centre)) @ scaled.T)
+    stretch = np.linalg.inv(scaled).T
+    return ball._replace(along_u=ball.along_u @ stretch, along_v=ball.along_v @ stretch)
 
 
 @place.register

@@ -10,6 +10,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -50,6 +51,18 @@ def _(triangle: Triangle, points: Array) -> Array:
 @normals.register(Sphere)
 def _(sphere: Sphere, points: Array) -> Array:
     return unit(points - np.array(sphere.centre))
+
+
+@normals.register(Ellipsoid)
+def _(ellipsoid: Ellipsoid, points: Array) -> Array:
+    axes = scaled_axes(ellipsoid)
+    return unit((points - np.array(ellipsoid.centre)) @ axes.T @ axes)
+
+
+def scaled_axes(ellipsoid: Ellipsoid) -> Array:
+    """Its own x, y and z axes, each divided by its semi-axis, as the rows of a matrix (3, 3)."""
+    x, z = turned(np.array(ellipsoid.axis))
+    return np.stack([x, np.cross(z, x), z]) / (np.array(ellipsoid.sizes)[:, None] / 2)
 
 
 @normals.register(Box)

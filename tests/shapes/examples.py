@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,8 @@ from minirt.fields import Colour, Direction, Field, Length, Lengths, Point
 from minirt.kernel.trace import ROUNDING
 from minirt.rendering.packing.primitives import extent
 from minirt.shapes import Kind, Shape
-from tests.shapes.regimes import Array, Random, log, unit, ways
+from tests import oracle
+from tests.shapes.regimes import RAYS, Array, Random, log, unit, ways
 from tests.shapes.ways import compiled, surfaces
 
 
@@ -48,7 +50,33 @@ def place(shape: Shape) -> Array:
     return np.array(next(getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)))
 
 
-CONCAVE = {"hyperboloid", "torus"}  # titles of shapes from which a way straight out may lead back in
+@cache
+def is_concave(kind: Kind) -> bool:
+    """Whether a ray straight out of the surface may meet the shape again: some of it lies beyond a tangent plane.
+
+    By the oracle, on 3 shapes with 32 points each.
+    """
+    random = np.random.default_rng(7)
+    for shape in (example(kind, random) for _ in range(3)):
+        points, normals = on_surface(shape, random, 32)
+        beyond = np.einsum("ijk,ik->ij", points[None] - points[:, None], normals)
+        if beyond.max() > 1e-9:
+            return True
+    return False
+
+
+def on_surface(shape: Shape, random: Random, count: int = RAYS) -> tuple[Array, Array]:
+    """Random points of the surface of a shape of size 1 and the normals there, (count, 3) each, by the oracle."""
+    found = []
+    while len(found) < count:
+        origin = place(shape) + log(random, 0.1, 10) * ways(random)
+        direction = unit(place(shape) + random.uniform(-0.6, 0.6, 3) - origin)
+        t = oracle.nearest(shape, origin, direction)
+        if t is not None:
+            point = origin + float(t) * direction
+            found.append((point, [float(x) for x in oracle.normal(shape, point)]))
+    points, normals = np.array(found).swapaxes(0, 1)
+    return points, normals
 
 
 class Hits(NamedTuple):

@@ -7,9 +7,8 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes import Kind, Shape
-from tests import oracle
 from tests.oracle.body import body
-from tests.shapes.examples import example, place
+from tests.shapes.examples import example, on_surface, place
 from tests.shapes.regimes import RAYS, Array, Rays, log, unit, ways
 from tests.stability.regime import Regime
 
@@ -58,20 +57,6 @@ def leaving(kind: Kind, seed: int, height: tuple[float, float] = (1e-12, 1e-3)) 
         origins[i] = on + random.choice([-1.0, 1.0], (RAYS, 1)) * log(random, *height, RAYS, 1) * out
         shapes.append(shape)
     return Rays(shapes, origins, ways(random, COUNT, RAYS))
-
-
-def on_surface(shape: Shape, random: np.random.Generator) -> tuple[Array, Array]:
-    """Points of the surface of a shape of size 1 and the normals there, (RAYS, 3) each."""
-    found = []
-    while len(found) < RAYS:
-        origin = place(shape) + log(random, 0.1, 10) * ways(random)
-        direction = unit(place(shape) + random.uniform(-0.6, 0.6, 3) - origin)
-        t = oracle.nearest(shape, origin, direction)
-        if t is not None:
-            point = origin + float(t) * direction
-            found.append((point, [float(x) for x in oracle.normal(shape, point)]))
-    on, out = np.array(found).swapaxes(0, 1)
-    return on, out
 
 
 def places(shapes: list[Shape]) -> Array:
