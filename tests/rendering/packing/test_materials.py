@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from PIL import Image as pillow  # noqa: N813
 
+from minirt.element import fields_of
 from minirt.errors import FileError
-from minirt.materials import Bump, Checker, Glass, Specular
+from minirt.materials import Attributes, Bump, Checker, Compound, Glass, Specular
 from minirt.rendering.packing import materials
-from minirt.rendering.packing.features import features
+from minirt.rendering.packing.features import FEATURES, features
 from minirt.rendering.packing.materials import environment_of, materials_of
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
@@ -46,6 +47,14 @@ def test_nobody_looks_at_shapes_that_are_all_plain(tmp_path: Path, monkeypatch: 
     assert looks == []
     materials_of(shown, np.arange(3), {"specular"})
     assert looks == [BALL] * 3
+
+
+def test_every_material_names_a_feature_that_is_packed() -> None:
+    for field in fields_of(Attributes):
+        feature = field.record.feature if isinstance(field, Compound) else field.feature
+        assert feature in FEATURES, f"{field.name} needs a feature in minirt/rendering/packing/features.py"
+        packed = {*materials.ROWS, *materials.MAPS}
+        assert feature in packed, f"{feature} needs a function in minirt/rendering/packing/materials.py"
 
 
 def test_rows_of_shapes(tmp_path: Path) -> None:
