@@ -7,10 +7,10 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
-from minirt.element import Element, fields_of, once_per_kind, pattern
+from minirt.element import Element, cached_per_kind, fields_of, pattern
 from minirt.errors import FieldError, FileError, quoted
 from minirt.fields import Colour, Field, MeshFile
-from minirt.fields.numerals import named
+from minirt.fields.numerals import code_point_name
 from minirt.scene.diagnostics import Log
 from minirt.scene.lines import Line, Word, joined, words
 from minirt.scene.registry import ELEMENTS, SPELLINGS
@@ -48,7 +48,7 @@ class Table(NamedTuple):
     needed: int  # how many of those with a place must be given
 
 
-@once_per_kind
+@cached_per_kind
 def table(kind: type[Element]) -> Table:
     """The fields of a kind of element."""
     placed = tuple(field for field in fields_of(kind) if not field.keyed)
@@ -71,7 +71,9 @@ def cut(line: Line, log: Log) -> list[Word] | None:
             if character == "\r" or (column <= len(body) and character != "\t" and not character.isprintable())
         )
         lone = "a carriage return ends a line only together with a line feed"
-        log.error(line, column, lone if odd == "\r" else f"only spaces and tabs separate fields, got {named(odd)}")
+        log.error(
+            line, column, lone if odd == "\r" else f"only spaces and tabs separate fields, got {code_point_name(odd)}"
+        )
         return None
     slashes = SLASHES.search(body) if "//" in body else None
     if slashes:

@@ -21,7 +21,7 @@ def basis(axis: Triple) -> tuple[Vec, Vec, Vec]:
     return Vec(sign * b, -sign * z, 1.0 + sign * z * z * a), Vec(sign + x * x * a, -x, b), Vec(x, y, z)
 
 
-def face_on(normal: Triple) -> tuple[Vec, Vec]:
+def facing_frame(normal: Triple) -> tuple[Vec, Vec]:
     """Right and up for somebody who faces a flat surface: `right`, `up` and the unit normal are right-handed."""
     x, y, z = normal
     right, up = upright(-x, -y, -z)

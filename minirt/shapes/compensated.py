@@ -21,7 +21,7 @@ def two_product(a: Number, b: Number) -> tuple[Number, Number]:
     return rounded_product(a, b), product_error(a, b)
 
 
-def power(point: Vec, centre: Vec, radius: Number) -> Number:
+def power_of_point(point: Vec, centre: Vec, radius: Number) -> Number:
     """|point - centre|^2 - radius^2 to nearly full precision, however little is left of it.
 
     It is the power of a point with respect to a sphere: the product of the distances to both hits of any line.

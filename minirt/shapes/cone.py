@@ -17,10 +17,10 @@ from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, 
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.bounds import along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero, deepest
-from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.uv_mapping import wrapped
+from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.quadric import clamped_minimum, negative_interval
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.uv_mapping import revolved_mapping
 
 
 @dataclass(frozen=True)
@@ -36,20 +36,20 @@ class Cone(Shape):
 
     def pack(self) -> PackedCone:
         u, v, w = basis(self.axis)
-        return PackedCone(Place(Vec(*self.apex)), u, v, w, self.diameter / 2 / self.height, self.height)
+        return PackedCone(Position(Vec(*self.apex)), u, v, w, self.diameter / 2 / self.height, self.height)
 
     def balls(self) -> tuple[Ball, ...]:
-        return (self.apex, 0.0), (along(self.apex, self.axis, self.height), self.diameter / 2)
+        return (self.apex, 0.0), (point_along(self.apex, self.axis, self.height), self.diameter / 2)
 
-    def bounds(self) -> Box:
-        base = box_of_disc(along(self.apex, self.axis, self.height), self.axis, self.diameter / 2)
-        return box_of_boxes((self.apex, self.apex), base)
+    def bounds(self) -> Bounds:
+        base = bounds_of_disc(point_along(self.apex, self.axis, self.height), self.axis, self.diameter / 2)
+        return union_of_bounds((self.apex, self.apex), base)
 
 
 class PackedCone(NamedTuple):
     """What the kernel keeps of a cone: a frame of its own in which the apex is the origin and the base above it."""
 
-    apex: Place
+    apex: Position
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -74,11 +74,11 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     tip = -p.z * per_height
     base = (cone.height - p.z) * per_height
     first, last = minimum(tip, base), maximum(tip, base)
-    start = deepest(per_a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last)
+    start = clamped_minimum(per_a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last)
     p = p + start * d
     reach = cone.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
-    hit, below, above = below_zero(a, per_a, b, p.x * p.x + p.y * p.y - reach * reach)
+    hit, below, above = negative_interval(a, per_a, b, p.x * p.x + p.y * p.y - reach * reach)
     t = start
     if any(hit):
         rising = d.z > 0.0  # a steep ray that rises gets out of the other nappe and into this one, up to the base
@@ -99,10 +99,10 @@ def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
     off = rho * cosine - p.z * sine
     on_side = off >= p.z - cone.height
     flat = splat(0.0, rho)
-    pointed = rho == 0.0
-    per_rho = where(pointed, 0.0, 1.0 / rho)
+    on_axis = rho == 0.0
+    per_rho = where(on_axis, 0.0, 1.0 / rho)
     aside = where(on_side, cosine, flat)
-    up = where(on_side, where(pointed, -1.0, -sine), 1.0)
+    up = where(on_side, where(on_axis, -1.0, -sine), 1.0)
     out = Vec(p.x * per_rho * aside, p.y * per_rho * aside, up)
     on = p - where(on_side, off, p.z - cone.height) * out
     return cone.apex + from_basis(cone.u, cone.v, cone.w, on), from_basis(cone.u, cone.v, cone.w, out)
@@ -115,4 +115,4 @@ def mapping(cone: PackedCone, point: Vec, normal: Vec) -> tuple[Number, Number, 
     out = to_basis(u, v, w, normal)
     narrowing = -cone.slope * sqrt(1.0 + cone.slope * cone.slope)  # by height, along out.x and out.y
     rise = cone.height * Vec(narrowing * out.x, narrowing * out.y, 1.0)
-    return wrapped(u, v, w, p, out.z > -0.5, 1.0 + p.z / cone.height, rise, cone.slope * cone.height)
+    return revolved_mapping(u, v, w, p, out.z > -0.5, 1.0 + p.z / cone.height, rise, cone.slope * cone.height)

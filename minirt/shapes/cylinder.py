@@ -16,10 +16,10 @@ from minirt.lanes import Vec, any, copysign, fabs, maximum, minimum, splat, sqrt
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.bounds import along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero, deepest
-from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.uv_mapping import is_side, wrapped
+from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.quadric import clamped_minimum, negative_interval
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
 @dataclass(frozen=True)
@@ -35,22 +35,24 @@ class Cylinder(Shape):
 
     def pack(self) -> PackedCylinder:
         u, v, w = basis(self.axis)
-        return PackedCylinder(Place(Vec(*self.centre)), u, v, w, self.diameter / 2, self.height / 2)
+        return PackedCylinder(Position(Vec(*self.centre)), u, v, w, self.diameter / 2, self.height / 2)
 
     def ends(self) -> tuple[Triple, Triple]:
-        return along(self.centre, self.axis, self.height / 2), along(self.centre, self.axis, -self.height / 2)
+        return point_along(self.centre, self.axis, self.height / 2), point_along(
+            self.centre, self.axis, -self.height / 2
+        )
 
     def balls(self) -> tuple[Ball, ...]:
         return tuple((end, self.diameter / 2) for end in self.ends())
 
-    def bounds(self) -> Box:
-        return box_of_boxes(*(box_of_disc(end, self.axis, self.diameter / 2) for end in self.ends()))
+    def bounds(self) -> Bounds:
+        return union_of_bounds(*(bounds_of_disc(end, self.axis, self.diameter / 2) for end in self.ends()))
 
 
 class PackedCylinder(NamedTuple):
     """What the kernel keeps of a cylinder: a frame of its own in which it stands upright at the origin."""
 
-    centre: Place
+    centre: Position
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -71,10 +73,10 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Ma
     bottom = (-cylinder.half - p.z) * per_height
     top = (cylinder.half - p.z) * per_height
     first, last = minimum(bottom, top), maximum(bottom, top)
-    start = deepest(per_a, p.x * d.x + p.y * d.y, first, last)
+    start = clamped_minimum(per_a, p.x * d.x + p.y * d.y, first, last)
     p = p + start * d
     c = p.x * p.x + p.y * p.y - cylinder.radius * cylinder.radius
-    hit, below, above = below_zero(a, per_a, p.x * d.x + p.y * d.y, c)
+    hit, below, above = negative_interval(a, per_a, p.x * d.x + p.y * d.y, c)
     t = start
     if any(hit):
         near = maximum(start + below, first)
@@ -105,4 +107,4 @@ def mapping(cylinder: PackedCylinder, point: Vec, normal: Vec) -> tuple[Number, 
     p = to_basis(u, v, w, point - cylinder.centre)
     side = is_side(p, to_basis(u, v, w, normal))
     tall = 2.0 * cylinder.half
-    return wrapped(u, v, w, p, side, 0.5 + p.z / tall, Vec(0.0, 0.0, tall), cylinder.radius)
+    return revolved_mapping(u, v, w, p, side, 0.5 + p.z / tall, Vec(0.0, 0.0, tall), cylinder.radius)

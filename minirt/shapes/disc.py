@@ -15,10 +15,10 @@ from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.shapes.basis import face_on
-from minirt.shapes.bounds import box_of_disc
+from minirt.shapes.basis import facing_frame
+from minirt.shapes.bounds import bounds_of_disc
 from minirt.shapes.plane import PARALLEL
-from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
 
 @dataclass(frozen=True)
@@ -32,20 +32,20 @@ class Disc(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedDisc:
-        right, up = face_on(self.normal)
-        return PackedDisc(Place(Vec(*self.centre)), right, up, Vec(*self.normal), self.diameter / 2)
+        right, up = facing_frame(self.normal)
+        return PackedDisc(Position(Vec(*self.centre)), right, up, Vec(*self.normal), self.diameter / 2)
 
     def balls(self) -> tuple[Ball, ...]:
         return ((self.centre, self.diameter / 2),)
 
-    def bounds(self) -> Box:
-        return box_of_disc(self.centre, self.normal, self.diameter / 2)
+    def bounds(self) -> Bounds:
+        return bounds_of_disc(self.centre, self.normal, self.diameter / 2)
 
 
 class PackedDisc(NamedTuple):
     """What the kernel keeps of a disc."""
 
-    centre: Place
+    centre: Position
     right: Vec  # of pictures
     up: Vec
     normal: Vec

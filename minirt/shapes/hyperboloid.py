@@ -19,10 +19,10 @@ from minirt.lanes import Vec, any, copysign, fabs, inverse_root, maximum, minimu
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.bounds import along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero, deepest
-from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.uv_mapping import is_side, wrapped
+from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.quadric import clamped_minimum, negative_interval
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
 @dataclass(frozen=True)
@@ -46,22 +46,24 @@ class Hyperboloid(Shape):
         u, v, w = basis(self.axis)
         thinner, thicker = self.diameter - self.waist, self.diameter + self.waist
         slope = root(thinner / self.height) * root(thicker / self.height)
-        return PackedHyperboloid(Place(Vec(*self.centre)), u, v, w, self.waist / 2, slope, self.height / 2)
+        return PackedHyperboloid(Position(Vec(*self.centre)), u, v, w, self.waist / 2, slope, self.height / 2)
 
     def ends(self) -> tuple[Triple, Triple]:
-        return along(self.centre, self.axis, -self.height / 2), along(self.centre, self.axis, self.height / 2)
+        return point_along(self.centre, self.axis, -self.height / 2), point_along(
+            self.centre, self.axis, self.height / 2
+        )
 
     def balls(self) -> tuple[Ball, ...]:
         return tuple((end, self.diameter / 2) for end in self.ends())
 
-    def bounds(self) -> Box:
-        return box_of_boxes(*(box_of_disc(end, self.axis, self.diameter / 2) for end in self.ends()))
+    def bounds(self) -> Bounds:
+        return union_of_bounds(*(bounds_of_disc(end, self.axis, self.diameter / 2) for end in self.ends()))
 
 
 class PackedHyperboloid(NamedTuple):
     """What the kernel keeps of a hyperboloid: a frame of its own in which it stands upright at the origin."""
 
-    centre: Place
+    centre: Position
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -87,13 +89,13 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
     top = (hyperboloid.half - p.z) * per_height
     first, last = minimum(bottom, top), maximum(bottom, top)
     # From here on t is counted from the plane of the waist or, for a flat ray, from where it is deepest in the solid.
-    least = deepest(per_a, p.x * d.x + p.y * d.y - hyperboloid.slope * p.z * rise, first, last)
+    least = clamped_minimum(per_a, p.x * d.x + p.y * d.y - hyperboloid.slope * p.z * rise, first, last)
     start = where(steep, -p.z * per_height, least)
     p = p + start * d
     reach = hyperboloid.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
     c = p.x * p.x + p.y * p.y - reach * reach - hyperboloid.waist * hyperboloid.waist
-    met, below, above = below_zero(a, per_a, b, c)
+    met, below, above = negative_interval(a, per_a, b, c)
     hit = met | steep
     t = start
     if any(hit):
@@ -148,4 +150,4 @@ def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Nu
     rise = tall * Vec(widening * (p.x * per_rho), widening * (p.y * per_rho), 1.0)
     reach = hyperboloid.slope * hyperboloid.half
     radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * reach)
-    return wrapped(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), 0.5 + p.z / tall, rise, radius)
+    return revolved_mapping(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), 0.5 + p.z / tall, rise, radius)

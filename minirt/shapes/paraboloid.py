@@ -18,10 +18,10 @@ from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, 
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.bounds import across, along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero, deepest
-from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.uv_mapping import is_side, wrapped
+from minirt.shapes.bounds import bounds_of_disc, disc_extents, point_along, union_of_bounds
+from minirt.shapes.quadric import clamped_minimum, negative_interval
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
 @dataclass(frozen=True)
@@ -38,29 +38,29 @@ class Paraboloid(Shape):
     def pack(self) -> PackedParaboloid:
         u, v, w = basis(self.axis)
         radius = self.diameter / 2
-        return PackedParaboloid(Place(Vec(*self.vertex)), u, v, w, radius * (radius / self.height) / 2, self.height)
+        return PackedParaboloid(Position(Vec(*self.vertex)), u, v, w, radius * (radius / self.height) / 2, self.height)
 
     def balls(self) -> tuple[Ball, ...]:
         # Below its vertex a paraboloid reaches less far in any direction than a ball of half the radius of its rim.
-        return (self.vertex, self.diameter / 4), (along(self.vertex, self.axis, self.height), self.diameter / 2)
+        return (self.vertex, self.diameter / 4), (point_along(self.vertex, self.axis, self.height), self.diameter / 2)
 
-    def bounds(self) -> Box:
-        rim = box_of_disc(along(self.vertex, self.axis, self.height), self.axis, self.diameter / 2)
+    def bounds(self) -> Bounds:
+        rim = bounds_of_disc(point_along(self.vertex, self.axis, self.height), self.axis, self.diameter / 2)
         bulges = []
-        for i, (w, s) in enumerate(zip(self.axis, across(self.axis), strict=True)):
+        for i, (w, s) in enumerate(zip(self.axis, disc_extents(self.axis), strict=True)):
             # The outermost point along x, y or z lies below the rim if the surface is turned so far there.
             share = self.diameter / 2 * s / (2 * self.height * abs(w)) if w else 1.0
             if share < 1:
                 bulge = list(self.vertex)
                 bulge[i] -= self.diameter / 4 * s * share * (1 if w > 0 else -1)
                 bulges.append((bulge[0], bulge[1], bulge[2]))
-        return box_of_boxes((self.vertex, self.vertex), rim, *((bulge, bulge) for bulge in bulges))
+        return union_of_bounds((self.vertex, self.vertex), rim, *((bulge, bulge) for bulge in bulges))
 
 
 class PackedParaboloid(NamedTuple):
     """What the kernel keeps of a paraboloid: a frame of its own in which the vertex is the origin and the cap above."""
 
-    vertex: Place
+    vertex: Position
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -82,10 +82,10 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
     vertex = -p.z * per_height
     cap = (paraboloid.height - p.z) * per_height
     first, last = minimum(vertex, cap), maximum(vertex, cap)
-    start = deepest(per_a, p.x * d.x + p.y * d.y - slant, first, last)
+    start = clamped_minimum(per_a, p.x * d.x + p.y * d.y - slant, first, last)
     p = p + start * d
     c = p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z
-    hit, below, above = below_zero(a, per_a, p.x * d.x + p.y * d.y - slant, c)
+    hit, below, above = negative_interval(a, per_a, p.x * d.x + p.y * d.y - slant, c)
     t = start
     if any(hit):
         near = maximum(start + below, first)
@@ -129,4 +129,4 @@ def mapping(paraboloid: PackedParaboloid, point: Vec, normal: Vec) -> tuple[Numb
     radius = sqrt(2.0 * paraboloid.focal * paraboloid.height)
     per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
     rise = radius * Vec(p.x * per_rho, p.y * per_rho, rho / paraboloid.focal)
-    return wrapped(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), rho / radius, rise, radius)
+    return revolved_mapping(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), rho / radius, rise, radius)

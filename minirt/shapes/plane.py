@@ -17,8 +17,8 @@ from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.materials import BOARD, Checker, Compound
-from minirt.shapes.basis import face_on
-from minirt.shapes.shape import Ball, Place, Shape
+from minirt.shapes.basis import facing_frame
+from minirt.shapes.shape import Ball, Position, Shape
 
 PARALLEL = 4  # unit roundoffs of the scalar product of two unit vectors
 
@@ -35,8 +35,8 @@ class Plane(Shape):
     checker: Checker | None = declare(Compound, "checkerboard", bare="1", **BOARD)
 
     def pack(self) -> PackedPlane:
-        right, up = face_on(self.normal)
-        return PackedPlane(Place(Vec(*self.point)), Vec(*self.normal), right, up)
+        right, up = facing_frame(self.normal)
+        return PackedPlane(Position(Vec(*self.point)), Vec(*self.normal), right, up)
 
     def balls(self) -> tuple[Ball, ...]:
         return ()
@@ -51,7 +51,7 @@ class Plane(Shape):
 class PackedPlane(NamedTuple):
     """What the kernel keeps of a plane."""
 
-    point: Place
+    point: Position
     normal: Vec
     right: Vec  # of pictures
     up: Vec

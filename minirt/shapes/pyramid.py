@@ -16,7 +16,7 @@ BEHIND = 4  # roundings of the coordinates by which a start may seem to lie behi
 
 
 def may_meet(
-    corners: tuple[Vec, Vec, Vec], normal: Vec, apex: Vec, start: Vec | None, direction: Vec, asked: Mask
+    corners: tuple[Vec, Vec, Vec], normal: Vec, apex: Vec, start: Vec | None, direction: Vec, active: Mask
 ) -> Mask:
     """Of the rays that are `asked` for, those that may meet the triangle, whatever the rounding.
 
@@ -29,13 +29,13 @@ def may_meet(
     far = splat(size, direction.x)
     if start is not None:
         far = far + largest(apex - start)
-        asked = asked & (depth(corners[0], normal, dot(normal, a), start) >= 0.0)
+        active = active & (depth_behind_plane(corners[0], normal, dot(normal, a), start) >= 0.0)
     margin = APART * unit_roundoff(direction.x) * size * far
     least, most = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
-    return asked & ((least >= -margin) | (most <= margin))
+    return active & ((least >= -margin) | (most <= margin))
 
 
-def depth(corner: Vec, normal: Vec, height: float, start: Vec) -> Number:
+def depth_behind_plane(corner: Vec, normal: Vec, height: float, start: Vec) -> Number:
     """How far behind a plane points lie at most, for somebody before it; of the plane `normal` points away from him
     where `height` is above 0."""
     away = where(height > 0.0, 1.0, -1.0)

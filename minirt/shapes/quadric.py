@@ -9,7 +9,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 
 
-def below_zero(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Number, Number]:
+def negative_interval(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Number, Number]:
     """Whether a t^2 + 2 b t + c is zero anywhere, and where it goes below zero and above it again: the two roots, in
     this order for a > 0 and in the other one for a < 0; NaN where there are none. `per_a` is 1 / a.
 
@@ -18,10 +18,10 @@ def below_zero(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Nu
     -infinity or from infinity on.
     """
     D = b * b - a * c
-    met = D >= 0.0
+    real = D >= 0.0
     below = splat(nan, D)
     above = below
-    if any(met):
+    if any(real):
         q = -(b + copysign(sqrt(D), b))
         by_a, by_c = q * per_a, c / q
         level = q == 0.0
@@ -30,10 +30,10 @@ def below_zero(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Nu
         falling = q < 0.0
         below = where(falling, by_a, by_c)
         above = where(falling, by_c, by_a)
-    return met, below, above
+    return real, below, above
 
 
-def deepest(per_a: Number, b: Number, first: Number, last: Number) -> Number:
+def clamped_minimum(per_a: Number, b: Number, first: Number, last: Number) -> Number:
     """Where, between two t, a t^2 + 2 b t + c is least, for a >= 0; for a < 0 somewhere between them.
 
     Of a ray that meets a solid between two planes that place lies in the solid, or as near to it as rounding lets it:

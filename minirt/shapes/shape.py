@@ -36,9 +36,9 @@ from minirt.lanes import Vec
 from minirt.lanes.operations import Mask
 from minirt.materials import Attributes
 
-Box = tuple[Triple, Triple]  # least and greatest corner
+Bounds = tuple[Triple, Triple]  # least and greatest corner
 Ball = tuple[Triple, float]  # centre and radius
-Place = NewType("Place", Vec)  # in a packed shape: a point, where other Vecs are directions
+Position = NewType("Position", Vec)  # in a packed shape: a point, where other Vecs are directions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,18 +72,18 @@ class Shape(Attributes):
         return None
 
     @abstractmethod
-    def bounds(self) -> Box | None:
+    def bounds(self) -> Bounds | None:
         """The axis-aligned box around the shape, or None where it has no end."""
 
 
-def unbent(shape: Any, point: Vec, normal: Vec) -> Vec:
+def geometric_normal(shape: Any, point: Vec, normal: Vec) -> Vec:
     """`shading` of a shape that is what it looks like."""
     return normal
 
 
-def anywhere(shape: Any, apex: Vec, start: Vec | None, direction: Vec, asked: Mask) -> Mask:
+def all_rays(shape: Any, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
     """`may_meet` of a shape that is tested as fast."""
-    return asked
+    return active
 
 
 class Kind(NamedTuple):
@@ -94,8 +94,8 @@ class Kind(NamedTuple):
     intersect: Callable[..., Any]
     surface: Callable[..., Any]
     mapping: Callable[..., Any]
-    shading: Callable[..., Any] = unbent
-    may_meet: Callable[..., Any] = anywhere
+    shading: Callable[..., Any] = geometric_normal
+    may_meet: Callable[..., Any] = all_rays
     batched: bool = False  # whether one element is many small ones side by side
 
 

@@ -16,10 +16,10 @@ from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.shapes.basis import face_on
-from minirt.shapes.bounds import along, box_of_points
+from minirt.shapes.basis import facing_frame
+from minirt.shapes.bounds import bounds_of_points, point_along
 from minirt.shapes.plane import PARALLEL
-from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
 
 @dataclass(frozen=True)
@@ -33,25 +33,27 @@ class Square(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedSquare:
-        right, up = face_on(self.normal)
-        return PackedSquare(Place(Vec(*self.centre)), right, up, Vec(*self.normal), self.side / 2)
+        right, up = facing_frame(self.normal)
+        return PackedSquare(Position(Vec(*self.centre)), right, up, Vec(*self.normal), self.side / 2)
 
     def corners(self) -> tuple[Triple, ...]:
         half = self.side / 2
-        right, up = ((way.x, way.y, way.z) for way in face_on(self.normal))
-        return tuple(along(along(self.centre, right, x), up, y) for x in (-half, half) for y in (-half, half))
+        right, up = ((axis.x, axis.y, axis.z) for axis in facing_frame(self.normal))
+        return tuple(
+            point_along(point_along(self.centre, right, x), up, y) for x in (-half, half) for y in (-half, half)
+        )
 
     def balls(self) -> tuple[Ball, ...]:
         return tuple((corner, 0.0) for corner in self.corners())
 
-    def bounds(self) -> Box:
-        return box_of_points(*self.corners())
+    def bounds(self) -> Bounds:
+        return bounds_of_points(*self.corners())
 
 
 class PackedSquare(NamedTuple):
     """What the kernel keeps of a square."""
 
-    centre: Place
+    centre: Position
     right: Vec
     up: Vec
     normal: Vec

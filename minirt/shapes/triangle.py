@@ -19,8 +19,8 @@ from minirt.lanes import cross as product
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes import pyramid
-from minirt.shapes.bounds import box_of_points
-from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.bounds import bounds_of_points
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
 FLAT = 16 * 2.0**-53  # of its largest coordinate: a triangle that is no higher is none
 
@@ -58,14 +58,14 @@ class Triangle(Shape):
         return unit((x - share * u, y - share * v, z - share * w))
 
     def pack(self) -> PackedTriangle:
-        a, b, c = (Place(Vec(*corner)) for corner in (self.a, self.b, self.c))
+        a, b, c = (Position(Vec(*corner)) for corner in (self.a, self.b, self.c))
         return PackedTriangle(a, b, c, Vec(*self.normal()))
 
     def balls(self) -> tuple[Ball, ...]:
         return (self.a, 0.0), (self.b, 0.0), (self.c, 0.0)
 
-    def bounds(self) -> Box:
-        return box_of_points(self.a, self.b, self.c)
+    def bounds(self) -> Bounds:
+        return bounds_of_points(self.a, self.b, self.c)
 
 
 def cross(a: Triple, b: Triple) -> Triple:
@@ -76,9 +76,9 @@ def cross(a: Triple, b: Triple) -> Triple:
 class PackedTriangle(NamedTuple):
     """What the kernel keeps of a triangle."""
 
-    a: Place
-    b: Place
-    c: Place
+    a: Position
+    b: Position
+    c: Position
     normal: Vec
 
 
@@ -87,9 +87,9 @@ def intersect(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Ma
     return watertight(triangle.a, triangle.b, triangle.c, origin, direction)
 
 
-def may_meet(triangle: PackedTriangle, apex: Vec, start: Vec | None, direction: Vec, asked: Mask) -> Mask:
+def may_meet(triangle: PackedTriangle, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
     """Of rays through a point, those that may meet the triangle."""
-    return pyramid.may_meet((triangle.a, triangle.b, triangle.c), triangle.normal, apex, start, direction, asked)
+    return pyramid.may_meet((triangle.a, triangle.b, triangle.c), triangle.normal, apex, start, direction, active)
 
 
 def watertight(a: Vec, b: Vec, c: Vec, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
@@ -104,16 +104,16 @@ def watertight(a: Vec, b: Vec, c: Vec, origin: Vec, direction: Vec) -> tuple[Mas
     x, y, z = fabs(direction.x), fabs(direction.y), fabs(direction.z)
     by_x = (x >= y) & (x >= z)
     by_y = (y >= z) & ~by_x
-    d = exchanged(by_x, by_y, direction)
+    d = permuted_axes(by_x, by_y, direction)
     per_depth = 1.0 / d.z
     shear = Vec(d.x * per_depth, d.y * per_depth, per_depth)
-    a = sheared(shear, exchanged(by_x, by_y, a - origin))
-    b = sheared(shear, exchanged(by_x, by_y, b - origin))
-    c = sheared(shear, exchanged(by_x, by_y, c - origin))
+    a = sheared(shear, permuted_axes(by_x, by_y, a - origin))
+    b = sheared(shear, permuted_axes(by_x, by_y, b - origin))
+    c = sheared(shear, permuted_axes(by_x, by_y, c - origin))
     # Twice the areas that the origin has with each edge: by them the hit is the mean of the corners.
-    of_a = twice_the_area(b, c)
-    of_b = twice_the_area(c, a)
-    of_c = twice_the_area(a, b)
+    of_a = edge_function(b, c)
+    of_b = edge_function(c, a)
+    of_c = edge_function(a, b)
     least = minimum(minimum(of_a, of_b), of_c)
     most = maximum(maximum(of_a, of_b), of_c)
     hit = (least >= 0.0) | (most <= 0.0)
@@ -124,7 +124,7 @@ def watertight(a: Vec, b: Vec, c: Vec, origin: Vec, direction: Vec) -> tuple[Mas
     return hit, t
 
 
-def exchanged(by_x: Mask, by_y: Mask, v: Vec) -> Vec:
+def permuted_axes(by_x: Mask, by_y: Mask, v: Vec) -> Vec:
     """The vector with its last axis and the one that is meant, where it is another, in each other's place."""
     return Vec(where(by_x, v.z, v.x), where(by_y, v.z, v.y), where(by_x, v.x, where(by_y, v.y, v.z)))
 
@@ -134,7 +134,7 @@ def sheared(shear: Vec, v: Vec) -> Vec:
     return Vec(v.x - rounded_product(shear.x, v.z), v.y - rounded_product(shear.y, v.z), v.z)
 
 
-def twice_the_area(p: Vec, q: Vec) -> Number:
+def edge_function(p: Vec, q: Vec) -> Number:
     """Of the triangle between two points and the origin, as it is seen; its sign is right, or it is 0."""
     return rounded_product(p.x, q.y) - rounded_product(p.y, q.x)
 

@@ -13,17 +13,17 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.basis import from_basis
 
-TURN = 2.0 * pi
+TWO_PI = 2.0 * pi
 
 
-def turns(y: Number, x: Number) -> Number:
+def angle_in_turns(y: Number, x: Number) -> Number:
     """The angle from the x axis to (x, y) in whole turns, from -1/2 to 1/2."""
-    return arctan2(y, x) * (1.0 / TURN)
+    return arctan2(y, x) * (1.0 / TWO_PI)
 
 
-def around(p: Vec) -> tuple[Number, Vec]:
+def longitude(p: Vec) -> tuple[Number, Vec]:
     """From 0 to 1 about the axis, counter-clockwise from its tip, 1/2 at -x; and the way there for each turn."""
-    return 0.5 + turns(-p.y, -p.x), Vec(-TURN * p.y, TURN * p.x, 0.0)
+    return 0.5 + angle_in_turns(-p.y, -p.x), Vec(-TWO_PI * p.y, TWO_PI * p.x, 0.0)
 
 
 def is_side(p: Vec, normal: Vec) -> Mask:
@@ -31,7 +31,7 @@ def is_side(p: Vec, normal: Vec) -> Mask:
     return copysign(1.0, p.z) * normal.z < 0.5
 
 
-def wrapped(
+def revolved_mapping(
     u: Vec, v: Vec, w: Vec, p: Vec, side: Mask, height: Number, rise: Vec, radius: Number
 ) -> tuple[Number, Number, Vec, Vec]:
     """`mapping` of a shape with the frame u, v, w whose point p has on the side the coordinate `height` and the tangent
@@ -43,7 +43,7 @@ def wrapped(
     across = 2.0 * radius
     per_diameter = 1.0 / across
     up = -copysign(1.0, p.z)  # along u, on a cap
-    turn, way = around(p)
+    turn, way = longitude(p)
     return (
         where(side, turn, 0.5 + p.y * per_diameter),
         where(side, height, 0.5 + up * p.x * per_diameter),

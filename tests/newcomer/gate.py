@@ -14,7 +14,7 @@ from minirt.fields import Colour, Length, Point, Triple, declare
 from minirt.lanes import Vec, fabs, maximum, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class Gate(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedGate:
-        return PackedGate(Place(Vec(*self.centre)), self.side / 2)
+        return PackedGate(Position(Vec(*self.centre)), self.side / 2)
 
-    def bounds(self) -> Box:
+    def bounds(self) -> Bounds:
         (x, y, z), half = self.centre, self.side / 2
         return (x - half, y - half, z), (x + half, y + half, z)
 
@@ -41,7 +41,7 @@ class Gate(Shape):
 class PackedGate(NamedTuple):
     """What the kernel keeps of a gate."""
 
-    centre: Place
+    centre: Position
     half: float  # of the side
 
 

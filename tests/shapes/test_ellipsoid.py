@@ -11,9 +11,9 @@ from minirt.shapes.ellipsoid import Ellipsoid, PackedEllipsoid
 from minirt.shapes.sphere import Sphere
 from tests.shapes import mutants
 from tests.shapes.checks import U
+from tests.shapes.execution_modes import Intersect, surfaces
 from tests.shapes.regimes import GREY, RAYS, aimed, sphere
 from tests.shapes.test_sphere import shoot
-from tests.shapes.ways import Intersect, surfaces
 
 EGG = Ellipsoid((0, 0, 5), (0, 1, 0), (4, 2, 6), GREY)  # semi-axes 2, 1 and 3 along x, y and z
 TURNED = Ellipsoid((0, 0, 5), (1, 0, 0), (4, 2, 6), GREY)  # 1, 2 and 3: its y axis is the scene's x
@@ -79,10 +79,12 @@ def test_its_box_and_its_balls() -> None:
 
 def from_the_origin(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec) -> object:
     """Its formula, counted from the origin of the ray instead of its closest approach."""
-    p = module.times(module.to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, origin - ellipsoid.centre), ellipsoid.scale)
-    d = module.times(module.to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, direction), ellipsoid.scale)
+    p = module.scaled(
+        module.to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, origin - ellipsoid.centre), ellipsoid.scale
+    )
+    d = module.scaled(module.to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, direction), ellipsoid.scale)
     a, b, c = module.dot(d, d), module.dot(p, d), module.dot(p, p) - 1.0
-    hit, near, far = module.below_zero(a, 1.0 / a, b, c)
+    hit, near, far = module.negative_interval(a, 1.0 / a, b, c)
     return hit & (far > 0.0), np.where(near > 0.0, near, far)
 
 

@@ -22,10 +22,11 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from tests.shapes.examples import example, hits
-from tests.shapes.mapped import (
-    WAYS,
+from tests.shapes.execution_modes import surfaces
+from tests.shapes.mapping_checks import (
+    MODES,
     Case,
-    Way,
+    Evaluate,
     cases,
     check_hand,
     check_places,
@@ -36,13 +37,12 @@ from tests.shapes.mapped import (
 )
 from tests.shapes.regimes import GREY
 from tests.shapes.test_protocol import scaled
-from tests.shapes.ways import surfaces
 
 TITLED = partial(pytest.mark.parametrize, ids=lambda each: each.title if isinstance(each, Shape) else None)
 SIZES = [(1.0, 0.0), (1e-6, 0.0), (1e6, 0.0), (1.0, 1e6), (1e-6, 1.0)]
 CHECKS = (check_places, check_tangents, check_hand)
 ALL = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
-EITHER = pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+EITHER = pytest.mark.parametrize("way", MODES.values(), ids=MODES)
 ORIGIN, UP, DOWN = (0, 0, 0), (0, 1, 0), (0, -1, 0)
 
 
@@ -50,7 +50,7 @@ ORIGIN, UP, DOWN = (0, 0, 0), (0, 1, 0), (0, -1, 0)
 @EITHER
 @pytest.mark.parametrize(("size", "offset"), SIZES)
 @pytest.mark.parametrize("check", CHECKS)
-def test_of_random_shapes(kind: Kind, way: Way, size: float, offset: float, check: Any) -> None:
+def test_of_random_shapes(kind: Kind, way: Evaluate, size: float, offset: float, check: Any) -> None:
     if check is check_tangents and offset > size:
         offset = 1e3 * size  # differences of points farther off are mere rounding
     for case in cases(kind, size, offset):
@@ -98,7 +98,7 @@ KNOWN: list[tuple[Shape, tuple[float, ...], tuple[float, ...], tuple[float, floa
 
 @EITHER
 @TITLED(("shape", "point", "normal", "right"), KNOWN)
-def test_known_places(shape: Shape, point: Any, normal: Any, right: Any, way: Way) -> None:
+def test_known_places(shape: Shape, point: Any, normal: Any, right: Any, way: Evaluate) -> None:
     points, normals = np.tile(np.array(point, float), (16, 1)), np.tile(np.array(normal, float), (16, 1))
     got = way(shape, points, normals)
     assert np.allclose([got.u[0], got.v[0]], right, rtol=0, atol=1e-15)
@@ -127,7 +127,7 @@ TIPS: list[tuple[Shape, tuple[float, ...], tuple[float, ...]]] = [
 @EITHER
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 @TITLED(("shape", "point", "normal"), TIPS)
-def test_at_poles_and_apexes_all_is_finite(shape: Shape, point: Any, normal: Any, dtype: Any, way: Way) -> None:
+def test_at_poles_and_apexes_all_is_finite(shape: Shape, point: Any, normal: Any, dtype: Any, way: Evaluate) -> None:
     # The tip itself and places a little or next to nothing aside.
     aside = np.zeros((32, 3))
     aside[1:16, 0], aside[16:, 2] = 10.0 ** -np.arange(15), 10.0 ** -np.arange(16.0)

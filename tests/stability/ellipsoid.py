@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes.ellipsoid import Ellipsoid
-from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, log, ways
-from tests.stability.aims import along, at
+from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, log_uniform, random_directions
+from tests.stability.aimed_rays import along, at
 from tests.stability.common import COUNT
 from tests.stability.regime import Regime
 
@@ -16,7 +16,7 @@ from tests.stability.regime import Regime
 def make(random: Random, flatness: float = 1.0, size: float = 1.0) -> Ellipsoid:
     """A random ellipsoid of about a size, its own y axis scaled by `flatness`."""
     sizes = size * random.uniform(0.5, 2, 3) * [1.0, flatness, 1.0]
-    return Ellipsoid(tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1)), tuple(sizes), GREY)
+    return Ellipsoid(tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1)), tuple(sizes), GREY)
 
 
 def own_axes(ellipsoid: Ellipsoid) -> tuple[Array, Array]:
@@ -44,12 +44,12 @@ def beside(seed: int, size: float, height: tuple[float, float]) -> Rays:
     shapes, origins = [make(random, size=size) for _ in range(COUNT)], np.empty((COUNT, RAYS, 3))
     for i, shape in enumerate(shapes):
         lengths, axes = own_axes(shape)
-        on = ways(random, RAYS)
+        on = random_directions(random, RAYS)
         out = (on / lengths) @ axes
         out /= np.linalg.norm(out, axis=-1, keepdims=True)
-        up = random.choice([-1.0, 1.0], (RAYS, 1)) * log(random, *height, RAYS, 1)
+        up = random.choice([-1.0, 1.0], (RAYS, 1)) * log_uniform(random, *height, RAYS, 1)
         origins[i] = np.array(shape.centre) + (on * lengths) @ axes + up * out
-    return Rays(shapes, origins, ways(random, COUNT, RAYS))
+    return Rays(shapes, origins, random_directions(random, COUNT, RAYS))
 
 
 # At a tip of a flat or a long one a rounding across the short axis moves the hit far along the long one.

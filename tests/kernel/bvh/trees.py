@@ -16,7 +16,7 @@ from minirt.rendering.packing.bvh import aligned, block_type, bvh_of
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import KINDS, Shape
 from tests.shapes.examples import example, place
-from tests.shapes.regimes import Array, Random, log, unit, ways
+from tests.shapes.regimes import Array, Random, log_uniform, random_directions, unit
 
 
 class Plain:
@@ -64,8 +64,8 @@ def trace(
 
 def some(random: Random, count: int, size: float = 1.0, offset: float = 0.0, spread: float = 4.0) -> list[Shape]:
     """Shapes of every kind, of many sizes and in one another; those without end are few."""
-    middle = offset * ways(random)
-    made = [example(KINDS[i % len(KINDS)], random, size * log(random, 0.05, 2)) for i in range(count)]
+    middle = offset * random_directions(random)
+    made = [example(KINDS[i % len(KINDS)], random, size * log_uniform(random, 0.05, 2)) for i in range(count)]
     kept = [each for i, each in enumerate(made) if each.bounds() or i < 6]
     return [moved(each, middle + size * spread * random.normal(size=3)) for each in kept]
 
@@ -81,7 +81,7 @@ def rays_at(random: Random, shapes: list[Shape], count: int) -> tuple[Array, Arr
     middles = np.stack([place(each) for each in shapes])
     size = max(np.ptp(middles, axis=0).max(), 1e-9 * np.abs(middles).max())
     origins = middles[random.integers(len(shapes), size=count)]
-    origins = origins + size * log(random, 1e-4, 1, count, 1) * ways(random, count)
+    origins = origins + size * log_uniform(random, 1e-4, 1, count, 1) * random_directions(random, count)
     aims = middles[random.integers(len(shapes), size=count)] + 0.02 * size * random.normal(size=(count, 3))
     axes = np.eye(3)[random.integers(3, size=count)] * random.choice([-1.0, 1.0], size=(count, 1))
     return origins, unit(np.where(np.arange(count)[:, None] % 3 == 0, axes, aims - origins))

@@ -19,9 +19,9 @@ from minirt.lanes import Vec, load, save, width
 from minirt.shapes import KINDS, Kind
 from tests.kernel.pictures import Array
 from tests.shapes.charts import Chart
-from tests.shapes.mapped import Mapped, cases, interpreted, lengths
-from tests.shapes.regimes import unit, ways
-from tests.shapes.ways import array, vec
+from tests.shapes.execution_modes import array, vec
+from tests.shapes.mapping_checks import SurfaceMapping, cases, interpreted, lengths
+from tests.shapes.regimes import random_directions, unit
 
 SIDE = 256  # pixels of the relief
 STRENGTH = 0.05
@@ -81,16 +81,16 @@ def turned_on_lanes(worn: Any, uv: Any, a: Any, b: Any, n: Any, out: Any) -> Non
 
 LANES = {"raised": raised_on_lanes, "turned": turned_on_lanes}
 PLAIN = {"raised": bump_mapped, "turned": normal_mapped}
-Bend = Callable[[str, SurfaceMaps, Mapped, Array], Array]
+Bend = Callable[[str, SurfaceMaps, SurfaceMapping, Array], Array]
 
 
-def as_it_stands(name: str, worn: SurfaceMaps, at: Mapped, normals: Array) -> Array:
+def as_it_stands(name: str, worn: SurfaceMaps, at: SurfaceMapping, normals: Array) -> Array:
     table = worn.bumps if name == "raised" else worn.normals
     bent = PLAIN[name](table, worn, 0, at.u, at.v, vec(at.along_u), vec(at.along_v), vec(normals))
     return array(bent, normals)
 
 
-def on_lanes(name: str, worn: SurfaceMaps, at: Mapped, normals: Array) -> Array:
+def on_lanes(name: str, worn: SurfaceMaps, at: SurfaceMapping, normals: Array) -> Array:
     out = np.full((3, len(normals)), np.nan)
     vectors = (np.ascontiguousarray(each.T) for each in (at.along_u, at.along_v, normals))
     LANES[name](worn, np.stack([at.u, at.v]), *vectors, out)
@@ -180,22 +180,22 @@ def test_a_flat_relief_leaves_every_normal_as_it_is(bend: Bend) -> None:
 @EITHER
 @pytest.mark.parametrize("name", LANES)
 def test_where_the_tangents_are_zero_nothing_is_raised(bend: Bend, name: str) -> None:
-    normals = ways(np.random.default_rng(2), 16)
+    normals = random_directions(np.random.default_rng(2), 16)
     nothing = np.zeros((16, 3))
     worn = relief() if name == "raised" else plain((200, 50, 230))
-    for a, b in ((nothing, nothing), (nothing, ways(np.random.default_rng(3), 16))):
-        at = Mapped(np.full(16, 0.3), np.full(16, 0.6), a, b)
+    for a, b in ((nothing, nothing), (nothing, random_directions(np.random.default_rng(3), 16))):
+        at = SurfaceMapping(np.full(16, 0.3), np.full(16, 0.6), a, b)
         got = bend(name, worn, at, normals)
         assert np.abs(lengths(got) - 1).max() < 1e-12
         if name == "raised" or b is nothing:
             assert lengths(got - normals).max() < 1e-12
 
 
-def askew() -> tuple[Mapped, Array]:
+def askew() -> tuple[SurfaceMapping, Array]:
     """Tangents of many lengths at an angle to each other, and normals."""
     random = np.random.default_rng(4)
     a, b = random.normal(size=(2, 32, 3)) * 10.0 ** random.uniform(-6, 6, (2, 32, 1))
-    return Mapped(*random.random((2, 32)), a, b), unit(np.cross(unit(a), unit(b)))
+    return SurfaceMapping(*random.random((2, 32)), a, b), unit(np.cross(unit(a), unit(b)))
 
 
 @EITHER

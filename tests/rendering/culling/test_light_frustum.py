@@ -24,7 +24,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import linear
 from tests.meshes.examples import GREY, ball, named
-from tests.shapes.regimes import ways
+from tests.shapes.regimes import random_directions
 
 WIDTH, HEIGHT = 96, 48
 UNIT_BALL = Cluster(np.zeros(3), 1.0)
@@ -131,7 +131,7 @@ def test_the_margin_is_how_far_close_directions_reach(lamp: Any) -> None:
     slopes[:, ::2] = half * np.sign(slopes[:, ::2])  # at the corners it is farthest
     forth = np.array([*slopes, np.ones(200_000)])
     forth /= np.linalg.norm(forth, axis=0)
-    turned = forth + np.sqrt(around[SPREAD]) * ways(random, 200_000).T
+    turned = forth + np.sqrt(around[SPREAD]) * random_directions(random, 200_000).T
     turned /= np.linalg.norm(turned, axis=0)
     close = ((turned - forth) ** 2).sum(axis=0) <= around[SPREAD]
     reach = np.abs(turned[:2] / turned[2] - slopes)[:, close].max() * grid.scale_x
