@@ -1,8 +1,8 @@
 """Cone: `co x,y,z ax,ay,az diameter height R,G,B`.
 
-A solid cone with a cap on its base. `x,y,z` is the apex; the axis `ax,ay,az` runs from there to the base, whose
-`diameter` it has at the distance `height`. A picture lies once around the side, its upper edge at the apex, and once
-on the square around the base; on a cone that stands upright its middle is towards -z.
+A solid cone with a cap on its base. `x,y,z` is the apex; the axis `ax,ay,az` runs from there to the base, which has
+this `diameter` and lies at the distance `height`. A picture lies once around the side, its upper edge at the apex, and
+once on the square around the base; on a cone that stands upright its middle is towards -z.
 
     co 0,3,20  0,-1,0  2  3  240,160,40    a tent three units high that stands on y = 0
 """
@@ -47,7 +47,7 @@ class Cone(Shape):
 
 
 class PackedCone(NamedTuple):
-    """What the kernel keeps of a cone: a frame of its own in which the apex is the origin and the base above it."""
+    """Packed form of a cone: its own frame, in which the apex is the origin and the base lies above it."""
 
     apex: Position
     u: Vec
@@ -61,8 +61,8 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     """Whether and where a ray meets the cone.
 
     x^2 + y^2 <= slope^2 z^2 holds in two nappes, the cone and its mirror image. A ray that is flatter than the side is
-    within one of them for an interval of t; a steeper one, which crosses the plane between them, is in both, but for an
-    interval around that. What remains is cut to the heights between apex and base: as with the cylinder there is no
+    in one of them for an interval of t. A steeper ray, which crosses the plane between them, is in both, except for an
+    interval around that plane. The result is cut to the heights between apex and base: as with the cylinder there is no
     crack at the rim, and none at the apex.
     """
     p = to_basis(cone.u, cone.v, cone.w, origin - cone.apex)
@@ -81,7 +81,7 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     hit, below, above = negative_interval(a, per_a, b, p.x * p.x + p.y * p.y - reach * reach)
     t = start
     if any(hit):
-        rising = d.z > 0.0  # a steep ray that rises gets out of the other nappe and into this one, up to the base
+        rising = d.z > 0.0  # a steep ray that rises leaves the other nappe and enters this one, up to the base
         near = where(steep & ~rising, first, maximum(start + below, first))
         far = where(steep & rising, last, minimum(start + above, last))
         t = where(near > 0.0, near, far)
@@ -90,8 +90,10 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
 
 
 def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
-    """`point` moved onto the side or the base, whichever it is nearer to, and the outward normal there; at the apex
-    that is against the axis."""
+    """`point` moved onto the side or the base, whichever is nearer, and the outward normal there.
+
+    At the apex the normal is opposite to the axis.
+    """
     p = to_basis(cone.u, cone.v, cone.w, point - cone.apex)
     rho = sqrt(p.x * p.x + p.y * p.y)
     cosine = inverse_root(splat(1.0, rho) + cone.slope * cone.slope)  # of the angle between axis and side
@@ -109,7 +111,7 @@ def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(cone: PackedCone, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """Around the side and up it: from the base to the apex, so in the frame that has the apex above."""
+    """Angle around the side as u, and v from the base up to the apex: in a frame that has the apex above."""
     u, v, w = cone.u, -cone.v, -cone.w
     p = to_basis(u, v, w, point - cone.apex)
     out = to_basis(u, v, w, normal)

@@ -1,7 +1,7 @@
 """Cylinder: `cy x,y,z ax,ay,az diameter height R,G,B`.
 
-A solid tube with both caps about the axis `ax,ay,az`; `x,y,z` is its centre, half-way up. A picture lies once around
-the side, of an upright one with its middle towards -z, and once on the square around each cap.
+A solid cylinder with both caps about the axis `ax,ay,az`; `x,y,z` is its centre, half-way up. A picture lies once
+around the side, with its middle towards -z on an upright cylinder, and once on the square around each cap.
 
     cy 0,0,20  0,1,0  2  5  255,200,0    an upright column, from y = -2.5 to y = 2.5
 """
@@ -50,7 +50,7 @@ class Cylinder(Shape):
 
 
 class PackedCylinder(NamedTuple):
-    """What the kernel keeps of a cylinder: a frame of its own in which it stands upright at the origin."""
+    """Packed form of a cylinder: its own frame, in which it stands upright at the origin."""
 
     centre: Position
     u: Vec
@@ -63,7 +63,7 @@ class PackedCylinder(NamedTuple):
 def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the cylinder.
 
-    The ray is inside the endless tube for one interval of t and between the planes of the caps for another: it is
+    The ray is inside the infinite tube for one interval of t and between the planes of the caps for another; it is
     inside the cylinder where these overlap. There is no crack between cap and side, whatever the rounding.
     """
     p = to_basis(cylinder.u, cylinder.v, cylinder.w, origin - cylinder.centre)
@@ -87,7 +87,7 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Ma
 
 
 def surface(cylinder: PackedCylinder, point: Vec) -> tuple[Vec, Vec]:
-    """`point` moved onto the side or the cap, whichever it is nearer to, and the outward normal there."""
+    """`point` moved onto the side or the cap, whichever is nearer, and the outward normal there."""
     p = to_basis(cylinder.u, cylinder.v, cylinder.w, point - cylinder.centre)
     rho = sqrt(p.x * p.x + p.y * p.y)
     up = copysign(1.0, p.z)
@@ -102,7 +102,7 @@ def surface(cylinder: PackedCylinder, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(cylinder: PackedCylinder, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """Around the side and up it."""
+    """Angle around the side as u, height as v; on the caps the square around them."""
     u, v, w = cylinder.u, cylinder.v, cylinder.w
     p = to_basis(u, v, w, point - cylinder.centre)
     side = is_side(p, to_basis(u, v, w, normal))

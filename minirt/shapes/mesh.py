@@ -1,8 +1,9 @@
 """Mesh: `ob file x,y,z scale R,G,B`.
 
 Triangles from a Wavefront .obj file, whose path begins at the folder of the scene file. The origin of the file is at
-`x,y,z` in the scene, and lengths of the file are multiplied by `scale`. Triangles that share corners have no gap between
-them. Normals of the file make the surface look smooth (Phong shading), and its texture coordinates place pictures.
+`x,y,z` in the scene, and lengths of the file are multiplied by `scale`. Triangles that share corners have no gap
+between them. Normals of the file make the surface look smooth (Phong shading), and its texture coordinates place
+pictures.
 
     ob meshes/knot.obj 0,1,20 2.5 220,180,90    a knot, two and a half times as large as in its file
 """

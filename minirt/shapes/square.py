@@ -2,7 +2,7 @@
 
 A flat square, seen from both sides. `x,y,z` is its centre and `nx,ny,nz` its normal. It stands upright: one pair of
 edges is horizontal; on a floor and a ceiling the edges are along x and z. A picture fills it once, upright for
-somebody who faces it; on a floor its upper edge is towards -z, on a ceiling towards z.
+a viewer who faces it; on a floor its upper edge is towards -z, on a ceiling towards z.
 
     sq 0,2,20  0,0,-1  4  200,200,120    a board four units wide and high that faces the origin
 """
@@ -51,7 +51,7 @@ class Square(Shape):
 
 
 class PackedSquare(NamedTuple):
-    """What the kernel keeps of a square."""
+    """Packed form of a square."""
 
     centre: Position
     right: Vec
@@ -61,7 +61,7 @@ class PackedSquare(NamedTuple):
 
 
 def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the square; a ray along it, within rounding, does not."""
+    """Whether and where a ray meets the square; a ray parallel to it, within rounding, does not."""
     f = origin - square.centre
     slope = dot(square.normal, direction)
     t = -dot(square.normal, f) / slope
@@ -71,7 +71,7 @@ def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, 
 
 
 def surface(square: PackedSquare, point: Vec) -> tuple[Vec, Vec]:
-    """The point of the square's plane nearest to `point`, and the normal."""
+    """`point` projected onto the square's plane, and the normal."""
     height = dot(square.normal, point - square.centre)
     return point - height * square.normal, square.normal
 

@@ -1,8 +1,8 @@
 """Torus: `to x,y,z ax,ay,az diameter tube R,G,B`.
 
-A solid ring about the axis `ax,ay,az`. `x,y,z` is its centre, `diameter` the diameter of the circle in the middle of the
-tube, and `tube` that of the tube itself. A tube as wide as the diameter leaves no hole. A picture lies once around the
-axis, with its middle towards -z on a ring that lies flat, and once around the tube, with its middle outermost.
+A solid ring about the axis `ax,ay,az`. `x,y,z` is its centre, `diameter` the diameter of the circle in the middle of
+the tube, and `tube` that of the tube itself. A tube as wide as the diameter leaves no hole. A picture lies once around
+the axis, with its middle towards -z on a ring that lies flat, and once around the tube, with its middle outermost.
 
     to 0,0,20  0,1,0  6  2  220,150,180    a ring that lies flat, eight units across and two units thick
 """
