@@ -13,98 +13,67 @@ from importlib import import_module
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal
 
-from minirt.errors import MiniRTError, MlxError, RenderError, ReplayError, SceneError
+from minirt.errors import RenderError as RenderError
 
-if TYPE_CHECKING:
-    from minirt.image import Image
-    from minirt.materials import Bump, Checker, Glass, Specular
-    from minirt.movie import save_movie
+if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__`
+    from minirt.errors import MiniRTError as MiniRTError
+    from minirt.errors import MlxError as MlxError
+    from minirt.errors import ReplayError as ReplayError
+    from minirt.errors import SceneError as SceneError
+    from minirt.image import Image as Image
+    from minirt.materials import *  # noqa: F403
+    from minirt.movie import save_movie as save_movie
     from minirt.rendering import Renderer
-    from minirt.rendering.queries.rays import Hits, trace
-    from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
-    from minirt.shapes.box import Box
-    from minirt.shapes.cone import Cone
-    from minirt.shapes.cylinder import Cylinder
-    from minirt.shapes.disc import Disc
-    from minirt.shapes.hyperboloid import Hyperboloid
-    from minirt.shapes.mesh import Mesh
-    from minirt.shapes.paraboloid import Paraboloid
-    from minirt.shapes.plane import Plane
-    from minirt.shapes.sphere import Sphere
-    from minirt.shapes.square import Square
-    from minirt.shapes.torus import Torus
-    from minirt.shapes.triangle import Triangle
-    from minirt.viewer import view
+    from minirt.rendering.queries.rays import Hits as Hits
+    from minirt.rendering.queries.rays import trace as trace
+    from minirt.scene import Ambient as Ambient
+    from minirt.scene import Background as Background
+    from minirt.scene import Camera as Camera
+    from minirt.scene import FurtherLight as FurtherLight
+    from minirt.scene import Light as Light
+    from minirt.scene import ParallelLight as ParallelLight
+    from minirt.scene import Scene as Scene
+    from minirt.scene import SpotLight as SpotLight
+    from minirt.shapes import *  # noqa: F403
+    from minirt.viewer import view as view
 
 __version__ = "0.1.0"
 DEFAULT_ERROR = 0.002  # half a level of 255: what a picture of bytes can show
 DEFAULT_SIZE = (1280, 720)  # pixels; of a scene that does not name a size
 
-__all__ = [
-    "Ambient",
-    "Background",
-    "Box",
-    "Bump",
-    "Camera",
-    "Checker",
-    "Cone",
-    "Cylinder",
-    "Disc",
-    "FurtherLight",
-    "Glass",
-    "Hits",
-    "Hyperboloid",
-    "Image",
-    "Light",
-    "Mesh",
-    "MiniRTError",
-    "MlxError",
-    "Paraboloid",
-    "ParallelLight",
-    "Plane",
-    "RenderError",
-    "ReplayError",
-    "Scene",
-    "SceneError",
-    "Specular",
-    "Sphere",
-    "SpotLight",
-    "Square",
-    "Torus",
-    "Triangle",
-    "load",
-    "render",
-    "save_movie",
-    "size_of",
-    "trace",
-    "view",
-]
-
-
-SHAPES = (
-    *("Box", "Cone", "Cylinder", "Disc", "Hyperboloid", "Mesh"),
-    *("Paraboloid", "Plane", "Sphere", "Square", "Torus", "Triangle"),
-)
-
 # What is imported only when it is used, so that `miniRT --help` need not wait for it.
 HOMES = {
+    **dict.fromkeys(("MiniRTError", "MlxError", "RenderError", "ReplayError", "SceneError"), "minirt.errors"),
     "Image": "minirt.image",
-    **dict.fromkeys(("Bump", "Checker", "Glass", "Specular"), "minirt.materials"),
     **dict.fromkeys(
         ("Ambient", "Background", "Camera", "FurtherLight", "Light", "ParallelLight", "Scene", "SpotLight"),
         "minirt.scene",
     ),
-    **{shape: f"minirt.shapes.{shape.lower()}" for shape in SHAPES},
     **dict.fromkeys(("Hits", "trace"), "minirt.rendering.queries.rays"),
     "save_movie": "minirt.movie",
     "view": "minirt.viewer",
 }
+REGISTRIES = ("minirt.shapes", "minirt.materials")  # all that is in `PUBLIC` of these is public here, too
 
 
 def __getattr__(name: str) -> Any:
-    if name not in HOMES:
-        raise AttributeError(f"module 'minirt' has no attribute '{name}'")
-    return getattr(import_module(HOMES[name]), name)
+    if name in HOMES:
+        return getattr(import_module(HOMES[name]), name)
+    if name == "__all__":
+        return sorted((*HOMES, *registered(), "load", "render", "size_of"))
+    if name[:1].isupper() and name in registered():  # modules, which an import asks for here, begin with a small letter
+        return registered()[name]
+    raise AttributeError(f"module 'minirt' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__getattr__("__all__")]
+
+
+@cache
+def registered() -> dict[str, type]:
+    """The shapes and materials by their public names: `minirt.Sphere`, `minirt.Glass`."""
+    return {name: kind for home in REGISTRIES for name, kind in import_module(home).PUBLIC.items()}
 
 
 def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Scene:

@@ -20,12 +20,12 @@ Answer = TypeVar("Answer")
 Kind = TypeVar("Kind", bound="Record")
 
 
-def once_per_kind(ask: Callable[[type[Kind]], Answer]) -> Callable[[type[Kind]], Answer]:
+def cached_per_kind(ask: Callable[[type[Kind]], Answer]) -> Callable[[type[Kind]], Answer]:
     """A function of a kind of element that works its answer out once."""
     return cast("Callable[[type[Kind]], Answer]", cache(ask))
 
 
-@once_per_kind
+@cached_per_kind
 def fields_of(record: type[Record]) -> tuple[Field, ...]:
     """The table of its fields, in the order of the format: attributes are last."""
     found = (
@@ -36,7 +36,7 @@ def fields_of(record: type[Record]) -> tuple[Field, ...]:
     return tuple(sorted(found, key=lambda field: field.keyed))
 
 
-@once_per_kind
+@cached_per_kind
 def pattern(element: type[Element]) -> str:
     """How a line of the element is written: `C x,y,z dx,dy,dz fov [roll:degree]`; without what all of a sort have."""
     own = (each for each in fields_of(element) if not each.sort)

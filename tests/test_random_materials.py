@@ -17,6 +17,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -56,6 +57,7 @@ def material_scene(seed: int) -> Scene:
         Hyperboloid(point(), direction(), 0.8, 0.8 + size(), 2 * size(), colour()),
         Torus(point(), direction(), 2 + size(), 1.2, colour()),
         Box(point(), direction(), (size(), size(), size()), colour()),
+        Ellipsoid(point(), direction(), (size(), size(), size()), colour()),
         Square(point(), direction(), 2 * size(), colour()),
         Disc(point(), direction(), 2 * size(), colour()),
         Triangle(point(), point(), point(), colour()),

@@ -18,8 +18,8 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from tests.reference import LEAST, light_along, render, sky
-from tests.reference.maps import place
 from tests.reference.normals import normals
+from tests.reference.uv_mapping import surface_point
 from tests.reference.vectors import dot, unit
 
 WHITE, BLACK, GREY = (255, 255, 255), (0, 0, 0), (51, 51, 51)
@@ -175,9 +175,9 @@ def test_each_tangent_changes_its_own_texture_coordinate(shape: Sphere | Cylinde
         axis = np.array(shape.axis)
         p = points - [1, 2, 3]
         points = np.array([1, 2, 3]) + dot(p, axis)[:, None] * axis + 2 * unit(p - dot(p, axis)[:, None] * axis)
-    here, step = place(shape, points), 1e-6
+    here, step = surface_point(shape, points), 1e-6
     for tangent, u, v in ((here.along_u, step, 0), (here.along_v, 0, step)):
-        there = place(shape, points + step * tangent)
+        there = surface_point(shape, points + step * tangent)
         assert_allclose((there.u - here.u + 0.5) % 1 - 0.5, u, atol=1e-10)
         assert_allclose(there.v - here.v, v, atol=1e-10)
     assert (dot(np.cross(here.along_u, here.along_v), normals(shape, points)) > 0).all()

@@ -49,6 +49,7 @@ class Field(ABC):
     bare: str = ""  # the value that the key alone stands for, where it may stand alone
     sort: str = ""  # of an attribute that all elements of a sort have: what those are called
     placeholder: str = ""  # what stands for the value of an attribute in the pattern of a line; its unit where empty
+    feature: str = ""  # of an attribute of shapes: the feature of the kernel that draws it
     initial: Any = None  # what an editor begins with; of a length in the scene, how many times the usual one
     name: str = ""
     default: Any = None  # None: the field must be given, or as an attribute is absent
@@ -105,6 +106,10 @@ class Field(ABC):
     def pictures(self, value: Any) -> Iterator[PictureFile]:
         """The picture files that `value` names."""
         return iter(())
+
+    def feature_of(self, value: Any) -> str:
+        """The feature that the kernel needs to draw `value`; empty where it has no effect."""
+        return self.feature if value else ""
 
     @property
     def required(self) -> bool:

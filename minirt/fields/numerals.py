@@ -47,10 +47,10 @@ def found(text: str) -> str:
     if len(text) > LONGEST:
         return f"got {len(text)} characters: {quoted(text)}"
     foreign = next((character for character in text if not character.isascii()), "")
-    return f"got {quoted(text)}" + (f": {named(foreign)} is not ASCII" if foreign else "")
+    return f"got {quoted(text)}" + (f": {code_point_name(foreign)} is not ASCII" if foreign else "")
 
 
-def named(character: str) -> str:
+def code_point_name(character: str) -> str:
     """A character by its code point and name."""
     return f"U+{ord(character):04X} {unicodedata.name(character, '')}".rstrip()
 

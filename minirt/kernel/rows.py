@@ -12,7 +12,7 @@ import numpy as np
 
 from minirt.lanes import Vec
 from minirt.shapes import ALL_KINDS, Kind
-from minirt.shapes.shape import Place
+from minirt.shapes.shape import Position
 
 Rows = Any  # an array of dtype `row_type(kind)`
 
@@ -21,7 +21,7 @@ Rows = Any  # an array of dtype `row_type(kind)`
 def row_type(kind: Kind, number: type = np.float64) -> np.dtype[Any]:
     """Return the record dtype of the rows of a kind, with components of type `number`."""
     hints = get_type_hints(kind.packed).items()
-    return np.dtype([(field_name(kind, name), number, (3,) if hint in (Vec, Place) else ()) for name, hint in hints])
+    return np.dtype([(field_name(kind, name), number, (3,) if hint in (Vec, Position) else ()) for name, hint in hints])
 
 
 def field_name(kind: Kind, name: str) -> str:
@@ -32,7 +32,7 @@ def field_name(kind: Kind, name: str) -> str:
 @cache
 def point_fields(kind: Kind) -> tuple[str, ...]:
     """Return the names of the row fields that are points, not directions or numbers."""
-    return tuple(field_name(kind, name) for name, hint in get_type_hints(kind.packed).items() if hint is Place)
+    return tuple(field_name(kind, name) for name, hint in get_type_hints(kind.packed).items() if hint is Position)
 
 
 def kind_of(fields: Any) -> Kind:

@@ -14,14 +14,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from minirt.element import Record
 from minirt.fields import Picture, Real, declare
+from minirt.materials.material import Material
 
 
 @dataclass(frozen=True)
-class Bump(Record):
+class Bump(Material):
     """What `bump:` says."""
 
-    title = "bump"
+    title, feature = "bump", "bumps"
     file: str = declare(partial(Picture, also=","), "the heights", heights=True)
     strength: float = declare(Real, "height of white above black", low=-10.0, high=10.0, step=0.005, default=0.02)
+
+    def has_effect(self) -> bool:
+        return self.strength != 0.0

@@ -12,14 +12,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from minirt.element import Record
 from minirt.fields import Colour, Length, Triple, declare
+from minirt.materials.material import Material
 
 
 @dataclass(frozen=True)
-class Checker(Record):
+class Checker(Material):
     """What `checker:` says."""
 
-    title = "checker"
+    title, feature = "checker", "checks"
     size: float = declare(Length, "side of a square, in u and v", unit="")
     colour: Triple = declare(Colour, "the second colour", default=(0, 0, 0))

@@ -6,18 +6,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from minirt.element import Record, fields_of
+from minirt.element import fields_of
 from minirt.errors import FieldError, quoted
 from minirt.fields import Field, PictureFile
+from minirt.materials.material import Material
 
 
 @dataclass(frozen=True, kw_only=True)
 class Compound(Field):
     """A record, whose fields follow each other; those at the end may be left out where they have a default."""
 
-    record: type[Record]
+    record: type[Material]
 
-    def parse(self, text: str) -> Record:
+    def parse(self, text: str) -> Material:
         words, start, values = text.split(","), 0, {}
         for field in fields_of(self.record):
             mine = words[start : start + field.width]
@@ -34,7 +35,7 @@ class Compound(Field):
             raise FieldError(f"must be {self.pattern}, got {quoted(text)}", start)
         return self.record(**values)
 
-    def format(self, value: Record) -> str:
+    def format(self, value: Material) -> str:
         spelled: list[str] = []
         for field in reversed(fields_of(self.record)):
             own = getattr(value, field.name)
@@ -42,17 +43,20 @@ class Compound(Field):
                 spelled.insert(0, field.format(own))
         return ",".join(spelled)
 
-    def check(self, value: Any) -> Record:
+    def check(self, value: Any) -> Material:
         if not isinstance(value, self.record):
             raise FieldError(f"must be a {self.record.__name__}, got {value!r}")
         return value
 
-    def pictures(self, value: Record) -> Iterator[PictureFile]:
+    def pictures(self, value: Material) -> Iterator[PictureFile]:
         start = 0
         for field in fields_of(self.record):
             for each in field.pictures(getattr(value, field.name)):
                 yield each._replace(part=start + (each.part or 0))
             start += field.width
+
+    def feature_of(self, value: Material) -> str:
+        return self.record.feature if value.has_effect() else ""
 
     @property
     def pattern(self) -> str:

@@ -13,14 +13,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from minirt.element import Record
 from minirt.fields import Real, declare
+from minirt.materials.material import Material
 
 
 @dataclass(frozen=True)
-class Glass(Record):
+class Glass(Material):
     """What `glass:` says."""
 
-    title = "glass"
+    title, feature = "glass", "reflective"
     ior: float = declare(Real, "index of refraction", low=1.0, high=10.0, step=0.02, initial=1.5)
     share: float = declare(Real, "share that comes through", low=0.0, high=1.0, step=0.05, default=1.0)
+
+    def has_effect(self) -> bool:
+        return self.share > 0.0

@@ -14,4 +14,6 @@ from functools import partial
 
 from minirt.fields import Real
 
-Mirror = partial(Real, unit="ratio", low=0.0, high=1.0, step=0.05, placeholder="share", initial=0.3)
+Mirror = partial(
+    Real, unit="ratio", low=0.0, high=1.0, step=0.05, placeholder="share", initial=0.3, feature="reflective"
+)

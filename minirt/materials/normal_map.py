@@ -9,6 +9,8 @@ the part along u, green that along v, blue that along the surface's own normal, 
 
 from __future__ import annotations
 
+from functools import partial
+
 from minirt.fields import Picture
 
-NormalMap = Picture
+NormalMap = partial(Picture, feature="normals")

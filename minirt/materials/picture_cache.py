@@ -25,38 +25,38 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear red, gre
 
 Stamp = tuple[int, int, int]  # what changes when a file does
 
-known: dict[tuple[Callable[[Path], np.ndarray], str], tuple[Stamp, np.ndarray]] = {}
+entries: dict[tuple[Callable[[Path], np.ndarray], str], tuple[Stamp, np.ndarray]] = {}
 lock = Lock()
 
 
 def picture(path: str | os.PathLike[str]) -> np.ndarray:
     """Red, green and blue of a picture file, uint8 (h, w, 3), the upper row first; not to be written to. FileError."""
-    return kept(colours, path)
+    return cached(colours, path)
 
 
 def heights(path: str | os.PathLike[str]) -> np.ndarray:
     """The same as heights from 0 to 1, float32 (h, w): its brightness, in all of the 16 bits that it may have."""
-    return kept(brightness, path)
+    return cached(brightness, path)
 
 
-def kept(read: Callable[[Path], np.ndarray], path: str | os.PathLike[str]) -> np.ndarray:
+def cached(read: Callable[[Path], np.ndarray], path: str | os.PathLike[str]) -> np.ndarray:
     """What `read` makes of a file, made anew where the file is another than before."""
     path = Path(path)
     found = regular_files.status(path, LARGEST)
     stamp = (found.st_ino, found.st_size, found.st_mtime_ns)
     key = read, os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
     with lock:
-        if key not in known or known[key][0] != stamp:
-            known.pop(key, None)
+        if key not in entries or entries[key][0] != stamp:
+            entries.pop(key, None)
             array = read(path)
             array.flags.writeable = False
-            known[key] = stamp, array
-        return known[key][1]
+            entries[key] = stamp, array
+        return entries[key][1]
 
 
 def colours(path: Path) -> np.ndarray:
     """Red, green and blue of a file, uint8 (h, w, 3)."""
-    pixels = decoded(path)
+    pixels = decode(path)
     if pixels.dtype != np.uint8:
         pixels = np.rint(pixels / 257).astype(np.uint8)
     return np.ascontiguousarray(pixels if pixels.ndim == 3 else np.repeat(pixels[..., None], 3, axis=2))
@@ -64,14 +64,14 @@ def colours(path: Path) -> np.ndarray:
 
 def brightness(path: Path) -> np.ndarray:
     """Its heights, float32 (h, w)."""
-    pixels = decoded(path)
+    pixels = decode(path)
     grey = pixels.astype(np.float32)
     if pixels.ndim == 3:
         grey = grey @ LUMINANCE
     return np.clip(grey / np.iinfo(pixels.dtype).max, 0, 1)
 
 
-def decoded(path: Path) -> np.ndarray:
+def decode(path: Path) -> np.ndarray:
     """The pixels of a file: uint8 (h, w, 3), or of a grey one uint16 (h, w). FileError where it holds no picture."""
     from PIL import Image as pillow  # noqa: N813
     from PIL import UnidentifiedImageError
@@ -85,7 +85,7 @@ def decoded(path: Path) -> np.ndarray:
             image = pillow.open(io.BytesIO(data), formats=FORMATS)
             size = image.size
             if max(size) <= SIDE:
-                return pixels_of(image)
+                return shown_pixels(image)
     except pillow.DecompressionBombError:
         raise FileError(path, f"has more than {SIDE}x{SIDE} pixels") from None
     except UnidentifiedImageError:
@@ -95,7 +95,7 @@ def decoded(path: Path) -> np.ndarray:
     raise FileError(path, f"has {size[0]}x{size[1]} pixels, more than {SIDE}x{SIDE}")
 
 
-def pixels_of(image: PillowImage) -> np.ndarray:
+def shown_pixels(image: PillowImage) -> np.ndarray:
     """The pixels of an image, as they are shown."""
     if image.mode.startswith("I"):
         grey: np.ndarray = np.clip(np.asarray(image), 0, 65535).astype(np.uint16)

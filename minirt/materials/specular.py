@@ -14,17 +14,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from minirt.element import Record
 from minirt.fields import Factor, Flag, Real, declare
+from minirt.materials.material import Material
 
 GREATEST = 1e6  # an exponent whose highlight is a tenth of a degree wide
 
 
 @dataclass(frozen=True)
-class Specular(Record):
+class Specular(Material):
     """What `specular:` says."""
 
-    title = "specular"
+    title, feature = "specular", "specular"
     share: float = declare(Real, "share of the light", low=0.0, high=1.0, step=0.05, initial=0.5)
     exponent: float = declare(Factor, "how smooth", high=GREATEST, initial=30.0)
     blinn: bool = declare(Flag, "from the halfway direction", default=False)
+
+    def has_effect(self) -> bool:
+        return self.share > 0.0

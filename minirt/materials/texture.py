@@ -9,6 +9,8 @@ will do; the path begins at the folder of the scene file, and has no blanks and 
 
 from __future__ import annotations
 
+from functools import partial
+
 from minirt.fields import Picture
 
-Texture = Picture
+Texture = partial(Picture, feature="textures")

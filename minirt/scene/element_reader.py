@@ -8,10 +8,10 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
-from minirt.element import Element, fields_of, once_per_kind, pattern
+from minirt.element import Element, cached_per_kind, fields_of, pattern
 from minirt.errors import FieldError, FileError, quoted
 from minirt.fields import Colour, Field, MeshFile
-from minirt.fields.numerals import named
+from minirt.fields.numerals import code_point_name
 from minirt.scene.diagnostics import Log
 from minirt.scene.lines import Line, Word, join_at_commas, split_at_blanks
 from minirt.scene.registry import ELEMENTS, SPELLINGS
@@ -49,7 +49,7 @@ class FieldTable(NamedTuple):
     required: int  # number of positional fields that must be given
 
 
-@once_per_kind
+@cached_per_kind
 def field_table(kind: type[Element]) -> FieldTable:
     """Return the fields of a kind of element."""
     positional = tuple(field for field in fields_of(kind) if not field.keyed)
@@ -73,7 +73,7 @@ def split_line(line: Line, log: Log) -> list[Word] | None:
         )
         message = "a carriage return ends a line only together with a line feed"
         if separator != "\r":
-            message = f"only spaces and tabs separate fields, got {named(separator)}"
+            message = f"only spaces and tabs separate fields, got {code_point_name(separator)}"
         log.error(line, column, message)
         return None
     slashes = SLASHES.search(body) if "//" in body else None

@@ -1,60 +1,37 @@
-"""The shapes. `KINDS` is the one list of those that are a formula each: a new one is a file beside these and a line
-here. A mesh is many triangles."""
+"""The registry of shapes: each import below is one kind of shape, and the only list of them.
 
-from minirt.shapes import (
-    box,
-    cone,
-    cylinder,
-    disc,
-    hyperboloid,
-    mesh,
-    paraboloid,
-    plane,
-    sphere,
-    square,
-    torus,
-    triangle,
-)
-from minirt.shapes.shape import Ball, Box, Kind, Shape
+Another shape is a file beside these, with the names that `minirt.shapes.shape` asks for, and a line here. Parser,
+kernel, editor, documentation, the public name `minirt.Sphere` and the tests of every kind derive from it.
+"""
 
-KINDS = (
-    Kind(sphere.Sphere, sphere.PackedSphere, sphere.intersect, sphere.surface, sphere.mapping),
-    Kind(plane.Plane, plane.PackedPlane, plane.intersect, plane.surface, plane.mapping),
-    Kind(cylinder.Cylinder, cylinder.PackedCylinder, cylinder.intersect, cylinder.surface, cylinder.mapping),
-    Kind(cone.Cone, cone.PackedCone, cone.intersect, cone.surface, cone.mapping),
-    Kind(
-        paraboloid.Paraboloid, paraboloid.PackedParaboloid, paraboloid.intersect, paraboloid.surface, paraboloid.mapping
-    ),
-    Kind(
-        hyperboloid.Hyperboloid,
-        hyperboloid.PackedHyperboloid,
-        hyperboloid.intersect,
-        hyperboloid.surface,
-        hyperboloid.mapping,
-    ),
-    Kind(
-        triangle.Triangle,
-        triangle.PackedTriangle,
-        triangle.intersect,
-        triangle.surface,
-        triangle.mapping,
-        may_meet=triangle.may_meet,
-    ),
-    Kind(square.Square, square.PackedSquare, square.intersect, square.surface, square.mapping),
-    Kind(disc.Disc, disc.PackedDisc, disc.intersect, disc.surface, disc.mapping),
-    Kind(box.Box, box.PackedBox, box.intersect, box.surface, box.mapping),
-    Kind(torus.Torus, torus.PackedTorus, torus.intersect, torus.surface, torus.mapping),
-)
-MESH = Kind(
-    mesh.Mesh,
-    mesh.PackedMeshTriangle,
-    mesh.intersect,
-    mesh.surface,
-    mesh.mapping,
-    mesh.shading,
-    mesh.may_meet,
-    batched=True,
-)
-ALL_KINDS = (*KINDS, MESH)
+# The order is that of the key N and of the table of the format.
+# isort: off
+from minirt.shapes.sphere import Sphere as Sphere
+from minirt.shapes.plane import Plane as Plane
+from minirt.shapes.cylinder import Cylinder as Cylinder
+from minirt.shapes.cone import Cone as Cone
+from minirt.shapes.paraboloid import Paraboloid as Paraboloid
+from minirt.shapes.hyperboloid import Hyperboloid as Hyperboloid
+from minirt.shapes.triangle import Triangle as Triangle
+from minirt.shapes.square import Square as Square
+from minirt.shapes.disc import Disc as Disc
+from minirt.shapes.box import Box as Box
+from minirt.shapes.torus import Torus as Torus
+from minirt.shapes.ellipsoid import Ellipsoid as Ellipsoid
+from minirt.shapes.mesh import Mesh as Mesh
 
-__all__ = ["ALL_KINDS", "KINDS", "MESH", "Ball", "Box", "Kind", "Shape"]
+# isort: on
+from minirt.shapes.shape import Ball as Ball
+from minirt.shapes.shape import Kind as Kind
+from minirt.shapes.shape import Shape as Shape
+from minirt.shapes.shape import kind_of
+
+PUBLIC: dict[str, type] = {
+    name: each
+    for name, each in vars().items()
+    if isinstance(each, type) and issubclass(each, Shape) and each is not Shape
+}
+
+ALL_KINDS = tuple(map(kind_of, PUBLIC.values()))
+KINDS = tuple(kind for kind in ALL_KINDS if not kind.batched)  # each shape a formula
+(MESH,) = (kind for kind in ALL_KINDS if kind.batched)  # each shape many triangles

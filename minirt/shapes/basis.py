@@ -1,4 +1,4 @@
-"""Orthonormal frames for shapes that have an axis."""
+"""Orthonormal frames for shapes that have an axis or a normal."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from minirt.lanes import Vec, dot
 
 
 def basis(axis: Triple) -> tuple[Vec, Vec, Vec]:
-    """Unit vectors u, v and the unit `axis` itself, perpendicular to each other and right-handed.
+    """Right-handed orthonormal basis u, v and the unit `axis` itself.
 
-    They are the scene's z, x and y, turned no further than it takes to bring y to the axis, or to its opposite. Without
-    a branch or a division by a small number (Duff et al., Building an Orthonormal Basis, Revisited, 2017).
+    They are the scene's z, x and y, turned no further than it takes to bring y to the axis, or to its opposite. There
+    is no branch and no division by a small number (Duff et al., Building an Orthonormal Basis, Revisited, 2017).
     """
     x, y, z = axis
     sign = copysign(1.0, y)
@@ -21,18 +21,18 @@ def basis(axis: Triple) -> tuple[Vec, Vec, Vec]:
     return Vec(sign * b, -sign * z, 1.0 + sign * z * z * a), Vec(sign + x * x * a, -x, b), Vec(x, y, z)
 
 
-def face_on(normal: Triple) -> tuple[Vec, Vec]:
-    """Right and up for somebody who faces a flat surface: `right`, `up` and the unit normal are right-handed."""
+def facing_frame(normal: Triple) -> tuple[Vec, Vec]:
+    """Right and up as seen by a viewer who faces a flat surface: `right`, `up` and the normal are right-handed."""
     x, y, z = normal
     right, up = upright(-x, -y, -z)
     return Vec(*right), Vec(*up)
 
 
 def to_basis(u: Vec, v: Vec, w: Vec, p: Vec) -> Vec:
-    """The coordinates of p in the frame u, v, w."""
+    """Transform the vector p into the frame u, v, w."""
     return Vec(dot(p, u), dot(p, v), dot(p, w))
 
 
 def from_basis(u: Vec, v: Vec, w: Vec, p: Vec) -> Vec:
-    """The vector whose coordinates in the frame u, v, w are p."""
+    """Transform p, coordinates in the frame u, v, w, back into the scene."""
     return p.x * u + p.y * v + p.z * w

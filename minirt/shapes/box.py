@@ -1,8 +1,9 @@
 """Box: `bo x,y,z ax,ay,az w,h,d R,G,B`.
 
 A solid block. `x,y,z` is its centre, `ax,ay,az` its own y axis, and `w,h,d` are its sizes along its own x, y and z
-axes. These are those of the scene, turned no further than it takes to bring y to the axis, or to its opposite. Each
-face has a picture of its own: upright on the four that stand, above and below with its upper edge towards -z and z.
+axes. Its axes are those of the scene, turned no further than it takes to bring y to `ax,ay,az`, or to its opposite.
+Each face has a picture of its own: upright on the four standing faces, with its upper edge towards -z above and z
+below.
 
     bo 0,1,20  0,1,0  4,2,6  160,160,170    an upright block four wide, two high and six deep
 """
@@ -18,9 +19,9 @@ from minirt.lanes import Vec, copysign, fabs, maximum, minimum, splat, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.bounds import along, box_of_points
-from minirt.shapes.shape import Ball, Place, Shape
-from minirt.shapes.shape import Box as Corners
+from minirt.shapes.bounds import bounds_of_points, point_along
+from minirt.shapes.shape import Ball, Position, Shape
+from minirt.shapes.shape import Bounds as Corners
 
 
 @dataclass(frozen=True)
@@ -41,26 +42,26 @@ class Box(Shape):
     def pack(self) -> PackedBox:
         x, y, z = self.axes()
         width, height, depth = self.sizes
-        return PackedBox(Place(Vec(*self.centre)), x, y, z, Vec(width / 2, height / 2, depth / 2))
+        return PackedBox(Position(Vec(*self.centre)), x, y, z, Vec(width / 2, height / 2, depth / 2))
 
     def corners(self) -> list[Triple]:
         found = [self.centre]
         for axis, size in zip(self.axes(), self.sizes, strict=True):
             way = axis.x, axis.y, axis.z
-            found = [along(corner, way, sign * size / 2) for corner, sign in product(found, (-1, 1))]
+            found = [point_along(corner, way, sign * size / 2) for corner, sign in product(found, (-1, 1))]
         return found
 
     def balls(self) -> tuple[Ball, ...]:
         return tuple((corner, 0.0) for corner in self.corners())
 
     def bounds(self) -> Corners:
-        return box_of_points(*self.corners())
+        return bounds_of_points(*self.corners())
 
 
 class PackedBox(NamedTuple):
-    """What the kernel keeps of a box: a frame of its own in which it stands upright at the origin."""
+    """Packed form of a box: its own frame, in which it stands upright at the origin."""
 
-    centre: Place
+    centre: Position
     u: Vec
     v: Vec
     w: Vec
@@ -70,22 +71,22 @@ class PackedBox(NamedTuple):
 def intersect(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the box.
 
-    Between each pair of faces the ray is for an interval of t; it is in the box where all three overlap (Kay and
-    Kajiya, Ray Tracing Complex Scenes, 1986).
+    Slab test: the ray is between each pair of faces for an interval of t, and in the box where all three overlap (Kay
+    and Kajiya, Ray Tracing Complex Scenes, 1986).
     """
     p = to_basis(box.u, box.v, box.w, origin - box.centre)
     d = to_basis(box.u, box.v, box.w, direction)
-    enter_x, leave_x = between(p.x, d.x, box.half.x)
-    enter_y, leave_y = between(p.y, d.y, box.half.y)
-    enter_z, leave_z = between(p.z, d.z, box.half.z)
+    enter_x, leave_x = slab_interval(p.x, d.x, box.half.x)
+    enter_y, leave_y = slab_interval(p.y, d.y, box.half.y)
+    enter_z, leave_z = slab_interval(p.z, d.z, box.half.z)
     enter = maximum(maximum(enter_x, enter_y), enter_z)
     leave = minimum(minimum(leave_x, leave_y), leave_z)
     t = where(enter > 0.0, enter, leave)
     return (enter <= leave) & (t > 0.0), t
 
 
-def between(p: Number, d: Number, half: Number) -> tuple[Number, Number]:
-    """For which t the coordinate p + t d lies between -half and half."""
+def slab_interval(p: Number, d: Number, half: Number) -> tuple[Number, Number]:
+    """The interval of t in which the coordinate p + t d lies between -half and half."""
     per_step = 1.0 / d
     one = (-half - p) * per_step
     other = (half - p) * per_step
@@ -93,10 +94,10 @@ def between(p: Number, d: Number, half: Number) -> tuple[Number, Number]:
 
 
 def surface(box: PackedBox, point: Vec) -> tuple[Vec, Vec]:
-    """`point` moved onto the face that it is nearest to, and the outward normal there."""
+    """`point` moved onto the nearest face, and the outward normal there."""
     p = to_basis(box.u, box.v, box.w, point - box.centre)
     x, y, z = fabs(p.x) - box.half.x, fabs(p.y) - box.half.y, fabs(p.z) - box.half.z
-    by_x, by_y = (x >= y) & (x >= z), y >= z  # where it is not by x
+    by_x, by_y = (x >= y) & (x >= z), y >= z  # by y only where not by x
     flat = splat(0.0, p.x)
     out = where(
         by_x,
@@ -108,7 +109,7 @@ def surface(box: PackedBox, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(box: PackedBox, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """From 0 to 1 across the face: of those that stand upwards along the box's y axis."""
+    """From 0 to 1 across each face; v runs along the box's y axis on the four standing faces."""
     p = to_basis(box.u, box.v, box.w, point - box.centre)
     out = to_basis(box.u, box.v, box.w, normal)
     by_x, by_y = fabs(out.x) > 0.5, fabs(out.y) > 0.5

@@ -1,6 +1,7 @@
-"""Sums that keep what rounding drops, for the few places where nearly everything cancels.
+"""Compensated arithmetic: sums and products with their rounding errors, for where nearly everything cancels.
 
-The pairs of a rounded result and its error are exact (Dekker 1971, Knuth, The Art of Computer Programming 2, 4.2.2).
+The pairs of a rounded result and its error are exact: two-sum (Moller 1965; Knuth 1969, The Art of Computer Programming
+2, 4.2.2) and two-product (Dekker 1971, A Floating-Point Technique for Extending the Available Precision).
 """
 
 from __future__ import annotations
@@ -10,21 +11,22 @@ from minirt.lanes.vec import Number
 
 
 def two_sum(a: Number, b: Number) -> tuple[Number, Number]:
-    """a + b rounded, and what the rounding dropped."""
+    """The rounded sum a + b and its rounding error."""
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
 
 
 def two_product(a: Number, b: Number) -> tuple[Number, Number]:
-    """a * b rounded, and what the rounding dropped."""
+    """The rounded product a * b and its rounding error."""
     return rounded_product(a, b), product_error(a, b)
 
 
-def power(point: Vec, centre: Vec, radius: Number) -> Number:
-    """|point - centre|^2 - radius^2 to nearly full precision, however little is left of it.
+def power_of_point(point: Vec, centre: Vec, radius: Number) -> Number:
+    """Power of a point with respect to a sphere, |point - centre|^2 - radius^2, to nearly full precision.
 
-    It is the power of a point with respect to a sphere: the product of the distances to both hits of any line.
+    It is the product of the distances to both hits of any line through the point. Near the surface, where the plain
+    difference cancels, all digits are kept.
     """
     x, x_low = two_sum(point.x, -centre.x)
     y, y_low = two_sum(point.y, -centre.y)

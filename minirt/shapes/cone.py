@@ -1,8 +1,8 @@
 """Cone: `co x,y,z ax,ay,az diameter height R,G,B`.
 
-A solid cone with a cap on its base. `x,y,z` is the apex; the axis `ax,ay,az` runs from there to the base, whose
-`diameter` it has at the distance `height`. A picture lies once around the side, its upper edge at the apex, and once
-on the square around the base; on a cone that stands upright its middle is towards -z.
+A solid cone with a cap on its base. `x,y,z` is the apex; the axis `ax,ay,az` runs from there to the base, which has
+this `diameter` and lies at the distance `height`. A picture lies once around the side, its upper edge at the apex, and
+once on the square around the base; on a cone that stands upright its middle is towards -z.
 
     co 0,3,20  0,-1,0  2  3  240,160,40    a tent three units high that stands on y = 0
 """
@@ -17,10 +17,10 @@ from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, 
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.bounds import along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero, deepest
-from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.uv_mapping import wrapped
+from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.quadric import clamped_minimum, negative_interval
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.uv_mapping import revolved_mapping
 
 
 @dataclass(frozen=True)
@@ -36,20 +36,20 @@ class Cone(Shape):
 
     def pack(self) -> PackedCone:
         u, v, w = basis(self.axis)
-        return PackedCone(Place(Vec(*self.apex)), u, v, w, self.diameter / 2 / self.height, self.height)
+        return PackedCone(Position(Vec(*self.apex)), u, v, w, self.diameter / 2 / self.height, self.height)
 
     def balls(self) -> tuple[Ball, ...]:
-        return (self.apex, 0.0), (along(self.apex, self.axis, self.height), self.diameter / 2)
+        return (self.apex, 0.0), (point_along(self.apex, self.axis, self.height), self.diameter / 2)
 
-    def bounds(self) -> Box:
-        base = box_of_disc(along(self.apex, self.axis, self.height), self.axis, self.diameter / 2)
-        return box_of_boxes((self.apex, self.apex), base)
+    def bounds(self) -> Bounds:
+        base = bounds_of_disc(point_along(self.apex, self.axis, self.height), self.axis, self.diameter / 2)
+        return union_of_bounds((self.apex, self.apex), base)
 
 
 class PackedCone(NamedTuple):
-    """What the kernel keeps of a cone: a frame of its own in which the apex is the origin and the base above it."""
+    """Packed form of a cone: its own frame, in which the apex is the origin and the base lies above it."""
 
-    apex: Place
+    apex: Position
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -61,8 +61,8 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     """Whether and where a ray meets the cone.
 
     x^2 + y^2 <= slope^2 z^2 holds in two nappes, the cone and its mirror image. A ray that is flatter than the side is
-    within one of them for an interval of t; a steeper one, which crosses the plane between them, is in both, but for an
-    interval around that. What remains is cut to the heights between apex and base: as with the cylinder there is no
+    in one of them for an interval of t. A steeper ray, which crosses the plane between them, is in both, except for an
+    interval around that plane. The result is cut to the heights between apex and base: as with the cylinder there is no
     crack at the rim, and none at the apex.
     """
     p = to_basis(cone.u, cone.v, cone.w, origin - cone.apex)
@@ -74,14 +74,14 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     tip = -p.z * per_height
     base = (cone.height - p.z) * per_height
     first, last = minimum(tip, base), maximum(tip, base)
-    start = deepest(per_a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last)
+    start = clamped_minimum(per_a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last)
     p = p + start * d
     reach = cone.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
-    hit, below, above = below_zero(a, per_a, b, p.x * p.x + p.y * p.y - reach * reach)
+    hit, below, above = negative_interval(a, per_a, b, p.x * p.x + p.y * p.y - reach * reach)
     t = start
     if any(hit):
-        rising = d.z > 0.0  # a steep ray that rises gets out of the other nappe and into this one, up to the base
+        rising = d.z > 0.0  # a steep ray that rises leaves the other nappe and enters this one, up to the base
         near = where(steep & ~rising, first, maximum(start + below, first))
         far = where(steep & rising, last, minimum(start + above, last))
         t = where(near > 0.0, near, far)
@@ -90,8 +90,10 @@ def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Numb
 
 
 def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
-    """`point` moved onto the side or the base, whichever it is nearer to, and the outward normal there; at the apex
-    that is against the axis."""
+    """`point` moved onto the side or the base, whichever is nearer, and the outward normal there.
+
+    At the apex the normal is opposite to the axis.
+    """
     p = to_basis(cone.u, cone.v, cone.w, point - cone.apex)
     rho = sqrt(p.x * p.x + p.y * p.y)
     cosine = inverse_root(splat(1.0, rho) + cone.slope * cone.slope)  # of the angle between axis and side
@@ -99,20 +101,20 @@ def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:
     off = rho * cosine - p.z * sine
     on_side = off >= p.z - cone.height
     flat = splat(0.0, rho)
-    pointed = rho == 0.0
-    per_rho = where(pointed, 0.0, 1.0 / rho)
+    on_axis = rho == 0.0
+    per_rho = where(on_axis, 0.0, 1.0 / rho)
     aside = where(on_side, cosine, flat)
-    up = where(on_side, where(pointed, -1.0, -sine), 1.0)
+    up = where(on_side, where(on_axis, -1.0, -sine), 1.0)
     out = Vec(p.x * per_rho * aside, p.y * per_rho * aside, up)
     on = p - where(on_side, off, p.z - cone.height) * out
     return cone.apex + from_basis(cone.u, cone.v, cone.w, on), from_basis(cone.u, cone.v, cone.w, out)
 
 
 def mapping(cone: PackedCone, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """Around the side and up it: from the base to the apex, so in the frame that has the apex above."""
+    """Angle around the side as u, and v from the base up to the apex: in a frame that has the apex above."""
     u, v, w = cone.u, -cone.v, -cone.w
     p = to_basis(u, v, w, point - cone.apex)
     out = to_basis(u, v, w, normal)
     narrowing = -cone.slope * sqrt(1.0 + cone.slope * cone.slope)  # by height, along out.x and out.y
     rise = cone.height * Vec(narrowing * out.x, narrowing * out.y, 1.0)
-    return wrapped(u, v, w, p, out.z > -0.5, 1.0 + p.z / cone.height, rise, cone.slope * cone.height)
+    return revolved_mapping(u, v, w, p, out.z > -0.5, 1.0 + p.z / cone.height, rise, cone.slope * cone.height)

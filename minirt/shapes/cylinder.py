@@ -1,7 +1,7 @@
 """Cylinder: `cy x,y,z ax,ay,az diameter height R,G,B`.
 
-A solid tube with both caps about the axis `ax,ay,az`; `x,y,z` is its centre, half-way up. A picture lies once around
-the side, of an upright one with its middle towards -z, and once on the square around each cap.
+A solid cylinder with both caps about the axis `ax,ay,az`; `x,y,z` is its centre, half-way up. A picture lies once
+around the side, with its middle towards -z on an upright cylinder, and once on the square around each cap.
 
     cy 0,0,20  0,1,0  2  5  255,200,0    an upright column, from y = -2.5 to y = 2.5
 """
@@ -16,10 +16,10 @@ from minirt.lanes import Vec, any, copysign, fabs, maximum, minimum, splat, sqrt
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.bounds import along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero, deepest
-from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.uv_mapping import is_side, wrapped
+from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.quadric import clamped_minimum, negative_interval
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
 @dataclass(frozen=True)
@@ -35,22 +35,24 @@ class Cylinder(Shape):
 
     def pack(self) -> PackedCylinder:
         u, v, w = basis(self.axis)
-        return PackedCylinder(Place(Vec(*self.centre)), u, v, w, self.diameter / 2, self.height / 2)
+        return PackedCylinder(Position(Vec(*self.centre)), u, v, w, self.diameter / 2, self.height / 2)
 
     def ends(self) -> tuple[Triple, Triple]:
-        return along(self.centre, self.axis, self.height / 2), along(self.centre, self.axis, -self.height / 2)
+        return point_along(self.centre, self.axis, self.height / 2), point_along(
+            self.centre, self.axis, -self.height / 2
+        )
 
     def balls(self) -> tuple[Ball, ...]:
         return tuple((end, self.diameter / 2) for end in self.ends())
 
-    def bounds(self) -> Box:
-        return box_of_boxes(*(box_of_disc(end, self.axis, self.diameter / 2) for end in self.ends()))
+    def bounds(self) -> Bounds:
+        return union_of_bounds(*(bounds_of_disc(end, self.axis, self.diameter / 2) for end in self.ends()))
 
 
 class PackedCylinder(NamedTuple):
-    """What the kernel keeps of a cylinder: a frame of its own in which it stands upright at the origin."""
+    """Packed form of a cylinder: its own frame, in which it stands upright at the origin."""
 
-    centre: Place
+    centre: Position
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -61,7 +63,7 @@ class PackedCylinder(NamedTuple):
 def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the cylinder.
 
-    The ray is inside the endless tube for one interval of t and between the planes of the caps for another: it is
+    The ray is inside the infinite tube for one interval of t and between the planes of the caps for another; it is
     inside the cylinder where these overlap. There is no crack between cap and side, whatever the rounding.
     """
     p = to_basis(cylinder.u, cylinder.v, cylinder.w, origin - cylinder.centre)
@@ -71,10 +73,10 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Ma
     bottom = (-cylinder.half - p.z) * per_height
     top = (cylinder.half - p.z) * per_height
     first, last = minimum(bottom, top), maximum(bottom, top)
-    start = deepest(per_a, p.x * d.x + p.y * d.y, first, last)
+    start = clamped_minimum(per_a, p.x * d.x + p.y * d.y, first, last)
     p = p + start * d
     c = p.x * p.x + p.y * p.y - cylinder.radius * cylinder.radius
-    hit, below, above = below_zero(a, per_a, p.x * d.x + p.y * d.y, c)
+    hit, below, above = negative_interval(a, per_a, p.x * d.x + p.y * d.y, c)
     t = start
     if any(hit):
         near = maximum(start + below, first)
@@ -85,7 +87,7 @@ def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Ma
 
 
 def surface(cylinder: PackedCylinder, point: Vec) -> tuple[Vec, Vec]:
-    """`point` moved onto the side or the cap, whichever it is nearer to, and the outward normal there."""
+    """`point` moved onto the side or the cap, whichever is nearer, and the outward normal there."""
     p = to_basis(cylinder.u, cylinder.v, cylinder.w, point - cylinder.centre)
     rho = sqrt(p.x * p.x + p.y * p.y)
     up = copysign(1.0, p.z)
@@ -100,9 +102,9 @@ def surface(cylinder: PackedCylinder, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(cylinder: PackedCylinder, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """Around the side and up it."""
+    """Angle around the side as u, height as v; on the caps the square around them."""
     u, v, w = cylinder.u, cylinder.v, cylinder.w
     p = to_basis(u, v, w, point - cylinder.centre)
     side = is_side(p, to_basis(u, v, w, normal))
     tall = 2.0 * cylinder.half
-    return wrapped(u, v, w, p, side, 0.5 + p.z / tall, Vec(0.0, 0.0, tall), cylinder.radius)
+    return revolved_mapping(u, v, w, p, side, 0.5 + p.z / tall, Vec(0.0, 0.0, tall), cylinder.radius)

@@ -1,7 +1,7 @@
 """Disc: `di x,y,z nx,ny,nz diameter R,G,B`.
 
 A flat disc, seen from both sides. `x,y,z` is its centre and `nx,ny,nz` its normal. A picture fills the square around
-it once, upright for somebody who faces it; on a floor its upper edge is towards -z, on a ceiling towards z.
+it once, upright for a viewer who faces it; on a floor its upper edge is towards -z, on a ceiling towards z.
 
     di 0,0,20  0,1,0  6  200,120,120    a table top six units across, seen edge on
 """
@@ -15,10 +15,10 @@ from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.shapes.basis import face_on
-from minirt.shapes.bounds import box_of_disc
+from minirt.shapes.basis import facing_frame
+from minirt.shapes.bounds import bounds_of_disc
 from minirt.shapes.plane import PARALLEL
-from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
 
 @dataclass(frozen=True)
@@ -32,28 +32,28 @@ class Disc(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedDisc:
-        right, up = face_on(self.normal)
-        return PackedDisc(Place(Vec(*self.centre)), right, up, Vec(*self.normal), self.diameter / 2)
+        right, up = facing_frame(self.normal)
+        return PackedDisc(Position(Vec(*self.centre)), right, up, Vec(*self.normal), self.diameter / 2)
 
     def balls(self) -> tuple[Ball, ...]:
         return ((self.centre, self.diameter / 2),)
 
-    def bounds(self) -> Box:
-        return box_of_disc(self.centre, self.normal, self.diameter / 2)
+    def bounds(self) -> Bounds:
+        return bounds_of_disc(self.centre, self.normal, self.diameter / 2)
 
 
 class PackedDisc(NamedTuple):
-    """What the kernel keeps of a disc."""
+    """Packed form of a disc."""
 
-    centre: Place
-    right: Vec  # of pictures
+    centre: Position
+    right: Vec  # of pictures on it
     up: Vec
     normal: Vec
     radius: float
 
 
 def intersect(disc: PackedDisc, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the disc; a ray along it, within rounding, does not."""
+    """Whether and where a ray meets the disc; a ray parallel to it, within rounding, does not."""
     f = origin - disc.centre
     slope = dot(disc.normal, direction)
     t = -dot(disc.normal, f) / slope
@@ -63,7 +63,7 @@ def intersect(disc: PackedDisc, origin: Vec, direction: Vec) -> tuple[Mask, Numb
 
 
 def surface(disc: PackedDisc, point: Vec) -> tuple[Vec, Vec]:
-    """The point of the disc's plane nearest to `point`, and the normal."""
+    """`point` projected onto the disc's plane, and the normal."""
     height = dot(disc.normal, point - disc.centre)
     return point - height * disc.normal, disc.normal
 

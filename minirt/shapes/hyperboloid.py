@@ -2,8 +2,8 @@
 
 A solid hyperboloid of one sheet about the axis `ax,ay,az`, with a cap at both ends. `x,y,z` is its centre; it is
 `waist` wide there and `diameter` wide at the ends, `height` apart. The waist may be as wide as the ends: a cylinder.
-A picture lies once around the side, of an upright one with its middle towards -z, and once on the square around each
-cap.
+A picture lies once around the side, with its middle towards -z on an upright hyperboloid, and once on the square around
+each cap.
 
     hy 0,0,20  0,1,0  2  4  6  180,140,220    a cooling tower six units high
 """
@@ -19,10 +19,10 @@ from minirt.lanes import Vec, any, copysign, fabs, inverse_root, maximum, minimu
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.bounds import along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero, deepest
-from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.uv_mapping import is_side, wrapped
+from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.quadric import clamped_minimum, negative_interval
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
 @dataclass(frozen=True)
@@ -46,22 +46,24 @@ class Hyperboloid(Shape):
         u, v, w = basis(self.axis)
         thinner, thicker = self.diameter - self.waist, self.diameter + self.waist
         slope = root(thinner / self.height) * root(thicker / self.height)
-        return PackedHyperboloid(Place(Vec(*self.centre)), u, v, w, self.waist / 2, slope, self.height / 2)
+        return PackedHyperboloid(Position(Vec(*self.centre)), u, v, w, self.waist / 2, slope, self.height / 2)
 
     def ends(self) -> tuple[Triple, Triple]:
-        return along(self.centre, self.axis, -self.height / 2), along(self.centre, self.axis, self.height / 2)
+        return point_along(self.centre, self.axis, -self.height / 2), point_along(
+            self.centre, self.axis, self.height / 2
+        )
 
     def balls(self) -> tuple[Ball, ...]:
         return tuple((end, self.diameter / 2) for end in self.ends())
 
-    def bounds(self) -> Box:
-        return box_of_boxes(*(box_of_disc(end, self.axis, self.diameter / 2) for end in self.ends()))
+    def bounds(self) -> Bounds:
+        return union_of_bounds(*(bounds_of_disc(end, self.axis, self.diameter / 2) for end in self.ends()))
 
 
 class PackedHyperboloid(NamedTuple):
-    """What the kernel keeps of a hyperboloid: a frame of its own in which it stands upright at the origin."""
+    """Packed form of a hyperboloid: its own frame, in which it stands upright at the origin."""
 
-    centre: Place
+    centre: Position
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -73,9 +75,9 @@ class PackedHyperboloid(NamedTuple):
 def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the hyperboloid.
 
-    x^2 + y^2 <= waist^2 + slope^2 z^2 holds for an interval of t where the ray is flatter than the side far away, and
-    outside of one, perhaps empty, where it is steeper. Cut to the heights between the caps that leaves up to two
-    stretches within the solid; the first end of a stretch with t > 0 is hit.
+    x^2 + y^2 <= waist^2 + slope^2 z^2 holds for an interval of t if the ray is flatter than the asymptotic cone, and
+    outside of an interval, perhaps empty, if it is steeper. Cut to the heights between the caps that leaves up to two
+    intervals in the solid; the first end of one with t > 0 is the hit.
     """
     p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, origin - hyperboloid.centre)
     d = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, direction)
@@ -86,14 +88,14 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
     bottom = (-hyperboloid.half - p.z) * per_height
     top = (hyperboloid.half - p.z) * per_height
     first, last = minimum(bottom, top), maximum(bottom, top)
-    # From here on t is counted from the plane of the waist or, for a flat ray, from where it is deepest in the solid.
-    least = deepest(per_a, p.x * d.x + p.y * d.y - hyperboloid.slope * p.z * rise, first, last)
+    # From here on t is counted from the plane of the waist or, for a flat ray, from the deepest point in the solid.
+    least = clamped_minimum(per_a, p.x * d.x + p.y * d.y - hyperboloid.slope * p.z * rise, first, last)
     start = where(steep, -p.z * per_height, least)
     p = p + start * d
     reach = hyperboloid.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
     c = p.x * p.x + p.y * p.y - reach * reach - hyperboloid.waist * hyperboloid.waist
-    met, below, above = below_zero(a, per_a, b, c)
+    met, below, above = negative_interval(a, per_a, b, c)
     hit = met | steep
     t = start
     if any(hit):
@@ -109,15 +111,15 @@ def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tu
 
 
 def surface(hyperboloid: PackedHyperboloid, point: Vec) -> tuple[Vec, Vec]:
-    """`point` moved onto the side or a cap, whichever it is nearer to, and the outward normal there.
+    """`point` moved onto the side or a cap, whichever is nearer, and the outward normal there.
 
-    It gets to the side along the axis where that is flatter than a half right angle, and across the axis where it is
-    steeper: exactly, and hardly farther than on the shortest way.
+    It moves to the side along the axis where that is flatter than 45 degrees, and across the axis where it is steeper:
+    exactly, and hardly farther than the nearest point.
     """
     p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, point - hyperboloid.centre)
     rho = sqrt(p.x * p.x + p.y * p.y)
     reach = hyperboloid.slope * p.z
-    down = hyperboloid.slope * reach  # rho and this are the slope of the side's function, across and against the axis
+    down = hyperboloid.slope * reach  # rho and -down: gradient of the side's function, across and along the axis
     steep = rho >= fabs(down)
     radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * reach)
     above = 0.5 * (rho - radius) * (rho + radius) * inverse_root(rho * rho + down * down)  # to first order
@@ -138,7 +140,7 @@ def surface(hyperboloid: PackedHyperboloid, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """Around the side and up it, in equal heights."""
+    """Angle around the side as u, height as v."""
     u, v, w = hyperboloid.u, hyperboloid.v, hyperboloid.w
     p = to_basis(u, v, w, point - hyperboloid.centre)
     tall = 2.0 * hyperboloid.half
@@ -148,4 +150,4 @@ def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Nu
     rise = tall * Vec(widening * (p.x * per_rho), widening * (p.y * per_rho), 1.0)
     reach = hyperboloid.slope * hyperboloid.half
     radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * reach)
-    return wrapped(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), 0.5 + p.z / tall, rise, radius)
+    return revolved_mapping(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), 0.5 + p.z / tall, rise, radius)

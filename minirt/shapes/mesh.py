@@ -1,9 +1,9 @@
 """Mesh: `ob file x,y,z scale R,G,B`.
 
-Triangles from a Wavefront .obj file, whose way begins at the folder of the scene file. What is 0,0,0 in the file is at
-`x,y,z` in the scene, and what is 1 long there is `scale` long. Triangles that share corners have no gap between them.
-Where the file has normals the surface is lit as if it were round, and its coordinates for pictures are those of the
-file.
+Triangles from a Wavefront .obj file, whose path begins at the folder of the scene file. The origin of the file is at
+`x,y,z` in the scene, and lengths of the file are multiplied by `scale`. Triangles that share corners have no gap
+between them. Normals of the file make the surface look smooth (Phong shading), and its texture coordinates place
+pictures.
 
     ob meshes/knot.obj 0,1,20 2.5 220,180,90    a knot, two and a half times as large as in its file
 """
@@ -21,17 +21,17 @@ from minirt.lanes import Vec, cross, dot, maximum, minimum, unit, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes import pyramid, triangle
-from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
-BARYCENTRIC = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)  # coordinates of pictures at the corners where the file has none
-OPPOSED = 1e-3  # squared length of a mean of unit normals: with less they point anywhere
+BARYCENTRIC = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)  # u and v at the three corners where the file has none
+OPPOSED = 1e-3  # squared length of a mean of unit normals; below it they cancel, and the mean points anywhere
 
 
 @dataclass(frozen=True)
 class Mesh(Shape):
     """A line `ob` of a scene file."""
 
-    code, title, plural, aliases = "ob", "mesh", "meshes", ("obj",)
+    code, title, plural, aliases, batched = "ob", "mesh", "meshes", ("obj",), True
     file: MeshFile = declare(MeshField, "a Wavefront .obj file")
     position: Triple = declare(Point, "where its origin is")
     scale: float = declare(Length, "length of what is 1 in the file")
@@ -50,9 +50,9 @@ class Mesh(Shape):
 
     @property
     def triangles(self) -> meshes.Triangles:
-        """What was read from its file; FileError where that is still to be done and cannot be."""
-        found: meshes.Triangles | None = self.file.triangles
-        return meshes.load_mesh(self.file.name) if found is None else found
+        """The triangles of its file, which is read now if it was not yet; FileError where it cannot be read."""
+        loaded: meshes.Triangles | None = self.file.triangles
+        return meshes.load_mesh(self.file.name) if loaded is None else loaded
 
     @property
     def parts(self) -> int:
@@ -62,25 +62,25 @@ class Mesh(Shape):
         return self.replace(file=MeshFile(self.file.name, self.triangles.some(indices)))
 
     def placed(self, points: np.ndarray) -> np.ndarray:
-        """Points of the file in the scene: equal ones stay equal."""
-        found: np.ndarray = self.scale * points + self.position
-        return found
+        """Transform points of the file into the scene. Equal points stay equal."""
+        placed: np.ndarray = self.scale * points + self.position
+        return placed
 
     def rows(self) -> np.ndarray:
-        """What the kernel keeps of its triangles, (m, 27): a `PackedMeshTriangle` each."""
-        made = self.triangles
-        rows = np.zeros((len(made), 27))
-        rows[:, :9].reshape(-1, 3, 3)[...] = self.placed(made.points)[made.corners]
-        rows[:, 9:12] = made.flat_normals
-        if made.normals is None:
-            rows[:, 12:21].reshape(-1, 3, 3)[...] = made.flat_normals[:, None]
+        """The packed triangles, (m, 27): the numbers of one `PackedMeshTriangle` a row."""
+        triangles = self.triangles
+        rows = np.zeros((len(triangles), 27))
+        rows[:, :9].reshape(-1, 3, 3)[...] = self.placed(triangles.points)[triangles.corners]
+        rows[:, 9:12] = triangles.flat_normals
+        if triangles.normals is None:
+            rows[:, 12:21].reshape(-1, 3, 3)[...] = triangles.flat_normals[:, None]
         else:
-            rows[:, 12:21] = made.normals.reshape(-1, 9)
-        rows[:, 21:] = BARYCENTRIC if made.uvs is None else made.uvs.reshape(-1, 6)
+            rows[:, 12:21] = triangles.normals.reshape(-1, 9)
+        rows[:, 21:] = BARYCENTRIC if triangles.uvs is None else triangles.uvs.reshape(-1, 6)
         return rows
 
     def pack(self) -> PackedMeshTriangle:
-        """All triangles in one, whose numbers are arrays."""
+        """One `PackedMeshTriangle` whose numbers are arrays over all triangles."""
         columns = self.rows().T
         vecs = [Vec(*columns[start : start + 3]) for start in range(0, 21, 3)]
         return PackedMeshTriangle._make([*vecs, *columns[21:]])
@@ -89,22 +89,22 @@ class Mesh(Shape):
         (a, b, c), (x, y, z) = self.bounds()
         return tuple(((u, v, w), 0.0) for u in (a, x) for v in (b, y) for w in (c, z))
 
-    def bounds(self) -> Box:
+    def bounds(self) -> Bounds:
         low, high = self.placed(self.triangles.box).tolist()
         return tuple(low), tuple(high)
 
 
 class PackedMeshTriangle(NamedTuple):
-    """What the kernel keeps of a triangle of a mesh."""
+    """Packed form of one triangle of a mesh."""
 
-    a: Place
-    b: Place
-    c: Place
+    a: Position
+    b: Position
+    c: Position
     normal: Vec
-    normal_a: Vec  # of what the triangles stand for, at the corners
+    normal_a: Vec  # shading normals at the corners
     normal_b: Vec
     normal_c: Vec
-    u_a: float  # coordinates of pictures at the corners
+    u_a: float  # texture coordinates at the corners
     v_a: float
     u_b: float
     v_b: float
@@ -113,23 +113,23 @@ class PackedMeshTriangle(NamedTuple):
 
 
 def intersect(mesh: PackedMeshTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the triangle; one of those at an edge or a corner is met, as of `tr`."""
+    """Whether and where a ray meets the triangle: watertight, as for `tr`."""
     return triangle.watertight(mesh.a, mesh.b, mesh.c, origin, direction)
 
 
-def may_meet(mesh: PackedMeshTriangle, apex: Vec, start: Vec | None, direction: Vec, asked: Mask) -> Mask:
-    """Of rays through a point, those that may meet the triangle."""
-    return pyramid.may_meet((mesh.a, mesh.b, mesh.c), mesh.normal, apex, start, direction, asked)
+def may_meet(mesh: PackedMeshTriangle, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
+    """Cull the rays of a packet with a common apex that cannot meet the triangle."""
+    return pyramid.may_meet((mesh.a, mesh.b, mesh.c), mesh.normal, apex, start, direction, active)
 
 
 def surface(mesh: PackedMeshTriangle, point: Vec) -> tuple[Vec, Vec]:
-    """The point of the triangle's plane nearest to `point`, and the normal of that plane."""
+    """`point` projected onto the triangle's plane, and the normal of that plane."""
     height = dot(mesh.normal, point - mesh.a)
     return point - height * mesh.normal, mesh.normal
 
 
-def shares(mesh: PackedMeshTriangle, point: Vec) -> tuple[Number, Number, Number]:
-    """How much of each corner there is in a point of the triangle: its barycentric coordinates, from 0 to 1."""
+def barycentric_coordinates(mesh: PackedMeshTriangle, point: Vec) -> tuple[Number, Number, Number]:
+    """Barycentric coordinates of a point of the triangle, clamped to [0, 1]."""
     ab, ac, ap = mesh.b - mesh.a, mesh.c - mesh.a, point - mesh.a
     whole = dot(cross(ab, ac), mesh.normal)  # twice the area
     of_b = minimum(maximum(dot(cross(ap, ac), mesh.normal) / whole, 0.0), 1.0)
@@ -138,20 +138,24 @@ def shares(mesh: PackedMeshTriangle, point: Vec) -> tuple[Number, Number, Number
 
 
 def shading(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
-    """The normal by which a point is lit: the mean of those at the corners (Phong, Illumination for Computer Generated
-    Pictures, 1975)."""
-    of_a, of_b, of_c = shares(mesh, point)
+    """Interpolate the normals of the corners (Phong, Illumination for Computer Generated Pictures, 1975).
+
+    Where they cancel the triangle's own `normal` is used.
+    """
+    of_a, of_b, of_c = barycentric_coordinates(mesh, point)
     mean = of_a * mesh.normal_a + of_b * mesh.normal_b + of_c * mesh.normal_c
     return unit(where(dot(mean, mean) > OPPOSED, mean, normal))
 
 
 def mapping(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """As the file says, or else with a picture on each triangle, as on one of `tr`; what is raised is raised from what
-    the triangles stand for, across `normal`."""
-    of_a, of_b, of_c = shares(mesh, point)
+    """Texture coordinates of the file, or one picture a triangle as on `tr`; tangents perpendicular to `normal`.
+
+    `normal` is the interpolated one, so that bumps rise from the smooth surface.
+    """
+    of_a, of_b, of_c = barycentric_coordinates(mesh, point)
     ab, ac = mesh.b - mesh.a, mesh.c - mesh.a
     u_b, v_b, u_c, v_c = mesh.u_b - mesh.u_a, mesh.v_b - mesh.v_a, mesh.u_c - mesh.u_a, mesh.v_c - mesh.v_a
-    area = u_b * v_c - u_c * v_b  # twice that of the triangle in the picture
+    area = u_b * v_c - u_c * v_b  # twice the area of the triangle in the picture
     per_area = where(area == 0.0, 0.0, 1.0 / where(area == 0.0, 1.0, area))
     along_u, along_v = per_area * (v_c * ab - v_b * ac), per_area * (u_b * ac - u_c * ab)
     return (

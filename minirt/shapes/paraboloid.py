@@ -1,9 +1,9 @@
 """Paraboloid: `pa x,y,z ax,ay,az diameter height R,G,B`.
 
 A solid paraboloid of revolution with a cap. `x,y,z` is the vertex; it opens along the axis `ax,ay,az` and has its
-`diameter` at the distance `height`, where the cap closes it. A picture lies once around the side, upwards in equal
-steps of the distance from the axis, of an upright one with its middle towards -z, and once on the square around the
-cap.
+`diameter` at the distance `height`, where the cap closes it. A picture lies once around the side, with its middle
+towards -z on an upright paraboloid and upwards in equal steps of the distance from the axis, and once on the square
+around the cap.
 
     pa 0,0,20  0,1,0  4  3  120,200,160    a bowl, filled to the brim, whose rim is three units above its bottom
 """
@@ -18,10 +18,10 @@ from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, 
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.bounds import across, along, box_of_boxes, box_of_disc
-from minirt.shapes.quadric import below_zero, deepest
-from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.uv_mapping import is_side, wrapped
+from minirt.shapes.bounds import bounds_of_disc, disc_extents, point_along, union_of_bounds
+from minirt.shapes.quadric import clamped_minimum, negative_interval
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
 @dataclass(frozen=True)
@@ -38,29 +38,29 @@ class Paraboloid(Shape):
     def pack(self) -> PackedParaboloid:
         u, v, w = basis(self.axis)
         radius = self.diameter / 2
-        return PackedParaboloid(Place(Vec(*self.vertex)), u, v, w, radius * (radius / self.height) / 2, self.height)
+        return PackedParaboloid(Position(Vec(*self.vertex)), u, v, w, radius * (radius / self.height) / 2, self.height)
 
     def balls(self) -> tuple[Ball, ...]:
-        # Below its vertex a paraboloid reaches less far in any direction than a ball of half the radius of its rim.
-        return (self.vertex, self.diameter / 4), (along(self.vertex, self.axis, self.height), self.diameter / 2)
+        # In directions below its vertex it reaches less far than a ball of half the radius of its rim.
+        return (self.vertex, self.diameter / 4), (point_along(self.vertex, self.axis, self.height), self.diameter / 2)
 
-    def bounds(self) -> Box:
-        rim = box_of_disc(along(self.vertex, self.axis, self.height), self.axis, self.diameter / 2)
+    def bounds(self) -> Bounds:
+        rim = bounds_of_disc(point_along(self.vertex, self.axis, self.height), self.axis, self.diameter / 2)
         bulges = []
-        for i, (w, s) in enumerate(zip(self.axis, across(self.axis), strict=True)):
-            # The outermost point along x, y or z lies below the rim if the surface is turned so far there.
+        for i, (w, s) in enumerate(zip(self.axis, disc_extents(self.axis), strict=True)):
+            # The outermost point along x, y or z lies below the rim if the paraboloid is tilted far enough.
             share = self.diameter / 2 * s / (2 * self.height * abs(w)) if w else 1.0
             if share < 1:
                 bulge = list(self.vertex)
                 bulge[i] -= self.diameter / 4 * s * share * (1 if w > 0 else -1)
                 bulges.append((bulge[0], bulge[1], bulge[2]))
-        return box_of_boxes((self.vertex, self.vertex), rim, *((bulge, bulge) for bulge in bulges))
+        return union_of_bounds((self.vertex, self.vertex), rim, *((bulge, bulge) for bulge in bulges))
 
 
 class PackedParaboloid(NamedTuple):
-    """What the kernel keeps of a paraboloid: a frame of its own in which the vertex is the origin and the cap above."""
+    """Packed form of a paraboloid: its own frame, in which the vertex is the origin and the cap lies above it."""
 
-    vertex: Place
+    vertex: Position
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -71,8 +71,8 @@ class PackedParaboloid(NamedTuple):
 def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the paraboloid.
 
-    As with the cylinder it is inside for an interval of t, here that of x^2 + y^2 <= 2 focal z, cut to the heights
-    below the cap. Of a ray along the axis one end of the interval is infinite, and the other exact.
+    As with the cylinder the ray is inside for an interval of t, here that of x^2 + y^2 <= 2 focal z, cut to the heights
+    below the cap. For a ray along the axis one end of the interval is infinite, and the other is exact.
     """
     p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, origin - paraboloid.vertex)
     d = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, direction)
@@ -82,10 +82,10 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
     vertex = -p.z * per_height
     cap = (paraboloid.height - p.z) * per_height
     first, last = minimum(vertex, cap), maximum(vertex, cap)
-    start = deepest(per_a, p.x * d.x + p.y * d.y - slant, first, last)
+    start = clamped_minimum(per_a, p.x * d.x + p.y * d.y - slant, first, last)
     p = p + start * d
     c = p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z
-    hit, below, above = below_zero(a, per_a, p.x * d.x + p.y * d.y - slant, c)
+    hit, below, above = negative_interval(a, per_a, p.x * d.x + p.y * d.y - slant, c)
     t = start
     if any(hit):
         near = maximum(start + below, first)
@@ -96,10 +96,10 @@ def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tupl
 
 
 def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:
-    """`point` moved onto the side or the cap, whichever it is nearer to, and the outward normal there.
+    """`point` moved onto the side or the cap, whichever is nearer, and the outward normal there.
 
-    It gets to the side along the axis where that is flatter than a half right angle, and across the axis where it is
-    steeper: exactly, and hardly farther than on the shortest way.
+    It moves to the side along the axis where that is flatter than 45 degrees, and across the axis where it is steeper:
+    exactly, and hardly farther than the nearest point.
     """
     p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, point - paraboloid.vertex)
     squared = p.x * p.x + p.y * p.y
@@ -121,12 +121,14 @@ def surface(paraboloid: PackedParaboloid, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(paraboloid: PackedParaboloid, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """Around the side and up it: in v grows the distance from the axis, so that the vertex is not stretched without
-    end. There the tangents are zero."""
+    """Angle around the side as u, distance from the axis as v, so that the vertex is not stretched without end.
+
+    At the vertex the tangents are zero.
+    """
     u, v, w = paraboloid.u, paraboloid.v, paraboloid.w
     p = to_basis(u, v, w, point - paraboloid.vertex)
     rho = sqrt(p.x * p.x + p.y * p.y)
     radius = sqrt(2.0 * paraboloid.focal * paraboloid.height)
     per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
     rise = radius * Vec(p.x * per_rho, p.y * per_rho, rho / paraboloid.focal)
-    return wrapped(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), rho / radius, rise, radius)
+    return revolved_mapping(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), rho / radius, rise, radius)

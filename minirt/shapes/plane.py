@@ -1,6 +1,6 @@
 """Plane: `pl x,y,z nx,ny,nz R,G,B`.
 
-All points p for which `p - (x,y,z)` is perpendicular to the normal `nx,ny,nz`. It has no end and two sides alike.
+An infinite plane, seen from both sides: all points p for which `p - (x,y,z)` is perpendicular to the normal `nx,ny,nz`.
 Pictures are one unit wide and high and repeated without end, the lower left corner of one at `x,y,z`. They stand
 upright; on a floor u, to the right, runs along x and v, upwards, along -z, on a ceiling along x and z.
 
@@ -16,11 +16,11 @@ from minirt.fields import Colour, Direction, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.materials import Checker, Compound
-from minirt.shapes.basis import face_on
-from minirt.shapes.shape import BOARD, Ball, Place, Shape
+from minirt.materials import BOARD, Checker, Compound
+from minirt.shapes.basis import facing_frame
+from minirt.shapes.shape import Ball, Position, Shape
 
-PARALLEL = 4  # unit roundoffs of the scalar product of two unit vectors
+PARALLEL = 4  # error of the scalar product of two unit vectors, in unit roundoffs
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,8 @@ class Plane(Shape):
     checker: Checker | None = declare(Compound, "checkerboard", bare="1", **BOARD)
 
     def pack(self) -> PackedPlane:
-        right, up = face_on(self.normal)
-        return PackedPlane(Place(Vec(*self.point)), Vec(*self.normal), right, up)
+        right, up = facing_frame(self.normal)
+        return PackedPlane(Position(Vec(*self.point)), Vec(*self.normal), right, up)
 
     def balls(self) -> tuple[Ball, ...]:
         return ()
@@ -49,16 +49,16 @@ class Plane(Shape):
 
 
 class PackedPlane(NamedTuple):
-    """What the kernel keeps of a plane."""
+    """Packed form of a plane."""
 
-    point: Place
+    point: Position
     normal: Vec
     right: Vec  # of pictures
     up: Vec
 
 
 def intersect(plane: PackedPlane, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the plane; a ray along it, within rounding, does not."""
+    """Whether and where a ray meets the plane; a ray parallel to it, within rounding, does not."""
     slope = dot(plane.normal, direction)
     t = dot(plane.normal, plane.point - origin) / slope
     return (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0), t
@@ -71,6 +71,6 @@ def surface(plane: PackedPlane, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(plane: PackedPlane, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """u and v in scene units, and the plane's own directions along them."""
+    """u and v in scene units, and the unit vectors along them."""
     p = point - plane.point
     return dot(p, plane.right), dot(p, plane.up), plane.right, plane.up

@@ -1,7 +1,7 @@
-"""Which rays through a common point may meet a triangle: those in the pyramid between the two.
+"""Culling of triangles for packets of rays with a common point, by the pyramid between that point and the triangle.
 
-The sides of the pyramid are the same for all rays of a packet, so this takes a third of the time that the test of a hit
-does, and of a mesh with triangles as small as pixels it leaves only those to that test which are hit.
+The side planes of the pyramid are the same for all rays of a packet. So this test takes a third of the time of an
+intersection, and in a mesh with triangles as small as pixels nearly every triangle that passes it is hit.
 """
 
 from __future__ import annotations
@@ -11,17 +11,17 @@ from minirt.lanes.largest import largest
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 
-APART = 1024  # roundings of its length by which a ray may pass beside the point, or beside a side of the pyramid
+APART = 1024  # roundings of its length by which a ray may miss the apex, or a side plane of the pyramid
 BEHIND = 4  # roundings of the coordinates by which a start may seem to lie behind the triangle
 
 
 def may_meet(
-    corners: tuple[Vec, Vec, Vec], normal: Vec, apex: Vec, start: Vec | None, direction: Vec, asked: Mask
+    corners: tuple[Vec, Vec, Vec], normal: Vec, apex: Vec, start: Vec | None, direction: Vec, active: Mask
 ) -> Mask:
-    """Of the rays that are `asked` for, those that may meet the triangle, whatever the rounding.
+    """Which of the `active` rays may hit the triangle, whatever the rounding.
 
-    They come from the apex; or, where they have a `start`, they lead to it, and those that start before the triangle,
-    as it is seen from there, meet nothing of it.
+    Without a `start` rays leave the apex. With one they lead to the apex, and those that start in front of the
+    triangle, as seen from the apex, cannot hit it.
     """
     a, b, c = corners[0] - apex, corners[1] - apex, corners[2] - apex
     of_a, of_b, of_c = dot(cross(b, c), direction), dot(cross(c, a), direction), dot(cross(a, b), direction)
@@ -29,15 +29,17 @@ def may_meet(
     far = splat(size, direction.x)
     if start is not None:
         far = far + largest(apex - start)
-        asked = asked & (depth(corners[0], normal, dot(normal, a), start) >= 0.0)
+        active = active & (depth_behind_plane(corners[0], normal, dot(normal, a), start) >= 0.0)
     margin = APART * unit_roundoff(direction.x) * size * far
     least, most = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
-    return asked & ((least >= -margin) | (most <= margin))
+    return active & ((least >= -margin) | (most <= margin))
 
 
-def depth(corner: Vec, normal: Vec, height: float, start: Vec) -> Number:
-    """How far behind a plane points lie at most, for somebody before it; of the plane `normal` points away from him
-    where `height` is above 0."""
+def depth_behind_plane(corner: Vec, normal: Vec, height: float, start: Vec) -> Number:
+    """The greatest depth of `start` behind a plane, as seen from the apex.
+
+    `height` is the height of the plane above the apex along `normal`.
+    """
     away = where(height > 0.0, 1.0, -1.0)
     slack = BEHIND * unit_roundoff(start.x) * (largest(start) + largest(corner))
     return away * dot(normal, start - corner) + slack

@@ -1,4 +1,4 @@
-"""The quadratic that every quadric ends in, solved without cancellation."""
+"""Quadratic equations of rays and quadrics, solved without cancellation."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 
 
-def below_zero(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Number, Number]:
-    """Whether a t^2 + 2 b t + c is zero anywhere, and where it goes below zero and above it again: the two roots, in
-    this order for a > 0 and in the other one for a < 0; NaN where there are none. `per_a` is 1 / a.
+def negative_interval(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Number, Number]:
+    """Solve a t^2 + 2 b t + c = 0: whether it has real roots, and where the parabola falls below 0 and rises above it.
 
-    q adds two numbers of the same sign, so q / a and c / q are both exact to a few roundings (Press et al., Numerical
-    Recipes, 5.6). With q = 0 the parabola touches zero at t = 0 or, where a = 0 too, is the constant c: below zero from
-    -infinity or from infinity on.
+    For a > 0 the roots are in ascending order, for a < 0 in descending order; NaN where there are none. `per_a` is
+    1 / a. q adds two numbers of the same sign, so q / a and c / q are both exact to a few roundings (Press et al.,
+    Numerical Recipes, 5.6). With q = 0 the parabola touches zero at t = 0 or, if a = 0 too, is the constant c: below
+    zero from -infinity or from infinity on.
     """
     D = b * b - a * c
-    met = D >= 0.0
+    real = D >= 0.0
     below = splat(nan, D)
     above = below
-    if any(met):
+    if any(real):
         q = -(b + copysign(sqrt(D), b))
         by_a, by_c = q * per_a, c / q
         level = q == 0.0
@@ -30,14 +30,14 @@ def below_zero(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Nu
         falling = q < 0.0
         below = where(falling, by_a, by_c)
         above = where(falling, by_c, by_a)
-    return met, below, above
+    return real, below, above
 
 
-def deepest(per_a: Number, b: Number, first: Number, last: Number) -> Number:
-    """Where, between two t, a t^2 + 2 b t + c is least, for a >= 0; for a < 0 somewhere between them.
+def clamped_minimum(per_a: Number, b: Number, first: Number, last: Number) -> Number:
+    """The t in [first, last] at which a t^2 + 2 b t + c is least, for a >= 0; for a < 0 some t in it.
 
-    Of a ray that meets a solid between two planes that place lies in the solid, or as near to it as rounding lets it:
-    counted from there all numbers are as small as the solid there is wide, however long it is and wherever its middle.
-    A ray with a < 0 is steeper than the solid's side, and nowhere between the planes farther off than that is wide.
+    For a ray that hits a solid between two planes this point lies in the solid, within rounding. Counted from there all
+    numbers are as small as the solid is wide there, however long it is and wherever its middle is. A ray with a < 0 is
+    steeper than the solid's side, and between the planes never farther away than the solid is wide.
     """
     return minimum(maximum(-b * per_a, first), last)

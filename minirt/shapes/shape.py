@@ -1,99 +1,92 @@
-"""What every shape's file provides, and what its formulas mean.
+"""The interface of shapes: what each shape's file defines.
 
-A file of a shape holds its manual page, its line in a scene file (a frozen dataclass), what the kernel keeps of it
-(a NamedTuple of numbers and Vecs, made by `pack`) and three formulas:
+The file of a shape holds its manual page, its line in a scene file (a frozen dataclass), its packed form for the kernel
+(a NamedTuple of numbers and Vecs, made by `pack`) and three functions on packed shapes:
 
-    intersect(shape, origin, direction)   the distance t along the unit `direction` at which the ray enters or, from
-                                          inside, leaves the shape: the least t > 0, or infinity
-    surface(shape, point)                 a point within rounding of the surface: that point put onto the surface, and
-                                          the unit normal there, outward where there is an outside
-    mapping(shape, point, normal)         where a picture has this point of the surface with this normal: u to the right
+    intersect(shape, origin, direction)   whether a ray hits the shape, and the distance t along the unit `direction` at
+                                          which it enters or, from inside, leaves: the least t > 0
+    surface(shape, point)                 `point`, which is within rounding of the surface, moved onto it, and the unit
+                                          normal there, outward where there is an outside
+    mapping(shape, point, normal)         texture coordinates of a point of the surface with this normal: u to the right
                                           and v upwards, 0 to 1 across a picture; and the tangents dP/du and dP/dv
-    shading(shape, point, normal)         of the few that stand for something rounder: the unit normal by which such a
-                                          point is lit, where `normal` is that of the surface
-    may_meet(shape, apex, start, direction, asked)
-                                          of those that are many: which rays of a packet through a common point, the
-                                          apex, may meet the shape; see `minirt.shapes.pyramid`
 
-The tangents and the normal are right-handed, so that nobody outside sees a picture mirrored. At poles and apexes, where
-a picture is gathered to a point, tangents may be zero.
+Two functions are optional:
 
-A mesh is many triangles, each of which the kernel keeps for itself: such a shape has `parts`.
+    shading(shape, point, normal)         the unit normal by which the point is lit, where that is not the `normal` of
+                                          the surface: smooth shading of meshes
+    may_meet(shape, apex, start, direction, active)
+                                          culling: which of the active rays of a packet with a common point, the apex,
+                                          may hit the shape, see `minirt.shapes.pyramid`
+
+The tangents and the normal are right-handed, so that a picture seen from outside is not mirrored. At poles and apexes,
+where a picture shrinks to a point, tangents may be zero.
+
+A mesh is many triangles, each packed by itself: such a shape has several `parts`.
 """
 
 from __future__ import annotations
 
+import sys
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, NewType
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NewType, get_type_hints
 
 import numpy as np
 
-from minirt.element import Element
-from minirt.fields import Triple, declare
+from minirt.fields import Triple
 from minirt.lanes import Vec
 from minirt.lanes.operations import Mask
-from minirt.materials import Bump, Checker, Compound, Glass, Mirror, NormalMap, Specular, Texture
+from minirt.materials import Attributes
 
-Box = tuple[Triple, Triple]  # least and greatest corner
+Bounds = tuple[Triple, Triple]  # axis-aligned bounding box: least and greatest corner
 Ball = tuple[Triple, float]  # centre and radius
-Place = NewType("Place", Vec)  # in a packed shape: a point, where other Vecs are directions
-
-
-SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
-BOARD: dict[str, Any] = {"record": Checker, "aliases": ("pat",)} | SHARED
+Position = NewType("Position", Vec)  # a point in a packed shape; other Vecs there are directions
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shape(Element):
-    """A surface that rays can hit; the last field of every shape is its colour, and all have these attributes."""
+class Shape(Attributes):
+    """A surface that rays can hit, with its materials. The last field of every shape is its colour."""
 
+    batched: ClassVar[bool] = False  # whether one element is many primitives, as a mesh is many triangles
     if TYPE_CHECKING:
         colour: Triple
-    specular: Specular | None = declare(Compound, "highlight", record=Specular, aliases=("spc",), **SHARED)
-    mirror: float | None = declare(Mirror, "share of mirrored light", aliases=("mir",), **SHARED)
-    glass: Glass | None = declare(Compound, "refracted light", record=Glass, aliases=("ref",), **SHARED)
-    checker: Checker | None = declare(Compound, "checkerboard", bare="0.125", **BOARD)
-    texture: str | None = declare(Texture, "picture in the place of the colour", aliases=("txm", "tx"), **SHARED)
-    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)
-    normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **SHARED)
 
     @property
     def parts(self) -> int:
-        """How many things the kernel keeps of it."""
+        """Number of its primitives in the kernel."""
         return 1
 
     def some(self, parts: np.ndarray) -> Shape:
-        """The shape that is some of its parts."""
+        """The shape made of some of its parts, by their indices."""
         return self
 
     @abstractmethod
     def pack(self) -> Any:
-        """What the kernel keeps of the shape: the NamedTuple of its `Kind`."""
+        """Convert the shape to its packed form for the kernel: the NamedTuple of its `Kind`."""
 
     @abstractmethod
     def balls(self) -> tuple[Ball, ...]:
-        """Balls around whose convex hull nothing of the shape sticks out, as many for each shape of a kind; none where
-        the shape has no end."""
+        """Bounding balls: the shape lies in their convex hull. All shapes of a kind have as many; an infinite one has
+        none."""
 
     def flat(self) -> tuple[Triple, Triple] | None:
-        """A point and the unit normal of a shape that is a whole plane; None for all others. The kind decides which."""
+        """A point and the unit normal of an infinite plane; None for all other kinds."""
         return None
 
     @abstractmethod
-    def bounds(self) -> Box | None:
-        """The axis-aligned box around the shape, or None where it has no end."""
+    def bounds(self) -> Bounds | None:
+        """The axis-aligned bounding box, or None for an infinite shape."""
 
 
-def unbent(shape: Any, point: Vec, normal: Vec) -> Vec:
-    """`shading` of a shape that is what it looks like."""
+def geometric_normal(shape: Any, point: Vec, normal: Vec) -> Vec:
+    """`shading` of a shape without smooth shading: the normal of its surface."""
     return normal
 
 
-def anywhere(shape: Any, apex: Vec, start: Vec | None, direction: Vec, asked: Mask) -> Mask:
-    """`may_meet` of a shape that is tested as fast."""
-    return asked
+def all_rays(shape: Any, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
+    """`may_meet` of a shape without culling, whose `intersect` is as fast as a test: all active rays."""
+    return active
 
 
 class Kind(NamedTuple):
@@ -104,6 +97,14 @@ class Kind(NamedTuple):
     intersect: Callable[..., Any]
     surface: Callable[..., Any]
     mapping: Callable[..., Any]
-    shading: Callable[..., Any] = unbent
-    may_meet: Callable[..., Any] = anywhere
-    batched: bool = False  # whether one element is many small ones side by side
+    shading: Callable[..., Any] = geometric_normal
+    may_meet: Callable[..., Any] = all_rays
+    batched: bool = False  # whether one element is many small primitives side by side
+
+
+def kind_of(element: type[Shape]) -> Kind:
+    """Make the entry of the registry for a shape from the names in its file; AttributeError where one is missing."""
+    module = sys.modules[element.__module__]
+    optional = {name: getattr(module, name) for name in ("shading", "may_meet") if hasattr(module, name)}
+    packed = get_type_hints(element.pack)["return"]
+    return Kind(element, packed, module.intersect, module.surface, module.mapping, **optional, batched=element.batched)

@@ -2,7 +2,7 @@
 
 A flat square, seen from both sides. `x,y,z` is its centre and `nx,ny,nz` its normal. It stands upright: one pair of
 edges is horizontal; on a floor and a ceiling the edges are along x and z. A picture fills it once, upright for
-somebody who faces it; on a floor its upper edge is towards -z, on a ceiling towards z.
+a viewer who faces it; on a floor its upper edge is towards -z, on a ceiling towards z.
 
     sq 0,2,20  0,0,-1  4  200,200,120    a board four units wide and high that faces the origin
 """
@@ -16,10 +16,10 @@ from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-from minirt.shapes.basis import face_on
-from minirt.shapes.bounds import along, box_of_points
+from minirt.shapes.basis import facing_frame
+from minirt.shapes.bounds import bounds_of_points, point_along
 from minirt.shapes.plane import PARALLEL
-from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
 
 @dataclass(frozen=True)
@@ -33,25 +33,27 @@ class Square(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedSquare:
-        right, up = face_on(self.normal)
-        return PackedSquare(Place(Vec(*self.centre)), right, up, Vec(*self.normal), self.side / 2)
+        right, up = facing_frame(self.normal)
+        return PackedSquare(Position(Vec(*self.centre)), right, up, Vec(*self.normal), self.side / 2)
 
     def corners(self) -> tuple[Triple, ...]:
         half = self.side / 2
-        right, up = ((way.x, way.y, way.z) for way in face_on(self.normal))
-        return tuple(along(along(self.centre, right, x), up, y) for x in (-half, half) for y in (-half, half))
+        right, up = ((axis.x, axis.y, axis.z) for axis in facing_frame(self.normal))
+        return tuple(
+            point_along(point_along(self.centre, right, x), up, y) for x in (-half, half) for y in (-half, half)
+        )
 
     def balls(self) -> tuple[Ball, ...]:
         return tuple((corner, 0.0) for corner in self.corners())
 
-    def bounds(self) -> Box:
-        return box_of_points(*self.corners())
+    def bounds(self) -> Bounds:
+        return bounds_of_points(*self.corners())
 
 
 class PackedSquare(NamedTuple):
-    """What the kernel keeps of a square."""
+    """Packed form of a square."""
 
-    centre: Place
+    centre: Position
     right: Vec
     up: Vec
     normal: Vec
@@ -59,7 +61,7 @@ class PackedSquare(NamedTuple):
 
 
 def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the square; a ray along it, within rounding, does not."""
+    """Whether and where a ray meets the square; a ray parallel to it, within rounding, does not."""
     f = origin - square.centre
     slope = dot(square.normal, direction)
     t = -dot(square.normal, f) / slope
@@ -69,7 +71,7 @@ def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, 
 
 
 def surface(square: PackedSquare, point: Vec) -> tuple[Vec, Vec]:
-    """The point of the square's plane nearest to `point`, and the normal."""
+    """`point` projected onto the square's plane, and the normal."""
     height = dot(square.normal, point - square.centre)
     return point - height * square.normal, square.normal
 

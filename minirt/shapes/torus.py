@@ -1,10 +1,10 @@
 """Torus: `to x,y,z ax,ay,az diameter tube R,G,B`.
 
-A solid ring about the axis `ax,ay,az`. `x,y,z` is its centre, `diameter` that of the circle in the middle of the tube,
-`tube` that of the tube itself. A tube as wide as the diameter leaves no hole. A picture lies once around the axis, of
-a flat ring with its middle towards -z, and once around the tube, with its middle where that is outermost.
+A solid ring about the axis `ax,ay,az`. `x,y,z` is its centre, `diameter` the diameter of the circle in the middle of
+the tube, and `tube` that of the tube itself. A tube as wide as the diameter leaves no hole. A picture lies once around
+the axis, with its middle towards -z on a ring that lies flat, and once around the tube, with its middle outermost.
 
-    to 0,0,20  0,1,0  6  2  220,150,180    a ring eight units across that lies flat, two units thick
+    to 0,0,20  0,1,0  6  2  220,150,180    a ring that lies flat, eight units across and two units thick
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, splat, sqrt, uni
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.basis import basis, from_basis, to_basis
-from minirt.shapes.bounds import along, box_of_disc
-from minirt.shapes.shape import Ball, Box, Place, Shape
-from minirt.shapes.uv_mapping import TURN, around, turns
+from minirt.shapes.bounds import bounds_of_disc, point_along
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns, longitude
 
-STEPS = 100  # at most, towards a root; most take less than ten
-CORNERS = 8  # of a polygon around the circle in the middle of the tube
+STEPS = 100  # of Newton's method at most; most roots take less than ten
+CORNERS = 8  # of the polygon around the circle in the middle of the tube
 
 
 @dataclass(frozen=True)
@@ -44,25 +44,25 @@ class Torus(Shape):
 
     def pack(self) -> PackedTorus:
         u, v, w = basis(self.axis)
-        return PackedTorus(Place(Vec(*self.centre)), u, v, w, self.diameter / 2, self.tube / 2)
+        return PackedTorus(Position(Vec(*self.centre)), u, v, w, self.diameter / 2, self.tube / 2)
 
     def balls(self) -> tuple[Ball, ...]:
         u, v, _ = basis(self.axis)
         reach = self.diameter / 2 / cos(pi / CORNERS)
         turns = [2 * pi * corner / CORNERS for corner in range(CORNERS)]
-        ways = [cos(turn) * u + sin(turn) * v for turn in turns]
-        return tuple((along(self.centre, (way.x, way.y, way.z), reach), self.tube / 2) for way in ways)
+        directions = [cos(turn) * u + sin(turn) * v for turn in turns]
+        return tuple((point_along(self.centre, (d.x, d.y, d.z), reach), self.tube / 2) for d in directions)
 
-    def bounds(self) -> Box:
+    def bounds(self) -> Bounds:
         r = self.tube / 2
-        (a, b, c), (x, y, z) = box_of_disc(self.centre, self.axis, self.diameter / 2)
+        (a, b, c), (x, y, z) = bounds_of_disc(self.centre, self.axis, self.diameter / 2)
         return (a - r, b - r, c - r), (x + r, y + r, z + r)
 
 
 class PackedTorus(NamedTuple):
-    """What the kernel keeps of a torus: a frame of its own in which it lies flat around the origin."""
+    """Packed form of a torus: its own frame, in which it lies flat around the origin."""
 
-    centre: Place
+    centre: Position
     u: Vec
     v: Vec
     w: Vec  # the axis
@@ -73,10 +73,10 @@ class PackedTorus(NamedTuple):
 def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the torus.
 
-    Between the turning points of the torus' polynomial along the ray there is one crossing where their sides differ,
-    and none where they do not: a root is looked for only where there is one, and then until it is exact. On which side
-    a point is, and how far, is asked of its distance from the circle in the middle of the tube, which keeps all digits
-    of a thin tube where the polynomial loses them.
+    Between two turning points of the quartic along the ray the surface is crossed once if they lie on different sides
+    of it, and not at all if they lie on the same side. So a root is searched only where there is one, and until it is
+    exact. The side of a point and its height above the surface come from its distance to the circle in the middle of
+    the tube: that keeps all digits of a thin tube, which the polynomial loses.
     """
     f = origin - torus.centre
     approach = -dot(f, direction)  # t is counted from the closest approach to the centre
@@ -96,7 +96,7 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
         leave = minimum(half, maximum(bottom, top))
         hit = hit & (enter <= leave)
         if any(hit):
-            # The sides of the surface at both ends and, as far as the ray comes there, at the turning points between.
+            # The side of the surface at both ends, and at the turning points between them.
             first, second, third = turning_points(torus, p, d, hit)
             first = minimum(maximum(first, enter), leave)
             second = minimum(maximum(second, enter), leave)
@@ -105,8 +105,8 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
             side_1 = where(first > enter, side(torus, p + first * d), side_0)
             side_2 = where(second > first, side(torus, p + second * d), side_1)
             side_3 = side(torus, p + third * d)
-            # The first two neighbours that differ, up to which all are as the first one; behind the last turning point
-            # the ray ends outside.
+            # The first two neighbours on different sides enclose the first crossing. Behind the last turning point the
+            # ray ends outside.
             by_1, by_2, by_3 = side_0 != side_1, side_1 != side_2, side_2 != side_3
             low = where(by_1, enter, where(by_2, first, where(by_3, second, third)))
             high = where(by_1, first, where(by_2, second, where(by_3, third, leave)))
@@ -118,30 +118,30 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
 
 
 def side(torus: PackedTorus, p: Vec) -> Number:
-    """1 outside of the tube, -1 inside of it."""
+    """Side of the surface that a point is on: 1 outside of the tube, -1 inside."""
     aside = sqrt(p.x * p.x + p.y * p.y) - torus.ring
     return where(sqrt(aside * aside + p.z * p.z) > torus.tube, 1.0, -1.0)
 
 
-def turning_points(torus: PackedTorus, p: Vec, d: Vec, asked: Mask) -> tuple[Number, Number, Number]:
-    """Where (|q|^2 + ring^2 - tube^2)^2 - 4 ring^2 (q_x^2 + q_y^2) has an extremum along q = p + t d, in ascending
-    order; where there is only one, with two places that are none, which cut a stretch without any in two.
+def turning_points(torus: PackedTorus, p: Vec, d: Vec, active: Mask) -> tuple[Number, Number, Number]:
+    """Extrema of (|q|^2 + ring^2 - tube^2)^2 - 4 ring^2 (q_x^2 + q_y^2) along q = p + t d, in ascending order.
 
-    With p the point of the ray closest to the centre, the derivative is 4 (t^3 + b t + c). The root that is largest
-    without its sign is where Newton's steps from beyond end, which never pass it; a quadratic is left for the others.
+    With p the point of the ray closest to the centre, the derivative is 4 (t^3 + b t + c). Newton's method from beyond
+    ends at its root of largest magnitude, without passing it; a quadratic is left for the other two. Where these are
+    not real two other places are returned, which divide an interval without crossings.
     """
     squared = torus.ring * torus.ring
     b = dot(p, p) + squared - torus.tube * torus.tube - 2.0 * squared * (d.x * d.x + d.y * d.y)
     c = -2.0 * squared * (p.x * d.x + p.y * d.y)
     size = fabs(c)
     y = torus.ring * splat(1.415, c)  # no extremum is farther than sqrt(2) ring
-    small = 2.0**-30 * torus.ring  # what is left is the square of it
-    unsure = asked  # what is exact stays as it is, so that no ray's answer depends on those beside it
+    small = 2.0**-30 * torus.ring  # the error after a step is the square of it
+    unconverged = active  # a converged lane stays as it is, so that no ray's answer depends on the rays beside it
     for _ in range(STEPS):
-        step = where(unsure, ((y * y + b) * y - size) / (3.0 * y * y + b), 0.0)
+        step = where(unconverged, ((y * y + b) * y - size) / (3.0 * y * y + b), 0.0)
         y = y - step
-        unsure = step > small
-        if not any(unsure):
+        unconverged = step > small
+        if not any(unconverged):
             break
     forward = c < 0.0
     far = where(forward, y, -y)
@@ -151,14 +151,14 @@ def turning_points(torus: PackedTorus, p: Vec, d: Vec, asked: Mask) -> tuple[Num
     return where(forward, near, far), where(forward, middle, near), where(forward, far, middle)
 
 
-def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from_side: Number, asked: Mask) -> Number:
-    """Where p + t d crosses the surface between two t on different sides of it, of which `from_side` is the first.
+def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from_side: Number, active: Mask) -> Number:
+    """The t between `low` and `high` at which p + t d crosses the surface; at `low` it is on the side `from_side`.
 
-    Newton's steps, or half of what is left where one would lead out of it (Press et al., Numerical Recipes, 9.4).
+    Newton's method, with bisection where a step would leave the interval (Press et al., Numerical Recipes, 9.4).
     """
     t = 0.5 * (low + high)
     rounding = 4.0 * unit_roundoff(t)
-    unsure = asked
+    unconverged = active
     for _ in range(STEPS):
         q = p + t * d
         rho = sqrt(q.x * q.x + q.y * q.y)
@@ -171,11 +171,11 @@ def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from
         high = where(before, high, t)
         newton = t - height / slope
         nearer = where((newton > low) & (newton < high), newton, 0.5 * (low + high))
-        unsure = unsure & (fabs(height) > rounding * torus.ring)  # below that it is what rounding left
-        step = where(unsure, nearer - t, 0.0)
+        unconverged = unconverged & (fabs(height) > rounding * torus.ring)  # below that it is rounding
+        step = where(unconverged, nearer - t, 0.0)
         t = t + step
-        unsure = fabs(step) > rounding * (fabs(t) + torus.tube)
-        if not any(unsure):
+        unconverged = fabs(step) > rounding * (fabs(t) + torus.tube)
+        if not any(unconverged):
             break
     return t
 
@@ -184,9 +184,9 @@ def surface(torus: PackedTorus, point: Vec) -> tuple[Vec, Vec]:
     """The point of the torus nearest to `point`, and the outward normal there."""
     p = to_basis(torus.u, torus.v, torus.w, point - torus.centre)
     rho = sqrt(p.x * p.x + p.y * p.y)
-    pointed = rho == 0.0  # on the axis all ways to the circle are as short
-    per_rho = 1.0 / where(pointed, 1.0, rho)
-    x, y = where(pointed, 1.0, p.x * per_rho), p.y * per_rho
+    on_axis = rho == 0.0  # on the axis every point of the circle is as near
+    per_rho = 1.0 / where(on_axis, 1.0, rho)
+    x, y = where(on_axis, 1.0, p.x * per_rho), p.y * per_rho
     aside = rho - torus.ring
     per_apart = 1.0 / sqrt(aside * aside + p.z * p.z)
     across, up = aside * per_apart, p.z * per_apart
@@ -198,18 +198,18 @@ def surface(torus: PackedTorus, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(torus: PackedTorus, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """Around the axis and around the tube."""
+    """Angle around the axis as u, angle around the tube as v."""
     p = to_basis(torus.u, torus.v, torus.w, point - torus.centre)
     out = to_basis(torus.u, torus.v, torus.w, normal)
     rho = sqrt(p.x * p.x + p.y * p.y)
     per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
     x, y = p.x * per_rho, p.y * per_rho
     across = out.x * x + out.y * y
-    u, way = around(p)
-    rise = TURN * torus.tube * Vec(-out.z * x, -out.z * y, across)
+    u, direction = longitude(p)
+    rise = TWO_PI * torus.tube * Vec(-out.z * x, -out.z * y, across)
     return (
         u,
-        0.5 + turns(out.z, across),
-        from_basis(torus.u, torus.v, torus.w, way),
+        0.5 + angle_in_turns(out.z, across),
+        from_basis(torus.u, torus.v, torus.w, direction),
         from_basis(torus.u, torus.v, torus.w, rise),
     )

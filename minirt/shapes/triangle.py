@@ -19,10 +19,10 @@ from minirt.lanes import cross as product
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes import pyramid
-from minirt.shapes.bounds import box_of_points
-from minirt.shapes.shape import Ball, Box, Place, Shape
+from minirt.shapes.bounds import bounds_of_points
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
-FLAT = 16 * 2.0**-53  # of its largest coordinate: a triangle that is no higher is none
+FLAT = 16 * 2.0**-53  # least height of a triangle, as a share of its largest coordinate
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Triangle(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def edges(self) -> list[Triple]:
-        """From each corner to the next."""
+        """The vectors from each corner to the next."""
         pairs = ((self.a, self.b), (self.b, self.c), (self.c, self.a))
         return [(x - u, y - v, z - w) for (u, v, w), (x, y, z) in pairs]
 
@@ -49,8 +49,8 @@ class Triangle(Shape):
         return "c", "must not lie on a line with a and b"
 
     def normal(self) -> Triple:
-        """The unit normal. Of a sliver it is exact to a rounding about the longest edge; across, where it is not, there
-        is little of the triangle for an error to matter."""
+        """The unit normal. For a sliver it is exact to a rounding about the longest edge; the error across that edge
+        matters little, as the triangle is narrow there."""
         first, second, _ = edges = self.edges()
         x, y, z = cross(first, second)
         u, v, w = max(edges, key=lambda edge: hypot(*edge))
@@ -58,14 +58,14 @@ class Triangle(Shape):
         return unit((x - share * u, y - share * v, z - share * w))
 
     def pack(self) -> PackedTriangle:
-        a, b, c = (Place(Vec(*corner)) for corner in (self.a, self.b, self.c))
+        a, b, c = (Position(Vec(*corner)) for corner in (self.a, self.b, self.c))
         return PackedTriangle(a, b, c, Vec(*self.normal()))
 
     def balls(self) -> tuple[Ball, ...]:
         return (self.a, 0.0), (self.b, 0.0), (self.c, 0.0)
 
-    def bounds(self) -> Box:
-        return box_of_points(self.a, self.b, self.c)
+    def bounds(self) -> Bounds:
+        return bounds_of_points(self.a, self.b, self.c)
 
 
 def cross(a: Triple, b: Triple) -> Triple:
@@ -74,11 +74,11 @@ def cross(a: Triple, b: Triple) -> Triple:
 
 
 class PackedTriangle(NamedTuple):
-    """What the kernel keeps of a triangle."""
+    """Packed form of a triangle."""
 
-    a: Place
-    b: Place
-    c: Place
+    a: Position
+    b: Position
+    c: Position
     normal: Vec
 
 
@@ -87,33 +87,33 @@ def intersect(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Ma
     return watertight(triangle.a, triangle.b, triangle.c, origin, direction)
 
 
-def may_meet(triangle: PackedTriangle, apex: Vec, start: Vec | None, direction: Vec, asked: Mask) -> Mask:
-    """Of rays through a point, those that may meet the triangle."""
-    return pyramid.may_meet((triangle.a, triangle.b, triangle.c), triangle.normal, apex, start, direction, asked)
+def may_meet(triangle: PackedTriangle, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
+    """Cull the rays of a packet with a common apex that cannot hit the triangle."""
+    return pyramid.may_meet((triangle.a, triangle.b, triangle.c), triangle.normal, apex, start, direction, active)
 
 
 def watertight(a: Vec, b: Vec, c: Vec, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the triangle between three corners.
+    """Whether and where a ray meets the triangle between three corners, without gaps between neighbours.
 
     Woop, Benthin and Wald, Watertight Ray/Triangle Intersection (2013): seen along the ray, its origin lies on the same
-    side of all three edges. On which side it is depends on the two ends of an edge alone, each seen in the same way by
-    all triangles that have it, and on a sum that only changes its sign with the order of the ends; nothing here may
-    round in another way for one of them, as a product that is rounded together with what follows would. So a ray
-    towards an edge or a corner between triangles meets at least one of them.
+    side of all three edges. The side depends on the two ends of an edge alone, transformed alike for all triangles that
+    share it, and on an edge function that only changes its sign with the order of the ends. So a ray towards a shared
+    edge or corner hits at least one of the triangles. Nothing here may round differently for one of them: products are
+    rounded by themselves, never fused with the sum that follows.
     """
     x, y, z = fabs(direction.x), fabs(direction.y), fabs(direction.z)
     by_x = (x >= y) & (x >= z)
     by_y = (y >= z) & ~by_x
-    d = exchanged(by_x, by_y, direction)
+    d = permuted_axes(by_x, by_y, direction)
     per_depth = 1.0 / d.z
     shear = Vec(d.x * per_depth, d.y * per_depth, per_depth)
-    a = sheared(shear, exchanged(by_x, by_y, a - origin))
-    b = sheared(shear, exchanged(by_x, by_y, b - origin))
-    c = sheared(shear, exchanged(by_x, by_y, c - origin))
-    # Twice the areas that the origin has with each edge: by them the hit is the mean of the corners.
-    of_a = twice_the_area(b, c)
-    of_b = twice_the_area(c, a)
-    of_c = twice_the_area(a, b)
+    a = sheared(shear, permuted_axes(by_x, by_y, a - origin))
+    b = sheared(shear, permuted_axes(by_x, by_y, b - origin))
+    c = sheared(shear, permuted_axes(by_x, by_y, c - origin))
+    # Edge functions: barycentric coordinates of the hit, not yet divided by their sum.
+    of_a = edge_function(b, c)
+    of_b = edge_function(c, a)
+    of_c = edge_function(a, b)
     least = minimum(minimum(of_a, of_b), of_c)
     most = maximum(maximum(of_a, of_b), of_c)
     hit = (least >= 0.0) | (most <= 0.0)
@@ -124,30 +124,30 @@ def watertight(a: Vec, b: Vec, c: Vec, origin: Vec, direction: Vec) -> tuple[Mas
     return hit, t
 
 
-def exchanged(by_x: Mask, by_y: Mask, v: Vec) -> Vec:
-    """The vector with its last axis and the one that is meant, where it is another, in each other's place."""
+def permuted_axes(by_x: Mask, by_y: Mask, v: Vec) -> Vec:
+    """Swap the z axis with x where `by_x` holds, and with y where `by_y` holds."""
     return Vec(where(by_x, v.z, v.x), where(by_y, v.z, v.y), where(by_x, v.x, where(by_y, v.y, v.z)))
 
 
 def sheared(shear: Vec, v: Vec) -> Vec:
-    """Where a point is seen along the ray, and how far along it."""
+    """Shear a point so that the ray is the z axis: its place as seen along the ray, and its depth."""
     return Vec(v.x - rounded_product(shear.x, v.z), v.y - rounded_product(shear.y, v.z), v.z)
 
 
-def twice_the_area(p: Vec, q: Vec) -> Number:
-    """Of the triangle between two points and the origin, as it is seen; its sign is right, or it is 0."""
+def edge_function(p: Vec, q: Vec) -> Number:
+    """Twice the signed area of the triangle of two points and the origin in x and y; the sign is exact, or it is 0."""
     return rounded_product(p.x, q.y) - rounded_product(p.y, q.x)
 
 
 def surface(triangle: PackedTriangle, point: Vec) -> tuple[Vec, Vec]:
-    """The point of the triangle's plane nearest to `point`, and the normal."""
+    """`point` projected onto the triangle's plane, and the normal."""
     height = dot(triangle.normal, point - triangle.a)
     return point - height * triangle.normal, triangle.normal
 
 
 def mapping(triangle: PackedTriangle, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """What of a point belongs to the second corner and what to the third, as areas: Moller and Trumbore, Fast, Minimum
-    Storage Ray/Triangle Intersection, 1997."""
+    """Barycentric coordinates of the second and third corner as u and v (Moller and Trumbore, Fast, Minimum Storage
+    Ray/Triangle Intersection, 1997)."""
     p, to_b, to_c = point - triangle.a, triangle.b - triangle.a, triangle.c - triangle.a
     per_area = 1.0 / dot(product(to_b, to_c), triangle.normal)
     u, v = dot(product(p, to_c), triangle.normal), dot(product(to_b, p), triangle.normal)

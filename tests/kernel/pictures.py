@@ -19,6 +19,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -52,6 +53,7 @@ MORE = (
     Disc((0.8, 2.6, 1), (0.2, -0.4, -0.9), 1.6, (100, 140, 230)),
     Box((-0.8, -0.6, -3), (0.3, 0.9, 0.2), (0.6, 0.4, 0.9), (180, 180, 180)),
     Torus((2.2, 1.9, -2), (0.4, 0.6, -0.7), 1.2, 0.4, (220, 120, 160)),
+    Ellipsoid((-2.4, 2.4, -2), (0.3, 0.9, 0.4), (1.2, 0.5, 0.8), (200, 160, 90)),
 )
 EVERY = Scene((AMBIENT, EYE, LAMP, SECOND, *SHAPES, *MORE))
 ONE, TWO = Renderer(1), Renderer(2)

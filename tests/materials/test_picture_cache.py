@@ -70,8 +70,8 @@ def test_16_bits_of_height_are_kept_and_as_colours_rounded(tmp_path: Path) -> No
 def test_a_file_is_decoded_once_and_again_when_it_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "a.png"
     decoded: list[Path] = []
-    real = picture_cache.decoded
-    monkeypatch.setattr(picture_cache, "decoded", lambda path: decoded.append(path) or real(path))
+    real = picture_cache.decode
+    monkeypatch.setattr(picture_cache, "decode", lambda path: decoded.append(path) or real(path))
     Image.fromarray(COLOURS).save(path)
     first = picture(path)
     assert picture(path) is first

@@ -7,8 +7,9 @@ coordinates, and its roots are found between its turning points. No formula is s
 The numbers of scene, ray and shape are taken as they are, to the last bit; only axes and normals, which a scene means
 to have unit length, are scaled to it. t counts in lengths of `direction`, which may be any but 0.
 
-For another shape add a file beside these, as short as `sphere.py`, and a line here: the function it registers with
-`body` takes the shape and a `swell` by which its surface is moved outwards, of a sheet its edges, and returns
+For another shape add a file beside these, named as the shape's own and as short as `sphere.py`: the function it
+registers with `body` takes the shape and a `swell` by which its surface is moved outwards, of a sheet its edges, and
+returns
 
     Body((F,))                         a solid without edges
     Body((F, G, H))                    a solid that several surfaces bound, as a cylinder by its side and caps
@@ -17,27 +18,20 @@ For another shape add a file beside these, as short as `sphere.py`, and a line h
 """
 
 from collections.abc import Sequence
+from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 from gmpy2 import mpfr
 
-from minirt.shapes import Shape
-from tests.oracle import (  # noqa: F401  they register their bodies
-    box,
-    cone,
-    cylinder,
-    disc,
-    hyperboloid,
-    paraboloid,
-    plane,
-    sphere,
-    square,
-    torus,
-    triangle,
-)
-from tests.oracle.body import Body, body, crossings, normals
+from minirt.shapes import KINDS, Shape
+from tests.oracle.body import Body, body, crossings, file_of, normals
 from tests.oracle.body import inside as inside_of
 from tests.oracle.vectors import Vector, dot, exact
+
+for _file in map(file_of, (kind.element for kind in KINDS)):
+    if find_spec(_file):
+        import_module(_file)  # registers its body
 
 __all__ = ["Body", "body", "dot", "exact", "inside", "nearest", "normal"]
 

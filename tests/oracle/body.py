@@ -31,7 +31,13 @@ class Body(NamedTuple):
 @singledispatch
 def body(shape: Shape, swell: Any = 0) -> Body:
     """The body of a shape, its surface moved outwards by `swell`; of a sheet only its edges are moved."""
-    raise TypeError(f"the oracle knows no {shape.title}")
+    path = file_of(type(shape)).replace(".", "/")
+    raise TypeError(f"the oracle knows no {shape.title}: write its body into {path}.py, as tests/oracle/sphere.py does")
+
+
+def file_of(shape: type[Shape]) -> str:
+    """The module of this folder that registers the body of a kind of shape: it is named as the shape's own."""
+    return f"{__package__}.{shape.__module__.rpartition('.')[2]}"
 
 
 def crossings(each: Body, origin: Vector, direction: Vector) -> list[mpfr]:

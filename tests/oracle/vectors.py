@@ -36,3 +36,18 @@ def dot(a: Vector, b: Vector) -> Any:
 
 def cross(a: Vector, b: Vector) -> Vector:
     return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def own_axes(axis: Iterable[Any]) -> list[Vector]:
+    """The x, y and z axes of a shape whose own y axis is `axis`: those of the scene, turned about x and z as little as
+    brings y to the axis or to its opposite."""
+    y = unit(axis)
+    sign = 1 if y[1] >= 0 else -1
+    # Half a turn about the bisector of the axis and the scene's y, or its opposite, brings that y to the axis, and x
+    # and z to the opposites of its own.
+    middle = unit([y[0], y[1] + sign, y[2]])
+
+    def turned(v: Vector) -> Vector:
+        return [2 * dot(v, middle) * m - x for x, m in zip(v, middle, strict=True)]
+
+    return [turned(exact((1, 0, 0))), y, turned(exact((0, 0, 1)))]

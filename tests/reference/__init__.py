@@ -16,8 +16,8 @@ from tests.reference import meshes  # noqa: F401  (what is said of each shape in
 from tests.reference.hits import first_hits
 from tests.reference.light import OFF_SURFACE, shaded
 from tests.reference.normals import normals
-from tests.reference.texturing import lookup, painted, picture
-from tests.reference.vectors import Array, dot, length, rgb, upright
+from tests.reference.texturing import bilinear, colour_and_normal, picture
+from tests.reference.vectors import Array, dot, length, rgb, right_and_up
 
 DEPTH = 8  # how often light is mirrored or refracted on its way to the eye, at most
 LEAST = 2.0**-10  # rays are not followed for a share of the light of a pixel that is no more than this
@@ -49,7 +49,7 @@ def camera_rays(camera: Camera, width: int, height: int) -> tuple[Array, Array]:
 def camera_frame(camera: Camera) -> tuple[Array, Array, Array]:
     """What the camera calls right, up and forward: unit vectors."""
     forward = np.array(camera.direction)
-    right, up = upright(forward)
+    right, up = right_and_up(forward)
     turn = np.radians(camera.roll)
     return np.cos(turn) * right - np.sin(turn) * up, np.cos(turn) * up + np.sin(turn) * right, forward
 
@@ -66,7 +66,7 @@ def light_along(scene: Scene, origins: Array, directions: Array, weights: Array,
         points = origins[rays] + distances[rays, None] * direction
         far = OFF_SURFACE * (distances[rays] + length(origins[rays]) + length(points))
         normal = normals(shape, points)
-        colour, bent = painted(scene, shape, points, normal)
+        colour, bent = colour_and_normal(scene, shape, points, normal)
         outside = dot(normal, direction) <= 0
         facing, bent = (np.where(outside[:, None], n, -n) for n in (normal, bent))
         light[rays] += weight[:, None] * shaded(scene, shape, points, facing, bent, colour, direction, far)
@@ -109,4 +109,4 @@ def sky(scene: Scene, directions: Array) -> Array:
     x, y, z = np.moveaxis(directions, -1, 0)
     edge = 0.5 / len(pixels)  # nothing is above the upper row of pixels
     v = np.clip(0.5 + np.arcsin(np.clip(y, -1, 1)) / np.pi, edge, 1 - edge)
-    return lookup(pixels, 0.5 + np.arctan2(-x, z) / (2 * np.pi), v)
+    return bilinear(pixels, 0.5 + np.arctan2(-x, z) / (2 * np.pi), v)

@@ -12,6 +12,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -20,8 +21,9 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
+from tests.reference.normals import scaled_axes
 from tests.reference.revolved import profile
-from tests.reference.vectors import Array, dot, length, turned, upright
+from tests.reference.vectors import Array, dot, length, own_x_and_z, right_and_up
 
 SAME_SURFACE = 1e-10  # relative difference of distances below which two surfaces count as coincident
 
@@ -65,6 +67,17 @@ def _(sphere: Sphere, origins: Array, directions: Array) -> list[Array]:
     return chord(*around(dot(to_centre, directions), half_chord(sphere.diameter / 2, off_centre)))
 
 
+@crossings.register(Ellipsoid)
+def _(ellipsoid: Ellipsoid, origins: Array, directions: Array) -> list[Array]:
+    # In its own frame, scaled by its semi-axes, it is the unit sphere.
+    axes = scaled_axes(ellipsoid)
+    to_centre, along = (np.array(ellipsoid.centre) - origins) @ axes.T, directions @ axes.T
+    speed = length(along)
+    along = along / speed[..., None]
+    off_centre = length(np.cross(to_centre, along))
+    return [t / speed for t in chord(*around(dot(to_centre, along), half_chord(1.0, off_centre)))]
+
+
 @crossings.register(Cylinder)
 def _(cylinder: Cylinder, origins: Array, directions: Array) -> list[Array]:
     axis, radius = np.array(cylinder.axis), cylinder.diameter / 2
@@ -86,7 +99,7 @@ def _(cylinder: Cylinder, origins: Array, directions: Array) -> list[Array]:
 
 @crossings.register(Box)
 def _(box: Box, origins: Array, directions: Array) -> list[Array]:
-    x, z = turned(np.array(box.axis))
+    x, z = own_x_and_z(np.array(box.axis))
     y = np.cross(z, x)
     to_centre = np.array(box.centre) - origins
     slabs = [
@@ -158,7 +171,7 @@ def _(sheet: Square | Disc, origins: Array, directions: Array) -> list[Array]:
         if isinstance(sheet, Disc):
             inside = length(p) <= sheet.diameter / 2
         else:
-            inside = np.max([np.abs(dot(p, edge)) for edge in upright(-normal)], axis=0) <= sheet.side / 2
+            inside = np.max([np.abs(dot(p, edge)) for edge in right_and_up(-normal)], axis=0) <= sheet.side / 2
     return [np.where(inside, t, np.nan)]
 
 

@@ -10,6 +10,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -19,7 +20,7 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from tests.reference.revolved import profile
-from tests.reference.vectors import Array, dot, length, turned, unit
+from tests.reference.vectors import Array, dot, length, own_x_and_z, unit
 
 
 @singledispatch
@@ -52,9 +53,21 @@ def _(sphere: Sphere, points: Array) -> Array:
     return unit(points - np.array(sphere.centre))
 
 
+@normals.register(Ellipsoid)
+def _(ellipsoid: Ellipsoid, points: Array) -> Array:
+    axes = scaled_axes(ellipsoid)
+    return unit((points - np.array(ellipsoid.centre)) @ axes.T @ axes)
+
+
+def scaled_axes(ellipsoid: Ellipsoid) -> Array:
+    """Its own x, y and z axes, each divided by its semi-axis, as the rows of a matrix (3, 3)."""
+    x, z = own_x_and_z(np.array(ellipsoid.axis))
+    return np.stack([x, np.cross(z, x), z]) / (np.array(ellipsoid.sizes)[:, None] / 2)
+
+
 @normals.register(Box)
 def _(box: Box, points: Array) -> Array:
-    x, z = turned(np.array(box.axis))
+    x, z = own_x_and_z(np.array(box.axis))
     axes = np.stack([x, np.cross(z, x), z])
     p = (points - np.array(box.centre)) @ axes.T
     face = np.argmax(np.abs(p) - np.array(box.sizes) / 2, axis=-1)

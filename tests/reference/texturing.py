@@ -10,8 +10,8 @@ from PIL import Image
 
 from minirt.scene import Scene
 from minirt.shapes.shape import Shape
-from tests.reference.maps import place
 from tests.reference.normals import shading
+from tests.reference.uv_mapping import surface_point
 from tests.reference.vectors import Array, dot, length, rgb, unit
 
 
@@ -27,7 +27,7 @@ def heights(path: Path) -> Array:
     return picture(path) @ np.array([[0.2126], [0.7152], [0.0722]])
 
 
-def lookup(pixels: Array, u: Array, v: Array) -> Array:
+def bilinear(pixels: Array, u: Array, v: Array) -> Array:
     """What a picture that is repeated without end has at u, v: between the centres of its pixels along straight
     lines."""
     high, wide, _ = pixels.shape
@@ -41,22 +41,22 @@ def lookup(pixels: Array, u: Array, v: Array) -> Array:
     return total
 
 
-def painted(scene: Scene, shape: Shape, points: Array, normal: Array) -> tuple[Array, Array]:
+def colour_and_normal(scene: Scene, shape: Shape, points: Array, normal: Array) -> tuple[Array, Array]:
     """The colours of points, and their normals as they count for light; `normal` are those of the shape."""
     colour, normal = np.broadcast_to(rgb(shape.colour), points.shape), shading(shape, points, normal)
     if not (shape.checker or shape.texture or shape.bump or shape.normal_map):
         return colour, normal
-    at = place(shape, points)
+    at = surface_point(shape, points)
     if shape.texture:
-        colour = lookup(picture(scene.beside(shape.texture)), at.u, at.v)
+        colour = bilinear(picture(scene.beside(shape.texture)), at.u, at.v)
     if shape.checker:
         odd = (np.floor(at.u / shape.checker.size) + np.floor(at.v / shape.checker.size)) % 2 == 1
         colour = np.where(odd[..., None], rgb(shape.checker.colour), colour)
     if shape.bump:
         pixels = heights(scene.beside(shape.bump.file))
         high, wide, _ = pixels.shape
-        over_u = wide * (lookup(pixels, at.u + 0.5 / wide, at.v) - lookup(pixels, at.u - 0.5 / wide, at.v))
-        over_v = high * (lookup(pixels, at.u, at.v + 0.5 / high) - lookup(pixels, at.u, at.v - 0.5 / high))
+        over_u = wide * (bilinear(pixels, at.u + 0.5 / wide, at.v) - bilinear(pixels, at.u - 0.5 / wide, at.v))
+        over_v = high * (bilinear(pixels, at.u, at.v + 0.5 / high) - bilinear(pixels, at.u, at.v - 0.5 / high))
         # The tangents of the raised surface are P_u + h_u n and P_v + h_v n, and what is normal to both is wanted; the
         # products of small quantities are left out (Blinn 1978).
         rise = shape.bump.strength * length(at.along_u)[..., None] * normal  # of white: a share of the picture's width
@@ -65,7 +65,7 @@ def painted(scene: Scene, shape: Shape, points: Array, normal: Array) -> tuple[A
         raised *= np.sign(dot(np.cross(at.along_u, at.along_v), normal))[..., None]
         normal = np.where(length(raised)[..., None] > 1e-12, unit(raised), normal)
     if shape.normal_map:
-        seen = 255 * lookup(picture(scene.beside(shape.normal_map)), at.u, at.v)
+        seen = 255 * bilinear(picture(scene.beside(shape.normal_map)), at.u, at.v)
         red, green, blue = np.moveaxis((seen - 128) / 127, -1, 0)  # 128 is 0, 255 is 1
         normal = unit(
             red[..., None] * unit(at.along_u) + green[..., None] * unit(at.along_v) + blue[..., None] * normal

@@ -26,7 +26,7 @@ def rgb(colour: tuple[float, float, float]) -> Array:
     return np.array(colour) / 255.0
 
 
-def upright(forward: Array) -> tuple[Array, Array]:
+def right_and_up(forward: Array) -> tuple[Array, Array]:
     """Right and up of somebody who looks along a unit vector, with the head upwards; looking down, towards -z."""
     x, _, z = forward
     level = np.hypot(x, z)
@@ -34,7 +34,7 @@ def upright(forward: Array) -> tuple[Array, Array]:
     return right, np.cross(right, forward)
 
 
-def turned(axis: Array) -> tuple[Array, Array]:
+def own_x_and_z(axis: Array) -> tuple[Array, Array]:
     """What becomes of the scene's x and z when y is turned, on the shortest way, to the axis or, where that points
     down, to its opposite."""
     to = axis if axis[1] >= 0 else -axis

@@ -17,7 +17,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.meshes.examples import GREY, ball, first_hits, named, soup
 from tests.rendering.test_scene_packing import assert_same
-from tests.shapes.regimes import unit, ways
+from tests.shapes.regimes import random_directions, unit
 
 WHITE = (255, 255, 255)
 EYE = Camera((0, 0, -9), (0, 0, 1), 60)
@@ -31,7 +31,7 @@ def corners(*shapes: Mesh) -> np.ndarray:
 def test_rays_hit_the_same_triangles_as_brute_force() -> None:
     random = np.random.default_rng(1)
     shapes = soup(random, 300), named("icosahedron", (1, 0, 0), 2.0), named("icosahedron", (-2, 1, 1), 0.7)
-    origins, directions = 6 * random.normal(size=(3000, 3)), ways(random, 3000)
+    origins, directions = 6 * random.normal(size=(3000, 3)), random_directions(random, 3000)
     hits = minirt.trace(Scene((EYE, *shapes)), origins, directions)
     right, triangle, doubt = first_hits(corners(*shapes), origins, directions)
     owner = np.where(triangle < 0, -1, np.searchsorted([300, 320, 340], triangle, side="right"))
@@ -54,10 +54,10 @@ def test_no_ray_leaks_through_edges_and_corners(position: tuple[float, float, fl
     ends = made[random.integers(len(made), size=count)]
     share = random.random((count, 1)) * (np.arange(count)[:, None] % 5 > 0)  # every fifth at a corner
     aims = ends[:, 0] + share * (ends[:, 1] - ends[:, 0])
-    inside = position + 0.9 * scale * random.random((count, 1)) * ways(random, count)
+    inside = position + 0.9 * scale * random.random((count, 1)) * random_directions(random, count)
     through = minirt.trace(Scene((EYE, shape)), inside, aims - inside)
     assert np.isfinite(through.distance).all()
-    outside = position + 3 * scale * ways(random, count)
+    outside = position + 3 * scale * random_directions(random, count)
     met = minirt.trace(Scene((EYE, shape)), outside, position + 0.5 * (aims - position) - outside)
     assert np.isfinite(met.distance).all()
     assert (met.distance < 3 * scale).all()

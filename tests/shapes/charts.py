@@ -9,12 +9,14 @@ from collections.abc import Callable
 from functools import singledispatch
 
 import numpy as np
+import pytest
 
 from minirt.shapes import Shape
 from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -25,11 +27,11 @@ from minirt.shapes.triangle import Triangle
 from tests.shapes.regimes import Array, unit
 
 Chart = Callable[[Array, Array], tuple[Array, Array]]  # u and v to points and outward normals
-AROUND = {"sphere", "cylinder", "cone", "paraboloid", "hyperboloid", "torus"}  # u = 1 is where u = 0 is
+AROUND = {"sphere", "cylinder", "cone", "paraboloid", "hyperboloid", "torus", "ellipsoid"}  # u = 1 is where u = 0 is
 X, Y, Z = np.eye(3)
 
 
-def stood(axis: Array) -> tuple[Array, Array, Array]:
+def own_frame(axis: Array) -> tuple[Array, Array, Array]:
     """What becomes of x, y and z where y is turned to the axis on the shortest way (Rodrigues), or to the opposite of
     one that points down, and then by half a turn about z."""
     axis = np.asarray(axis)
@@ -50,71 +52,75 @@ def upright(normal: Array) -> tuple[Array, Array]:
     return right, np.cross(right, -normal)
 
 
-def spread(weight: Array, way: Array) -> Array:
+def outer(weight: Array, way: Array) -> Array:
     return np.asarray(weight)[..., None] * way
 
 
-def flat(middle: Array, right: Array, up: Array, normal: Array, width: float, height: float) -> Chart:
+def flat_chart(middle: Array, right: Array, up: Array, normal: Array, width: float, height: float) -> Chart:
     """A picture on a rectangle."""
 
     def chart(u: Array, v: Array) -> tuple[Array, Array]:
-        point = middle + spread((u - 0.5) * width, right) + spread((v - 0.5) * height, up)
+        point = middle + outer((u - 0.5) * width, right) + outer((v - 0.5) * height, up)
         return point, np.broadcast_to(normal, point.shape)
 
     return chart
 
 
-def turned(base: Array, frame: tuple[Array, Array, Array], profile: Callable[[Array], tuple[Array, ...]]) -> Chart:
+def revolved_chart(
+    base: Array, frame: tuple[Array, Array, Array], profile: Callable[[Array], tuple[Array, ...]]
+) -> Chart:
     """A picture around the y axis of a frame: at each v a radius, a height, and how the normal leans."""
     x, y, z = frame
 
     def chart(u: Array, v: Array) -> tuple[Array, Array]:
         # The middle is at -z, and for who looks from there what is right is at -x.
         angle = 2 * np.pi * (u - 0.5)
-        out = spread(-np.sin(angle), x) + spread(-np.cos(angle), z)
+        out = outer(-np.sin(angle), x) + outer(-np.cos(angle), z)
         radius, height, outwards, upwards = profile(v)
-        return base + radius[..., None] * out + spread(height, y), unit(outwards[..., None] * out + spread(upwards, y))
+        return base + radius[..., None] * out + outer(height, y), unit(outwards[..., None] * out + outer(upwards, y))
 
     return chart
 
 
-def caps(frame: tuple[Array, Array, Array], middle: Array, width: float, *sides: int) -> list[Chart]:
+def cap_charts(frame: tuple[Array, Array, Array], middle: Array, width: float, *sides: int) -> list[Chart]:
     """Discs above (1) or below (-1), seen as a floor or a ceiling."""
     x, y, z = frame
-    return [flat(middle, x, -side * z, side * y, width, width) for side in sides]
+    return [flat_chart(middle, x, -side * z, side * y, width, width) for side in sides]
 
 
 @singledispatch
 def charts(shape: Shape) -> list[Chart]:
     """One for each part of a shape that has a picture of its own."""
-    raise TypeError(f"no charts of a {shape.title}")
+    pytest.skip(f"no chart of the {shape.title}: with one in {__file__} its pictures are compared with its manual page")
 
 
 @charts.register
 def _(plane: Plane) -> list[Chart]:
     right, up = upright(plane.normal)
     corner = np.array(plane.point)
-    return [flat(corner + 0.5 * (right + up), right, up, np.array(plane.normal), 1, 1)]
+    return [flat_chart(corner + 0.5 * (right + up), right, up, np.array(plane.normal), 1, 1)]
 
 
 @charts.register
 def _(square: Square) -> list[Chart]:
-    return [flat(np.array(square.centre), *upright(square.normal), np.array(square.normal), square.side, square.side)]
+    return [
+        flat_chart(np.array(square.centre), *upright(square.normal), np.array(square.normal), square.side, square.side)
+    ]
 
 
 @charts.register
 def _(disc: Disc) -> list[Chart]:
     edge = disc.diameter
-    return [flat(np.array(disc.centre), *upright(disc.normal), np.array(disc.normal), edge, edge)]
+    return [flat_chart(np.array(disc.centre), *upright(disc.normal), np.array(disc.normal), edge, edge)]
 
 
 @charts.register
 def _(box: Box) -> list[Chart]:
-    (x, y, z), (w, h, d) = stood(box.axis), box.sizes
+    (x, y, z), (w, h, d) = own_frame(box.axis), box.sizes
     # right, up and outwards, and how wide, high and far
     faces = [(x, y, z, w, h, d), (-x, y, -z, w, h, d), (-z, y, x, d, h, w), (z, y, -x, d, h, w)]
     faces += [(x, -z, y, w, d, h), (x, z, -y, w, d, h)]
-    return [flat(np.array(box.centre) + f / 2 * o, r, u, o, a, b) for r, u, o, a, b, f in faces]
+    return [flat_chart(np.array(box.centre) + f / 2 * o, r, u, o, a, b) for r, u, o, a, b, f in faces]
 
 
 @charts.register
@@ -123,7 +129,7 @@ def _(triangle: Triangle) -> list[Chart]:
     normal = unit(np.cross(b - a, c - a))
 
     def chart(u: Array, v: Array) -> tuple[Array, Array]:
-        point = a + spread(u, b - a) + spread(v, c - a)
+        point = a + outer(u, b - a) + outer(v, c - a)
         return point, np.broadcast_to(normal, point.shape)
 
     return [chart]
@@ -137,7 +143,19 @@ def _(sphere: Sphere) -> list[Chart]:
         latitude = np.pi * (v - 0.5)
         return r * np.cos(latitude), r * np.sin(latitude), np.cos(latitude), np.sin(latitude)
 
-    return [turned(np.array(sphere.centre), (X, Y, Z), profile)]
+    return [revolved_chart(np.array(sphere.centre), (X, Y, Z), profile)]
+
+
+@charts.register
+def _(ellipsoid: Ellipsoid) -> list[Chart]:
+    frame, semi = np.stack(own_frame(ellipsoid.axis)), np.array(ellipsoid.sizes) / 2
+    (ball,) = charts(Sphere((0, 0, 0), 2, ellipsoid.colour))
+
+    def chart(u: Array, v: Array) -> tuple[Array, Array]:
+        q, _ = ball(u, v)
+        return np.array(ellipsoid.centre) + (q * semi) @ frame, unit((q / semi) @ frame)
+
+    return [chart]
 
 
 @charts.register
@@ -148,24 +166,24 @@ def _(torus: Torus) -> list[Chart]:
         angle = 2 * np.pi * (v - 0.5)
         return ring + tube * np.cos(angle), tube * np.sin(angle), np.cos(angle), np.sin(angle)
 
-    return [turned(np.array(torus.centre), stood(torus.axis), profile)]
+    return [revolved_chart(np.array(torus.centre), own_frame(torus.axis), profile)]
 
 
 @charts.register
 def _(cylinder: Cylinder) -> list[Chart]:
-    frame, middle, h = stood(cylinder.axis), np.array(cylinder.centre), cylinder.height
+    frame, middle, h = own_frame(cylinder.axis), np.array(cylinder.centre), cylinder.height
 
     def profile(v: Array) -> tuple[Array, ...]:
         one = np.ones_like(v)
         return cylinder.diameter / 2 * one, h * (v - 0.5), one, 0 * one
 
-    ends = [caps(frame, middle + side * h / 2 * frame[1], cylinder.diameter, side)[0] for side in (1, -1)]
-    return [turned(middle, frame, profile), *ends]
+    ends = [cap_charts(frame, middle + side * h / 2 * frame[1], cylinder.diameter, side)[0] for side in (1, -1)]
+    return [revolved_chart(middle, frame, profile), *ends]
 
 
 @charts.register
 def _(hyperboloid: Hyperboloid) -> list[Chart]:
-    frame, middle, h = stood(hyperboloid.axis), np.array(hyperboloid.centre), hyperboloid.height
+    frame, middle, h = own_frame(hyperboloid.axis), np.array(hyperboloid.centre), hyperboloid.height
     waist, end = hyperboloid.waist / 2, hyperboloid.diameter / 2
 
     def profile(v: Array) -> tuple[Array, ...]:
@@ -173,24 +191,24 @@ def _(hyperboloid: Hyperboloid) -> list[Chart]:
         radius = np.sqrt(waist**2 + (end - waist) * (end + waist) * share**2)
         return radius, share * h / 2, radius * h, -2 * (end - waist) * (end + waist) * share
 
-    ends = [caps(frame, middle + side * h / 2 * frame[1], 2 * end, side)[0] for side in (1, -1)]
-    return [turned(middle, frame, profile), *ends]
+    ends = [cap_charts(frame, middle + side * h / 2 * frame[1], 2 * end, side)[0] for side in (1, -1)]
+    return [revolved_chart(middle, frame, profile), *ends]
 
 
 @charts.register
 def _(paraboloid: Paraboloid) -> list[Chart]:
-    frame, vertex, h = stood(paraboloid.axis), np.array(paraboloid.vertex), paraboloid.height
+    frame, vertex, h = own_frame(paraboloid.axis), np.array(paraboloid.vertex), paraboloid.height
     radius = paraboloid.diameter / 2
 
     def profile(v: Array) -> tuple[Array, ...]:
         return radius * v, h * v * v, 2 * h * v, -radius * np.ones_like(v)
 
-    return [turned(vertex, frame, profile), *caps(frame, vertex + h * frame[1], 2 * radius, 1)]
+    return [revolved_chart(vertex, frame, profile), *cap_charts(frame, vertex + h * frame[1], 2 * radius, 1)]
 
 
 @charts.register
 def _(cone: Cone) -> list[Chart]:
-    x, y, z = stood(cone.axis)
+    x, y, z = own_frame(cone.axis)
     frame = -x, -y, z  # in which the apex is above the base
     base, h, radius = np.array(cone.apex) + cone.height * y, cone.height, cone.diameter / 2
 
@@ -198,4 +216,4 @@ def _(cone: Cone) -> list[Chart]:
         one = np.ones_like(v)
         return radius * (1 - v), h * v, h * one, radius * one
 
-    return [turned(base, frame, profile), *caps(frame, base, 2 * radius, -1)]
+    return [revolved_chart(base, frame, profile), *cap_charts(frame, base, 2 * radius, -1)]

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests import oracle
+from tests.shapes.execution_modes import Intersect
 from tests.shapes.regimes import Rays
-from tests.shapes.ways import Intersect
 
 Array = NDArray[np.float64]
 U = 2.0**-53
@@ -26,7 +26,7 @@ class Answers(NamedTuple):
 
 
 @cache
-def posed(make: Callable[..., Rays], *how: object, **more: object) -> tuple[Rays, Answers]:
+def solved(make: Callable[..., Rays], *how: object, **more: object) -> tuple[Rays, Answers]:
     """The rays of a regime and the right answers."""
     rays = make(*how, **more)
     return rays, answers(rays)

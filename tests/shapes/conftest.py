@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from tests.shapes.ways import WAYS, Intersect
+from tests.shapes.execution_modes import MODES, Intersect
 
 
-@pytest.fixture(params=WAYS)
+@pytest.fixture(params=MODES)
 def way(request: pytest.FixtureRequest) -> Intersect:
     """`intersect` on single numbers, on arrays, and compiled."""
-    return WAYS[request.param]
+    return MODES[request.param]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -13,31 +14,32 @@ from minirt.fields import Colour, Direction, Field, Length, Lengths, Point
 from minirt.kernel.trace import ROUNDING
 from minirt.rendering.packing.primitives import extent
 from minirt.shapes import Kind, Shape
-from tests.shapes.regimes import Array, Random, log, unit, ways
-from tests.shapes.ways import compiled, surfaces
+from tests import oracle
+from tests.shapes.execution_modes import compiled, surfaces
+from tests.shapes.regimes import RAYS, Array, Random, log_uniform, random_directions, unit
 
 
-def value(field: Field, random: Random, size: float, middle: Array) -> object:
+def random_value(field: Field, random: Random, size: float, middle: Array) -> object:
     """A random value of a field, of a shape of about this size near a point."""
     if isinstance(field, Point):
         return tuple(middle + size * random.normal(size=3))
     if isinstance(field, Direction):
-        return tuple(ways(random).clip(-1, 1))
+        return tuple(random_directions(random).clip(-1, 1))
     if isinstance(field, Length):
-        return size * log(random, 0.2, 5)
+        return size * log_uniform(random, 0.2, 5)
     if isinstance(field, Lengths):
-        return tuple(size * log(random, 0.2, 5, 3))
+        return tuple(size * log_uniform(random, 0.2, 5, 3))
     assert isinstance(field, Colour)
     return tuple(random.integers(0, 256, 3))
 
 
 def example(kind: Kind, random: Random, size: float = 1.0, offset: float = 0.0) -> Shape:
     """A random shape of a kind, of about this size at this distance from the origin."""
-    middle = offset * ways(random)
+    middle = offset * random_directions(random)
     placed = [each for each in fields_of(kind.element) if not each.keyed]
     while True:
         with suppress(ElementError):  # of fields that do not go together
-            return kind.element(**{each.name: value(each, random, size, middle) for each in placed})
+            return kind.element(**{each.name: random_value(each, random, size, middle) for each in placed})
 
 
 def place(shape: Shape) -> Array:
@@ -48,7 +50,33 @@ def place(shape: Shape) -> Array:
     return np.array(next(getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Point)))
 
 
-CONCAVE = {"hyperboloid", "torus"}  # titles of shapes from which a way straight out may lead back in
+@cache
+def is_concave(kind: Kind) -> bool:
+    """Whether a ray straight out of the surface may meet the shape again: some of it lies beyond a tangent plane.
+
+    By the oracle, on 3 shapes with 32 points each.
+    """
+    random = np.random.default_rng(7)
+    for shape in (example(kind, random) for _ in range(3)):
+        points, normals = on_surface(shape, random, 32)
+        beyond = np.einsum("ijk,ik->ij", points[None] - points[:, None], normals)
+        if beyond.max() > 1e-9:
+            return True
+    return False
+
+
+def on_surface(shape: Shape, random: Random, count: int = RAYS) -> tuple[Array, Array]:
+    """Random points of the surface of a shape of size 1 and the normals there, (count, 3) each, by the oracle."""
+    found = []
+    while len(found) < count:
+        origin = place(shape) + log_uniform(random, 0.1, 10) * random_directions(random)
+        direction = unit(place(shape) + random.uniform(-0.6, 0.6, 3) - origin)
+        t = oracle.nearest(shape, origin, direction)
+        if t is not None:
+            point = origin + float(t) * direction
+            found.append((point, [float(x) for x in oracle.normal(shape, point)]))
+    points, normals = np.array(found).swapaxes(0, 1)
+    return points, normals
 
 
 class Hits(NamedTuple):
@@ -66,7 +94,7 @@ def hits(kind: Kind, seed: int, size: float, offset: float, shapes: int = 100, r
     random = np.random.default_rng(seed)
     made = [example(kind, random, size, offset) for _ in range(shapes)]
     middles = np.stack([place(shape) for shape in made])[:, None]
-    origins = middles + size * log(random, 0.1, 10, shapes, rays, 1) * ways(random, shapes, rays)
+    origins = middles + size * log_uniform(random, 0.1, 10, shapes, rays, 1) * random_directions(random, shapes, rays)
     directions = unit(middles + size * random.uniform(-0.6, 0.6, (shapes, rays, 3)) - origins)
     t = compiled(made, origins, directions)
     hit = np.isfinite(t)
@@ -75,7 +103,7 @@ def hits(kind: Kind, seed: int, size: float, offset: float, shapes: int = 100, r
     return Hits(made, points, normals, np.where(away, -normals, normals), hit)
 
 
-def offsets(points: Array, shapes: list[Shape]) -> Array:
+def shadow_offsets(points: Array, shapes: list[Shape]) -> Array:
     """How far from the surface `minirt.kernel.shading.shade` starts the way to a lamp, (m, n, 1)."""
     extents = np.array([extent(shape) for shape in shapes])[:, None]
     return (ROUNDING * 2.0**-53 * (np.abs(points).max(axis=-1) + extents))[..., None]

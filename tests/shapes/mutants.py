@@ -10,7 +10,7 @@ from minirt.lanes import Vec, dot, fabs, sqrt
 from minirt.report.measurements.textbook import meets_cylinder, meets_sphere
 from minirt.shapes.plane import PackedPlane
 from minirt.shapes.sphere import PackedSphere
-from tests.shapes.ways import on_arrays
+from tests.shapes.execution_modes import on_arrays
 
 from_the_origin = meets_sphere  # loses a small sphere that is far away
 piece_by_piece = meets_cylinder  # cracks at the rim, and no way along the axis

@@ -31,30 +31,30 @@ def unit(v: Array) -> Array:
     return v / np.linalg.norm(v, axis=-1, keepdims=True)
 
 
-def ways(random: Random, *shape: int) -> Array:
+def random_directions(random: Random, *shape: int) -> Array:
     """Random directions."""
     return unit(random.normal(size=(*shape, 3)))
 
 
-def across(random: Random, axis: Array, *shape: int) -> Array:
+def random_perpendiculars(random: Random, axis: Array, *shape: int) -> Array:
     """Random directions perpendicular to `axis`."""
-    v = np.cross(ways(random, *shape), axis)
+    v = np.cross(random_directions(random, *shape), axis)
     return unit(v)
 
 
-def log(random: Random, low: float, high: float, *shape: int) -> Array:
+def log_uniform(random: Random, low: float, high: float, *shape: int) -> Array:
     """Random numbers whose logarithms are uniform."""
     return np.exp(random.uniform(np.log(low), np.log(high), shape))
 
 
 def sphere(random: Random, size: float, offset: float) -> Sphere:
-    centre = offset * ways(random) + size * random.normal(size=3)
+    centre = offset * random_directions(random) + size * random.normal(size=3)
     return Sphere(tuple(centre), size * random.uniform(0.5, 2), GREY)
 
 
 def cylinder(random: Random, size: float, offset: float) -> Cylinder:
-    centre = offset * ways(random) + size * random.normal(size=3)
-    axis = tuple(ways(random).clip(-1, 1))
+    centre = offset * random_directions(random) + size * random.normal(size=3)
+    axis = tuple(random_directions(random).clip(-1, 1))
     return Cylinder(tuple(centre), axis, size * random.uniform(0.5, 2), size * random.uniform(0.5, 3), GREY)
 
 
@@ -77,7 +77,7 @@ def aimed(
     random = np.random.default_rng(seed)
     shapes = [make(random, size, offset) for _ in range(count)]
     centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
-    origins = centres + size * log(random, *far, count, RAYS, 1) * ways(random, count, RAYS)
+    origins = centres + size * log_uniform(random, *far, count, RAYS, 1) * random_directions(random, count, RAYS)
     targets = centres + size * random.uniform(-0.6, 0.6, (count, RAYS, 3))
     return Rays(shapes, origins, unit(targets - origins))
 
@@ -88,29 +88,29 @@ def inside(make: Make, seed: int, size: float = 1.0, offset: float = 0.0, count:
     shapes = [make(random, size, offset) for _ in range(count)]
     centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
     origins = centres + size * random.uniform(-0.14, 0.14, (count, RAYS, 3))
-    return Rays(shapes, origins, ways(random, count, RAYS))
+    return Rays(shapes, origins, random_directions(random, count, RAYS))
 
 
 def tangent(seed: int, count: int = 25) -> Rays:
     """Past the edge of a sphere, from 1e-16 to 1e-4 of its radius inside and outside."""
     random = np.random.default_rng(seed)
     shapes = [sphere(random, 1.0, 0.0) for _ in range(count)]
-    aside, sign = ways(random, count, RAYS), random.choice([-1.0, 1.0], (count, RAYS, 1))
+    aside, sign = random_directions(random, count, RAYS), random.choice([-1.0, 1.0], (count, RAYS, 1))
     centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
     radii = np.array([shape.diameter / 2 for shape in shapes])[:, None, None]
-    touch = centres + radii * (1 + sign * log(random, 1e-16, 1e-4, count, RAYS, 1)) * aside
-    directions = across(random, aside, count, RAYS)
+    touch = centres + radii * (1 + sign * log_uniform(random, 1e-16, 1e-4, count, RAYS, 1)) * aside
+    directions = random_perpendiculars(random, aside, count, RAYS)
     return Rays(shapes, touch - random.uniform(3, 20, (count, RAYS, 1)) * directions, directions)
 
 
 def just_above(seed: int, height: float, count: int = 25) -> Rays:
     """From a height above a sphere of diameter 1e9, in all directions that go down by a tenth or more."""
     random = np.random.default_rng(seed)
-    shapes = [Sphere(tuple(ways(random)), 1e9, GREY) for _ in range(count)]
+    shapes = [Sphere(tuple(random_directions(random)), 1e9, GREY) for _ in range(count)]
     centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
-    up = ways(random, count, RAYS)
+    up = random_directions(random, count, RAYS)
     origins = centres + (5e8 + height) * up
-    aside = across(random, up, count, RAYS)
+    aside = random_perpendiculars(random, up, count, RAYS)
     return Rays(shapes, origins, unit(aside - random.uniform(0.1, 10, (count, RAYS, 1)) * up))
 
 
@@ -121,10 +121,10 @@ def tangent_to_side(seed: int, count: int = 25) -> Rays:
     origins, directions = np.empty((2, count, RAYS, 3))
     for i, shape in enumerate(shapes):
         axis = np.array(shape.axis)
-        aside = across(random, axis, RAYS)
+        aside = random_perpendiculars(random, axis, RAYS)
         sign = random.choice([-1.0, 1.0], (RAYS, 1))
         touch = centre_of(shape) + shape.height * random.uniform(-0.4, 0.4, (RAYS, 1)) * axis
-        touch = touch + shape.diameter / 2 * (1 + sign * log(random, 1e-16, 1e-4, RAYS, 1)) * aside
+        touch = touch + shape.diameter / 2 * (1 + sign * log_uniform(random, 1e-16, 1e-4, RAYS, 1)) * aside
         directions[i] = unit(np.cross(aside, axis) + random.uniform(-1, 1, (RAYS, 1)) * axis)
         origins[i] = touch - random.uniform(3, 20, (RAYS, 1)) * directions[i]
     return Rays(shapes, origins, directions)
@@ -137,9 +137,11 @@ def rim(seed: int, count: int = 25) -> Rays:
     origins, directions = np.empty((2, count, RAYS, 3))
     for i, shape in enumerate(shapes):
         axis = np.array(shape.axis)
-        edge = centre_of(shape) + shape.height / 2 * axis + shape.diameter / 2 * across(random, axis, RAYS)
-        edge = edge + log(random, 1e-16, 1e-6, RAYS, 1) * ways(random, RAYS)
-        directions[i] = ways(random, RAYS)
+        edge = (
+            centre_of(shape) + shape.height / 2 * axis + shape.diameter / 2 * random_perpendiculars(random, axis, RAYS)
+        )
+        edge = edge + log_uniform(random, 1e-16, 1e-6, RAYS, 1) * random_directions(random, RAYS)
+        directions[i] = random_directions(random, RAYS)
         origins[i] = edge - random.uniform(3, 20, (RAYS, 1)) * directions[i]
     return Rays(shapes, origins, directions)
 
@@ -151,10 +153,10 @@ def along_axis(seed: int, off: tuple[float, float] | None, offset: float = 0.0, 
     origins, directions = np.empty((2, count, RAYS, 3))
     for i, shape in enumerate(shapes):
         axis = np.array(shape.axis)
-        angle = log(random, *off, RAYS, 1) if off else np.zeros((RAYS, 1))
+        angle = log_uniform(random, *off, RAYS, 1) if off else np.zeros((RAYS, 1))
         start = shape.diameter / 2 * random.choice([0.0, 0.5, 0.9, 1.1], (RAYS, 1))
-        directions[i] = axis if off is None else unit(axis + angle * across(random, axis, RAYS))
-        origins[i] = centre_of(shape) - 5 * axis + start * across(random, axis, RAYS)
+        directions[i] = axis if off is None else unit(axis + angle * random_perpendiculars(random, axis, RAYS))
+        origins[i] = centre_of(shape) - 5 * axis + start * random_perpendiculars(random, axis, RAYS)
     return Rays(shapes, origins, directions)
 
 
@@ -165,9 +167,11 @@ def inside_tube(seed: int, height: float = 1e9, count: int = 25) -> Rays:
     for i in range(count):
         shape = cylinder(random, 1.0, 0.0).replace(height=height)
         axis = np.array(shape.axis)
-        start = 0.4 * shape.diameter * random.uniform(-1, 1, (RAYS, 1)) * across(random, axis, RAYS)
+        start = 0.4 * shape.diameter * random.uniform(-1, 1, (RAYS, 1)) * random_perpendiculars(random, axis, RAYS)
         origins[i] = centre_of(shape) + start
-        directions[i] = unit(axis + log(random, 1e-8, 1e-2, RAYS, 1) * across(random, axis, RAYS))
+        directions[i] = unit(
+            axis + log_uniform(random, 1e-8, 1e-2, RAYS, 1) * random_perpendiculars(random, axis, RAYS)
+        )
         shapes.append(shape)
     return Rays(shapes, origins, directions)
 
@@ -179,10 +183,10 @@ def from_the_wall(seed: int, count: int = 25) -> Rays:
     for i in range(count):
         shape = cylinder(random, 1.0, 0.0).replace(height=100.0)
         axis, radius = np.array(shape.axis), shape.diameter / 2
-        out = across(random, axis, RAYS)
+        out = random_perpendiculars(random, axis, RAYS)
         tilt = random.uniform(0.3, 1.2, (RAYS, 1))
         directions[i] = unit(np.sin(tilt) * axis - np.cos(tilt) * out)
-        near = radius * (1 - log(random, 1e-13, 1e-6, RAYS, 1))
+        near = radius * (1 - log_uniform(random, 1e-13, 1e-6, RAYS, 1))
         wall = centre_of(shape) + near * (out + np.cos(tilt) / np.sin(tilt) * axis)
         origins[i] = wall + random.uniform(0.01, 0.1, (RAYS, 1)) * directions[i]
         shapes.append(shape)

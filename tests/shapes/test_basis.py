@@ -9,10 +9,10 @@ from minirt.fields import unit
 from minirt.lanes import Vec, dot
 from minirt.shapes.basis import basis, from_basis, to_basis
 from tests.shapes.checks import U
-from tests.shapes.regimes import ways
+from tests.shapes.regimes import random_directions
 
 POLES = [(0, 0, 1), (0, 0, -1), (1e-300, 0, -1), (1e-8, 1e-9, -1), (0, 1e-17, -1), (1, 0, -0.0), (0, 1, 0.0)]
-AXES = [*map(unit, POLES), *map(tuple, ways(np.random.default_rng(1), 200))]
+AXES = [*map(unit, POLES), *map(tuple, random_directions(np.random.default_rng(1), 200))]
 
 
 @pytest.mark.parametrize("axis", AXES[:10])

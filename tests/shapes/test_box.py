@@ -7,10 +7,10 @@ import pytest
 
 from minirt.shapes.box import Box
 from tests.shapes.checks import U
-from tests.shapes.mapped import interpreted
+from tests.shapes.execution_modes import Intersect, surfaces
+from tests.shapes.mapping_checks import interpreted
 from tests.shapes.regimes import GREY
 from tests.shapes.test_sphere import shoot
-from tests.shapes.ways import Intersect, surfaces
 
 BLOCK = Box((0, 1, 5), (0, 1, 0), (2, 4, 6), GREY)  # from -1, -1, 2 to 1, 3, 8
 

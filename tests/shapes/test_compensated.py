@@ -10,7 +10,7 @@ from numba import njit
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel.compiler.code_cache import FLAGS
 from minirt.lanes import Vec, product_error, rounded_product
-from minirt.shapes.compensated import power, two_product, two_sum
+from minirt.shapes.compensated import power_of_point, two_product, two_sum
 
 RANDOM = np.random.default_rng(1)
 PAIRS = RANDOM.normal(size=(200, 2)) * 10.0 ** RANDOM.integers(-20, 20, (200, 2))
@@ -52,5 +52,5 @@ def test_the_power_of_a_point_keeps_what_is_left_of_it() -> None:
         point = np.array([x, y, z]) + np.array([0.6, 0.8, 0.0]) * (5e8 + 10.0**exponent)
         squares = sum((Fraction(a) - Fraction(b)) ** 2 for a, b in zip(point, (x, y, z), strict=True))
         right = squares - Fraction(5e8) ** 2
-        found = power(Vec(*point), Vec(x, y, z), np.float64(5e8))
+        found = power_of_point(Vec(*point), Vec(x, y, z), np.float64(5e8))
         assert abs(Fraction(found) - right) <= abs(right) * Fraction(1, 2**50)

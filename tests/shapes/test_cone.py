@@ -7,9 +7,9 @@ import pytest
 
 from minirt.shapes.cone import Cone
 from tests.shapes.checks import U
+from tests.shapes.execution_modes import Intersect, surfaces
 from tests.shapes.regimes import GREY
 from tests.shapes.test_sphere import shoot
-from tests.shapes.ways import Intersect, surfaces
 
 TENT = Cone((0, 4, 5), (0, -1, 0), 6, 4, GREY)  # radius 3 at y = 0: its sides are the long ones of 3-4-5 triangles
 

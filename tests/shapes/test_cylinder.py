@@ -8,7 +8,8 @@ import pytest
 from minirt.shapes import cylinder as module
 from minirt.shapes.cylinder import Cylinder
 from tests.shapes import mutants
-from tests.shapes.checks import U, assert_near, errors_of, posed
+from tests.shapes.checks import U, assert_near, errors_of, solved
+from tests.shapes.execution_modes import Intersect, on_arrays, surfaces
 from tests.shapes.regimes import (
     GREY,
     aimed,
@@ -16,11 +17,10 @@ from tests.shapes.regimes import (
     cylinder,
 )
 from tests.shapes.test_sphere import shoot
-from tests.shapes.ways import Intersect, on_arrays, surfaces
 
 TUBE = Cylinder((0, 0, 5), (0, 1, 0), 6, 4, GREY)  # radius 3, from y = -2 to y = 2
-BENIGN = posed(aimed, cylinder, 1)
-ALONG = posed(along_axis, 4, None)
+BENIGN = solved(aimed, cylinder, 1)
+ALONG = solved(along_axis, 4, None)
 
 
 def test_answers_known_by_hand(way: Intersect) -> None:
@@ -67,7 +67,7 @@ def test_the_surface_is_the_side_or_the_cap_and_the_normal_points_outwards() -> 
 
 
 def test_a_naive_quadratic_does_not_pass(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "below_zero", mutants.two_roots)
+    monkeypatch.setattr(module, "negative_interval", mutants.two_roots)
     assert_near(on_arrays(*BENIGN[0]), BENIGN[1], 1e-11)  # it is right where nothing is hard
     with pytest.raises(AssertionError):
         assert_near(on_arrays(*ALONG[0]), ALONG[1], 1e-13)

@@ -7,9 +7,9 @@ import pytest
 
 from minirt.shapes.disc import Disc
 from tests.shapes.checks import U
+from tests.shapes.execution_modes import Intersect, surfaces
 from tests.shapes.regimes import GREY
 from tests.shapes.test_sphere import shoot
-from tests.shapes.ways import Intersect, surfaces
 
 PLATE = Disc((0, 1, 5), (0.6, 0, -0.8), 4, GREY)  # radius 2, turned by a 3-4-5 triangle
 

@@ -8,9 +8,9 @@ import pytest
 from minirt.errors import ElementError
 from minirt.shapes.hyperboloid import Hyperboloid
 from tests.shapes.checks import U
+from tests.shapes.execution_modes import Intersect, surfaces
 from tests.shapes.regimes import GREY
 from tests.shapes.test_sphere import shoot
-from tests.shapes.ways import Intersect, surfaces
 
 EVEN = Hyperboloid((0, 0, 5), (0, 1, 0), 15, 17, 8, GREY)  # x^2 + (z - 5)^2 = 7.5^2 + y^2, exactly
 TOWER = Hyperboloid((0, 0, 5), (0, 1, 0), 6, 10, 8, GREY)  # x^2 + (z - 5)^2 = 9 + y^2, from y = -4 to y = 4

@@ -21,7 +21,7 @@ from minirt.shapes import ALL_KINDS, MESH, mesh
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.triangle import Triangle
 from tests.meshes.examples import GREY, ball, named, soup
-from tests.shapes.regimes import unit, ways
+from tests.shapes.regimes import random_directions, unit
 
 
 def test_its_file_opens_with_its_manual_page() -> None:
@@ -50,7 +50,7 @@ def test_a_mesh_is_its_triangles() -> None:
     random = np.random.default_rng(1)
     made = soup(random, 40).replace(position=(1.0, -2.0, 0.5), scale=3.0)
     rows = made.rows()
-    origins, directions = random.normal(size=(200, 3)) * 9, ways(random, 200)
+    origins, directions = random.normal(size=(200, 3)) * 9, random_directions(random, 200)
     for i, row in enumerate(rows):
         single = Triangle(*map(tuple, row[:9].reshape(3, 3).tolist()), GREY).pack()
         one = read(rows.view(row_type(MESH))[:, 0], i)
@@ -112,7 +112,7 @@ def test_shares_are_those_of_the_point() -> None:
     made = soup(random, 100)
     wanted = random.dirichlet((1, 1, 1), 100)
     points = np.einsum("ij,ijk->ik", wanted, made.rows()[:, :9].reshape(-1, 3, 3))
-    assert np.allclose(np.stack(mesh.shares(made.pack(), Vec(*points.T)), axis=1), wanted, atol=1e-12)
+    assert np.allclose(np.stack(mesh.barycentric_coordinates(made.pack(), Vec(*points.T)), axis=1), wanted, atol=1e-12)
 
 
 def test_shares_beyond_a_triangle_or_of_none_stay_shares() -> None:
@@ -120,7 +120,7 @@ def test_shares_beyond_a_triangle_or_of_none_stay_shares() -> None:
     far = 100 * random.normal(size=(100, 3))
     with np.errstate(all="ignore"):
         for made in (soup(random, 100), soup(random, 100, 0.0)):
-            found = np.stack(mesh.shares(made.pack(), Vec(*far.T)), axis=1)
+            found = np.stack(mesh.barycentric_coordinates(made.pack(), Vec(*far.T)), axis=1)
             assert (found >= 0).all()
             assert (found[:, 1:] == 0).any(axis=0).all()
             assert np.abs(found.sum(axis=1) - 1).max() < 1e-15

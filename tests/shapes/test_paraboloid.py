@@ -7,9 +7,9 @@ import pytest
 
 from minirt.shapes.paraboloid import Paraboloid
 from tests.shapes.checks import U
+from tests.shapes.execution_modes import Intersect, surfaces
 from tests.shapes.regimes import GREY
 from tests.shapes.test_sphere import shoot
-from tests.shapes.ways import Intersect, surfaces
 
 BOWL = Paraboloid((0, -1, 5), (0, 1, 0), 4, 4, GREY)  # x^2 + (z - 5)^2 = y + 1, from y = -1 to y = 3
 

@@ -7,9 +7,9 @@ import pytest
 
 from minirt.shapes.plane import Plane
 from tests.shapes.checks import U
+from tests.shapes.execution_modes import Intersect, surfaces
 from tests.shapes.regimes import GREY, RAYS
 from tests.shapes.test_sphere import shoot
-from tests.shapes.ways import Intersect, surfaces
 
 FLOOR = Plane((7, -2, 9), (0, 1, 0), GREY)
 

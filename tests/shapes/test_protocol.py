@@ -16,9 +16,9 @@ from minirt.kernel.rows import row_type
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Kind, Shape
 from tests.shapes.checks import U
-from tests.shapes.examples import CONCAVE, example, hits, offsets, place
-from tests.shapes.regimes import unit, ways
-from tests.shapes.ways import WAYS, kind_of, surfaces, table
+from tests.shapes.examples import example, hits, is_concave, place, shadow_offsets
+from tests.shapes.execution_modes import MODES, kind_of, packed_rows, surfaces
+from tests.shapes.regimes import random_directions, unit
 
 SIZES = [(1e-4, 0.0), (1.0, 0.0), (1.0, 1e8), (1e8, 0.0)]
 
@@ -63,7 +63,7 @@ def test_it_packs_into_a_row_and_back(kind: Kind) -> None:
     packed = shape.pack()
     assert type(packed) is kind.packed
     assert row_type(kind).itemsize == 8 * sum(3 if hasattr(part, "x") else 1 for part in packed)
-    (row,) = table([shape])
+    (row,) = packed_rows([shape])
     numbers = [c for part in packed for c in ((part.x, part.y, part.z) if hasattr(part, "x") else (part,))]
     assert np.array_equal(np.hstack([np.ravel(part) for part in row.item()]), numbers)
     assert kind_of(shape) is kind
@@ -77,7 +77,7 @@ def test_its_surface_is_a_unit_normal_and_stays_where_it_is(kind: Kind, size: fl
     assert np.abs(np.linalg.norm(normals, axis=-1) - 1).max() <= 8 * U
     again, _ = surfaces(seen.shapes, seen.points)
     moved = np.linalg.norm(again[seen.hit] - points, axis=-1)
-    assert (moved <= offsets(seen.points, seen.shapes)[seen.hit][:, 0] / 2).all()
+    assert (moved <= shadow_offsets(seen.points, seen.shapes)[seen.hit][:, 0] / 2).all()
 
 
 @pytest.mark.parametrize(("size", "offset"), SIZES)
@@ -86,9 +86,9 @@ def test_its_normals_point_outwards(kind: Kind, size: float, offset: float) -> N
     # One step out of the surface: from there the way on never hits it, and where that is so the way back at once.
     step = 1e-2 * size * np.ones((*seen.hit.shape, 1))
     outside = seen.points + step * seen.normals
-    back, on = (WAYS["compiled"](seen.shapes, outside, sign * seen.normals)[seen.hit] for sign in (-1, 1))
+    back, on = (MODES["compiled"](seen.shapes, outside, sign * seen.normals)[seen.hit] for sign in (-1, 1))
     free = np.isinf(on)
-    assert free.mean() > 0.5 if kind.element.title in CONCAVE else free.all()
+    assert free.mean() > 0.5 if is_concave(kind) else free.all()
     assert np.abs(back[free] - 1e-2 * size).max() <= 64 * U * (size + offset) * 20
 
 
@@ -109,7 +109,7 @@ def test_its_bounds_contain_its_surface_and_touch_it(kind: Kind, size: float, of
 @pytest.mark.parametrize(("size", "offset"), SIZES)
 def test_nothing_sticks_out_of_the_hull_of_its_balls(kind: Kind, size: float, offset: float) -> None:
     seen = hits(kind, 4, size, offset, shapes=20, rays=1024)
-    directions = ways(np.random.default_rng(4), 500)
+    directions = random_directions(np.random.default_rng(4), 500)
     for shape, points, hit in zip(seen.shapes, seen.points, seen.hit, strict=True):
         balls = shape.balls()
         assert (shape.bounds() is None) == (not balls)
@@ -124,7 +124,7 @@ def test_the_three_ways_agree(kind: Kind) -> None:
     shapes = [example(kind, random) for _ in range(20)]
     origins, aside = random.normal(size=(2, 20, 16, 3)) * [[[[5.0]]], [[[0.5]]]]
     directions = unit(np.stack([place(shape) for shape in shapes])[:, None] + aside - origins)
-    numbers, arrays, compiled = (way(shapes, origins, directions) for way in WAYS.values())
+    numbers, arrays, compiled = (way(shapes, origins, directions) for way in MODES.values())
     assert np.array_equal(numbers, arrays)
     assert np.array_equal(np.isinf(numbers), np.isinf(compiled))
     seen = np.isfinite(numbers)
@@ -136,11 +136,11 @@ def test_it_scales_exactly(kind: Kind) -> None:
     shapes = [example(kind, random) for _ in range(20)]
     origins, directions = random.normal(size=(2, 20, 16, 3)) * 5
     directions /= np.linalg.norm(directions, axis=-1, keepdims=True)
-    t = WAYS["compiled"](shapes, origins, directions)
+    t = MODES["compiled"](shapes, origins, directions)
     for power in (-40, -1, 30):
         scale = 2.0**power
         larger = [scaled(shape, scale) for shape in shapes]
-        assert np.array_equal(WAYS["compiled"](larger, origins * scale, directions), t * scale)
+        assert np.array_equal(MODES["compiled"](larger, origins * scale, directions), t * scale)
 
 
 def scaled(shape: Shape, scale: float) -> Shape:

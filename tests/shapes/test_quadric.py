@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.shapes.quadric import below_zero
+from minirt.shapes.quadric import negative_interval
 
 CASES = [
     ((1, 0, -4), (True, -2, 2)),
@@ -35,7 +35,7 @@ CASES = [
 
 
 def solved(a: Any, b: Any, c: Any) -> tuple[Any, Any, Any]:
-    return below_zero(a, 1 / a, b, c)
+    return negative_interval(a, 1 / a, b, c)
 
 
 @pytest.mark.parametrize(("coefficients", "expected"), CASES)

@@ -8,12 +8,12 @@ import pytest
 from minirt.shapes import sphere as module
 from minirt.shapes.sphere import Sphere
 from tests.shapes import mutants
-from tests.shapes.checks import U, assert_near, assert_verdicts, errors_of, posed
-from tests.shapes.regimes import GREY, RAYS, aimed, just_above, sphere, ways
-from tests.shapes.ways import Intersect, on_arrays, surfaces
+from tests.shapes.checks import U, assert_near, assert_verdicts, errors_of, solved
+from tests.shapes.execution_modes import Intersect, on_arrays, surfaces
+from tests.shapes.regimes import GREY, RAYS, aimed, just_above, random_directions, sphere
 
 BALL = Sphere((0, 0, 5), 6, GREY)  # radius 3: its edge is seen from the origin along a 3-4-5 triangle
-BENIGN = posed(aimed, sphere, 1)
+BENIGN = solved(aimed, sphere, 1)
 
 
 def shoot(way: Intersect, shape: Sphere, *rays: tuple[tuple[float, ...], tuple[float, ...]]) -> list[float]:
@@ -53,7 +53,7 @@ def test_benign_rays(way: Intersect) -> None:
 
 def test_without_the_power_the_little_above_a_huge_sphere_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "CLOSE", 0.0)
-    rays, right = posed(just_above, 9, 1e-3)
+    rays, right = solved(just_above, 9, 1e-3)
     assert errors_of(on_arrays, rays, right).max() > 1e-6
 
 
@@ -64,7 +64,7 @@ def test_nan_is_a_miss(way: Intersect) -> None:
 def test_the_surface_is_the_nearest_point_and_the_normal_points_outwards() -> None:
     random = np.random.default_rng(8)
     balls = [sphere(random, 1.0, 0.0) for _ in range(20)]
-    for ball, out in zip(balls, ways(random, 20, RAYS), strict=True):
+    for ball, out in zip(balls, random_directions(random, 20, RAYS), strict=True):
         points = np.array(ball.centre) + random.uniform(0.1, 3, (RAYS, 1)) * out
         on, normal = surfaces([ball], points[None])
         assert np.abs(normal[0] - out).max() <= 16 * U * 5

@@ -10,12 +10,12 @@ from minirt.lanes import Vec
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes import torus as module
-from minirt.shapes.shape import Place
+from minirt.shapes.shape import Position
 from minirt.shapes.torus import PackedTorus, Torus
 from tests.shapes.checks import U
-from tests.shapes.regimes import GREY, RAYS, unit, ways
+from tests.shapes.execution_modes import Intersect, compiled, on_arrays, surfaces, vec
+from tests.shapes.regimes import GREY, RAYS, random_directions, unit
 from tests.shapes.test_sphere import shoot
-from tests.shapes.ways import Intersect, compiled, on_arrays, surfaces, vec
 
 RING = Torus((0, 1, 5), (0, 1, 0), 6, 2, GREY)  # radii 3 and 1
 
@@ -81,7 +81,7 @@ def test_no_ray_depends_on_those_beside_it(on: Intersect, tube: float) -> None:
 
 def test_most_roots_take_less_than_ten_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     random = np.random.default_rng(4)
-    origins = 8 * ways(random, 1, 20 * RAYS)
+    origins = 8 * random_directions(random, 1, 20 * RAYS)
     directions = unit(np.array(RING.centre) + 2 * random.normal(size=origins.shape) - origins)
     t = on_arrays([RING], origins, directions)
     monkeypatch.setattr(module, "STEPS", 9)
@@ -106,7 +106,7 @@ def test_steps_end(
     looks: list[bool] = []
     monkeypatch.setattr(module, "any", lambda mask: looks.append(mask) or bool(mask))
     x, y, z = (Vec(*row) for row in np.eye(3))
-    upright = PackedTorus(Place(Vec(0.0, 0.0, 0.0)), x, y, z, 3, tube)
+    upright = PackedTorus(Position(Vec(0.0, 0.0, 0.0)), x, y, z, 3, tube)
     direction = unit(np.subtract(target, origin))
     with np.errstate(all="ignore"):
         hit, _ = module.intersect(upright, vec(np.array(origin, float)), vec(direction))

@@ -11,9 +11,9 @@ import pytest
 from minirt.errors import ElementError
 from minirt.shapes.triangle import Triangle
 from tests.shapes.checks import U
-from tests.shapes.regimes import GREY, RAYS, Array, Random, log, unit, ways
+from tests.shapes.execution_modes import Intersect, surfaces
+from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_directions, unit
 from tests.shapes.test_sphere import shoot
-from tests.shapes.ways import Intersect, surfaces
 from tests.stability.mutants import in_single_precision
 
 SAIL = Triangle((-2, 0, 5), (2, 0, 5), (0, 3, 8), GREY)
@@ -64,7 +64,7 @@ def fan(random: Random) -> tuple[Array, list[Triangle]]:
     """Triangles without a gap around a point, and that point: the middle of a bowl of seven corners."""
     turns = np.sort(random.uniform(0, 2 * np.pi, 7)) + np.arange(7) * 1e-3
     rim = np.stack([np.cos(turns), np.sin(turns), random.uniform(-0.2, 0.2, 7)], axis=-1)
-    scale, middle = log(random, 1e-3, 1e3), 10 * random.normal(size=3)
+    scale, middle = log_uniform(random, 1e-3, 1e3), 10 * random.normal(size=3)
     frame = np.linalg.qr(random.normal(size=(3, 3)))[0]
     corners = scale * rim @ frame + middle
     return middle, [
@@ -91,8 +91,8 @@ def gaps(intersect: Intersect) -> int:
         normal = np.mean(
             [each.normal() if each.a == tuple(middle) else np.negative(each.normal()) for each in triangles], axis=0
         )
-        directions = unit(ways(random, 4 * RAYS) - 2 * unit(normal))
-        origins = targets - size * log(random, 1, 100, 4 * RAYS, 1) * directions
+        directions = unit(random_directions(random, 4 * RAYS) - 2 * unit(normal))
+        origins = targets - size * log_uniform(random, 1, 100, 4 * RAYS, 1) * directions
         towards = unit(targets - origins)
         met = np.zeros(4 * RAYS, bool)
         for each in triangles:
@@ -125,7 +125,7 @@ def test_one_that_is_too_thin_is_refused() -> None:
 
 def test_the_normal_of_a_sliver_is_upright_on_its_longest_edge() -> None:
     random = np.random.default_rng(7)
-    for height in log(random, 1e-12, 1, 200):
+    for height in log_uniform(random, 1e-12, 1, 200):
         a, edge, aside = random.normal(size=(3, 3)) * [[1], [random.uniform(0.5, 4)], [height]]
         sliver = Triangle(tuple(a), tuple(a + edge), tuple(a + random.uniform(0.2, 0.8) * edge + aside), GREY)
         longest = max(sliver.edges(), key=lambda each: np.hypot(*each[:2]) ** 2 + each[2] ** 2)

@@ -7,14 +7,14 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes.box import Box
-from tests.shapes.regimes import GREY, RAYS, Array, Random, ways
-from tests.stability.aims import along, at
+from tests.shapes.regimes import GREY, RAYS, Array, Random, random_directions
+from tests.stability.aimed_rays import along, at
 from tests.stability.regime import Regime
 
 
 def make(random: Random) -> Box:
     """A box of about size 1."""
-    point, axis = tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1))
+    point, axis = tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1))
     return Box(point, axis, tuple(random.uniform(0.5, 2, 3)), GREY)
 
 

@@ -7,10 +7,9 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes import Kind, Shape
-from tests import oracle
 from tests.oracle.body import body
-from tests.shapes.examples import example, place
-from tests.shapes.regimes import RAYS, Array, Rays, log, unit, ways
+from tests.shapes.examples import example, on_surface, place
+from tests.shapes.regimes import RAYS, Array, Rays, log_uniform, random_directions, unit
 from tests.stability.regime import Regime
 
 COUNT = 8  # shapes per regime
@@ -28,7 +27,7 @@ def towards(
     random = np.random.default_rng(seed)
     shapes = [example(kind, random, size, offset) for _ in range(count)]
     middles = places(shapes)
-    origins = middles + size * log(random, *far, count, RAYS, 1) * ways(random, count, RAYS)
+    origins = middles + size * log_uniform(random, *far, count, RAYS, 1) * random_directions(random, count, RAYS)
     targets = middles + size * random.uniform(-0.6, 0.6, (count, RAYS, 3))
     return Rays(shapes, origins, unit(targets - origins))
 
@@ -41,8 +40,8 @@ def touching(kind: Kind, seed: int) -> Rays:
         shape = example(kind, random)
         on, out = on_surface(shape, random)
         sign = random.choice([-1.0, 1.0], (RAYS, 1))
-        directions[i] = unit(np.cross(out, ways(random, RAYS)))
-        touch = on + sign * log(random, 1e-16, 1e-4, RAYS, 1) * out
+        directions[i] = unit(np.cross(out, random_directions(random, RAYS)))
+        touch = on + sign * log_uniform(random, 1e-16, 1e-4, RAYS, 1) * out
         origins[i] = touch - random.uniform(3, 20, (RAYS, 1)) * directions[i]
         shapes.append(shape)
     return Rays(shapes, origins, directions)
@@ -55,23 +54,9 @@ def leaving(kind: Kind, seed: int, height: tuple[float, float] = (1e-12, 1e-3)) 
     for i in range(COUNT):
         shape = example(kind, random)
         on, out = on_surface(shape, random)
-        origins[i] = on + random.choice([-1.0, 1.0], (RAYS, 1)) * log(random, *height, RAYS, 1) * out
+        origins[i] = on + random.choice([-1.0, 1.0], (RAYS, 1)) * log_uniform(random, *height, RAYS, 1) * out
         shapes.append(shape)
-    return Rays(shapes, origins, ways(random, COUNT, RAYS))
-
-
-def on_surface(shape: Shape, random: np.random.Generator) -> tuple[Array, Array]:
-    """Return points on the surface of a shape of size 1 and the normals there, (RAYS, 3) each."""
-    found = []
-    while len(found) < RAYS:
-        origin = place(shape) + log(random, 0.1, 10) * ways(random)
-        direction = unit(place(shape) + random.uniform(-0.6, 0.6, 3) - origin)
-        t = oracle.nearest(shape, origin, direction)
-        if t is not None:
-            point = origin + float(t) * direction
-            found.append((point, [float(x) for x in oracle.normal(shape, point)]))
-    on, out = np.array(found).swapaxes(0, 1)
-    return on, out
+    return Rays(shapes, origins, random_directions(random, COUNT, RAYS))
 
 
 def places(shapes: list[Shape]) -> Array:

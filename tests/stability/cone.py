@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes.cone import Cone
-from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, across, unit, ways
-from tests.stability.aims import along, at, axis_of, edge
+from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, random_directions, random_perpendiculars, unit
+from tests.stability.aimed_rays import along, at, axis_of, edge
 from tests.stability.common import COUNT
 from tests.stability.regime import Regime
 
@@ -17,7 +17,9 @@ def make(random: Random, angle: tuple[float, float] = (20.0, 60.0)) -> Cone:
     """Make a cone of about size 1 with a half-angle in a range of degrees."""
     slope = np.tan(np.radians(random.uniform(*angle)))
     height = random.uniform(0.5, 2) / max(1.0, slope)
-    return Cone(tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1)), 2 * slope * height, height, GREY)
+    return Cone(
+        tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1)), 2 * slope * height, height, GREY
+    )
 
 
 def apex(_random: Random, cone: Cone) -> Array:
@@ -29,7 +31,7 @@ def rim(random: Random, cone: Cone) -> Array:
 
 
 def generator(random: Random, cone: Cone) -> Array:
-    down = cone.height * axis_of(cone) + cone.diameter / 2 * across(random, axis_of(cone), RAYS)
+    down = cone.height * axis_of(cone) + cone.diameter / 2 * random_perpendiculars(random, axis_of(cone), RAYS)
     return unit(down) * random.choice([-1.0, 1.0], (RAYS, 1))
 
 
@@ -47,7 +49,7 @@ def at_the_mirror_image(seed: int) -> Rays:
         cone = make(random)
         target = 2 * np.array(cone.apex) - anywhere(random, cone)
         through = unit(anywhere(random, cone) - target)  # from the mirror image to the cone
-        directions[i] = np.where(random.random((RAYS, 1)) < 0.5, through, ways(random, RAYS))
+        directions[i] = np.where(random.random((RAYS, 1)) < 0.5, through, random_directions(random, RAYS))
         origins[i] = target - random.uniform(0, 9, (RAYS, 1)) * directions[i]
         shapes.append(cone)
     return Rays(shapes, origins, directions)

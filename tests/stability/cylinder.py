@@ -8,7 +8,7 @@ import numpy as np
 
 from minirt.shapes.cylinder import Cylinder
 from tests.shapes import regimes as given
-from tests.shapes.regimes import GREY, RAYS, Rays, ways
+from tests.shapes.regimes import GREY, RAYS, Rays, random_directions
 from tests.stability.common import COUNT
 from tests.stability.regime import Regime
 
@@ -21,10 +21,13 @@ def flat(seed: int, height: float) -> Rays:
 def needle(seed: int) -> Rays:
     """Rays at needles: a height of 1e9 and a diameter of 1e-3."""
     random = np.random.default_rng(seed)
-    shapes = [Cylinder(tuple(ways(random)), tuple(ways(random).clip(-1, 1)), 1e-3, 1e9, GREY) for _ in range(COUNT)]
+    shapes = [
+        Cylinder(tuple(random_directions(random)), tuple(random_directions(random).clip(-1, 1)), 1e-3, 1e9, GREY)
+        for _ in range(COUNT)
+    ]
     axes = np.array([shape.axis for shape in shapes])[:, None]
     on = np.array([shape.centre for shape in shapes])[:, None] + random.uniform(-9, 9, (COUNT, RAYS, 1)) * axes
-    origins = on + 5 * ways(random, COUNT, RAYS)
+    origins = on + 5 * random_directions(random, COUNT, RAYS)
     return Rays(shapes, origins, given.unit(on + 1e-3 * random.uniform(-0.5, 0.5, (COUNT, RAYS, 3)) - origins))
 
 

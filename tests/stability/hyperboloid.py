@@ -7,15 +7,15 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes.hyperboloid import Hyperboloid
-from tests.shapes.regimes import GREY, RAYS, Array, Random, across, unit, ways
-from tests.stability.aims import along, at, axis_of, edge
+from tests.shapes.regimes import GREY, RAYS, Array, Random, random_directions, random_perpendiculars, unit
+from tests.stability.aimed_rays import along, at, axis_of, edge
 from tests.stability.regime import Regime
 
 
 def make(random: Random, waist: float = 0.5) -> Hyperboloid:
     """Make a hyperboloid of about size 1; its waist is a share of its diameter."""
     diameter = random.uniform(0.5, 2)
-    point, axis = tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1))
+    point, axis = tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1))
     return Hyperboloid(point, axis, waist * diameter, diameter, random.uniform(0.5, 2), GREY)
 
 
@@ -35,7 +35,9 @@ def waist(random: Random, hyperboloid: Hyperboloid) -> Array:
 
 def asymptote(random: Random, hyperboloid: Hyperboloid) -> Array:
     axis = axis_of(hyperboloid)
-    return unit(axis + slope(hyperboloid) * across(random, axis, RAYS)) * random.choice([-1.0, 1.0], (RAYS, 1))
+    return unit(axis + slope(hyperboloid) * random_perpendiculars(random, axis, RAYS)) * random.choice(
+        [-1.0, 1.0], (RAYS, 1)
+    )
 
 
 def beside_rulings(seed: int, off: tuple[float, float]) -> object:

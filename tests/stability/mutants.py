@@ -10,7 +10,7 @@ from minirt.lanes import Vec
 from minirt.report.measurements import textbook
 from minirt.shapes import Shape
 from tests.shapes import mutants
-from tests.shapes.ways import Array, Intersect, kind_of, on_arrays, vec
+from tests.shapes.execution_modes import Array, Intersect, kind_of, on_arrays, vec
 
 
 def from_1e_4_on(shapes: list[Shape], origins: Array, directions: Array) -> Array:

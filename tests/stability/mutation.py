@@ -28,7 +28,7 @@ from minirt.rendering.running.cores import usable_cores
 from minirt.scene import Scene
 from tests.kernel import pictures
 from tests.paths import PACKAGE
-from tests.shapes.ways import on_arrays
+from tests.shapes.execution_modes import on_arrays
 from tests.stability.mutations import Change, changes
 from tests.stability.regime import posed
 from tests.stability.table import REGIMES

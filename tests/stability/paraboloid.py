@@ -7,14 +7,14 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes.paraboloid import Paraboloid
-from tests.shapes.regimes import GREY, RAYS, Array, Random, ways
-from tests.stability.aims import along, at, axis_of, edge
+from tests.shapes.regimes import GREY, RAYS, Array, Random, random_directions
+from tests.stability.aimed_rays import along, at, axis_of, edge
 from tests.stability.regime import Regime
 
 
 def make(random: Random, height: float = 1.0) -> Paraboloid:
     """Make a paraboloid of about size 1, times `height` along the axis."""
-    point, axis = tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1))
+    point, axis = tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1))
     return Paraboloid(point, axis, random.uniform(0.5, 2), height * random.uniform(0.5, 2), GREY)
 
 

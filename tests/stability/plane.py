@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes.plane import Plane
-from tests.shapes.regimes import GREY, RAYS, Rays, across, log, ways
+from tests.shapes.regimes import GREY, RAYS, Rays, log_uniform, random_directions, random_perpendiculars
 from tests.stability.common import COUNT
 from tests.stability.regime import Regime
 
@@ -17,10 +17,10 @@ def grazing(seed: int, slope: tuple[float, float], offset: float = 0.0) -> Rays:
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
-        shape = Plane(tuple(offset * ways(random)), tuple(ways(random).clip(-1, 1)), GREY)
+        shape = Plane(tuple(offset * random_directions(random)), tuple(random_directions(random).clip(-1, 1)), GREY)
         normal = np.array(shape.normal)
-        rise = log(random, *slope, RAYS, 1) * random.choice([-1.0, 1.0], (RAYS, 1))
-        directions[i] = across(random, normal, RAYS) * np.sqrt(1 - rise**2) + rise * normal
+        rise = log_uniform(random, *slope, RAYS, 1) * random.choice([-1.0, 1.0], (RAYS, 1))
+        directions[i] = random_perpendiculars(random, normal, RAYS) * np.sqrt(1 - rise**2) + rise * normal
         origins[i] = np.array(shape.point) + random.uniform(1, 20, (RAYS, 1)) * normal
         shapes.append(shape)
     return Rays(shapes, origins, directions)

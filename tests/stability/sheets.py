@@ -9,8 +9,18 @@ import numpy as np
 
 from minirt.shapes.disc import Disc
 from minirt.shapes.square import Square
-from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, across, log, unit, ways
-from tests.stability.aims import at
+from tests.shapes.regimes import (
+    GREY,
+    RAYS,
+    Array,
+    Random,
+    Rays,
+    log_uniform,
+    random_directions,
+    random_perpendiculars,
+    unit,
+)
+from tests.stability.aimed_rays import at
 from tests.stability.common import COUNT
 from tests.stability.regime import Regime
 
@@ -18,11 +28,15 @@ Sheet = Square | Disc
 
 
 def square(random: Random) -> Square:
-    return Square(tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1)), random.uniform(0.5, 2), GREY)
+    return Square(
+        tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1)), random.uniform(0.5, 2), GREY
+    )
 
 
 def disc(random: Random) -> Disc:
-    return Disc(tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1)), random.uniform(0.5, 2), GREY)
+    return Disc(
+        tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1)), random.uniform(0.5, 2), GREY
+    )
 
 
 def edge(random: Random, square: Square) -> Array:
@@ -32,7 +46,7 @@ def edge(random: Random, square: Square) -> Array:
 
 
 def rim(random: Random, disc: Disc) -> Array:
-    return np.array(disc.centre) + disc.diameter / 2 * across(random, np.array(disc.normal), RAYS)
+    return np.array(disc.centre) + disc.diameter / 2 * random_perpendiculars(random, np.array(disc.normal), RAYS)
 
 
 def grazing(seed: int, make: Callable[[Random], Sheet], slope: tuple[float, float]) -> Rays:
@@ -42,9 +56,9 @@ def grazing(seed: int, make: Callable[[Random], Sheet], slope: tuple[float, floa
     for i in range(COUNT):
         sheet = make(random)
         normal = np.array(sheet.normal)
-        rise = log(random, *slope, RAYS, 1) * random.choice([-1.0, 1.0], (RAYS, 1))
-        directions[i] = unit(across(random, normal, RAYS) + rise * normal)
-        spot = np.array(sheet.centre) + 0.2 * random.random((RAYS, 1)) * across(random, normal, RAYS)
+        rise = log_uniform(random, *slope, RAYS, 1) * random.choice([-1.0, 1.0], (RAYS, 1))
+        directions[i] = unit(random_perpendiculars(random, normal, RAYS) + rise * normal)
+        spot = np.array(sheet.centre) + 0.2 * random.random((RAYS, 1)) * random_perpendiculars(random, normal, RAYS)
         origins[i] = spot - random.uniform(1, 9, (RAYS, 1)) * directions[i]
         shapes.append(sheet)
     return Rays(shapes, origins, directions)

@@ -8,7 +8,17 @@ from typing import Any
 import numpy as np
 
 from minirt.shapes.sphere import Sphere
-from tests.shapes.regimes import GREY, RAYS, Array, Rays, across, just_above, log, unit, ways
+from tests.shapes.regimes import (
+    GREY,
+    RAYS,
+    Array,
+    Rays,
+    just_above,
+    log_uniform,
+    random_directions,
+    random_perpendiculars,
+    unit,
+)
 from tests.stability.common import COUNT
 from tests.stability.regime import Regime
 
@@ -16,20 +26,22 @@ from tests.stability.regime import Regime
 def just_inside(seed: int) -> Rays:
     """Rays from at most a millionth of the radius below the surface of a sphere of diameter 1e9."""
     random = np.random.default_rng(seed)
-    out = ways(random, COUNT, RAYS)
+    out = random_directions(random, COUNT, RAYS)
     shapes = [Sphere((0, 0, 0), 1e9, GREY)] * COUNT
-    return Rays(shapes, (5e8 - random.uniform(1e-6, 500, (COUNT, RAYS, 1))) * out, ways(random, COUNT, RAYS))
+    return Rays(
+        shapes, (5e8 - random.uniform(1e-6, 500, (COUNT, RAYS, 1))) * out, random_directions(random, COUNT, RAYS)
+    )
 
 
 def near_the_surface(seed: int) -> Rays:
     """Rays downwards from a billionth of the radius to a whole radius above the surface, and as far below it."""
     random = np.random.default_rng(seed)
     count = 4 * COUNT
-    out = ways(random, count, RAYS)
-    height = log(random, 1e-9, 1.0, count, RAYS, 1) * random.choice([-1.0, 1.0], (count, RAYS, 1))
-    down = unit(across(random, out, count, RAYS) - random.uniform(0.1, 10, (count, RAYS, 1)) * out)
-    directions = np.where(height > 0, down, ways(random, count, RAYS))
-    centre = ways(random)
+    out = random_directions(random, count, RAYS)
+    height = log_uniform(random, 1e-9, 1.0, count, RAYS, 1) * random.choice([-1.0, 1.0], (count, RAYS, 1))
+    down = unit(random_perpendiculars(random, out, count, RAYS) - random.uniform(0.1, 10, (count, RAYS, 1)) * out)
+    directions = np.where(height > 0, down, random_directions(random, count, RAYS))
+    centre = random_directions(random)
     return Rays([Sphere(tuple(centre), 2.0, GREY)] * count, centre + (1 + height) * out, directions)
 
 
@@ -39,16 +51,16 @@ def on_the_surface(seed: int) -> Rays:
     Rounding may take these points for points outside.
     """
     random = np.random.default_rng(seed)
-    shapes = [Sphere(tuple(10.0**e * ways(random)), 10.0**e, GREY) for e in np.linspace(-12, 12, COUNT)]
+    shapes = [Sphere(tuple(10.0**e * random_directions(random)), 10.0**e, GREY) for e in np.linspace(-12, 12, COUNT)]
     origins, directions = np.empty((2, COUNT, RAYS, 3))
     for i, shape in enumerate(shapes):
         centre, radius = np.array(shape.centre), shape.diameter / 2
-        points = centre + radius * ways(random, 2**16)
+        points = centre + radius * random_directions(random, 2**16)
         exactly = above(points.astype(np.longdouble), centre.astype(np.longdouble), np.longdouble(radius))
         seeming = np.where(exactly < 0, above(points, centre, radius), -np.inf)
         origins[i] = points[np.argsort(seeming)[-RAYS:]]
         out = unit(origins[i] - centre)
-        directions[i] = unit(random.uniform(0.1, 1, (RAYS, 1)) * out + across(random, out, RAYS))
+        directions[i] = unit(random.uniform(0.1, 1, (RAYS, 1)) * out + random_perpendiculars(random, out, RAYS))
     return Rays(shapes, origins, directions)
 
 
@@ -62,19 +74,21 @@ def above(points: Array, centre: Array, radius: Any) -> Array:
 def to_the_horizon(seed: int, above: tuple[float, float], dips: tuple[float, ...]) -> Rays:
     """Rays from above a sphere of diameter 1e9, at given fractions of the dip of its horizon."""
     random = np.random.default_rng(seed)
-    up = ways(random, COUNT, RAYS)
-    height = log(random, *above, COUNT, RAYS, 1)
+    up = random_directions(random, COUNT, RAYS)
+    height = log_uniform(random, *above, COUNT, RAYS, 1)
     dip = np.sqrt(2 * height / 5e8) * random.choice(dips, (COUNT, RAYS, 1))
     shapes = [Sphere((0, 0, 0), 1e9, GREY)] * COUNT
-    return Rays(shapes, (5e8 + height) * up, unit(across(random, up, COUNT, RAYS) - dip * up))
+    return Rays(shapes, (5e8 + height) * up, unit(random_perpendiculars(random, up, COUNT, RAYS) - dip * up))
 
 
 def in_the_centre(seed: int) -> Rays:
     """Rays from the centre of spheres of all sizes."""
     random = np.random.default_rng(seed)
-    shapes = [Sphere(tuple(ways(random)), 10.0**exponent, GREY) for exponent in np.linspace(-15, 15, COUNT)]
+    shapes = [
+        Sphere(tuple(random_directions(random)), 10.0**exponent, GREY) for exponent in np.linspace(-15, 15, COUNT)
+    ]
     origins = np.stack([shape.centre for shape in shapes])[:, None] * np.ones((COUNT, RAYS, 1))
-    return Rays(shapes, origins, ways(random, COUNT, RAYS))
+    return Rays(shapes, origins, random_directions(random, COUNT, RAYS))
 
 
 REGIMES = [

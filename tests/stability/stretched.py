@@ -12,7 +12,7 @@ from minirt.errors import ElementError
 from minirt.fields import Length, Lengths
 from minirt.shapes import Kind, Shape
 from tests.shapes.examples import example
-from tests.shapes.regimes import RAYS, Array, Random, Rays, ways
+from tests.shapes.regimes import RAYS, Array, Random, Rays, random_directions
 from tests.stability.regime import Regime
 
 COUNT = 4  # shapes per regime
@@ -33,7 +33,7 @@ def seen(kind: Kind, seed: int, name: str, factor: float) -> Rays:
         with suppress(ElementError):
             shapes.append(stretched(example(kind, random), name, factor))
     places = np.stack([within(shape, random) for shape in shapes])
-    directions = ways(random, COUNT, RAYS)
+    directions = random_directions(random, COUNT, RAYS)
     away = np.where(np.arange(RAYS)[:, None] % 2, random.uniform(3, 20, (COUNT, RAYS, 1)), 0.0)
     return Rays(shapes, places - away * directions, directions)
 
@@ -43,7 +43,9 @@ def within(shape: Shape, random: Random) -> Array:
     centres = np.array([centre for centre, _ in shape.balls()])
     radii = np.array([radius for _, radius in shape.balls()])
     shares = random.dirichlet(np.ones(len(centres)), RAYS)
-    return shares @ centres + 0.7 * (shares @ radii)[:, None] * random.random((RAYS, 1)) * ways(random, RAYS)
+    return shares @ centres + 0.7 * (shares @ radii)[:, None] * random.random((RAYS, 1)) * random_directions(
+        random, RAYS
+    )
 
 
 def regimes(kind: Kind) -> list[Regime]:

@@ -12,7 +12,7 @@ from numba import njit
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel.compiler.code_cache import FLAGS
 from minirt.shapes import KINDS, Kind
-from tests.shapes.ways import Intersect
+from tests.shapes.execution_modes import Intersect
 from tests.stability import mutants
 from tests.stability.regime import Regime, posed
 from tests.stability.table import REGIMES

@@ -21,7 +21,7 @@ from tests.compare import edges
 from tests.kernel.pictures import linear, picture
 from tests.paths import SCENES
 from tests.shapes.examples import example
-from tests.shapes.regimes import log, ways
+from tests.shapes.regimes import log_uniform, random_directions
 from tests.stability.test_properties import SEED, fixed, powers
 
 WHITE = (255, 255, 255)
@@ -114,11 +114,11 @@ def test_light_is_finite(seed: int, size: float, offset: float | None) -> None:
 def stiff(seed: int, size: float, offset: float) -> Scene:
     """Shapes of every type that overlap, with lights and eye among them and often exactly on a shape."""
     random = np.random.default_rng(seed)
-    middle = offset * ways(random)
+    middle = offset * random_directions(random)
     shapes = []
     for kind in KINDS:
         for _ in range(2):
-            each = example(kind, random, size * float(log(random, 1e-3, 1)[()]))
+            each = example(kind, random, size * float(log_uniform(random, 1e-3, 1)[()]))
             name = next(name for name, value in vars(each).items() if isinstance(value, tuple))
             shapes.append(each.replace(**{name: tuple(middle + size * random.normal(size=3))}))
 
@@ -128,5 +128,7 @@ def stiff(seed: int, size: float, offset: float) -> Scene:
         return exactly if random.random() < 0.4 else tuple(middle + 3 * size * random.normal(size=3))
 
     lamps = [FurtherLight(anywhere(), 1.0) for _ in range(3)]
-    eye = Camera(anywhere(), tuple(ways(random).clip(-1, 1)), float(random.choice([0, 1e-3, 60, 179.999, 180])))
+    eye = Camera(
+        anywhere(), tuple(random_directions(random).clip(-1, 1)), float(random.choice([0, 1e-3, 60, 179.999, 180]))
+    )
     return Scene((DIM, eye, *lamps, *shapes))

@@ -13,8 +13,8 @@ import minirt
 from minirt.scene import Camera, Scene
 from minirt.shapes import KINDS, Kind
 from tests.shapes.examples import example
+from tests.shapes.execution_modes import compiled, on_arrays
 from tests.shapes.regimes import Rays, unit
-from tests.shapes.ways import compiled, on_arrays
 from tests.stability.common import towards
 from tests.stability.regime import Regime, Right
 

@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 
 from minirt.shapes import KINDS, Kind
+from tests.stability.execution_modes import MODES
 from tests.stability.regime import Regime, posed
 from tests.stability.table import REGIMES
-from tests.stability.ways import WAYS
 
 
 def label(value: object) -> str:
     return value.element.title if isinstance(value, Kind) else getattr(value, "name", str(value))
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", MODES)
 @pytest.mark.parametrize(("kind", "regime"), REGIMES, ids=label)
 def test_hits_are_exact(kind: Kind, regime: Regime, way: str) -> None:
-    intersect, every = WAYS[way]
+    intersect, every = MODES[way]
     right = posed(regime)
     assert {type(shape) for shape in right.rays.shapes} == {kind.element}
     wrong = right.wrong(intersect(*right.rays), every)
@@ -34,7 +34,7 @@ def test_a_regime_has_rays_that_hit(kind: Kind, regime: Regime) -> None:
 @pytest.mark.parametrize("kind", KINDS, ids=label)
 def test_usual_rays_are_exact_to_a_few_roundings(kind: Kind, way: str) -> None:
     right = posed(next(regime for other, regime in REGIMES if (other, regime.name) == (kind, "usual")))
-    t = WAYS[way][0](*right.rays)
+    t = MODES[way][0](*right.rays)
     hit = np.isfinite(right.t)
     errors = np.abs(t[hit] - right.t[hit]) / right.t[hit]
     assert np.sqrt((errors**2).mean()) <= 1e-15

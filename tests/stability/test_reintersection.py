@@ -12,9 +12,9 @@ import pytest
 from minirt.shapes import KINDS, Kind, Shape
 from tests import oracle
 from tests.oracle.body import body
-from tests.shapes.examples import example, hits, offsets, place
-from tests.shapes.regimes import RAYS, Array, Random, Rays, across, log, unit, ways
-from tests.shapes.ways import compiled, surfaces
+from tests.shapes.examples import example, hits, place, shadow_offsets
+from tests.shapes.execution_modes import compiled, surfaces
+from tests.shapes.regimes import RAYS, Array, Random, Rays, log_uniform, random_directions, random_perpendiculars, unit
 
 KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
 DIRECTIONS = 1008  # a multiple of the rays of a packet
@@ -33,11 +33,11 @@ class Seen(NamedTuple):
 def seen(kind: Kind, seed: int, count: int = 1000, size: float | None = None) -> Seen:
     """Make shapes of a size, by default 1e-8 to 1e8, half of them up to 1e8 sizes from the scene's origin."""
     random = np.random.default_rng(seed)
-    sizes = log(random, 1e-8, 1e8, count) if size is None else np.full(count, size)
-    away = sizes * log(random, 1.0, 1e8, count) * random.integers(0, 2, count)
+    sizes = log_uniform(random, 1e-8, 1e8, count) if size is None else np.full(count, size)
+    away = sizes * log_uniform(random, 1.0, 1e8, count) * random.integers(0, 2, count)
     shapes = [example(kind, random, *each) for each in zip(sizes, np.minimum(away, 1e14), strict=True)]
     middles, scale = np.stack([place(shape) for shape in shapes])[:, None], sizes[:, None, None]
-    origins = middles + scale * log(random, 0.1, 10, count, RAYS, 1) * ways(random, count, RAYS)
+    origins = middles + scale * log_uniform(random, 0.1, 10, count, RAYS, 1) * random_directions(random, count, RAYS)
     directions = unit(middles + scale * random.uniform(-0.6, 0.6, (count, RAYS, 3)) - origins)
     t = compiled(shapes, origins, directions)
     hit = np.isfinite(t).any(axis=1)
@@ -56,8 +56,10 @@ def solid(kind: Kind) -> bool:
 def away_from(random: Random, normals: Array) -> Array:
     """Return directions away from a surface: half of them anywhere, half grazing, down to a cosine of 1e-8."""
     shape = (len(normals), DIRECTIONS)
-    cosine = np.where(random.random(shape) < 0.5, random.uniform(0.01, 1, shape), log(random, 1e-8, 1e-2, *shape))
-    aside = across(random, normals, *shape)
+    cosine = np.where(
+        random.random(shape) < 0.5, random.uniform(0.01, 1, shape), log_uniform(random, 1e-8, 1e-2, *shape)
+    )
+    aside = random_perpendiculars(random, normals, *shape)
     return unit(cosine[..., None] * normals + np.sqrt(1 - cosine[..., None] ** 2) * aside)
 
 
@@ -71,7 +73,7 @@ def shot(found: Seen, side: float, offset: Offset) -> Rays:
 def acne(found: Seen, offset: Offset) -> int:
     """Count the rays to the outside that hit their own surface again; at most 500."""
     rays = shot(found, 1.0, offset)
-    t, slack = compiled(*rays), 2 * offsets(found.points, found.shapes)
+    t, slack = compiled(*rays), 2 * shadow_offsets(found.points, found.shapes)
     count = 0
     for i, j in np.argwhere(np.isfinite(t))[:500]:
         # A hit that vanishes on a slightly thinner solid is the start point again, and so is any hit on a flat shape.
@@ -82,12 +84,12 @@ def acne(found: Seen, offset: Offset) -> int:
 
 @KIND
 def test_no_ray_hits_the_surface_again_from_which_it_starts(kind: Kind) -> None:
-    assert acne(seen(kind, 1), offsets) == 0
+    assert acne(seen(kind, 1), shadow_offsets) == 0
 
 
 @pytest.mark.parametrize("kind", [each for each in KINDS if solid(each)], ids=lambda kind: kind.element.title)
 def test_no_ray_leaves_a_solid_unseen(kind: Kind) -> None:
-    rays = shot(seen(kind, 3), -1.0, offsets)
+    rays = shot(seen(kind, 3), -1.0, shadow_offsets)
     t = compiled(*rays)
     started = np.array(
         [oracle.inside(shape, start) for shape, start in zip(rays.shapes, rays.origins[:, 0], strict=True)]
@@ -99,7 +101,7 @@ def test_no_ray_leaves_a_solid_unseen(kind: Kind) -> None:
 @KIND
 @pytest.mark.parametrize("size", [1e-4, 1.0, 1e8])
 def test_rays_start_close_to_the_surface(kind: Kind, size: float) -> None:
-    assert closeness(kind, size, offsets) <= 1e-13
+    assert closeness(kind, size, shadow_offsets) <= 1e-13
 
 
 def closeness(kind: Kind, size: float, offset: Offset) -> float:

@@ -15,10 +15,10 @@ from gmpy2 import mpfr, sqrt
 from minirt.shapes import Shape
 from tests.oracle.vectors import cross, dot, exact, minus, unit
 from tests.shapes import mutants
-from tests.shapes.ways import Intersect
+from tests.shapes.execution_modes import Intersect
+from tests.stability.execution_modes import MODES
 from tests.stability.regime import posed
 from tests.stability.table import REGIMES
-from tests.stability.ways import WAYS
 
 RIMS: dict[str, tuple[tuple[str, float], ...]] = {  # for each rim its height above the point, in heights of the shape
     "cylinder": (("centre", -0.5), ("centre", 0.5)),
@@ -60,7 +60,7 @@ def wrong(title: str, intersect: Intersect) -> int:
 @pytest.mark.parametrize("way", ["arrays", "compiled"])
 @pytest.mark.parametrize("title", RIMS)
 def test_only_rays_within_64_roundings_of_a_rim_may_take_it_for_another_place(title: str, way: str) -> None:
-    assert wrong(title, WAYS[way][0]) == 0
+    assert wrong(title, MODES[way][0]) == 0
 
 
 def test_a_crack_is_found() -> None:

@@ -15,7 +15,7 @@ from minirt.rendering.packing.primitives import extent
 from minirt.scene import Camera, Scene
 from minirt.shapes import KINDS, Kind, Shape
 from tests.oracle.body import body, normals
-from tests.shapes.ways import on_arrays, surfaces
+from tests.shapes.execution_modes import on_arrays, surfaces
 from tests.stability.common import common
 from tests.stability.regime import Array, Regime, U, posed, size
 

@@ -7,8 +7,18 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes.torus import Torus
-from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, across, log, unit, ways
-from tests.stability.aims import along, at, axis_of
+from tests.shapes.regimes import (
+    GREY,
+    RAYS,
+    Array,
+    Random,
+    Rays,
+    log_uniform,
+    random_directions,
+    random_perpendiculars,
+    unit,
+)
+from tests.stability.aimed_rays import along, at, axis_of
 from tests.stability.common import COUNT
 from tests.stability.regime import Regime
 
@@ -16,17 +26,19 @@ from tests.stability.regime import Regime
 def make(random: Random, tube: float = 0.4) -> Torus:
     """Make a torus of about size 1; its tube is a share of its diameter."""
     diameter = random.uniform(0.5, 2)
-    return Torus(tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1)), diameter, tube * diameter, GREY)
+    return Torus(
+        tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1)), diameter, tube * diameter, GREY
+    )
 
 
 def ring(random: Random, torus: Torus) -> Array:
     """Random points of the centre circle of the tube."""
-    return np.array(torus.centre) + torus.diameter / 2 * across(random, axis_of(torus), RAYS)
+    return np.array(torus.centre) + torus.diameter / 2 * random_perpendiculars(random, axis_of(torus), RAYS)
 
 
 def inside(random: Random, torus: Torus) -> Array:
     """Random points inside the tube."""
-    return ring(random, torus) + torus.tube / 2 * random.random((RAYS, 1)) * ways(random, RAYS)
+    return ring(random, torus) + torus.tube / 2 * random.random((RAYS, 1)) * random_directions(random, RAYS)
 
 
 def top(random: Random, torus: Torus) -> Array:
@@ -49,14 +61,14 @@ def axis(random: Random, torus: Torus) -> Array:
 
 
 def level(random: Random, torus: Torus) -> Array:
-    return across(random, axis_of(torus), RAYS)
+    return random_perpendiculars(random, axis_of(torus), RAYS)
 
 
 def from_inside(seed: int, tube: float = 0.4) -> Rays:
     """Rays from inside the tube in all directions."""
     random = np.random.default_rng(seed)
     shapes = [make(random, tube) for _ in range(COUNT)]
-    return Rays(shapes, np.stack([inside(random, shape) for shape in shapes]), ways(random, COUNT, RAYS))
+    return Rays(shapes, np.stack([inside(random, shape) for shape in shapes]), random_directions(random, COUNT, RAYS))
 
 
 def over_the_top(seed: int) -> Rays:
@@ -67,7 +79,7 @@ def over_the_top(seed: int) -> Rays:
         torus = make(random)
         start, end = top(random, torus), top(random, torus)
         directions[i] = unit(end - start)
-        off = log(random, 1e-14, 1e-4, RAYS, 1) * random.choice([-1.0, 0.0, 1.0], (RAYS, 1)) * axis_of(torus)
+        off = log_uniform(random, 1e-14, 1e-4, RAYS, 1) * random.choice([-1.0, 0.0, 1.0], (RAYS, 1)) * axis_of(torus)
         origins[i] = start + off - random.uniform(0, 9, (RAYS, 1)) * directions[i]
         shapes.append(torus)
     return Rays(shapes, origins, directions)
@@ -79,9 +91,9 @@ def touching_twice(seed: int, off: tuple[float, float]) -> Rays:
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
         torus = make(random)
-        out, sine = across(random, axis_of(torus), RAYS), torus.tube / torus.diameter
+        out, sine = random_perpendiculars(random, axis_of(torus), RAYS), torus.tube / torus.diameter
         directions[i] = np.sqrt(1 - sine**2) * out + sine * axis_of(torus)
-        aside = log(random, *off, RAYS, 1) * ways(random, RAYS)
+        aside = log_uniform(random, *off, RAYS, 1) * random_directions(random, RAYS)
         origins[i] = np.array(torus.centre) + aside - random.uniform(0, 9, (RAYS, 1)) * directions[i]
         shapes.append(torus)
     return Rays(shapes, origins, directions)

@@ -7,16 +7,26 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes.triangle import Triangle
-from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, across, log, unit, ways
-from tests.stability.aims import at
+from tests.shapes.regimes import (
+    GREY,
+    RAYS,
+    Array,
+    Random,
+    Rays,
+    log_uniform,
+    random_directions,
+    random_perpendiculars,
+    unit,
+)
+from tests.stability.aimed_rays import at
 from tests.stability.common import COUNT
 from tests.stability.regime import Regime
 
 
 def make(random: Random, height: float = 1.0) -> Triangle:
     """Make a triangle of about size 1; its last corner is `height` from the opposite edge."""
-    a, along = random.normal(size=3), ways(random)
-    c = a + random.uniform(0, 1) * along + height * across(random, along)
+    a, along = random.normal(size=3), random_directions(random)
+    c = a + random.uniform(0, 1) * along + height * random_perpendiculars(random, along)
     return Triangle(tuple(a), tuple(a + along), tuple(c), GREY)
 
 
@@ -43,9 +53,9 @@ def grazing(seed: int, slope: tuple[float, float]) -> Rays:
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
         triangle = make(random)
-        rise = log(random, *slope, RAYS, 1) * random.choice([-1.0, 1.0], (RAYS, 1))
+        rise = log_uniform(random, *slope, RAYS, 1) * random.choice([-1.0, 1.0], (RAYS, 1))
         normal = np.array(triangle.normal())
-        directions[i] = unit(across(random, normal, RAYS) + rise * normal)
+        directions[i] = unit(random_perpendiculars(random, normal, RAYS) + rise * normal)
         origins[i] = inside(random, triangle) - random.uniform(1, 9, (RAYS, 1)) * directions[i]
         shapes.append(triangle)
     return Rays(shapes, origins, directions)

@@ -6,7 +6,8 @@ from collections.abc import Hashable, Iterable
 from operator import attrgetter
 from typing import Any
 
-from minirt.element import Element
+from minirt.element import Element, fields_of
+from minirt.materials import Attributes
 from minirt.scene import Background, Lamp, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes import Shape
 
@@ -23,8 +24,9 @@ FEATURES = {
     "environment": "a picture as background",
 }
 DEPTH = 8  # reflections and refractions of a ray, at most
-ATTRIBUTES = attrgetter("specular", "mirror", "glass", "checker", "texture", "bump", "normal_map")
-PLAIN = (None,) * 7
+MATERIALS = tuple((field.name, field) for field in fields_of(Attributes))
+ATTRIBUTES = attrgetter(*(name for name, _ in MATERIALS))
+PLAIN = (None,) * len(MATERIALS)
 
 
 def features(scene: Scene) -> frozenset[Hashable]:
@@ -63,16 +65,6 @@ def features_of(item: Element | str) -> Iterable[Hashable]:
 
 
 def material_features(shape: Shape) -> Iterable[str]:
-    """The features that the materials of a shape use."""
-    if shape.specular and shape.specular.share:
-        yield "specular"
-    if shape.mirror or (shape.glass and shape.glass.share):
-        yield "reflective"
-    if shape.checker:
-        yield "checks"
-    if shape.texture:
-        yield "textures"
-    if shape.bump and shape.bump.strength:
-        yield "bumps"
-    if shape.normal_map:
-        yield "normals"
+    """The features that the materials of a shape need."""
+    values = zip(MATERIALS, ATTRIBUTES(shape), strict=True)
+    return dict.fromkeys(filter(None, (field.feature_of(value) for (_, field), value in values if value is not None)))

@@ -16,8 +16,7 @@ from minirt.scene import Scene
 from minirt.shapes import Shape
 
 NumberedShapes = list[tuple[int, Shape]]  # shapes that have materials, with their indices
-MAP_FEATURES = {"checks", "textures", "bumps", "normals"}
-MATERIAL_FEATURES = {"specular", "reflective", *MAP_FEATURES}
+MAP_FEATURES = {"checks", "textures", "bumps", "normals"}  # features that `pack_surface_maps` packs
 Reader = Callable[[Path], np.ndarray]
 
 
@@ -31,15 +30,13 @@ class Materials(NamedTuple):
 
 def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
     """Pack the materials of n primitives for the features that a scene uses; `owner` (n,) has the shape of each."""
-    if not used & MATERIAL_FEATURES:  # without a look at each of a million shapes
+    if not used & {*ROW_PACKERS, *MAP_FEATURES}:  # without a look at each of a million shapes
         return Materials(None, None, None)
     with_materials = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     count = len(scene.shapes)
-    return Materials(
-        pack_specular(with_materials, count)[owner] if "specular" in used else None,
-        pack_reflective(with_materials, count)[owner] if "reflective" in used else None,
-        pack_surface_maps(scene, with_materials, owner, used) if used & MAP_FEATURES else None,
-    )
+    rows = {name: pack(with_materials, count)[owner] if name in used else None for name, pack in ROW_PACKERS.items()}
+    maps = pack_surface_maps(scene, with_materials, owner, used) if used & MAP_FEATURES else None
+    return Materials(**rows, surface_maps=maps)
 
 
 def pack_specular(with_materials: NumberedShapes, count: int) -> np.ndarray:
@@ -61,6 +58,12 @@ def pack_reflective(with_materials: NumberedShapes, count: int) -> np.ndarray:
         total = max(1.0, reflected + refracted)
         rows[i] = reflected / total, refracted / total, ior
     return rows
+
+
+ROW_PACKERS = {  # by feature, a field of `Materials`
+    "specular": pack_specular,
+    "reflective": pack_reflective,
+}
 
 
 def pack_surface_maps(

@@ -18,6 +18,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -41,6 +42,7 @@ class Solid(NamedTuple):
     quadratic: Decimal = ZERO
     low: Decimal = -END
     high: Decimal = END
+    scaled: tuple[Exact, ...] = ()  # rows of a matrix: the solid is where that takes a point into the one described
 
 
 def plane(shape: Any, _: Decimal) -> Solid:
@@ -109,16 +111,26 @@ def triangle(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
 
 
 def box(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
-    """Three slabs, half a size to both sides of the centre along each axis of the box.
+    """Three slabs, half a size to both sides of the centre along each axis of the box."""
+    centre, halves = exact(shape.centre), (Decimal(size) / 2 + swell for size in shape.sizes)
+    return tuple(slab(centre, axis, -half, half) for axis, half in zip(own_axes(shape), halves, strict=True))
 
-    Half a turn about the bisector of y and the box's axis, or of -y and the axis, takes the scene's axes to the box's.
-    """
-    centre, y = exact(shape.centre), unit(exact(shape.axis))
-    between = [y[0], y[1] + (1 if y[1] >= 0 else -1), y[2]]
-    share = [2 * each / dot(between, between) for each in between]
-    x, z = ([share[i] * part - int(i == j) for j, part in enumerate(between)] for i in (0, 2))
+
+def ellipsoid(shape: Any, swell: Decimal) -> Solid:
+    """The unit sphere, scaled along the axes of the ellipsoid by its semi-axes."""
     halves = (Decimal(size) / 2 + swell for size in shape.sizes)
-    return tuple(slab(centre, axis, -half, half) for axis, half in zip((x, y, z), halves, strict=True))
+    rows = ([each / half for each in axis] for axis, half in zip(own_axes(shape), halves, strict=True))
+    return Solid(exact(shape.centre), exact((0, 0, 1)), Decimal(1), quadratic=Decimal(-1), scaled=tuple(rows))
+
+
+def own_axes(shape: Any) -> tuple[Exact, Exact, Exact]:
+    """The own x, y and z axes of a shape whose y axis is its `axis`: half a turn about the bisector of that and the
+    scene's y, or its opposite, takes the axes of the scene to them, or to their opposites."""
+    y = unit(exact(shape.axis))
+    bisector = [y[0], y[1] + (1 if y[1] >= 0 else -1), y[2]]
+    share = [2 * each / dot(bisector, bisector) for each in bisector]
+    x, z = ([share[i] * part - int(i == j) for j, part in enumerate(bisector)] for i in (0, 2))
+    return x, y, z
 
 
 def slab(place: Exact, axis: Exact, low: Decimal, high: Decimal) -> Solid:
@@ -137,6 +149,7 @@ SOLIDS: dict[type[Shape], Callable[[Any, Decimal], Solid | tuple[Solid, ...]]] =
     Square: square,
     Disc: disc,
     Box: box,
+    Ellipsoid: ellipsoid,
 }
 
 
@@ -157,6 +170,8 @@ def distance(shape: Shape, origin: Sequence[float], direction: Sequence[float], 
 def inside_intervals(solid: Solid, origin: Exact, direction: Exact) -> Intervals:
     """Return the intervals of t in which a line is inside a solid."""
     out = minus(origin, solid.place)
+    if solid.scaled:
+        out, direction = ([dot(row, each) for row in solid.scaled] for each in (out, direction))
     height, climb = dot(out, solid.axis), dot(direction, solid.axis)
     within = intersection(not_above(climb, height - solid.high), not_above(-climb, solid.low - height))
     if solid.square is None:

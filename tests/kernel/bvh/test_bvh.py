@@ -17,7 +17,7 @@ from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.bvh.trees import Interpreted, brute_force, build_tree, random_shapes, trace
-from tests.shapes.regimes import Array, unit, ways
+from tests.shapes.regimes import Array, random_directions, unit
 
 GREY = (128, 128, 128)
 
@@ -163,7 +163,7 @@ def grazing_rays(seed: int) -> tuple[list[Shape], Array, Array]:
     random = np.random.default_rng(seed)
     centre, radius = random.normal(size=3) * 10, random.uniform(0.01, 1)
     axis = np.eye(3)[random.integers(3, size=300)] * random.choice([-1, 1], size=(300, 1))
-    directions = unit(np.cross(axis, ways(random, 300))) + random.uniform(-4e-16, 4e-16, (300, 1)) * axis
+    directions = unit(np.cross(axis, random_directions(random, 300))) + random.uniform(-4e-16, 4e-16, (300, 1)) * axis
     return (
         [sphere(*centre, 2 * radius)],
         centre + radius * axis - random.uniform(1, 50, (300, 1)) * directions,

@@ -16,7 +16,7 @@ from minirt.rendering.packing.bvh import aligned, block_type, build_bvh
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import KINDS, Shape
 from tests.shapes.examples import example, place
-from tests.shapes.regimes import Array, Random, log, unit, ways
+from tests.shapes.regimes import Array, Random, log_uniform, random_directions, unit
 
 
 class Interpreted:
@@ -67,8 +67,8 @@ def random_shapes(
     random: Random, count: int, size: float = 1.0, offset: float = 0.0, spread: float = 4.0
 ) -> list[Shape]:
     """Return random shapes of every kind and many sizes that overlap each other; only a few are unbounded."""
-    middle = offset * ways(random)
-    shapes = [example(KINDS[i % len(KINDS)], random, size * log(random, 0.05, 2)) for i in range(count)]
+    middle = offset * random_directions(random)
+    shapes = [example(KINDS[i % len(KINDS)], random, size * log_uniform(random, 0.05, 2)) for i in range(count)]
     few_unbounded = [each for i, each in enumerate(shapes) if each.bounds() or i < 6]
     return [moved(each, middle + size * spread * random.normal(size=3)) for each in few_unbounded]
 
@@ -84,7 +84,7 @@ def random_rays(random: Random, shapes: list[Shape], count: int) -> tuple[Array,
     centres = np.stack([place(each) for each in shapes])
     size = max(np.ptp(centres, axis=0).max(), 1e-9 * np.abs(centres).max())
     origins = centres[random.integers(len(shapes), size=count)]
-    origins = origins + size * log(random, 1e-4, 1, count, 1) * ways(random, count)
+    origins = origins + size * log_uniform(random, 1e-4, 1, count, 1) * random_directions(random, count)
     aims = centres[random.integers(len(shapes), size=count)] + 0.02 * size * random.normal(size=(count, 3))
     axes = np.eye(3)[random.integers(3, size=count)] * random.choice([-1.0, 1.0], size=(count, 1))
     return origins, unit(np.where(np.arange(count)[:, None] % 3 == 0, axes, aims - origins))

@@ -8,8 +8,8 @@ from minirt.kernel.compiler import jit
 from minirt.kernel.rows import row_type
 from minirt.shapes import KINDS
 from tests.paths import PACKAGE
+from tests.shapes.execution_modes import compiled, kernel
 from tests.shapes.test_sphere import BENIGN
-from tests.shapes.ways import compiled, kernel
 
 COMPILERS = {"njit", "jit", "vectorize", "guvectorize", "cfunc", "stencil"}
 FASTMATH = "fastmath"

@@ -15,6 +15,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -38,6 +39,7 @@ SHAPES: tuple[Shape, ...] = (
     Disc((0, 0, 0), FRONT, 3, GREY),
     Box((0, 0, 0), UP, (3, 3, 3), GREY),
     Torus((0, 0, 0), UP, 3, 2, GREY),
+    Ellipsoid((0, 0, 0), UP, (3, 4, 2), GREY),
 )
 
 

@@ -19,9 +19,9 @@ from minirt.lanes import Vec, load, save, width
 from minirt.shapes import KINDS, Kind
 from tests.kernel.pictures import Array
 from tests.shapes.charts import Chart
-from tests.shapes.mapped import Mapped, cases, interpreted, lengths
-from tests.shapes.regimes import unit, ways
-from tests.shapes.ways import array, vec
+from tests.shapes.execution_modes import array, vec
+from tests.shapes.mapping_checks import SurfaceMapping, cases, interpreted, lengths
+from tests.shapes.regimes import random_directions, unit
 
 SIDE = 256  # pixels along an edge of the height map
 STRENGTH = 0.05
@@ -82,17 +82,17 @@ def normal_map_lanes(maps: Any, uv: Any, a: Any, b: Any, n: Any, out: Any) -> No
 
 LANES = {"bump": bump_map_lanes, "normal": normal_map_lanes}
 PLAIN = {"bump": bump_mapped, "normal": normal_mapped}
-Bend = Callable[[str, SurfaceMaps, Mapped, Array], Array]
+Bend = Callable[[str, SurfaceMaps, SurfaceMapping, Array], Array]
 
 
-def interpreted_bend(name: str, maps: SurfaceMaps, at: Mapped, normals: Array) -> Array:
+def interpreted_bend(name: str, maps: SurfaceMaps, at: SurfaceMapping, normals: Array) -> Array:
     """Apply a bump or normal map to normals by the interpreted kernel."""
     table = maps.bumps if name == "bump" else maps.normals
     result = PLAIN[name](table, maps, 0, at.u, at.v, vec(at.along_u), vec(at.along_v), vec(normals))
     return array(result, normals)
 
 
-def compiled_bend(name: str, maps: SurfaceMaps, at: Mapped, normals: Array) -> Array:
+def compiled_bend(name: str, maps: SurfaceMaps, at: SurfaceMapping, normals: Array) -> Array:
     """Apply a bump or normal map to normals by the compiled kernel."""
     out = np.full((3, len(normals)), np.nan)
     vectors = (np.ascontiguousarray(each.T) for each in (at.along_u, at.along_v, normals))
@@ -185,22 +185,22 @@ def test_a_flat_height_map_changes_no_normal(bend: Bend) -> None:
 @EITHER
 @pytest.mark.parametrize("name", LANES)
 def test_zero_tangents_leave_normals_unchanged(bend: Bend, name: str) -> None:
-    normals = ways(np.random.default_rng(2), 16)
+    normals = random_directions(np.random.default_rng(2), 16)
     nothing = np.zeros((16, 3))
     maps = height_map() if name == "bump" else uniform((200, 50, 230))
-    for a, b in ((nothing, nothing), (nothing, ways(np.random.default_rng(3), 16))):
-        at = Mapped(np.full(16, 0.3), np.full(16, 0.6), a, b)
+    for a, b in ((nothing, nothing), (nothing, random_directions(np.random.default_rng(3), 16))):
+        at = SurfaceMapping(np.full(16, 0.3), np.full(16, 0.6), a, b)
         result = bend(name, maps, at, normals)
         assert np.abs(lengths(result) - 1).max() < 1e-12
         if name == "bump" or b is nothing:
             assert lengths(result - normals).max() < 1e-12
 
 
-def skewed_tangents() -> tuple[Mapped, Array]:
+def skewed_tangents() -> tuple[SurfaceMapping, Array]:
     """Return tangents of many lengths, not perpendicular to each other, and normals."""
     random = np.random.default_rng(4)
     a, b = random.normal(size=(2, 32, 3)) * 10.0 ** random.uniform(-6, 6, (2, 32, 1))
-    return Mapped(*random.random((2, 32)), a, b), unit(np.cross(unit(a), unit(b)))
+    return SurfaceMapping(*random.random((2, 32)), a, b), unit(np.cross(unit(a), unit(b)))
 
 
 @EITHER

@@ -24,7 +24,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import linear
 from tests.meshes.examples import GREY, ball, named
-from tests.shapes.regimes import ways
+from tests.shapes.regimes import random_directions
 
 WIDTH, HEIGHT = 96, 48
 UNIT_BALL = Cluster(np.zeros(3), 1.0)
@@ -131,7 +131,7 @@ def test_the_margin_is_the_reach_of_close_directions(light: Any) -> None:
     slopes[:, ::2] = half * np.sign(slopes[:, ::2])  # at the corners they reach farthest
     directions = np.array([*slopes, np.ones(200_000)])
     directions /= np.linalg.norm(directions, axis=0)
-    nearby = directions + np.sqrt(buffer[TOLERANCE]) * ways(random, 200_000).T
+    nearby = directions + np.sqrt(buffer[TOLERANCE]) * random_directions(random, 200_000).T
     nearby /= np.linalg.norm(nearby, axis=0)
     close = ((nearby - directions) ** 2).sum(axis=0) <= buffer[TOLERANCE]
     reach = np.abs(nearby[:2] / nearby[2] - slopes)[:, close].max() * grid.scale_x

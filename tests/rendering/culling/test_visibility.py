@@ -24,7 +24,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.random_scenes import random_scene
 from tests.shapes.examples import hits
-from tests.shapes.regimes import ways
+from tests.shapes.regimes import random_directions
 
 WIDTH, HEIGHT = 70, 45  # five tiles by three, the last ones cut
 
@@ -154,7 +154,7 @@ def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(make: Any,
             directions[:, 1000:] = buffer[:9].reshape(3, 3).T @ np.array([*slopes, np.ones(1000)])
             directions /= np.linalg.norm(directions, axis=0)
         # The list of a cell holds for close directions, too.
-        nearby = directions + 0.99 * np.sqrt(buffer[TOLERANCE]) * ways(random, 2000).T
+        nearby = directions + 0.99 * np.sqrt(buffer[TOLERANCE]) * random_directions(random, 2000).T
         nearby /= np.linalg.norm(nearby, axis=0)
         nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= buffer[TOLERANCE], nearby, directions)
         with np.errstate(all="ignore"):

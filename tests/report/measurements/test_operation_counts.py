@@ -14,7 +14,7 @@ from minirt.report.measurements import formula_errors, textbook
 from minirt.report.measurements.random_rays import Rays
 from minirt.report.measurements.regimes import regimes_of
 from minirt.shapes import KINDS, Kind, Shape, sphere
-from minirt.shapes.compensated import power
+from minirt.shapes.compensated import power_of_point
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.hyperboloid import Hyperboloid
@@ -56,7 +56,7 @@ def test_exact_formulas_take_little_more_than_those_of_textbooks(element: type[S
 def always_exact(ball: PackedSphere, origin: Vec, direction: Vec) -> Any:
     """Planted expensive formula of the sphere: it computes the power of each origin with twice the digits."""
     hit, t = sphere.intersect(ball, origin, direction)
-    return hit & (power(origin, ball.centre, ball.radius) > 0.0), t
+    return hit & (power_of_point(origin, ball.centre, ball.radius) > 0.0), t
 
 
 def with_unit_directions(ball: PackedSphere, origin: Vec, direction: Vec) -> Any:

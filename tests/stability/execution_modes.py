@@ -1,4 +1,4 @@
-"""The ways to evaluate the formulas: those of `tests.shapes.ways`, and `minirt.trace`."""
+"""The ways to evaluate the formulas: those of `tests.shapes.execution_modes`, and `minirt.trace`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 import minirt
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
-from tests.shapes.ways import Array, Intersect, compiled, on_arrays, on_numbers
+from tests.shapes.execution_modes import Array, Intersect, compiled, on_arrays, on_numbers
 
 EVERY = 4  # on single numbers only every n-th ray is tested, as it takes long
 
@@ -23,7 +23,7 @@ def traced(shapes: list[Shape], origins: Array, directions: Array) -> Array:
     return np.stack([minirt.trace(Scene((eye, shape)), o, d).distance for shape, o, d in rays])
 
 
-WAYS: dict[str, tuple[Intersect, int]] = {
+MODES: dict[str, tuple[Intersect, int]] = {
     "arrays": (on_arrays, 1),
     "numbers": (few_on_numbers, EVERY),
     "compiled": (compiled, 1),

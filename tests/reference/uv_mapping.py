@@ -11,6 +11,7 @@ from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
@@ -19,12 +20,12 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
-from tests.reference.normals import normals
+from tests.reference.normals import normals, scaled_axes
 from tests.reference.revolved import profile
-from tests.reference.vectors import Array, dot, length, turned, unit, upright
+from tests.reference.vectors import Array, dot, length, own_x_and_z, right_and_up, unit
 
 
-class Place(NamedTuple):
+class SurfacePoint(NamedTuple):
     """A point on a picture."""
 
     u: Array
@@ -34,68 +35,68 @@ class Place(NamedTuple):
 
 
 @singledispatch
-def place(shape: Shape, points: Array) -> Place:
+def surface_point(shape: Shape, points: Array) -> SurfacePoint:
     """Where points of the surface lie on its picture."""
     raise TypeError(f"the reference renderer knows no {shape.title}")
 
 
-def flat(points: Array, corner: Array, right: Array, up: Array) -> Place:
+def flat_point(points: Array, corner: Array, right: Array, up: Array) -> SurfacePoint:
     """On a picture with that lower left corner and these edges, perpendicular to each other."""
     p = points - corner
     edges = [np.broadcast_to(edge, points.shape) for edge in (right, up)]
-    return Place(dot(p, right) / dot(right, right), dot(p, up) / dot(up, up), *edges)
+    return SurfacePoint(dot(p, right) / dot(right, right), dot(p, up) / dot(up, up), *edges)
 
 
-@place.register
-def _(plane: Plane, points: Array) -> Place:
-    return flat(points, np.array(plane.point), *upright(-np.array(plane.normal)))
+@surface_point.register
+def _(plane: Plane, points: Array) -> SurfacePoint:
+    return flat_point(points, np.array(plane.point), *right_and_up(-np.array(plane.normal)))
 
 
-@place.register(Square)
-@place.register(Disc)
-def _(sheet: Square | Disc, points: Array) -> Place:
+@surface_point.register(Square)
+@surface_point.register(Disc)
+def _(sheet: Square | Disc, points: Array) -> SurfacePoint:
     size = sheet.diameter if isinstance(sheet, Disc) else sheet.side
-    right, up = upright(-np.array(sheet.normal))
-    return flat(points, np.array(sheet.centre) - size * (right + up) / 2, size * right, size * up)
+    right, up = right_and_up(-np.array(sheet.normal))
+    return flat_point(points, np.array(sheet.centre) - size * (right + up) / 2, size * right, size * up)
 
 
-@place.register
-def _(triangle: Triangle, points: Array) -> Place:
+@surface_point.register
+def _(triangle: Triangle, points: Array) -> SurfacePoint:
     a, b, c = (np.array(corner) for corner in (triangle.a, triangle.b, triangle.c))
     (u, v), *_ = np.linalg.lstsq(np.stack([b - a, c - a], axis=-1), (points - a).reshape(-1, 3).T, rcond=None)
     shape = points.shape[:-1]
-    return Place(
+    return SurfacePoint(
         u.reshape(shape), v.reshape(shape), np.broadcast_to(b - a, points.shape), np.broadcast_to(c - a, points.shape)
     )
 
 
-@place.register
-def _(box: Box, points: Array) -> Place:
+@surface_point.register
+def _(box: Box, points: Array) -> SurfacePoint:
     y = np.array(box.axis)
-    _, z = turned(y)
+    _, z = own_x_and_z(y)
     x = np.cross(y, z)
     wide, tall, deep = box.sizes
     normal = normals(box, points)
     # For each face, by its normal: right and up of somebody who faces it.
     faces = [(x, -z, y, deep, tall), (-x, z, y, deep, tall), (z, x, y, wide, tall), (-z, -x, y, wide, tall)]
     faces += [(y, x, -z, wide, deep), (-y, x, z, wide, deep)]
-    found = Place(*(np.zeros(points.shape[:-1] + rest) for rest in ((), (), (3,), (3,))))
+    found = SurfacePoint(*(np.zeros(points.shape[:-1] + rest) for rest in ((), (), (3,), (3,))))
     for out, to_right, upwards, across, high in faces:
         mine = dot(normal, out) > 0.5
         right, up = across * to_right, high * upwards
-        own = flat(points, np.array(box.centre) - (right + up) / 2, right, up)
+        own = flat_point(points, np.array(box.centre) - (right + up) / 2, right, up)
         for part, value in zip(found, own, strict=True):
             part[mine] = value[mine]
     return found
 
 
-def turn(p: Array, up: Array, middle: Array) -> Array:
+def longitude(p: Array, up: Array, middle: Array) -> Array:
     """From 0 to 1 about the axis `up`, counter-clockwise from its tip, with 1/2 in the direction `middle`."""
     return np.asarray(0.5 + np.arctan2(dot(np.cross(middle, p), up), dot(middle, p)) / (2 * np.pi))
 
 
-@place.register
-def _(sphere: Sphere, points: Array) -> Place:
+@surface_point.register
+def _(sphere: Sphere, points: Array) -> SurfacePoint:
     up = np.array([0.0, 1.0, 0.0])
     p = points - np.array(sphere.centre)
     normal = unit(p)
@@ -104,28 +105,39 @@ def _(sphere: Sphere, points: Array) -> Place:
     far = length(north)[..., None]
     along_v = np.where(far > 0, np.pi * sphere.diameter / 2 * north / np.where(far > 0, far, 1), 0)
     around = 2 * np.pi * np.cross(up, p)
-    return Place(turn(p, up, np.array([0.0, 0.0, -1.0])), 0.5 + latitude / np.pi, around, along_v)
+    return SurfacePoint(longitude(p, up, np.array([0.0, 0.0, -1.0])), 0.5 + latitude / np.pi, around, along_v)
 
 
-@place.register
-def _(torus: Torus, points: Array) -> Place:
+@surface_point.register
+def _(ellipsoid: Ellipsoid, points: Array) -> SurfacePoint:
+    # The picture of the unit sphere, stretched: tangents stretch with the points.
+    scaled = scaled_axes(ellipsoid)
+    ball = surface_point(Sphere((0, 0, 0), 2, ellipsoid.colour), (points - np.array(ellipsoid.centre)) @ scaled.T)
+    stretch = np.linalg.inv(scaled).T
+    return ball._replace(along_u=ball.along_u @ stretch, along_v=ball.along_v @ stretch)
+
+
+@surface_point.register
+def _(torus: Torus, points: Array) -> SurfacePoint:
     axis = np.array(torus.axis)
-    _, z = turned(axis)
+    _, z = own_x_and_z(axis)
     p = points - np.array(torus.centre)
     outwards = unit(p - dot(p, axis)[..., None] * axis)
     normal = normals(torus, points)
     out, up = dot(normal, outwards), dot(normal, axis)
     along_v = np.pi * torus.tube * (out[..., None] * axis - up[..., None] * outwards)
-    return Place(turn(p, axis, -z), 0.5 + np.arctan2(up, out) / (2 * np.pi), 2 * np.pi * np.cross(axis, p), along_v)
+    return SurfacePoint(
+        longitude(p, axis, -z), 0.5 + np.arctan2(up, out) / (2 * np.pi), 2 * np.pi * np.cross(axis, p), along_v
+    )
 
 
-@place.register(Cone)
-@place.register(Cylinder)
-@place.register(Paraboloid)
-@place.register(Hyperboloid)
-def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Place:
+@surface_point.register(Cone)
+@surface_point.register(Cylinder)
+@surface_point.register(Paraboloid)
+@surface_point.register(Hyperboloid)
+def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> SurfacePoint:
     form = profile(shape)
-    _, z = turned(form.axis)
+    _, z = own_x_and_z(form.axis)
     axis = -form.axis if isinstance(shape, Cone) else form.axis  # a cone has its apex above
     across_axis = np.cross(axis, z)
     p = points - form.origin
@@ -143,7 +155,7 @@ def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Place
     else:
         v = (height - form.low) / span
         along_v = span * (form.axis + form.two * (height / np.where(far > 0, far, 1))[..., None] * outwards)
-    side = Place(turn(p, axis, -z), v, 2 * np.pi * np.cross(axis, p), along_v)
+    side = SurfacePoint(longitude(p, axis, -z), v, 2 * np.pi * np.cross(axis, p), along_v)
     # On a cap, right is along x of the upright shape and up along -z on the upper one, along z on the lower one.
     out = normals(shape, points)
     capped, above = np.abs(dot(out, form.axis)) > 1 - 1e-9, dot(out, axis) > 0
@@ -154,6 +166,6 @@ def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Place
             across = 2 * np.sqrt(form.at(end))
             right, up = across * across_axis, across * (-z if is_above else z)
             corner = form.origin + end * form.axis - (right + up) / 2
-            for part, value in zip(side, flat(points[mine], corner, right, up), strict=True):
+            for part, value in zip(side, flat_point(points[mine], corner, right, up), strict=True):
                 part[mine] = value
     return side

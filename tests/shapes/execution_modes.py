@@ -34,7 +34,7 @@ def array(v: Vec, like: Array) -> Array:
     return np.stack([np.broadcast_to(part, like.shape[:-1]) for part in (v.x, v.y, v.z)], axis=-1)
 
 
-def wide(packed: Any) -> Any:
+def with_numpy_numbers(packed: Any) -> Any:
     """A packed shape whose single numbers are numpy's."""
     parts = (Vec(*map(np.float64, (p.x, p.y, p.z))) if isinstance(p, Vec) else np.float64(p) for p in packed)
     return type(packed)(*parts)
@@ -44,7 +44,7 @@ def on_numbers(shapes: list[Shape], origins: Array, directions: Array, formula: 
     """t of rays (m, n, 3) against m shapes, infinity where they miss."""
     t = np.full(origins.shape[:2], np.inf)
     for i, shape in enumerate(shapes):
-        packed = wide(shape.pack())
+        packed = with_numpy_numbers(shape.pack())
         for j in range(origins.shape[1]):
             with np.errstate(all="ignore"):
                 hit, at = (formula or kind_of(shape).intersect)(packed, vec(origins[i, j]), vec(directions[i, j]))
@@ -57,18 +57,20 @@ def on_arrays(shapes: list[Shape], origins: Array, directions: Array, formula: A
     t = np.full(origins.shape[:2], np.inf)
     for i, shape in enumerate(shapes):
         with np.errstate(all="ignore"):
-            hit, at = (formula or kind_of(shape).intersect)(wide(shape.pack()), vec(origins[i]), vec(directions[i]))
+            hit, at = (formula or kind_of(shape).intersect)(
+                with_numpy_numbers(shape.pack()), vec(origins[i]), vec(directions[i])
+            )
         t[i] = np.where(hit, at, np.inf)
     return t
 
 
-def table(shapes: list[Shape]) -> Any:
+def shape_rows(shapes: list[Shape]) -> Any:
     """The rows of shapes of one kind."""
     packed = np.ascontiguousarray(packed_rows([shape.pack() for shape in shapes]))
     return packed.view(rows.row_type(kind_of(shapes[0])))[:, 0]
 
 
-def packets(points: Array) -> Array:
+def component_arrays(points: Array) -> Array:
     """Vectors (m, n, 3) as the kernel loads them: one array for each component."""
     return np.ascontiguousarray(points.reshape(-1, 3).T, np.float64)
 
@@ -92,7 +94,9 @@ def kernel() -> Any:
 def compiled(shapes: list[Shape], origins: Array, directions: Array) -> Array:
     """The same, compiled; the number of rays of a shape is a multiple of those of a packet."""
     t = np.empty(origins.shape[:2])
-    kernel()(table(shapes), origins.shape[1], packets(origins), packets(directions), t.reshape(-1))
+    kernel()(
+        shape_rows(shapes), origins.shape[1], component_arrays(origins), component_arrays(directions), t.reshape(-1)
+    )
     return t
 
 
@@ -101,9 +105,9 @@ def surfaces(shapes: list[Shape], points: Array) -> tuple[Array, Array]:
     on, out = np.empty_like(points), np.empty_like(points)
     for i, shape in enumerate(shapes):
         with np.errstate(all="ignore"):
-            point, normal = kind_of(shape).surface(wide(shape.pack()), vec(points[i]))
+            point, normal = kind_of(shape).surface(with_numpy_numbers(shape.pack()), vec(points[i]))
         on[i], out[i] = array(point, points[i]), array(normal, points[i])
     return on, out
 
 
-WAYS: dict[str, Intersect] = {"numbers": on_numbers, "arrays": on_arrays, "compiled": compiled}
+MODES: dict[str, Intersect] = {"numbers": on_numbers, "arrays": on_arrays, "compiled": compiled}

@@ -8,7 +8,7 @@ import numpy as np
 
 from minirt.shapes import Shape
 from tests.shapes.examples import place
-from tests.shapes.regimes import RAYS, Array, Random, Rays, across, log, unit, ways
+from tests.shapes.regimes import RAYS, Array, Random, Rays, log_uniform, random_directions, random_perpendiculars, unit
 from tests.stability.common import COUNT
 
 Make = Callable[[Random], Shape]
@@ -21,8 +21,8 @@ def at(seed: int, make: Make, spot: Spot, off: tuple[float, float] = (1e-16, 1e-
     shapes, origins, directions = [], *np.empty((2, count, RAYS, 3))
     for i in range(count):
         shape = make(random)
-        target = spot(random, shape) + log(random, *off, RAYS, 1) * ways(random, RAYS)
-        directions[i] = ways(random, RAYS)
+        target = spot(random, shape) + log_uniform(random, *off, RAYS, 1) * random_directions(random, RAYS)
+        directions[i] = random_directions(random, RAYS)
         origins[i] = target - random.uniform(3, 20, (RAYS, 1)) * directions[i]
         shapes.append(shape)
     return Rays(shapes, origins, directions)
@@ -34,10 +34,10 @@ def along(seed: int, make: Make, way: Spot, off: tuple[float, float] | None = No
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
         shape = make(random)
-        shape = shape.replace(**{points(shape)[0]: tuple(offset * ways(random))}) if offset else shape
+        shape = shape.replace(**{points(shape)[0]: tuple(offset * random_directions(random))}) if offset else shape
         exact = way(random, shape)
-        angle = log(random, *off, RAYS, 1) if off else 0.0
-        directions[i] = unit(exact + angle * ways(random, RAYS))
+        angle = log_uniform(random, *off, RAYS, 1) if off else 0.0
+        directions[i] = unit(exact + angle * random_directions(random, RAYS))
         origins[i] = place(shape) + random.uniform(-0.6, 0.6, (RAYS, 3)) - random.uniform(0, 9, (RAYS, 1)) * exact
         shapes.append(shape)
     return Rays(shapes, origins, directions)
@@ -53,4 +53,4 @@ def axis_of(shape: Shape) -> Array:
 
 def edge(middle: Array, shape: Shape, radius: float, random: Random) -> Array:
     """Random points of a circle around the axis of a shape."""
-    return middle + radius * across(random, axis_of(shape), RAYS)
+    return middle + radius * random_perpendiculars(random, axis_of(shape), RAYS)

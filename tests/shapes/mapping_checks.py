@@ -15,16 +15,16 @@ from minirt.kernel.compiler.code_cache import FLAGS
 from minirt.lanes import Vec, load, save, splat, width
 from minirt.shapes import Kind, Shape
 from minirt.shapes.paraboloid import Paraboloid
-from tests.shapes import ways
+from tests.shapes import execution_modes
 from tests.shapes.charts import AROUND, Chart, charts
 from tests.shapes.examples import example
+from tests.shapes.execution_modes import array, vec
 from tests.shapes.regimes import Array
-from tests.shapes.ways import array, vec
 
 U = 2.0**-53
 
 
-class Mapped(NamedTuple):
+class SurfaceMapping(NamedTuple):
     """What `mapping` says of n points."""
 
     u: Array
@@ -33,20 +33,20 @@ class Mapped(NamedTuple):
     along_v: Array
 
 
-Way = Callable[[Shape, Array, Array], Mapped]
+Evaluate = Callable[[Shape, Array, Array], SurfaceMapping]
 
 
 def table(shape: Shape, number: Any = np.float64) -> Any:
     """The row of a shape."""
-    return ways.table([shape]).astype(rows.row_type(ways.kind_of(shape), number))
+    return execution_modes.packed_rows([shape]).astype(rows.row_type(execution_modes.kind_of(shape), number))
 
 
-def interpreted(shape: Shape, points: Array, normals: Array, formula: Any = None) -> Mapped:
-    formula = formula or ways.kind_of(shape).mapping
+def interpreted(shape: Shape, points: Array, normals: Array, formula: Any = None) -> SurfaceMapping:
+    formula = formula or execution_modes.kind_of(shape).mapping
     with np.errstate(all="ignore"):
         u, v, to_u, to_v = formula(rows.read(table(shape, points.dtype), 0), vec(points), vec(normals))
     u, v = (np.broadcast_to(each, points.shape[:-1]) for each in (u, v))
-    return Mapped(u, v, array(to_u, points), array(to_v, points))
+    return SurfaceMapping(u, v, array(to_u, points), array(to_v, points))
 
 
 @cache
@@ -70,15 +70,15 @@ def kernel() -> Any:
     return njit(**FLAGS)(run)
 
 
-def compiled(shape: Shape, points: Array, normals: Array) -> Mapped:
+def compiled(shape: Shape, points: Array, normals: Array) -> SurfaceMapping:
     """The number of points is a multiple of a packet's."""
     out = np.empty((8, len(points)), points.dtype)
     in_packets = (np.ascontiguousarray(each.T) for each in (points, normals))
     kernel()(table(shape, points.dtype), *in_packets, out)
-    return Mapped(out[0], out[1], out[2:5].T, out[5:].T)
+    return SurfaceMapping(out[0], out[1], out[2:5].T, out[5:].T)
 
 
-WAYS: dict[str, Way] = {"interpreted": interpreted, "compiled": compiled}
+MODES: dict[str, Evaluate] = {"interpreted": interpreted, "compiled": compiled}
 
 
 class Case(NamedTuple):
@@ -100,11 +100,11 @@ def cases(kind: Kind, size: float, offset: float) -> list[Case]:
         for chart in charts(shape):
             u, v = random.uniform(0.001, 0.999, (2, 64))
             points, _ = chart(u, v)
-            found.append(Case(shape, chart, *inner(kind, u, v), float(np.abs(points).max())))
+            found.append(Case(shape, chart, *inside_shape(kind, u, v), float(np.abs(points).max())))
     return found
 
 
-def inner(kind: Kind, u: Array, v: Array) -> tuple[Array, Array]:
+def inside_shape(kind: Kind, u: Array, v: Array) -> tuple[Array, Array]:
     """The half of a picture that a triangle has."""
     beyond = (u + v > 1) & (kind.element.title == "triangle")
     return np.where(beyond, 1 - u, u), np.where(beyond, 1 - v, v)
@@ -115,7 +115,7 @@ def lengths(vectors: Array) -> Array:
     return found
 
 
-def check_places(case: Case, way: Way, size: float) -> None:
+def check_places(case: Case, way: Evaluate, size: float) -> None:
     """u and v are those of the chart, but for the rounding of the point."""
     points, normals = case.chart(case.u, case.v)
     got = way(case.shape, points, normals)
@@ -131,7 +131,7 @@ def steepness(shape: Shape) -> float:
     return np.hypot(1, 4 * shape.height / shape.diameter) if isinstance(shape, Paraboloid) else 1.0
 
 
-def check_tangents(case: Case, way: Way, size: float) -> None:
+def check_tangents(case: Case, way: Evaluate, size: float) -> None:
     """The tangents are the differences of the chart around its places, but for h^4 and for the rounding of points."""
     h = 1e-3
     points, normals = case.chart(case.u, case.v)
@@ -145,7 +145,7 @@ def check_tangents(case: Case, way: Way, size: float) -> None:
         assert lengths(along - right).max() <= 1e-6 * lengths(right).max() + 8 * U * case.coordinates / h
 
 
-def check_hand(case: Case, way: Way, size: float) -> None:
+def check_hand(case: Case, way: Evaluate, size: float) -> None:
     """Seen from outside, v is counter-clockwise of u: a picture is not mirrored."""
     points, normals = case.chart(case.u, case.v)
     got = way(case.shape, points, normals)

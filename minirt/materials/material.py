@@ -1,0 +1,19 @@
+"""Base of materials that have several values: the record behind an attribute such as `glass:1.5,0.9`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from minirt.element import Record
+
+
+@dataclass(frozen=True)
+class Material(Record):
+    """Values of one material, and the feature of the kernel that draws it."""
+
+    feature: ClassVar[str]  # a key of `minirt.rendering.packing.features.FEATURES`
+
+    def has_effect(self) -> bool:
+        """Whether the picture shows it: a material without effect costs no feature of the kernel."""
+        return True

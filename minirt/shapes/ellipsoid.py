@@ -1,0 +1,128 @@
+"""Ellipsoid: `el x,y,z ax,ay,az w,h,d R,G,B`.
+
+A solid ellipsoid. `x,y,z` is its centre, `ax,ay,az` its own y axis, and `w,h,d` are its diameters along its own x, y
+and z axes. As for a box these are the axes of the scene, turned no further than it takes to bring y to `ax,ay,az`, or
+to its opposite. A picture lies on it as on a sphere that is stretched together with it.
+
+    el 0,1,20  0,1,0  6,2,4  200,120,160    a pebble six wide, two high and four deep
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+from typing import NamedTuple
+
+from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
+from minirt.lanes import Vec, any, dot, sqrt, unit, where
+from minirt.lanes.operations import Mask
+from minirt.lanes.vec import Number
+from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.bounds import point_along
+from minirt.shapes.quadric import negative_interval
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns
+
+
+@dataclass(frozen=True)
+class Ellipsoid(Shape):
+    """A line `el` of a scene file."""
+
+    code, title, plural = "el", "ellipsoid", "ellipsoids"
+    centre: Triple = declare(Point, "centre")
+    axis: Triple = declare(Direction, "its own y axis")
+    sizes: Triple = declare(Lengths, "diameters along its own x, y and z axes", names="w,h,d")
+    colour: Triple = declare(Colour, "colour")
+
+    def pack(self) -> PackedEllipsoid:
+        z, x, y = basis(self.axis)
+        a, b, c = self.semi_axes()
+        return PackedEllipsoid(Position(Vec(*self.centre)), x, y, z, Vec(a, b, c), Vec(1 / a, 1 / b, 1 / c))
+
+    def semi_axes(self) -> Triple:
+        width, height, depth = self.sizes
+        return width / 2, height / 2, depth / 2
+
+    def axes(self) -> list[tuple[float, Triple]]:
+        """The semi-axes in ascending order, each with its unit direction."""
+        z, x, y = basis(self.axis)
+        directions = ((axis.x, axis.y, axis.z) for axis in (x, y, z))
+        return sorted(zip(self.semi_axes(), directions, strict=True))
+
+    def balls(self) -> tuple[Ball, ...]:
+        """Four balls with the least semi-axis c as radius, a - c and b - c off the centre along the axes a and b."""
+        (c, _), (b, middle), (a, longest) = self.axes()
+        ends = (point_along(self.centre, longest, sign * (a - c)) for sign in (-1, 1))
+        return tuple((point_along(end, middle, sign * (b - c)), c) for end in ends for sign in (-1, 1))
+
+    def bounds(self) -> Bounds:
+        (x, y, z), axes = self.centre, self.axes()
+        i, j, k = (hypot(*(length * axis[part] for length, axis in axes)) for part in range(3))
+        return (x - i, y - j, z - k), (x + i, y + j, z + k)
+
+
+class PackedEllipsoid(NamedTuple):
+    """Packed form of an ellipsoid: its own frame, and the scale that makes it the unit sphere there."""
+
+    centre: Position
+    u: Vec
+    v: Vec
+    w: Vec
+    semi: Vec  # the semi-axes along u, v and w
+    scale: Vec  # 1 / semi
+
+
+def intersect(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the ellipsoid.
+
+    In its own frame, divided by its semi-axes, it is the unit sphere, and t along the scaled ray is the same. As for a
+    sphere t is counted from the ray's closest approach to the centre, which keeps full precision for small ellipsoids
+    that are far away.
+    """
+    p = scaled(to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, origin - ellipsoid.centre), ellipsoid.scale)
+    d = scaled(to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, direction), ellipsoid.scale)
+    a = dot(d, d)
+    per_a = 1.0 / a
+    approach = -dot(p, d) * per_a
+    p = p + approach * d
+    hit, enter, leave = negative_interval(a, per_a, dot(p, d), dot(p, p) - 1.0)
+    t = approach
+    if any(hit):
+        near = approach + enter
+        t = where(near > 0.0, near, approach + leave)
+        hit = hit & (t > 0.0)
+    return hit, t
+
+
+def surface(ellipsoid: PackedEllipsoid, point: Vec) -> tuple[Vec, Vec]:
+    """`point` moved onto the surface along the normal, to first order, and the outward normal there."""
+    p = to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, point - ellipsoid.centre)
+    q = scaled(p, ellipsoid.scale)
+    slope = scaled(q, ellipsoid.scale)  # half of the gradient of |q|^2
+    above = 0.5 * (dot(q, q) - 1.0) / dot(slope, slope)
+    q = unit(scaled(p - above * slope, ellipsoid.scale))
+    return (
+        ellipsoid.centre + from_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, scaled(q, ellipsoid.semi)),
+        from_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, unit(scaled(q, ellipsoid.scale))),
+    )
+
+
+def mapping(ellipsoid: PackedEllipsoid, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """Longitude as u and latitude as v on the unit sphere, each from 0 to 1. At the poles the tangents are zero."""
+    u, v, w = ellipsoid.u, ellipsoid.v, ellipsoid.w
+    q = unit(scaled(to_basis(u, v, w, normal), ellipsoid.semi))
+    rho = sqrt(q.x * q.x + q.z * q.z)
+    fall = -q.y / where(rho == 0.0, 1.0, rho)
+    around = TWO_PI * Vec(q.z, 0.0, -q.x)
+    upwards = 0.5 * TWO_PI * Vec(fall * q.x, rho, fall * q.z)
+    return (
+        0.5 + angle_in_turns(-q.x, -q.z),
+        0.5 + 2.0 * angle_in_turns(q.y, rho),
+        from_basis(u, v, w, scaled(around, ellipsoid.semi)),
+        from_basis(u, v, w, scaled(upwards, ellipsoid.semi)),
+    )
+
+
+def scaled(v: Vec, scale: Vec) -> Vec:
+    """The vector v, scaled by its own factor along each axis."""
+    return Vec(v.x * scale.x, v.y * scale.y, v.z * scale.z)

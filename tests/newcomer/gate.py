@@ -1,0 +1,66 @@
+"""Gate: `ga x,y,z side R,G,B`.
+
+A made-up shape: an upright square around `x,y,z`, seen from both sides. A picture fills it once, seen from +z.
+
+    ga 0,1,20  2  200,200,200    a gate two units wide
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from minirt.fields import Colour, Length, Point, Triple, declare
+from minirt.lanes import Vec, fabs, maximum, unit_roundoff
+from minirt.lanes.operations import Mask
+from minirt.lanes.vec import Number
+from minirt.shapes.shape import Ball, Bounds, Position, Shape
+
+
+@dataclass(frozen=True)
+class Gate(Shape):
+    """A line `ga` of a scene file."""
+
+    code, title, plural = "ga", "gate", "gates"
+    centre: Triple = declare(Point, "centre")
+    side: float = declare(Length, "length of a side")
+    colour: Triple = declare(Colour, "colour")
+
+    def pack(self) -> PackedGate:
+        return PackedGate(Position(Vec(*self.centre)), self.side / 2)
+
+    def bounds(self) -> Bounds:
+        (x, y, z), half = self.centre, self.side / 2
+        return (x - half, y - half, z), (x + half, y + half, z)
+
+    def balls(self) -> tuple[Ball, ...]:
+        (x, y, z), half = self.centre, self.side / 2
+        return tuple(((x + i * half, y + j * half, z), 0.0) for i in (-1, 1) for j in (-1, 1))
+
+
+class PackedGate(NamedTuple):
+    """What the kernel keeps of a gate."""
+
+    centre: Position
+    half: float  # of the side
+
+
+def intersect(gate: PackedGate, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the gate."""
+    t = (gate.centre.z - origin.z) / direction.z
+    p = origin + t * direction - gate.centre
+    crosses = fabs(direction.z) > 4 * unit_roundoff(t)
+    return crosses & (t > 0.0) & (maximum(fabs(p.x), fabs(p.y)) <= gate.half), t
+
+
+def surface(gate: PackedGate, point: Vec) -> tuple[Vec, Vec]:
+    """The nearest point of the gate's plane, and the normal."""
+    flat = 0.0 * point.x
+    return Vec(point.x, point.y, gate.centre.z + flat), Vec(flat, flat, 1.0 + flat)
+
+
+def mapping(gate: PackedGate, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
+    """From 0 to 1 along x and along y."""
+    side = 2.0 * gate.half
+    p = point - gate.centre
+    return 0.5 + p.x / side, 0.5 + p.y / side, Vec(side, 0.0, 0.0), Vec(0.0, side, 0.0)

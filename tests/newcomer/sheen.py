@@ -1,0 +1,22 @@
+"""Sheen: `sheen:share`, a made-up material: a highlight as wide as can be.
+
+sp 0,0,20 8 200,120,80 sheen:0.4
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from minirt.fields import Real, declare
+from minirt.materials.material import Material
+
+
+@dataclass(frozen=True)
+class Sheen(Material):
+    """What `sheen:` says."""
+
+    title, feature = "sheen", "specular"
+    share: float = declare(Real, "share of the light", low=0.0, high=1.0, step=0.05, initial=0.4)
+
+    def has_effect(self) -> bool:
+        return self.share > 0.0

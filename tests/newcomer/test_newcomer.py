@@ -1,0 +1,111 @@
+"""A shape and a material that are added as `minirt/README.md` says pass the questions that are asked of every kind.
+
+They are added to a copy of the package: of the shape its file, a line in the registry and its oracle; of the material
+its file, an import and a field in the registry, and the lines that pack it.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.paths import ROOT
+from tests.processes import run
+
+HERE = Path(__file__).parent
+QUESTIONS = ("tests/shapes/test_protocol.py", "tests/shapes/test_mapping.py", "tests/oracle")
+EDITING = "tests/viewer/editing/test_every_kind.py"
+
+
+def add_line(path: Path, anchor: str, line: str) -> None:
+    """Put a line below the one that is the anchor."""
+    text = path.read_text()
+    assert text.count(f"{anchor}\n") == 1, f"{path} has no line {anchor!r}"
+    path.write_text(text.replace(f"{anchor}\n", f"{anchor}\n{line}\n"))
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the project to which the gate and the sheen have been added."""
+    root = tmp_path_factory.mktemp("copy")
+    for folder in ("minirt", "tests", "scenes"):
+        shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("__pycache__", "goldens"))
+    shutil.copy(ROOT / "pyproject.toml", root)
+    package = root / "minirt"
+
+    shutil.copy(HERE / "gate.py", package / "shapes")
+    add_line(
+        package / "shapes/__init__.py",
+        "from minirt.shapes.ellipsoid import Ellipsoid as Ellipsoid",
+        "from minirt.shapes.gate import Gate as Gate",
+    )
+    shutil.copy(HERE / "gate_oracle.py", root / "tests/oracle/gate.py")
+
+    shutil.copy(HERE / "sheen.py", package / "materials")
+    registry = package / "materials/__init__.py"
+    add_line(
+        registry,
+        "from minirt.materials.normal_map import NormalMap as NormalMap",
+        "from minirt.materials.sheen import Sheen as Sheen",
+    )
+    add_line(
+        registry,
+        '    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)',
+        '    sheen: Sheen | None = declare(Compound, "soft highlight", record=Sheen, **SHARED)',
+    )
+    add_line(
+        package / "rendering/packing/materials.py",
+        "            gloss[i] = shape.specular.share, shape.specular.exponent, shape.specular.blinn",
+        "        if shape.sheen:\n            gloss[i] = shape.sheen.share, 1.0, False",
+    )
+    return root
+
+
+def answers(copy: Path, *command: str) -> str:
+    """What a Python program prints that runs in the copy, and imports from there alone."""
+    environment = {**os.environ, "PYTHONPATH": str(copy), "XDG_CACHE_HOME": str(copy / "cache")}
+    done = run([sys.executable, *command], cwd=copy, env=environment, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return str(done.stdout)
+
+
+def test_a_new_shape_passes_the_questions_asked_of_every_shape(copy: Path) -> None:
+    told = answers(copy, "-m", "pytest", "-p", "no:xdist", "-rs", "-k", "gate or every_kind or knows", *QUESTIONS)
+    assert "passed" in told
+    assert "no chart of the gate: with one in" in told
+    assert "no known place of gate: add one to KNOWN in" in told
+
+
+def test_a_new_shape_and_a_new_material_are_added_edited_and_saved_by_keys(copy: Path) -> None:
+    told = answers(copy, "-m", "pytest", "-p", "no:xdist", "-k", "[ga or sheen", EDITING)
+    assert "passed" in told
+
+
+PROGRAM = """
+import numpy as np
+import minirt
+from minirt.rendering.packing.features import features
+from minirt.scene import dump, format_table, parse
+
+assert minirt.Gate((0, 0, 0), 2, (1, 2, 3)).side == 2
+assert {"Gate", "Sheen"} <= set(minirt.__all__)
+assert "| `ga x,y,z side R,G,B` | gate |" in format_table()
+assert "`sheen:share`" in format_table()
+
+TEXT = "A 0.1 255,255,255\\nC 0,0,-9 0,0,1 40\\nL 0,0,-9 0.6 255,255,255\\nga 0,0,0 4 200,90,50\\n"
+plain, soft = (parse(text).scene for text in (TEXT, TEXT.replace("90,50", "90,50 sheen:0.3")))
+assert soft.gates[0].sheen == minirt.Sheen(0.3)
+assert dump(soft).endswith("ga 0,0,0 4 200,90,50 sheen:0.3\\n")
+assert features(soft) - features(plain) == {"specular"}
+light = [minirt.render(scene, 9, 9).linear[4, 4] for scene in (plain, soft)]
+assert np.allclose(light[0], 0.7 * np.array([200, 90, 50]) / 255)
+assert np.allclose(light[1] - light[0], 0.3 * 0.6)
+"""
+
+
+def test_a_new_shape_and_a_new_material_are_read_drawn_and_public(copy: Path) -> None:
+    answers(copy, "-c", PROGRAM)

@@ -1,0 +1,64 @@
+"""Rays that are hard for an ellipsoid."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from minirt.shapes.ellipsoid import Ellipsoid
+from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, log_uniform, random_directions
+from tests.stability.aimed_rays import along, at
+from tests.stability.common import COUNT
+from tests.stability.regime import Regime
+
+
+def make(random: Random, flatness: float = 1.0, size: float = 1.0) -> Ellipsoid:
+    """A random ellipsoid of about a size, its own y axis scaled by `flatness`."""
+    sizes = size * random.uniform(0.5, 2, 3) * [1.0, flatness, 1.0]
+    return Ellipsoid(tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1)), tuple(sizes), GREY)
+
+
+def own_axes(ellipsoid: Ellipsoid) -> tuple[Array, Array]:
+    """The semi-axes in ascending order, (3,), and their directions, (3, 3)."""
+    lengths, directions = zip(*ellipsoid.axes(), strict=True)
+    return np.array(lengths), np.array(directions)
+
+
+def tips(random: Random, ellipsoid: Ellipsoid) -> Array:
+    """Ends of its axes, where it is curved most and least."""
+    lengths, directions = own_axes(ellipsoid)
+    chosen = random.integers(3, size=RAYS)
+    signs = random.choice([-1.0, 1.0], RAYS)
+    return np.array(ellipsoid.centre) + (signs * lengths[chosen])[:, None] * directions[chosen]
+
+
+def directions(random: Random, ellipsoid: Ellipsoid) -> Array:
+    """Directions of its axes, there and back."""
+    return own_axes(ellipsoid)[1][random.integers(3, size=RAYS)] * random.choice([-1.0, 1.0], (RAYS, 1))
+
+
+def beside(seed: int, size: float, height: tuple[float, float]) -> Rays:
+    """From closely above and below the surface of large ellipsoids, in all directions."""
+    random = np.random.default_rng(seed)
+    shapes, origins = [make(random, size=size) for _ in range(COUNT)], np.empty((COUNT, RAYS, 3))
+    for i, shape in enumerate(shapes):
+        lengths, axes = own_axes(shape)
+        on = random_directions(random, RAYS)
+        out = (on / lengths) @ axes
+        out /= np.linalg.norm(out, axis=-1, keepdims=True)
+        up = random.choice([-1.0, 1.0], (RAYS, 1)) * log_uniform(random, *height, RAYS, 1)
+        origins[i] = np.array(shape.centre) + (on * lengths) @ axes + up * out
+    return Rays(shapes, origins, random_directions(random, COUNT, RAYS))
+
+
+# At a tip of a flat or a long one a rounding across the short axis moves the hit far along the long one.
+REGIMES = [
+    Regime("at the ends of its axes", partial(at, 11, make, tips), blur=1e-6),
+    Regime("along an axis", partial(along, 12, make, directions)),
+    Regime("nearly along an axis", partial(along, 13, make, directions, (1e-14, 1e-3))),
+    Regime("along an axis, a scene at 1e8", partial(along, 14, make, directions, None, 1e8)),
+    Regime("at the ends of a flat one", partial(at, 15, partial(make, flatness=1e-6), tips), blur=np.inf),
+    Regime("at the ends of a long one", partial(at, 16, partial(make, flatness=1e6), tips), blur=np.inf),
+    Regime("1e-3 to 1 beside a diameter of 1e9", partial(beside, 17, 1e9, (1e-3, 1.0)), blur=np.inf),
+]
