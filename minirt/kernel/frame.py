@@ -1,4 +1,4 @@
-"""A frame: the rays of the camera through every pixel, and the picture that they bring back."""
+"""Rendering of a frame: primary rays through every pixel, in packets, tile by tile, and their colours as pixels."""
 
 from __future__ import annotations
 
@@ -8,155 +8,157 @@ from typing import Any
 from minirt.kernel.atomic_counter import fetch_add
 from minirt.kernel.scene_arrays import SceneArrays, by_reference
 from minirt.kernel.shading.environment import background_light
-from minirt.kernel.shading.whitted import radiance
+from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.kernel.trace import is_empty
 from minirt.lanes import Vec, lane, load, minimum, rarely, save, splat, unit, where, width
 from minirt.lanes.vec import Number
 
-DOWN = 4  # pixels of a packet, from top to bottom; as many from left to right as make one of `width` rays
+PACKET_HEIGHT = 4  # pixels; a packet is as wide as makes one pixel for each of the `width` rays
 TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles at a time
-CANCELLED = 2**40  # a row that no picture has
+CANCELLED = 2**40  # value of the row counter that cancels a frame; no picture has so many rows
 OPAQUE = 0xFF000000  # alpha of a pixel
 
 
-def towards(camera: Any, x: float, y: float) -> Vec:
-    """The direction of the ray through a place of the picture, in pixels from its upper left corner; of any length."""
+def ray_direction(camera: Any, x: float, y: float) -> Vec:
+    """Return the direction, not normalised, of the primary ray at x, y: pixels from the picture's upper left corner."""
     corner = Vec(camera[3], camera[4], camera[5])
     return corner + x * Vec(camera[6], camera[7], camera[8]) + y * Vec(camera[9], camera[10], camera[11])
 
 
-def packet(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: int, y: int) -> Vec:
-    """The light of the pixels of a packet whose upper left one is x, y, along the `rays` of a sample."""
+def packet_radiance(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: int, y: int) -> Vec:
+    """Trace one sample of each pixel of the packet whose upper left pixel is x, y; `rays` are the sample's offsets."""
     count = width(rays)
     origin = Vec(scene.camera[0], scene.camera[1], scene.camera[2])
-    direction = towards(scene.camera, x, y) + Vec(load(rays, 0), load(rays, count), load(rays, 2 * count))
-    return radiance(scene, memory, tile, origin, unit(direction))
+    direction = ray_direction(scene.camera, x, y) + Vec(load(rays, 0), load(rays, count), load(rays, 2 * count))
+    return incoming_radiance(scene, memory, tile, origin, unit(direction))
 
 
-def added(light: Vec, sums: Any, start: int, sample: int) -> Vec:
-    """The light of a sample and of those before it, whose sum is kept in `sums` from index `start` on."""
+def accumulate(radiance: Vec, sums: Any, start: int, sample: int) -> Vec:
+    """Add the radiance of a sample to that of the samples before it, which `sums` holds from index `start` on."""
     count = width(sums)
     if sample > 0:
-        light = light + Vec(load(sums, start), load(sums, start + count), load(sums, start + 2 * count))
-    save(light.x, sums, start)
-    save(light.y, sums, start + count)
-    save(light.z, sums, start + 2 * count)
-    return light
+        radiance = radiance + Vec(load(sums, start), load(sums, start + count), load(sums, start + 2 * count))
+    save(radiance.x, sums, start)
+    save(radiance.y, sums, start + count)
+    save(radiance.z, sums, start + 2 * count)
+    return radiance
 
 
-def made_finite(light: Vec, memory: Any) -> Vec:
-    """The light, which is not negative, without components that are infinite or NaN. The rays that have such are added
-    up in the last row of `memory`."""
-    total = light.x + light.y + light.z
+def without_non_finite(radiance: Vec, memory: Any) -> Vec:
+    """Replace infinite and NaN components of a radiance, which is not negative, by 0.
+
+    The last row of `memory` counts the rays that had any.
+    """
+    total = radiance.x + radiance.y + radiance.z
     if rarely(~(total < inf)):
         for i in range(width(total)):
             if not lane(total, i) < inf:
                 memory[memory.shape[0] - 1, 1] += 1.0
-        light = Vec(finite(light.x), finite(light.y), finite(light.z))
-    return light
+        radiance = Vec(finite_or_zero(radiance.x), finite_or_zero(radiance.y), finite_or_zero(radiance.z))
+    return radiance
 
 
-def finite(light: Number) -> Number:
-    """Light as it is, or 0 for infinity and NaN."""
-    return where(light < inf, light, 0.0)
+def finite_or_zero(channel: Number) -> Number:
+    """Return a colour channel, or 0 in place of infinity and NaN."""
+    return where(channel < inf, channel, 0.0)
 
 
-def level(light: Number) -> Number:
-    """Light, which is not negative, as a byte, still to be cut to a whole number; what is above 1 is clamped."""
-    return minimum(light, 1.0) * 255.0 + 0.5
+def to_byte_range(channel: Number) -> Number:
+    """Clamp a colour channel, which is not negative, to 1 and scale it so that truncation rounds it to a byte."""
+    return minimum(channel, 1.0) * 255.0 + 0.5
 
 
 def frame(
-    next_row: Any, pixels: Any, linear: Any, rays: Any, wanted: Any, memory: Any, sums: Any, scene: SceneArrays
+    next_row: Any, pixels: Any, linear: Any, rays: Any, packet_mask: Any, memory: Any, sums: Any, scene: SceneArrays
 ) -> None:
     """Render rows of tiles, taking the next one from the counter `next_row` until none is left.
 
-    Any number of threads may do so at the same time, each with a `memory` (see `trace`) and room for the `sums` of
-    samples of a tile (3 * TILE * TILE) of its own. `pixels` (h, w) takes 0xAARRGGBB; `linear` (h, w, 3), or one without
-    rows where it is not wanted, takes the light as it is. `rays` (k, 3 * width) are the directions of a packet's rays
-    for each sample of a pixel: x, y and z of their differences from the one through the upper left corner of the
-    packet. `wanted` is not 0 for each packet (row, column) that is to be rendered, or has no rows where all are. A
-    counter set to `CANCELLED` from outside ends the frame at the next packet.
+    Any number of threads may do so at the same time, each with its own `memory` (see `minirt.kernel.trace.unoccluded`
+    and `minirt.kernel.shading.surfaces`) and its own `sums` of samples of a tile (3 * TILE * TILE). `pixels` (h, w)
+    receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it has no rows. `rays` (samples,
+    3 * width) has x, y and z of the directions of a packet's rays, less the direction through the packet's upper left
+    corner. `packet_mask` (row, column) is not 0 for each packet to render; without rows all are rendered. A counter set
+    to `CANCELLED` from outside ends the frame at the next packet.
     """
-    tiles_of_rows(
+    render_tiles(
         next_row,
         by_reference(pixels),
         by_reference(linear),
         rays,
-        by_reference(wanted),
+        by_reference(packet_mask),
         by_reference(memory),
         sums,
         by_reference(scene),
     )
 
 
-def tiles_of_rows(
-    next_row: Any, pixels: Any, linear: Any, rays: Any, wanted: Any, memory: Any, sums: Any, scene: SceneArrays
+def render_tiles(
+    next_row: Any, pixels: Any, linear: Any, rays: Any, packet_mask: Any, memory: Any, sums: Any, scene: SceneArrays
 ) -> None:
-    """The frame, tile by tile."""
+    """Render rows of tiles: the body of `frame`, with the arrays passed by reference."""
     height, across = pixels.shape
     samples = rays.shape[0]
-    step = width(rays) // DOWN
-    nothing = splat(0.0, load(rays[0], 0))
-    dark = Vec(nothing, nothing, nothing)
+    packet_width = width(rays) // PACKET_HEIGHT
+    zero = splat(0.0, load(rays[0], 0))
+    black = Vec(zero, zero, zero)
     while True:
         top = fetch_add(next_row, TILE)
         if top >= height:
             return
         for left in range(0, across, TILE):
-            tile = top // TILE * tiles(across) + left // TILE
+            tile = top // TILE * tile_count(across) + left // TILE
             empty = scene.environment is None and is_empty(scene, tile)
-            # All packets for each sample, not all samples for each packet: a sum that is kept through the loop takes
-            # registers from what is in it, and a seventh more time.
+            # All packets for each sample, not all samples for each packet: a sum kept in registers through the loop
+            # over samples took a seventh more time, since tracing then lacks those registers.
             for sample in range(samples):
-                for y in range(top, min(top + TILE, height), DOWN):
-                    for x in range(left, min(left + TILE, across), step):
+                for y in range(top, min(top + TILE, height), PACKET_HEIGHT):
+                    for x in range(left, min(left + TILE, across), packet_width):
                         if rarely(next_row[0] >= CANCELLED):
                             return
-                        if rarely(wanted.shape[0] > 0) and wanted[y // DOWN, x // step] == 0:
+                        if rarely(packet_mask.shape[0] > 0) and packet_mask[y // PACKET_HEIGHT, x // packet_width] == 0:
                             continue
                         if empty:
-                            store(pixels, linear, x, y, background_light(scene, nothing > 0.0, dark, dark))
+                            store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
                             continue
-                        light = made_finite(packet(scene, memory, tile, rays[sample], x, y), memory)
+                        radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[sample], x, y), memory)
                         if rarely(samples > 1):
-                            place = (y - top) * TILE + (x - left) * DOWN
-                            light = added(light, sums, 3 * place, sample) / samples
+                            place = (y - top) * TILE + (x - left) * PACKET_HEIGHT
+                            radiance = accumulate(radiance, sums, 3 * place, sample) / samples
                         if sample == samples - 1:
-                            store(pixels, linear, x, y, light)
+                            store_packet(pixels, linear, x, y, radiance)
 
 
-def tiles(pixels: int) -> int:
-    """Tiles that it takes to cover so many pixels."""
+def tile_count(pixels: int) -> int:
+    """Return the number of tiles that cover a picture of so many pixels along one edge."""
     return (pixels + TILE - 1) // TILE
 
 
-def store(pixels: Any, linear: Any, x: int, y: int, light: Vec) -> None:
-    """Put the light of a packet into the picture; what lies beyond its edges is dropped."""
+def store_packet(pixels: Any, linear: Any, x: int, y: int, radiance: Vec) -> None:
+    """Store the radiance of a packet in the picture, except for pixels beyond the picture's edges."""
     height, across = pixels.shape
-    keep = linear.shape[0] > 0
-    step = width(light.x) // DOWN
-    red, green, blue = level(light.x), level(light.y), level(light.z)
-    if rarely(keep or x + step > across or y + DOWN > height):
-        for i in range(width(light.x)):
-            column, line = x + i % step, y + i // step
-            if column < across and line < height:
-                pixels[line, column] = colour(lane(red, i), lane(green, i), lane(blue, i))
-                if keep:
-                    linear[line, column, 0] = lane(light.x, i)
-                    linear[line, column, 1] = lane(light.y, i)
-                    linear[line, column, 2] = lane(light.z, i)
+    has_linear = linear.shape[0] > 0
+    packet_width = width(radiance.x) // PACKET_HEIGHT
+    red, green, blue = to_byte_range(radiance.x), to_byte_range(radiance.y), to_byte_range(radiance.z)
+    if rarely(has_linear or x + packet_width > across or y + PACKET_HEIGHT > height):
+        for i in range(width(radiance.x)):
+            column, row = x + i % packet_width, y + i // packet_width
+            if column < across and row < height:
+                pixels[row, column] = argb(lane(red, i), lane(green, i), lane(blue, i))
+                if has_linear:
+                    linear[row, column, 0] = lane(radiance.x, i)
+                    linear[row, column, 1] = lane(radiance.y, i)
+                    linear[row, column, 2] = lane(radiance.z, i)
     else:
         store_block(pixels, x, y, red, green, blue)
 
 
-def colour(red: float, green: float, blue: float) -> int:
-    """A pixel from its levels."""
+def argb(red: float, green: float, blue: float) -> int:
+    """Return an opaque pixel, 0xAARRGGBB, whose channels are truncated to bytes."""
     return OPAQUE | int(red) << 16 | int(green) << 8 | int(blue)
 
 
 def store_block(pixels: Any, x: int, y: int, red: Number, green: Number, blue: Number) -> None:
-    """Put a whole packet into the picture; compiled, a row of it at a time."""
-    step = width(red) // DOWN
+    """Store a packet that lies wholly in the picture; compiled, each of its rows is one store."""
+    packet_width = width(red) // PACKET_HEIGHT
     for i in range(width(red)):
-        pixels[y + i // step, x + i % step] = colour(lane(red, i), lane(green, i), lane(blue, i))
+        pixels[y + i // packet_width, x + i % packet_width] = argb(lane(red, i), lane(green, i), lane(blue, i))

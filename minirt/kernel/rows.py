@@ -1,6 +1,6 @@
-"""How shapes lie in memory: for each kind an array with one row a shape, its packed form number by number.
+"""Memory layout of packed shapes: one record array for each kind, with one row for each shape.
 
-The names of a row's fields begin with the kind's, so that the type of an array tells which formulas belong to it.
+The names of a row's fields begin with the title of the kind: the dtype of an array tells which formulas belong to it.
 """
 
 from __future__ import annotations
@@ -19,64 +19,64 @@ Rows = Any  # an array of dtype `row_type(kind)`
 
 @cache
 def row_type(kind: Kind, number: type = np.float64) -> np.dtype[Any]:
-    """The dtype of the rows of a kind, made of numbers of a type."""
+    """Return the record dtype of the rows of a kind, with components of type `number`."""
     hints = get_type_hints(kind.packed).items()
-    return np.dtype([(field(kind, name), number, (3,) if hint in (Vec, Place) else ()) for name, hint in hints])
+    return np.dtype([(field_name(kind, name), number, (3,) if hint in (Vec, Place) else ()) for name, hint in hints])
 
 
-def field(kind: Kind, name: str) -> str:
-    """What a number or Vec of a packed shape is called in the rows of its kind."""
+def field_name(kind: Kind, name: str) -> str:
+    """Return the name of the row field that holds a number or Vec of a packed shape."""
     return f"{kind.element.title}.{name}"
 
 
 @cache
-def place_fields(kind: Kind) -> tuple[str, ...]:
-    """The fields of the rows of a kind that are points."""
-    return tuple(field(kind, name) for name, hint in get_type_hints(kind.packed).items() if hint is Place)
+def point_fields(kind: Kind) -> tuple[str, ...]:
+    """Return the names of the row fields that are points, not directions or numbers."""
+    return tuple(field_name(kind, name) for name, hint in get_type_hints(kind.packed).items() if hint is Place)
 
 
 def kind_of(fields: Any) -> Kind:
-    """The kind to which a row with these field names belongs."""
+    """Return the kind whose rows have these field names."""
     title = next(iter(fields)).split(".")[0]
     return next(kind for kind in ALL_KINDS if kind.element.title == title)
 
 
 def read(rows: Rows, i: int) -> Any:
-    """The packed shape in row i."""
+    """Return the packed shape in row i."""
     parts = (Vec(*part) if np.ndim(part) else part for part in rows[i])
     return kind_of(rows.dtype.names).packed(*parts)
 
 
 def kind_of_packed(packed: type[Any]) -> Kind:
-    """The kind whose packed form a class is."""
+    """Return the kind that has this class as its packed form."""
     return next(kind for kind in ALL_KINDS if kind.packed is packed)
 
 
 def intersect(shape: Any, origin: Vec, direction: Vec) -> Any:
-    """`intersect` of the shape's own kind."""
+    """Intersect rays with a packed shape by the formula of its kind: `intersect` of `minirt.shapes.shape`."""
     return kind_of_packed(type(shape)).intersect(shape, origin, direction)
 
 
 def mapping(shape: Any, point: Vec, normal: Vec) -> Any:
-    """`mapping` of the shape's own kind."""
+    """Compute texture coordinates and tangents by the formula of its kind: `mapping` of `minirt.shapes.shape`."""
     return kind_of_packed(type(shape)).mapping(shape, point, normal)
 
 
 def shading(shape: Any, point: Vec, normal: Vec) -> Any:
-    """`shading` of the shape's own kind."""
+    """Compute the shading normal by the formula of its kind: `shading` of `minirt.shapes.shape`."""
     return kind_of_packed(type(shape)).shading(shape, point, normal)
 
 
 def is_batched(rows: Rows) -> bool:
-    """Whether shapes of the kind of these rows come in crowds."""
+    """Whether the shapes of these rows are culled in batches, as the triangles of meshes are."""
     return kind_of(rows.dtype.names).batched
 
 
-def may_meet(shape: Any, apex: Vec, start: Any, direction: Vec, asked: Any) -> Any:
-    """`may_meet` of the shape's own kind."""
-    return kind_of_packed(type(shape)).may_meet(shape, apex, start, direction, asked)
+def may_meet(shape: Any, apex: Vec, start: Any, direction: Vec, active: Any) -> Any:
+    """Cull rays of a packet by the test of its kind: `may_meet` of `minirt.shapes.shape`."""
+    return kind_of_packed(type(shape)).may_meet(shape, apex, start, direction, active)
 
 
 def surface(shape: Any, point: Vec) -> Any:
-    """`surface` of the shape's own kind."""
+    """Compute surface point and normal by the formula of its kind: `surface` of `minirt.shapes.shape`."""
     return kind_of_packed(type(shape)).surface(shape, point)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from minirt.kernel.culling.light_buffer import AHEAD, SCALE
+from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR, SCALE
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.culling.planes import never_occludes
 from minirt.rendering.packing.features import FEATURES, features
@@ -42,7 +42,7 @@ def notes(scene: Scene, tables: ShapeArrays, traced: SceneArrays) -> Iterator[st
 
 def cells(traced: SceneArrays) -> Iterator[str]:
     """What cells lamps have: around them, or ahead of them where they see all shapes there."""
-    ahead, edge = traced.light_buffers[:, SCALE] > 0, AHEAD * traced.light_buffer_cells
+    ahead, edge = traced.light_buffers[:, SCALE] > 0, FRUSTUM_FACTOR * traced.light_buffer_cells
     if not ahead.all() or not len(ahead):
         yield f"6 x {traced.light_buffer_cells} x {traced.light_buffer_cells} cells"
     if ahead.any():

@@ -17,7 +17,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.gc_pause import uncollected
 from minirt.kernel.culling import binning
-from minirt.kernel.frame import CANCELLED, DOWN
+from minirt.kernel.frame import CANCELLED, PACKET_HEIGHT
 from minirt.lanes import width
 from minirt.rendering.culling.visibility import SMALL
 from minirt.rendering.frame_arguments import ALL_PACKETS, NO_LINEAR, Frame, frame_arguments, memory_for, room_for_sums
@@ -158,7 +158,7 @@ class Renderer:
         traced = self.packing.pack(scene, across, height)
         given = frame_arguments(traced, pixels, samples, linear, counter)
         if edges:
-            strips = edge_packets(pixels, width(traced.camera) // DOWN)
+            strips = edge_packets(pixels, width(traced.camera) // PACKET_HEIGHT)
             found = list(takewhile(lambda _: counter[0] < CANCELLED, strips))
             given = given._replace(wanted=np.concatenate(found) if found else ALL_PACKETS)
         self.run([given], self.threads)
@@ -200,7 +200,7 @@ class Renderer:
                 self.run([given.of(task, counters[i:]) for i, task in enumerate(tasks)], -(-self.threads // CLASSES))
                 return bool(counters.max() < CANCELLED)
 
-            auto = Auto(draw, pixels.shape[0], pixels.shape[1], width(traced.camera) // DOWN)
+            auto = Auto(draw, pixels.shape[0], pixels.shape[1], width(traced.camera) // PACKET_HEIGHT)
             reached = auto.reach(error, seconds - (perf_counter() - start))
             if reached:
                 auto.halves.finish(pixels, NO_LINEAR if linear is None else linear)

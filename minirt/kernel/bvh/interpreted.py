@@ -1,4 +1,4 @@
-"""What builds a tree, without the compiler."""
+"""The functions that build a BVH, without the compiler: the same names as in `minirt.kernel.compiler.jit_bvh`."""
 
 from minirt.kernel.bvh.build import divide
 from minirt.kernel.bvh.collapse import collapse, weigh

@@ -1,4 +1,4 @@
-"""Rays that share no origin against all shapes of a scene: `minirt.kernel.trace` by means of a tree."""
+"""Closest-hit and shadow queries for incoherent rays, by BVH traversal; the counterpart of `minirt.kernel.trace`."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from typing import Any
 from minirt.kernel.atomic_counter import fetch_add
 from minirt.kernel.bvh.nodes import (
     DIRECTION,
-    FOUND,
+    HIT,
     ORIGIN,
     WIDTH,
     Group,
     Tree,
-    aim,
     bits,
     packet_memory,
     put,
     put_vec,
-    reach,
+    search_limit,
+    store_rays,
     vec_at,
 )
 from minirt.kernel.bvh.traversal import traverse
@@ -30,83 +30,86 @@ from minirt.lanes.largest import largest
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 
-CHUNK = 16 * WIDTH  # rays that a thread takes at a time
+CHUNK = 16 * WIDTH  # rays that a thread claims at a time
 
-Nearest = tuple[Number, Number, Number]  # distance, index and extent of what is hit
+Hit = tuple[Number, Number, Number]  # distance, index and extent of the shape that is hit
 
 
-def closest_hit(tree: Tree, origin: Vec, direction: Vec, asked: Mask) -> Nearest:
-    """As `trace.nearest`, for any rays; those that are not `asked` for hit endless shapes only."""
+def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Hit:
+    """Find the closest hit of each ray, as `minirt.kernel.trace.closest_hit` does; rays may have any origins.
+
+    Rays that are not `active` hit unbounded shapes only.
+    """
     memory = packet_memory()
-    aim(memory, origin, direction)
-    nothing = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
-    best, owner, extent = for_each_kind(nearest_endless, tree.groups, nothing, (tree, origin, direction))
-    put_vec(memory, FOUND, Vec(best, owner, extent))
-    traverse(nearest_of_block, tree, memory, bits(asked))
-    return load(memory, FOUND), load(memory, FOUND + WIDTH), load(memory, FOUND + 2 * WIDTH)
+    store_rays(memory, origin, direction)
+    no_hit = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
+    best, owner, extent = for_each_kind(closest_unbounded, tree.groups, no_hit, (tree, origin, direction))
+    put_vec(memory, HIT, Vec(best, owner, extent))
+    traverse(closest_in_block, tree, memory, bits(active))
+    return load(memory, HIT), load(memory, HIT + WIDTH), load(memory, HIT + 2 * WIDTH)
 
 
-def nearest_endless(group: Group, state: Nearest, given: tuple[Tree, Vec, Vec]) -> Nearest:
-    """`closest_hit` over the shapes of one kind that have no end."""
-    tree, origin, direction = given
-    for i in range(group.endless.shape[0]):
-        index = group.endless[i]
+def closest_unbounded(group: Group, state: Hit, arguments: tuple[Tree, Vec, Vec]) -> Hit:
+    """Continue `closest_hit` over the unbounded shapes of one kind."""
+    tree, origin, direction = arguments
+    for i in range(group.unbounded.shape[0]):
+        index = group.unbounded[i]
         shape = read(group.rows, tree.slots[index, 1])
         hit, t = intersect(shape, origin, direction)
         state = closer_hit(shape, index, tree.extents[index], hit, t, origin, direction, state)
     return state
 
 
-def nearest_of_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
-    """`closest_hit` of one ray over a block of shapes."""
+def closest_in_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
+    """Continue `closest_hit` of one ray over the shapes of a block, and store the result in `HIT`."""
     origin, direction = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray)
     hit, t = intersect(read_block(group.blocks, block), origin, direction)
-    left = bits(hit & (t <= reach(memory[FOUND + ray])))
-    if left != 0:
-        found = vec_at(memory, FOUND, ray)
-        state = found.x, found.y, found.z
-        while left != 0:
-            i = lowest(left)
-            left = left & (left - 1)
-            shape = read_one(group.blocks, block, i)  # in the cache, as its row in the table is not
+    candidates = bits(hit & (t <= search_limit(memory[HIT + ray])))
+    if candidates != 0:
+        best = vec_at(memory, HIT, ray)
+        state = best.x, best.y, best.z
+        while candidates != 0:
+            i = lowest(candidates)
+            candidates = candidates & (candidates - 1)
+            shape = read_one(group.blocks, block, i)  # cached already, unlike the shape's row in `rows`
             index, extent = group.labels[block, i, 0], group.labels[block, i, 1]
             state = closer_hit(shape, index, extent, True, lane(t, i), origin, direction, state)
-        memory[FOUND + ray], memory[FOUND + WIDTH + ray], memory[FOUND + 2 * WIDTH + ray] = state
+        memory[HIT + ray], memory[HIT + WIDTH + ray], memory[HIT + 2 * WIDTH + ray] = state
 
 
-def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
-    """Of the rays that are `asked` for, those that hit nothing nearer than `distance`."""
+def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, active: Mask) -> Mask:
+    """Trace shadow rays: the `active` rays that hit nothing nearer than `distance`."""
     memory = packet_memory()
-    aim(memory, origin, direction)
-    free = for_each_kind(free_of_endless, tree.groups, asked, (tree, origin, direction, distance))
-    put(memory, FOUND, where(free, distance, -inf))
-    traverse(free_of_block, tree, memory, bits(free))
-    return load(memory, FOUND) > -inf
+    store_rays(memory, origin, direction)
+    visible = for_each_kind(unoccluded_by_unbounded, tree.groups, active, (tree, origin, direction, distance))
+    put(memory, HIT, where(visible, distance, -inf))
+    traverse(occlude_by_block, tree, memory, bits(visible))
+    return load(memory, HIT) > -inf
 
 
-def free_of_endless(group: Group, free: Mask, given: tuple[Tree, Vec, Vec, Number]) -> Mask:
-    """Of the rays that are free so far, those that no shape without end of one kind stops."""
-    tree, origin, direction, distance = given
-    for i in range(group.endless.shape[0]):
-        hit, t = intersect(read(group.rows, tree.slots[group.endless[i], 1]), origin, direction)
-        free = free & ~(hit & (t < distance))
-    return free
+def unoccluded_by_unbounded(group: Group, visible: Mask, arguments: tuple[Tree, Vec, Vec, Number]) -> Mask:
+    """Remove the shadow rays that an unbounded shape of one kind occludes from `visible`."""
+    tree, origin, direction, distance = arguments
+    for i in range(group.unbounded.shape[0]):
+        hit, t = intersect(read(group.rows, tree.slots[group.unbounded[i], 1]), origin, direction)
+        visible = visible & ~(hit & (t < distance))
+    return visible
 
 
-def free_of_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
-    """Nothing matters any more to a ray, not even what is at -infinity, as soon as something stops it."""
+def occlude_by_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
+    """Set the distance in `HIT` of a shadow ray to -infinity, which ends it, if a shape of a block occludes it."""
     hit, t = intersect(read_block(group.blocks, block), vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray))
-    memory[FOUND + ray] = where(any(hit & (t < memory[FOUND + ray])), -inf, memory[FOUND + ray])
+    memory[HIT + ray] = where(any(hit & (t < memory[HIT + ray])), -inf, memory[HIT + ray])
 
 
 def read_block(blocks: Any, i: int) -> Any:
-    """The packed shapes of a block as one whose numbers are lanes."""
+    """Return all shapes of a block as one packed shape, with one shape in each SIMD lane."""
     parts = (Vec(*part) if part.ndim == 2 else part for part in blocks[i])
     return kind_of(blocks.dtype.names).packed(*parts)
 
 
 def read_one(blocks: Any, block: int, i: int) -> Any:
-    """The packed shape in lane i of a block."""
+    """Return the packed shape in lane i of a block."""
     parts = (Vec(*part[:, i]) if part.ndim == 2 else part[i] for part in blocks[block])
     return kind_of(blocks.dtype.names).packed(*parts)
 
@@ -114,10 +117,10 @@ def read_one(blocks: Any, block: int, i: int) -> Any:
 def trace_rays(
     next_ray: Any, tree: Tree, origins: Any, directions: Any, distances: Any, owners: Any, points: Any, normals: Any
 ) -> None:
-    """Trace rays, taking the next ones from the counter `next_ray` until none is left.
+    """Find the closest hits of n rays, claiming chunks of rays from the counter `next_ray` until none is left.
 
-    Any number of threads may do so at the same time. `origins`, `directions` of any length, `points` and `normals` are
-    (n, 3), `distances` and `owners` (n,); what belongs to a ray without a hit stays as it is.
+    Any number of threads may do so at the same time. Reads `origins` and `directions`, (n, 3), which may have any
+    length. Writes `points` and `normals`, (n, 3), `distances` and `owners`, (n,), except for rays without a hit.
     """
     tree = by_reference(tree)
     count = origins.shape[0]
@@ -128,44 +131,45 @@ def trace_rays(
             return
         for first in range(start, min(start + CHUNK, count), WIDTH):
             for ray in range(WIDTH):
-                memory[FOUND + ray] = first + ray
+                memory[HIT + ray] = first + ray
                 for axis in range(3):
                     memory[ORIGIN + axis * WIDTH + ray] = origins[min(first + ray, count - 1), axis]
                     memory[DIRECTION + axis * WIDTH + ray] = directions[min(first + ray, count - 1), axis]
-            origin, direction = lanes_at(memory, ORIGIN), unit(rescaled(lanes_at(memory, DIRECTION)))
-            t, owner, _ = closest_hit(tree, origin, direction, load(memory, FOUND) < count)
+            origin, direction = vec_lanes_at(memory, ORIGIN), unit(rescale(vec_lanes_at(memory, DIRECTION)))
+            t, owner, _ = closest_hit(tree, origin, direction, load(memory, HIT) < count)
             put_vec(memory, ORIGIN, origin + t * direction)
-            put_vec(memory, FOUND, Vec(t, owner, t))
+            put_vec(memory, HIT, Vec(t, owner, t))
             for ray in range(min(WIDTH, count - first)):
-                index = int(memory[FOUND + WIDTH + ray])
+                index = int(memory[HIT + WIDTH + ray])
                 if index >= 0:
                     point = vec_at(memory, ORIGIN, ray)
                     group, row = tree.slots[index, 0], tree.slots[index, 1]
                     on, normal, _ = for_each_kind(surface_of_kind, tree.groups, (point, point, 0), (group, row, point))
-                    distances[first + ray], owners[first + ray] = memory[FOUND + ray], index
+                    distances[first + ray], owners[first + ray] = memory[HIT + ray], index
                     store_vec(points, first + ray, on)
                     store_vec(normals, first + ray, normal)
 
 
-def lanes_at(memory: Any, at: int) -> Vec:
-    """The vectors of all rays of a packet."""
+def vec_lanes_at(memory: Any, at: int) -> Vec:
+    """Load the vectors of all rays of a packet from its memory."""
     return Vec(load(memory, at), load(memory, at + WIDTH), load(memory, at + 2 * WIDTH))
 
 
 def store_vec(vectors: Any, i: int, v: Vec) -> None:
+    """Store a vector in row i of an array (n, 3)."""
     vectors[i, 0], vectors[i, 1], vectors[i, 2] = v.x, v.y, v.z
 
 
-def rescaled(v: Vec) -> Vec:
-    """The vector in the direction of v whose largest coordinate is 1, however short or long v is."""
+def rescale(v: Vec) -> Vec:
+    """Scale a vector so that its largest coordinate is 1: its length then neither overflows nor underflows."""
     size = largest(v)
     return Vec(v.x / size, v.y / size, v.z / size)
 
 
-def surface_of_kind(group: Group, state: tuple[Vec, Vec, int], given: tuple[int, int, Vec]) -> tuple[Vec, Vec, int]:
-    """`surface` of a shape, if it is of this kind; the last of the state counts the kinds."""
+def surface_of_kind(group: Group, state: tuple[Vec, Vec, int], arguments: tuple[int, int, Vec]) -> tuple[Vec, Vec, int]:
+    """Compute point and normal of a shape if it is of this kind; the last of the state counts the kinds."""
     on, normal, number = state
-    wanted, row, point = given
-    if number == wanted:
+    group_number, row, point = arguments
+    if number == group_number:
         on, normal = surface(read(group.rows, row), point)
     return on, normal, number + 1

@@ -160,12 +160,12 @@ def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> An
     x, y = (context.cast(builder, args[i], sig.args[i], types.intp) for i in (1, 2))
     width = length(context, builder, sig.args[0], args[0], 1)
     count = sig.args[3].count
-    step = count // frame.DOWN
+    step = count // frame.PACKET_HEIGHT
     words = splat(builder, ir.Constant(word, frame.OPAQUE), count)
     for level, shift in zip(args[3:], (16, 8, 0), strict=True):
         byte = builder.fptosi(level, words.type)
         words = builder.or_(words, builder.shl(byte, constant(words, shift)))
-    for line in range(frame.DOWN):
+    for line in range(frame.PACKET_HEIGHT):
         lanes = [ir.Constant(word, line * step + i) for i in range(step)]
         part = builder.shuffle_vector(words, words, ir.Constant(ir.VectorType(word, step), lanes))
         row = builder.mul(builder.add(y, ir.Constant(y.type, line)), width)
@@ -176,7 +176,7 @@ def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> An
 
 register_jitable(**INNER)(vec.cross)
 OWN_FORM = (
-    whitted.path_memory,
+    whitted.ray_stack,
     trace.for_each_kind,
     trace.closest_of_kind,
     trace.unoccluded_by_kind,

@@ -36,9 +36,9 @@ def _packet_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> 
     return memory
 
 
-@register(whitted.path_memory, lambda: MEMORY, [()])
+@register(whitted.ray_stack, lambda: MEMORY, [()])
 def _path_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return cgutils.alloca_once(builder, ir.DoubleType(), size=whitted.MEMORY)
+    return cgutils.alloca_once(builder, ir.DoubleType(), size=whitted.STACK_SIZE)
 
 
 def lanes_place(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
@@ -61,11 +61,11 @@ def _put(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 @register(nodes.tag, lambda distance, names: LANES, [(Lanes, Lanes)])
 def _tag(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     distance, names = (builder.bitcast(each, WORDS) for each in args)
-    kept = builder.and_(distance, constant(distance, ~nodes.NAME))
+    kept = builder.and_(distance, constant(distance, ~nodes.REFERENCE_BITS))
     return builder.bitcast(builder.or_(kept, names), LANES_IR)
 
 
-@register(nodes.name_of, lambda tagged: types.int64 if tagged == types.float64 else None, [(types.Float,)])
+@register(nodes.reference_of, lambda tagged: types.int64 if tagged == types.float64 else None, [(types.Float,)])
 def _name_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.sext(builder.trunc(builder.bitcast(args[0], WORD), ir.IntType(32)), WORD)
 
@@ -75,7 +75,7 @@ def _bits(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.zext(reductions.bits(builder, args[0]), WORD)
 
 
-@register(nodes.least, lambda x: types.float64, [(Lanes,)])
+@register(nodes.least_lane, lambda x: types.float64, [(Lanes,)])
 def _least(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     kind = ir.FunctionType(WORD, [WORDS])
     name = f"llvm.vector.reduce.smin.v{LANES.count}i64"
@@ -89,12 +89,12 @@ def word_place(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.bitcast(place, WORD.as_pointer())
 
 
-@register(nodes.whole_at, lambda memory, at: types.int64, [(types.CPointer, types.Integer)])
+@register(nodes.integer_at, lambda memory, at: types.int64, [(types.CPointer, types.Integer)])
 def _whole_at(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return builder.load(word_place(context, builder, sig, args))
 
 
-@register(nodes.put_whole, lambda memory, at, n: types.none, [(types.CPointer, types.Integer, types.Integer)])
+@register(nodes.put_integer, lambda memory, at, n: types.none, [(types.CPointer, types.Integer, types.Integer)])
 def _put_whole(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     builder.store(context.cast(builder, args[2], sig.args[2], types.int64), word_place(context, builder, sig, args))
     return context.get_dummy_value()
@@ -135,12 +135,12 @@ teach_for_placed(queries.read_one, packed_one, _read_one)
 TAUGHT = (
     nodes.packet_memory,
     nodes.put,
-    nodes.whole_at,
-    nodes.put_whole,
+    nodes.integer_at,
+    nodes.put_integer,
     nodes.tag,
-    nodes.name_of,
+    nodes.reference_of,
     nodes.bits,
-    nodes.least,
+    nodes.least_lane,
     queries.read_block,
     queries.read_one,
 )
@@ -153,7 +153,7 @@ for _module in (nodes, traversal, build, collapse, queries):
 # With the types said at once, what builds trees is compiled when this module is imported.
 NUMBER, WHOLE = types.float64, types.int64
 TABLE, LINKS = NUMBER[:, ::1], WHOLE[:, ::1]
-BINARY = types.NamedTuple([TABLE, TABLE, LINKS, TABLE, NUMBER[::1], NUMBER[::1], LINKS], build.Binary)
+BINARY = types.NamedTuple([TABLE, TABLE, LINKS, TABLE, NUMBER[::1], NUMBER[::1], LINKS], build.BinaryTree)
 DIVIDE = WHOLE(BINARY)
 WEIGH = types.void(BINARY, TABLE, LINKS)
 COLLAPSE = types.UniTuple(WHOLE, 2)(BINARY, LINKS, NUMBER[::1], WHOLE[::1], LINKS, LINKS)

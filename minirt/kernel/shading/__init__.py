@@ -1,0 +1,1 @@
+"""Shading: materials, textures, lights, shadows, reflection, refraction and the environment."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.kernel.culling.binning import Grid
-from minirt.kernel.culling.light_buffer import AHEAD
+from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 
 CROWD = 1000  # shapes at least: with fewer a cube takes less time
@@ -46,7 +46,7 @@ def square_ahead(found: Cluster | None, lamp: np.ndarray, grid: int) -> Grid | N
         return None
     way = found.middle - lamp
     distance = float(np.linalg.norm(way))
-    cells = AHEAD * grid
+    cells = FRUSTUM_FACTOR * grid
     if not found.radius < distance / np.sqrt(1 + WIDEST**-2):
         return None
     slope = found.radius / np.sqrt(distance**2 - found.radius**2)

@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.kernel.culling.binning import MARGIN, Grid
-from minirt.kernel.frame import TILE, tiles
+from minirt.kernel.frame import TILE, tile_count
 from minirt.rendering.culling.light_frustum import SPREAD, Cluster, square_ahead
 from minirt.rendering.culling.planes import heights, runs
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 
-# Across, down and forward of the six faces of a cube, in the order of `minirt.kernel.culling.light_buffer.cell_of_cube`.
+# Across, down and forward of the six faces of a cube, in the order of `minirt.kernel.culling.light_buffer.cube_cell`.
 FACES = np.array([np.roll(np.diag([1.0, 1.0, side]), axis + 1, axis=1) for axis in range(3) for side in (1, -1)])
 # By how many cells a cube's intervals grow for that: at the corner of a face, where slopes change most with the angle,
 # an angle e changes them by less than 3 e.
@@ -68,7 +68,7 @@ def screen(camera: np.ndarray, width: int, height: int) -> Grid:
     wide, high = float(np.linalg.norm(right)), float(np.linalg.norm(up))
     x, y = width / (2 * TILE), height / (2 * TILE)
     frames = np.stack([right / wide, -up / high, forward])[None]
-    across, down = tiles(width), tiles(height)
+    across, down = tile_count(width), tile_count(height)
     return Grid(frames, across, down, x / wide, x, y / high, y, 1 / TILE, across * down, -1)
 
 

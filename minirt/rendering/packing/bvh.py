@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from minirt.kernel.bvh.build import BINS, GROUP, INDEX, Binary
+from minirt.kernel.bvh.build import BINS, GROUP, INDEX, BinaryTree
 from minirt.kernel.bvh.nodes import NODE, WIDTH, Group, Tree
 from minirt.kernel.rows import kind_of, row_type
 from minirt.rendering.packing.primitives import primitives_of
@@ -24,7 +24,7 @@ def block_type(kind: Kind) -> np.dtype[Any]:
 
 
 def boxes_of(tables: ShapeArrays) -> tuple[np.ndarray, np.ndarray]:
-    """The boxes of the shapes as `Binary` has them, and the indices of the shapes that have no end."""
+    """The boxes of the shapes as `BinaryTree` has them, and the indices of the shapes that have no end."""
     bounds = [shape.bounds() for shape in tables.shapes]
     endless = tables.start[np.array([index for index, box in enumerate(bounds) if not box], np.int64)]
     bounded = np.delete(np.arange(len(tables.slots)), endless)
@@ -69,9 +69,9 @@ def wide_nodes(boxes: np.ndarray, kernel: Any) -> tuple[np.ndarray, np.ndarray]:
     most = max(1, 2 * len(boxes) - 1)
     whole, reaches = np.empty((most, 3), np.int64), np.empty((most, 6))
     todo = np.empty((most + 1, 2), np.int64)
-    tree = Binary(boxes, reaches, whole, np.empty((BINS + 1, 7)), np.empty(BINS), np.empty(6), todo)
+    tree = BinaryTree(boxes, reaches, whole, np.empty((BINS + 1, 7)), np.empty(BINS), np.empty(6), todo)
     count = kernel.divide(tree)
-    tree = tree._replace(reaches=reaches[:count], links=whole[:count])
+    tree = tree._replace(bounds=reaches[:count], links=whole[:count])
     choices = np.empty((count, WIDTH + 1), np.int64)
     kernel.weigh(tree, np.empty((count, WIDTH + 1)), choices)
     nodes, leaves = aligned(NODE * (count // 2 + 1), np.dtype(np.float64)), np.empty(count, np.int64)

@@ -8,7 +8,7 @@ from math import radians, tan
 import numpy as np
 
 from minirt.fields import clamp
-from minirt.kernel.frame import DOWN
+from minirt.kernel.frame import PACKET_HEIGHT
 from minirt.lanes import width
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame
@@ -43,4 +43,4 @@ def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:
 @cache
 def packet_places(rays: int) -> np.ndarray:
     """Where the pixels of the rays of a packet lie in it, x and y: (2, rays)."""
-    return np.stack(np.divmod(np.arange(rays), rays // DOWN)[::-1]).astype(np.float64)
+    return np.stack(np.divmod(np.arange(rays), rays // PACKET_HEIGHT)[::-1]).astype(np.float64)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from minirt.kernel.culling.light_buffer import SPREAD
-from minirt.kernel.rows import kind_of, place_fields, row_type
+from minirt.kernel.culling.light_buffer import TOLERANCE
+from minirt.kernel.rows import kind_of, point_fields, row_type
 from minirt.kernel.scene_arrays import Group, SceneArrays
 
 MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
@@ -64,7 +64,7 @@ def wider(views: np.ndarray) -> np.ndarray:
 def narrower(around: np.ndarray) -> np.ndarray:
     """How directions from lamps are sorted into cells, in float32: fewer count as close."""
     around = around.copy()
-    around[:, SPREAD] = np.maximum(np.sqrt(around[:, SPREAD]) - MARGIN, 0.0) ** 2
+    around[:, TOLERANCE] = np.maximum(np.sqrt(around[:, TOLERANCE]) - MARGIN, 0.0) ** 2
     return rounded(around)
 
 
@@ -72,7 +72,7 @@ def moved(rows: np.ndarray, eye: np.ndarray) -> np.ndarray:
     """Rows of shapes in float32, relative to the eye."""
     kind = kind_of(rows.dtype.names)
     rows = rows.copy()
-    for name in place_fields(kind):
+    for name in point_fields(kind):
         rows[name] -= eye
     with np.errstate(over="ignore"):
         return rows.astype(row_type(kind, np.float32))

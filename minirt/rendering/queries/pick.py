@@ -9,7 +9,7 @@ import numpy as np
 
 from minirt.fields import Triple
 from minirt.kernel.culling import binning
-from minirt.kernel.frame import TILE, tiles, towards
+from minirt.kernel.frame import TILE, ray_direction, tile_count
 from minirt.kernel.rows import kind_of
 from minirt.kernel.trace import COINCIDENT, closest_hit
 from minirt.lanes import Vec, lane, splat, unit
@@ -30,7 +30,7 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: ShapeArr
     tables = tables or ShapeArrays()
     tables.update(scene.shapes)
     camera = pixel_rays(camera_numbers(scene.camera, width, height), width, height)
-    origin, direction = Vec(*camera[:3]), unit(towards(camera, x + 0.5, y + 0.5))
+    origin, direction = Vec(*camera[:3]), unit(ray_direction(camera, x + 0.5, y + 0.5))
     with np.errstate(all="ignore"):
         near = in_front(tables, origin, direction)
         owners = np.unique(tables.owner[near])
@@ -41,7 +41,7 @@ def pick(scene: Scene, width: int, height: int, x: int, y: int, tables: ShapeArr
         packing = Packing(binning)
         traced = packing.pack(Scene((scene.camera, *parts), scene.file), width, height)
         rays = Vec(*(splat(part, camera) for part in (direction.x, direction.y, direction.z)))
-        _, owner, _ = closest_hit(traced, y // TILE * tiles(width) + x // TILE, origin, rays)
+        _, owner, _ = closest_hit(traced, y // TILE * tile_count(width) + x // TILE, origin, rays)
     return tables.shapes[int(owners[packing.tables.owner[int(lane(owner, 0))]])]
 
 
@@ -67,7 +67,7 @@ def met(shape: Shape, camera: Camera, width: int, height: int, x: Any, y: Any) -
     numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
     kind = next(kind for kind in ALL_KINDS if kind.element is type(shape))
     with np.errstate(all="ignore"):
-        origin, direction = Vec(*numbers[:3]), unit(towards(numbers, x + 0.5, y + 0.5))
+        origin, direction = Vec(*numbers[:3]), unit(ray_direction(numbers, x + 0.5, y + 0.5))
         hit, t = kind.intersect(shape.pack(), origin, direction)
         if isinstance(shape, Mesh):
             hit, t = hit.any(), np.where(hit, t, np.inf).min()

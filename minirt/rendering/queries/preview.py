@@ -10,9 +10,9 @@ from math import ceil
 import numpy as np
 
 from minirt.kernel.culling import binning
-from minirt.kernel.frame import level, towards
+from minirt.kernel.frame import ray_direction, to_byte_range
 from minirt.kernel.scene_arrays import SceneArrays
-from minirt.kernel.shading.whitted import radiance
+from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.lanes import Vec, unit
 from minirt.rendering.frame_arguments import memory_for
 from minirt.rendering.scene_packing import Packing
@@ -39,11 +39,11 @@ def picture(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarr
     traced = in_one_list(Packing(binning, depth=0).pack(scene, width, height))
     y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
     with np.errstate(all="ignore"):
-        direction = unit(towards(traced.camera, x, y))
-        seen = radiance(traced, memory_for(traced), 0, Vec(*traced.camera[:3]), direction)
+        direction = unit(ray_direction(traced.camera, x, y))
+        seen = incoming_radiance(traced, memory_for(traced), 0, Vec(*traced.camera[:3]), direction)
     light = np.stack([seen.x, seen.y, seen.z], axis=-1).reshape(height, width, 3)
     pixels = np.full((height, width, 4), 255, np.uint8)
-    pixels[..., :3] = level(light[..., ::-1])
+    pixels[..., :3] = to_byte_range(light[..., ::-1])
     return pixels, light
 
 

@@ -10,11 +10,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from minirt.kernel.frame import DOWN
+from minirt.kernel.frame import PACKET_HEIGHT
 
 CONTRAST = 6  # levels of 255 by which neighbours differ at an edge
 STRIP = (
-    16 * DOWN
+    16 * PACKET_HEIGHT
 )  # lines looked at in one go: what they take fits a processor's cache, a third of the time of all at once
 
 
@@ -51,11 +51,11 @@ def differ(a: np.ndarray, b: np.ndarray, least: int) -> np.ndarray:
 def packets_of(pixels: np.ndarray, across: int) -> np.ndarray:
     """The packets, so many pixels across, with at least one of the pixels (h, w), as uint8 (rows, columns)."""
     height, width = pixels.shape
-    rows, columns = -(-height // DOWN), -(-width // across)
-    whole = np.zeros((rows * DOWN, columns * across), bool)
+    rows, columns = -(-height // PACKET_HEIGHT), -(-width // across)
+    whole = np.zeros((rows * PACKET_HEIGHT, columns * across), bool)
     whole[:height, :width] = pixels
     found = np.zeros((rows, columns), bool)
-    for y in range(DOWN):
+    for y in range(PACKET_HEIGHT):
         for x in range(across):
-            found |= whole[y::DOWN, x::across]
+            found |= whole[y::PACKET_HEIGHT, x::across]
     return found.view(np.uint8)

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.kernel.frame import DOWN
+from minirt.kernel.frame import PACKET_HEIGHT
 from minirt.rendering.sampling.adaptive import edge_packets
 from minirt.rendering.sampling.allocation import CONTRASTS, allocate, coefficients
 from minirt.rendering.sampling.outcome import Outcome
@@ -50,7 +50,7 @@ class Auto:
         self.halves = Replicates(height, width, across)
         self.pixels = np.full((2, height, width, 4), 255, np.uint8)  # of what was last drawn in each half
         self.doublings = np.full(self.halves.packets, -1)  # a packet has 2^doublings samples in each half
-        self.shifts = digital_shifts(2, CLASSES, DOWN * across)
+        self.shifts = digital_shifts(2, CLASSES, PACKET_HEIGHT * across)
         rows, columns = map(np.arange, self.halves.packets)
         self.classes = np.add.outer(3 * rows, columns) % CLASSES
 

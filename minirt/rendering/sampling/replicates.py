@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from minirt.kernel.frame import DOWN
+from minirt.kernel.frame import PACKET_HEIGHT
 
 STRIP, CHUNK = 8, 1024  # rows of packets, and packets, worked on in one go: what they take fits a processor's cache
 
@@ -24,8 +24,8 @@ class Replicates:
 
     def __init__(self, height: int, width: int, across: int) -> None:
         self.height, self.width, self.across = height, width, across
-        self.packets = rows, columns = -(-height // DOWN), -(-width // across)
-        self.means = np.zeros((2, rows * DOWN, columns * across, 3))
+        self.packets = rows, columns = -(-height // PACKET_HEIGHT), -(-width // across)
+        self.means = np.zeros((2, rows * PACKET_HEIGHT, columns * across, 3))
         self.fresh = np.zeros(self.means.shape)
         self.guides = np.zeros(self.packets)  # squared errors of their mean: the sum over the guides of a packet
         self.judges = np.zeros(self.packets)
@@ -34,7 +34,7 @@ class Replicates:
     def by_packet(self, light: np.ndarray) -> np.ndarray:
         """A view of (2, h, w, 3) as (2, rows, DOWN, columns, 3 * across)."""
         rows, columns = self.packets
-        return light.reshape(2, rows, DOWN, columns, 3 * self.across)
+        return light.reshape(2, rows, PACKET_HEIGHT, columns, 3 * self.across)
 
     def compare(self) -> None:
         """Find the errors of all packets."""
@@ -64,8 +64,8 @@ class Replicates:
         """Put the mean of both halves into a picture, uint8 (h, w, 4) in the order blue, green, red, alpha, and, where
         that has rows, into `linear` (h, w, 3)."""
         pixels[..., 3] = 255
-        for top in range(0, self.height, STRIP * DOWN):
-            here = slice(top, min(top + STRIP * DOWN, self.height))
+        for top in range(0, self.height, STRIP * PACKET_HEIGHT):
+            here = slice(top, min(top + STRIP * PACKET_HEIGHT, self.height))
             light = (self.means[0, here, : self.width] + self.means[1, here, : self.width]) / 2
             if len(linear):
                 linear[here] = light
@@ -76,7 +76,7 @@ def squared_errors(one: np.ndarray, other: np.ndarray, across: int) -> tuple[np.
     """Of the mean of two halves of packets (..., DOWN, 3 * across): the sums over judges and over guides."""
     differences = shown(one) - shown(other)
     differences *= differences
-    colour = np.add.outer(np.arange(DOWN), np.repeat(np.arange(across), 3)) % 2
+    colour = np.add.outer(np.arange(PACKET_HEIGHT), np.repeat(np.arange(across), 3)) % 2
     judges, guides = (np.einsum("...yx,yx->...", differences, (colour == each) / 4) for each in (0, 1))
     return np.nan_to_num(judges), np.nan_to_num(guides)
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.kernel.frame import tiles
+from minirt.kernel.frame import tile_count
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
@@ -21,7 +21,7 @@ class BruteForce(Packing):
 
     def traced(self, scene: Scene, width: int, height: int) -> SceneArrays:
         """Pack the scene; RenderError if the lists would fill the memory."""
-        traced, count = super().traced(scene, width, height), tiles(width) * tiles(height)
+        traced, count = super().traced(scene, width, height), tile_count(width) * tile_count(height)
         if count * len(traced.slots) > MOST:
             raise RenderError(f"{len(traced.slots)} shapes in each of {count} tiles are too many")
         return without_culling(traced, count)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from minirt.kernel.frame import towards
+from minirt.kernel.frame import ray_direction
 from minirt.kernel.rows import kind_of_packed
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec, dot, unit
@@ -31,7 +31,7 @@ def coincident(scene: Scene, tables: ShapeArrays) -> Iterator[Stiff]:
         return
     camera = pixel_rays(camera_numbers(scene.camera, ACROSS, DOWN), ACROSS, DOWN)
     y, x = np.mgrid[:DOWN, :ACROSS].reshape(2, -1) + 0.5
-    eye, ways = camera[:3], unit(towards(camera, x, y))
+    eye, ways = camera[:3], unit(ray_direction(camera, x, y))
     with np.errstate(all="ignore"):
         t, slopes = all_hits(tables, Vec(*eye), ways)
         pair = np.argsort(t, axis=0, kind="stable")[:2]

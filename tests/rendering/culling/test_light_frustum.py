@@ -10,7 +10,7 @@ import pytest
 from minirt.fields import MeshFile
 from minirt.kernel.compiler import jit_binning
 from minirt.kernel.culling import binning
-from minirt.kernel.culling.light_buffer import SCALE, SPREAD, cell
+from minirt.kernel.culling.light_buffer import SCALE, TOLERANCE, light_buffer_cell
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.culling import light_frustum, visibility
@@ -131,9 +131,9 @@ def test_the_margin_is_how_far_close_directions_reach(lamp: Any) -> None:
     slopes[:, ::2] = half * np.sign(slopes[:, ::2])  # at the corners it is farthest
     forth = np.array([*slopes, np.ones(200_000)])
     forth /= np.linalg.norm(forth, axis=0)
-    turned = forth + np.sqrt(around[SPREAD]) * ways(random, 200_000).T
+    turned = forth + np.sqrt(around[TOLERANCE]) * ways(random, 200_000).T
     turned /= np.linalg.norm(turned, axis=0)
-    close = ((turned - forth) ** 2).sum(axis=0) <= around[SPREAD]
+    close = ((turned - forth) ** 2).sum(axis=0) <= around[TOLERANCE]
     reach = np.abs(turned[:2] / turned[2] - slopes)[:, close].max() * grid.scale_x
     assert 0.85 * grid.margin < reach < grid.margin
 
@@ -170,12 +170,12 @@ def test_directions_beside_and_behind_are_elsewhere() -> None:
     around, half = visibility.around(64, grid), grid.middle_x / grid.scale_x
     x, y, z = grid.frames[0]
     for way in (x, -x, y, -y):
-        assert cell(around, 64, Vec(*(z + 0.999 * half * way))) < 128 * 128
-        assert cell(around, 64, Vec(*(z + 1.001 * half * way))) == grid.elsewhere
-    assert cell(around, 64, Vec(*-z)) == grid.elsewhere
+        assert light_buffer_cell(around, 64, Vec(*(z + 0.999 * half * way))) < 128 * 128
+        assert light_buffer_cell(around, 64, Vec(*(z + 1.001 * half * way))) == grid.elsewhere
+    assert light_buffer_cell(around, 64, Vec(*-z)) == grid.elsewhere
     with np.errstate(all="ignore"):
-        assert cell(around, 64, Vec(*x)) == grid.elsewhere
-    assert cell(around, 64, Vec(*(z + half * (0.5 * x - 0.25 * y) + 1e-6 * (x + y)))) == 48 * 128 + 96
+        assert light_buffer_cell(around, 64, Vec(*x)) == grid.elsewhere
+    assert light_buffer_cell(around, 64, Vec(*(z + half * (0.5 * x - 0.25 * y) + 1e-6 * (x + y)))) == 48 * 128 + 96
 
 
 def test_a_lamp_far_away_has_short_lists() -> None:

@@ -9,8 +9,8 @@ import pytest
 
 from minirt.kernel.compiler import jit_binning
 from minirt.kernel.culling import binning
-from minirt.kernel.culling.light_buffer import AHEAD, SCALE, SPREAD, cell
-from minirt.kernel.frame import TILE, tiles, towards
+from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR, SCALE, TOLERANCE, light_buffer_cell
+from minirt.kernel.frame import TILE, ray_direction, tile_count
 from minirt.kernel.rows import kind_of, read
 from minirt.kernel.trace import COINCIDENT, in_cone
 from minirt.lanes import Vec, unit
@@ -55,8 +55,8 @@ class Seen(NamedTuple):
 def seen_rays(traced: Any) -> Seen:
     """What the rays of a picture meet."""
     x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT)))
-    origin, direction = Vec(*traced.camera[:3]), unit(towards(traced.camera, x, y))
-    tile = (y // TILE * tiles(WIDTH) + x // TILE).astype(int)
+    origin, direction = Vec(*traced.camera[:3]), unit(ray_direction(traced.camera, x, y))
+    tile = (y // TILE * tile_count(WIDTH) + x // TILE).astype(int)
     found = [Seen(*np.zeros((4, 0), int))]
     for index, (hit, t) in enumerate(meets(traced, origin, direction)):
         cone = np.broadcast_to(in_cone(traced.cones[index], direction), x.shape)
@@ -103,7 +103,7 @@ KERNELS = pytest.mark.parametrize("kernel", [binning, jit_binning], ids=["interp
 def test_a_tile_lists_all_that_its_rays_hit(make: Any, seed: int, kernel: Any) -> None:
     traced = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
     seen, in_tile = seen_rays(traced), members(traced, "tile_starts", traced.tile_shapes)
-    assert len(in_tile) == tiles(WIDTH) * tiles(HEIGHT)
+    assert len(in_tile) == tile_count(WIDTH) * tile_count(HEIGHT)
     assert in_tile[seen.tile, seen.shape].all()
     assert seen.in_cone.all()
     assert (seen.distance >= traced.cones[seen.shape, 4]).all()
@@ -149,17 +149,17 @@ def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int,
             traced.light_buffers[lamp],
         )
         if around[SCALE] > 0:  # a half of the directions into the square, and some just beside it
-            reach = 1.1 * AHEAD / 2 * traced.light_buffer_cells / around[SCALE]
+            reach = 1.1 * FRUSTUM_FACTOR / 2 * traced.light_buffer_cells / around[SCALE]
             slopes = reach * random.uniform(-1, 1, (2, 1000))
             directions[:, 1000:] = around[:9].reshape(3, 3).T @ np.array([*slopes, np.ones(1000)])
             directions /= np.linalg.norm(directions, axis=0)
         # The list of a cell that was looked up holds for directions close by.
-        nearby = directions + 0.99 * np.sqrt(around[SPREAD]) * ways(random, 2000).T
+        nearby = directions + 0.99 * np.sqrt(around[TOLERANCE]) * ways(random, 2000).T
         nearby /= np.linalg.norm(nearby, axis=0)
-        nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= around[SPREAD], nearby, directions)
+        nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= around[TOLERANCE], nearby, directions)
         with np.errstate(all="ignore"):
             cells = (
-                cell(around, traced.light_buffer_cells, Vec(*nearby))
+                light_buffer_cell(around, traced.light_buffer_cells, Vec(*nearby))
                 if traced.light_buffer_cells > 1
                 else np.zeros(2000)
             )
@@ -197,7 +197,7 @@ def test_a_sphere_is_listed_about_where_it_is_seen(seed: int) -> None:
     traced = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), ball)), 640, 640)
     listed = np.diff(traced.groups[0].tile_starts).reshape(40, 40) > 0
     x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(640), np.arange(640)))
-    ((hit, _),) = meets(traced, Vec(*traced.camera[:3]), unit(towards(traced.camera, x, y)))
+    ((hit, _),) = meets(traced, Vec(*traced.camera[:3]), unit(ray_direction(traced.camera, x, y)))
     assert not hit.reshape(640, 640)[[0, -1]].any()
     for axis in (0, 1):
         seen, there = (np.flatnonzero(each.any(axis=axis)) for each in (hit.reshape(640, 640), listed))
@@ -220,7 +220,7 @@ def test_tangents_are_turned_from_the_way_to_the_centre_by_the_angle_that_the_di
     x: float, z: float, radius: float
 ) -> None:
     middle, half = np.arctan2(x, z), np.arcsin(radius / np.hypot(x, z))
-    low, high = binning.tangents(x, z, radius)
+    low, high = binning.tangent_slopes(x, z, radius)
     assert low == (pytest.approx(np.tan(middle - half)) if middle - half > -np.pi / 2 else -np.inf)
     assert high == (pytest.approx(np.tan(middle + half)) if middle + half < np.pi / 2 else np.inf)
 
@@ -238,7 +238,7 @@ def test_a_ball_without_end_is_everywhere_and_at_no_distance(kernel: Any) -> Non
 
 
 def test_around_the_eye_a_disc_is_everywhere() -> None:
-    assert binning.tangents(0.5, -0.5, 1.0) == (-np.inf, np.inf)
+    assert binning.tangent_slopes(0.5, -0.5, 1.0) == (-np.inf, np.inf)
 
 
 def test_distances_are_less_by_what_may_be_one_place_and_by_little_more() -> None:
@@ -300,7 +300,7 @@ def test_a_direction_lies_in_the_cell_that_its_face_row_and_column_say(grid: int
             for across in slopes:
                 direction = forward + across * right + down * up
                 with np.errstate(all="ignore"):
-                    assert cell(visibility.NO_CELLS, grid, Vec(*map(np.float64, direction))) == expected
+                    assert light_buffer_cell(visibility.NO_CELLS, grid, Vec(*map(np.float64, direction))) == expected
                 expected += 1
 
 

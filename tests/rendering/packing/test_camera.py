@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import minirt
-from minirt.kernel.frame import towards
+from minirt.kernel.frame import ray_direction
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes.sphere import Sphere
@@ -31,7 +31,7 @@ CAMERAS = [
 def ours(camera: Camera, width: int, height: int) -> Array:
     """The unit directions of the rays that the program traces, (height, width, 3)."""
     rays = pixel_rays(camera_numbers(camera, width, height), width, height)
-    ways = [towards(rays, i + 0.5, j + 0.5) for j in range(height) for i in range(width)]
+    ways = [ray_direction(rays, i + 0.5, j + 0.5) for j in range(height) for i in range(width)]
     return normalized(np.array([(way.x, way.y, way.z) for way in ways]).reshape(height, width, 3))
 
 

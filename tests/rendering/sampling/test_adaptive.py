@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.kernel.frame import DOWN
+from minirt.kernel.frame import PACKET_HEIGHT
 from minirt.rendering import Renderer
 from minirt.rendering.sampling.adaptive import CONTRAST, STRIP, contrasts, edge_packets, packets_of
 from minirt.scene import Scene
@@ -38,7 +38,7 @@ def near_edges(pixels: Pixels) -> NDArray[np.bool_]:
     """Where pixels may change: so close to one with contrast that they may be in its packet."""
     near = np.zeros(pixels.shape[:2], bool)
     for y, x in np.argwhere(contrasts(pixels)):
-        near[max(y - DOWN, 0) : y + DOWN, max(x - 7, 0) : x + 8] = True
+        near[max(y - PACKET_HEIGHT, 0) : y + PACKET_HEIGHT, max(x - 7, 0) : x + 8] = True
     return near
 
 
@@ -75,20 +75,20 @@ def test_pictures_of_one_line_or_column(shape: tuple[int, int]) -> None:
 
 @pytest.mark.parametrize("across", [1, 2, 4])
 def test_a_packet_is_found_by_any_of_its_pixels(across: int) -> None:
-    for y in range(DOWN * 2):
+    for y in range(PACKET_HEIGHT * 2):
         for x in range(across * 3):
-            seen = np.zeros((DOWN * 2 - 1, across * 3), bool)
+            seen = np.zeros((PACKET_HEIGHT * 2 - 1, across * 3), bool)
             if y < len(seen):
                 seen[y, x] = True
                 packets = packets_of(seen, across)
                 assert packets.dtype == np.uint8
-                assert np.argwhere(packets).tolist() == [[y // DOWN, x // across]]
+                assert np.argwhere(packets).tolist() == [[y // PACKET_HEIGHT, x // across]]
     assert packets_of(np.ones((5, 2 * across + 1), bool), across).shape == (2, 3)
 
 
 def test_strips_together_are_the_whole() -> None:
     generator = np.random.default_rng(3)
-    for height in (1, STRIP - 1, STRIP, STRIP + 1, 2 * STRIP + DOWN + 1):
+    for height in (1, STRIP - 1, STRIP, STRIP + 1, 2 * STRIP + PACKET_HEIGHT + 1):
         pixels = flat(height, 21)
         pixels[..., :3] = 100 + 50 * (generator.random((height, 21, 1)) < 0.004)
         if height > STRIP:  # the last line of a strip is a neighbour of the first one of the next

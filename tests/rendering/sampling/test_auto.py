@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 import minirt
-from minirt.kernel.frame import DOWN
+from minirt.kernel.frame import PACKET_HEIGHT
 from minirt.rendering import Renderer
 from minirt.rendering.sampling.auto import Auto, Task
 from minirt.rendering.sampling.outcome import Outcome
@@ -238,7 +238,7 @@ def test_each_sample_is_made_once_and_both_halves_are_shifted_apart() -> None:
     assert auto.grow(np.arange(128).reshape(8, 16) % 4)
     count = np.zeros((2, 8, 16), int)
     for number, task in enumerate(done):
-        assert task.places.shape[1:] == (4 * DOWN, 2)
+        assert task.places.shape[1:] == (4 * PACKET_HEIGHT, 2)
         count[number % 2] += task.packets * len(task.places)
     assert np.array_equal(count[0], 2 ** (np.arange(128).reshape(8, 16) % 4))
     assert np.array_equal(count[0], count[1])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from minirt.kernel.frame import DOWN
+from minirt.kernel.frame import PACKET_HEIGHT
 from minirt.rendering.sampling.replicates import Replicates
 
 RANDOM = np.random.default_rng(7)
@@ -36,7 +36,7 @@ def test_guides_and_judges_take_turns() -> None:
         halves.means[0, y, x] = 0.5
         halves.compare()
         one, none = (halves.judges, halves.guides) if (x + y) % 2 == 0 else (halves.guides, halves.judges)
-        assert one[y // DOWN, x // 4] == one.sum() == pytest.approx(3 * 0.5**2 / 4)
+        assert one[y // PACKET_HEIGHT, x // 4] == one.sum() == pytest.approx(3 * 0.5**2 / 4)
         assert not none.any()
 
 
@@ -55,7 +55,7 @@ def test_samples_are_added_by_weight_and_compared() -> None:
     weights = RANDOM.random(halves.packets)
     halves.fresh[:, :45, :50] = RANDOM.random((2, 45, 50, 3))
     halves.add(wanted, weights)
-    weight = np.kron(wanted * weights, np.ones((DOWN, 4)))[None, ..., None]
+    weight = np.kron(wanted * weights, np.ones((PACKET_HEIGHT, 4)))[None, ..., None]
     assert np.abs(halves.means - (before * (1 - weight) + halves.fresh * weight)).max() < 1e-12
     found = halves.judges.copy(), halves.guides.copy()
     halves.compare()
