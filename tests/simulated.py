@@ -11,6 +11,8 @@ from minirt import bench, timing
 from minirt.kernel.frame import PACKET_HEIGHT
 from minirt.rendering import renderer
 from minirt.rendering.frame_arguments import Frame
+from minirt.rendering.running import to_error
+from minirt.rendering.running.frame_runner import FrameRunner
 from minirt.rendering.sampling import auto
 from minirt.report.measurements import formula_errors, picture_errors
 from minirt.timing import Run
@@ -42,14 +44,14 @@ class Clock:
 
 def simulated(patch: pytest.MonkeyPatch) -> Clock:
     """Put the clock in the place of the machine's wherever pictures or formulas are timed."""
-    clock, run = Clock(), renderer.Renderer.run
+    clock, run = Clock(), FrameRunner.run
 
-    def counted(self: renderer.Renderer, frames: list[Frame], threads: int) -> None:
+    def counted(self: FrameRunner, frames: list[Frame], threads: int) -> None:
         run(self, frames, threads)
         clock.rendered(sum(map(packets_of, frames)))
 
-    patch.setattr(renderer.Renderer, "run", counted)
-    for module in (timing, auto, renderer, picture_errors, bench):
+    patch.setattr(FrameRunner, "run", counted)
+    for module in (timing, auto, to_error, renderer, picture_errors, bench):
         patch.setattr(module, "perf_counter", lambda: clock.wall)
     patch.setattr(timing, "process_time", clock.cpu)
     patch.setattr(formula_errors, "in_turn", in_turn)

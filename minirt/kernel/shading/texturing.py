@@ -81,7 +81,7 @@ def bump_mapped(
     """Bump mapping: the normal of the surface raised by a height map (Blinn, Simulation of Wrinkled Surfaces, 1978).
 
     Lengths are in widths of the picture on the surface. The surface gradient of the height is subtracted from the
-    normal, so that may differ from the tangents' own (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
+    normal, which need not be that of the tangents (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
     """
     if bumps is None:
         return normal

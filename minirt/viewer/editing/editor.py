@@ -69,7 +69,7 @@ def resize(sign: float, state: State, amount: float, now: float) -> State:
     active = state.active
     if active is None:
         return state.say(f"{state.element.title} has no size")
-    another = partial(asset_files.another, state.scene)
+    another = partial(asset_files.next_file, state.scene)
     changed = state.put(
         state.element.replace(**{active.field.name: active.nudged(state.element, sign * amount, another)}),
         f"value {active.name}",

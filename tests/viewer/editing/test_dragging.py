@@ -9,12 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from minirt.mlx import Key
-from minirt.rendering.queries.pick import place
+from minirt.rendering.queries.pick import surface_point
 from minirt.scene import Camera
 from minirt.viewer.editing.measure import middle_of
 from minirt.viewer.editing.projection import dot, projection
-from tests.viewer.app.test_session import Bench
 from tests.viewer.fake import played, scene
+from tests.viewer.session_harness import SessionHarness
 
 WIDTH, HEIGHT = 64, 48
 FROM, TO = (33, 23), (45, 15)  # on the sphere; beside it
@@ -37,7 +37,7 @@ def test_places_and_pixels_are_each_others_inverse(x, y, z, fov, roll, at):
 
 def held(shape, x, y):
     """The place on a shape under a pixel."""
-    return place(shape, scene().camera, WIDTH, HEIGHT, x, y)
+    return surface_point(shape, scene().camera, WIDTH, HEIGHT, x, y)
 
 
 def test_what_is_under_the_pointer_stays_there():
@@ -59,7 +59,7 @@ def test_along_an_axis_nothing_else_changes(presses, axis):
     # No other place of the axis is nearer to the pointer's ray.
     seen = projection(session.state.scene.camera, WIDTH, HEIGHT)
     (ball,) = scene(text).spheres
-    start = place(ball, scene(text).camera, WIDTH, HEIGHT, 32, 24)
+    start = surface_point(ball, scene(text).camera, WIDTH, HEIGHT, 32, 24)
 
     def distance(step):
         point = [a + (centre[axis] + step) * (i == axis) for i, a in enumerate(start)]
@@ -144,9 +144,9 @@ class TestUndo:
         assert len(bench.session.state.past) == 1
 
 
-def dragging() -> Bench:
+def dragging() -> SessionHarness:
     """Half way through a drag of the sphere."""
-    bench = Bench()
+    bench = SessionHarness()
     bench.session.pick = lambda scene, *_: scene.spheres[0]
     bench.memory.button_press(1, *FROM)
     bench.memory.motion(40, 20)
@@ -173,11 +173,11 @@ def test_what_ends_a_drag(end):
     after = bench.session.state.scene
     bench.memory.motion(*TO)
     bench.memory.play()
-    assert bench.session.state.scene is after or bench.session.mouse._press
+    assert bench.session.state.scene is after or bench.session.pressed
 
 
 def test_a_click_moves_nothing_although_the_hand_trembles():
-    bench = Bench()
+    bench = SessionHarness()
     bench.session.pick = lambda scene, *_: scene.spheres[0]
     bench.memory.button_press(1, *FROM)
     bench.memory.motion(FROM[0] + 3, FROM[1] - 3)

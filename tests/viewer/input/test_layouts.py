@@ -13,7 +13,7 @@ import pytest
 from minirt.viewer.input.bindings import BINDINGS
 from tests.viewer.display.test_help import LAYOUTS, MOUSE
 from tests.viewer.fake import TEXT
-from tests.viewer.hands import do
+from tests.viewer.xdotool import do
 from tests.waiting import HANG_LIMIT, until
 from tests.windows import SCREEN, Desktop
 
@@ -70,7 +70,7 @@ def test_every_key_leads_to_its_row(desktop: Desktop, tmp_path: Path, keys: str)
         scene.write_text(TEXT)
     told = tmp_path / "told"
     told.write_text("")
-    command = [sys.executable, "-W", "error", "-m", "tests.viewer.teller", keys, str(told), *map(str, scenes)]
+    command = [sys.executable, "-W", "error", "-m", "tests.viewer.action_log", keys, str(told), *map(str, scenes)]
     with keyboard(desktop, COUNTRIES[keys]), desktop.program(*command) as process:
         teller = Teller(desktop, process, told)
         teller.press(scenes[0], SIZE, *(key for key, _ in usual))
