@@ -74,7 +74,7 @@ def material_scene(seed: int) -> Scene:
     # Each material is on at least one shape, and every shape has about two.
     owners = random.permutation(len(shapes))[: len(materials)]
     with_materials = [
-        shape.repoint(
+        shape.replace(
             **{
                 name: value
                 for number, material in enumerate(materials)
