@@ -9,7 +9,7 @@ import pytest
 from minirt.scene import Scene, parse
 from minirt.scene.pages import ITEMS
 from minirt.shapes.sphere import Sphere
-from minirt.viewer.display.overlay import line
+from minirt.viewer.display.overlay import element_line
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.measure import SAMPLE, size_of
 from minirt.viewer.editing.state import State, opened
@@ -37,7 +37,7 @@ def test_an_action_asks_few_spheres_for_anything(many: Scene, action: str, selec
 
     state = apply(apply(opened(many), selected), "right")
     with patch.object(Sphere, "__getattribute__", ask):
-        line(apply(state, action))
+        element_line(apply(state, action))
         assert len(asked) <= 2 * ITEMS
 
 

@@ -11,12 +11,12 @@ from minirt.scene import Camera, load
 from minirt.shapes.mesh import Mesh
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.outline import rims
+from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.editing.adding import kinds
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import opened
 from tests.meshes.examples import named
-from tests.viewer.display.test_marks import HEIGHT, WIDTH, drawn, edges
+from tests.viewer.display.test_marks import HEIGHT, WIDTH, edges, mask_of
 from tests.viewer.fake import FakeRenderer
 
 BARE = "A 0.2 255,255,255\nC 0,2,-20 0,0,1 60\n"
@@ -104,6 +104,6 @@ def test_a_mesh_is_added_where_there_is_one(path: Path) -> None:
 @pytest.mark.parametrize("name", ["icosahedron", "knot"])
 def test_its_outline_is_where_it_ends(name: str) -> None:
     shape, camera = named(name, (0.5, 0.2, 0), 2.0), Camera((1, 2, -6), (-0.1, -0.3, 0.9), 70)
-    for found, known in zip(rims(shape, camera, WIDTH, HEIGHT, 100), edges(shape, camera), strict=True):
-        assert np.array_equal(drawn(found), known)
+    for found, known in zip(outline_pixels(shape, camera, WIDTH, HEIGHT, 100), edges(shape, camera), strict=True):
+        assert np.array_equal(mask_of(found), known)
         assert known.sum() > 50
