@@ -17,7 +17,7 @@ from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Kind, Shape
 from tests.shapes.checks import U
 from tests.shapes.examples import example, hits, is_concave, place, shadow_offsets
-from tests.shapes.execution_modes import MODES, kind_of, packed_rows, surfaces
+from tests.shapes.execution_modes import MODES, kind_of, shape_rows, surfaces
 from tests.shapes.regimes import random_directions, unit
 
 SIZES = [(1e-4, 0.0), (1.0, 0.0), (1.0, 1e8), (1e8, 0.0)]
@@ -63,7 +63,7 @@ def test_it_packs_into_a_row_and_back(kind: Kind) -> None:
     packed = shape.pack()
     assert type(packed) is kind.packed
     assert row_type(kind).itemsize == 8 * sum(3 if hasattr(part, "x") else 1 for part in packed)
-    (row,) = packed_rows([shape])
+    (row,) = shape_rows([shape])
     numbers = [c for part in packed for c in ((part.x, part.y, part.z) if hasattr(part, "x") else (part,))]
     assert np.array_equal(np.hstack([np.ravel(part) for part in row.item()]), numbers)
     assert kind_of(shape) is kind

@@ -12,7 +12,7 @@ from minirt.shapes.mesh import Mesh
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.outline import outline_pixels
-from minirt.viewer.editing.adding import addable_kinds
+from minirt.viewer.editing.adding import kinds
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state
 from tests.meshes.examples import named
@@ -104,6 +104,6 @@ def test_a_mesh_can_be_added_if_there_is_a_mesh_file(path: Path) -> None:
 @pytest.mark.parametrize("name", ["icosahedron", "knot"])
 def test_the_outline_of_a_mesh_is_its_silhouette(name: str) -> None:
     shape, camera = named(name, (0.5, 0.2, 0), 2.0), Camera((1, 2, -6), (-0.1, -0.3, 0.9), 70)
-    for outline, expected in zip(outline_pixels(shape, camera, WIDTH, HEIGHT, 100), edges(shape, camera), strict=True):
-        assert np.array_equal(mask_of(outline), expected)
-        assert expected.sum() > 50
+    for found, known in zip(outline_pixels(shape, camera, WIDTH, HEIGHT, 100), edges(shape, camera), strict=True):
+        assert np.array_equal(mask_of(found), known)
+        assert known.sum() > 50
