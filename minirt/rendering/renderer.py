@@ -56,7 +56,7 @@ class Renderer:
 
     @property
     def about(self) -> list[str]:
-        """How the last picture was made, and which features its kernel lacks, in words."""
+        """Sentences about how the last picture was rendered and what its kernel lacks."""
         with self.busy:
             return [f"{self.threads} threads, {self.precision} precision", *self.packing.notes]
 

@@ -102,7 +102,7 @@ class AutoSampler:
         return passes
 
     def contrast(self) -> np.ndarray:
-        """How many of `CONTRASTS` the pixels of each packet and their neighbours exceed in the first half."""
+        """Count the `CONTRASTS` that the pixels of each packet and their neighbours exceed in the first half."""
         exceeded = np.zeros(self.halves.packets, np.int64)
         for contrast in CONTRASTS:
             exceeded += np.concatenate(list(edge_packets(self.pixels[0], self.halves.packet_width, contrast)))

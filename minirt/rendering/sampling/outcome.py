@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Outcome(NamedTuple):
-    """How many samples a picture has, and its estimated error.
+    """Samples and estimated error of a picture.
 
     The error is the RMSE against the converged picture, over all pixels and channels, with light clamped to [0, 1]:
     0.004 is one of 255 levels.

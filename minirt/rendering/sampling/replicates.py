@@ -17,7 +17,7 @@ STRIP, CHUNK = 8, 1024  # rows of packets, and packets, processed at once: their
 
 
 class Replicates:
-    """Two means of the light of every pixel, in packets of `packet_width` by PACKET_HEIGHT pixels, and their squared errors.
+    """Two means of the light of every pixel, and the squared errors of all packets, which are `packet_width` wide.
 
     `means` and `new_means`, which are to be added to them, are (2, h, w, 3), h and w rounded up to whole packets.
     """
@@ -73,7 +73,7 @@ class Replicates:
 
 
 def squared_errors(one: np.ndarray, other: np.ndarray, packet_width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Sum the squared errors of the mean of two halves of packets (..., PACKET_HEIGHT, 3 * packet_width): judges and guides."""
+    """Sum the squared errors of the mean of two halves of packets (..., rows, 3 * packet_width): judges and guides."""
     differences = clamped(one) - clamped(other)
     differences *= differences
     colour = np.add.outer(np.arange(PACKET_HEIGHT), np.repeat(np.arange(packet_width), 3)) % 2  # of the chessboard
