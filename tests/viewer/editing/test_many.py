@@ -9,7 +9,7 @@ import pytest
 from minirt.scene import Scene, parse
 from minirt.scene.pages import PAGE_LENGTH
 from minirt.shapes.sphere import Sphere
-from minirt.viewer.display.overlay import line
+from minirt.viewer.display.overlay import element_line
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.measure import SAMPLE_SIZE, scene_size
 from minirt.viewer.editing.state import State, initial_state
@@ -37,7 +37,7 @@ def test_an_action_reads_few_elements(many: Scene, action: str, selected: str) -
 
     state = apply(apply(initial_state(many), selected), "right")
     with patch.object(Sphere, "__getattribute__", visit):
-        line(apply(state, action))
+        element_line(apply(state, action))
         assert len(visited) <= 2 * PAGE_LENGTH
 
 

@@ -16,7 +16,7 @@ from minirt.viewer.editing.adding import addable_kinds
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state
 from tests.meshes.examples import named
-from tests.viewer.display.test_marks import HEIGHT, WIDTH, edges
+from tests.viewer.display.test_marks import HEIGHT, WIDTH, edges, mask_of
 from tests.viewer.fake import FakeRenderer
 
 BARE = "A 0.2 255,255,255\nC 0,2,-20 0,0,1 60\n"
