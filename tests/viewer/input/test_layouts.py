@@ -70,7 +70,7 @@ def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, keys: s
         scene.write_text(TEXT)
     log = tmp_path / "log"
     log.write_text("")
-    command = [sys.executable, "-W", "error", "-m", "tests.viewer.teller", keys, str(log), *map(str, scenes)]
+    command = [sys.executable, "-W", "error", "-m", "tests.viewer.action_log", keys, str(log), *map(str, scenes)]
     with keyboard(desktop, COUNTRIES[keys]), desktop.program(*command) as process:
         viewer = LoggingViewer(desktop, process, log)
         viewer.press(scenes[0], SIZE, *(key for key, _ in usual))
