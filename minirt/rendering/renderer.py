@@ -92,7 +92,7 @@ class Renderer:
         if scene.shapes and self.kernel.CACHE:
             packing = import_module("minirt.rendering.scene_packing").Packing(binning, self.precision, self.depth)
             arguments = frame_arguments(packing.pack(small(scene), 1, 1), pixels)
-            if not self.kernel.is_kept(arguments):
+            if not self.kernel.is_compiled(arguments):
                 self.helper.compile(arguments)
         self.render(scene, pixels)
 

@@ -11,8 +11,7 @@ from numba.core.errors import TypingError
 from numba.extending import register_jitable
 
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
-from minirt.kernel.compiler.code_cache import FLAGS
-from minirt.kernel.compiler.jit import INNER
+from minirt.kernel.compiler.options import FLAGS, INLINED
 from minirt.kernel.scene_arrays import by_reference
 from minirt.kernel.trace import for_each_kind
 
@@ -48,7 +47,7 @@ def read(outer: Any, i: int, out: Array) -> None:
     out[5] = for_each_kind(weighed, outer.parts, 1.0, i)
 
 
-@register_jitable(**INNER)
+@register_jitable(**INLINED)
 def weighed(part: Inner, state: float, i: int) -> float:
     return 10.0 * state + part.line[i] * part.number
 
@@ -59,7 +58,7 @@ def write(table: Any, i: int) -> None:
     table[1][i] = table[i, 2] + 1
 
 
-@register_jitable(**INNER)
+@register_jitable(**INLINED)
 def asked(outer: Any) -> int:
     if outer.absent is not None and outer.absent[0] > 1:
         return int(outer.absent.unknown)

@@ -44,7 +44,7 @@ def test_what_is_written_is_machine_code_and_hardly_more() -> None:
     scene = parse(BALL).scene
     picture(scene)
     arguments = frame_arguments(Packing().pack(scene, 40, 30), np.zeros((30, 40, 4), np.uint8))
-    assert jit.is_kept(arguments)
+    assert jit.is_compiled(arguments)
     folder = Path(jit.kernel_for(arguments[-1])._cache.cache_path)
     for written in folder.glob("frame.frame*.nbc"):
         (_, kind, (machine_code, names)), *_ = pickle.loads(written.read_bytes())
@@ -77,7 +77,7 @@ def test_a_kernel_that_nobody_holds_gives_its_memory_back(monkeypatch: pytest.Mo
 
 
 def test_few_kernels_are_in_memory_at_a_time() -> None:
-    assert jit.kernel_of.cache_info().maxsize == jit.LOADED
+    assert jit.kernel_of.cache_info().maxsize == jit.KERNELS_IN_MEMORY
     held = kernel(parse(BALL).scene)
     assert kernel(parse(BALL).scene) is held
 

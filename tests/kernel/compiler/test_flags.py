@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from minirt.kernel.compiler import jit
+from minirt.kernel.compiler import jit, options
 from minirt.kernel.rows import row_type
 from minirt.shapes import KINDS
 from tests.paths import PACKAGE
@@ -23,7 +23,7 @@ def test_the_kernel_divides_as_ieee_754_says_and_keeps_nan() -> None:
 
 def test_what_the_kernel_calls_has_no_flags_of_its_own() -> None:
     # It is compiled with those of its caller.
-    assert not {"error_model", FASTMATH} & set(jit.INNER)
+    assert not {"error_model", FASTMATH} & set(options.INLINED)
 
 
 def calls(source: str) -> list[ast.Call]:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from minirt.kernel.compiler import jit
-from minirt.kernel.compiler.code_cache import compiled
+from minirt.kernel.compiler.compilation import compiled
 from minirt.lanes.angle import ATAN_HALF
 from minirt.materials import Checker
 from minirt.rendering import Renderer
