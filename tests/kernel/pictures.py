@@ -1,4 +1,4 @@
-"""Pictures of small scenes, compiled and interpreted."""
+"""Small test scenes, and their pictures by the compiled and by the interpreted kernel."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ SHAPES = (
     Plane((0, 0, 6), (0.1, 0.2, -1), (120, 140, 165)),
     Cylinder((-3, -0.5, -1), (1, 0, 0.4), 1, 1.5, (245, 180, 50)),
 )
-ALL = Scene((AMBIENT, EYE, LAMP, SECOND, *SHAPES))  # what most scenes are made of, two lamps, shadows
+ALL = Scene((AMBIENT, EYE, LAMP, SECOND, *SHAPES))  # common kinds of shapes, two lights, shadows
 MORE = (
     Cone((-3, 2.5, 1), (0.2, -1, 0.1), 1.4, 2.2, (200, 90, 200)),
     Paraboloid((3.6, 2.6, 1), (0.1, -0.9, 0.3), 1.4, 1.8, (90, 200, 200)),
@@ -58,14 +58,14 @@ ONE, TWO = Renderer(1), Renderer(2)
 
 
 def linear(scene: Scene, width: int = 24, height: int = 16, samples: int = 1, renderer: Renderer = TWO) -> Array:
-    """The light of a scene, (height, width, 3), by the compiled kernel."""
+    """Render a scene by the compiled kernel, and return its linear light, (height, width, 3)."""
     return picture(scene, width, height, samples, renderer)[1]
 
 
 def picture(
     scene: Scene, width: int = 24, height: int = 16, samples: int = 1, renderer: Renderer = TWO
 ) -> tuple[NDArray[np.uint8], Array]:
-    """The pixels (h, w, 4) in the order blue, green, red, alpha, and their light, which is finite for every ray."""
+    """Render a scene by the compiled kernel: pixels (h, w, 4) in BGRA order, and linear light, finite for every ray."""
     pixels, light = np.full((height, width, 4), 77, np.uint8), np.full((height, width, 3), np.nan)
     assert renderer.render(scene, pixels, samples, light)
     assert renderer.not_finite == 0
@@ -75,7 +75,7 @@ def picture(
 def interpreted(
     scene: Scene, width: int = 24, height: int = 16, samples: int = 1, precision: str = "double", depth: int = DEPTH
 ) -> tuple[Any, Array]:
-    """The same by the kernel as it stands, in Python."""
+    """Render a scene by the interpreted kernel: pixels and linear light, as `picture` returns them."""
     words, light = np.zeros((height, width), np.uint32), np.full((height, width, 3), np.nan)
     traced = Packing(binning, precision, depth).pack(scene, width, height)
     with np.errstate(all="ignore"):

@@ -1,4 +1,4 @@
-"""A frame that is cancelled ends with the packet that it is at; counted, since compiled it takes no time to see."""
+"""Cancelling a frame: it ends at the next packet. Interpreted, since compiled frames end too soon to count packets."""
 
 from __future__ import annotations
 
@@ -20,43 +20,43 @@ PACKETS = 10 * 6 * SAMPLES
 
 
 class Counter:
-    """The rows that threads take; somebody cancels the frame after so many looks at it."""
+    """A row counter that cancels the frame after a number of reads."""
 
-    def __init__(self, looks: float) -> None:
-        self.row, self.left = 0, looks
+    def __init__(self, reads: float) -> None:
+        self.row, self.reads_left = 0, reads
 
     def __getitem__(self, index: int) -> int:
-        self.left -= 1
-        return CANCELLED if self.left < 0 else self.row
+        self.reads_left -= 1
+        return CANCELLED if self.reads_left < 0 else self.row
 
     def __setitem__(self, index: int, row: int) -> None:
         self.row = row
 
 
-def packets_after(looks: float, monkeypatch: pytest.MonkeyPatch) -> tuple[int, int]:
-    """How many packets are traced of a frame before it is cancelled, after so many looks at the counter, and after."""
-    counter, made = Counter(looks), [0, 0]
+def packets_after(reads: float, monkeypatch: pytest.MonkeyPatch) -> tuple[int, int]:
+    """Count the packets traced before and after a frame is cancelled, which happens after some reads of the counter."""
+    counter, counts = Counter(reads), [0, 0]
     packet = frame.packet_radiance
 
-    def counted(*given: Any) -> Vec:
-        made[counter.left <= 0] += 1
-        return packet(*given)
+    def counting_packet(*arguments: Any) -> Vec:
+        counts[counter.reads_left <= 0] += 1
+        return packet(*arguments)
 
-    monkeypatch.setattr(frame, "packet_radiance", counted)
+    monkeypatch.setattr(frame, "packet_radiance", counting_packet)
     traced = Packing(binning).pack(ALL, WIDTH, HEIGHT)
-    given = frame_arguments(traced, np.zeros((HEIGHT, WIDTH, 4), np.uint8), SAMPLES)
+    arguments = frame_arguments(traced, np.zeros((HEIGHT, WIDTH, 4), np.uint8), SAMPLES)
     with np.errstate(all="ignore"):
-        frame.frame(*given._replace(next_row=counter))
-    before, after = made
+        frame.frame(*arguments._replace(next_row=counter))
+    before, after = counts
     return before, after
 
 
-def test_all_packets_are_traced_where_nobody_cancels(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_packets_are_traced_if_nobody_cancels(monkeypatch: pytest.MonkeyPatch) -> None:
     assert packets_after(np.inf, monkeypatch) == (PACKETS, 0)
 
 
-@pytest.mark.parametrize("looks", [0, 1, 2, 3, 4, 20, 60, PACKETS - TILE])
-def test_one_packet_at_most_is_traced_after_a_cancel(looks: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    before, after = packets_after(looks, monkeypatch)
-    assert looks - 6 <= before <= looks  # three more looks for each row of tiles
+@pytest.mark.parametrize("reads", [0, 1, 2, 3, 4, 20, 60, PACKETS - TILE])
+def test_at_most_one_packet_is_traced_after_a_cancel(reads: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    before, after = packets_after(reads, monkeypatch)
+    assert reads - 6 <= before <= reads  # three more reads for each row of tiles
     assert after <= 1

@@ -1,4 +1,4 @@
-"""Of surfaces that coincide the earlier owns the whole overlap, however the two are written, and both are lit."""
+"""Coincident surfaces: the shape that comes first in the scene owns the whole overlap, and both are lit."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ T = unit((1.0, -0.3, 0.0))  # perpendicular to N
 
 
 def along(s: float, normal: tuple[float, float, float] = N) -> tuple[float, float, float]:
+    """The point at distance s from the origin along a normal."""
     return tuple(s * x for x in normal)
 
 
-# Each row is one surface written in different ways.
+# Each entry is one surface, written in different ways.
 SAME = {
     "planes, axis": [Plane((0, 0, 0), (0, 1, 0), RED), Plane((7.3, 0, -0.9), (0, -1, 0), RED)],
     "planes": [Plane((0, 0, 0), N, RED), Plane(along(37.1, T), N, RED), Plane(along(-0.3, T), along(-1), RED)],
@@ -49,29 +50,30 @@ SAME = {
 
 
 def scene(*shapes: Shape, camera: Camera = EYE) -> Scene:
+    """A scene of some shapes with a light and ambient light."""
     return Scene((AMBIENT, camera, LAMP, *shapes))
 
 
 @pytest.mark.parametrize("camera", [EYE, FLAT], ids=["above", "flat"])
 @pytest.mark.parametrize("name", SAME)
-def test_the_earlier_owns_the_overlap_and_no_speck_of_shadow_is_on_it(name: str, camera: Camera) -> None:
+def test_the_first_shape_owns_the_overlap_without_specks_of_shadow(name: str, camera: Camera) -> None:
     for order in permutations(SAME[name], 2):
         twins = scene(order[0].replace(colour=GREEN), order[1].replace(colour=BLUE), camera=camera)
         picture = linear(twins, 60, 40)
-        right = reference.render(twins, 60, 40)
-        assert (right[..., 1] > 0).sum() > 50
-        wrong = np.abs(picture - right).max(axis=-1) > 1e-6
-        assert not (wrong & ~edges(reference.to_bytes(right))).any()
+        expected = reference.render(twins, 60, 40)
+        assert (expected[..., 1] > 0).sum() > 50
+        wrong = np.abs(picture - expected).max(axis=-1) > 1e-6
+        assert not (wrong & ~edges(reference.to_bytes(expected))).any()
         assert wrong.sum() <= 2
 
 
 @pytest.mark.parametrize("camera", [EYE, FLAT], ids=["above", "flat"])
 @pytest.mark.parametrize("name", SAME)
-def test_the_other_order_in_the_file_swaps_the_owner_of_the_whole_overlap(name: str, camera: Camera) -> None:
+def test_reversing_the_order_of_the_shapes_swaps_the_owner_of_the_whole_overlap(name: str, camera: Camera) -> None:
     for green, blue in permutations(SAME[name], 2):
         first, second = green.replace(colour=GREEN), blue.replace(colour=BLUE)
         one, other = (linear(scene(*order, camera=camera), 60, 40) for order in ((first, second), (second, first)))
-        # Where one order shows green and the other blue the two coincide; elsewhere the order does not matter.
+        # The shapes coincide where one order shows green and the other blue; elsewhere the order does not matter.
         swapped = (one[..., 1] > 0) & (other[..., 2] > 0)
         assert swapped.sum() > 50
         assert np.array_equal(one[~swapped], other[~swapped])
@@ -79,13 +81,13 @@ def test_the_other_order_in_the_file_swaps_the_owner_of_the_whole_overlap(name: 
 
 
 @pytest.mark.parametrize("name", ["cylinders", "spheres", "equal spheres", "planes"])
-def test_of_many_the_first_owns_it(name: str) -> None:
+def test_the_first_of_many_coincident_shapes_owns_the_overlap(name: str) -> None:
     first, *others = [each.replace(colour=BLUE) for each in SAME[name] * 5]
     picture = linear(scene(first.replace(colour=GREEN), *others), 60, 40)
     assert np.abs(picture - linear(scene(first.replace(colour=GREEN)), 60, 40)).max() <= 1e-9
 
 
-def test_a_tie_that_the_nearer_wins_does_not_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_letting_the_nearer_hit_win_a_tie_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(trace, "COINCIDENT", 0.0)
     wrong = 0
     for order in permutations(SAME["planes"], 2):
@@ -95,16 +97,16 @@ def test_a_tie_that_the_nearer_wins_does_not_pass(monkeypatch: pytest.MonkeyPatc
 
 
 def owners(best: np.ndarray, rival: Plane, origin: Vec, direction: Vec) -> np.ndarray:
-    """Which shape owns each place, 1 that was hit at `best` or 0, a plane that is tried after it."""
+    """Return the owner of each hit: 1, the shape that was hit at `best`, or 0, a plane that is tested after it."""
     state = best, np.ones_like(best), np.zeros_like(best)
     hit, t = plane.intersect(rival.pack(), origin, direction)
     return trace.closer_hit(rival.pack(), 0, 0.0, hit, t, origin, direction, state)[1]
 
 
-def test_to_the_horizon_the_earlier_owns_it_where_two_planes_are_tilted_by_roundings() -> None:
-    """One unit above them, at slopes of 1.5e-12 to 3e-12: there t differs by up to 0.9 NEARBY."""
-    slopes, round_about = np.geomspace(1.5e-12, 3e-12, 1000), np.linspace(0, 200, 1000)
-    level = [np.cos(round_about) * t + np.sin(round_about) * b for t, b in zip(T, np.cross(N, T), strict=True)]
+def test_the_first_of_two_planes_tilted_by_rounding_owns_the_overlap_to_the_horizon() -> None:
+    """Seen from one unit above, at slopes of 1.5e-12 to 3e-12, where t differs by up to 0.9 COINCIDENT."""
+    slopes, azimuths = np.geomspace(1.5e-12, 3e-12, 1000), np.linspace(0, 200, 1000)
+    level = [np.cos(azimuths) * t + np.sin(azimuths) * b for t, b in zip(T, np.cross(N, T), strict=True)]
     direction = Vec(*(x - slopes * n for x, n in zip(level, N, strict=True)))
     origin = Vec(*(np.full(1000, n) for n in N))
     tilted = Plane((0, 0, 0), (np.nextafter(N[0], 1), N[1], np.nextafter(N[2], 1)), RED)
@@ -114,8 +116,8 @@ def test_to_the_horizon_the_earlier_owns_it_where_two_planes_are_tilted_by_round
     assert (owners(t, tilted, origin, direction) == 0).all()
 
 
-def test_what_is_seen_at_a_flat_slope_is_not_taken_for_what_is_before_it() -> None:
-    """A plane, seen at slopes at which even 1e-4 along the ray is no way from it, behind something 1e-4 nearer."""
+def test_a_surface_at_grazing_angle_is_not_coincident_with_one_in_front() -> None:
+    """A plane behind a hit 1e-4 nearer, at slopes so small that 1e-4 along the ray hardly leaves the plane."""
     slopes = np.geomspace(1e-14, 1e-12, 100)
     origin, direction = Vec(*np.zeros((3, 100))), Vec(np.ones(100), -slopes, np.zeros(100))
     floors = [Plane((0, -slope, 0), (0, 1, 0), RED) for slope in slopes]  # all are met at 1

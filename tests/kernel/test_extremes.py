@@ -1,4 +1,4 @@
-"""Cameras, sizes and places at the ends of what a scene may hold."""
+"""Extreme cameras, sizes and positions that a scene may have."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests import reference
 from tests.kernel.pictures import ALL, AMBIENT, BLUE, EYE, GREEN, LAMP, RED, SHAPES, WHITE, linear, picture
 from tests.kernel.test_invariances import changed
 
-COMPASS = [  # above the eye: red to +x, green to +z
+COMPASS = [  # above and below the eye: red towards +x, green towards +z
     Sphere((2, 9, 0), 1.5, RED),
     Sphere((0, 9, 2), 1.5, GREEN),
     Sphere((2, -9, 0), 1.5, RED),
@@ -23,30 +23,30 @@ COMPASS = [  # above the eye: red to +x, green to +z
 
 
 def finite(scene: Scene, width: int = 24, height: int = 16) -> np.ndarray:
-    """The light of a scene, and no other number in it."""
+    """Render a scene, and check that its light is finite and not negative."""
     light = linear(scene, width, height)
     assert np.isfinite(light).all()
     assert (light >= 0).all()
     return light
 
 
-def middle(light: np.ndarray) -> tuple[float, float]:
-    """Where in the picture there is light, to the right and up of its middle."""
+def centre_of_light(light: np.ndarray) -> tuple[float, float]:
+    """Return the mean position of the lit pixels, to the right of and above the middle of the picture."""
     rows, columns = np.nonzero(light)
     return columns.mean() - (light.shape[1] - 1) / 2, (light.shape[0] - 1) / 2 - rows.mean()
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("lean", [0.0, 1e-300, -1e-300, 5e-324])
-def test_looking_along_the_vertical(sign: float, lean: float) -> None:
+def test_a_camera_may_look_along_the_vertical(sign: float, lean: float) -> None:
     straight = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, sign, 0), 60), *COMPASS)), 48, 32)
-    right, up = middle(straight[..., 0])
-    assert right > 5
+    to_the_right, up = centre_of_light(straight[..., 0])
+    assert to_the_right > 5
     assert abs(up) < 0.5
-    right, up = middle(straight[..., 1])
-    assert abs(right) < 0.5
+    to_the_right, up = centre_of_light(straight[..., 1])
+    assert abs(to_the_right) < 0.5
     assert sign * up > 5
-    # A lean of 1e-300 towards +z or -z tells which way is right; it is that of any larger lean.
+    # A lean of 1e-300 towards +z or -z decides which way is right, just as any larger lean does.
     leaning = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, sign, lean), 60), *COMPASS)), 48, 32)
     if lean:
         more = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, sign, np.copysign(1e-12, lean)), 60), *COMPASS)), 48, 32)
@@ -59,7 +59,7 @@ def test_a_field_of_view_of_a_thousandth_of_a_degree_has_as_many_rays_as_pixels(
     directions = numbers[9:] + x[:, None] * numbers[3:6]
     directions /= np.linalg.norm(directions, axis=-1, keepdims=True)
     assert len(np.unique(directions, axis=0)) == 1920
-    # They tell apart what lies a pixel apart: a wall of stripes 1e6 away would show 1920 of them.
+    # Rays a pixel apart differ: a striped wall 1e6 away would show 1920 stripes.
     wall = Scene((AMBIENT, LAMP, Camera((0, 0, 0), (0, 0, 1), 1e-3), Plane((0, 0, 1), (1, 0, -1), WHITE)))
     assert (np.diff(finite(wall, 192, 1)[0, :, 0]) != 0).all()
 
@@ -72,31 +72,32 @@ def test_the_field_of_view_is_what_the_camera_says(fov: float) -> None:
 
 
 @pytest.mark.parametrize(("fov", "same"), [(0, 1e-6), (180, 179.9999)])
-def test_the_ends_of_the_field_of_view_are_the_nearest_that_can_be_drawn(fov: float, same: float) -> None:
-    assert np.array_equal(finite(changed_camera(fov)), finite(changed_camera(same)))
+def test_extreme_fields_of_view_are_clamped_to_the_nearest_possible(fov: float, same: float) -> None:
+    assert np.array_equal(finite(scene_with_fov(fov)), finite(scene_with_fov(same)))
 
 
-def changed_camera(fov: float) -> Scene:
+def scene_with_fov(fov: float) -> Scene:
+    """A scene seen with a field of view, in degrees."""
     return Scene((AMBIENT, LAMP, EYE.replace(fov=fov), *SHAPES))
 
 
-def test_a_field_of_view_of_179_999_shows_what_is_beside_the_eye() -> None:
+def test_a_field_of_view_of_179_999_shows_shapes_beside_the_eye() -> None:
     walls = Plane((3, 0, 0), (1, 0, 0), RED), Plane((-3, 0, 0), (1, 0, 0), GREEN)
     light = finite(Scene((AMBIENT, Camera((0, 0, 0), (0, 0, 1), 179.999), *walls)), 48, 4)
     assert ((light > 0) == np.repeat([[True, False, False], [False, True, False]], 24, axis=0)).all()  # +x is left
 
 
 @pytest.mark.parametrize("place", [1e9, 1e12, 0.99e15, -0.99e15])
-def test_far_out(place: float) -> None:
+def test_scenes_far_from_the_origin_and_large_scenes_look_the_same(place: float) -> None:
     moved = changed(ALL, lambda p: tuple(x + place for x in p))
     finite(moved)
-    big = abs(place) / 10
-    large = changed(ALL, lambda p: tuple(x * big for x in p), lambda length: length * big)
+    factor = abs(place) / 10
+    large = changed(ALL, lambda p: tuple(x * factor for x in p), lambda length: length * factor)
     light = finite(large)
     assert np.quantile(np.abs(light - linear(ALL)), 0.99) <= 1e-9
 
 
-def test_tiny_things() -> None:
+def test_tiny_scenes_look_the_same() -> None:
     for size in (1e-9, 1e-12):
         tiny = changed(ALL, lambda p, size=size: tuple(x * size for x in p), lambda length, size=size: length * size)
         assert np.quantile(np.abs(finite(tiny) - linear(ALL)), 0.99) <= 1e-9
@@ -104,12 +105,12 @@ def test_tiny_things() -> None:
     finite(Scene((AMBIENT, LAMP, Camera((0, 0, 0), (0, 0, 1), 1e-6), *speck)))
 
 
-def test_thin_and_long_things() -> None:
+def test_thin_and_long_shapes_are_seen() -> None:
     needle = Cylinder((0, 0, 5), (0.6, 0.8, 0), 1e-9, 1e9, WHITE)
     disc = Cylinder((0, 0, 5), (0, 0.6, -0.8), 3, 1e-9, RED)
     finite(Scene((AMBIENT, LAMP, EYE, needle, disc)))
-    seen = finite(Scene((AMBIENT, LAMP, Camera((0, 0, 0), (0, 0, 1), 60), disc)))
-    assert (seen[..., 0] > 0).sum() > 30
+    light = finite(Scene((AMBIENT, LAMP, Camera((0, 0, 0), (0, 0, 1), 60), disc)))
+    assert (light[..., 0] > 0).sum() > 30
 
 
 @pytest.mark.parametrize(
@@ -126,12 +127,12 @@ def test_thin_and_long_things() -> None:
         ((0, 0, 0), Plane((0, 0, 0), (0, 0, 1), WHITE)),
     ],
 )
-def test_an_eye_and_a_lamp_in_special_places(eye: tuple[float, float, float], shape: object) -> None:
+def test_eye_and_light_in_special_positions_give_finite_light(eye: tuple[float, float, float], shape: object) -> None:
     for lamp in (eye, (0, 0, 0), (0, 5, 0), (0, 0, 1e15)):
         finite(Scene((AMBIENT, Camera(eye, (0, 0, 1), 70), Light(lamp, 1.0), shape)))
 
 
-def test_a_lamp_on_a_surface_lights_it_from_no_side_and_others_do() -> None:
+def test_a_light_on_a_surface_does_not_light_that_surface() -> None:
     ball = Sphere((0, 0, 0), 2, WHITE)
     light = finite(Scene((AMBIENT, Camera((0, 0, -5), (0, 0, 1), 40), Light((0, 0, -1), 1.0), ball)))
     assert light.max() <= 0.15 + 1e-9
@@ -139,12 +140,12 @@ def test_a_lamp_on_a_surface_lights_it_from_no_side_and_others_do() -> None:
     lit = finite(Scene((AMBIENT, Camera((0, 3, -5), (0, -0.6, 0.8), 60), Light((0, 1, 0), 1.0), ball, floor)), 48, 32)
     assert lit.max() == pytest.approx(
         0.15, abs=1e-9
-    )  # the ball's own top hides the floor from a lamp that stands on it
+    )  # the top of the sphere occludes the floor from a light that stands on it
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_a_lamp_on_the_inside_of_a_ball_lights_all_of_it(seed: int) -> None:
-    # It is seen from every point of the wall at the angle whose cosine is the distance over the diameter.
+def test_a_light_on_the_inside_of_a_sphere_lights_all_of_it(seed: int) -> None:
+    # From every point of the wall, the cosine of the light's angle is the distance over the diameter.
     random = np.random.default_rng(seed)
     centre, towards = random.normal(size=(2, 3)) * 10
     lamp = centre + 3 * towards / np.linalg.norm(towards)
@@ -155,7 +156,7 @@ def test_a_lamp_on_the_inside_of_a_ball_lights_all_of_it(seed: int) -> None:
     assert np.abs(light - 0.7 * distance[..., None] / 6).max() <= 1e-6
 
 
-def test_what_lies_beyond_a_lamp_hides_nothing() -> None:
+def test_a_shape_beyond_a_light_occludes_nothing() -> None:
     floor, ceiling = Plane((0, 0, 0), (0, 1, 0), WHITE), Plane((0, 5, 0), (0, 1, 0), BLUE)
     below, lamp = Camera((0, 2, 0), (0, -1, 0), 60), Light((0, 4.999999, 0), 1.0)
     open_sky, covered = (Scene((AMBIENT, below, lamp, floor, *more)) for more in ((), (ceiling,)))
@@ -163,7 +164,7 @@ def test_what_lies_beyond_a_lamp_hides_nothing() -> None:
     assert np.array_equal(finite(covered), finite(Scene((AMBIENT, below, lamp, ceiling, floor))))
 
 
-def test_light_is_the_cosine_law() -> None:
+def test_light_follows_the_cosine_law() -> None:
     dark, above, floor = (
         Ambient(0.0, WHITE),
         Camera((0, 3, 0), (0, -1, 0), 90),
@@ -176,12 +177,12 @@ def test_light_is_the_cosine_law() -> None:
     assert np.abs(light - 0.7 * cosine[..., None] * [0.2, 0.4, 1.0]).max() <= 1e-15
 
 
-def test_many_shapes() -> None:
-    # So many that a lamp sorts them into cells.
+def test_many_shapes_match_the_reference() -> None:
+    # So many shapes that light buffers are used.
     random = np.random.default_rng(1)
     balls = [Sphere(tuple(random.normal(size=3) * 4), 0.7, tuple(random.integers(30, 256, 3))) for _ in range(250)]
     scene = Scene((AMBIENT, LAMP, EYE, *balls, *SHAPES))
     pixels, light = picture(scene, 60, 40)
-    right = reference.render(scene, 60, 40)
-    assert (np.abs(light - right).max(axis=-1) > 1e-9).mean() < 1e-3
+    expected = reference.render(scene, 60, 40)
+    assert (np.abs(light - expected).max(axis=-1) > 1e-9).mean() < 1e-3
     assert np.array_equal(pixels[..., 3], np.full((40, 60), 255))

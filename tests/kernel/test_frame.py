@@ -1,4 +1,4 @@
-"""The frame: all of its pixels, once each, whatever its size, on any number of threads, interpreted or compiled."""
+"""Rendering of frames: every pixel once, at any size, on any number of threads, interpreted or compiled."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, ONE, SHAPES, TWO, int
 SIZES = [(1, 1), (1, 9), (9, 1), (5, 3), (4, 2), (3, 2), (13, 11), (4, 33), (33, 8)]
 
 
-def test_the_interpreted_kernel_gives_the_same_picture() -> None:
+def test_interpreted_and_compiled_kernels_agree() -> None:
     pixels, light = picture(ALL)
-    words, plain = interpreted(ALL)
-    assert np.abs(light - plain).max() <= 1e-12
-    assert np.array_equal(pixels, words)
+    interpreted_pixels, interpreted_light = interpreted(ALL)
+    assert np.abs(light - interpreted_light).max() <= 1e-12
+    assert np.array_equal(pixels, interpreted_pixels)
     assert len(np.unique(pixels.reshape(-1, 4), axis=0)) > 100  # there is something to see
 
 
 @pytest.mark.parametrize("index", range(len(SHAPES)))
-def test_the_interpreted_kernel_with_fewer_kinds(index: int) -> None:
+def test_interpreted_and_compiled_kernels_agree_with_a_single_kind(index: int) -> None:
     scene = Scene((AMBIENT, EYE, LAMP, SHAPES[index]))
     assert np.abs(linear(scene, 13, 7, 2) - interpreted(scene, 13, 7, 2)[1]).max() <= 1e-12
 
@@ -40,17 +40,17 @@ def test_one_thread_and_many_give_the_same_bits() -> None:
 
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
-def test_every_pixel_of_every_size_is_made(width: int, height: int) -> None:
+def test_every_pixel_is_rendered_at_every_size(width: int, height: int) -> None:
     pixels, light = picture(ALL, width, height)
     assert np.isfinite(light).all()
     assert (pixels[..., 3] == 255).all()
-    words, plain = interpreted(ALL, width, height)
-    assert np.abs(light - plain).max() <= 1e-12
-    assert np.array_equal(pixels, words)
+    interpreted_pixels, interpreted_light = interpreted(ALL, width, height)
+    assert np.abs(light - interpreted_light).max() <= 1e-12
+    assert np.array_equal(pixels, interpreted_pixels)
 
 
 def test_a_small_picture_is_part_of_a_larger_one() -> None:
-    # The middle row of nine is the only row of a picture as wide, and a packet has rows and columns of its own.
+    # The middle of nine rows equals the only row of a picture as wide, although they fall into different packets.
     assert np.allclose(linear(ALL, 21, 9)[4:5], linear(ALL, 21, 1), atol=1e-12, rtol=0)
     odd = linear(ALL, 63, 27)
     assert np.allclose(odd[1::3, 1::3], linear(ALL, 21, 9), atol=1e-12, rtol=0)
@@ -75,8 +75,8 @@ def test_bytes_are_clamped_and_rounded() -> None:
     assert np.array_equal(pixels[..., 2::-1], np.floor(np.clip(light, 0, 1) * 255 + 0.5))
 
 
-def test_samples_are_the_mean_of_pictures_with_finer_pixels() -> None:
-    # One sample is in the centre; many approach the mean of the pixel's area, which 81 finer pixels give too.
+def test_many_samples_approach_the_mean_of_finer_pixels() -> None:
+    # A single sample is in the centre; many approach the mean over the pixel's area, as 81 finer pixels do.
     fine = linear(ALL, 24 * 9, 16 * 9).reshape(16, 9, 24, 9, 3).mean(axis=(1, 3))
     assert np.abs(linear(ALL, samples=256) - fine).mean() < 0.15 * np.abs(linear(ALL) - fine).mean()
 
@@ -97,16 +97,16 @@ def test_the_eye_looks_forward_through_the_middle() -> None:
 
 
 @pytest.mark.parametrize(("width", "height"), [*SIZES, (60, 40), (150, 83)])
-def test_the_picture_is_the_same_whether_its_light_is_kept_or_not(width: int, height: int) -> None:
-    kept, _ = picture(ALL, width, height)
-    around = np.full((height + 6, width, 4), 77, np.uint8)
-    assert TWO.render(ALL, around[3:-3])
-    assert np.array_equal(around[3:-3], kept)
-    assert (around[:3] == 77).all()
-    assert (around[-3:] == 77).all()
+def test_the_picture_is_the_same_with_and_without_linear_output(width: int, height: int) -> None:
+    with_light, _ = picture(ALL, width, height)
+    padded = np.full((height + 6, width, 4), 77, np.uint8)
+    assert TWO.render(ALL, padded[3:-3])
+    assert np.array_equal(padded[3:-3], with_light)
+    assert (padded[:3] == 77).all()
+    assert (padded[-3:] == 77).all()
 
 
-def test_light_that_is_not_finite_is_made_black_and_counted() -> None:
+def test_radiance_that_is_not_finite_becomes_black_and_is_counted() -> None:
     light = np.full((3, 16), 0.5)
     light[0, 3], light[1, 5] = np.nan, np.inf
     memory = np.zeros((3, 4))
@@ -119,7 +119,7 @@ def test_light_that_is_not_finite_is_made_black_and_counted() -> None:
     assert memory.sum() == 2
 
 
-def test_a_renderer_counts_the_rays_whose_light_is_not_finite(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_renderer_counts_rays_whose_light_is_not_finite(monkeypatch: pytest.MonkeyPatch) -> None:
     renderer, pixels = Renderer(2), np.zeros((32, 32, 4), np.uint8)
     assert renderer.render(ALL, pixels)
     assert renderer.not_finite == 0

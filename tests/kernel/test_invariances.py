@@ -1,4 +1,4 @@
-"""What may be done to a scene without a change in its picture, or with one that is known."""
+"""Invariances of pictures: scaling, moving, mirroring or rotating a scene has a known effect on its picture."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from tests import reference
 from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, LAMP, SECOND, SHAPES, interpreted, linear
 
 SCENES = pytest.mark.parametrize("scene", [ALL, EVERY], ids=["some kinds", "every kind"])
-UPRIGHT = (Box, Square)  # which way up they are does not follow from their axes alone
+UPRIGHT = (Box, Square)  # their axis alone does not determine their orientation
 FREE = Scene(each for each in EVERY.elements if not isinstance(each, UPRIGHT))
 
 
 def changed(scene: Scene, point: Any = None, length: Any = None, direction: Any = None) -> Scene:
-    """The scene with functions applied to its points, lengths and directions."""
+    """Apply functions to the points, lengths and directions of a scene."""
 
     def change(element: Element) -> Element:
         changes = {}
@@ -40,6 +40,7 @@ def changed(scene: Scene, point: Any = None, length: Any = None, direction: Any 
 
 
 def scaled(scene: Scene, factor: float) -> Scene:
+    """Scale a scene about the origin."""
     return changed(scene, lambda p: tuple(factor * x for x in p), lambda length: factor * length)
 
 
@@ -52,7 +53,7 @@ def test_a_scene_scaled_by_a_power_of_two_gives_the_same_bits(scene: Scene, powe
 @SCENES
 @pytest.mark.parametrize("shift", [(1e8, 0, 0), (-1e8, 1e8, 1e8), (1e4, -1e4, 1e3)])
 def test_a_scene_far_from_the_origin_looks_the_same(scene: Scene, shift: tuple[float, float, float]) -> None:
-    # What is given to 1e8 is known to 1e-8: away from edges the light changes by no more than some of that.
+    # Coordinates of 1e8 are known to 1e-8: away from edges the light changes by no more than a multiple of that.
     moved = linear(changed(scene, lambda p: tuple(x + y for x, y in zip(p, shift, strict=True))), 60, 40)
     change = np.abs(moved - linear(scene, 60, 40)).max(axis=-1)
     assert np.quantile(change, 0.995) <= 1e-5  # the rest may be at an edge
@@ -60,11 +61,11 @@ def test_a_scene_far_from_the_origin_looks_the_same(scene: Scene, shift: tuple[f
 
 
 def interior(scene: Scene, width: int, height: int) -> np.ndarray:
-    """The pixels that have no edge in them: in which the light changes little over the pixel."""
+    """Return a mask of the pixels without edges, over which the light changes little."""
     fine = linear(scene, 3 * width, 3 * height).reshape(height, 3, width, 3, 3)
-    calm = np.ptp(fine, axis=(1, 3)).max(axis=-1) < 0.02
-    assert 0.5 < calm.mean() < 1
-    return calm
+    without_edges = np.ptp(fine, axis=(1, 3)).max(axis=-1) < 0.02
+    assert 0.5 < without_edges.mean() < 1
+    return without_edges
 
 
 @SCENES
@@ -77,37 +78,37 @@ def test_a_mirrored_scene_gives_the_mirrored_picture(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("scene", [ALL, FREE], ids=["some kinds", "most kinds"])
-def test_a_scene_turned_with_its_camera_gives_the_same_picture(scene: Scene) -> None:
-    for turn in (lambda v: (v[2], v[1], -v[0]), lambda v: (-v[0], v[1], -v[2])):
-        difference = np.abs(linear(changed(scene, turn, None, turn), 60, 40) - linear(scene, 60, 40)).max(axis=-1)
+def test_a_scene_rotated_with_its_camera_gives_the_same_picture(scene: Scene) -> None:
+    for rotate in (lambda v: (v[2], v[1], -v[0]), lambda v: (-v[0], v[1], -v[2])):
+        difference = np.abs(linear(changed(scene, rotate, None, rotate), 60, 40) - linear(scene, 60, 40)).max(axis=-1)
         assert np.quantile(difference, 0.995) <= 1e-12
 
 
 @pytest.mark.parametrize("scene", [ALL, FREE], ids=["some kinds", "most kinds"])
 @pytest.mark.parametrize("seed", range(4))
-def test_a_scene_turned_with_its_camera_by_any_angle_differs_at_edges_only(scene: Scene, seed: int) -> None:
-    turn = rotation(np.random.default_rng(seed))
-    turned = changed(scene, lambda p: tuple(turn @ p), None, lambda d: tuple((turn @ d).clip(-1, 1)))
-    right, up, _ = reference.camera_frame(turned.camera)
-    wanted = turn @ reference.camera_frame(scene.camera)[0]  # where the turned camera's right is, without its roll
-    turned = turned.replace(turned.camera, roll=float(np.degrees(np.arctan2(-wanted @ up, wanted @ right))))
-    difference = np.abs(linear(turned, 60, 40) - linear(scene, 60, 40)).max(axis=-1)
+def test_a_scene_rotated_with_its_camera_by_any_angle_differs_at_edges_only(scene: Scene, seed: int) -> None:
+    rotate = random_rotation(np.random.default_rng(seed))
+    rotated = changed(scene, lambda p: tuple(rotate @ p), None, lambda d: tuple((rotate @ d).clip(-1, 1)))
+    right, up, _ = reference.camera_frame(rotated.camera)
+    to_right = rotate @ reference.camera_frame(scene.camera)[0]  # the rotated camera's right; its roll restores it
+    rotated = rotated.replace(rotated.camera, roll=float(np.degrees(np.arctan2(-to_right @ up, to_right @ right))))
+    difference = np.abs(linear(rotated, 60, 40) - linear(scene, 60, 40)).max(axis=-1)
     assert (difference[interior(scene, 60, 40)] <= 1e-12).all()
     assert np.quantile(difference, 0.995) <= 1e-12
 
 
-def rotation(random: np.random.Generator) -> np.ndarray:
-    """About any axis, by any angle."""
-    turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
-    return turn * np.linalg.det(turn)
+def random_rotation(random: np.random.Generator) -> np.ndarray:
+    """Return the matrix of a random rotation."""
+    matrix, _ = np.linalg.qr(random.normal(size=(3, 3)))
+    return matrix * np.linalg.det(matrix)
 
 
-def test_a_lamp_without_light_is_no_lamp() -> None:
+def test_a_light_of_no_brightness_changes_nothing() -> None:
     dark = Scene((AMBIENT, EYE, LAMP, SECOND.replace(brightness=0), FurtherLight((0, 5, 0), 1, (0, 0, 0)), *SHAPES))
     assert np.array_equal(linear(dark, 60, 40), linear(Scene((AMBIENT, EYE, LAMP, *SHAPES)), 60, 40))
 
 
-def test_two_half_lamps_are_one() -> None:
+def test_two_lights_of_half_brightness_equal_one() -> None:
     half = FurtherLight(LAMP.position, LAMP.brightness / 2, LAMP.colour)
     twice = linear(Scene((AMBIENT, EYE, half, half, *SHAPES)), 60, 40)
     assert np.abs(twice - linear(Scene((AMBIENT, EYE, LAMP, *SHAPES)), 60, 40)).max() <= 4e-16
@@ -119,14 +120,14 @@ def test_without_ambient_light_a_shadow_is_black() -> None:
     assert (picture > 0.1).any()
 
 
-def test_a_light_of_ambient_alone_is_the_surfaces_colour() -> None:
+def test_ambient_light_alone_shows_the_colours_of_surfaces() -> None:
     picture = linear(Scene((AMBIENT, EYE, *SHAPES)), 60, 40)
     colours = {tuple(np.round(np.divide(s.colour, 255) * np.divide(AMBIENT.colour, 255) * 0.15, 12)) for s in SHAPES}
     assert {tuple(np.round(pixel, 12)) for pixel in picture.reshape(-1, 3)} <= colours | {(0, 0, 0)}
 
 
-def test_a_fixed_offset_does_not_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fixed_shadow_ray_offset_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     before = interpreted(ALL)[1]
     monkeypatch.setattr(shade, "clearance", lambda point, extent: splat(1e-4, extent))
-    assert np.abs(interpreted(ALL)[1] - before).max() < 0.01  # it is right at the scale that it was made for
+    assert np.abs(interpreted(ALL)[1] - before).max() < 0.01  # it fits the scale that it was made for
     assert np.abs(interpreted(scaled(ALL, 2.0**-20))[1] - before).max() > 0.1

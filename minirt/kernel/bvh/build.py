@@ -1,7 +1,7 @@
-"""Sorts boxes into a binary tree by the surface area heuristic, with bins (Wald, On Fast Construction of SAH-based
+"""Construction of a binary BVH by the surface area heuristic (SAH), with bins (Wald, On Fast Construction of SAH-based
 Bounding Volume Hierarchies, 2007).
 
-How far a box reaches is six numbers, towards -x, -y, -z, x, y and z: the reach of two boxes is the larger of each.
+A box is six numbers, its bounds towards -x, -y, -z, x, y and z: the bounds of two boxes are the maximum of each.
 """
 
 from __future__ import annotations
@@ -12,31 +12,31 @@ from typing import Any, NamedTuple
 from minirt.kernel.bvh.nodes import LEVELS, WIDTH
 from minirt.lanes import maximum
 
-BINS = 16
-INDEX, GROUP = 6, 7  # columns of a box, behind its reach
+BINS = 16  # bins along an axis
+INDEX, GROUP = 6, 7  # columns of `boxes`, behind the bounds
 
 
 class BinaryTree(NamedTuple):
-    """A binary tree over n boxes, in which a node is a range of them. Both children of a node come behind it."""
+    """A binary tree over n boxes, each node a range of them. Both children of a node have higher numbers than it."""
 
-    boxes: Any  # (n, 8) reach, index and group of each shape, in the order of the leaves
-    bounds: Any  # (m, 6) of each node
-    links: Any  # (m, 3) its first box, the box behind its last, and its first child, of two in a row, or 0 for a leaf
-    bins: Any  # (BINS + 1, 7) reach and number of the boxes in each bin, and of some of them together
-    costs: Any  # (BINS,) of what lies above each bin
-    centres: Any  # (6,) how far twice the centres of a node's boxes reach
-    stack: Any  # (m, 2) nodes to divide, and their levels
+    boxes: Any  # (n, 8) bounds, index and group of each shape, in the order of the leaves
+    bounds: Any  # (m, 6) bounds of each node
+    links: Any  # (m, 3) first box of a node, the box behind its last, and the first of its two children, or 0: a leaf
+    bins: Any  # (BINS + 1, 7) bounds and number of the boxes in each bin; in the last row, of several bins together
+    costs: Any  # (BINS,) SAH cost of the boxes above each bin
+    centres: Any  # (6,) bounds of the centres, times two, of a node's boxes
+    stack: Any  # (m, 2) nodes still to divide, and their levels
 
 
 def divide(tree: BinaryTree) -> int:
-    """Divide all boxes until each range is a leaf, of one group and at most `WIDTH` boxes; the number of nodes."""
+    """Divide all boxes until each leaf has one group and at most `WIDTH` boxes, and return the number of nodes."""
     links = tree.links
     links[0, 0], links[0, 1] = 0, tree.boxes.shape[0]
     tree.stack[0, 0], tree.stack[0, 1] = 0, 0
-    used, left = 1, 1
-    while left > 0:
-        left -= 1
-        node, level = tree.stack[left, 0], tree.stack[left, 1]
+    used, waiting = 1, 1
+    while waiting > 0:
+        waiting -= 1
+        node, level = tree.stack[waiting, 0], tree.stack[waiting, 1]
         start, stop = links[node, 0], links[node, 1]
         fit_bounds(tree, node)
         links[node, 2] = 0
@@ -46,29 +46,29 @@ def divide(tree: BinaryTree) -> int:
             links[used, 0], links[used, 1] = start, middle
             links[used + 1, 0], links[used + 1, 1] = middle, stop
             for child in range(2):
-                tree.stack[left + child, 0], tree.stack[left + child, 1] = used + child, level + 1
-            left += 2
+                tree.stack[waiting + child, 0], tree.stack[waiting + child, 1] = used + child, level + 1
+            waiting += 2
             used += 2
     return used
 
 
 def has_mixed_groups(boxes: Any, start: int, stop: int) -> bool:
-    """Whether boxes of a range are of different groups."""
-    same = start
-    while same < stop and boxes[same, GROUP] == boxes[start, GROUP]:
-        same += 1
-    return same < stop
+    """Whether the boxes of a range are of different groups."""
+    i = start
+    while i < stop and boxes[i, GROUP] == boxes[start, GROUP]:
+        i += 1
+    return i < stop
 
 
 def fit_bounds(tree: BinaryTree, node: int) -> None:
-    """How far the boxes of a node reach, and their centres."""
-    boxes, reaches, centres = tree.boxes, tree.bounds, tree.centres
+    """Compute the bounds of a node's boxes, and the bounds of their centres."""
+    boxes, bounds, centres = tree.boxes, tree.bounds, tree.centres
     for k in range(6):
-        reaches[node, k] = -inf
+        bounds[node, k] = -inf
         centres[k] = -inf
     for i in range(tree.links[node, 0], tree.links[node, 1]):
         for k in range(6):
-            reaches[node, k] = maximum(boxes[i, k], reaches[node, k])
+            bounds[node, k] = maximum(boxes[i, k], bounds[node, k])
         for k in range(3):
             centre = boxes[i, 3 + k] - boxes[i, k]
             centres[k] = maximum(-centre, centres[k])
@@ -76,12 +76,12 @@ def fit_bounds(tree: BinaryTree, node: int) -> None:
 
 
 def partition(tree: BinaryTree, start: int, stop: int, level: int) -> int:
-    """Sort the boxes of a range into two, and return where the second begins."""
+    """Partition the boxes of a range at the best split, and return the first box of the second part."""
     boxes = tree.boxes
     if stop - start <= WIDTH:
         return partition_by_group(boxes, start, stop)
     axis, last = best_split(tree, start, stop)
-    if axis < 0 or stop - start > WIDTH << (LEVELS - 1 - level):  # all in one place, or too many for halves from here
+    if axis < 0 or stop - start > WIDTH << (LEVELS - 1 - level):  # all centres coincide, or too deep: halves
         return (start + stop) // 2
     low, scale = bin_scale(tree.centres, axis)
     while start < stop:
@@ -94,7 +94,7 @@ def partition(tree: BinaryTree, start: int, stop: int, level: int) -> int:
 
 
 def partition_by_group(boxes: Any, start: int, stop: int) -> int:
-    """`partition` into those of the group of the first, and the others."""
+    """Partition the boxes of a range into those of the first box's group and all others."""
     middle = start + 1
     for i in range(start + 1, stop):
         if boxes[i, GROUP] == boxes[start, GROUP]:
@@ -104,35 +104,37 @@ def partition_by_group(boxes: Any, start: int, stop: int) -> int:
 
 
 def swap(boxes: Any, i: int, j: int) -> None:
+    """Swap two boxes."""
     for k in range(8):
         boxes[i, k], boxes[j, k] = boxes[j, k], boxes[i, k]
 
 
 def best_split(tree: BinaryTree, start: int, stop: int) -> tuple[int, int]:
-    """The axis along which to split, and the last bin of the first part; -1 where no split divides the boxes."""
-    best, axis, last = inf, -1, 0
-    for each in range(3):
-        low, scale = bin_scale(tree.centres, each)
+    """Find the axis of the best split, and the last bin of its first part; axis -1 if no split divides the boxes."""
+    least, best_axis, last = inf, -1, 0
+    for axis in range(3):
+        low, scale = bin_scale(tree.centres, axis)
         if scale < inf:
-            fill_bins(tree, start, stop, each, low, scale)
-            cost, place = best_bin(tree.bins, tree.costs)
-            if cost < best:
-                best, axis, last = cost, each, place
-    return axis, last
+            fill_bins(tree, start, stop, axis, low, scale)
+            cost, bin_below = best_bin(tree.bins, tree.costs)
+            if cost < least:
+                least, best_axis, last = cost, axis, bin_below
+    return best_axis, last
 
 
 def bin_scale(centres: Any, axis: int) -> tuple[float, float]:
-    """Where the first bin begins, and bins per length."""
+    """Return the coordinate, times two, at which the first bin begins, and the number of bins per unit of it."""
     low, high = -centres[axis], centres[3 + axis]
     return low, BINS / (high - low)
 
 
 def bin_index(boxes: Any, i: int, axis: int, low: float, scale: float) -> int:
+    """Return the bin of a box, by its centre."""
     return min(int((boxes[i, 3 + axis] - boxes[i, axis] - low) * scale), BINS - 1)
 
 
 def fill_bins(tree: BinaryTree, start: int, stop: int, axis: int, low: float, scale: float) -> None:
-    """Sort the boxes of a range into bins by their centres."""
+    """Gather the bounds and numbers of the boxes of a range in bins, by their centres."""
     boxes, bins = tree.boxes, tree.bins
     for b in range(BINS):
         clear_bin(bins, b)
@@ -144,41 +146,42 @@ def fill_bins(tree: BinaryTree, start: int, stop: int, axis: int, low: float, sc
 
 
 def best_bin(bins: Any, costs: Any) -> tuple[float, int]:
-    """The least cost of a split between bins, and the bin below it."""
+    """Find the least cost of a split between two bins, and the bin below that split."""
     clear_bin(bins, BINS)
     for b in range(BINS - 1, 0, -1):
         merge_bin(bins, b)
         costs[b - 1] = sah_cost(bins)
     clear_bin(bins, BINS)
-    best, last = inf, 0
+    least, last = inf, 0
     for b in range(BINS - 1):
         merge_bin(bins, b)
         cost = sah_cost(bins) + costs[b]
-        if cost < best:
-            best, last = cost, b
-    return best, last
+        if cost < least:
+            least, last = cost, b
+    return least, last
 
 
 def clear_bin(bins: Any, b: int) -> None:
+    """Empty a bin."""
     for k in range(6):
         bins[b, k] = -inf
     bins[b, 6] = 0.0
 
 
 def merge_bin(bins: Any, b: int) -> None:
-    """Take the boxes of a bin to those in the last row."""
+    """Merge a bin into the last row."""
     for k in range(6):
         bins[BINS, k] = maximum(bins[b, k], bins[BINS, k])
     bins[BINS, 6] += bins[b, 6]
 
 
 def sah_cost(bins: Any) -> float:
-    """How often rays meet the box around those in the last row, times the leaves that they fill."""
+    """Return the SAH cost of the boxes in the last row: half of their surface area times the leaves that they fill."""
     leaves = (int(bins[BINS, 6]) + WIDTH - 1) // WIDTH
     return half_area(bins, BINS) * leaves if leaves > 0 else inf
 
 
-def half_area(reaches: Any, i: int) -> float:
-    """Half of the surface of a box."""
-    x, y, z = reaches[i, 0] + reaches[i, 3], reaches[i, 1] + reaches[i, 4], reaches[i, 2] + reaches[i, 5]
+def half_area(bounds: Any, i: int) -> float:
+    """Return half of the surface area of a box."""
+    x, y, z = bounds[i, 0] + bounds[i, 3], bounds[i, 1] + bounds[i, 4], bounds[i, 2] + bounds[i, 5]
     return x * y + y * z + z * x

@@ -1,4 +1,4 @@
-"""Rays that share no origin against all shapes of a scene: `minirt.kernel.trace` by means of a tree."""
+"""Closest-hit and shadow queries for incoherent rays, by BVH traversal; the counterpart of `minirt.kernel.trace`."""
 
 from __future__ import annotations
 
@@ -30,25 +30,28 @@ from minirt.lanes.largest import largest
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 
-CHUNK = 16 * WIDTH  # rays that a thread takes at a time
+CHUNK = 16 * WIDTH  # rays that a thread claims at a time
 
 Hit = tuple[Number, Number, Number]  # distance, index and extent of what is hit
 
 
-def closest_hit(tree: Tree, origin: Vec, direction: Vec, asked: Mask) -> Hit:
-    """As `trace.nearest`, for any rays; those that are not `asked` for hit endless shapes only."""
+def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Hit:
+    """Find the closest hit of each ray, as `minirt.kernel.trace.closest_hit` does; rays may have any origins.
+
+    Rays that are not `active` hit unbounded shapes only.
+    """
     memory = packet_memory()
     store_rays(memory, origin, direction)
-    nothing = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
-    best, owner, extent = for_each_kind(closest_unbounded, tree.groups, nothing, (tree, origin, direction))
+    no_hit = splat(inf, direction.x), splat(-1.0, direction.x), splat(0.0, direction.x)
+    best, owner, extent = for_each_kind(closest_unbounded, tree.groups, no_hit, (tree, origin, direction))
     put_vec(memory, HIT, Vec(best, owner, extent))
-    traverse(closest_in_block, tree, memory, bits(asked))
+    traverse(closest_in_block, tree, memory, bits(active))
     return load(memory, HIT), load(memory, HIT + WIDTH), load(memory, HIT + 2 * WIDTH)
 
 
-def closest_unbounded(group: Group, state: Hit, given: tuple[Tree, Vec, Vec]) -> Hit:
-    """`closest_hit` over the shapes of one kind that have no end."""
-    tree, origin, direction = given
+def closest_unbounded(group: Group, state: Hit, arguments: tuple[Tree, Vec, Vec]) -> Hit:
+    """Continue `closest_hit` over the unbounded shapes of one kind."""
+    tree, origin, direction = arguments
     for i in range(group.unbounded.shape[0]):
         index = group.unbounded[i]
         shape = read(group.rows, tree.slots[index, 1])
@@ -58,55 +61,55 @@ def closest_unbounded(group: Group, state: Hit, given: tuple[Tree, Vec, Vec]) ->
 
 
 def closest_in_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
-    """`closest_hit` of one ray over a block of shapes."""
+    """Continue `closest_hit` of one ray over the shapes of a block, and store the result in `HIT`."""
     origin, direction = vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray)
     hit, t = intersect(read_block(group.blocks, block), origin, direction)
-    left = bits(hit & (t <= search_limit(memory[HIT + ray])))
-    if left != 0:
-        found = vec_at(memory, HIT, ray)
-        state = found.x, found.y, found.z
-        while left != 0:
-            i = lowest(left)
-            left = left & (left - 1)
-            shape = read_one(group.blocks, block, i)  # in the cache, as its row in the table is not
+    candidates = bits(hit & (t <= search_limit(memory[HIT + ray])))
+    if candidates != 0:
+        best = vec_at(memory, HIT, ray)
+        state = best.x, best.y, best.z
+        while candidates != 0:
+            i = lowest(candidates)
+            candidates = candidates & (candidates - 1)
+            shape = read_one(group.blocks, block, i)  # cached already, unlike the shape's row in `rows`
             index, extent = group.labels[block, i, 0], group.labels[block, i, 1]
             state = closer_hit(shape, index, extent, True, lane(t, i), origin, direction, state)
         memory[HIT + ray], memory[HIT + WIDTH + ray], memory[HIT + 2 * WIDTH + ray] = state
 
 
-def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, asked: Mask) -> Mask:
-    """Of the rays that are `asked` for, those that hit nothing nearer than `distance`."""
+def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, active: Mask) -> Mask:
+    """Trace shadow rays: the `active` rays that hit nothing nearer than `distance`."""
     memory = packet_memory()
     store_rays(memory, origin, direction)
-    free = for_each_kind(unoccluded_by_unbounded, tree.groups, asked, (tree, origin, direction, distance))
-    put(memory, HIT, where(free, distance, -inf))
-    traverse(occlude_by_block, tree, memory, bits(free))
+    visible = for_each_kind(unoccluded_by_unbounded, tree.groups, active, (tree, origin, direction, distance))
+    put(memory, HIT, where(visible, distance, -inf))
+    traverse(occlude_by_block, tree, memory, bits(visible))
     return load(memory, HIT) > -inf
 
 
-def unoccluded_by_unbounded(group: Group, free: Mask, given: tuple[Tree, Vec, Vec, Number]) -> Mask:
-    """Of the rays that are free so far, those that no shape without end of one kind stops."""
-    tree, origin, direction, distance = given
+def unoccluded_by_unbounded(group: Group, visible: Mask, arguments: tuple[Tree, Vec, Vec, Number]) -> Mask:
+    """Remove the shadow rays that an unbounded shape of one kind occludes from `visible`."""
+    tree, origin, direction, distance = arguments
     for i in range(group.unbounded.shape[0]):
         hit, t = intersect(read(group.rows, tree.slots[group.unbounded[i], 1]), origin, direction)
-        free = free & ~(hit & (t < distance))
-    return free
+        visible = visible & ~(hit & (t < distance))
+    return visible
 
 
 def occlude_by_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
-    """Nothing matters any more to a ray, not even what is at -infinity, as soon as something stops it."""
+    """Set the distance in `HIT` of a shadow ray to -infinity, which ends it, if a shape of a block occludes it."""
     hit, t = intersect(read_block(group.blocks, block), vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray))
     memory[HIT + ray] = where(any(hit & (t < memory[HIT + ray])), -inf, memory[HIT + ray])
 
 
 def read_block(blocks: Any, i: int) -> Any:
-    """The packed shapes of a block as one whose numbers are lanes."""
+    """Return all shapes of a block as one packed shape, with one shape in each SIMD lane."""
     parts = (Vec(*part) if part.ndim == 2 else part for part in blocks[i])
     return kind_of(blocks.dtype.names).packed(*parts)
 
 
 def read_one(blocks: Any, block: int, i: int) -> Any:
-    """The packed shape in lane i of a block."""
+    """Return the packed shape in lane i of a block."""
     parts = (Vec(*part[:, i]) if part.ndim == 2 else part[i] for part in blocks[block])
     return kind_of(blocks.dtype.names).packed(*parts)
 
@@ -114,10 +117,10 @@ def read_one(blocks: Any, block: int, i: int) -> Any:
 def trace_rays(
     next_ray: Any, tree: Tree, origins: Any, directions: Any, distances: Any, owners: Any, points: Any, normals: Any
 ) -> None:
-    """Trace rays, taking the next ones from the counter `next_ray` until none is left.
+    """Find the closest hits of n rays, claiming chunks of rays from the counter `next_ray` until none is left.
 
-    Any number of threads may do so at the same time. `origins`, `directions` of any length, `points` and `normals` are
-    (n, 3), `distances` and `owners` (n,); what belongs to a ray without a hit stays as it is.
+    Any number of threads may do so at the same time. Reads `origins` and `directions`, (n, 3), which may have any
+    length. Writes `points` and `normals`, (n, 3), `distances` and `owners`, (n,), except for rays without a hit.
     """
     tree = by_reference(tree)
     count = origins.shape[0]
@@ -148,24 +151,25 @@ def trace_rays(
 
 
 def vec_lanes_at(memory: Any, at: int) -> Vec:
-    """The vectors of all rays of a packet."""
+    """Load the vectors of all rays of a packet from its memory."""
     return Vec(load(memory, at), load(memory, at + WIDTH), load(memory, at + 2 * WIDTH))
 
 
 def store_vec(vectors: Any, i: int, v: Vec) -> None:
+    """Store a vector in row i of an array (n, 3)."""
     vectors[i, 0], vectors[i, 1], vectors[i, 2] = v.x, v.y, v.z
 
 
 def rescale(v: Vec) -> Vec:
-    """The vector in the direction of v whose largest coordinate is 1, however short or long v is."""
+    """Scale a vector so that its largest coordinate is 1: its length then neither overflows nor underflows."""
     size = largest(v)
     return Vec(v.x / size, v.y / size, v.z / size)
 
 
-def surface_of_kind(group: Group, state: tuple[Vec, Vec, int], given: tuple[int, int, Vec]) -> tuple[Vec, Vec, int]:
-    """`surface` of a shape, if it is of this kind; the last of the state counts the kinds."""
+def surface_of_kind(group: Group, state: tuple[Vec, Vec, int], arguments: tuple[int, int, Vec]) -> tuple[Vec, Vec, int]:
+    """Compute point and normal of a shape if it is of this kind; the last of the state counts the kinds."""
     on, normal, number = state
-    wanted, row, point = given
-    if number == wanted:
+    group_number, row, point = arguments
+    if number == group_number:
         on, normal = surface(read(group.rows, row), point)
     return on, normal, number + 1

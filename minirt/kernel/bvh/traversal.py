@@ -1,9 +1,9 @@
-"""The way of rays through the tree, a step of each in turn.
+"""BVH traversal of a packet of incoherent rays: all rays of the packet advance together, one step of each in turn.
 
-A step waits for numbers to come from memory and through the pipelines, and where a branch was guessed wrong all that
-the processor began behind it is lost. Steps of different rays do not wait for each other. So the rays of a packet are
-on their way together, and a step has no branch: what would be one is a mask with a bit a ray, and the nearest child is
-found among all lanes at once, not by sorting.
+A step waits for memory and for pipelines, and a mispredicted branch costs all work that the processor began behind it.
+Steps of different rays do not wait for each other. So the rays of a packet are interleaved, and a step has no branch:
+in its place is a mask with one bit for each ray, and the nearest child is found among all lanes at once, not by
+sorting.
 """
 
 from __future__ import annotations
@@ -40,52 +40,56 @@ from minirt.lanes import any, load, lowest, where
 
 
 def traverse(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> None:
-    """`visit(group, block, tree, memory, ray)` for the leaves that each of the rays meets, the nearest first.
+    """Call `visit(group, block, tree, memory, ray)` for the leaves that each of the `rays` hits, the nearest first.
 
-    What is beyond the distance in the first row of `HIT`, which `visit` may lessen, is left out.
+    `rays` has one bit for each ray. Leaves beyond the distance in the first row of `HIT`, which `visit` may lessen, are
+    skipped.
     """
-    left = rays
-    while left != 0:
-        ray = lowest(left)
-        left = left & (left - 1)
+    remaining = rays
+    while remaining != 0:
+        ray = lowest(remaining)
+        remaining = remaining & (remaining - 1)
         memory[NEXT + ray] = 0.0  # the root
         put_integer(memory, TOP + ray, STACK - STACK_LEVEL + ray * WIDTH)
-    at_node, waiting = rays, 0
+    at_node, unfinished = rays, 0
     while True:
-        left = at_node
-        while left != 0:
-            ray = lowest(left)
-            left = left & (left - 1)
-            waiting = waiting | descend(tree.nodes, memory, ray) << ray
-        if waiting == 0:
+        remaining = at_node
+        while remaining != 0:
+            ray = lowest(remaining)
+            remaining = remaining & (remaining - 1)
+            unfinished = unfinished | descend(tree.nodes, memory, ray) << ray
+        if unfinished == 0:
             return
         at_node, at_leaf = 0, 0
-        left = waiting
-        while left != 0:
-            ray = lowest(left)
-            left = left & (left - 1)
+        remaining = unfinished
+        while remaining != 0:
+            ray = lowest(remaining)
+            remaining = remaining & (remaining - 1)
             node, leaf, last = advance(memory, ray)
             at_node = at_node | node << ray
             at_leaf = at_leaf | leaf << ray
-            waiting = waiting ^ last << ray
+            unfinished = unfinished ^ last << ray
         for_each_kind(visit_leaves_of_kind, tree.groups, 0, (visit, at_leaf, tree, memory))
 
 
 def descend(nodes: Any, memory: Any, ray: int) -> int:
-    """Let the children of a node that a ray meets wait; 1 if there are any."""
+    """Push the children of the next node whose boxes a ray hits onto its stack; returns 1 if there are any, else 0."""
     node = reference_of(memory[NEXT + ray])
     planes = near_planes(vec_at(memory, INVERSE, ray))
-    met, near = intersect_boxes(nodes, node, memory, ray, planes, search_limit(memory[HIT + ray]))
+    hit, near = intersect_boxes(nodes, node, memory, ray, planes, search_limit(memory[HIT + ray]))
     top = integer_at(memory, TOP + ray) + STACK_LEVEL
-    put(memory, top, where(met, tag(near, load(nodes, node + REFERENCES)), inf))
-    some = int(any(met))
-    put_integer(memory, TOP + ray, top - STACK_LEVEL * (1 - some))
-    return some
+    put(memory, top, where(hit, tag(near, load(nodes, node + REFERENCES)), inf))
+    pushed = int(any(hit))
+    put_integer(memory, TOP + ray, top - STACK_LEVEL * (1 - pushed))
+    return pushed
 
 
 def advance(memory: Any, ray: int) -> tuple[int, int, int]:
-    """Take the nearest child of the last node in which some wait. Three answers, 1 or 0: whether it is a node to visit,
-    whether it is a leaf to visit, and whether none waits any more."""
+    """Pop the nearest child from the top row of a ray's stack, and make it the next to visit.
+
+    Returns three flags, 1 or 0: whether the child is a node to visit, whether it is a leaf to visit, and whether the
+    stack is now empty.
+    """
     limit = search_limit(memory[HIT + ray])
     top = integer_at(memory, TOP + ray)
     tags = load(memory, top)
@@ -95,17 +99,17 @@ def advance(memory: Any, ray: int) -> tuple[int, int, int]:
     top = top - STACK_LEVEL * (1 - int(any(others < limit)))
     put_integer(memory, TOP + ray, top)
     memory[NEXT + ray] = nearest
-    matters = nearest < limit
+    in_reach = nearest < limit
     is_node = reference_of(nearest) >= 0
-    return int(matters & is_node), int(matters & (not is_node)), int(top < STACK)
+    return int(in_reach & is_node), int(in_reach & (not is_node)), int(top < STACK)
 
 
-def visit_leaves_of_kind(group: Group, number: int, given: tuple[Callable[..., None], int, Tree, Any]) -> int:
-    """Visit the leaves of one kind that rays are at; the state counts the kinds."""
-    visit, left, tree, memory = given
-    while left != 0:
-        ray = lowest(left)
-        left = left & (left - 1)
+def visit_leaves_of_kind(group: Group, number: int, arguments: tuple[Callable[..., None], int, Tree, Any]) -> int:
+    """Visit the leaves of one kind of shape that rays are at; the state, `number`, counts the kinds."""
+    visit, remaining, tree, memory = arguments
+    while remaining != 0:
+        ray = lowest(remaining)
+        remaining = remaining & (remaining - 1)
         leaf = leaf_number(reference_of(memory[NEXT + ray]))
         if leaf % len(tree.groups) == number:
             visit(group, leaf // len(tree.groups), tree, memory, ray)

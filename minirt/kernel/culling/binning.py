@@ -1,10 +1,12 @@
-"""In which directions from a point shapes may be met: rectangles of cells, and the lists of the cells.
+"""Binning of shapes into a grid of directions by projected bounds: the shape lists of screen tiles and light buffers.
 
-Seen from a point, in a frame of across, down and forward, a direction has the slopes x / z and y / z, and the cells of
-a grid are squares of slopes. A ball covers an interval of either slope. What is left out of a cell is not met there,
-whatever the rounding: balls grow by `MARGIN`, and intervals by the margin of the grid.
+The light buffer is that of Haines and Greenberg 1986. Seen from a point, in a frame of across, down and forward, a
+direction has the slopes x / z and y / z, and the cells of a grid are squares of slopes. A sphere projects to an
+interval of either slope. Binning is conservative whatever the rounding: bounding spheres grow by `MARGIN`, and
+intervals by the margin of the grid.
 
-All memory is the caller's. Between `project_all` and `fill_bins` the rectangles are sorted by depth and the counts summed to ends.
+The caller allocates all memory. Between `project_all` and `fill_bins` it sorts the rectangles by depth, and sums the
+counts up to the ends of the lists.
 """
 
 from __future__ import annotations
@@ -12,66 +14,66 @@ from __future__ import annotations
 from math import inf, sqrt
 from typing import Any, NamedTuple
 
-MARGIN = 1e-12  # of the coordinates that a place is computed from, which are rounded to 1e-16
-SINE_MARGIN = 1e-7  # of the sine of a cone: by how much its cosine may be wrong, as roots of differences are by 2e-8
-COSINE_MARGIN = 4e-15  # of a scalar product of unit vectors
+MARGIN = 1e-12  # relative to the coordinates that a position is computed from, whose rounding is 1e-16
+SINE_MARGIN = 1e-7  # error of a cone's cosine, relative to its sine: roots of differences are wrong by 2e-8
+COSINE_MARGIN = 4e-15  # error of a scalar product of unit vectors
 
 
 class Grid(NamedTuple):
-    """Directions from a point in cells; slope s belongs to the cell `floor(scale * s + middle)`."""
+    """A grid of directions from a point, in one frame or more: slope s is in the cell `floor(scale * s + middle)`."""
 
     frames: Any  # (f, 3, 3) unit vectors across, down and forward
-    across: int  # cells of each frame
-    down: int
+    across: int  # columns of cells of each frame
+    down: int  # rows of cells of each frame
     scale_x: float
     middle_x: float
     scale_y: float
     middle_y: float
-    margin: float  # cells by which intervals grow before they are rounded to cells
-    cells: int  # of all frames, and others
-    elsewhere: int  # the cell of all directions that are in no frame, which is among those; -1 where there is none
+    margin: float  # by how many cells intervals grow before they are rounded to cells
+    cells: int  # cells of all frames, and that of the directions elsewhere
+    elsewhere: int  # the cell of all directions that are in no frame; -1 if there is none
 
 
 def project_all(
     origin: Any,
     grid: Grid,
-    balls: Any,
+    spheres: Any,
     slack: float,
     first: Any,
-    places: Any,
+    slots: Any,
     rectangles: Any,
     used: int,
-    views: Any,
+    cones: Any,
     counts: Any,
 ) -> int:
-    """Find the rectangles of the shapes that have balls.
+    """Project all shapes with bounding spheres to rectangles of cells, and return the number of rectangles.
 
-    Shape i is the convex hull of `balls[first[i]:first[i + 1]]`, (b, 4) centre and radius, which grow by `slack`; its
-    cells begin at `places[i, 0]` times one more than the grid has. Writes rectangles, (r, 4) shape, first cell, columns
-    and rows, from number `used` on, and answers how many there are; of shapes with a rectangle the `bounding_cone`; and adds to
-    `counts` how many rectangles cover each cell. A shape that may be met in the directions that are in no frame has a
-    rectangle of that cell.
+    Shape i lies in the convex hull of `spheres[first[i]:first[i + 1]]`, (b, 4) centre and radius, grown by `slack`; the
+    cells of its kind begin at `slots[i, 0]` times one more than the grid has. Writes to `rectangles`, (r, 4) shape,
+    first cell, columns and rows, from number `used` on; to `cones` the `bounding_cone` of each shape with a rectangle;
+    and adds to `counts` the number of rectangles that cover each cell. A shape that can be hit in directions outside of
+    all frames has a rectangle of the cell `elsewhere`.
     """
     stride = grid.cells + 1
-    for shape in range(views.shape[0]):
+    for shape in range(cones.shape[0]):
         before = used
-        whole = False
+        enclosed = False
         for face in range(grid.frames.shape[0]):
-            column, row, columns, rows, whole = projected_rectangle(
-                origin, grid, face, balls, first[shape], first[shape + 1], slack
+            column, row, columns, rows, enclosed = projected_rectangle(
+                origin, grid, face, spheres, first[shape], first[shape + 1], slack
             )
             if columns > 0 and rows > 0:
-                cell = places[shape, 0] * stride + (face * grid.down + row) * grid.across + column
+                cell = slots[shape, 0] * stride + (face * grid.down + row) * grid.across + column
                 rectangles[used, 0] = shape
                 rectangles[used, 1] = cell
                 rectangles[used, 2] = columns
                 rectangles[used, 3] = rows
                 used += 1
                 for line in range(cell, cell + rows * grid.across, grid.across):
-                    for at in range(line, line + columns):
-                        counts[at] += 1
-        if grid.elsewhere >= 0 and first[shape] < first[shape + 1] and not whole:
-            cell = places[shape, 0] * stride + grid.elsewhere
+                    for covered in range(line, line + columns):
+                        counts[covered] += 1
+        if grid.elsewhere >= 0 and first[shape] < first[shape + 1] and not enclosed:
+            cell = slots[shape, 0] * stride + grid.elsewhere
             rectangles[used, 0] = shape
             rectangles[used, 1] = cell
             rectangles[used, 2] = 1
@@ -79,15 +81,18 @@ def project_all(
             used += 1
             counts[cell] += 1
         if used > before:
-            bounding_cone(origin, balls, first[shape], first[shape + 1], slack, views[shape])
+            bounding_cone(origin, spheres, first[shape], first[shape + 1], slack, cones[shape])
     return used
 
 
 def projected_rectangle(
-    origin: Any, grid: Grid, face: int, balls: Any, start: int, end: int, slack: float
+    origin: Any, grid: Grid, face: int, spheres: Any, start: int, end: int, slack: float
 ) -> tuple[int, int, int, int, bool]:
-    """First column, first row, columns and rows of the cells in which the convex hull of some balls, grown by `slack`,
-    may be met; no columns or no rows where there is none. And whether all of it, and of the margin, is in cells."""
+    """Project the convex hull of some spheres, grown by `slack`, to a rectangle of a frame's cells.
+
+    Returns first column, first row, columns and rows; no columns or no rows if the frame cannot see the hull. The last
+    result is whether the rectangle, with its margin, lies wholly in the frame.
+    """
     half_x = (grid.middle_x + grid.margin) / grid.scale_x  # slopes at the edges of the grid
     half_y = (grid.middle_y + grid.margin) / grid.scale_y
     slant_x = sqrt(1.0 + half_x * half_x)
@@ -97,8 +102,8 @@ def projected_rectangle(
     beside = False
     low_x, high_x, low_y, high_y = inf, -inf, inf, -inf
     for i in range(start, end):
-        px, py, pz = balls[i, 0] - origin[0], balls[i, 1] - origin[1], balls[i, 2] - origin[2]
-        radius = balls[i, 3] + slack
+        px, py, pz = spheres[i, 0] - origin[0], spheres[i, 1] - origin[1], spheres[i, 2] - origin[2]
+        radius = spheres[i, 3] + slack
         z = frame[2, 0] * px + frame[2, 1] * py + frame[2, 2] * pz
         behind &= z <= -radius
         if behind and i + 1 == end:
@@ -116,7 +121,7 @@ def projected_rectangle(
         low_x, high_x = min(low_x, low), max(high_x, high)
         low, high = tangent_slopes(y, z, radius)
         low_y, high_y = min(low_y, low), max(high_y, high)
-    if beside and end - start > 1:  # some of the hull may be where no ball is
+    if beside and end - start > 1:  # parts of the hull may project beyond all spheres
         low_x, high_x, low_y, high_y = -inf, inf, -inf, inf
     column, columns, all_across = cell_interval(low_x, high_x, grid.scale_x, grid.middle_x, grid.margin, grid.across)
     row, rows, all_down = cell_interval(low_y, high_y, grid.scale_y, grid.middle_y, grid.margin, grid.down)
@@ -124,8 +129,11 @@ def projected_rectangle(
 
 
 def tangent_slopes(x: float, z: float, radius: float) -> tuple[float, float]:
-    """Least and greatest slope x / z of a disc, some of it before z = 0: those of the tangents from the origin, which
-    are the way to its centre turned by the angle of sine radius / distance; infinite where they touch it behind."""
+    """Least and greatest slope x / z of a disc that lies at least partly before z = 0.
+
+    They are the slopes of the tangents from the origin: the direction of the centre, turned by the angle whose sine is
+    radius / distance. A tangent that touches the disc behind z = 0 has an infinite slope.
+    """
     squared = x * x + z * z - radius * radius
     if squared <= 0.0:
         return -inf, inf
@@ -140,8 +148,10 @@ def tangent_slopes(x: float, z: float, radius: float) -> tuple[float, float]:
 def cell_interval(
     low: float, high: float, scale: float, middle: float, margin: float, cells: int
 ) -> tuple[int, int, bool]:
-    """First cell and number of cells, of so many in a row, for the slopes from `low` to `high`; and whether those are
-    all of them."""
+    """First cell and number of cells, in a row of so many, that the slopes from `low` to `high` cover.
+
+    The last result is whether the whole interval, with its margin, lies in the row.
+    """
     begin = low * scale + middle - margin
     end = high * scale + middle + margin
     if not (begin < cells and end >= 0.0):
@@ -150,50 +160,49 @@ def cell_interval(
     return start, int(min(end, cells - 1.0)) + 1 - start, begin >= 0.0 and end < cells
 
 
-def bounding_cone(origin: Any, balls: Any, start: int, end: int, slack: float, seen: Any) -> None:
-    """How the convex hull of some balls, grown by `slack`, looks from a point, in five numbers.
+def bounding_cone(origin: Any, spheres: Any, start: int, end: int, slack: float, cone: Any) -> None:
+    """Write the bounding cone, as seen from a point, of the convex hull of some spheres, grown by `slack`.
 
-    A cone around it: the axis, which is the direction of its middle, and the cosine of the half-angle, or -2 where it
-    would take in half of all directions; and a distance that none of it falls below: how far all of it lies along the
-    axis.
+    Its five numbers are the axis, which points to the mean of the centres; the cosine of the half-angle, or -2 if the
+    cone would take in half of all directions or more; and a lower bound of the hull's distance, along the axis.
     """
     x = 0.0
     y = 0.0
     z = 0.0
     for i in range(start, end):
-        x += balls[i, 0] - origin[0]
-        y += balls[i, 1] - origin[1]
-        z += balls[i, 2] - origin[2]
+        x += spheres[i, 0] - origin[0]
+        y += spheres[i, 1] - origin[1]
+        z += spheres[i, 2] - origin[2]
     length = sqrt(x * x + y * y + z * z)
-    seen[3], seen[4] = -2.0, 0.0
+    cone[3], cone[4] = -2.0, 0.0
     if length == 0.0:
         return
     least, cosine, widest = inf, 1.0, 0.0
     for i in range(start, end):
-        px, py, pz = balls[i, 0] - origin[0], balls[i, 1] - origin[1], balls[i, 2] - origin[2]
-        radius = balls[i, 3] + slack
+        px, py, pz = spheres[i, 0] - origin[0], spheres[i, 1] - origin[1], spheres[i, 2] - origin[2]
+        radius = spheres[i, 3] + slack
         squared = px * px + py * py + pz * pz
         along = (px * x + py * y + pz * z) / length
         aside = sqrt(max(squared - along * along, 0.0))
         tangent = sqrt(max(squared - radius * radius, 0.0))
         least = min(least, along - radius)
         widest = max(widest, radius * radius / squared)
-        # Of the sum of two angles: from the axis to the centre, and from there to the rim.
+        # Cosine of the sum of two angles: from the axis to the centre, and from there to the rim.
         cosine = min(cosine, (along * tangent - aside * radius) / squared) if tangent > 0.0 else -2.0
-    seen[0], seen[1], seen[2] = x / length, y / length, z / length
+    cone[0], cone[1], cone[2] = x / length, y / length, z / length
     if cosine > 0.0:
-        seen[3] = cosine - SINE_MARGIN * sqrt(widest) - COSINE_MARGIN
-    seen[4] = max(least, 0.0)
+        cone[3] = cosine - SINE_MARGIN * sqrt(widest) - COSINE_MARGIN
+    cone[4] = max(least, 0.0)
 
 
 def fill_bins(rectangles: Any, order: Any, across: int, ends: Any, members: Any) -> None:
-    """Put shapes into the lists of their cells, the last of the order first; `ends` become the starts of the lists."""
+    """Write shapes into the lists of their cells, the last of `order` first; `ends` become the starts of the lists."""
     for i in range(order.shape[0] - 1, -1, -1):
-        at = order[i]
-        shape = rectangles[at, 0]
-        cell = rectangles[at, 1]
-        columns = rectangles[at, 2]
-        for line in range(cell, cell + rectangles[at, 3] * across, across):
-            for place in range(line, line + columns):
-                ends[place] -= 1
-                members[ends[place]] = shape
+        rectangle = order[i]
+        shape = rectangles[rectangle, 0]
+        cell = rectangles[rectangle, 1]
+        columns = rectangles[rectangle, 2]
+        for line in range(cell, cell + rectangles[rectangle, 3] * across, across):
+            for covered in range(line, line + columns):
+                ends[covered] -= 1
+                members[ends[covered]] = shape

@@ -1,9 +1,11 @@
-"""Directions from a lamp in cells, each of which has a list of the shapes that are met in it.
+"""Lookup in light buffers: which cell a direction from a light source falls into (Haines and Greenberg 1986).
 
-`around` (11,) tells how they are sorted for a lamp. One that looks at all shapes from outside has a square of cells
-ahead of it: the unit vectors across, down and forward, and cells for a slope of 1; all other directions share one cell
-more. Where there are 0 cells for a slope, a cube is around it. The last number is the square of a distance: the list
-of a cell holds for all unit vectors so close to one that goes through it.
+The cells of a light cover the faces of a cube around it. A light that sees all shapes from outside has a frustum
+instead: a square grid of cells towards the shapes, and one more cell for all other directions. Each cell has a list of
+the shapes that can be hit in it.
+
+A `light_buffer` (11,) holds the frustum's unit vectors across, down and forward, its cells for each unit of slope (0: a
+cube), and the square of a distance: a cell's list holds for all unit vectors so close to one that falls into the cell.
 """
 
 from __future__ import annotations
@@ -14,39 +16,39 @@ from minirt.lanes import Vec, dot, fabs, floor, lane, minimum, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 
-SCALE, TOLERANCE = 9, 10  # in `around`
-FRUSTUM_FACTOR = 2  # times the cells of a cube along an edge has the square ahead
+SCALE, TOLERANCE = 9, 10  # indices of the last two numbers of a light buffer
+FRUSTUM_FACTOR = 2  # a frustum's grid has so many times the cells along an edge of a cube
 
 
-def is_close(remembered: Any, around: Any, direction: Vec) -> Mask:
-    """Whether a direction is as close to the remembered one as the lists of cells allow."""
-    apart = direction - Vec(remembered[0], remembered[1], remembered[2])
-    return dot(apart, apart) <= around[TOLERANCE]
+def is_close(cached: Any, light_buffer: Any, direction: Vec) -> Mask:
+    """Whether directions are so close to the cached one that its cell's list holds for them."""
+    difference = direction - Vec(cached[0], cached[1], cached[2])
+    return dot(difference, difference) <= light_buffer[TOLERANCE]
 
 
-def remember_cell(remembered: Any, around: Any, grid: int, direction: Vec, ray: int) -> None:
-    """Remember the direction of a ray of the packet towards the lamp, and the cell that it comes through."""
+def remember_cell(cached: Any, light_buffer: Any, cells: int, direction: Vec, ray: int) -> None:
+    """Cache one ray's direction towards the light, and the cell that the ray arrives through."""
     x, y, z = lane(direction.x, ray), lane(direction.y, ray), lane(direction.z, ray)
-    remembered[0] = x
-    remembered[1] = y
-    remembered[2] = z
-    remembered[3] = light_buffer_cell(around, grid, Vec(-x, -y, -z))
+    cached[0] = x
+    cached[1] = y
+    cached[2] = z
+    cached[3] = light_buffer_cell(light_buffer, cells, Vec(-x, -y, -z))
 
 
-def light_buffer_cell(around: Any, grid: int, direction: Vec) -> Number:
-    """The cell around a lamp that a direction from it goes through."""
+def light_buffer_cell(light_buffer: Any, cells: int, direction: Vec) -> Number:
+    """Return the number of the cell that a direction from the light falls into."""
     x, y, z = direction.x, direction.y, direction.z
-    edge = FRUSTUM_FACTOR * grid
-    per_slope = around[SCALE] / (around[6] * x + around[7] * y + around[8] * z)
-    column = (around[0] * x + around[1] * y + around[2] * z) * per_slope + 0.5 * edge
-    row = (around[3] * x + around[4] * y + around[5] * z) * per_slope + 0.5 * edge
-    ahead = (per_slope > 0.0) & (minimum(column, row) >= 0.0) & (column < edge) & (row < edge)
-    found = where(ahead, floor(row) * edge + floor(column), 1.0 * edge * edge)
-    return where(around[SCALE] > 0.0, found, cube_cell(direction, grid))
+    edge = FRUSTUM_FACTOR * cells
+    per_slope = light_buffer[SCALE] / (light_buffer[6] * x + light_buffer[7] * y + light_buffer[8] * z)
+    column = (light_buffer[0] * x + light_buffer[1] * y + light_buffer[2] * z) * per_slope + 0.5 * edge
+    row = (light_buffer[3] * x + light_buffer[4] * y + light_buffer[5] * z) * per_slope + 0.5 * edge
+    inside = (per_slope > 0.0) & (minimum(column, row) >= 0.0) & (column < edge) & (row < edge)
+    frustum_cell = where(inside, floor(row) * edge + floor(column), 1.0 * edge * edge)
+    return where(light_buffer[SCALE] > 0.0, frustum_cell, cube_cell(direction, cells))
 
 
-def cube_cell(direction: Vec, grid: int) -> Number:
-    """The cell of a cube that a direction from its middle goes through: (face * grid + row) * grid + column.
+def cube_cell(direction: Vec, cells: int) -> Number:
+    """Return the cell of a cube that a direction from its centre falls into: (face * cells + row) * cells + column.
 
     Faces 0 to 5 are +x, -x, +y, -y, +z, -z; on each, columns go along the next axis in the cycle x, y, z, rows along
     the one after it, both from -1 to 1.
@@ -58,8 +60,8 @@ def cube_cell(direction: Vec, grid: int) -> Number:
     across = where(along_x, direction.y, where(along_y, direction.z, direction.x))
     down = where(along_x, direction.z, where(along_y, direction.x, direction.y))
     face = where(along_x, 0.0, where(along_y, 2.0, 4.0)) + where(major > 0.0, 0.0, 1.0)
-    half = 0.5 * grid
+    half = 0.5 * cells
     scale = half / fabs(major)
-    column = minimum(floor(across * scale + half), grid - 1.0)
-    row = minimum(floor(down * scale + half), grid - 1.0)
-    return (face * grid + row) * grid + column
+    column = minimum(floor(across * scale + half), cells - 1.0)
+    row = minimum(floor(down * scale + half), cells - 1.0)
+    return (face * cells + row) * cells + column

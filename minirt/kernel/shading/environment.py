@@ -1,4 +1,4 @@
-"""What rays see that hit nothing: a colour, or a picture around the scene."""
+"""Background of a scene: the colour or the environment map seen by rays that hit nothing."""
 
 from __future__ import annotations
 
@@ -14,37 +14,37 @@ from minirt.lanes.vec import Number
 
 
 class Environment(NamedTuple):
-    """A picture of all directions, equirectangular: +z is its middle, +y its upper edge, -x to the right of +z."""
+    """An equirectangular environment map: +z is in its middle, +y along its upper edge, -x to the right of +z."""
 
-    texels: Any  # as in `minirt.kernel.shading.texturing`
-    pictures: Any  # its only row
+    texels: Any  # its pixels, as in `minirt.kernel.shading.texturing.SurfaceMaps`
+    pictures: Any  # (1, 4) its layout, likewise
 
 
-def background_light(scene: SceneArrays, hit: Mask, light: Vec, direction: Vec) -> Vec:
-    """The light of rays that hit, and of the sky for those that do not."""
+def background_light(scene: SceneArrays, hit: Mask, radiance: Vec, direction: Vec) -> Vec:
+    """Return `radiance` for rays that hit a shape, and the background's radiance for all other rays."""
     if scene.background is not None:
-        light = where(hit, light, Vec(scene.background[0], scene.background[1], scene.background[2]))
+        radiance = where(hit, radiance, Vec(scene.background[0], scene.background[1], scene.background[2]))
     if scene.environment is not None and any(~hit):
-        light = where(hit, light, environment_lookup(scene.environment, direction))
-    return light
+        radiance = where(hit, radiance, environment_lookup(scene.environment, direction))
+    return radiance
 
 
 def weighted_background(scene: SceneArrays, weight: Number, direction: Vec) -> Vec:
-    """The light of the sky in a direction, times a weight."""
-    nothing = splat(0.0, weight)
-    dark = Vec(nothing, nothing, nothing)
-    return where(weight > 0.0, weight * background_light(scene, weight < 0.0, dark, direction), dark)
+    """Return the background's radiance times the weight of each ray; black for rays of weight 0."""
+    zero = splat(0.0, weight)
+    black = Vec(zero, zero, zero)
+    return where(weight > 0.0, weight * background_light(scene, weight < 0.0, black, direction), black)
 
 
-def environment_lookup(dome: Environment, direction: Vec) -> Vec:
-    """The light of a picture around the scene."""
+def environment_lookup(environment: Environment, direction: Vec) -> Vec:
+    """Look up the radiance of an environment map in a direction."""
     u, v = equirectangular(direction)
-    edge = 0.5 / dome.pictures[0, 2]  # nothing is above the upper row of pixels
-    return texture_lookup(dome.texels, dome.pictures, 0, u, minimum(maximum(v, edge), 1.0 - edge))
+    edge = 0.5 / environment.pictures[0, 2]  # no blending across the poles: nothing is above the upper row of pixels
+    return texture_lookup(environment.texels, environment.pictures, 0, u, minimum(maximum(v, edge), 1.0 - edge))
 
 
 def equirectangular(direction: Vec) -> tuple[Number, Number]:
-    """Where a direction is in such a picture: from 0 to 1 from left to right and from below to above."""
+    """Equirectangular projection of a direction: u from 0 at the left to 1 at the right, v from 0 below to 1 above."""
     u = 0.5 + arctan2(-direction.x, direction.z) * (0.5 / pi)
     v = 0.5 + arctan2(direction.y, sqrt(direction.x * direction.x + direction.z * direction.z)) * (1.0 / pi)
     return u, v

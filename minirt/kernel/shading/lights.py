@@ -1,4 +1,4 @@
-"""How light comes from a lamp: from a point, in a cone, or parallel."""
+"""Light sources: point, spot and parallel lights, and their fading with distance."""
 
 from __future__ import annotations
 
@@ -9,34 +9,35 @@ from minirt.lanes import Vec, dot, inverse_root, maximum, minimum, splat, where
 from minirt.lanes.vec import Number
 
 
-def incident_light(beams: Any, lamp: int, place: Vec, start: Vec) -> tuple[Vec, Number, Number]:
-    """Seen from a point, the direction towards a lamp at `place`, its distance and how strong its light is.
+def incident_light(spots: Any, light: int, position: Vec, point: Vec) -> tuple[Vec, Number, Number]:
+    """Return the direction from a point towards a light source, the source's distance, and its relative strength there.
 
-    `beams` (m, 7) has for each lamp the direction in which it shines, the cosine of the angle to that at which a spot
-    ends, one over by how much the cosine is greater where the spot has its full light, one over the distance at which
-    the light is gone (0: never), and 1 for parallel light; None where all shine everywhere, as strong at any distance.
+    `spots` (m, 7) has for each light: the direction in which it shines; the cosine of the angle from there to the edge
+    of a spot's cone; one over the further increase of the cosine up to where the spot has its full strength; one over
+    the distance at which the light has faded to nothing (0: never); and 1 for parallel light. None: all lights shine
+    in all directions and do not fade.
     """
-    way = place - start
-    squared = dot(way, way)
+    offset = position - point
+    squared = dot(offset, offset)
     per_length = inverse_root(squared)
-    towards = way * per_length
+    to_light = offset * per_length
     distance = squared * per_length
-    if beams is None:
-        return towards, distance, splat(1.0, distance)
-    axis = Vec(beams[lamp, 0], beams[lamp, 1], beams[lamp, 2])
-    parallel = beams[lamp, 6] > 0.5
-    towards = where(parallel, -axis, towards)
+    if spots is None:
+        return to_light, distance, splat(1.0, distance)
+    axis = Vec(spots[light, 0], spots[light, 1], spots[light, 2])
+    parallel = spots[light, 6] > 0.5
+    to_light = where(parallel, -axis, to_light)
     distance = where(parallel, inf, distance)
-    inner = clamp_to_unit((-dot(towards, axis) - beams[lamp, 3]) * beams[lamp, 4])
-    strength = where(parallel, 1.0, smoothstep(inner) * maximum(1.0 - distance * beams[lamp, 5], 0.0))
-    return towards, distance, strength
+    rim = clamp_to_unit((-dot(to_light, axis) - spots[light, 3]) * spots[light, 4])
+    strength = where(parallel, 1.0, smoothstep(rim) * maximum(1.0 - distance * spots[light, 5], 0.0))
+    return to_light, distance, strength
 
 
 def clamp_to_unit(x: Number) -> Number:
-    """The nearest number in [0, 1]."""
+    """Clamp a number to [0, 1]."""
     return minimum(maximum(x, 0.0), 1.0)
 
 
 def smoothstep(x: Number) -> Number:
-    """From 0 at 0 to 1 at 1 without a corner: Hermite's cubic."""
+    """Hermite's cubic: from 0 at 0 to 1 at 1, with slope 0 at both ends."""
     return x * x * (3.0 - 2.0 * x)

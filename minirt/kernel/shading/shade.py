@@ -1,4 +1,4 @@
-"""What light leaves a surface towards the eye."""
+"""Direct lighting of a surface: ambient light and, from each light source, Lambert's law, highlights and shadows."""
 
 from __future__ import annotations
 
@@ -17,46 +17,60 @@ from minirt.lanes.vec import Number
 
 
 def clearance(point: Vec, extent: Number) -> Number:
-    """How far from a surface a ray starts so that it is outside of it, and of surfaces that coincide with it."""
+    """Return the offset from a surface at which a ray starts: clear of it, and of surfaces that coincide with it."""
     return ROUNDING * unit_roundoff(extent) * (largest(point) + extent)
 
 
 def direct_light(
-    scene: SceneArrays, memory: Any, found: Surface, normal: Vec, bent: Vec, direction: Vec, extent: Number, hit: Mask
+    scene: SceneArrays,
+    memory: Any,
+    surface: Surface,
+    normal: Vec,
+    shading_normal: Vec,
+    direction: Vec,
+    extent: Number,
+    hit: Mask,
 ) -> tuple[Vec, Vec]:
-    """The light that falls onto a surface from the side of its normal: ambient light and, by Lambert's cosine law, the
-    light of every lamp that no shape hides; and of that what is a highlight along `direction`. It is lit as if its
-    normal were `bent`. Rays that do not hit bring none."""
+    """Compute the light that falls onto surfaces, and the highlights that they reflect against the ray's direction.
+
+    The light is ambient light and, by Lambert's cosine law, that of every light source that is not occluded. It reaches
+    the side of `normal`; cosines are those of `shading_normal`. Rays that do not hit get no light.
+    """
     u = unit_roundoff(extent)
-    rounding = clearance(found.point, extent)
-    start = found.point + rounding * normal
+    rounding = clearance(surface.point, extent)
+    start = surface.point + rounding * normal
     total = where(hit, Vec(scene.ambient[0], scene.ambient[1], scene.ambient[2]), Vec(0.0, 0.0, 0.0))
-    nothing = splat(0.0, extent)
-    shine = Vec(nothing, nothing, nothing)
+    zero = splat(0.0, extent)
+    highlight = Vec(zero, zero, zero)
     for i in range(scene.lights.shape[0]):
-        lamp = Vec(scene.lights[i, 0], scene.lights[i, 1], scene.lights[i, 2])
-        light = Vec(scene.lights[i, 3], scene.lights[i, 4], scene.lights[i, 5])
-        towards, distance, strength = incident_light(scene.spots, i, lamp, start)
-        cosine = dot(bent, towards) * strength
+        position = Vec(scene.lights[i, 0], scene.lights[i, 1], scene.lights[i, 2])
+        intensity = Vec(scene.lights[i, 3], scene.lights[i, 4], scene.lights[i, 5])
+        to_light, distance, strength = incident_light(scene.spots, i, position, start)
+        cosine = dot(shading_normal, to_light) * strength
         lit = hit & (cosine > 0.0)
         if any(lit):
-            reach = distance - 4.0 * (rounding + ROUNDING * u * largest(lamp))  # a surface hides no lamp on it
-            lit = trace_shadow_rays(scene, memory, i, start, towards, reach, lit)
-            total = total + where(lit, cosine, 0.0) * light
+            # A surface occludes no light source that lies on it.
+            reach = distance - 4.0 * (rounding + ROUNDING * u * largest(position))
+            lit = trace_shadow_rays(scene, memory, i, start, to_light, reach, lit)
+            total = total + where(lit, cosine, 0.0) * intensity
             if scene.specular is not None:
-                shine = shine + specular(found.specular, bent, towards, direction, lit) * strength * light
-    return total, shine
+                share = specular(surface.specular, shading_normal, to_light, direction, lit)
+                highlight = highlight + share * strength * intensity
+    return total, highlight
 
 
 def trace_shadow_rays(
-    scene: SceneArrays, memory: Any, lamp: int, start: Vec, towards: Vec, reach: Number, lit: Mask
+    scene: SceneArrays, memory: Any, light: int, start: Vec, to_light: Vec, reach: Number, lit: Mask
 ) -> Mask:
-    """`unoccluded`; the rays to a lamp whose light is parallel share no end, and walk the tree where there is one."""
-    if scene.spots is None or scene.bvh is None or scene.spots[lamp, 6] < 0.5:
-        return unoccluded(scene, memory, lamp, start, towards, reach, lit)
-    return queries.unoccluded(scene.bvh, start, towards, reach, lit)
+    """Return the `lit` rays to a light source that nothing occludes nearer than `reach`.
+
+    Rays to a parallel light share no point: they traverse the BVH, if there is one, in place of a light buffer.
+    """
+    if scene.spots is None or scene.bvh is None or scene.spots[light, 6] < 0.5:
+        return unoccluded(scene, memory, light, start, to_light, reach, lit)
+    return queries.unoccluded(scene.bvh, start, to_light, reach, lit)
 
 
 def tint(light: Vec, colour: Vec) -> Vec:
-    """Light of one colour on a surface of another."""
+    """Multiply light by the colour of a surface, channel by channel."""
     return Vec(light.x * colour.x, light.y * colour.y, light.z * colour.z)

@@ -1,4 +1,4 @@
-"""What is where a ray hits: the surface and how it looks."""
+"""Surface at each hit: point, normals, and material with textures and maps applied."""
 
 from __future__ import annotations
 
@@ -14,78 +14,77 @@ from minirt.lanes.vec import Number
 
 
 class Surface(NamedTuple):
-    """A place of a shape for each ray."""
+    """The surface that each ray hits."""
 
-    point: Vec  # on the surface
-    normal: Vec  # of the shape, outward where there is an outside
-    shading_normal: Vec  # the normal by which it is lit
-    colour: Vec
-    specular: Vec  # its row of `Traced.gloss`
-    reflective: Vec  # and of `Traced.bounces`
+    point: Vec  # the hit, put onto the surface
+    normal: Vec  # geometric normal, outward where the shape has an outside
+    shading_normal: Vec  # the normal for lighting: smooth, bump mapped or normal mapped
+    colour: Vec  # red, green, blue in [0, 1]
+    specular: Vec  # the shape's row of `SceneArrays.specular`
+    reflective: Vec  # the shape's row of `SceneArrays.reflective`
 
 
 def surfaces(scene: SceneArrays, memory: Any, owner: Number, point: Vec, hit: Mask) -> Surface:
-    """The surfaces that rays hit within rounding of a point.
+    """Compute the surfaces that rays hit, from the shapes that own the hits and from the points within rounding.
 
-    The rays of a packet hit few different shapes, mostly one. The first that is asked is the last one of the packet
-    before, which `memory` keeps, and what it answers is taken for all rays; others only correct it for theirs.
+    The rays of a packet hit few different shapes, mostly one. The shape that the packet before hit last, which `memory`
+    caches behind the rows of the lights, is evaluated first, for all rays; further shapes only correct their own rays.
     """
     index = int(memory[scene.lights.shape[0], 0])
-    left = hit & (owner != index)
-    if rarely(left) and not any(hit & (owner == index)):
+    remaining = hit & (owner != index)
+    if rarely(remaining) and not any(hit & (owner == index)):
         index = int(lane(owner, first(hit)))
-        left = hit & (owner != index)
-    found = surface_at(scene, index, point)
-    while rarely(left):
-        index = int(lane(owner, first(left)))
-        mine = left & (owner == index)
+        remaining = hit & (owner != index)
+    result = surface_at(scene, index, point)
+    while rarely(remaining):
+        index = int(lane(owner, first(remaining)))
+        owned = remaining & (owner == index)
         other = surface_at(scene, index, point)
-        found = Surface(
-            where(mine, other.point, found.point),
-            where(mine, other.normal, found.normal),
-            where(mine, other.shading_normal, found.shading_normal),
-            where(mine, other.colour, found.colour),
-            where(mine, other.specular, found.specular),
-            where(mine, other.reflective, found.reflective),
+        result = Surface(
+            where(owned, other.point, result.point),
+            where(owned, other.normal, result.normal),
+            where(owned, other.shading_normal, result.shading_normal),
+            where(owned, other.colour, result.colour),
+            where(owned, other.specular, result.specular),
+            where(owned, other.reflective, result.reflective),
         )
-        left = left & ~mine
+        remaining = remaining & ~owned
     memory[scene.lights.shape[0], 0] = index
-    return found
+    return result
 
 
 def surface_at(scene: SceneArrays, index: int, point: Vec) -> Surface:
-    """The surface of one shape, for all rays."""
-    place = scene.slots[index]
-    on, normal, bent, _ = for_each_kind(
-        surface_of_kind, scene.groups, (point, point, point, 0), (place[0], place[1], point)
+    """Compute the surface of one shape for all rays of the packet."""
+    slot = scene.slots[index]
+    on, normal, shading_normal, _ = for_each_kind(
+        surface_of_kind, scene.groups, (point, point, point, 0), (slot[0], slot[1], point)
     )
-    nothing = splat(0.0, point.x)
-    gloss = bounces = Vec(nothing, nothing, nothing)
+    zero = splat(0.0, point.x)
+    specular = reflective = Vec(zero, zero, zero)
     colour = row_of(scene.colours_and_extents, index, point.x)
     if scene.surface_maps is not None:
-        bent, colour = apply_maps(scene.surface_maps, scene.groups, index, place, on, bent, colour)
+        shading_normal, colour = apply_maps(scene.surface_maps, scene.groups, index, slot, on, shading_normal, colour)
     if scene.specular is not None:
-        gloss = row_of(scene.specular, index, point.x)
+        specular = row_of(scene.specular, index, point.x)
     if scene.reflective is not None:
-        bounces = row_of(scene.reflective, index, point.x)
-    return Surface(on, normal, bent, colour, gloss, bounces)
+        reflective = row_of(scene.reflective, index, point.x)
+    return Surface(on, normal, shading_normal, colour, specular, reflective)
 
 
 def surface_of_kind(
-    group: Group, state: tuple[Vec, Vec, Vec, int], given: tuple[int, int, Vec]
+    group: Group, state: tuple[Vec, Vec, Vec, int], arguments: tuple[int, int, Vec]
 ) -> tuple[Vec, Vec, Vec, int]:
-    """`surface` and `shading` of row i of this kind, if it is the one that is wanted; the last of the state counts the
-    kinds."""
-    on, normal, bent, number = state
-    wanted, i, point = given
-    if number == wanted:
+    """Compute point and normals of the shape in row i if it is of this kind; the last of the state counts the kinds."""
+    on, normal, shading_normal, number = state
+    group_number, i, point = arguments
+    if number == group_number:
         shape = read(group.rows, i)
         on, out = surface(shape, point)
         normal = Vec(splat(out.x, point.x), splat(out.y, point.x), splat(out.z, point.x))
-        bent = shading(shape, on, normal)
-    return on, normal, bent, number + 1
+        shading_normal = shading(shape, on, normal)
+    return on, normal, shading_normal, number + 1
 
 
 def row_of(table: Any, index: int, like: Number) -> Vec:
-    """The first three numbers of a row, for all rays."""
+    """Return the first three numbers of a row of a table, the same for all rays."""
     return Vec(splat(table[index, 0], like), splat(table[index, 1], like), splat(table[index, 2], like))

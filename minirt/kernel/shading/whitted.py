@@ -1,9 +1,9 @@
-"""The light that a ray brings back, by way of mirrors and glass too: Whitted, An Improved Illumination Model for Shaded
-Display, 1980.
+"""Recursive ray tracing with reflection and refraction (Whitted, An Improved Illumination Model for Shaded Display,
+1980).
 
-A surface that mirrors the share k of the light and lets the share g through sends on a ray for each, and shows
-1 - k - g of its own light. `bounces` (n, 3) has k, g and the index of refraction for each shape. Glass throws a shadow
-as if it were opaque: light that it would gather or tint is left out.
+A surface with reflectance k and transmittance g sends on a reflected and a refracted ray, and contributes 1 - k - g of
+its own shading. `SceneArrays.reflective` (n, 3) has k, g and the index of refraction of each shape. Shadows of glass
+are those of an opaque shape: caustics and tinted shadows are left out.
 """
 
 from __future__ import annotations
@@ -24,120 +24,121 @@ from minirt.lanes import Vec, any, dot, lane, load, maximum, rarely, splat, sqrt
 from minirt.lanes.operations import BYTES, Mask
 from minirt.lanes.vec import Number
 
-MAX_DEPTH = 32  # bounces, at most
-MIN_WEIGHT = 2.0**-10  # share of the light of a picture below which a ray is not followed
-ORIGIN, DIRECTION, WEIGHT, LEVEL = 0, 3, 6, 7  # of a ray that is to be followed, in rows of lanes
-RAY_ROWS = 8
+MAX_DEPTH = 32  # the largest depth that a scene may ask for
+MIN_WEIGHT = 2.0**-10  # rays that would add less than this share of their light to a pixel are not traced
+ORIGIN, DIRECTION, WEIGHT, LEVEL = 0, 3, 6, 7  # where a packet of waiting rays has its parts, in rows of lanes
+RAY_ROWS = 8  # rows of lanes of a packet of waiting rays
 STACK_SIZE = (MAX_DEPTH + 2) * RAY_ROWS * BYTES // 8
 
 
 def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
-    """The light that arrives at `origin` against `direction`."""
+    """Trace primary rays of a tile, and return the radiance that arrives at `origin` along each."""
     t, owner, extent = closest_hit(scene, tile, origin, direction)
     if scene.reflective is not None:
         return whitted(scene, memory, t, owner, extent, origin + 0.0 * direction, direction)
     hit = t < inf
-    nothing = splat(0.0, t)
-    light = Vec(nothing, nothing, nothing)
+    zero = splat(0.0, t)
+    radiance = Vec(zero, zero, zero)
     if any(hit):
-        light, _ = shade(scene, memory, t, owner, extent, origin, direction, hit)
-    return background_light(scene, hit, light, direction)
+        radiance, _ = shade(scene, memory, t, owner, extent, origin, direction, hit)
+    return background_light(scene, hit, radiance, direction)
 
 
 def shade(
     scene: SceneArrays, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec, hit: Mask
 ) -> tuple[Vec, Surface]:
-    """The light of their own that surfaces send back along rays that hit them, and the surfaces."""
-    found = surfaces(scene, memory, owner, origin + t * direction, hit)
-    normal, bent = found.normal, found.shading_normal
-    away = hit & (dot(normal, direction) > 0.0)
-    if rarely(away):  # the side that is seen counts
-        normal = where(away, -normal, normal)
-        bent = where(away, -bent, bent)
-    total, shine = direct_light(scene, memory, found, normal, bent, direction, extent, hit)
-    own = tint(total, found.colour)
+    """Shade the hits of rays without following reflections; returns their radiance and their surfaces."""
+    surface = surfaces(scene, memory, owner, origin + t * direction, hit)
+    normal, shading_normal = surface.normal, surface.shading_normal
+    back_side = hit & (dot(normal, direction) > 0.0)
+    if rarely(back_side):  # both sides of a surface are shaded alike
+        normal = where(back_side, -normal, normal)
+        shading_normal = where(back_side, -shading_normal, shading_normal)
+    light, highlight = direct_light(scene, memory, surface, normal, shading_normal, direction, extent, hit)
+    radiance = tint(light, surface.colour)
     if scene.reflective is not None:
-        own = own * maximum(1.0 - found.reflective.x - found.reflective.y, 0.0)
+        radiance = radiance * maximum(1.0 - surface.reflective.x - surface.reflective.y, 0.0)
     if scene.specular is not None:
-        own = own + shine
-    return own, found
+        radiance = radiance + highlight
+    return radiance, surface
 
 
 def whitted(
     scene: SceneArrays, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec
 ) -> Vec:
-    """The light along rays whose hits are known, and along those that they send on, depth first."""
-    paths = ray_stack()
+    """Return the radiance along rays with known hits, following reflected and refracted rays depth first."""
+    stack = ray_stack()
     weight = splat(1.0, t)
     level = 0
-    waiting = 0
-    light = Vec(splat(0.0, t), splat(0.0, t), splat(0.0, t))
+    waiting = 0  # packets on the stack
+    radiance = Vec(splat(0.0, t), splat(0.0, t), splat(0.0, t))
     while True:
-        asked = weight > 0.0
-        hit = asked & (t < inf)
+        active = weight > 0.0
+        hit = active & (t < inf)
         if any(hit):
-            own, found = shade(scene, memory, t, owner, extent, origin, direction, hit)
-            point, normal, bounces = found.point, found.normal, found.reflective
-            light = where(hit, light + weight * own, light)  # rays that do not hit may have no number here
+            own, surface = shade(scene, memory, t, owner, extent, origin, direction, hit)
+            point, normal, reflective = surface.point, surface.normal, surface.reflective
+            radiance = where(hit, radiance + weight * own, radiance)  # `own` may be NaN for rays that do not hit
             if level < scene.depth:
                 rounding = clearance(point, extent)
                 against = -dot(normal, direction)
                 facing = where(against < 0.0, -normal, normal)
-                bent = where(against < 0.0, -found.shading_normal, found.shading_normal)
-                mirroring = reflecting_normal(bent, facing, direction)
-                cosine = -dot(mirroring, direction)
-                # Snell's law: the ratio of the indices in front of the surface and behind it.
-                ratio = where(against < 0.0, bounces.z, 1.0 / bounces.z)
+                shading_normal = where(against < 0.0, -surface.shading_normal, surface.shading_normal)
+                mirror_normal = reflecting_normal(shading_normal, facing, direction)
+                cosine = -dot(mirror_normal, direction)
+                # Snell's law, with the ratio of the indices of refraction in front of the surface and behind it.
+                ratio = where(against < 0.0, reflective.z, 1.0 / reflective.z)
                 squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine)
-                total = squared < 0.0  # reflection
-                through = where(hit & ~total, weight * bounces.y, 0.0)
-                back = where(hit, weight * bounces.x + where(total, weight * bounces.y, 0.0), 0.0)
-                if any(back > MIN_WEIGHT):
-                    way = unit(direction + 2.0 * cosine * mirroring)
-                    waiting = push_rays(
-                        paths, waiting, point + rounding * facing, way, where(back > MIN_WEIGHT, back, 0.0), level
-                    )
-                if any(through > MIN_WEIGHT):
-                    way = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * mirroring)
-                    kept = where(through > MIN_WEIGHT, through, 0.0)
-                    waiting = push_rays(paths, waiting, point - rounding * facing, way, kept, level)
-        light = light + weighted_background(scene, where(asked & ~hit, weight, 0.0), direction)
+                total = squared < 0.0  # total internal reflection
+                refracted = where(hit & ~total, weight * reflective.y, 0.0)
+                reflected = where(hit, weight * reflective.x + where(total, weight * reflective.y, 0.0), 0.0)
+                if any(reflected > MIN_WEIGHT):
+                    onward = unit(direction + 2.0 * cosine * mirror_normal)
+                    kept = where(reflected > MIN_WEIGHT, reflected, 0.0)
+                    waiting = push_rays(stack, waiting, point + rounding * facing, onward, kept, level)
+                if any(refracted > MIN_WEIGHT):
+                    onward = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * mirror_normal)
+                    kept = where(refracted > MIN_WEIGHT, refracted, 0.0)
+                    waiting = push_rays(stack, waiting, point - rounding * facing, onward, kept, level)
+        radiance = radiance + weighted_background(scene, where(active & ~hit, weight, 0.0), direction)
         if waiting == 0:
             break
         waiting -= 1
         at = waiting * RAY_ROWS * width(t)
-        origin, direction = load_vec(paths, at, t), load_vec(paths, at + DIRECTION * width(t), t)
-        weight = load(paths, at + WEIGHT * width(t))
-        level = int(lane(load(paths, at + LEVEL * width(t)), 0))
+        origin, direction = load_vec(stack, at, t), load_vec(stack, at + DIRECTION * width(t), t)
+        weight = load(stack, at + WEIGHT * width(t))
+        level = int(lane(load(stack, at + LEVEL * width(t)), 0))
         t, owner, extent = queries.closest_hit(scene.bvh, origin, direction, weight > 0.0)
-    return light
+    return radiance
 
 
-def reflecting_normal(bent: Vec, facing: Vec, direction: Vec) -> Vec:
-    """The normal by which a surface mirrors and refracts: that by which it is lit, unless it is turned away from the
-    ray or would throw it below the surface."""
-    cosine = -dot(bent, direction)
-    risen = dot(direction, facing) + 2.0 * cosine * dot(bent, facing)
-    return where((cosine > 0.0) & (risen > 0.0), bent, facing)
+def reflecting_normal(shading_normal: Vec, facing: Vec, direction: Vec) -> Vec:
+    """Return the normal for reflection and refraction: the shading normal, if that reflects the ray off the surface.
+
+    Otherwise it is the geometric normal on the ray's side, `facing`.
+    """
+    cosine = -dot(shading_normal, direction)
+    height = dot(direction, facing) + 2.0 * cosine * dot(shading_normal, facing)
+    return where((cosine > 0.0) & (height > 0.0), shading_normal, facing)
 
 
 def ray_stack() -> Any:
-    """Room for the rays that wait; compiled, it is a thread's own."""
+    """Allocate the stack of rays still to trace; compiled, it lies on the stack of the thread."""
     return np.zeros(STACK_SIZE)
 
 
-def push_rays(paths: Any, waiting: int, origin: Vec, direction: Vec, weight: Number, level: int) -> int:
-    """Put rays to those that wait, and count them."""
+def push_rays(stack: Any, waiting: int, origin: Vec, direction: Vec, weight: Number, level: int) -> int:
+    """Push a packet of rays, one level deeper, onto the stack, and return the new number of packets on it."""
     count = width(weight)
     at = waiting * RAY_ROWS * count
-    put_vec(paths, at, origin)
-    put_vec(paths, at + DIRECTION * count, direction)
-    put(paths, at + WEIGHT * count, weight)
-    put(paths, at + LEVEL * count, splat(level + 1.0, weight))
+    put_vec(stack, at, origin)
+    put_vec(stack, at + DIRECTION * count, direction)
+    put(stack, at + WEIGHT * count, weight)
+    put(stack, at + LEVEL * count, splat(level + 1.0, weight))
     return waiting + 1
 
 
-def load_vec(paths: Any, at: int, like: Number) -> Vec:
-    """The vectors of rays that waited."""
+def load_vec(stack: Any, at: int, like: Number) -> Vec:
+    """Load the vectors of a packet of rays from index `at` of the stack."""
     count = width(like)
-    return Vec(load(paths, at), load(paths, at + count), load(paths, at + 2 * count))
+    return Vec(load(stack, at), load(stack, at + count), load(stack, at + 2 * count))

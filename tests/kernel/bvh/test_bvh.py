@@ -16,7 +16,7 @@ from minirt.shapes import Shape
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from tests.kernel.bvh.trees import Plain, some, trace, tree, without_boxes
+from tests.kernel.bvh.trees import Interpreted, brute_force, build_tree, random_shapes, trace
 from tests.shapes.regimes import Array, unit, ways
 
 GREY = (128, 128, 128)
@@ -61,15 +61,15 @@ def checked(scene: Tree, shapes: list[Shape]) -> int:
 
 
 @pytest.mark.parametrize("count", [1, 2, WIDTH, WIDTH + 1, 100, 1000])
-@pytest.mark.parametrize("kernel", [Plain, jit_bvh], ids=["interpreted", "compiled"])
+@pytest.mark.parametrize("kernel", [Interpreted, jit_bvh], ids=["interpreted", "compiled"])
 def test_every_shape_is_in_the_tree_once_and_every_box_holds_what_is_below_it(count: int, kernel: Any) -> None:
-    shapes = some(np.random.default_rng(count), count)
-    checked(tree(shapes, kernel), shapes)
+    shapes = random_shapes(np.random.default_rng(count), count)
+    checked(build_tree(shapes, kernel), shapes)
 
 
 def test_shapes_without_end_are_in_no_box() -> None:
     shapes: list[Shape] = [Plane((0, i, 0), (0, 1, 0), GREY) for i in range(40)]
-    assert checked(tree(shapes), shapes) == 1
+    assert checked(build_tree(shapes), shapes) == 1
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_shapes_without_end_are_in_no_box() -> None:
     ids=["equal", "nested", "halving", "flat", "two kinds in one place"],
 )
 def test_bad_shapes_to_sort(shapes: list[Shape]) -> None:
-    assert checked(tree(shapes), shapes) <= LEVELS + WIDTH
+    assert checked(build_tree(shapes), shapes) <= LEVELS + WIDTH
 
 
 def test_a_ray_has_room_for_all_that_it_meets() -> None:
@@ -105,7 +105,7 @@ def test_a_ray_has_room_for_all_that_it_meets() -> None:
 def test_few_boxes_are_met() -> None:
     # 27,000 balls on a grid: a ray passes some 30 of them, in nodes of 16.
     shapes: list[Shape] = [ball(*place, 0.1) for place in np.ndindex(30, 30, 30)]
-    scene = tree(shapes)
+    scene = build_tree(shapes)
     assert 0 < len(visited(scene, (-1, 14.3, 13.7), unit(np.array([1, 0.3, 0.2])))) < 60
     assert len(scene.nodes) // NODE < 27_000 / 16
 
@@ -113,7 +113,7 @@ def test_few_boxes_are_met() -> None:
 def test_leaves_are_nearly_full() -> None:
     # A leaf takes as long however full it is: splits that leave multiples of `WIDTH` are cheaper.
     random = np.random.default_rng(3)
-    scene = tree([ball(*place, 1) for place in random.uniform(0, 100, (10_000, 3))])
+    scene = build_tree([ball(*place, 1) for place in random.uniform(0, 100, (10_000, 3))])
     assert 0.85 * WIDTH * len(scene.groups[0].labels) < 10_000
 
 
@@ -129,7 +129,7 @@ def visited(scene: Tree, origin: Any, direction: Any, limit: float = np.inf) -> 
 
 def test_leaves_are_visited_the_nearest_first_as_far_as_it_matters() -> None:
     # In front of each other, so that the boxes are entered at x = 0, 3, 6...
-    scene = tree([ball(3 * i + 0.5, 0, 0, 1) for i in range(40) for _ in range(WIDTH)])
+    scene = build_tree([ball(3 * i + 0.5, 0, 0, 1) for i in range(40) for _ in range(WIDTH)])
     order = np.argsort(scene.groups[0].labels[:, 0, 0])
     for direction, right in (((1.0, 0.0, 0.0), order), ((-1.0, 0.0, 0.0), order[::-1])):
         origin = (-1.0 if direction[0] > 0 else 119.0, 0.1, 0.1)
@@ -139,7 +139,7 @@ def test_leaves_are_visited_the_nearest_first_as_far_as_it_matters() -> None:
 
 @pytest.mark.parametrize("distance", [1.0, 7.0])
 def test_what_a_hit_hides_is_not_visited(distance: float) -> None:
-    scene = tree([ball(3 * i + 0.5, 0, 0, 1) for i in range(40) for _ in range(WIDTH)])
+    scene = build_tree([ball(3 * i + 0.5, 0, 0, 1) for i in range(40) for _ in range(WIDTH)])
     memory = nodes.packet_memory()
     rays = [np.linspace(-1, 50, WIDTH), np.full(WIDTH, 0.1), np.full(WIDTH, 0.1)]
     nodes.store_rays(memory, Vec(*rays), Vec(np.ones(WIDTH), np.zeros(WIDTH), np.zeros(WIDTH)))
@@ -172,7 +172,7 @@ def grazing(seed: int) -> tuple[list[Shape], Array, Array]:
 
 def lost(scene: Tree, shapes: list[Shape], rays: tuple[Array, Array]) -> int:
     """How many rays, interpreted, hit something else than without boxes."""
-    found, right = trace(scene, *rays, queries.trace_rays), trace(without_boxes(shapes), *rays, queries.trace_rays)
+    found, right = trace(scene, *rays, queries.trace_rays), trace(brute_force(shapes), *rays, queries.trace_rays)
     return int((found[1] != right[1]).sum())
 
 
@@ -180,7 +180,7 @@ def test_rays_that_graze_the_sides_of_boxes() -> None:
     hits = 0
     for seed in range(100):
         shapes, *rays = grazing(seed)
-        found, right = trace(tree(shapes), *rays), trace(without_boxes(shapes), *rays)
+        found, right = trace(build_tree(shapes), *rays), trace(brute_force(shapes), *rays)
         assert np.array_equal(found[1], right[1])
         hits += (found[1] >= 0).sum()
     assert 3000 < hits < 27_000
@@ -188,11 +188,13 @@ def test_rays_that_graze_the_sides_of_boxes() -> None:
 
 def test_boxes_that_are_not_widened_do_not_pass(monkeypatch: pytest.MonkeyPatch) -> None:
     shapes, *rays = grazing(1)
-    assert lost(tree(shapes, Plain), shapes, rays) == 0
+    assert lost(build_tree(shapes, Interpreted), shapes, rays) == 0
     monkeypatch.setattr(nodes, "MARGIN", 0.0)
-    assert lost(tree(shapes, Plain), shapes, rays) == 0  # one of the two margins is enough so near to the box
+    assert (
+        lost(build_tree(shapes, Interpreted), shapes, rays) == 0
+    )  # one of the two margins is enough so near to the box
     monkeypatch.setattr(collapse, "MARGIN", 0.0)
-    assert lost(tree(shapes, Plain), shapes, rays) > 5
+    assert lost(build_tree(shapes, Interpreted), shapes, rays) > 5
 
 
 def zeros() -> tuple[list[Shape], tuple[Array, Array]]:
@@ -205,7 +207,7 @@ def zeros() -> tuple[list[Shape], tuple[Array, Array]]:
 
 def test_parts_of_a_direction_may_be_0_or_minus_0(monkeypatch: pytest.MonkeyPatch) -> None:
     shapes, rays = zeros()
-    for found in (trace(tree(shapes), *rays), trace(tree(shapes), *rays, queries.trace_rays)):
+    for found in (trace(build_tree(shapes), *rays), trace(build_tree(shapes), *rays, queries.trace_rays)):
         assert found[1].tolist() == np.repeat(range(6), 4).tolist()
         assert np.array_equal(found[0], np.full(24, 9.5))
     right = nodes.near_planes
@@ -213,11 +215,11 @@ def test_parts_of_a_direction_may_be_0_or_minus_0(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(
         traversal, "near_planes", lambda inverse: right(Vec(tiny(inverse.x), tiny(inverse.y), tiny(inverse.z)))
     )
-    assert lost(tree(shapes), shapes, rays) > 5
+    assert lost(build_tree(shapes), shapes, rays) > 5
 
 
 def test_rays_along_axes_meet_no_boxes_beside_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = tree([ball(*place, 0.1) for place in np.ndindex(12, 12, 12)])
+    scene = build_tree([ball(*place, 0.1) for place in np.ndindex(12, 12, 12)])
     ways = [((-1, 5.02, 6.03), (1, 0, 0)), ((5.02, -1, 6.03), (0, 1, -0.0)), ((5.02, 6.03, 20), (0, -0.0, -1))]
     few = [len(visited(scene, *way)) for way in ways]
     assert max(few) <= 12

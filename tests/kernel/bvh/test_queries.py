@@ -17,7 +17,7 @@ from minirt.kernel.scene_arrays import by_reference
 from minirt.lanes import Vec, lane, load, where
 from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
-from tests.kernel.bvh.trees import Plain, rays_at, some, trace, tree, without_boxes
+from tests.kernel.bvh.trees import Interpreted, brute_force, build_tree, random_rays, random_shapes, trace
 from tests.shapes.examples import example
 
 REGIMES: dict[str, dict[str, float]] = {
@@ -35,9 +35,9 @@ REGIMES: dict[str, dict[str, float]] = {
 @pytest.mark.parametrize("count", [1, 20, 400])
 def test_rays_hit_what_they_hit_without_boxes(regime: str, count: int) -> None:
     random = np.random.default_rng(count)
-    shapes = some(random, count, **REGIMES[regime])
-    rays = rays_at(random, shapes, 20_000)
-    found, right = trace(tree(shapes), *rays), trace(without_boxes(shapes), *rays)
+    shapes = random_shapes(random, count, **REGIMES[regime])
+    rays = random_rays(random, shapes, 20_000)
+    found, right = trace(build_tree(shapes), *rays), trace(brute_force(shapes), *rays)
     assert (right[1] >= 0).mean() > 0.05
     assert np.array_equal(found[1], right[1])
     hit = right[1] >= 0
@@ -66,9 +66,9 @@ def shadows() -> Any:
 @pytest.mark.parametrize("count", [5, 20, 400])
 def test_what_is_nearer_hides(way: int, count: int) -> None:
     random = np.random.default_rng(count)
-    shapes = some(random, count)
-    origins, directions = rays_at(random, shapes, 20 * WIDTH)
-    scene = tree(shapes)
+    shapes = random_shapes(random, count)
+    origins, directions = random_rays(random, shapes, 20 * WIDTH)
+    scene = build_tree(shapes)
     found = trace(scene, origins, directions)
     hit = found[1] >= 0
     assert 0.05 < hit.mean() < 1
@@ -83,10 +83,10 @@ def test_what_is_nearer_hides(way: int, count: int) -> None:
 
 def test_interpreted_rays_hit_the_same() -> None:
     random = np.random.default_rng(5)
-    shapes = some(random, 60)
-    rays = rays_at(random, shapes, 5 * WIDTH + 3)
+    shapes = random_shapes(random, 60)
+    rays = random_rays(random, shapes, 5 * WIDTH + 3)
     for one, other in zip(
-        trace(tree(shapes), *rays), trace(tree(shapes, Plain), *rays, queries.trace_rays), strict=True
+        trace(build_tree(shapes), *rays), trace(build_tree(shapes, Interpreted), *rays, queries.trace_rays), strict=True
     ):
         assert np.allclose(one, other, rtol=1e-12, atol=1e-12, equal_nan=True)
 
@@ -95,11 +95,11 @@ def test_interpreted_rays_hit_the_same() -> None:
 def test_of_surfaces_that_coincide_the_first_is_hit(seed: int) -> None:
     random = np.random.default_rng(seed)
     ends = [example(kind, random) for kind in KINDS]
-    others = some(random, 200, size=0.3, offset=0.0, spread=20)
+    others = random_shapes(random, 200, size=0.3, offset=0.0, spread=20)
     twins = [each.replace(colour=(i, 0, 0)) for i in range(3) for each in ends]
     shapes = [*others[:50], *twins, *others[50:]]
-    origins, directions = rays_at(random, ends, 4000)
-    _, owners, *_ = trace(tree(shapes), origins, directions)
+    origins, directions = random_rays(random, ends, 4000)
+    _, owners, *_ = trace(build_tree(shapes), origins, directions)
     last = 50 + len(ends)
     assert (owners >= 50).sum() > 500
     assert not ((owners >= last) & (owners < 50 + len(twins))).any()
@@ -114,12 +114,12 @@ def test_of_caps_in_one_plane_the_first_is_hit() -> None:
     ]
     origins = random.uniform([-10, 3, -10], [10, 40, 10], (4000, 3))
     covers = (origins[:, :1] - x) ** 2 + (origins[:, 2:] - z) ** 2 < radius**2
-    distances, owners, *_ = trace(tree(columns), origins, np.tile([0.0, -1.0, 0.0], (4000, 1)))
+    distances, owners, *_ = trace(build_tree(columns), origins, np.tile([0.0, -1.0, 0.0], (4000, 1)))
     assert np.array_equal(owners, np.where(covers.any(axis=1), covers.argmax(axis=1), -1))
     assert np.allclose(distances[owners >= 0], origins[owners >= 0, 1] - 1, atol=1e-14)
 
 
 def test_scenes_of_the_same_kinds_share_a_kernel() -> None:
     random = np.random.default_rng(0)
-    sorts = {typeof(tree(some(random, count))) for count in (len(KINDS), 17, 90, 1000)}
+    sorts = {typeof(build_tree(random_shapes(random, count))) for count in (len(KINDS), 17, 90, 1000)}
     assert len(sorts) == 1

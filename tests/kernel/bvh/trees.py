@@ -19,7 +19,7 @@ from tests.shapes.examples import example, place
 from tests.shapes.regimes import Array, Random, log, unit, ways
 
 
-class Plain:
+class Interpreted:
     """The functions that build a tree, interpreted."""
 
     divide = staticmethod(build.divide)
@@ -27,15 +27,15 @@ class Plain:
     collapse = staticmethod(collapse.collapse)
 
 
-def tree(shapes: list[Shape], kernel: Any = jit_bvh) -> Tree:
+def build_tree(shapes: list[Shape], kernel: Any = jit_bvh) -> Tree:
     """The tree over shapes."""
     with np.errstate(all="ignore"):
-        return bvh_of(tables(shapes), kernel)
+        return bvh_of(shape_arrays(shapes), kernel)
 
 
-def without_boxes(shapes: list[Shape]) -> Tree:
+def brute_force(shapes: list[Shape]) -> Tree:
     """The shapes in no box, so that every ray tries them all."""
-    kept = tables(shapes)
+    kept = shape_arrays(shapes)
     kinds = [kind for kind in KINDS if kind.element in set(map(type, shapes))]
     groups = []
     for i, (kind, rows) in enumerate(zip(kinds, kept.rows, strict=True)):
@@ -45,7 +45,7 @@ def without_boxes(shapes: list[Shape]) -> Tree:
     return Tree(root, kept.colours_and_extents[:, 3].copy(), kept.slots, tuple(groups))
 
 
-def tables(shapes: list[Shape]) -> ShapeArrays:
+def shape_arrays(shapes: list[Shape]) -> ShapeArrays:
     made = ShapeArrays()
     made.update(tuple(shapes))
     return made
@@ -62,7 +62,9 @@ def trace(
     return found
 
 
-def some(random: Random, count: int, size: float = 1.0, offset: float = 0.0, spread: float = 4.0) -> list[Shape]:
+def random_shapes(
+    random: Random, count: int, size: float = 1.0, offset: float = 0.0, spread: float = 4.0
+) -> list[Shape]:
     """Shapes of every kind, of many sizes and in one another; those without end are few."""
     middle = offset * ways(random)
     made = [example(KINDS[i % len(KINDS)], random, size * log(random, 0.05, 2)) for i in range(count)]
@@ -76,7 +78,7 @@ def moved(shape: Shape, by: Array) -> Shape:
     return shape.replace(**{name: tuple(np.add(getattr(shape, name), by)) for name in names})
 
 
-def rays_at(random: Random, shapes: list[Shape], count: int) -> tuple[Array, Array]:
+def random_rays(random: Random, shapes: list[Shape], count: int) -> tuple[Array, Array]:
     """Rays from inside of shapes and from between them, a third of them along axes."""
     middles = np.stack([place(each) for each in shapes])
     size = max(np.ptp(middles, axis=0).max(), 1e-9 * np.abs(middles).max())

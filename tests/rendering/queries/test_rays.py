@@ -17,7 +17,7 @@ from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests import oracle
-from tests.kernel.bvh.trees import rays_at, some
+from tests.kernel.bvh.trees import random_rays, random_shapes
 from tests.kernel.pictures import ALL, AMBIENT, EYE, RED, SHAPES
 from tests.processes import run
 
@@ -47,8 +47,8 @@ def test_where_rays_hit() -> None:
 
 def test_rays_as_the_oracle_traces_them() -> None:
     random = np.random.default_rng(8)
-    shapes = some(random, 30)
-    origins, directions = rays_at(random, shapes, 120)
+    shapes = random_shapes(random, 30)
+    origins, directions = random_rays(random, shapes, 120)
     hits = minirt.trace(scene(*shapes), origins, directions)
     assert (hits.owner >= 0).mean() > 0.2
     for i, (origin, direction) in enumerate(zip(origins, directions, strict=True)):
@@ -113,8 +113,8 @@ def test_what_is_wrong_is_named(origins: Any, directions: Any, message: str) -> 
 
 def test_one_thread_and_many_give_the_same_bits() -> None:
     random = np.random.default_rng(3)
-    shapes = some(random, 300)
-    many = rays_at(random, shapes, 10_007)
+    shapes = random_shapes(random, 300)
+    many = random_rays(random, shapes, 10_007)
     one = minirt.trace(scene(*shapes), *many, threads=1)
     for threads in (2, 5):
         for part, same in zip(one, minirt.trace(scene(*shapes), *many, threads=threads), strict=True):
@@ -134,7 +134,7 @@ def test_edited_scenes_are_traced_anew_and_the_same_one_is_not_sorted_again(monk
 
 def test_several_threads_may_trace_at_once() -> None:
     scenes = [ALL.replace(ALL.spheres[0], diameter=1 + i / 4) for i in range(8)]
-    many = rays_at(np.random.default_rng(1), list(SHAPES), 2000)
+    many = random_rays(np.random.default_rng(1), list(SHAPES), 2000)
     expected = [minirt.trace(each, *many) for each in scenes]
     with ThreadPoolExecutor(8) as pool:
         found = list(pool.map(lambda each: minirt.trace(each, *many), scenes * 4))
