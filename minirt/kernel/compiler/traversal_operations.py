@@ -64,7 +64,7 @@ def _put_integer(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> An
     return context.get_dummy_value()
 
 
-@register(nodes.tag, lambda distance, names: LANES, [(Lanes, Lanes)])
+@register(nodes.tag, lambda distance, references: LANES, [(Lanes, Lanes)])
 def _tag(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     distance, references = (builder.bitcast(each, INTEGERS) for each in args)
     high = builder.and_(distance, constant(distance, ~nodes.REFERENCE_BITS))
