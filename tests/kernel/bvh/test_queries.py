@@ -1,4 +1,4 @@
-"""Rays that share no origin hit the same with a tree as without one, and what is nearer hides."""
+"""Queries through the BVH: closest hits and occlusion are those found without boxes."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ def test_rays_hit_what_they_hit_without_boxes(regime: str, count: int) -> None:
     random = np.random.default_rng(count)
     shapes = random_shapes(random, count, **REGIMES[regime])
     rays = random_rays(random, shapes, 20_000)
-    found, right = trace(build_tree(shapes), *rays), trace(brute_force(shapes), *rays)
-    assert (right[1] >= 0).mean() > 0.05
-    assert np.array_equal(found[1], right[1])
-    hit = right[1] >= 0
-    rounding = 1e-15 * np.median(right[0][hit])  # of the sizes of the shapes
-    assert np.allclose(found[0][hit], right[0][hit], rtol=1e-11, atol=rounding)
+    result, expected = trace(build_tree(shapes), *rays), trace(brute_force(shapes), *rays)
+    assert (expected[1] >= 0).mean() > 0.05
+    assert np.array_equal(result[1], expected[1])
+    hit = expected[1] >= 0
+    rounding = 1e-15 * np.median(expected[0][hit])  # relative to the sizes of the shapes
+    assert np.allclose(result[0][hit], expected[0][hit], rtol=1e-11, atol=rounding)
 
 
 @cache
-def shadows() -> Any:
-    """`unhidden`, compiled, for n rays of unit direction, a multiple of `WIDTH`."""
+def shadow_queries() -> Any:
+    """Return `queries.unoccluded` for n rays of unit direction, a multiple of `WIDTH`: interpreted, and compiled."""
 
-    def run(scene: Any, o: Any, d: Any, distances: Any, free: Any) -> None:
+    def run(scene: Any, o: Any, d: Any, distances: Any, visible: Any) -> None:
         tree = by_reference(scene)
         for i in range(0, distances.size, WIDTH):
             origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
@@ -57,31 +57,31 @@ def shadows() -> Any:
             distance = load(distances, i)
             answer = where(queries.unoccluded(tree, origin, direction, distance, distance > 0.0), 1.0, 0.0 * distance)
             for ray in range(WIDTH):
-                free[i + ray] = lane(answer, ray)
+                visible[i + ray] = lane(answer, ray)
 
     return run, njit(**FLAGS)(run)
 
 
-@pytest.mark.parametrize("way", [0, 1], ids=["interpreted", "compiled"])
+@pytest.mark.parametrize("implementation", [0, 1], ids=["interpreted", "compiled"])
 @pytest.mark.parametrize("count", [5, 20, 400])
-def test_what_is_nearer_hides(way: int, count: int) -> None:
+def test_nearer_shapes_occlude(implementation: int, count: int) -> None:
     random = np.random.default_rng(count)
     shapes = random_shapes(random, count)
     origins, directions = random_rays(random, shapes, 20 * WIDTH)
     scene = build_tree(shapes)
-    found = trace(scene, origins, directions)
-    hit = found[1] >= 0
+    result = trace(scene, origins, directions)
+    hit = result[1] >= 0
     assert 0.05 < hit.mean() < 1
-    for factor, seen in ((1 - 1e-9, True), (1 + 1e-9, False), (1e6, False), (-1.0, False)):
-        distances = np.where(hit, found[0] * factor, 1e9 * np.sign(factor))
-        free = np.full(len(hit), 7.0)
+    for factor, is_visible in ((1 - 1e-9, True), (1 + 1e-9, False), (1e6, False), (-1.0, False)):
+        distances = np.where(hit, result[0] * factor, 1e9 * np.sign(factor))
+        visible = np.full(len(hit), 7.0)
         with np.errstate(all="ignore"):
-            shadows()[way](scene, origins.T.copy(), directions.T.copy(), distances, free)
-        # Nothing is asked of rays with a distance below 0, and what is not asked for is not free.
-        assert np.array_equal(free, np.where(hit, seen, factor > 0))
+            shadow_queries()[implementation](scene, origins.T.copy(), directions.T.copy(), distances, visible)
+        # Rays with a negative distance are not active, and inactive rays are not visible.
+        assert np.array_equal(visible, np.where(hit, is_visible, factor > 0))
 
 
-def test_interpreted_rays_hit_the_same() -> None:
+def test_interpreted_and_compiled_rays_hit_the_same() -> None:
     random = np.random.default_rng(5)
     shapes = random_shapes(random, 60)
     rays = random_rays(random, shapes, 5 * WIDTH + 3)
@@ -92,21 +92,21 @@ def test_interpreted_rays_hit_the_same() -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_of_surfaces_that_coincide_the_first_is_hit(seed: int) -> None:
+def test_the_first_of_coincident_surfaces_is_hit(seed: int) -> None:
     random = np.random.default_rng(seed)
-    ends = [example(kind, random) for kind in KINDS]
-    others = random_shapes(random, 200, size=0.3, offset=0.0, spread=20)
-    twins = [each.replace(colour=(i, 0, 0)) for i in range(3) for each in ends]
-    shapes = [*others[:50], *twins, *others[50:]]
-    origins, directions = random_rays(random, ends, 4000)
+    originals = [example(kind, random) for kind in KINDS]
+    further = random_shapes(random, 200, size=0.3, offset=0.0, spread=20)
+    twins = [each.replace(colour=(i, 0, 0)) for i in range(3) for each in originals]
+    shapes = [*further[:50], *twins, *further[50:]]
+    origins, directions = random_rays(random, originals, 4000)
     _, owners, *_ = trace(build_tree(shapes), origins, directions)
-    last = 50 + len(ends)
+    second_copy = 50 + len(originals)
     assert (owners >= 50).sum() > 500
-    assert not ((owners >= last) & (owners < 50 + len(twins))).any()
+    assert not ((owners >= second_copy) & (owners < 50 + len(twins))).any()
 
 
-def test_of_caps_in_one_plane_the_first_is_hit() -> None:
-    # Boxes begin where the caps are: one that is entered no nearer than the hit so far must be looked into.
+def test_the_first_of_caps_in_one_plane_is_hit() -> None:
+    # Boxes begin at the caps: a box whose entry is no nearer than the closest hit so far must still be visited.
     random = np.random.default_rng(2)
     x, z, radius, height = random.uniform([-10, -10, 0.1, 0.1], [10, 10, 3, 5], (400, 4)).T
     columns = [
@@ -121,5 +121,5 @@ def test_of_caps_in_one_plane_the_first_is_hit() -> None:
 
 def test_scenes_of_the_same_kinds_share_a_kernel() -> None:
     random = np.random.default_rng(0)
-    sorts = {typeof(build_tree(random_shapes(random, count))) for count in (len(KINDS), 17, 90, 1000)}
-    assert len(sorts) == 1
+    types = {typeof(build_tree(random_shapes(random, count))) for count in (len(KINDS), 17, 90, 1000)}
+    assert len(types) == 1

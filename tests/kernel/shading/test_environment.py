@@ -1,4 +1,4 @@
-"""What is seen where no shape is."""
+"""Background colours and environment maps, seen directly and in a mirror."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from minirt.shapes import Shape
 from minirt.shapes.sphere import Sphere
 
 WHITE = (255, 255, 255)
-FAR_OFF = Sphere((0, 0, 1e6), 1e-3, WHITE)  # so that there is something to trace
-# Eight columns of 45 degrees, four rows of 45: red tells the column, green the row.
+FAR_OFF = Sphere((0, 0, 1e6), 1e-3, WHITE)  # so that the scene is not empty
+# Eight columns of 45 degrees, four rows of 45 degrees: red encodes the column, green the row.
 COLUMNS, ROWS = 8, 4
-PAINTED = np.stack([*np.mgrid[:ROWS, :COLUMNS][::-1] * 30, np.zeros((ROWS, COLUMNS))], axis=-1).astype(np.uint8)
+SQUARES = np.stack([*np.mgrid[:ROWS, :COLUMNS][::-1] * 30, np.zeros((ROWS, COLUMNS))], axis=-1).astype(np.uint8)
 
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
-    # Large squares, so that the middle of each is of one colour.
-    large = np.repeat(np.repeat(PAINTED, 16, axis=0), 16, axis=1)
+    # Large squares, so that interpolation leaves the middle of each in one colour.
+    large = np.repeat(np.repeat(SQUARES, 16, axis=0), 16, axis=1)
     pillow.fromarray(large).save(tmp_path / "sky.png")
     return tmp_path / "scene.rt"
 
 
-def seen(file: Path, direction: Triple, *shapes: Shape) -> tuple[int, int, int]:
-    """The colour in the middle of a picture."""
+def middle_colour(file: Path, direction: Triple, *shapes: Shape) -> tuple[int, int, int]:
+    """Return the colour of the single pixel of a picture in some direction."""
     items = (Ambient(1, WHITE), Camera((5, 6, 7), direction, 1e-3), Background("sky.png"), *shapes)
     red, green, blue = minirt.render(Scene(items, file), 1, 1).array[0, 0].tolist()
     return red, green, blue
@@ -39,29 +39,30 @@ def seen(file: Path, direction: Triple, *shapes: Shape) -> tuple[int, int, int]:
 @pytest.mark.parametrize("shapes", [(FAR_OFF,), ()])
 @pytest.mark.parametrize(
     ("longitude", "latitude", "column", "row"),
-    # From +z towards -x, which is to the right of who looks along +z; from the horizon towards +y.
+    # Longitude from +z towards -x, which is to the right looking along +z; latitude from the horizon towards +y.
     [(22.5, 22.5, 4, 1), (-22.5, 22.5, 3, 1), (112.5, -22.5, 6, 2), (-157.5, 67.5, 0, 0), (157.5, -67.5, 7, 3)],
 )
-def test_directions_in_a_picture_of_the_sky(
+def test_directions_map_to_pixels_of_the_environment_map(
     file: Path, longitude: float, latitude: float, column: int, row: int, shapes: tuple[Shape, ...]
 ) -> None:
     a, b = np.radians([longitude, latitude])
-    way = (-np.sin(a) * np.cos(b), np.sin(b), np.cos(a) * np.cos(b))
-    assert seen(file, way, *shapes) == (30 * column, 30 * row, 0)
+    direction = (-np.sin(a) * np.cos(b), np.sin(b), np.cos(a) * np.cos(b))
+    assert middle_colour(file, direction, *shapes) == (30 * column, 30 * row, 0)
 
 
-def test_straight_up_is_the_upper_row(file: Path) -> None:
-    assert seen(file, (0, 1, 0), FAR_OFF)[1] == 0
-    assert seen(file, (0, -1, 0), FAR_OFF)[1] == 90  # and not a mean of it and the lower one
+def test_straight_up_is_the_upper_row_of_the_environment_map(file: Path) -> None:
+    assert middle_colour(file, (0, 1, 0), FAR_OFF)[1] == 0
+    assert middle_colour(file, (0, -1, 0), FAR_OFF)[1] == 90  # not interpolated with the row at the other pole
 
 
-def test_a_mirror_shows_it(file: Path) -> None:
+def test_a_mirror_reflects_the_environment_map(file: Path) -> None:
     ball = Sphere((5, 6, 9), 2, WHITE, mirror=1.0)
-    assert seen(file, (0, 0, 1), ball) in {(0, 45, 0), (210, 45, 0), (105, 45, 0)}  # straight back, on the seam
-    # A normal half-way between the ray and what it shows.
-    to = np.array([-np.sin(np.radians(112.5)), 0, np.cos(np.radians(112.5))]) * np.cos(np.radians(22.5))
-    to[1] = np.sin(np.radians(22.5))
-    normal = to - [0, 0, 1]
+    # Straight back, which is on the seam.
+    assert middle_colour(file, (0, 0, 1), ball) in {(0, 45, 0), (210, 45, 0), (105, 45, 0)}
+    # The normal is halfway between the directions to the eye and to the mirrored square.
+    mirrored = np.array([-np.sin(np.radians(112.5)), 0, np.cos(np.radians(112.5))]) * np.cos(np.radians(22.5))
+    mirrored[1] = np.sin(np.radians(22.5))
+    normal = mirrored - [0, 0, 1]
     normal /= np.linalg.norm(normal)
     hit = np.array([5, 6, 9]) + normal
     eye = hit - [0, 0, 2]
@@ -69,7 +70,7 @@ def test_a_mirror_shows_it(file: Path) -> None:
     assert minirt.render(Scene(items, file), 1, 1).array[0, 0].tolist() == [180, 30, 0]
 
 
-def test_a_coloured_background() -> None:
+def test_a_background_colour_fills_pixels_without_shapes() -> None:
     items = (Ambient(1, WHITE), Camera((0, 0, -9), (0, 0, 1), 60), Background((20, 130, 240)))
     for shapes in ((), (Sphere((0, 0, 0), 2, (255, 0, 0)),)):
         picture = minirt.render(Scene((*items, *shapes)), 16, 16).array

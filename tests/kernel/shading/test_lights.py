@@ -1,4 +1,4 @@
-"""How light comes from a lamp."""
+"""Light sources: direction, distance and strength of point, spot and parallel lights."""
 
 from __future__ import annotations
 
@@ -16,62 +16,63 @@ EYE = Camera((0, 0, -5), (0, 0, 1), 60)
 SPOT = SpotLight((0, 9, 0), (0, -1, 0), 60, 1, rim=0.4)
 
 
-def came(lamp: Lamp, point: tuple[float, float, float]) -> tuple[np.ndarray, float, float]:
-    """The direction, the distance and the strength of a lamp's light as a point sees it."""
-    spread = [np.full(16, each) for each in point]
+def light_at(light: Lamp, point: tuple[float, float, float]) -> tuple[np.ndarray, float, float]:
+    """Return the direction to a light source, its distance and its relative strength at a point."""
+    coordinates = [np.full(16, each) for each in point]
     with np.errstate(all="ignore"):
-        towards, distance, strength = incident_light(spot_numbers([lamp]), 0, Vec(*place_of(lamp)), Vec(*spread))
-    return np.array([towards.x[0], towards.y[0], towards.z[0]]), float(distance[0]), float(strength[0])
+        numbers, position = spot_numbers([light]), Vec(*place_of(light))
+        to_light, distance, strength = incident_light(numbers, 0, position, Vec(*coordinates))
+    return np.array([to_light.x[0], to_light.y[0], to_light.z[0]]), float(distance[0]), float(strength[0])
 
 
-def below(angle: float) -> tuple[float, float, float]:
-    """A point that the spot sees so many degrees from its axis."""
+def spot_point(angle: float) -> tuple[float, float, float]:
+    """Return a point whose direction from the spot is so many degrees from the spot's axis."""
     return 5 * sin(radians(angle)), 9 - 5 * cos(radians(angle)), 0
 
 
-def test_a_point_light_shines_everywhere_alike() -> None:
-    towards, distance, strength = came(Light((0, 3, 4), 1), (0, 0, 0))
-    assert np.allclose(towards, [0, 0.6, 0.8], rtol=1e-15)
+def test_a_point_light_shines_equally_in_all_directions() -> None:
+    to_light, distance, strength = light_at(Light((0, 3, 4), 1), (0, 0, 0))
+    assert np.allclose(to_light, [0, 0.6, 0.8], rtol=1e-15)
     assert (distance, strength) == (pytest.approx(5, rel=1e-15), 1.0)
 
 
-def test_light_that_fades_goes_down_in_a_line() -> None:
-    lamp = Light((0, 3, 4), 1, fade=20)
-    assert came(lamp, (0, 0, 0))[2] == pytest.approx(0.75, rel=1e-15)
-    assert came(lamp, (0, 3, 14))[2] == pytest.approx(0.5, rel=1e-15)
-    assert came(lamp, (0, 3, 24))[2] == 0
-    assert came(lamp, (0, 3, 99))[2] == 0
+def test_fading_light_decreases_linearly() -> None:
+    light = Light((0, 3, 4), 1, fade=20)
+    assert light_at(light, (0, 0, 0))[2] == pytest.approx(0.75, rel=1e-15)
+    assert light_at(light, (0, 3, 14))[2] == pytest.approx(0.5, rel=1e-15)
+    assert light_at(light, (0, 3, 24))[2] == 0
+    assert light_at(light, (0, 3, 99))[2] == 0
 
 
 def test_parallel_light_comes_from_infinitely_far() -> None:
     for point in ((0.0, 0.0, 0.0), (7.0, -3.0, 1e9)):
-        towards, distance, strength = came(ParallelLight((0.6, -0.8, 0), 1), point)
-        assert np.array_equal(towards, [-0.6, 0.8, 0])
+        to_light, distance, strength = light_at(ParallelLight((0.6, -0.8, 0), 1), point)
+        assert np.array_equal(to_light, [-0.6, 0.8, 0])
         assert (distance, strength) == (inf, 1.0)
 
 
 def test_a_spot_shines_within_its_cone() -> None:
     # Half of 60 degrees is 30; the outer 0.4 of that is the rim, which begins at 18.
-    assert came(SPOT, below(0))[2] == 1
-    assert came(SPOT, below(17.99))[2] == 1
-    assert came(SPOT, below(30.01))[2] == 0
-    assert came(SPOT, (0, 20, 0))[2] == 0
+    assert light_at(SPOT, spot_point(0))[2] == 1
+    assert light_at(SPOT, spot_point(17.99))[2] == 1
+    assert light_at(SPOT, spot_point(30.01))[2] == 0
+    assert light_at(SPOT, (0, 20, 0))[2] == 0
     t = (cos(radians(25)) - cos(radians(30))) / (cos(radians(18)) - cos(radians(30)))
-    assert came(SPOT, below(25))[2] == pytest.approx(3 * t**2 - 2 * t**3, rel=1e-12)
+    assert light_at(SPOT, spot_point(25))[2] == pytest.approx(3 * t**2 - 2 * t**3, rel=1e-12)
 
 
 def test_a_spot_without_rim_has_a_sharp_edge() -> None:
     sharp = SPOT.replace(rim=0.0)
-    assert came(sharp, below(29.999))[2] == 1
-    assert came(sharp, below(30.001))[2] == 0
+    assert light_at(sharp, spot_point(29.999))[2] == 1
+    assert light_at(sharp, spot_point(30.001))[2] == 0
 
 
 def test_a_spot_fades_too() -> None:
-    assert came(SPOT.replace(fade=10), below(0))[2] == pytest.approx(0.5, rel=1e-15)
+    assert light_at(SPOT.replace(fade=10), spot_point(0))[2] == pytest.approx(0.5, rel=1e-15)
 
 
-def test_lamps_that_give_no_light_are_left_out() -> None:
-    lamps = Light((1, 2, 3), 0.5, (255, 0, 51)), FurtherLight((0, 0, 0), 0), SPOT.replace(colour=(0, 0, 0)), SPOT
-    scene = Scene((Ambient(0.1, (255, 255, 255)), EYE, *lamps))
-    assert shining(scene) == [lamps[0], SPOT]
+def test_lights_without_brightness_are_left_out() -> None:
+    lights = Light((1, 2, 3), 0.5, (255, 0, 51)), FurtherLight((0, 0, 0), 0), SPOT.replace(colour=(0, 0, 0)), SPOT
+    scene = Scene((Ambient(0.1, (255, 255, 255)), EYE, *lights))
+    assert shining(scene) == [lights[0], SPOT]
     assert np.allclose(light_numbers(shining(scene)), [[1, 2, 3, 0.5, 0, 0.1], [0, 9, 0, 1, 1, 1]])

@@ -1,4 +1,4 @@
-"""Pictures on shapes as a camera sees them: not mirrored, not upside down, in the middle of what it looks at."""
+"""Orientation of textures on shapes as a camera sees them: not mirrored, not upside down, centred."""
 
 from __future__ import annotations
 
@@ -43,20 +43,20 @@ SHAPES: tuple[Shape, ...] = (
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A picture of four squares: red and green above, blue and white below."""
-    quarters = np.array([[RED, GREEN], [BLUE, WHITE]], np.uint8)
-    Image.fromarray(quarters.repeat(32, 0).repeat(32, 1)).save(tmp_path / "quarters.png")
+    """A folder with a picture of four squares: red and green above, blue and white below."""
+    squares = np.array([[RED, GREEN], [BLUE, WHITE]], np.uint8)
+    Image.fromarray(squares.repeat(32, 0).repeat(32, 1)).save(tmp_path / "quarters.png")
     return tmp_path
 
 
-def view(folder: Path, shape: Shape, eye: Triple = (0, 0, -9), to: Triple = (0, 0, 1)) -> Scene:
-    """A shape under light from everywhere, which shows the picture's own colours."""
-    painted = shape.replace(texture="quarters.png")
-    return Scene((Ambient(1, WHITE), Camera(eye, to, 10), painted), folder / "scene.rt")
+def scene_of(folder: Path, shape: Shape, eye: Triple = (0, 0, -9), direction: Triple = (0, 0, 1)) -> Scene:
+    """A textured shape under ambient light alone, which shows the texture's own colours."""
+    textured = shape.replace(texture="quarters.png")
+    return Scene((Ambient(1, WHITE), Camera(eye, direction, 10), textured), folder / "scene.rt")
 
 
-def quarters(light: np.ndarray) -> np.ndarray:
-    """The colours of the pixels around the middle: upper left, upper right, lower left, lower right."""
+def quarter_colours(light: np.ndarray) -> np.ndarray:
+    """Return the colours of four pixels around the middle: upper left, upper right, lower left, lower right."""
     high, wide = light.shape[:2]
     rows, columns = (np.array([n // 2 - n // 8, n // 2 + n // 8]) for n in (high, wide))
     found: np.ndarray = light[np.ix_(rows, columns)].reshape(4, 3) * 255
@@ -64,23 +64,23 @@ def quarters(light: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.title)
-def test_from_the_front_it_is_as_it_is(shape: Shape, folder: Path) -> None:
-    scene = view(folder, shape)
+def test_a_texture_seen_from_the_front_is_upright_and_not_mirrored(shape: Shape, folder: Path) -> None:
+    scene = scene_of(folder, shape)
     for light in (linear(scene, 32, 32), interpreted(scene, 32, 32)[1]):
-        right = [RED, (0, 0, 0) if isinstance(shape, Triangle) else GREEN, BLUE, WHITE]
-        assert np.abs(quarters(light) - right).max() < 1e-3
+        expected = [RED, (0, 0, 0) if isinstance(shape, Triangle) else GREEN, BLUE, WHITE]
+        assert np.abs(quarter_colours(light) - expected).max() < 1e-3
 
 
-@pytest.mark.parametrize("make", [Plane, Square, Disc])
+@pytest.mark.parametrize("kind", [Plane, Square, Disc])
 @pytest.mark.parametrize(("normal", "eye"), [(UP, (0, 9, 0)), (DOWN, (0, -9, 0))])
-def test_floors_and_ceilings_are_upright_for_who_looks_straight_at_them(
-    make: type[Shape], normal: Triple, eye: Triple, folder: Path
+def test_textures_of_floors_and_ceilings_are_upright_seen_vertically(
+    kind: type[Shape], normal: Triple, eye: Triple, folder: Path
 ) -> None:
-    corner = (-0.5, 0, normal[1] * 0.5) if make is Plane else (0, 0, 0)
-    shape = make(corner, normal, *(() if make is Plane else (3.0,)), GREY)
-    light = linear(view(folder, shape, eye, (0, -normal[1], 0)), 32, 32)
-    assert np.abs(quarters(light) - [RED, GREEN, BLUE, WHITE]).max() < 1e-3
+    corner = (-0.5, 0, normal[1] * 0.5) if kind is Plane else (0, 0, 0)
+    shape = kind(corner, normal, *(() if kind is Plane else (3.0,)), GREY)
+    light = linear(scene_of(folder, shape, eye, (0, -normal[1], 0)), 32, 32)
+    assert np.abs(quarter_colours(light) - [RED, GREEN, BLUE, WHITE]).max() < 1e-3
 
 
-def test_every_kind_is_looked_at() -> None:
+def test_every_kind_is_tested() -> None:
     assert {type(shape) for shape in SHAPES} == {kind.element for kind in KINDS}
