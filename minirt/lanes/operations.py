@@ -60,7 +60,7 @@ def floor(x: Number) -> Number:
 
 
 def exponent(x: Number) -> Number:
-    """Return the greatest whole number e with 2^e <= x, for x >= 0; for 0 and denormals one less than the least normal."""
+    """Return the greatest whole number e with 2^e <= x, for x >= 0; for 0 and denormals, one below all others."""
     least = np.finfo(np.asarray(x).dtype).minexp
     return np.maximum(np.where(x > 0.0, np.frexp(x)[1] - 1, least - 1), least - 1).astype(np.asarray(x).dtype)[()]
 
@@ -83,7 +83,7 @@ def rounded_product(a: Number, b: Number) -> Number:
 
 
 def product_error(a: Number, b: Number) -> Number:
-    """Return the exact rounding error of a * b (Dekker 1971), of float64 from 1e-140 to 1e140, float32 1e-12 to 1e12."""
+    """Return the exact rounding error of a * b (Dekker 1971); float64 within 1e-140 to 1e140, float32 1e-12 to 1e12."""
     a_high, b_high = high_half(a), high_half(b)
     a_low, b_low = a - a_high, b - b_high
     return a_low * b_low - (((a * b - a_high * b_high) - a_low * b_high) - a_high * b_low)

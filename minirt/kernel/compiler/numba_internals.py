@@ -194,7 +194,7 @@ ASSUMPTIONS: dict[str, Callable[[], bool]] = {
         FunctionCache, "_load_overload", "_guard_against_spurious_io_errors", "cache_path"
     ),
     "the index of a cache": lambda: has(FunctionCache, "_index_key") and has(IndexDataCacheFile, "_load_index"),
-    "the cache of a jitted function": lambda: has(njit(lambda: None), "_cache"),
+    "the cache of a jitted function": lambda: has(njit(error_model="numpy")(lambda: None), "_cache"),
 }
 
 

@@ -38,7 +38,9 @@ def fingerprints() -> list[str]:
 
 
 def test_pictures_and_rays_are_the_same_bit_by_bit(tmp_path: Path) -> None:
-    program = run([sys.executable, "-c", CHANGE + RENDER], env=os.environ | {"XDG_CACHE_HOME": str(tmp_path)}, text=True)
+    program = run(
+        [sys.executable, "-c", CHANGE + RENDER], env=os.environ | {"XDG_CACHE_HOME": str(tmp_path)}, text=True
+    )
     assert program.returncode == 0, program.stderr
     assert program.stdout.split() == fingerprints()
     (notice,) = program.stderr.splitlines()

@@ -49,7 +49,7 @@ def test_a_changed_interface_is_noticed(interface: str, monkeypatch: pytest.Monk
     assert failed_assumption() is None
     owner, name = CHANGES[interface]
     if owner is numba_internals:
-        monkeypatch.setattr(owner, name, lambda function: function)
+        monkeypatch.setattr(owner, name, lambda **options: lambda function: function)
     for each in getattr(owner, "__mro__", ()):
         if name in vars(each):
             monkeypatch.delattr(each, name)

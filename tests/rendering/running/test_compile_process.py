@@ -21,7 +21,7 @@ from minirt.rendering.running.compile_process import CompileProcess
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Scene
 from minirt.shapes.sphere import Sphere
-from tests.kernel.compiler.copies import copied
+from tests.kernel.compiler.package_copies import copy_package
 from tests.paths import PACKAGE
 from tests.processes import run, started
 from tests.waiting import HANG_LIMIT, until
@@ -54,14 +54,14 @@ child.wait()
 """
 ENDLESS = """
 from threading import Event
-from minirt.kernel import compile, jit
+from minirt.kernel.compiler import jit, process
 
 def endless(arguments):
     print("compiling", flush=True)
     Event().wait()
 
 jit.compile = endless
-compile.main()
+process.main()
 """
 
 
@@ -85,7 +85,7 @@ def test_another_process_compiles_and_the_next_program_finds_it(tmp_path: Path) 
 
 
 def test_two_programs_at_once(tmp_path: Path) -> None:
-    package = copied(tmp_path)
+    package = copy_package(tmp_path)
     with ThreadPoolExecutor(2) as pool:
         said = list(pool.map(lambda _: prepared(tmp_path, tmp_path / "cache", package), range(2)))
     assert [each[1] for each in said] == ["[30, 20, 10, 255]"] * 2
