@@ -19,6 +19,7 @@ SLOW = {
     "tests/bench/yardstick/test_yardstick.py",
     "tests/kernel/bvh/test_queries.py",
     "tests/kernel/compiler/test_cache_folder.py",
+    "tests/kernel/compiler/test_documented_pipeline.py",
     "tests/kernel/compiler/test_specialisation.py",
     "tests/kernel/shading/test_texturing.py",
     "tests/lanes/test_operators.py",

@@ -72,9 +72,7 @@ def refined(x: Any, estimate: Any, bits: int, series: tuple[float, ...]) -> Any:
 
 @PRECISIONS
 @pytest.mark.parametrize(("error", "passes"), [(2.0**-14, True), (2.0**-7, False)])
-def test_the_series_is_precise_for_any_estimate_that_a_processor_may_make(
-    dtype: Any, error: float, passes: bool
-) -> None:
+def test_the_series_is_precise_for_any_estimate_within_the_promise(dtype: Any, error: float, passes: bool) -> None:
     """Processors differ in their estimates, which are only promised to be within 2^-14. A worse estimate fails."""
     kind = np.finfo(dtype)
     random = np.random.default_rng(6)

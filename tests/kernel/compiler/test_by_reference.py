@@ -10,7 +10,7 @@ from numba import njit
 from numba.core.errors import TypingError
 from numba.extending import register_jitable
 
-import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
+import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel.compiler.options import FLAGS, INLINED
 from minirt.kernel.scene_arrays import by_reference
 from minirt.kernel.trace import for_each_kind
