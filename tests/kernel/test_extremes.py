@@ -88,7 +88,7 @@ def test_a_field_of_view_of_179_999_shows_shapes_beside_the_eye() -> None:
 
 
 @pytest.mark.parametrize("place", [1e9, 1e12, 0.99e15, -0.99e15])
-def test_scenes_far_from_the_origin_and_large_scenes_look_the_same(place: float) -> None:
+def test_a_scene_far_from_the_origin_is_finite_and_a_large_one_looks_the_same(place: float) -> None:
     moved = changed(ALL, lambda p: tuple(x + place for x in p))
     finite(moved)
     factor = abs(place) / 10

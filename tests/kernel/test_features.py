@@ -45,11 +45,11 @@ def scene(tmp_path: Path) -> Scene:
 
 def test_compiled_and_interpreted_pictures_are_the_same(scene: Scene) -> None:
     pixels, light = picture(scene, 32, 20, renderer=ONE)
-    words, expected = interpreted(scene, 32, 20)
+    interpreted_pixels, expected = interpreted(scene, 32, 20)
     # Rounding may send a ray to the other side of an edge, and curved mirrors and glass magnify it.
     different = np.abs(light - expected).max(axis=-1) > 1e-9
     assert different.mean() < 0.01
-    assert (np.abs(pixels.astype(int) - words)[~different] <= 1).all()
+    assert (np.abs(pixels.astype(int) - interpreted_pixels)[~different] <= 1).all()
     assert len(np.unique(pixels.reshape(-1, 4), axis=0)) > 400
 
 

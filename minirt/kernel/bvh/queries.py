@@ -32,7 +32,7 @@ from minirt.lanes.vec import Number
 
 CHUNK = 16 * WIDTH  # rays that a thread claims at a time
 
-Hit = tuple[Number, Number, Number]  # distance, index and extent of what is hit
+Hit = tuple[Number, Number, Number]  # distance, index and extent of the shape that is hit
 
 
 def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Hit:

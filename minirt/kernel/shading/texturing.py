@@ -27,7 +27,7 @@ class SurfaceMaps(NamedTuple):
     pictures: Any  # (k, 4) for each picture its first index in `texels`, its width, height and channels
 
 
-Mapped = tuple[Number, Number, Vec, Vec, int]
+Mapped = tuple[Number, Number, Vec, Vec, int]  # u, v, the tangents along them, and a count of kinds
 
 
 def apply_maps(
@@ -80,9 +80,8 @@ def bump_mapped(
 ) -> Vec:
     """Bump mapping: the normal of the surface raised by a height map (Blinn, Simulation of Wrinkled Surfaces, 1978).
 
-    Heights and tangents are measured in widths of the picture on the surface. Where the normal is not perpendicular to
-    the tangents, it is changed by the height's gradient along the surface (Mikkelsen, Simulation of Wrinkled Surfaces
-    Revisited, 2008).
+    Lengths are in widths of the picture on the surface. The surface gradient of the height is subtracted from the
+    normal, which need not be that of the tangents (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
     """
     if bumps is None:
         return normal
