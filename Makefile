@@ -1,4 +1,4 @@
-# make help   lists what there is to make, with the comment behind each target
+# `make help` lists the targets with the comments behind them.
 
 VENV    := .venv
 NAME    := $(VENV)/bin/miniRT
@@ -10,9 +10,9 @@ PYTEST  := $(VENV)/bin/python -m pytest --numprocesses $(WORKERS)
 SCENE   ?= scenes/demo.rt
 SUDO    ?= $(if $(filter 0,$(shell id -u)),,sudo)
 
-# The program is installed so that it runs the sources as they stand: only a change of its dependencies installs again.
-# Where they are is told relative to the environment: Python reads that in the encoding of the locale, and could not
-# start in a folder with an umlaut under LC_ALL=C.
+# The program is installed in editable mode, so only a change of its dependencies installs it again. The path to the
+# sources is relative: Python reads it in the encoding of the locale, and an absolute one with an umlaut would keep Python
+# from starting under LC_ALL=C.
 INSTALL  = $(PIP) install --quiet --editable $(1) && \
            for file in $(VENV)/lib/python*/site-packages/*minirt*.pth; do echo ../../../.. >"$$file"; done
 
@@ -34,7 +34,7 @@ $(DEV): $(NAME) pyproject.toml
 	$(PIP) install --quiet --group dev
 	touch $@
 
-# Without a display the picture goes to a file.
+# Without a display the picture is written to a file.
 run: $(NAME)  ## show a scene: make run SCENE=scenes/subject.rt
 	@mkdir -p out
 	$(NAME) $(SCENE) --fallback out/$(basename $(notdir $(SCENE))).png
@@ -45,8 +45,9 @@ test: $(DEV)  ## run all tests, or some: make test TESTS=tests/shapes
 quick: $(DEV)  ## run the tests that take a minute in all
 	$(PYTEST) -m "not window and not slow" $(TESTS)
 
-FORMULAS := tests/lanes tests/shapes tests/report/measurements/test_formula_errors.py tests/report/measurements/test_operation_counts.py \
-            $(addprefix tests/kernel/test_,features.py frame.py highlight.py invariances.py single.py)
+FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/test_frame.py \
+            tests/kernel/test_invariances.py tests/kernel/test_single.py tests/kernel/shading/test_specular.py \
+            tests/report/measurements/test_formula_errors.py tests/report/measurements/test_operation_counts.py
 
 processors: $(DEV)  ## run the tests of compiled formulas as on processors without AVX-512 and without AVX
 	NUMBA_CPU_NAME=haswell $(PYTEST) $(FORMULAS)
@@ -70,7 +71,7 @@ report: $(NAME)  ## measure error against run time: make report REPORT=--quick f
 	$(VENV)/bin/python -m minirt.report out/report/shapes $(REPORT)
 	$(foreach scene,$(REPORTED),$(NAME) scenes/$(scene).rt --report out/report/$(scene) $(REPORT) &&) true
 
-textures gallery: $(NAME)  ## draw the textures of the scenes, or the README's gallery
+textures gallery: $(NAME)  ## draw the textures of the scenes, or render the gallery
 	$(VENV)/bin/python assets/make_$@.py
 
 clean:  ## remove what tests, tools and runs have left

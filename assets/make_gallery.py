@@ -1,6 +1,6 @@
-"""Draws the pictures of the README's gallery, and prints its table: python assets/make_gallery.py [SCENE ...]
+"""Render the gallery, and print the table of scenes/README.md: python assets/make_gallery.py [SCENE ...]
 
-A time is that of one thread's processor, without reading the scene and compiling.
+A time is the processor time of one thread, without reading the scene and compiling.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ WIDTH, HEIGHT, SAMPLES = 1280, 720, 64
 
 
 def row(name: str) -> str:
-    """Draw a scene; its line of the table."""
+    """Render a scene; return its row of the table."""
     scene = minirt.load(ROOT / "scenes" / f"{name}.rt")
     minirt.render(scene, WIDTH, HEIGHT, threads=1)  # compiled
     start = time.process_time()
@@ -29,9 +29,9 @@ def row(name: str) -> str:
     seconds = time.process_time() - start
     file = f"{name.split('-', 1)[1]}.jpg"
     picture.save(ROOT / "assets" / f"gallery-{file}")
-    told = (scene.file.read_text().splitlines()[0] if scene.file else "").removeprefix("# ")
+    caption = (scene.file.read_text().splitlines()[0] if scene.file else "").removeprefix("# ")
     command = f"miniRT scenes/{name}.rt --size {WIDTH}x{HEIGHT} --samples {SAMPLES} -o {file}"
-    return f"| ![{told}](assets/gallery-{file}) | {told}<br>`{command}`<br>{seconds:.1f} s |"
+    return f"| ![{caption}](../assets/gallery-{file}) | {caption}<br>`{command}`<br>{seconds:.1f} s |"
 
 
 if __name__ == "__main__":

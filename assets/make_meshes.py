@@ -21,7 +21,7 @@ POT += [(0.66, -0.52), (0.64, -0.56), (0.4, -0.56), (0, -0.54)]
 
 
 def icosahedron() -> tuple[Array, Array]:
-    """The corners of twenty triangles on the unit sphere, and which of them each triangle has."""
+    """Return the corners of an icosahedron on the unit sphere, and the corner indices of its twenty triangles."""
     flat = np.array([(0.0, a, b * GOLDEN) for a in (-1, 1) for b in (-1, 1)])
     points = np.concatenate([np.roll(flat, turn, axis=1) for turn in range(3)])
     near = np.linalg.norm(points[:, None] - points, axis=-1) < 2.1
@@ -36,7 +36,7 @@ def icosahedron() -> tuple[Array, Array]:
 
 
 def rounder(points: Array, corners: Array) -> tuple[Array, Array]:
-    """Each triangle in four, with new corners on the unit sphere."""
+    """Split each triangle into four, with new corners on the unit sphere."""
     pairs = np.sort(np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1)
     edges, which = np.unique(pairs, axis=0, return_inverse=True)
     middles = points[edges].sum(axis=1)
@@ -48,12 +48,14 @@ def rounder(points: Array, corners: Array) -> tuple[Array, Array]:
 
 
 def wrapped(surface: Callable[[Array, Array], Array], across: int, down: int, closed: bool) -> tuple[Array, ...]:
-    """The points and normals of a surface over u, which meets itself, and v, which does so if it is closed; places of
-    a picture; and faces of four corners, each three indices."""
+    """Sample a parametric surface, periodic in u and, if `closed`, in v.
+
+    Return points, texture coordinates, normals, and quads whose corners have three indices each.
+    """
     u, v = np.meshgrid(np.arange(across + 1) / across, np.arange(down + 1) / down)
     points = surface(u, v)
     step = 1e-4
-    w = v if closed else np.clip(v, step, 1 - step)  # at a pole there is nothing to differ along u
+    w = v if closed else np.clip(v, step, 1 - step)  # at a pole the derivative along u is zero
     normals = np.cross(surface(u + step, w) - surface(u - step, w), surface(u, w + step) - surface(u, w - step))
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
     rows, columns = down if closed else down + 1, across
@@ -114,7 +116,7 @@ def save(name: str, title: str, points: Array, places: Array, normals: Array, fa
 
 
 def main() -> None:
-    """Write all of them."""
+    """Write all meshes."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     nothing = np.zeros((0, 3))
     points, corners = icosahedron()

@@ -13,13 +13,13 @@ import numpy as np
 from PIL import Image
 
 FOLDER = Path(__file__).parent.parent / "scenes" / "textures"
-FACTORS, SEEDS = (73856093, 19349663, 83492791), 2654435761  # of hashes, for each axis
-BLOCK = 8192  # places of noise that are worked out at a time
+FACTORS, SEEDS = (73856093, 19349663, 83492791), 2654435761  # hash factors for each axis, and for the seed
+BLOCK = 8192  # points of noise that are computed at a time
 Array = np.ndarray
 
 
 def mixed(hashes: Array) -> Array:
-    """A random number in [0, 1) for each of some whole numbers, which are lost."""
+    """Turn integers into random numbers in [0, 1), in place."""
     for factor in (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53):  # Appleby, MurmurHash3
         hashes ^= hashes >> np.uint64(33)
         hashes *= np.uint64(factor)
@@ -28,24 +28,24 @@ def mixed(hashes: Array) -> Array:
 
 
 def lattice(seed: int, x: Array, y: Array, z: Array) -> Array:
-    """A random number in [0, 1) for each point of space with whole coordinates, not below 0."""
+    """Return a random number in [0, 1) for each point of the integer lattice, with coordinates of at least 0."""
     parts = (axis.astype(np.uint64) * np.uint64(factor) for axis, factor in zip((x, y, z), FACTORS, strict=True))
     return mixed(np.bitwise_xor.reduce([*parts]) ^ np.uint64(seed * SEEDS))
 
 
 def noise(seed: int, points: Array, period: Array | None = None) -> Array:
-    """Smooth noise in [0, 1] at places of space (..., 3), one bump a unit; it repeats after `period` (Perlin 1985)."""
+    """Return smooth noise in [0, 1] at points (..., 3), one bump per unit, with a period (Perlin 1985)."""
     each = points.reshape(-1, 3)
     parts = [block_of_noise(seed, each[start : start + BLOCK], period) for start in range(0, len(each), BLOCK)]
     return np.concatenate([np.zeros(0), *parts]).reshape(points.shape[:-1])
 
 
 def block_of_noise(seed: int, points: Array, period: Array | None) -> Array:
-    """The same of so few places that all that is worked out for them fits a processor's cache."""
+    """Compute `noise` for one block of points, whose intermediate values fit a processor's cache."""
     below = np.floor(points)
     part = points - below
     weight = part * part * (3 - 2 * part)
-    # For each axis what the corners on both sides add to the hash of a corner, and how much each of them counts.
+    # For each axis: the hash terms of the lattice points on both sides, and their interpolation weights.
     hashes, shares = [], []
     for axis, factor in enumerate(FACTORS):
         for corner in (0, 1):
@@ -62,7 +62,7 @@ def block_of_noise(seed: int, points: Array, period: Array | None) -> Array:
 
 
 def fractal(seed: int, points: Array, octaves: int, period: Array | None = None) -> Array:
-    """Noise of all sizes: each octave is half as large and half as strong as the one before it."""
+    """Sum octaves of noise, each half as large and half as strong as the one before."""
     total, share = np.zeros(points.shape[:-1]), 0.0
     for octave in range(octaves):
         scale = 2**octave
@@ -73,7 +73,7 @@ def fractal(seed: int, points: Array, octaves: int, period: Array | None = None)
 
 
 def globe(width: int, height: int) -> Array:
-    """The points of the unit sphere that the pixels of a map show: longitude across, latitude down."""
+    """Return the points of the unit sphere for the pixels of a map: longitude across, latitude down."""
     longitude = 2 * np.pi * (np.arange(width) + 0.5) / width
     latitude = np.pi * (0.5 - (np.arange(height) + 0.5) / height)
     around = np.cos(latitude)[:, None]
@@ -82,20 +82,20 @@ def globe(width: int, height: int) -> Array:
 
 
 def tile(width: int, height: int, across: int, down: int) -> tuple[Array, Array]:
-    """Points of a plane with `across` by `down` units in a picture, and the period that makes it fit to itself."""
+    """Return the points of a plane of `across` by `down` units, and the period that makes the picture tile."""
     y, x = np.mgrid[:height, :width] + 0.5
     return np.stack([x * across / width, y * down / height, np.zeros_like(x)], axis=-1), np.array([across, down, 1])
 
 
 def shades(at: Array, stops: list[tuple[float, str]]) -> Array:
-    """Colours, (..., 3) in [0, 255], between those of the stops."""
+    """Interpolate colours, (..., 3) in [0, 255], between stops."""
     places = [place for place, _ in stops]
     colours = np.array([[int(code[i : i + 2], 16) for i in (0, 2, 4)] for _, code in stops], float)
     return np.stack([np.interp(at, places, colours[:, part]) for part in range(3)], axis=-1)
 
 
 def planet(width: int = 1024, height: int = 512) -> tuple[Array, Array]:
-    """Colour: seas, land by height and latitude, ice at the poles, clouds over all of it; and height in [0, 1]."""
+    """Draw a planet: its colours (seas, land by height and latitude, polar ice, clouds) and heights in [0, 1]."""
     points = globe(width, height)
     land = fractal(1, 1.7 * points + 0.4 * fractal(40, 3 * points, 4)[..., None], 8) - 0.53
     sea = shades(land, [(-0.2, "061f4f"), (-0.05, "0d3b7a"), (0.0, "2c7fa8")])
@@ -112,11 +112,11 @@ def planet(width: int = 1024, height: int = 512) -> tuple[Array, Array]:
 
 
 ROWS, COLUMNS = 8, 4  # bricks in the picture
-JOINT = 0.06  # of a row's height: half a joint
+JOINT = 0.06  # half the width of a joint, in heights of a row
 
 
 def bricks(width: int = 512, height: int = 512) -> tuple[Array, Array]:
-    """Colour, and height in [0, 1], of a wall of bricks that fits to itself on all sides."""
+    """Draw a tiling brick wall: its colours, and its heights in [0, 1]."""
     y, x = np.mgrid[:height, :width] + 0.5
     row = np.floor(y * ROWS / height)
     column = x * COLUMNS / width + 0.5 * (row % 2)
@@ -135,7 +135,7 @@ def bricks(width: int = 512, height: int = 512) -> tuple[Array, Array]:
 
 
 def normals(heights: Array, strength: float) -> Array:
-    """The normal map of heights, (h, w, 3) in [0, 255], of a picture that fits to itself.
+    """Compute the normal map, (h, w, 3) in [0, 255], of a tiling height map.
 
     The normal is (-dh/du, -dh/dv, 1) at unit length, 128 for 0 and 255 for 1; u goes to the right, v up, and white is
     `strength` times the picture's width above black.
@@ -149,7 +149,7 @@ def normals(heights: Array, strength: float) -> Array:
 
 
 def water(size: int = 256) -> Array:
-    """Heights in [0, 1] of waves from all sides that fit to themselves."""
+    """Draw a tiling height map in [0, 1] of waves from all directions."""
     y, x = np.mgrid[:size, :size] / size
     random = np.random.default_rng(5)
     total = np.zeros((size, size))
@@ -162,11 +162,11 @@ def water(size: int = 256) -> Array:
 
 
 def stars(width: int = 2048, height: int = 1024) -> Array:
-    """A map of the sky: stars evenly on the sphere, few bright and many faint ones, and a band of mist."""
+    """Draw an environment map of stars: uniform over the sphere, few bright and many faint, with a band of mist."""
     points = globe(width, height)
     pole = np.array([0.48, 0.8, 0.36])
     off = points @ (pole / np.linalg.norm(pole))
-    near = np.abs(off) < 0.4  # where there is any mist
+    near = np.abs(off) < 0.4  # pixels with mist
     off, mist, dust = off[near], fractal(11, 3 * points[near], 7), fractal(17, 5 * points[near], 6)
     band = np.exp(-((off / 0.16) ** 2)) * np.clip(2.6 * (mist - 0.3), 0, 1)
     band -= 0.9 * np.exp(-((off / 0.05) ** 2)) * np.clip(3 * (dust - 0.42), 0, 1)
@@ -188,11 +188,11 @@ def stars(width: int = 2048, height: int = 1024) -> Array:
     return colour
 
 
-SUN = np.array([0.55, 0.09, 0.83])  # where it stands in the evening sky: low, and left of the middle
+SUN = np.array([0.55, 0.09, 0.83])  # direction of the evening sun: low, and left of the middle
 
 
 def evening(width: int = 1024, height: int = 512) -> Array:
-    """A map of the sky when the sun is low: from gold over rose to blue, with clouds that are lit from below."""
+    """Draw an environment map of the evening sky: gold, rose and blue, with clouds lit from below."""
     points = globe(width, height)[..., ::-1] * [1, 1, -1]  # its middle is +z, and right of that is -x
     up = points[..., 1]
     near = np.clip(points @ (SUN / np.linalg.norm(SUN)), 0, 1)[..., None]
@@ -212,7 +212,7 @@ def evening(width: int = 1024, height: int = 512) -> Array:
 
 
 def save(folder: Path, name: str, pixels: Array, colours: int = 0) -> None:
-    """Write a picture, of so many colours where that is not 0."""
+    """Write a picture, reduced to `colours` colours unless that is 0."""
     image = Image.fromarray(np.rint(np.clip(pixels, 0, 255)).astype(np.uint8))
     if colours:
         image = image.quantize(colours, dither=Image.Dither.FLOYDSTEINBERG)
@@ -220,7 +220,7 @@ def save(folder: Path, name: str, pixels: Array, colours: int = 0) -> None:
 
 
 def main(folder: Path = FOLDER) -> None:
-    """Draw all of them."""
+    """Draw all textures."""
     folder.mkdir(parents=True, exist_ok=True)
     globe_colour, globe_heights = planet()
     wall, wall_heights = bricks()

@@ -1,4 +1,4 @@
-"""`python -m minirt` is the program `miniRT`."""
+"""Entry point of `python -m minirt`, which is the program `miniRT`."""
 
 import sys
 

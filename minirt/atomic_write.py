@@ -1,4 +1,4 @@
-"""Writing a file as a whole or not at all."""
+"""Atomic file writing: as a whole or not at all."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from pathlib import Path
 
 
 def write(path: str | os.PathLike[str], data: bytes) -> None:
-    """Puts `data` in the place of the file's contents in one step; OSError, and no trace, where that fails.
+    """Replace the contents of a file by `data` in one step; OSError when that fails, and nothing is left behind.
 
-    The file behind a symbolic link is the one that is replaced, and an existing file keeps its permissions.
+    A symbolic link stays, and its target is replaced; an existing file keeps its permissions.
     """
     target = Path(os.path.realpath(path))
-    mode = existing_mode(target)
+    mode = mode_of_existing(target)
     temporary = target.with_name(f".minirt-{secrets.token_hex(8)}.tmp")
     try:
         with temporary.open("xb") as file:
@@ -32,8 +32,8 @@ def write(path: str | os.PathLike[str], data: bytes) -> None:
         raise
 
 
-def existing_mode(target: Path) -> int | None:
-    """The permissions of the file that is to be replaced, None where there is none; OSError where it must not be."""
+def mode_of_existing(target: Path) -> int | None:
+    """Return the permissions of an existing file, None without one; OSError when it must not be replaced."""
     try:
         mode = target.stat().st_mode
     except FileNotFoundError:

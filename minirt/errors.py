@@ -1,9 +1,9 @@
-"""The errors that miniRT raises, as a tree.
+"""Exceptions of miniRT.
 
     MiniRTError
-    ├── SceneError     a scene file cannot be read, used or written: every problem found in it
-    ├── RenderError    a picture cannot be made or written
-    ├── FileError      a file that something else names, a picture, cannot be used
+    ├── SceneError     a scene file cannot be read, used or written: all of its problems
+    ├── RenderError    a picture cannot be rendered or written
+    ├── FileError      a file that a scene names, such as a texture or a mesh, cannot be used
     ├── ReplayError    a file of recorded keys cannot be played
     └── MlxError       no window can be opened
 
@@ -21,15 +21,15 @@ from dataclasses import dataclass
 
 
 class MiniRTError(Exception):
-    """Root of all errors that miniRT raises on purpose."""
+    """Base class of the errors that miniRT raises on purpose."""
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing that is wrong, or was tolerated, in a text file."""
+    """An error, or a tolerated mistake, in a text file."""
 
     file: str
-    line: int  # from 1; 0 where the whole file is meant
+    line: int  # from 1; 0 for the whole file
     column: int  # from 1, in characters
     text: str  # the line as it stands in the file
     message: str  # what was expected, and what was found
@@ -39,22 +39,22 @@ class Problem:
         file = printable(self.file)
         if not self.line:
             return f"{file}: {self.message}"
-        where = f"{file}:{self.line}:{self.column}: {self.message}"
-        return where + "\n" + excerpt(self.text, self.column, self.length)
+        location = f"{file}:{self.line}:{self.column}: {self.message}"
+        return location + "\n" + excerpt(self.text, self.column, self.length)
 
 
 def printable(text: str) -> str:
-    """`text` with a blank in the place of every character that would act on a terminal."""
+    """Replace every unprintable character, which could act on a terminal, by a blank."""
     return "".join(character if character.isprintable() else " " for character in text)
 
 
 def quoted(text: str, width: int = 40) -> str:
-    """`text` between quotes for a message: control characters escaped, and cut to `width` characters."""
+    """Quote a text for a message: control characters escaped, cut to `width` characters."""
     return repr(text if len(text) <= width else text[: width - 1] + "…")
 
 
 def excerpt(text: str, column: int, length: int, width: int = 100) -> str:
-    """The line around `column` with a caret under it, cut to `width` characters where it is longer."""
+    """Return a line with a caret under `column`; of a long line `width` characters around it."""
     start = max(0, column - 1 - width // 2) if len(text) > width else 0
     shown = printable(text[start : start + width])
     caret = " " * (column - 1 - start) + "^" + "~" * (min(length, width - (column - 1 - start)) - 1)
@@ -62,7 +62,7 @@ def excerpt(text: str, column: int, length: int, width: int = 100) -> str:
 
 
 class SceneError(MiniRTError):
-    """A scene file that cannot be read, used or written; `problems` are in the order of its lines."""
+    """A scene file cannot be read, used or written; `problems` are in the order of its lines."""
 
     def __init__(self, problems: tuple[Problem, ...]) -> None:
         self.problems = problems
@@ -70,11 +70,11 @@ class SceneError(MiniRTError):
 
 
 class RenderError(MiniRTError):
-    """A picture that cannot be made or written."""
+    """A picture cannot be rendered or written."""
 
 
 class FileError(MiniRTError):
-    """A file that cannot be used; `reason` is without its name."""
+    """A file cannot be used; `reason` is the message without the file's name."""
 
     def __init__(self, path: str | os.PathLike[str], reason: str) -> None:
         self.reason = reason
@@ -82,15 +82,15 @@ class FileError(MiniRTError):
 
 
 class ReplayError(MiniRTError):
-    """A file of recorded keys that cannot be played."""
+    """A file of recorded keys cannot be played."""
 
 
 class MlxError(MiniRTError):
-    """No window can be opened, or a window call was wrong."""
+    """No window can be opened, or a window function was called wrongly."""
 
 
 class FieldError(ValueError):
-    """A value that a field cannot take; `part` is the component that is to blame, from 0, or None for all of it."""
+    """A value that a field cannot take; `part` is the number of the wrong component, from 0, None for all of it."""
 
     def __init__(self, message: str, part: int | None = None) -> None:
         super().__init__(message)
@@ -98,4 +98,4 @@ class FieldError(ValueError):
 
 
 class ElementError(ValueError):
-    """Fields of an element that do not go together."""
+    """Fields of a scene element that do not go together."""

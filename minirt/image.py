@@ -1,4 +1,4 @@
-"""Pictures: pixels in memory, and PNG and friends outside of it (Pillow)."""
+"""Pictures in memory, written to PNG and other formats by Pillow."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def format_of(path: str | os.PathLike[str]) -> str:
-    """Pillow's name of the format that a file name's extension stands for; RenderError where it can write none."""
+    """Return Pillow's name of the format of a file extension; RenderError when Pillow cannot write it."""
     from PIL import Image as pillow  # noqa: N813
 
     suffix = Path(path).suffix.lower()
@@ -33,26 +33,26 @@ def format_of(path: str | os.PathLike[str]) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Image:
-    """A picture; in a notebook it shows itself."""
+    """A picture; notebooks display it."""
 
-    array: np.ndarray  # (h, w, 3) uint8, red green blue
-    linear: np.ndarray | None = None  # (h, w, 3) float64, the light before it was clamped and rounded
-    reached: Outcome | None = None  # samples and estimated error, where an error or a time was asked for
+    array: np.ndarray  # (h, w, 3) uint8, RGB
+    linear: np.ndarray | None = None  # (h, w, 3) float64, radiance before clamping and rounding
+    reached: Outcome | None = None  # samples and estimated error of a picture with samples="auto"
 
     @classmethod
     def from_bgra(cls, pixels: np.ndarray, linear: np.ndarray | None = None, reached: Outcome | None = None) -> Image:
-        """The picture in a framebuffer (h, w, 4) in the order blue, green, red, alpha."""
+        """Make a picture of a frame buffer, (h, w, 4) in the order blue, green, red, alpha."""
         return cls(np.ascontiguousarray(pixels[..., 2::-1]), linear, reached)
 
     @cached_property
     def pil(self) -> PillowImage:
-        """The picture as an image of Pillow."""
+        """The picture as a Pillow image."""
         from PIL import Image as pillow  # noqa: N813
 
         return pillow.fromarray(self.array)
 
     def encode(self, name: str = "PNG") -> bytes:
-        """The picture as a file of a format of Pillow; RenderError where that format cannot hold it."""
+        """Return the bytes of a file in a format of Pillow; RenderError when the format cannot hold the picture."""
         buffer = io.BytesIO()
         try:
             self.pil.save(buffer, name)
@@ -61,7 +61,7 @@ class Image:
         return buffer.getvalue()
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a file in the format of its extension, as a whole or not at all; RenderError where that fails."""
+        """Write a file in the format of its extension, as a whole or not at all; RenderError when that fails."""
         data = self.encode(format_of(path))
         try:
             atomic_write.write(path, data)
@@ -69,4 +69,5 @@ class Image:
             raise RenderError(f"{os.fspath(path)}: cannot write: {error.strerror or error}") from None
 
     def _repr_png_(self) -> bytes:
+        """Return the picture as PNG; notebooks call this."""
         return self.encode()

@@ -1,4 +1,4 @@
-"""Moving pictures: an animated GIF, or numbered pictures of any other format."""
+"""Movies: an animated GIF, or numbered pictures in any other format."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ if TYPE_CHECKING:
 
     from minirt.image import Image
 
-FPS = 25.0  # pictures a second
-COLOURS = 256  # of each picture of a GIF
+FPS = 25.0  # frames per second
+COLOURS = 256  # of each frame of a GIF
 
-Thing = TypeVar("Thing")
+T = TypeVar("T")
 
 
 def save_movie(pictures: Iterable[Image], path: str | os.PathLike[str], fps: float = FPS) -> list[Path]:
-    """Write pictures that are shown one after the other, `fps` of them a second; returns the files.
+    """Write a movie of `fps` pictures per second; return its files.
 
-    A name that ends in .gif is one file, written as a whole or not at all, that plays again and again; of any other,
-    such as spin.png, each picture is a file of its own: spin-0001.png, spin-0002.png, ... RenderError where there is no
-    picture, or a file cannot be written.
+    A path that ends in .gif gives one looping file, written as a whole or not at all. Any other path, such as spin.png,
+    gives a file for each picture: spin-0001.png, spin-0002.png, ... RenderError without pictures, or when a file cannot
+    be written.
     """
     target = Path(path)
     if target.suffix.lower() == ".gif":
-        data = gif(pictures, fps)
+        data = encode_gif(pictures, fps)
         try:
             atomic_write.write(target, data)
         except OSError as error:
@@ -48,29 +48,29 @@ def save_movie(pictures: Iterable[Image], path: str | os.PathLike[str], fps: flo
     return written
 
 
-def gif(pictures: Iterable[Image], fps: float) -> bytes:
-    """The bytes of a GIF. Its time is counted in hundredths of a second."""
-    frames = [reduced(picture.pil) for picture in pictures]
+def encode_gif(pictures: Iterable[Image], fps: float) -> bytes:
+    """Return the bytes of a looping GIF; the format counts durations in hundredths of a second."""
+    frames = [quantise(picture.pil) for picture in pictures]
     if not frames:
         raise RenderError("a movie needs a picture")
     buffer = io.BytesIO()
-    duration = 10 * max(2, round(100 / fps))  # ms; what is shorter than 20 many programs play slowly
+    duration = 10 * max(2, round(100 / fps))  # ms; many programs slow down frames shorter than 20 ms
     frames[0].save(buffer, "GIF", save_all=True, append_images=frames[1:], duration=duration, loop=0, optimize=True)
     return buffer.getvalue()
 
 
-def reduced(picture: PillowImage) -> PillowImage:
-    """The picture with few colours: by an octree, which keeps those of small things and takes two thirds of the bytes
-    that a median cut takes."""
+def quantise(picture: PillowImage) -> PillowImage:
+    """Reduce a picture to 256 colours by an octree, which keeps the colours of small objects and takes two thirds
+    of the bytes of a median cut."""
     from PIL.Image import Dither, Quantize
 
     return picture.quantize(COLOURS, Quantize.FASTOCTREE, dither=Dither.NONE)
 
 
-def with_progress(things: Iterable[Thing], count: int, what: str) -> Iterator[Thing]:
-    """The things, while a terminal at standard error is told how many are done."""
-    told = sys.stderr.isatty()
-    for number, thing in enumerate(things, 1):
-        yield thing
-        if told:
-            print(f"\r{what} {number} of {count}", end="\n" if number == count else "", file=sys.stderr, flush=True)
+def with_progress(items: Iterable[T], count: int, noun: str) -> Iterator[T]:
+    """Yield the items, and print after each how many of `count` are done, if standard error is a terminal."""
+    terminal = sys.stderr.isatty()
+    for number, item in enumerate(items, 1):
+        yield item
+        if terminal:
+            print(f"\r{noun} {number} of {count}", end="\n" if number == count else "", file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""Reads regular files, of a limited size and without waiting for anything."""
+"""Read regular files of limited size; FIFOs and devices are refused without waiting for them."""
 
 from __future__ import annotations
 
@@ -10,29 +10,29 @@ from minirt.errors import FileError
 
 
 def reason(error: OSError | ValueError) -> str:
-    """Why the system does not do something with a file; a ValueError is about a path that no file can have."""
+    """Return the system's reason for a failure; a ValueError is about a path that no file can have."""
     return str(error.strerror).lower() if isinstance(error, OSError) else "no file can have this name"
 
 
 def status(path: str | os.PathLike[str], largest: int) -> os.stat_result:
-    """What is known of a regular file of at most `largest` bytes; FileError where it is something else."""
+    """Return the status of a regular file of at most `largest` bytes; FileError for anything else."""
     try:
-        return checked(path, Path(path).stat(), largest)
+        return check_regular(path, Path(path).stat(), largest)
     except (OSError, ValueError) as error:
         raise FileError(path, f"cannot be read: {reason(error)}") from None
 
 
 def read(path: str | os.PathLike[str], largest: int) -> bytes:
-    """The bytes of a regular file; FileError where there are more than `largest`, or none to be had.
+    """Return the bytes of a regular file; FileError when it has more than `largest` or cannot be read.
 
-    What is not a regular file is refused before it is opened, and opening does not wait, so that a FIFO or a device
-    that takes the file's place in between cannot hang the program.
+    Anything but a regular file is refused before it is opened, and opening does not block: a FIFO or a device that
+    takes the file's place in between cannot hang the program.
     """
     status(path, largest)
     try:
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with os.fdopen(descriptor, "rb") as file:
-            checked(path, os.fstat(descriptor), largest)
+            check_regular(path, os.fstat(descriptor), largest)
             data = file.read(largest + 1)
     except (OSError, ValueError) as error:
         raise FileError(path, f"cannot be read: {reason(error)}") from None
@@ -40,17 +40,17 @@ def read(path: str | os.PathLike[str], largest: int) -> bytes:
     return data
 
 
-def checked(path: str | os.PathLike[str], found: os.stat_result, largest: int) -> os.stat_result:
-    """The same; FileError where it is not that of a regular file of at most `largest` bytes."""
-    if stat.S_ISDIR(found.st_mode):
+def check_regular(path: str | os.PathLike[str], status: os.stat_result, largest: int) -> os.stat_result:
+    """Return `status`; FileError unless it is that of a regular file of at most `largest` bytes."""
+    if stat.S_ISDIR(status.st_mode):
         raise FileError(path, "is a folder")
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         raise FileError(path, "is not a regular file")
-    check_size(path, found.st_size, largest)
-    return found
+    check_size(path, status.st_size, largest)
+    return status
 
 
 def check_size(path: str | os.PathLike[str], size: int, largest: int) -> None:
-    """FileError where a file has more bytes than it may."""
+    """Check that a file has at most `largest` bytes; FileError otherwise."""
     if size > largest:
         raise FileError(path, f"larger than {largest // 2**20} MiB")

@@ -1,4 +1,4 @@
-"""How two pictures of the same scene may differ."""
+"""Compare a picture with a reference picture of the same scene."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Bytes = NDArray[np.uint8]  # (h, w, 3)
 
 
 def edges(picture: Bytes, step: int = 8) -> NDArray[np.bool_]:
-    """The pixels that differ from one of their neighbours by more than `step`: outlines and the edges of shadows."""
+    """Return a mask of the pixels that differ from a neighbour by more than `step`: outlines and edges of shadows."""
     padded = np.pad(picture.astype(int), ((1, 1), (1, 1), (0, 0)), mode="edge")
     height, width, _ = picture.shape
     around = [padded[i : i + height, j : j + width] for i in range(3) for j in range(3)]
@@ -22,12 +22,12 @@ def edges(picture: Bytes, step: int = 8) -> NDArray[np.bool_]:
 
 
 def off(picture: Bytes, reference: Bytes) -> NDArray[np.bool_]:
-    """The pixels that differ by more than the last bit."""
+    """Return a mask of the pixels that differ by more than 1 of 255."""
     return np.abs(picture.astype(int) - reference).max(axis=-1) > 1
 
 
 def assert_alike(name: str, picture: Bytes, reference: Bytes, share: float = 1e-3) -> None:
-    """At most this share of the pixels is off, and of these each at an edge. What fails is left in a folder."""
+    """Check that at most `share` of the pixels is off, and only at edges; a failure leaves its pictures in a folder."""
     wrong = off(picture, reference)
     if wrong.mean() < share and not (wrong & ~edges(reference)).any():
         return

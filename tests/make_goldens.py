@@ -1,6 +1,6 @@
-"""Makes the golden pictures anew, with the reference renderer: `python -m tests.make_goldens`.
+"""Render the golden pictures again, with the reference renderer: `python -m tests.make_goldens`.
 
-Look at each of them afterwards: they are what the program is measured by.
+Look at each of them afterwards: the tests compare the program with them.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ SIZE = (320, 180)
 
 
 def golden(scene: Scene) -> Bytes:
-    """The picture of a scene as it should be."""
+    """Render the golden picture of a scene."""
     return to_bytes(render(scene, *SIZE))
 
 

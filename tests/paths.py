@@ -1,4 +1,4 @@
-"""Folders of the project that tests read."""
+"""Paths of the project's folders."""
 
 from __future__ import annotations
 

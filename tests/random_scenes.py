@@ -1,4 +1,4 @@
-"""Random scenes: eyes and lamps anywhere, also inside of things, and things of many sizes through each other."""
+"""Random scenes: intersecting shapes of many sizes, cameras and lights anywhere, also inside shapes."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ AXES = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, -1, 0), (0, 0, -1)]
 
 
 def random_scene(seed: int) -> Scene:
-    """The scene of that number."""
+    """Make the scene of a seed."""
     random = np.random.default_rng(seed)
     offset = random.choice([0, 0, 0, 1e3, 1e5]) * random.normal(size=3)
 
-    def place(spread: float) -> tuple[float, ...]:
+    def point(spread: float) -> tuple[float, ...]:
         return tuple(offset + spread * random.normal(size=3))
 
-    def way() -> tuple[float, ...]:
+    def direction() -> tuple[float, ...]:
         v = random.normal(size=3)
         return AXES[random.integers(6)] if random.random() < 0.3 else tuple(v / np.abs(v).max())
 
@@ -35,23 +35,23 @@ def random_scene(seed: int) -> Scene:
     def shape() -> Shape:
         kind = random.choice(["sphere", "sphere", "cylinder", "cylinder", "plane"])
         if kind == "plane":
-            return Plane(place(6), way(), colour())
+            return Plane(point(6), direction(), colour())
         if kind == "sphere":
-            return Sphere(place(3), 2 * size(), colour())
-        return Cylinder(place(3), way(), size(), 3 * size(), colour())
+            return Sphere(point(3), 2 * size(), colour())
+        return Cylinder(point(3), direction(), size(), 3 * size(), colour())
 
     shapes = [shape() for _ in range(random.choice([1, 2, 4, 8, 12, 40]))]
-    lamps: list[Element] = [
-        FurtherLight(place(5), random.uniform(0.2, 0.8), colour()) for _ in range(random.integers(3))
+    lights: list[Element] = [
+        FurtherLight(point(5), random.uniform(0.2, 0.8), colour()) for _ in range(random.integers(3))
     ]
-    inside = random.choice(shapes)
-    middle = inside.point if isinstance(inside, Plane) else inside.centre
-    near_middle = tuple(np.array(middle) + 0.05 * random.normal(size=3))
-    eye = near_middle if random.random() < 0.25 else place(7)
-    lamp = near_middle if random.random() < 0.25 else place(6)
-    towards = np.array(middle) - eye
-    look = way() if random.random() < 0.4 else tuple(towards / np.abs(towards).max())
+    target = random.choice(shapes)
+    centre = target.point if isinstance(target, Plane) else target.centre
+    near_centre = tuple(np.array(centre) + 0.05 * random.normal(size=3))
+    eye = near_centre if random.random() < 0.25 else point(7)
+    light = near_centre if random.random() < 0.25 else point(6)
+    towards = np.array(centre) - eye
+    look = direction() if random.random() < 0.4 else tuple(towards / np.abs(towards).max())
     roll = float(random.choice([0, 0, random.uniform(-360, 360)]))
     camera = Camera(eye, look, random.uniform(20, 140), roll=roll)
-    surround = [Sphere(eye, 60, colour())] if random.random() < 0.3 else []  # so that every ray hits something
-    return Scene([Ambient(0.2, colour()), camera, Light(lamp, 0.7, colour()), *lamps, *shapes, *surround])
+    enclosure = [Sphere(eye, 60, colour())] if random.random() < 0.3 else []  # so that every ray hits something
+    return Scene([Ambient(0.2, colour()), camera, Light(light, 0.7, colour()), *lights, *shapes, *enclosure])

@@ -1,4 +1,4 @@
-"""miniRT as a library."""
+"""The library: load, render and edit scenes in Python."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ def scene() -> minirt.Scene:
     return minirt.load(SUBJECT)
 
 
-def test_what_is_in_the_package() -> None:
+def test_the_package_has_its_public_names_and_types() -> None:
     assert all(hasattr(minirt, name) for name in minirt.__all__)
     assert (Path(minirt.__file__).parent / "py.typed").exists()
 
 
 @pytest.mark.parametrize("path", [SUBJECT, str(SUBJECT)])
-def test_a_picture_of_a_scene(path: Path | str) -> None:
+def test_render_gives_bytes_and_linear_radiance_of_the_reference(path: Path | str) -> None:
     image = minirt.render(minirt.load(path), 64, 48)
     assert (image.array.shape, image.array.dtype) == ((48, 64, 3), np.uint8)
     assert (image.linear.shape, image.linear.dtype) == ((48, 64, 3), np.float64)
@@ -37,7 +37,7 @@ def test_a_picture_of_a_scene(path: Path | str) -> None:
     assert image._repr_png_().startswith(b"\x89PNG")
 
 
-def test_a_picture_in_a_file(scene: minirt.Scene, tmp_path: Path) -> None:
+def test_save_writes_the_encoded_picture(scene: minirt.Scene, tmp_path: Path) -> None:
     image = minirt.render(scene, 32, 18)
     image.save(tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes() == image.encode()
@@ -53,30 +53,30 @@ def test_the_size_is_the_scenes_own_or_the_default(scene: minirt.Scene) -> None:
 
 
 @pytest.mark.parametrize("size", [(-1, 5), (5, -1)])
-def test_a_size_below_one_pixel(scene: minirt.Scene, size: tuple[int, int]) -> None:
+def test_a_negative_size_is_an_error(scene: minirt.Scene, size: tuple[int, int]) -> None:
     with pytest.raises(minirt.RenderError, match=f"at least 1x1 pixels, got {size[0]}x{size[1]}"):
         minirt.render(scene, *size)
 
 
 @pytest.mark.parametrize("size", [(0, 5), (5, 0)])
-def test_a_size_of_zero(scene: minirt.Scene, size: tuple[int, int]) -> None:
+def test_a_size_of_zero_is_an_error(scene: minirt.Scene, size: tuple[int, int]) -> None:
     with pytest.raises(minirt.RenderError, match="at least 1x1 pixels"):
         minirt.render(scene, *size)
 
 
-def test_no_samples(scene: minirt.Scene) -> None:
+def test_zero_samples_are_an_error(scene: minirt.Scene) -> None:
     with pytest.raises(minirt.RenderError, match="at least 1 sample"):
         minirt.render(scene, 4, 4, samples=0)
 
 
-def test_more_samples_are_nearer_to_the_mean_of_the_pixels(scene: minirt.Scene) -> None:
+def test_the_error_falls_with_the_number_of_samples(scene: minirt.Scene) -> None:
     fine = minirt.render(scene, 320, 180).linear.reshape(18, 10, 32, 10, 3).mean(axis=(1, 3))
     errors = [np.sqrt(((minirt.render(scene, 32, 18, samples=n).linear - fine) ** 2).mean()) for n in (1, 4, 16, 64)]
     assert errors == sorted(errors, reverse=True)
     assert errors[-1] < errors[0] / 5
 
 
-def test_a_picture_says_what_it_reached(scene: minirt.Scene) -> None:
+def test_auto_samples_report_the_error_and_samples_reached(scene: minirt.Scene) -> None:
     image = minirt.render(scene, 96, 54, samples="auto", error=0.004)
     fine = np.clip(minirt.render(scene, 96, 54, samples=1000).linear, 0, 1)
     assert image.reached.error <= 0.004
@@ -88,7 +88,7 @@ def test_a_picture_says_what_it_reached(scene: minirt.Scene) -> None:
 
 
 @pytest.mark.parametrize("goal", [{"error": 0}, {"error": -1.0}, {"time": 0}, {"error": float("nan")}])
-def test_a_goal_that_cannot_be_reached(scene: minirt.Scene, goal: dict[str, float]) -> None:
+def test_a_goal_that_is_not_positive_or_without_auto_is_an_error(scene: minirt.Scene, goal: dict[str, float]) -> None:
     with pytest.raises(minirt.RenderError, match=f"{next(iter(goal))} must be > 0"):
         minirt.render(scene, 4, 4, samples="auto", **goal)
     with pytest.raises(minirt.RenderError, match="needs samples='auto', got 4"):
@@ -99,7 +99,7 @@ def test_threads_do_not_change_the_picture(scene: minirt.Scene) -> None:
     assert np.array_equal(*(minirt.render(scene, 50, 40, threads=n).linear for n in (1, 3)))
 
 
-def test_scenes_are_edited_into_new_ones(scene: minirt.Scene) -> None:
+def test_an_edit_makes_a_new_scene(scene: minirt.Scene) -> None:
     before = minirt.render(scene, 32, 18).array
     larger = scene.replace(scene.spheres[0], diameter=30)
     assert larger.spheres[0].diameter == 30
@@ -117,15 +117,15 @@ def test_scenes_are_edited_into_new_ones(scene: minirt.Scene) -> None:
         scene.items = ()  # type: ignore[misc]
 
 
-def test_scenes_can_be_made_without_a_file() -> None:
+def test_a_scene_can_be_made_without_a_file() -> None:
     ball = minirt.Sphere((0, 0, 5), 2, (255, 0, 0))
-    made = minirt.Scene((minirt.Ambient(1, (255, 255, 255)), minirt.Camera((0, 0, 0), (0, 0, 1), 60), ball))
-    assert minirt.render(made, 9, 9).array[4, 4].tolist() == [255, 0, 0]
-    assert minirt.render(made, 9, 9).array[0, 0].tolist() == [0, 0, 0]
-    assert pickle.loads(pickle.dumps(made)) == made
+    scene = minirt.Scene((minirt.Ambient(1, (255, 255, 255)), minirt.Camera((0, 0, 0), (0, 0, 1), 60), ball))
+    assert minirt.render(scene, 9, 9).array[4, 4].tolist() == [255, 0, 0]
+    assert minirt.render(scene, 9, 9).array[0, 0].tolist() == [0, 0, 0]
+    assert pickle.loads(pickle.dumps(scene)) == scene
 
 
-def test_errors_name_all_that_is_wrong(tmp_path: Path) -> None:
+def test_an_error_has_all_problems_of_a_file(tmp_path: Path) -> None:
     path = tmp_path / "bad.rt"
     path.write_text("A 0.2 255,255,255\nC 0,0,0 0,0,1 999\nsp 0,0,0 -1 1,2,3\n")
     with pytest.raises(minirt.SceneError) as caught:
@@ -135,7 +135,7 @@ def test_errors_name_all_that_is_wrong(tmp_path: Path) -> None:
     assert str(caught.value).startswith(f"{path}:2:15: camera fov must be in [0, 180], got 999")
 
 
-def test_older_scenes_are_read_leniently() -> None:
+def test_the_lenient_reader_accepts_older_scenes() -> None:
     printed = SCENES / "subject-as-printed.rt"
     with pytest.raises(minirt.SceneError):
         minirt.load(printed)

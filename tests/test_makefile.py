@@ -1,4 +1,4 @@
-"""The Makefile tells what there is to make."""
+"""The Makefile lists its targets and makes the program by default."""
 
 from __future__ import annotations
 
@@ -33,3 +33,9 @@ def test_the_program_comes_first() -> None:
     done = run(["make", "--dry-run", "--always-make"], cwd=ROOT, env=OUTSIDE, text=True)
     assert "pip" in done.stdout
     assert done.stdout.rstrip().endswith("touch .venv/bin/miniRT")
+
+
+def test_test_files_that_it_names_exist() -> None:
+    named = re.findall(r"\btests/[\w/]+\.py\b", MAKEFILE)
+    assert len(named) > 5
+    assert [path for path in named if not (ROOT / path).is_file()] == []

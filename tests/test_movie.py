@@ -1,4 +1,4 @@
-"""Moving pictures: what is in the files, and that there is none where something goes wrong."""
+"""Movies have the right frames, and a failure leaves no half file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from PIL import Image as pillow  # noqa: N813
 import minirt
 from minirt.errors import RenderError
 from minirt.movie import save_movie, with_progress
-from minirt.viewer.app.animation import FPS as FILM
+from minirt.viewer.app.animation import FPS as ANIMATION_FPS
 from minirt.viewer.app.animation import TICKS, animation, turntable
 from minirt.viewer.editing.measure import middle_of
 from minirt.viewer.editing.projection import projection
@@ -22,30 +22,31 @@ from tests.viewer.fake import FakeRenderer, scene
 COLOURS = [(250, 0, 0), (0, 250, 0), (0, 0, 250)]
 
 
-def plain(colour) -> minirt.Image:
+def uniform(colour) -> minirt.Image:
+    """Return a picture of one colour."""
     return minirt.Image(np.full((6, 8, 3), colour, np.uint8))
 
 
-def test_a_gif_has_all_pictures_and_plays_for_ever(tmp_path):
-    (path,) = save_movie(map(plain, COLOURS), tmp_path / "a.gif", fps=10)
-    with pillow.open(path) as found:
-        assert (found.n_frames, found.info["duration"], found.info["loop"], found.size) == (3, 100, 0, (8, 6))
+def test_a_gif_has_all_pictures_and_loops(tmp_path):
+    (path,) = save_movie(map(uniform, COLOURS), tmp_path / "a.gif", fps=10)
+    with pillow.open(path) as gif:
+        assert (gif.n_frames, gif.info["duration"], gif.info["loop"], gif.size) == (3, 100, 0, (8, 6))
         for number, colour in enumerate(COLOURS):
-            found.seek(number)
-            shown = np.asarray(found.convert("RGB")).astype(int)
+            gif.seek(number)
+            shown = np.asarray(gif.convert("RGB")).astype(int)
             assert np.abs(shown - colour).max() <= 4
 
 
-def test_other_files_are_numbered(tmp_path):
-    written = save_movie(map(plain, COLOURS), tmp_path / "a b.png")
+def test_other_formats_give_numbered_files(tmp_path):
+    written = save_movie(map(uniform, COLOURS), tmp_path / "a b.png")
     assert [path.name for path in written] == ["a b-0001.png", "a b-0002.png", "a b-0003.png"]
-    assert np.array_equal(np.asarray(pillow.open(written[1])), plain(COLOURS[1]).array)
+    assert np.array_equal(np.asarray(pillow.open(written[1])), uniform(COLOURS[1]).array)
 
 
 @pytest.mark.parametrize("name", ["a.gif", "a.png"])
-def test_what_ends_early_leaves_no_half_file(tmp_path, name):
+def test_an_interrupted_movie_leaves_no_half_file(tmp_path, name):
     def pictures():
-        yield plain(COLOURS[0])
+        yield uniform(COLOURS[0])
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
@@ -53,15 +54,15 @@ def test_what_ends_early_leaves_no_half_file(tmp_path, name):
     assert [file.name for file in tmp_path.iterdir()] == ([] if name == "a.gif" else ["a-0001.png"])
 
 
-def test_errors(tmp_path):
+def test_no_pictures_and_unwritable_paths_are_errors(tmp_path):
     for name in ("a.gif", "a.png"):
         with pytest.raises(RenderError, match="needs a picture"):
             save_movie([], tmp_path / name)
         with pytest.raises(RenderError, match="cannot write"):
-            save_movie([plain(COLOURS[0])], tmp_path / "none" / name)
+            save_movie([uniform(COLOURS[0])], tmp_path / "none" / name)
 
 
-def test_a_turntable_goes_once_round():
+def test_a_turntable_circles_the_scene_once():
     start = scene()
     middle = middle_of(start)
     views = list(turntable(start, 8))
@@ -79,20 +80,20 @@ def test_a_turntable_goes_once_round():
     )
 
 
-def test_a_film_has_a_picture_for_each_part_of_the_time():
+def test_an_animation_has_frames_for_its_whole_duration():
     lines = ["wait 1", "move 20,20", "hold d 0.5"]
     frames = animation(scene(), lines, renderer=FakeRenderer(), size=(64, 48), path="scene.rt")
-    assert abs(len(frames) - 1.5 * FILM) <= 2
-    assert TICKS % FILM == 0
+    assert abs(len(frames) - 1.5 * ANIMATION_FPS) <= 2
+    assert TICKS % ANIMATION_FPS == 0
     assert np.array_equal(frames[0].array, frames[3].array)
     assert (frames[-3].array[20:40, 20:32] == 255).all(axis=2).any()  # the pointer
     assert not np.array_equal(frames[-3].array, frames[-2].array)  # the camera moves
 
 
-def test_progress_is_told_to_a_terminal_alone(monkeypatch):
-    for terminal, said in ((True, "\rpicture 1 of 2\rpicture 2 of 2\n"), (False, "")):
-        told = io.StringIO()
-        told.isatty = lambda terminal=terminal: terminal
-        monkeypatch.setattr(sys, "stderr", told)
+def test_progress_is_printed_to_a_terminal_only(monkeypatch):
+    for terminal, printed in ((True, "\rpicture 1 of 2\rpicture 2 of 2\n"), (False, "")):
+        stream = io.StringIO()
+        stream.isatty = lambda terminal=terminal: terminal
+        monkeypatch.setattr(sys, "stderr", stream)
         assert list(with_progress("ab", 2, "picture")) == ["a", "b"]
-        assert told.getvalue() == said
+        assert stream.getvalue() == printed

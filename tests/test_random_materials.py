@@ -1,6 +1,6 @@
-"""Random scenes of all shapes, lamps and materials at once, against the reference renderer.
+"""Random scenes of all shapes, lights and materials equal the reference renderer.
 
-Each has all kinds and features, so that they share a kernel.
+Each scene has all kinds of shapes and all features, so that all share one kernel.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from tests.reference import render, to_bytes
 
 
 def material_scene(seed: int) -> Scene:
-    """The scene of that number."""
+    """Make the scene of a seed."""
     random = np.random.default_rng(seed)
 
-    def place(spread: float = 4) -> tuple[float, ...]:
+    def point(spread: float = 4) -> tuple[float, ...]:
         return tuple(spread * random.normal(size=3))
 
-    def way() -> tuple[float, ...]:
+    def direction() -> tuple[float, ...]:
         v = random.normal(size=3)
         return tuple(v / np.linalg.norm(v))
 
@@ -48,17 +48,17 @@ def material_scene(seed: int) -> Scene:
 
     shapes: list[Shape] = [
         Plane((0, -9, 0), (0, 1, 0), colour()),
-        Sphere(place(), size(), colour()),
-        Sphere(place(), 2 * size(), colour()),
-        Cylinder(place(), way(), size(), 2 * size(), colour()),
-        Cone(place(), way(), size(), 2 * size(), colour()),
-        Paraboloid(place(), way(), size(), size(), colour()),
-        Hyperboloid(place(), way(), 0.8, 0.8 + size(), 2 * size(), colour()),
-        Torus(place(), way(), 2 + size(), 1.2, colour()),
-        Box(place(), way(), (size(), size(), size()), colour()),
-        Square(place(), way(), 2 * size(), colour()),
-        Disc(place(), way(), 2 * size(), colour()),
-        Triangle(place(), place(), place(), colour()),
+        Sphere(point(), size(), colour()),
+        Sphere(point(), 2 * size(), colour()),
+        Cylinder(point(), direction(), size(), 2 * size(), colour()),
+        Cone(point(), direction(), size(), 2 * size(), colour()),
+        Paraboloid(point(), direction(), size(), size(), colour()),
+        Hyperboloid(point(), direction(), 0.8, 0.8 + size(), 2 * size(), colour()),
+        Torus(point(), direction(), 2 + size(), 1.2, colour()),
+        Box(point(), direction(), (size(), size(), size()), colour()),
+        Square(point(), direction(), 2 * size(), colour()),
+        Disc(point(), direction(), 2 * size(), colour()),
+        Triangle(point(), point(), point(), colour()),
     ]
     materials = [
         {"specular": Specular(random.random(), 1 + 40 * random.random(), blinn=random.random() < 0.5)},
@@ -69,34 +69,34 @@ def material_scene(seed: int) -> Scene:
         {"bump": Bump("textures/water-height.png", random.uniform(-0.05, 0.05))},
         {"normal_map": "textures/bricks-normal.png"},
     ]
-    # Each of them is somewhere, and every shape has about two.
+    # Each material is on at least one shape, and every shape has about two.
     owners = random.permutation(len(shapes))[: len(materials)]
-    dressed = [
-        shape.replace(
+    with_materials = [
+        shape.repoint(
             **{
                 name: value
-                for number, each in enumerate(materials)
-                for name, value in each.items()
+                for number, material in enumerate(materials)
+                for name, value in material.items()
                 if owners[number] == index or random.random() < 0.15
             }
         )
         for index, shape in enumerate(shapes)
     ]
-    eye = np.array(place(9))
-    lamps: list[Element] = [
-        Light(place(7), 0.4, colour()),
-        FurtherLight(place(7), 0.5, colour(), fade=30.0),
-        ParallelLight(way(), 0.3, colour()),
+    eye = np.array(point(9))
+    lights: list[Element] = [
+        Light(point(7), 0.4, colour()),
+        FurtherLight(point(7), 0.5, colour(), fade=30.0),
+        ParallelLight(direction(), 0.3, colour()),
         SpotLight(tuple(eye), tuple(-eye / np.linalg.norm(eye)), 60, 0.6, colour(), rim=random.random()),
     ]
     camera = Camera.look_at(tuple(eye), (0, 0, 0), fov=60, roll=30 * random.random())
     return Scene(
-        [Ambient(0.2, colour()), camera, Background("textures/evening.png"), *lamps, *dressed], SCENES / "x.rt"
+        [Ambient(0.2, colour()), camera, Background("textures/evening.png"), *lights, *with_materials], SCENES / "x.rt"
     )
 
 
 @pytest.mark.parametrize("batch", range(4))
-def test_random_scenes_of_everything(batch: int) -> None:
+def test_random_scenes_with_all_features_equal_the_reference(batch: int) -> None:
     wrong = total = 0
     for seed in range(batch * 8, batch * 8 + 8):
         scene = material_scene(seed)

@@ -1,4 +1,4 @@
-"""The reference renderer, on pictures whose every pixel is known by hand."""
+"""The reference renderer gives pictures that are known analytically."""
 
 from __future__ import annotations
 
@@ -24,25 +24,26 @@ WALL = Plane((0, 0, 10), (0, 0, 1), (200, 100, 50))
 
 
 def picture(*elements: Element, width: int = 1, height: int = 1) -> np.ndarray:
+    """Render a scene of these elements."""
     return render(Scene(elements), width, height)
 
 
-def spread(count: int) -> np.ndarray:
-    """The pixel centres of a picture that spans -1 to 1."""
+def pixel_centres(count: int) -> np.ndarray:
+    """Return the pixel centres of a picture that spans -1 to 1."""
     return (2 * np.arange(count) + 1) / count - 1
 
 
-def test_a_wall_lit_head_on_gets_all_of_the_light() -> None:
+def test_a_wall_lit_perpendicularly_gets_the_whole_light() -> None:
     assert_allclose(picture(DIM, FORWARD, Light(ORIGIN, 0.6), WALL)[0, 0], np.array([200, 100, 50]) / 255 * 0.8)
 
 
 def test_a_wall_lit_at_an_angle_gets_the_cosine() -> None:
-    # The outer pixels of three look 2/3 sideways for each 1 forward; the light is at the eye.
+    # The rays of the outer of three pixels have slope 2/3; the light is at the eye.
     row = picture(FORWARD, Light(ORIGIN, 1.0), WALL, width=3)[0, :, 0]
     assert_allclose(row, 200 / 255 * np.array([3 / 13**0.5, 1, 3 / 13**0.5]))
 
 
-def test_ambient_light_alone_is_its_colour_times_the_surface() -> None:
+def test_ambient_light_is_multiplied_by_the_surface_colour() -> None:
     assert_allclose(picture(Ambient(0.5, (255, 51, 0)), FORWARD, WALL)[0, 0], [100 / 255, 10 / 255, 0])
 
 
@@ -52,20 +53,20 @@ def test_lights_add_up_in_their_own_colours() -> None:
     assert_allclose(picture(FORWARD, *lights, white_wall)[0, 0], [0.75, 0, 0.5])
 
 
-def test_nothing_hit_is_black() -> None:
+def test_rays_that_hit_nothing_are_black() -> None:
     behind = Sphere((0, 0, -5), 2, WHITE)
     assert not picture(Ambient(1.0, WHITE), FORWARD, behind, width=4, height=4).any()
 
 
 def test_the_outline_of_a_sphere_is_its_tangent_cone() -> None:
-    x, y = spread(100), -spread(100)[:, None]
+    x, y = pixel_centres(100), -pixel_centres(100)[:, None]
     sphere = Sphere((0, 0, 5), 6, WHITE)  # a 3-4-5 triangle: its edge is seen 3/4 off the axis
     shown = picture(DIM, FORWARD, sphere, width=100, height=100)[..., 0]
     assert np.array_equal(shown, 0.2 * (x**2 + y**2 < 9 / 16))
 
 
 def test_the_outline_of_an_upright_cylinder() -> None:
-    x, y = spread(65), -spread(65)[:, None]  # the middle row is exactly level
+    x, y = pixel_centres(65), -pixel_centres(65)[:, None]  # the middle row is exactly level
     tube = Cylinder((0, 0, 5), (0, 1, 0), 6, 2, WHITE)
     shown = picture(DIM, FORWARD, tube, width=65, height=65)[..., 0]
     inside = x**2 < 9 / 16
@@ -75,7 +76,7 @@ def test_the_outline_of_an_upright_cylinder() -> None:
 
 @pytest.mark.parametrize("axis", [(0, 0, 1), (0, 0, -1)])
 def test_the_cap_of_a_cylinder_is_a_flat_disc(axis: Triple) -> None:
-    x, y = spread(50), -spread(50)[:, None]
+    x, y = pixel_centres(50), -pixel_centres(50)[:, None]
     cap = Cylinder((0, 0, 5), axis, 2, 6, WHITE)  # its near cap is at z = 2
     shown = picture(FORWARD, Light(ORIGIN, 1.0), cap, width=50, height=50)[..., 0]
     assert_allclose(shown, np.where(x**2 + y**2 < 1 / 4, 1 / np.sqrt(1 + x**2 + y**2), 0))
@@ -84,43 +85,43 @@ def test_the_cap_of_a_cylinder_is_a_flat_disc(axis: Triple) -> None:
 def test_the_inside_of_a_cylinder_along_and_across_its_axis() -> None:
     tube = Cylinder((0, 0, 1), (0, 0, 1), 4, 10, WHITE)  # from z = -4 to z = 6
     row = picture(FORWARD, Light(ORIGIN, 1.0), tube, width=5)[0, :, 0]
-    # The rays go 4/5, 2/5 and 0 aside for each 1 forward: to the side at z = 2.5 and 5, and to the far cap.
+    # The rays have slopes 4/5, 2/5 and 0: they hit the side at z = 2.5 and 5, and the far cap.
     assert_allclose(row, [4 / 41**0.5, 2 / 29**0.5, 1, 2 / 29**0.5, 4 / 41**0.5])
 
 
-def test_a_lamp_in_the_centre_lights_all_of_a_sphere_from_within() -> None:
+def test_a_light_in_the_centre_lights_a_whole_sphere_from_inside() -> None:
     ball = Sphere((1, 2, 3), 8, (255, 128, 0))
     eye = Camera((2, 1, 4), (0.6, 0, 0.8), 120)
     shown = picture(DIM, eye, Light((1, 2, 3), 0.5), ball, width=16, height=9)
     assert_allclose(shown, np.broadcast_to(np.array([0.7, 0.7 * 128 / 255, 0]), shown.shape))
 
 
-def test_a_lamp_outside_does_not_light_a_sphere_from_within() -> None:
+def test_a_light_outside_does_not_light_a_sphere_from_inside() -> None:
     shown = picture(DIM, FORWARD, Light((0, 9, 0), 1.0), Sphere(ORIGIN, 8, WHITE), width=8, height=8)
     assert_allclose(shown, 0.2)
 
 
 def test_the_shadow_of_a_sphere_is_bounded_by_similar_triangles() -> None:
-    # The lamp, 5 from the centre of a ball of radius 3, sees it within 3/4 of its depth: a disc of 9 at 12 below.
-    lamp, ball, floor = Light((0, 12, 0), 0.5), Sphere((0, 7, 0), 6, WHITE), Plane(ORIGIN, (0, 1, 0), WHITE)
+    # The light, 5 from the centre of a sphere of radius 3, sees it within slope 3/4: a disc of radius 9 at 12 below.
+    light, sphere, floor = Light((0, 12, 0), 0.5), Sphere((0, 7, 0), 6, WHITE), Plane(ORIGIN, (0, 1, 0), WHITE)
     below = Camera((0, 3, 0), (0, -1, 0), 2 * np.degrees(np.arctan(10 / 3)))  # spans -10 to 10 on the floor
-    x, z = 10 * spread(100), 10 * spread(100)[:, None]
+    x, z = 10 * pixel_centres(100), 10 * pixel_centres(100)[:, None]
     cosine = 12 / np.sqrt(x**2 + z**2 + 144)
-    shown = picture(DIM, below, lamp, ball, floor, width=100, height=100)[..., 0]
+    shown = picture(DIM, below, light, sphere, floor, width=100, height=100)[..., 0]
     assert_allclose(shown, 0.2 + 0.5 * cosine * (x**2 + z**2 > 81), atol=1e-9)
 
 
 def test_the_shadow_of_a_cylinder_is_bounded_by_similar_triangles() -> None:
-    # The lower rim, 4 below the lamp and 2 wide, and the upper, 2 below and 2 wide: a disc of 8 at 8 below.
-    lamp, floor = Light((0, 8, 0), 0.5), Plane(ORIGIN, (0, -1, 0), WHITE)
+    # The rims have radius 2, 4 and 2 below the light: the upper one shades a disc of radius 8 at 8 below.
+    light, floor = Light((0, 8, 0), 0.5), Plane(ORIGIN, (0, -1, 0), WHITE)
     tube = Cylinder((0, 5, 0), (0, 1, 0), 4, 2, WHITE)
     below = Camera((0, 2, 0), (0, -1, 0), 2 * np.degrees(np.arctan(5)))  # spans -10 to 10 on the floor
-    x, z = 10 * spread(100), 10 * spread(100)[:, None]
-    shown = picture(DIM, below, lamp, tube, floor, width=100, height=100)[..., 0]
+    x, z = 10 * pixel_centres(100), 10 * pixel_centres(100)[:, None]
+    shown = picture(DIM, below, light, tube, floor, width=100, height=100)[..., 0]
     assert np.array_equal(shown > 0.2, x**2 + z**2 > 64)
 
 
-def test_what_lies_beyond_a_lamp_throws_no_shadow() -> None:
+def test_a_shape_beyond_a_light_casts_no_shadow() -> None:
     beyond = Sphere((0, 0, -5), 2, WHITE)
     assert_allclose(picture(FORWARD, Light(ORIGIN, 1.0), WALL, beyond)[0, 0, 0], 200 / 255)
 
@@ -136,17 +137,17 @@ def test_what_lies_beyond_a_lamp_throws_no_shadow() -> None:
         ((0, -1, 0), (1, 0, 0), (0, 0, -1)),
     ],
 )
-def test_which_way_is_right_and_which_is_up(direction: Triple, right: Triple, up: Triple, roll: float) -> None:
-    ahead, aside, above = np.array(direction), np.array(right), np.array(up)
+def test_right_and_up_of_a_camera(direction: Triple, right: Triple, up: Triple, roll: float) -> None:
+    forward, right_side, above = np.array(direction), np.array(right), np.array(up)
     if roll == 90:
-        aside, above = -above, aside  # the camera's right points to the old down
+        right_side, above = -above, right_side  # the camera's right points to the old down
     balls = [
-        Sphere(tuple(3.0 * ahead + offset), 0.8, colour)
-        for offset, colour in ((aside, RED), (above, GREEN), (-above, BLUE))
+        Sphere(tuple(3.0 * forward + offset), 0.8, colour)
+        for offset, colour in ((right_side, RED), (above, GREEN), (-above, BLUE))
     ]
     eye = FORWARD.replace(direction=direction, roll=roll)
     shown = picture(Ambient(1.0, WHITE), eye, *balls, width=27, height=27)
-    # One aside at the distance 3 is a third of half of the picture: 4.5 pixels from the middle.
+    # An offset of 1 at the distance 3 is a third of half of the picture: 4.5 pixels from the middle.
     for channel, column, row in ((0, 4.5, 0), (1, 0, -4.5), (2, 0, 4.5)):
         rows, columns = np.nonzero(shown[..., channel])
         assert_allclose([columns.mean() - 13, rows.mean() - 13], [column, row], atol=0.5)
@@ -160,13 +161,13 @@ def test_the_field_of_view_is_horizontal() -> None:
 
 
 @pytest.mark.parametrize("twins", [WALL, Sphere((0, 0, 5), 6, WHITE), Cylinder((0, 0, 5), (0, 0.6, 0.8), 3, 3, WHITE)])
-def test_the_earlier_of_coincident_surfaces_is_seen(twins: Shape) -> None:
+def test_the_first_of_coincident_shapes_is_visible(twins: Shape) -> None:
     first, second = twins.replace(colour=GREEN), twins.replace(colour=RED)
     shown = picture(DIM, FORWARD, first, second, width=50, height=50)
     assert shown[..., 1].any()
     assert not shown[..., 0].any()
 
 
-def test_bytes_are_clamped_and_rounded_to_the_nearest() -> None:
+def test_bytes_are_clamped_and_rounded_to_nearest() -> None:
     values = [-1.0, 0.0, 0.49 / 255, 0.5 / 255, 1.5 / 255, 254.4 / 255, 1.0, 300.0]
     assert to_bytes(np.array(values)).tolist() == [0, 0, 0, 1, 2, 254, 255, 255]

@@ -1,4 +1,4 @@
-"""Runs are timed, and a wait is told from work."""
+"""Runs are timed by wall and processor time, and waiting counts as disturbance."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from minirt.timing import Run, in_turn, is_disturbed, runs
 
 
 class Machine:
-    """The time that has passed and that of the processors; both move on by what is done alone."""
+    """A simulated machine, whose wall and processor time advance only by its work and waits."""
 
     def __init__(self) -> None:
         self.wall, self.cpu = 100.0, 7.0
 
     def work(self, seconds: float = 0.25, threads: int = 1) -> None:
-        """Use some processors."""
+        """Use processors for some seconds."""
         self.wall += seconds
         self.cpu += seconds * threads
 
     def wait(self, seconds: float = 0.25) -> None:
-        """Use none."""
+        """Wait without using a processor."""
         self.wall += seconds
 
 
 @pytest.fixture
 def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
-    """A machine in the place of the real one."""
-    made = Machine()
-    monkeypatch.setattr(timing, "perf_counter", lambda: made.wall)
-    monkeypatch.setattr(timing, "process_time", lambda: made.cpu)
-    return made
+    """A simulated machine in the place of the real clocks."""
+    simulated = Machine()
+    monkeypatch.setattr(timing, "perf_counter", lambda: simulated.wall)
+    monkeypatch.setattr(timing, "process_time", lambda: simulated.cpu)
+    return simulated
 
 
-def test_as_many_runs_as_are_asked_for() -> None:
+def test_the_least_number_of_runs_is_made() -> None:
     done: list[int] = []
     assert len(runs(lambda: done.append(0), 7, 0.0)) == len(done) == 7
 
@@ -47,13 +47,13 @@ def test_works_take_turns() -> None:
     assert done == [0, 1] * 3
 
 
-def test_and_more_to_fill_the_time(machine: Machine) -> None:
+def test_further_runs_fill_the_time(machine: Machine) -> None:
     assert runs(machine.work, 2, 1.0) == [Run(0.25, 0.25)] * 4
     assert len(runs(machine.work, 2, 1.1)) == 5
     assert len(runs(machine.work, 2, 0.4)) == 2
 
 
-def test_work_takes_a_processor_and_a_wait_does_not(machine: Machine) -> None:
+def test_work_takes_processor_time_and_a_wait_does_not(machine: Machine) -> None:
     assert runs(machine.work, 1, 0.0) == [Run(wall=0.25, cpu=0.25)]
     assert runs(machine.wait, 1, 0.0) == [Run(wall=0.25, cpu=0.0)]
     assert runs(partial(machine.work, threads=3), 1, 0.0) == [Run(wall=0.25, cpu=0.75)]
@@ -63,13 +63,13 @@ def test_each_work_has_its_own_times(machine: Machine) -> None:
     assert in_turn([machine.work, machine.wait], 2) == [(Run(0.25, 0.25),) * 2, (Run(0.25, 0.0),) * 2]
 
 
-def test_the_clocks_are_those_of_the_machine() -> None:
+def test_the_real_clocks_advance() -> None:
     (run,) = runs(lambda: sum(range(100_000)), 1, 0.0)
     assert run.wall > 0
     assert run.cpu > 0
 
 
-def test_who_waits_is_disturbed() -> None:
+def test_a_run_that_waited_is_disturbed() -> None:
     assert not is_disturbed(Run(wall=1.0, cpu=1.0), 1)
     assert not is_disturbed(Run(wall=1.1, cpu=1.0), 1)
     assert is_disturbed(Run(wall=1.2, cpu=1.0), 1)

@@ -254,8 +254,10 @@ def require() -> None:
 
 
 def install_command() -> str:
-    """The command of the README that installs the tools."""
-    lines: list[str] = re.findall(r"^apt-get install .*\bxvfb\b.*$", (ROOT / "README.md").read_text(), re.MULTILINE)
+    """The command of CONTRIBUTING.md that installs the tools."""
+    lines: list[str] = re.findall(
+        r"^apt-get install .*\bxvfb\b.*$", (ROOT / "CONTRIBUTING.md").read_text(), re.MULTILINE
+    )
     return lines[0]
 
 

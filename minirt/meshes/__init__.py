@@ -1,6 +1,6 @@
-"""Triangle meshes and the files that they are read from. Each file is read once, and again when it has changed."""
+"""Triangle meshes and their Wavefront .obj files. A file is read once, and again when it has changed."""
 
-from minirt.meshes.mesh_cache import mesh
+from minirt.meshes.mesh_cache import load_mesh
 from minirt.meshes.triangles import Triangles
 
-__all__ = ["Triangles", "mesh"]
+__all__ = ["Triangles", "load_mesh"]

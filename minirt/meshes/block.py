@@ -1,4 +1,4 @@
-"""What some lines of an .obj file hold."""
+"""Data of a block of lines of an .obj file, as arrays."""
 
 from __future__ import annotations
 
@@ -7,33 +7,33 @@ from typing import NamedTuple
 import numpy as np
 
 
-class BrokenError(Exception):
-    """What is wrong with a file, and in which line."""
+class ObjError(Exception):
+    """A file that is not a mesh; the message names the line, unless it is about the whole file."""
 
     def __init__(self, message: str, line: int = 0) -> None:
         super().__init__(f"line {line}: {message}" if line else message)
 
 
 class Block(NamedTuple):
-    """Points, corners and faces of some lines, or of all."""
+    """Vertices, corners and faces of a block of lines, or of a whole file."""
 
-    points: np.ndarray  # (n, 3)
-    uvs: np.ndarray  # (k, 2)
+    points: np.ndarray  # (n, 3) vertex positions
+    uvs: np.ndarray  # (k, 2) texture coordinates
     normals: np.ndarray  # (j, 3) of any length
-    corners: np.ndarray  # (c, 3) of all faces: index of the point, of the place in the picture, of the normal, or -1
-    sizes: np.ndarray  # (f,) corners of each face
-    lines: np.ndarray  # (f,) line of each, from 1
+    corners: np.ndarray  # (c, 3) for each corner of all faces the index of its point, uv and normal, or -1
+    sizes: np.ndarray  # (f,) number of corners of each face
+    lines: np.ndarray  # (f,) line of each face, from 1
 
 
-class Sizes(NamedTuple):
-    """How much of a file there is before a line."""
+class Counts(NamedTuple):
+    """Numbers of points, uvs, normals and lines of a file before a block."""
 
     points: int = 0
     uvs: int = 0
     normals: int = 0
     lines: int = 0
 
-    def behind(self, block: Block, lines: int) -> Sizes:
-        """The same behind a block of so many lines."""
+    def after(self, block: Block, lines: int) -> Counts:
+        """Return the counts after a block of that many lines."""
         points, uvs, normals = (before + len(new) for before, new in zip(self[:3], block[:3], strict=True))
-        return Sizes(points, uvs, normals, self.lines + lines)
+        return Counts(points, uvs, normals, self.lines + lines)

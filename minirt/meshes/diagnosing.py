@@ -1,4 +1,4 @@
-"""Reads .obj files line by line, and says what is wrong with them."""
+"""Diagnosing reader of .obj files: line by line, with errors that name the line."""
 
 from __future__ import annotations
 
@@ -8,43 +8,43 @@ import numpy as np
 
 from minirt.errors import FieldError, quoted
 from minirt.fields import FARTHEST, number, spelled, whole
-from minirt.meshes.block import Block, BrokenError, Sizes
+from minirt.meshes.block import Block, Counts, ObjError
 
-NUMBERS = {"v": (3, 7, "x y z"), "vt": (1, 3, "u v"), "vn": (3, 3, "x y z")}  # at least, at most, of what
-NAMES = ("point", "vt", "vn")  # of what a corner names
+NUMBER_COUNTS = {"v": (3, 7, "x y z"), "vt": (1, 3, "u v"), "vn": (3, 3, "x y z")}  # fewest, most, names
+CORNER_PARTS = ("point", "vt", "vn")  # the parts of a corner in messages
 SKIPPED = frozenset(
     b"g o s mg usemtl mtllib usemap maplib l p lod bevel c_interp d_interp shadow_obj trace_obj".split()
 )
 
 
-def read(lines: list[bytes], before: Sizes) -> Block:
-    """What the lines hold, of which so much is before them; BrokenError."""
-    found: dict[str, list[list[float]]] = {"v": [], "vt": [], "vn": []}
+def read(lines: list[bytes], before: Counts) -> Block:
+    """Parse lines; `before` counts what precedes them in the file. ObjError names the first wrong line."""
+    rows: dict[str, list[list[float]]] = {"v": [], "vt": [], "vn": []}
     corners: list[list[int]] = []
-    sizes, places = [], []
+    sizes, face_lines = [], []
     for line, words in words_of(lines, before.lines + 1):
-        key, given = words[0], words[1:]
-        if key in found:
-            found[key].append(numbers(key, given, line))
+        key, values = words[0], words[1:]
+        if key in rows:
+            rows[key].append(parse_numbers(key, values, line))
         elif key == "f":
-            if len(given) < 3:
-                raise BrokenError(f"a face has at least 3 corners, got {len(given)}", line)
-            known = [earlier + len(rows) for earlier, rows in zip(before, found.values(), strict=False)]
-            corners += [corner(word, known, line) for word in given]
-            sizes.append(len(given))
-            places.append(line)
+            if len(values) < 3:
+                raise ObjError(f"a face has at least 3 corners, got {len(values)}", line)
+            counts = [count + len(new) for count, new in zip(before, rows.values(), strict=False)]
+            corners += [parse_corner(word, counts, line) for word in values]
+            sizes.append(len(values))
+            face_lines.append(line)
         elif key.encode() not in SKIPPED:
-            raise BrokenError(f"a line begins with v, vt, vn, f or another word of .obj, got {quoted(key)}", line)
+            raise ObjError(f"a line begins with v, vt, vn, f or another word of .obj, got {quoted(key)}", line)
     points, uvs, normals = (
-        np.array(rows, np.float64).reshape(-1, wide) for rows, wide in zip(found.values(), (3, 2, 3), strict=True)
+        np.array(values, np.float64).reshape(-1, width) for values, width in zip(rows.values(), (3, 2, 3), strict=True)
     )
     return Block(
-        points, uvs, normals, *(np.array(each, np.int64) for each in (corners or np.zeros((0, 3)), sizes, places))
+        points, uvs, normals, *(np.array(ints, np.int64) for ints in (corners or np.zeros((0, 3)), sizes, face_lines))
     )
 
 
 def words_of(lines: list[bytes], first: int) -> Iterator[tuple[int, list[str]]]:
-    """The number and the words of each line that has some; a line that ends in a backslash goes on in the next."""
+    """Yield the number and the words of each line that has words; a backslash at its end continues a line."""
     parts: list[bytes] = []
     for line, part in enumerate([*lines, b""], first):
         parts.append(part.rstrip(b"\r\n"))
@@ -57,43 +57,43 @@ def words_of(lines: list[bytes], first: int) -> Iterator[tuple[int, list[str]]]:
         parts = []
 
 
-def numbers(key: str, given: list[str], line: int) -> list[float]:
-    """The numbers of a line that are of use."""
-    least, most, names = NUMBERS[key]
-    if not least <= len(given) <= most:
-        raise BrokenError(f"{key} has {names}, got {len(given)} number{'s' * (len(given) != 1)}", line)
+def parse_numbers(key: str, words: list[str], line: int) -> list[float]:
+    """Parse the numbers of a line `v`, `vt` or `vn`; further numbers, such as colours, are left out."""
+    least, most, names = NUMBER_COUNTS[key]
+    if not least <= len(words) <= most:
+        raise ObjError(f"{key} has {names}, got {len(words)} number{'s' * (len(words) != 1)}", line)
     try:
-        values = [number(word) for word in given]
+        values = [number(word) for word in words]
     except FieldError as error:
-        raise BrokenError(f"{key} {error}", line) from None
+        raise ObjError(f"{key} {error}", line) from None
     for value in values:
         if abs(value) > FARTHEST:
-            raise BrokenError(f"{key} must be in [-{FARTHEST:g}, {FARTHEST:g}], got {spelled(value)}", line)
+            raise ObjError(f"{key} must be in [-{FARTHEST:g}, {FARTHEST:g}], got {spelled(value)}", line)
     return [*values, 0.0][: len(names.split())]
 
 
-def corner(word: str, known: list[int], line: int) -> list[int]:
-    """The indices that a corner has, -1 where it has none; `known` is how many of each are before it."""
+def parse_corner(word: str, counts: list[int], line: int) -> list[int]:
+    """Return the indices of a corner's point, uv and normal, -1 for a missing one; `counts` of them precede it."""
     parts = word.split("/")
     if len(parts) > 3 or not parts[0] or (len(parts) > 1 and not parts[-1]):
-        raise BrokenError(f"a corner is v, v/vt, v//vn or v/vt/vn, got {quoted(word)}", line)
+        raise ObjError(f"a corner is v, v/vt, v//vn or v/vt/vn, got {quoted(word)}", line)
     parts += [""] * (3 - len(parts))
-    return [index(part, which, known[which], line) for which, part in enumerate(parts)]
+    return [parse_index(text, part, counts[part], line) for part, text in enumerate(parts)]
 
 
-def index(text: str, which: int, known: int, line: int) -> int:
-    """The index that a part of a corner has, -1 where it is empty."""
+def parse_index(text: str, part: int, count: int, line: int) -> int:
+    """Return the index from 0 that a part of a corner names, -1 for an empty part; `count` items precede it."""
     if not text:
         return -1
     try:
-        given = whole(text)
+        named = whole(text)
     except FieldError as error:
-        raise BrokenError(f"the {NAMES[which]} of a corner {error}", line) from None
-    if given == 0 or given < -known:
-        raise BrokenError(absent(which, given, known), line)
-    return min(given - 1, 2**62) if given > 0 else known + given
+        raise ObjError(f"the {CORNER_PARTS[part]} of a corner {error}", line) from None
+    if named == 0 or named < -count:
+        raise ObjError(missing_index_message(part, named, count), line)
+    return min(named - 1, 2**62) if named > 0 else count + named
 
 
-def absent(which: int, given: int, there: int) -> str:
-    """What is wrong with a corner that names what is not there."""
-    return f"a corner names {NAMES[which]} {given}, and there {'is' if there == 1 else 'are'} {there}"
+def missing_index_message(part: int, named: int, count: int) -> str:
+    """Return the message about a corner that names an item that does not exist."""
+    return f"a corner names {CORNER_PARTS[part]} {named}, but there {'is' if count == 1 else 'are'} {count}"

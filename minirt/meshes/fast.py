@@ -1,5 +1,6 @@
-"""Reads blocks of .obj files all of whose lines are written alike, as programs write them: some five times as fast as
-line by line. For such a block `careful` gives the same.
+"""Fast path of the .obj reader: parse a block whose lines are all written alike, as programs write them.
+
+It is about five times as fast as `minirt.meshes.diagnosing`, which gives the same for such a block.
 """
 
 from __future__ import annotations
@@ -9,44 +10,48 @@ from itertools import chain
 import numpy as np
 
 from minirt.fields import FARTHEST
-from minirt.meshes.block import Block, Sizes
+from minirt.meshes.block import Block, Counts
 from minirt.meshes.diagnosing import SKIPPED
 
-Rows = list[list[bytes]]  # the words of lines
+Rows = list[list[bytes]]  # words of lines
 
 
-def read(lines: list[bytes], before: Sizes) -> Block | None:
-    """What the lines hold, of which so much is before them; None where they call for the careful reader."""
+def read(lines: list[bytes], before: Counts) -> Block | None:
+    """Parse lines, `before` counts what precedes them; None when they are left to the diagnosing reader."""
     rows = [line.split() for line in lines]
-    places: dict[bytes, list[int]] = {}
-    for at, row in enumerate(rows):
+    lines_by_key: dict[bytes, list[int]] = {}
+    for index, row in enumerate(rows):
         if row:
-            places.setdefault(row[0], []).append(at)
-    others = places.keys() - {b"v", b"vt", b"vn", b"f"} - SKIPPED
+            lines_by_key.setdefault(row[0], []).append(index)
+    others = lines_by_key.keys() - {b"v", b"vt", b"vn", b"f"} - SKIPPED
     if any(not key.startswith(b"#") for key in others) or any(line.endswith((b"\\\n", b"\\\r\n")) for line in lines):
         return None
-    mine = {key: [rows[at] for at in places.get(key, ())] for key in (b"v", b"vt", b"vn", b"f")}
+    rows_by_key = {key: [rows[index] for index in lines_by_key.get(key, ())] for key in (b"v", b"vt", b"vn", b"f")}
     try:
-        points, uvs, normals = table(mine[b"v"], 3, 7), table(mine[b"vt"], 2, 3), table(mine[b"vn"], 3, 3)
-        given = corners_of(mine[b"f"])
+        points, uvs, normals = (
+            number_table(rows_by_key[b"v"], 3, 7),
+            number_table(rows_by_key[b"vt"], 2, 3),
+            number_table(rows_by_key[b"vn"], 3, 3),
+        )
+        named = corner_table(rows_by_key[b"f"])
     except (ValueError, OverflowError):
         return None
-    sizes = np.array([len(row) - 1 for row in mine[b"f"]], np.int64)
+    sizes = np.array([len(row) - 1 for row in rows_by_key[b"f"]], np.int64)
     if (sizes < 3).any():
         return None
-    faces = np.array(places.get(b"f", ()), np.int64)
-    corners: np.ndarray = np.full(given.shape, -1)
-    for column, (key, earlier) in enumerate(zip((b"v", b"vt", b"vn"), before[:3], strict=True)):
-        ahead = np.repeat(earlier + np.searchsorted(np.array(places.get(key, ())), faces), sizes)
-        one = given[:, column]
-        corners[:, column] = np.where(one > 0, one - 1, np.where(one < 0, ahead + one, -1))
-        if ((one < 0) & (corners[:, column] < 0)).any():
+    faces = np.array(lines_by_key.get(b"f", ()), np.int64)
+    corners: np.ndarray = np.full(named.shape, -1)
+    for column, (key, count) in enumerate(zip((b"v", b"vt", b"vn"), before[:3], strict=True)):
+        preceding = np.repeat(count + np.searchsorted(np.array(lines_by_key.get(key, ())), faces), sizes)
+        number = named[:, column]
+        corners[:, column] = np.where(number > 0, number - 1, np.where(number < 0, preceding + number, -1))
+        if ((number < 0) & (corners[:, column] < 0)).any():
             return None
     return Block(points, uvs, normals, corners, sizes, before.lines + 1 + faces)
 
 
-def table(rows: Rows, least: int, most: int) -> np.ndarray:
-    """The first numbers of lines that have equally many, from `least` to `most`; ValueError where they have not."""
+def number_table(rows: Rows, least: int, most: int) -> np.ndarray:
+    """Return the first `least` numbers of each line; ValueError unless all have equally many, `most` at most."""
     if not rows:
         return np.zeros((0, least))
     width = len(rows[0]) - 1
@@ -60,8 +65,8 @@ def table(rows: Rows, least: int, most: int) -> np.ndarray:
     return np.ascontiguousarray(numbers[:, :least])
 
 
-def corners_of(faces: Rows) -> np.ndarray:
-    """The numbers of all corners, (c, 3), 0 where there is none; ValueError where they are not all written alike."""
+def corner_table(faces: Rows) -> np.ndarray:
+    """Return the numbers of all corners, (c, 3), 0 for a missing one; ValueError unless all are written alike."""
     words = list(chain.from_iterable(row[1:] for row in faces))
     text, slashes = b" ".join(words), {word.count(b"/") for word in words}
     if slashes == {2} and text.count(b"//") == len(words):
@@ -73,6 +78,6 @@ def corners_of(faces: Rows) -> np.ndarray:
     numbers = np.array(list(map(int, text.replace(b"/", b" ").split())), np.int64)
     if not numbers.all() or b"_" in text:
         raise ValueError
-    given = np.zeros((len(words), 3), np.int64)
-    given[:, columns] = numbers.reshape(len(words), len(columns))
-    return given
+    table = np.zeros((len(words), 3), np.int64)
+    table[:, columns] = numbers.reshape(len(words), len(columns))
+    return table

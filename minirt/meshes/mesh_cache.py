@@ -1,4 +1,4 @@
-"""Mesh files that were read, kept for the next scene that names them."""
+"""Cache of loaded mesh files, by path; a file that has changed is read again."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ from threading import Lock
 
 from minirt import regular_files
 from minirt.errors import FileError
-from minirt.meshes.obj import BrokenError, parse
+from minirt.meshes.obj import ObjError, parse
 from minirt.meshes.triangles import Triangles
 
-LARGEST = 256 * 2**20  # bytes of a file
+MAX_BYTES = 256 * 2**20  # 256 MiB
 
-Stamp = tuple[int, int, int]  # what changes when a file does
+Stamp = tuple[int, int, int]  # inode, size and modification time (ns) of a file
 
-known: dict[str, tuple[Stamp, Triangles]] = {}
+cache: dict[str, tuple[Stamp, Triangles]] = {}
 lock = Lock()
 
 
-def mesh(path: str | os.PathLike[str]) -> Triangles:
-    """The triangles of a Wavefront .obj file; the same object as long as the file is the same. FileError."""
-    found = regular_files.status(path, LARGEST)
-    stamp = (found.st_ino, found.st_size, found.st_mtime_ns)
+def load_mesh(path: str | os.PathLike[str]) -> Triangles:
+    """Return the triangles of an .obj file, the same object until the file changes; FileError when it is no mesh."""
+    status = regular_files.status(path, MAX_BYTES)
+    stamp = (status.st_ino, status.st_size, status.st_mtime_ns)
     key = os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
     with lock:
-        if key not in known or known[key][0] != stamp:
-            known.pop(key, None)
-            known[key] = stamp, read(Path(path))
-        return known[key][1]
+        if key not in cache or cache[key][0] != stamp:
+            cache.pop(key, None)
+            cache[key] = stamp, read(Path(path))
+        return cache[key][1]
 
 
 def read(path: Path) -> Triangles:
-    """The triangles of a file, read anew."""
+    """Read and parse an .obj file; FileError when it is no mesh."""
     try:
-        return parse(regular_files.read(path, LARGEST))
-    except BrokenError as error:
+        return parse(regular_files.read(path, MAX_BYTES))
+    except ObjError as error:
         raise FileError(path, str(error)) from None

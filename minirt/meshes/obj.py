@@ -1,8 +1,9 @@
-"""Wavefront .obj: text -> triangles.
+"""Parser of Wavefront .obj files: text -> triangles.
 
-A line is `v x y z`, a point; `vt u v`, a place in a picture; `vn x y z`, a normal; or `f` and three or more corners of
-a face, each `v`, `v/vt`, `v//vn` or `v/vt/vn`: numbers of those lines, from 1, or from -1 backwards from where the face
-stands. A face of more corners is a fan of triangles around its first. Groups, materials, lines and points are skipped.
+A line is `v x y z`, a point; `vt u v`, texture coordinates; `vn x y z`, a normal; or `f` and three or more corners of
+a face, each `v`, `v/vt`, `v//vn` or `v/vt/vn`. These are numbers of such lines, counted from 1, or backwards from -1,
+the last one before the face. A polygon becomes a fan of triangles around its first corner. Groups, materials, lines
+and points are skipped.
 """
 
 from __future__ import annotations
@@ -12,74 +13,76 @@ from io import BytesIO
 import numpy as np
 
 from minirt.meshes import diagnosing, fast
-from minirt.meshes.block import Block, BrokenError, Sizes
-from minirt.meshes.triangles import Triangles, proper, squared, unit
+from minirt.meshes.block import Block, Counts, ObjError
+from minirt.meshes.triangles import Triangles, non_degenerate, squared_lengths, unit
 
-BLOCK = 4 * 2**20  # bytes that are read at once
-MOST = 10_000_000  # triangles
+BLOCK_BYTES = 4 * 2**20  # of lines that are parsed at once
+MAX_TRIANGLES = 10_000_000
 
-__all__ = ["BrokenError", "parse"]
+__all__ = ["ObjError", "parse"]
 
 
 def parse(data: bytes) -> Triangles:
-    """The triangles of a file, but for those that are no more than a line; BrokenError where it is not a mesh."""
+    """Parse a file; degenerate triangles are dropped. ObjError when it is not a mesh."""
     file, blocks = BytesIO(data.removeprefix(b"\xef\xbb\xbf")), []
-    before, triangles = Sizes(), 0
-    while lines := file.readlines(BLOCK):
+    before, triangles = Counts(), 0
+    while lines := file.readlines(BLOCK_BYTES):
         while lines[-1].endswith((b"\\\n", b"\\\r\n")) and (more := file.readline()):
             lines.append(more)
         block = fast.read(lines, before) or diagnosing.read(lines, before)
         blocks.append(block)
-        before = before.behind(block, len(lines))
+        before = before.after(block, len(lines))
         triangles += int((block.sizes - 2).sum())
-        if triangles > MOST:
-            raise BrokenError(f"has more than {MOST:,} triangles")
-    return assembled(blocks)
+        if triangles > MAX_TRIANGLES:
+            raise ObjError(f"has more than {MAX_TRIANGLES:,} triangles")
+    return assemble(blocks)
 
 
-def assembled(blocks: list[Block]) -> Triangles:
-    """The triangles of the blocks of a file."""
+def assemble(blocks: list[Block]) -> Triangles:
+    """Assemble the blocks of a file into triangles."""
     if not sum(len(block.sizes) for block in blocks):
-        raise BrokenError("has no faces")
+        raise ObjError("has no faces")
     whole = Block(*map(np.concatenate, zip(*blocks, strict=True)))
     check_indices(whole)
-    fans = whole.corners[fan(whole.sizes)]
+    fans = whole.corners[fan_triangulation(whole.sizes)]
     corners = fans[..., 0]
-    kept = proper(whole.points[corners])
-    if not kept.any():
-        raise BrokenError("has no triangle that is more than a line")
-    fans, corners = fans[kept], np.ascontiguousarray(corners[kept])
+    valid = non_degenerate(whole.points[corners])
+    if not valid.any():
+        raise ObjError("has no triangle that is more than a line")
+    fans, corners = fans[valid], np.ascontiguousarray(corners[valid])
     uvs = None
     if (fans[..., 1] >= 0).any():
         uvs = np.where(fans[..., 1, None] >= 0, np.concatenate([whole.uvs, np.zeros((1, 2))])[fans[..., 1]], 0.0)
     flat = Triangles(whole.points, corners, None, uvs)
     if (fans[..., 2] < 0).all():
         return flat
-    return Triangles(whole.points, corners, smooth(whole.normals, fans[..., 2], flat.flat_normals), uvs)
+    return Triangles(whole.points, corners, corner_normals(whole.normals, fans[..., 2], flat.flat_normals), uvs)
 
 
-def smooth(normals: np.ndarray, which: np.ndarray, flat: np.ndarray) -> np.ndarray:
-    """Unit normals at corners (m, 3), where there is none that of the triangle."""
-    given = np.concatenate([normals, np.zeros((1, 3))])  # the last is that of index -1
-    given[squared(given) > 0] = unit(given[squared(given) > 0])
-    found = given[which]
-    return np.where(squared(found)[..., None] > 0, found, flat[:, None])
+def corner_normals(normals: np.ndarray, indices: np.ndarray, flat: np.ndarray) -> np.ndarray:
+    """Return unit normals at corners, (m, 3, 3); a corner without one, index -1 or of length 0, has the flat normal."""
+    padded = np.concatenate([normals, np.zeros((1, 3))])  # the last is that of index -1
+    padded[squared_lengths(padded) > 0] = unit(padded[squared_lengths(padded) > 0])
+    chosen = padded[indices]
+    return np.where(squared_lengths(chosen)[..., None] > 0, chosen, flat[:, None])
 
 
-def fan(sizes: np.ndarray) -> np.ndarray:
-    """Of faces with so many corners the places of the corners of their triangles, (m, 3)."""
+def fan_triangulation(sizes: np.ndarray) -> np.ndarray:
+    """Triangulate faces of `sizes` corners as fans: indices of the triangles' corners among all corners, (m, 3)."""
     triangles = sizes - 2
     first = np.repeat(np.cumsum(sizes) - sizes, triangles)
-    inside = np.arange(len(first)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
-    return np.stack([first, first + inside + 1, first + inside + 2], axis=1)
+    step = np.arange(len(first)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
+    return np.stack([first, first + step + 1, first + step + 2], axis=1)
 
 
 def check_indices(whole: Block) -> None:
-    """BrokenError where a corner names something that the file does not have."""
-    there = [len(whole.points), len(whole.uvs), len(whole.normals)]
-    beyond = whole.corners >= there
+    """Check that the file has all items that its corners name; ObjError otherwise."""
+    counts = [len(whole.points), len(whole.uvs), len(whole.normals)]
+    beyond = whole.corners >= counts
     if beyond.any():
         corner = int(np.argmax(beyond.any(axis=1)))
-        which = int(np.argmax(beyond[corner]))
+        part = int(np.argmax(beyond[corner]))
         line = np.repeat(whole.lines, whole.sizes)[corner]
-        raise BrokenError(diagnosing.absent(which, int(whole.corners[corner, which]) + 1, there[which]), int(line))
+        raise ObjError(
+            diagnosing.missing_index_message(part, int(whole.corners[corner, part]) + 1, counts[part]), int(line)
+        )

@@ -1,4 +1,7 @@
-"""Error against run time: of the formulas of shapes and of the pictures of a scene, measured and written down."""
+"""Report of error against run time, for the formulas of shapes and for the pictures of a scene.
+
+`measurements` measures, `output` turns figures into text, tables and pictures, `generate` does both for a scene.
+"""
 
 from minirt.report.generate import report, report_formulas
 

@@ -1,4 +1,4 @@
-"""python -m minirt.report DIR [--quick]: how precise and fast the formulas of all kinds of shapes are."""
+"""`python -m minirt.report DIR [--quick]`: measure the accuracy and cost of the formulas of all shape types."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from minirt.report import report_formulas
 
 
 def main() -> None:
-    """Run it."""
+    """Parse the arguments and write the tables."""
     parser = argparse.ArgumentParser(prog="python -m minirt.report", description="Measure the formulas of all shapes.")
-    parser.add_argument("folder", metavar="DIR", help="where the tables go")
-    parser.add_argument("--quick", action="store_true", help="with fewer rays")
-    asked = parser.parse_args()
+    parser.add_argument("folder", metavar="DIR", help="folder to write the tables into")
+    parser.add_argument("--quick", action="store_true", help="use fewer rays")
+    arguments = parser.parse_args()
     try:
-        report_formulas(asked.folder, asked.quick)
+        report_formulas(arguments.folder, arguments.quick)
     except RenderError as error:
         sys.exit(f"Error\n{error}")
     except KeyboardInterrupt:

@@ -1,4 +1,4 @@
-"""Measures, and writes what was measured into a folder."""
+"""Generate a report: run all measurements of a scene and write the results into a folder."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from minirt.rendering.running.cores import usable_cores
 from minirt.report.measurements import formula_errors
 from minirt.report.measurements.coincident import coincident
 from minirt.report.measurements.exact_hits import SOLIDS
-from minirt.report.measurements.eye_rays import from_the_eye
+from minirt.report.measurements.eye_rays import rays_from_the_eye
 from minirt.report.measurements.findings import Findings, choices, subject
 from minirt.report.measurements.metrics import Picture
-from minirt.report.measurements.picture_errors import Stage, measured
-from minirt.report.measurements.plan import FULL, QUICK, RAYS, Plan, fitting
+from minirt.report.measurements.picture_errors import SettingRenderer, measure_settings
+from minirt.report.measurements.plan import FULL, QUICK, RAYS, Plan, fitting_size
 from minirt.report.measurements.reference import Reference, passes, reference
 from minirt.report.measurements.regimes import regimes_of
 from minirt.report.measurements.settings import settings
 from minirt.report.measurements.stiffness import stiff_shapes
-from minirt.report.output.document import document, formulas, short
-from minirt.report.output.error_image import error_picture
+from minirt.report.output.document import document, formula_section, summary
+from minirt.report.output.error_image import error_image
 from minirt.report.output.tables import as_csv, as_json
 from minirt.report.progress import progress
 from minirt.scene import Scene
@@ -35,30 +35,30 @@ from minirt.shapes import ALL_KINDS, KINDS, Kind
 SEED = 20240607
 REPORT = "report.md"
 NO_DIAGRAM = "no diagram: matplotlib is not installed, which `pip install minirt[report]` does"
-Made = dict[str, bytes]  # files by their names
+ReportFiles = dict[str, bytes]  # file name -> content
 
 
 def report(
     scene: Scene, name: str, folder: str | os.PathLike[str], size: tuple[int, int], threads: int | None, quick: bool
 ) -> str:
-    """Write the report of a scene into a folder, which is made where there is none, and answer what it says in short.
+    """Write the report of a scene into a folder, which is created if needed, and return a summary of it.
 
-    RenderError where the scene has no shapes, and where something cannot be written.
+    RenderError if the scene has no shapes or a file cannot be written.
     """
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
-    make(folder)
+    make_folder(folder)
     plan, kinds = QUICK if quick else FULL, [kind for kind in ALL_KINDS if kind.element in set(map(type, scene.shapes))]
     wanted = list(settings(scene, plan.most))
     steps = passes(plan.samples) + len(wanted) + sum(len(regimes_of(kind)) + 1 for kind in kinds)
     with progress(steps + 1) as shown:
         shown.step("compiling")
-        width, height = fitting(scene, size, plan)
+        width, height = fitting_size(scene, size, plan)
         about = subject(scene, name, width, height, threads or usable_cores(), SEED)
         right = reference(scene, width, height, plan.samples, SEED, lambda: shown.step("reference"))
-        stage = Stage(scene, width, height, about.threads)
-        found = list(measured(stage, wanted, right, plan.budget, shown.step))
-        rows = list(kernel_rows(kinds, plan, shown.step, scene))
+        stage = SettingRenderer(scene, width, height, about.threads)
+        found = list(measure_settings(stage, wanted, right, plan.budget, shown.step))
+        rows = list(formula_rows(kinds, plan, shown.step, scene))
     packing = Renderer().packing
     packing.pack(scene, width, height)
     stiff = [*stiff_shapes(scene, packing.tables, width, height), *coincident(scene, packing.tables)]
@@ -70,48 +70,48 @@ def report(
         rows,
         stiff,
         packing.notes,
-        same_without_lists({(row.knob, row.samples): picture for row, picture in found if picture is not None}),
-        without_exact(kinds) + ([] if find_spec("matplotlib") else [NO_DIAGRAM]),
+        identical_without_culling({(row.knob, row.samples): picture for row, picture in found if picture is not None}),
+        kinds_not_measured(kinds) + ([] if find_spec("matplotlib") else [NO_DIAGRAM]),
     )
     pictures = {f"{row.knob} {row.samples}": picture for row, picture in found if picture is not None}
-    write(folder, files(findings, pictures, right))
-    return short(findings) + f"\nThe report is in {Path(folder, REPORT)}"
+    write_files(folder, report_files(findings, pictures, right))
+    return summary(findings) + f"\nThe report is in {Path(folder, REPORT)}"
 
 
 def report_formulas(folder: str | os.PathLike[str], quick: bool) -> None:
-    """Write how precise and fast the formulas of all kinds of shapes are into a folder."""
-    make(folder)
+    """Write the accuracy and cost of the intersection formulas of all shape types into a folder."""
+    make_folder(folder)
     plan = QUICK if quick else FULL
     with progress(sum(map(len, map(regimes_of, KINDS)))) as shown:
-        rows = list(kernel_rows(KINDS, plan, shown.step))
-    text = "# Formulas of all shapes\n" + "\n".join(formulas(rows)) + "\n"
+        rows = list(formula_rows(KINDS, plan, shown.step))
+    text = "# Formulas of all shapes\n" + "\n".join(formula_section(rows)) + "\n"
     made = {"kernels.csv": as_csv(rows), "kernels.json": as_json(rows), "kernels.md": text}
-    write(folder, {name: each.encode() for name, each in made.items()})
+    write_files(folder, {name: each.encode() for name, each in made.items()})
 
 
-def kernel_rows(
+def formula_rows(
     kinds: Iterable[Kind], plan: Plan, step: Callable[[str], object], scene: Scene | None = None
 ) -> Iterator[formula_errors.Row]:
-    """The rows of some kinds, in all of their regimes and, where there is one, from the eye of a scene."""
+    """Measure the formulas of some shape types in all their regimes and, if a scene is given, from its eye."""
     for number, kind in enumerate(kinds):
         if kind.element not in SOLIDS:
             continue
         random = np.random.default_rng([SEED, number])
         poses = [(each.name, each.pose(kind, random, plan.shapes, RAYS)) for each in regimes_of(kind)]
         if scene:
-            poses.append(("this scene", from_the_eye(kind, scene, random, plan.shapes, RAYS)))
+            poses.append(("this scene", rays_from_the_eye(kind, scene, random, plan.shapes, RAYS)))
         for name, rays in poses:
             step(f"{kind.element.title}, {name}")
-            yield from formula_errors.measured(kind, name, rays)
+            yield from formula_errors.measure_formulas(kind, name, rays)
 
 
-def without_exact(kinds: Iterable[Kind]) -> list[str]:
-    """What is said of kinds that nothing exact is known of."""
+def kinds_not_measured(kinds: Iterable[Kind]) -> list[str]:
+    """Remarks on the shape types that have no exact reference to measure against."""
     return [f"formula of the {kind.element.title}: none in 60 digits" for kind in kinds if kind.element not in SOLIDS]
 
 
-def same_without_lists(pictures: dict[tuple[str, int], Picture]) -> list[int]:
-    """The numbers of samples for which brute force made the very same picture."""
+def identical_without_culling(pictures: dict[tuple[str, int], Picture]) -> list[int]:
+    """The sample counts for which brute force gave the same picture, bit for bit."""
     return [
         samples
         for (knob, samples), picture in pictures.items()
@@ -119,8 +119,8 @@ def same_without_lists(pictures: dict[tuple[str, int], Picture]) -> list[int]:
     ]
 
 
-def files(found: Findings, pictures: dict[str, Picture], right: Reference) -> Made:
-    """All files of the report of a scene."""
+def report_files(found: Findings, pictures: dict[str, Picture], right: Reference) -> ReportFiles:
+    """Build all files of the report of a scene."""
     has_diagram = NO_DIAGRAM not in found.not_measured
     made = {
         REPORT: document(found, has_diagram).encode(),
@@ -129,7 +129,7 @@ def files(found: Findings, pictures: dict[str, Picture], right: Reference) -> Ma
         "kernels.csv": as_csv(found.kernels).encode(),
     }
     for name, picture in pictures.items():
-        made[f"error-{name.replace(' ', '-')}.png"] = error_picture(picture, right.picture).encode()
+        made[f"error-{name.replace(' ', '-')}.png"] = error_image(picture, right.picture).encode()
     if has_diagram:
         from minirt.report.output.diagram import diagram
 
@@ -137,16 +137,16 @@ def files(found: Findings, pictures: dict[str, Picture], right: Reference) -> Ma
     return made
 
 
-def make(folder: str | os.PathLike[str]) -> None:
-    """Make a folder, before the work and not after it."""
+def make_folder(folder: str | os.PathLike[str]) -> None:
+    """Create the folder before the measurements begin, so that a wrong path fails at once. RenderError."""
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise RenderError(f"{os.fspath(folder)}: cannot be made: {error.strerror or error}") from None
 
 
-def write(folder: str | os.PathLike[str], made: Made) -> None:
-    """Write files into a folder, each as a whole or not at all."""
+def write_files(folder: str | os.PathLike[str], made: ReportFiles) -> None:
+    """Write files into a folder, each as a whole or not at all. RenderError."""
     for name, data in made.items():
         path = Path(folder) / name
         try:

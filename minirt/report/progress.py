@@ -1,4 +1,4 @@
-"""How far something is, on standard error where that is a terminal."""
+"""Progress bar on standard error, shown only if that is a terminal."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ BAR = 24  # characters
 
 
 class Progress:
-    """A line that is drawn over and over."""
+    """One line of a terminal, redrawn at each step."""
 
     def __init__(self, steps: int, out: TextIO) -> None:
         self.steps, self.done, self.out, self.shown = steps, 0, out, out.isatty()
 
     def step(self, what: str) -> None:
-        """The next of the steps begins."""
+        """Show that the next step begins; `what` names it."""
         if self.shown:
             share = min(1.0, self.done / self.steps)
             bar = "#" * round(BAR * share)
@@ -28,7 +28,7 @@ class Progress:
         self.done += 1
 
     def clear(self) -> None:
-        """Leave no trace."""
+        """Erase the line."""
         if self.shown:
             self.out.write("\r\x1b[K")
             self.out.flush()
@@ -36,7 +36,7 @@ class Progress:
 
 @contextmanager
 def progress(steps: int) -> Iterator[Progress]:
-    """The progress of something that takes so many steps."""
+    """A progress bar of so many steps, erased at the end of the block."""
     shown = Progress(steps, sys.stderr)
     try:
         yield shown

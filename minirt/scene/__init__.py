@@ -1,4 +1,4 @@
-"""What a scene is: its elements, how they are read from a file and written to one, and how they are edited."""
+"""Scenes: elements, parser, writer and edits of `.rt` files."""
 
 from minirt.scene.elements import Ambient, Background, Camera, Resolution
 from minirt.scene.format_table import format_table

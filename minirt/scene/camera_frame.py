@@ -1,4 +1,4 @@
-"""Where a camera's picture lies in space."""
+"""Camera frame: the basis of a camera's picture in world space."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from minirt.scene.elements import Camera
 
 
 def camera_frame(camera: Camera) -> tuple[Triple, Triple, Triple]:
-    """Unit vectors right, up and forward of the picture, perpendicular to each other.
+    """Return the orthonormal vectors right, up and forward of a camera.
 
-    Without a roll they are upright; a roll turns right and up about forward, clockwise as the camera sees it. In the
-    mirrored picture of a left-handed camera right is the opposite of all that.
+    Without a roll the picture is upright. A roll turns right and up about forward, clockwise as the camera sees it.
+    A left-handed camera mirrors its picture: right is negated.
     """
     x, y, z = camera.direction
     right, up = upright(x, y, z)
     if camera.roll:
         c, s = cos(radians(camera.roll)), sin(radians(camera.roll))
-        right, up = mix(c, right, -s, up), mix(s, right, c, up)
+        right, up = linear_combination(c, right, -s, up), linear_combination(s, right, c, up)
     if camera.left_handed:
-        right = mix(-1.0, right, 0.0, right)
+        right = linear_combination(-1.0, right, 0.0, right)
     return right, up, (x, y, z)
 
 
-def mix(a: float, u: Triple, b: float, v: Triple) -> Triple:
-    """a u + b v."""
+def linear_combination(a: float, u: Triple, b: float, v: Triple) -> Triple:
+    """Return a u + b v."""
     return a * u[0] + b * v[0], a * u[1] + b * v[1], a * u[2] + b * v[2]

@@ -1,4 +1,4 @@
-"""What a reader of a scene file has to say about it."""
+"""Log of the errors and notices that a reader of a scene file finds."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from pathlib import Path
 from minirt.errors import Problem
 from minirt.scene.lines import Line
 
-MOST_ERRORS = 1000  # of one file; a file with more is something else than a scene
+MAX_ERRORS = 1000  # in one file; a file with more is not a scene
 
 
 class Log:
-    """The errors and the notices of one file."""
+    """The errors and notices of one scene file."""
 
     def __init__(self, file: str, lenient: bool) -> None:
         self.file = file
@@ -21,24 +21,27 @@ class Log:
 
     @property
     def folder(self) -> Path | None:
-        """Where the ways to the files begin that the scene names; None for lines of no file, for which nobody looks."""
+        """Folder to which the scene's file names are relative; None without a file: then named files are not opened."""
         return Path(self.file).parent if self.file else None
 
     @property
     def full(self) -> bool:
-        """Whether it is useless to read on."""
-        return len(self.errors) >= MOST_ERRORS
+        """Whether there are so many errors that reading stops."""
+        return len(self.errors) >= MAX_ERRORS
 
     def error(self, line: Line, column: int, message: str, length: int = 1) -> None:
-        """Something that makes the file useless."""
+        """Add an error; a file with errors is refused."""
         self.errors.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
 
     def notice(self, line: Line, column: int, message: str, length: int = 1) -> None:
-        """Something that the user should know of a file that is read."""
+        """Add a notice about a file that is accepted."""
         self.notices.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
 
-    def tolerate(self, line: Line, column: int, message: str, deed: str, length: int = 1) -> bool:
-        """Something that a lenient reader takes by its `deed`, and a strict one refuses; whether it is taken."""
-        tell = self.notice if self.lenient else self.error
-        tell(line, column, f"{message} (--lenient {deed})", length)
+    def tolerate(self, line: Line, column: int, message: str, remedy: str, length: int = 1) -> bool:
+        """Add a notice if the reader is lenient, an error if it is strict; return whether it is lenient.
+
+        `remedy` says what a lenient reader does: "rounds it to 10,0,255".
+        """
+        add = self.notice if self.lenient else self.error
+        add(line, column, f"{message} (--lenient {remedy})", length)
         return self.lenient

@@ -1,4 +1,4 @@
-"""The elements of a scene that are neither shapes nor lamps: window size, ambient light, camera, background."""
+"""The elements of a scene that are neither shapes nor light sources: resolution, ambient light, camera, background."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from minirt.fields import Colour, Direction, Paint, Point, Real, Triple, Whole, 
 
 @dataclass(frozen=True)
 class Resolution(Element):
-    """`R width height`: the size of the window, in pixels."""
+    """`R width height`: size of the window and of pictures, in pixels."""
 
     code, title, plural, once = "R", "resolution", "resolutions", True
     width: int = declare(Whole, "width of the picture", unit="pixel", low=1, high=16384)
@@ -28,14 +28,14 @@ class Ambient(Element):
 
 @dataclass(frozen=True)
 class Camera(Element):
-    """`C x,y,z dx,dy,dz fov [roll:degrees]`: the eye.
+    """`C x,y,z dx,dy,dz fov [roll:degrees]`: a pinhole camera.
 
-    `left_handed` mirrors the picture, as programs do whose coordinates are left-handed; a file does not say that.
+    `left_handed` mirrors the picture, for scenes made for left-handed coordinates; it is not written to a file.
     """
 
     code, title, plural, once, required = "C", "camera", "cameras", True, True
-    position: Triple = declare(Point, "the eye")
-    direction: Triple = declare(Direction, "where it looks", instead=(0.0, 0.0, 1.0))
+    position: Triple = declare(Point, "position of the eye")
+    direction: Triple = declare(Direction, "viewing direction", instead=(0.0, 0.0, 1.0))
     fov: float = declare(
         Real,
         "horizontal field of view",
@@ -52,21 +52,21 @@ class Camera(Element):
 
     @classmethod
     def look_at(cls, eye: Triple, target: Triple, *, fov: float = 60.0, roll: float = 0.0) -> Camera:
-        """The camera at `eye` that has `target` in the middle of its picture; ValueError where both are the same."""
+        """Return a camera at `eye` with `target` in the middle of its picture; ValueError when they are equal."""
         x, y, z = (there - here for here, there in zip(eye, target, strict=True))
         if not any((x, y, z)):
-            raise ValueError("camera eye and target must be two places")
+            raise ValueError("camera eye and target must be two different points")
         return cls(eye, unit((x, y, z)), fov, roll)
 
 
 @dataclass(frozen=True)
 class Background(Element):
-    """`bg R,G,B` or `bg file`: what rays see that meet nothing, black where there is none.
+    """`bg R,G,B` or `bg file`: colour or environment map for rays that hit nothing; black without this line.
 
-    A picture is wrapped around the scene as an infinitely large sphere: its middle is seen along +z, its upper border
-    along +y, and what is to the right of its middle is on the right of a camera that looks along +z (equirectangular
-    projection: columns are equal angles of longitude, rows of latitude).
+    The environment map is equirectangular (columns are equal angles of longitude, rows of latitude) and infinitely
+    far away: its middle is seen along +z, its upper border along +y, and its right half is on the right of a camera
+    that looks along +z.
     """
 
     code, title, plural, once = "bg", "background", "backgrounds", True
-    paint: Triple | str = declare(Paint, "colour, or a picture of the whole sky")
+    paint: Triple | str = declare(Paint, "colour, or an environment map")

@@ -1,4 +1,4 @@
-"""The bytes and the characters of a scene file, and why there may be none."""
+"""Read and decode the bytes of a scene file; SceneError when it is unreadable or not text."""
 
 from __future__ import annotations
 
@@ -9,54 +9,54 @@ from minirt import regular_files
 from minirt.errors import FileError, Problem, SceneError
 
 SUFFIX = ".rt"
-LARGEST = 64 * 2**20  # bytes
+MAX_BYTES = 64 * 2**20  # 64 MiB
 
-NOTHING = "holds only blanks and comments"
+NO_ELEMENTS = "holds only blanks and comments"
 
 UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks
 
 
-def refused(path: str | os.PathLike[str], message: str) -> SceneError:
-    """The error that the whole file is of no use."""
+def file_error(path: str | os.PathLike[str], message: str) -> SceneError:
+    """Return an error about a file as a whole, without a line."""
     return SceneError((Problem(os.fspath(path), 0, 0, "", message),))
 
 
 def check_name(path: str | os.PathLike[str]) -> None:
-    """SceneError where `path` does not end in `.rt`, or in nothing else."""
+    """Check that the file name ends in `.rt` and is more than that; SceneError otherwise."""
     name = Path(path).name
     if not name.endswith(SUFFIX) or name == SUFFIX:
-        raise refused(path, f"the name of a scene file ends in '{SUFFIX}'")
+        raise file_error(path, f"the name of a scene file ends in '{SUFFIX}'")
 
 
 def read(path: str | os.PathLike[str]) -> bytes:
-    """The bytes of a scene file."""
+    """Return the bytes of a scene file; SceneError when it cannot be read."""
     check_name(path)
     try:
-        return regular_files.read(path, LARGEST)
+        return regular_files.read(path, MAX_BYTES)
     except FileError as error:
-        raise refused(path, error.reason) from None
+        raise file_error(path, error.reason) from None
 
 
 def decode(data: bytes, file: str) -> str:
-    """The text of a scene file; SceneError where it is not UTF-8 text."""
+    """Return the text of a scene file; SceneError when it is empty or not UTF-8 text."""
     if not data.strip():
-        raise refused(file, NOTHING if data else "is empty")
+        raise file_error(file, NO_ELEMENTS if data else "is empty")
     if data.startswith(UTF16):
-        raise bad_byte(data, 0, file, "must be UTF-8, got UTF-16")
+        raise byte_error(data, 0, file, "must be UTF-8, got UTF-16")
     nul = data.find(b"\0")
     if nul >= 0:
-        raise bad_byte(data, nul, file, "must be text, got a NUL byte")
+        raise byte_error(data, nul, file, "must be text, got a NUL byte")
     try:
         return data.decode()
     except UnicodeDecodeError as error:
-        raise bad_byte(data, error.start, file, f"must be UTF-8, got the byte 0x{data[error.start]:02x}") from None
+        raise byte_error(data, error.start, file, f"must be UTF-8, got the byte 0x{data[error.start]:02x}") from None
 
 
-def bad_byte(data: bytes, at: int, file: str, message: str) -> SceneError:
-    """The error about the byte at index `at`."""
-    begin = data.rfind(b"\n", 0, at) + 1
-    end = data.find(b"\n", at)
+def byte_error(data: bytes, index: int, file: str, message: str) -> SceneError:
+    """Return an error about the byte at `index`, with its line and column."""
+    begin = data.rfind(b"\n", 0, index) + 1
+    end = data.find(b"\n", index)
     line = data[begin : end if end >= 0 else len(data)]
-    column = len(data[begin:at].decode("utf-8-sig" if begin == 0 else "utf-8", "replace")) + 1
+    column = len(data[begin:index].decode("utf-8-sig" if begin == 0 else "utf-8", "replace")) + 1
     text = line.decode("utf-8-sig" if begin == 0 else "utf-8", "replace")
-    return SceneError((Problem(file, data.count(b"\n", 0, at) + 1, column, text, message),))
+    return SceneError((Problem(file, data.count(b"\n", 0, index) + 1, column, text, message),))

@@ -1,4 +1,4 @@
-"""The documentation of the format, made from the fields of the elements."""
+"""Markdown tables that document the scene format, generated from the declared fields."""
 
 from __future__ import annotations
 
@@ -9,48 +9,48 @@ from minirt.scene.registry import ELEMENTS
 
 
 def format_table() -> str:
-    """Every element that a scene file may hold, and the attributes that all of a sort have, as Markdown tables."""
+    """Return two Markdown tables: all elements of a scene file, and the attributes shared by all shapes."""
     shared = {field.name: field for kind in ELEMENTS.values() for field in fields_of(kind) if field.sort}
-    elements = ["| line | element | fields |", "|---|---|---|", *map(row, ELEMENTS.values()), ""]
+    elements = ["| line | element | fields |", "|---|---|---|", *map(element_row, ELEMENTS.values()), ""]
     attributes = ["| attribute | of | meaning |", "|---|---|---|", *map(attribute_row, shared.values()), ""]
     return "\n".join(elements + attributes)
 
 
-def row(kind: type[Element]) -> str:
-    """The line of one element."""
+def element_row(kind: type[Element]) -> str:
+    """Return the table row of an element."""
     own = (field for field in fields_of(kind) if not field.sort)
-    return f"| `{pattern(kind)}` | {name(kind)} | {'<br>'.join(map(meaning, own))} |"
+    return f"| `{pattern(kind)}` | {name_and_count(kind)} | {'<br>'.join(map(field_entry, own))} |"
 
 
 def attribute_row(field: Field) -> str:
-    """The line of one attribute."""
+    """Return the table row of a shared attribute."""
     parts = fields_of(field.record) if isinstance(field, Compound) else ()
-    told = "<br>".join([described(field), *map(meaning, parts)])
+    text = "<br>".join([description(field), *map(field_entry, parts)])
     alone = f", or `{field.keys[0]}` for `{field.keys[0]}:{field.bare}`" if field.bare else ""
     for kind in ELEMENTS.values():
-        own = next((each for each in fields_of(kind) if each.name == field.name and each.bare != field.bare), None)
+        own = next((other for other in fields_of(kind) if other.name == field.name and other.bare != field.bare), None)
         alone += f" ({kind.plural}: `{field.keys[0]}:{own.bare}`)" if own else ""
     aliases = ", ".join(f"`{alias}:`" for alias in field.aliases)
-    return f"| `{field.notation}`{alone}; also {aliases} | {field.sort} | {told} |"
+    return f"| `{field.notation}`{alone}; also {aliases} | {field.sort} | {text} |"
 
 
-def name(kind: type[Element]) -> str:
-    """What the element is called, how many of it there may be and what else its line may begin with."""
+def name_and_count(kind: type[Element]) -> str:
+    """Return an element's name with how many a scene may have, or with the aliases of its identifier."""
     if kind.once:
         return f"{kind.title} ({'exactly one' if kind.required else 'at most one'})"
     return f"{kind.title} (also {', '.join(f'`{alias}`' for alias in kind.aliases)})" if kind.aliases else kind.title
 
 
-def meaning(field: Field) -> str:
-    """A field with all that is to know of it."""
-    return f"`{field.notation}` {described(field)}"
+def field_entry(field: Field) -> str:
+    """Return a field's notation and description."""
+    return f"`{field.notation}` {description(field)}"
 
 
-def described(field: Field) -> str:
-    """What it is, its range, unit and default."""
+def description(field: Field) -> str:
+    """Return a field's meaning, range, unit and default."""
     limits = field.range if field.range.startswith(">") or not field.range else f"in {field.range}"
     unit = f"unit: {field.unit}" if field.unit else ""
-    known = field.default is not None and field.default is not False
-    left_out = f"{field.format(field.default)} when left out" if known else ""
+    has_default = field.default is not None and field.default is not False
+    left_out = f"{field.format(field.default)} when left out" if has_default else ""
     doc = "" if field.doc == field.name == field.notation else field.doc
     return ", ".join(filter(None, (doc, limits, unit, left_out)))

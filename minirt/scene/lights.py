@@ -1,6 +1,6 @@
-"""Lamps: all light that comes from somewhere. `Scene.lights` are these, in the order of the file.
+"""Light sources: point, parallel and spot lights. `Scene.lights` are these, in the order of the file.
 
-A lamp gives a surface its colour times its brightness, less the more obliquely it shines on it.
+A light source gives a surface its colour times its brightness times the cosine of the angle of incidence (Lambert).
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from minirt.fields import Colour, Direction, Length, Point, Real, Triple, declar
 RATIO: dict[str, Any] = {"unit": "ratio", "low": 0.0, "high": 1.0, "step": 0.05}
 WHITE = (255, 255, 255)
 DOWN = (0.0, -1.0, 0.0)
-FADE = "less light with the distance, none at this one"
+FADE = "distance at which its light has faded to nothing"
 
 
 @dataclass(frozen=True)
 class Lamp(Element):
-    """What all of them have."""
+    """Base class of light sources: each has a brightness and a colour."""
 
     if TYPE_CHECKING:
         brightness: float
@@ -30,11 +30,11 @@ class Lamp(Element):
 class Light(Lamp):
     """`L x,y,z ratio [R,G,B]`: the point light of the mandatory format.
 
-    With `fade` its light is multiplied by 1 - distance/fade, and by 0 beyond.
+    With `fade` its light is multiplied by 1 - distance/fade, and by 0 beyond that distance.
     """
 
     code, title, plural, once = "L", "light", "lights", True
-    position: Triple = declare(Point, "where it stands")
+    position: Triple = declare(Point, "position of the light")
     brightness: float = declare(Real, "brightness", **RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
     fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance", initial=16.0)
@@ -49,10 +49,10 @@ class FurtherLight(Light):
 
 @dataclass(frozen=True)
 class ParallelLight(Lamp):
-    """`dl dx,dy,dz ratio [R,G,B]`: light from infinitely far away, like that of the sun, which goes along dx,dy,dz."""
+    """`dl dx,dy,dz ratio [R,G,B]`: light along dx,dy,dz from an infinitely distant source, such as the sun."""
 
     code, title, plural = "dl", "parallel light", "parallel_lights"
-    direction: Triple = declare(Direction, "where its light goes", instead=DOWN)
+    direction: Triple = declare(Direction, "direction of its light", instead=DOWN)
     brightness: float = declare(Real, "brightness", **RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
 
@@ -61,16 +61,16 @@ class ParallelLight(Lamp):
 class SpotLight(Lamp):
     """`sl x,y,z dx,dy,dz angle ratio [R,G,B]`: light within a cone.
 
-    `angle` is the full opening angle. In the outer `rim` of the half of it, a tenth when left out, the light goes from
-    nothing to all along 3 t^2 - 2 t^3, with t from 0 to 1 as the cosine grows; with 0 the cone has a sharp
-    edge. `fade` is that of a point light.
+    `angle` is the full opening angle. `rim` is the outer share of the half-angle, a tenth when left out, in which the
+    light grows from 0 to 1 as 3 t^2 - 2 t^3, with t from 0 to 1 linear in the cosine; a rim of 0 gives a sharp edge.
+    `fade` is as for a point light.
     """
 
     code, title, plural = "sl", "spot light", "spot_lights"
-    position: Triple = declare(Point, "where it stands")
-    direction: Triple = declare(Direction, "where it shines", instead=DOWN)
+    position: Triple = declare(Point, "position of the light")
+    direction: Triple = declare(Direction, "direction of its light", instead=DOWN)
     angle: float = declare(Real, "full opening angle", unit="degree", low=0.0, high=180.0, step=2.0)
     brightness: float = declare(Real, "brightness", **RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
-    rim: float = declare(Real, "outer share in which it fades", keyed=True, default=0.1, **RATIO)
+    rim: float = declare(Real, "outer share of the half-angle in which light fades", keyed=True, default=0.1, **RATIO)
     fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance", initial=16.0)

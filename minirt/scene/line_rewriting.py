@@ -1,4 +1,4 @@
-"""From an element to its line in a scene file, with no more changed of the line than changed of the element."""
+"""Write an element into its line of a scene file: blanks, comments and unchanged fields stay as they are."""
 
 from __future__ import annotations
 
@@ -7,83 +7,83 @@ from typing import Any
 from minirt.element import Element, fields_of
 from minirt.fields import Field
 from minirt.scene.diagnostics import Log
-from minirt.scene.element_reader import Slot, assign, cut, fill, identify
+from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.lines import Word, line_from
 from minirt.scene.registry import ELEMENTS, SPELLINGS
 
 
 def describe(element: Element) -> str:
-    """The element as a line of a scene file, without regard to how it was written there."""
+    """Return the element as a new line of a scene file; its source line is ignored."""
     fields = fields_of(type(element))
     written = [field for field in fields if not field.keyed or getattr(element, field.name) != field.default]
-    return " ".join([element.code, *(spelling(field, element) for field in written)])
+    return " ".join([element.code, *(field_text(field, element) for field in written)])
 
 
-def spelling(field: Field, element: Element) -> str:
-    """A field of the element as it is written in a line."""
+def field_text(field: Field, element: Element) -> str:
+    """Return the text of a field in a line: `value` or `key:value`."""
     value = field.format(getattr(element, field.name))
     return f"{field.keys[0]}:{value}" if field.keyed else value
 
 
 def line_of(element: Element) -> str:
-    """The element's source line where that still says the same, else with the changed fields in it, else a new one."""
+    """Return the element's source line with its changed fields rewritten; a new line when the source does not fit."""
     kind = type(element)
     line = line_from(1, element.source)
     log = Log("", lenient=True)
-    words = cut(line, log) if not {"\n", "\0"} & set(line.source) else None
+    words = split_line(line, log) if not {"\n", "\0"} & set(line.source) else None
     code = identify(words[0], line, log) if words else None
-    # A further light may come from a second `L`, and is a kind of it.
-    slots = assign(kind, words, line, log) if words and code and isinstance(element, ELEMENTS[code]) else None
-    values = fill(kind, slots, line, log) if slots else None
+    # A lenient reader makes a FurtherLight, a subclass of Light, of a second `L`.
+    slots = assign_words(kind, words, line, log) if words and code and isinstance(element, ELEMENTS[code]) else None
+    values = parse_slots(kind, slots, line, log) if slots else None
     if not words or not slots or not values or log.errors:
         return describe(element)
     if all(getattr(element, field.name) == values.get(field.name, field.default) for field in fields_of(kind)):
         return line.source
-    before, _, behind = line.source.partition(line.text)
-    return before + changed(line.text, element, words, slots, values) + behind
+    before, _, after = line.source.partition(line.text)
+    return before + rewrite(line.text, element, words, slots, values) + after
 
 
-def changed(text: str, element: Element, words: list[Word], slots: list[Slot], values: dict[str, Any]) -> str:
-    """The line `text`, whose fields have `values` in `slots`, with the fields of the element in it."""
-    unwritten = [field for field in fields_of(type(element)) if field.name not in values]
-    different = [field for field in unwritten if getattr(element, field.name) != field.default]
-    # From the back to the front: what is done leaves the columns of the rest as they were.
-    for field in reversed(different):
+def rewrite(text: str, element: Element, words: list[Word], slots: list[Slot], values: dict[str, Any]) -> str:
+    """Rewrite the line `text`, whose `slots` hold `values`, with the values of the element."""
+    absent = [field for field in fields_of(type(element)) if field.name not in values]
+    added = [field for field in absent if getattr(element, field.name) != field.default]
+    # From right to left, so that the columns of the words still to be rewritten stay valid.
+    for field in reversed(added):
         if field.keyed:
-            text = inserted(text, words[-1].end, spelling(field, element))
+            text = insert(text, words[-1].end, field_text(field, element))
     by_column = sorted(slots, key=lambda slot: slot.word.column, reverse=True)
     for slot in by_column:
         if slot.field.keyed:
-            text = respelled(text, slot, element, values)
-    if not all(field.keyed for field in different):
+            text = rewrite_slot(text, slot, element, values)
+    if not all(field.keyed for field in added):
         last = max(slot.word.end for slot in slots if not slot.field.keyed)
-        text = inserted(text, last, " ".join(spelling(field, element) for field in unwritten if not field.keyed))
+        text = insert(text, last, " ".join(field_text(field, element) for field in absent if not field.keyed))
     for slot in by_column:
         if not slot.field.keyed:
-            text = respelled(text, slot, element, values)
+            text = rewrite_slot(text, slot, element, values)
     code = words[0].raw if SPELLINGS[words[0].raw] is type(element) else element.code
-    return replaced(text, words[0].column, words[0].end, code)
+    return replace_span(text, words[0].column, words[0].end, code)
 
 
-def inserted(text: str, column: int, new: str) -> str:
-    """`text` with `new` and a blank in front of it at `column`."""
+def insert(text: str, column: int, new: str) -> str:
+    """Insert a blank and `new` at `column`."""
     return f"{text[: column - 1]} {new}{text[column - 1 :]}"
 
 
-def respelled(text: str, slot: Slot, element: Element, values: dict[str, Any]) -> str:
-    """`text` with the element's value in the slot, where it is another than that of `values`."""
+def rewrite_slot(text: str, slot: Slot, element: Element, values: dict[str, Any]) -> str:
+    """Rewrite a slot when the element's value differs from that of `values`; delete it when the value is None."""
     value = getattr(element, slot.field.name)
     if value == values[slot.field.name]:
         return text
     if value is None:
         return text[: slot.word.column - 1].rstrip(" \t") + text[slot.word.end - 1 :]
     if slot.bare:
-        return replaced(text, slot.word.column, slot.word.end, spelling(slot.field, element))
-    return replaced(text, slot.word.column + slot.start, slot.word.end, slot.field.format(value))
+        return replace_span(text, slot.word.column, slot.word.end, field_text(slot.field, element))
+    return replace_span(text, slot.word.column + slot.start, slot.word.end, slot.field.format(value))
 
 
-def replaced(text: str, start: int, end: int, new: str) -> str:
-    """`text` with `new` from column `start` to `end`; where several spaces follow, the next word keeps its column."""
+def replace_span(text: str, start: int, end: int, new: str) -> str:
+    """Replace the text from column `start` to `end` by `new`; after several spaces the next word keeps its column."""
     rest = text[end - 1 :]
     following = rest.lstrip(" ")
     gap = len(rest) - len(following)

@@ -1,4 +1,4 @@
-"""The items of a scene in pages: an edit makes one page anew, and shares all others with the scene that it changes."""
+"""Copy-on-write pages of a scene's items: an edit copies one page and shares all others with the scene before it."""
 
 from __future__ import annotations
 
@@ -8,52 +8,53 @@ from typing import Any, TypeVar
 
 from minirt.element import Element
 
-Item = Element | str  # a str is a line without an element, as it stands in the file
+Item = Element | str  # a str is a comment or blank line, as it stands in the file
 
 Answer = TypeVar("Answer")
 
-ITEMS = 1024  # of a page that was just made; inserting makes it at most twice as long
+PAGE_LENGTH = 1024  # items of a new page; insertions make it at most twice as long
 
 
 class Page:
-    """Consecutive items, and what is asked of them again and again, worked out once."""
+    """Immutable run of consecutive items, which caches its answers to repeated queries."""
 
     def __init__(self, items: tuple[Item, ...]) -> None:
         self.items = items
-        self._known: dict[Callable[..., Any], Any] = {}
+        self._cache: dict[Callable[..., Any], Any] = {}
 
     @cached_property
     def kinds(self) -> frozenset[type[Item]]:
-        """The types of its items."""
+        """Types of the items."""
         return frozenset(map(type, self.items))
 
     def of(self, sort: type[Any]) -> tuple[Any, ...]:
-        """Its items of that type or of one that is derived from it."""
-        if sort not in self._known:
-            self._known[sort] = self._find(sort)
-        found: tuple[Any, ...] = self._known[sort]
-        return found
+        """Return the items that are instances of a type, subclasses included."""
+        if sort not in self._cache:
+            self._cache[sort] = self._find(sort)
+        items: tuple[Any, ...] = self._cache[sort]
+        return items
 
-    def ask(self, question: Callable[[tuple[Item, ...]], Answer]) -> Answer:
-        """What a function says of its items."""
-        if question not in self._known:
-            self._known[question] = question(self.items)
-        answer: Answer = self._known[question]
+    def cached(self, query: Callable[[tuple[Item, ...]], Answer]) -> Answer:
+        """Return `query(items)`, computed once."""
+        if query not in self._cache:
+            self._cache[query] = query(self.items)
+        answer: Answer = self._cache[query]
         return answer
 
     def _find(self, sort: type[Any]) -> tuple[Any, ...]:
-        fitting = {kind for kind in self.kinds if issubclass(kind, sort)}
-        if fitting == self.kinds:
+        """Search the items for instances of a type."""
+        matching = {kind for kind in self.kinds if issubclass(kind, sort)}
+        if matching == self.kinds:
             return self.items
-        return tuple(item for item in self.items if type(item) in fitting) if fitting else ()
+        return tuple(item for item in self.items if type(item) in matching) if matching else ()
 
 
-def paged(items: tuple[Item, ...]) -> Iterator[Page]:
-    """The items in pages of the usual length."""
-    return (Page(items[start : start + ITEMS]) for start in range(0, len(items), ITEMS))
+def split_into_pages(items: tuple[Item, ...]) -> Iterator[Page]:
+    """Split items into pages of `PAGE_LENGTH` items."""
+    return (Page(items[start : start + PAGE_LENGTH]) for start in range(0, len(items), PAGE_LENGTH))
 
 
-def repaged(page: Page, at: int, instead: tuple[Item, ...]) -> Iterator[Page]:
-    """The page, or the pages if it became too long, with other items in the place of the one at that index."""
-    items = (*page.items[:at], *instead, *page.items[at + 1 :])
-    return paged(items) if len(items) > 2 * ITEMS else iter([Page(items)] if items else [])
+def replace_item(page: Page, index: int, new: tuple[Item, ...]) -> Iterator[Page]:
+    """Return a page with item `index` replaced by any number of items; several pages when it became too long."""
+    items = (*page.items[:index], *new, *page.items[index + 1 :])
+    return split_into_pages(items) if len(items) > 2 * PAGE_LENGTH else iter([Page(items)] if items else [])

@@ -1,4 +1,4 @@
-"""Reads scene files: text -> Scene. All errors of a file are found in one run."""
+"""Parser of scene files: text -> Scene. One run finds all errors of a file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from minirt.element import Element, pattern
 from minirt.errors import Problem, SceneError
 from minirt.scene import fast, files
 from minirt.scene.diagnostics import Log
-from minirt.scene.element_reader import Slot, assign, cut, fill, identify
+from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.elements import Ambient
 from minirt.scene.lights import FurtherLight, Light
 from minirt.scene.lines import Line, Word, line_from
@@ -22,18 +22,18 @@ from minirt.scene.registry import ELEMENTS
 from minirt.scene.scene import Scene
 from minirt.scene.suggestions import nearest_element
 
-BLOCK = 4096  # lines that are read at once where they are plain
+BLOCK = 4096  # lines that the fast path reads at once
 
 
 class Reading(NamedTuple):
-    """A scene, and what its reader should be told of the file."""
+    """A scene and the notices about its file."""
 
     scene: Scene
     notices: tuple[Problem, ...]
 
 
 def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Reading:
-    """Reads a scene file; SceneError with all that is wrong in it. `left_handed` mirrors its pictures."""
+    """Read a scene file; SceneError with all of its errors. `left_handed` mirrors its pictures."""
     scene, notices = parse(files.read(path), path, lenient)
     if left_handed:
         scene = scene.replace(scene.camera, left_handed=True)
@@ -41,15 +41,15 @@ def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool 
 
 
 def parse(text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = False) -> Reading:
-    """Reads the text of a scene; `file` is what errors call it. SceneError with all that is wrong in it.
+    """Parse the text of a scene; SceneError with all of its errors. `file` is the name that they show.
 
-    With `lenient`, what older scenes have (several `L`, blanks around commas and the like) gives notices.
+    `lenient` accepts, with notices, the habits of older scenes: several `L`, blanks around commas and the like.
     """
     name = os.fspath(file) or "scene"
     if isinstance(text, str):
-        text = text.encode("utf-8", "surrogatepass")  # a lone surrogate is found as a byte that is not UTF-8
+        text = text.encode("utf-8", "surrogatepass")  # a lone surrogate is reported as a byte that is not UTF-8
     log = Log(name, lenient)
-    with collector_paused():
+    with garbage_collection_paused():
         items = read_lines(files.decode(text, name).split("\n"), log)
     if log.errors:
         raise SceneError(tuple(sorted(log.errors, key=lambda error: (error.line, error.column))))
@@ -57,8 +57,8 @@ def parse(text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = 
 
 
 @contextmanager
-def collector_paused() -> Iterator[None]:
-    """Nothing that a reader makes is garbage in a cycle: a quarter of the time would go into looking for some."""
+def garbage_collection_paused() -> Iterator[None]:
+    """Pause cyclic garbage collection: a reader makes no cycles, and the search would take a quarter of its time."""
     enabled = gc.isenabled()
     gc.disable()
     try:
@@ -69,15 +69,15 @@ def collector_paused() -> Iterator[None]:
 
 
 def read_lines(sources: list[str], log: Log) -> list[Item]:
-    """The elements of a file between its comments and blank lines."""
+    """Read all lines of a file: elements, comments and blank lines."""
     items: list[Item] = []
-    seen: dict[str, int] = {}  # identifier: the first line that has it, or seems to mean it
-    for before in range(0, len(sources), BLOCK):
-        block = sources[before : before + BLOCK]
-        for number, (source, known) in enumerate(zip(block, fast.read(block), strict=True), before + 1):
-            if known:
-                seen.setdefault(known.code, number)
-                items.append(known)
+    seen: dict[str, int] = {}  # identifier: first line that has it, or seems to mean it
+    for start in range(0, len(sources), BLOCK):
+        block = sources[start : start + BLOCK]
+        for number, (source, element) in enumerate(zip(block, fast.read(block), strict=True), start + 1):
+            if element:
+                seen.setdefault(element.code, number)
+                items.append(element)
                 continue
             line = line_from(number, source)
             item = read_line(line, seen, log)
@@ -87,13 +87,13 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
                 log.error(line, 1, "too many errors: the rest of the file is not read")
                 return items
     last = len(sources) if sources[-1] or len(sources) == 1 else len(sources) - 1
-    look_for_missing(seen, line_from(last, sources[last - 1]), log)
+    check_required(seen, line_from(last, sources[last - 1]), log)
     return items
 
 
 def read_line(line: Line, seen: dict[str, int], log: Log) -> Item | None:
-    """What any line holds, None where there are errors in it."""
-    words = cut(line, log)
+    """Read any line: an element, or the line itself for a comment or a blank line; None after an error."""
+    words = split_line(line, log)
     if words == []:
         return line.source
     code = identify(words[0], line, log) if words else None
@@ -104,7 +104,7 @@ def read_line(line: Line, seen: dict[str, int], log: Log) -> Item | None:
 
 
 def read_element(code: str, words: list[Word], first: int, line: Line, log: Log) -> Element | None:
-    """The element of a line, None where there are errors in it; `first` is the first line with its identifier."""
+    """Read the element of a line; None after an error. `first` is the first line with the same identifier."""
     kind = ELEMENTS[code]
     errors = len(log.errors)
     if kind.once and first != line.number:
@@ -113,28 +113,28 @@ def read_element(code: str, words: list[Word], first: int, line: Line, log: Log)
             log.error(line, words[0].column, message, len(code))
         elif log.tolerate(line, words[0].column, message, f"reads it as '{FurtherLight.code}'", len(code)):
             kind = FurtherLight
-    slots = assign(kind, words, line, log)
-    values = fill(kind, slots, line, log) if slots else None
+    slots = assign_words(kind, words, line, log)
+    values = parse_slots(kind, slots, line, log) if slots else None
     return assemble(kind, slots, values, line, log) if slots and values and len(log.errors) == errors else None
 
 
 def assemble(kind: type[Element], slots: list[Slot], values: dict[str, Any], line: Line, log: Log) -> Element | None:
-    """The element with those values, None where they do not go together."""
+    """Make the element of the values; None, with an error, when they do not go together."""
     (element,) = kind.checked(1, {"source": [line.source], **{name: [value] for name, value in values.items()}})
     conflict = element.conflict()
     if conflict is None:
         return element
     name, message = conflict
     slot = next(slot for slot in slots if slot.field.name == name)
-    column, length = slot.place(None)
+    column, length = slot.span(None)
     log.error(line, column, f"{kind.title} {name} {message}", length)
     return None
 
 
-def look_for_missing(seen: dict[str, int], line: Line, log: Log) -> None:
-    """Finds out, at the last line of a file, what it does not have."""
+def check_required(seen: dict[str, int], line: Line, log: Log) -> None:
+    """Report, at the last line of a file, the required elements that it does not have."""
     if not seen:
-        raise files.refused(log.file, files.NOTHING)
+        raise files.file_error(log.file, files.NO_ELEMENTS)
     for kind in ELEMENTS.values():
         if kind.required and kind.code not in seen:
             message = f"no {kind.title}: a scene needs one line '{pattern(kind)}'"

@@ -1,4 +1,4 @@
-"""What somebody may have meant by a wrong word."""
+"""Suggestions for misspelled identifiers and keys: "did you mean 'sp'?"."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import re
 from minirt.scene.registry import ELEMENTS, SPELLINGS
 
 LOOKALIKES = str.maketrans("1I0", "llo")
-GLUED = re.compile(r"([A-Za-z]+)[-+.0-9]")
+GLUED = re.compile(r"([A-Za-z]+)[-+.0-9]")  # an identifier without a blank before the first number
 NUMERIC = re.compile(r"[-+.,]*[0-9]")
 
-# How the keys of attributes begin in other programs' scenes, where their spelling does not tell what is meant.
-ELSEWHERE = {
+# Prefixes of attribute keys in scenes of other programs: the key that is meant, where spelling does not tell it.
+FOREIGN_KEYS = {
     "refl": "mirror",
     "refr": "glass",
     "ior": "glass",
@@ -31,16 +31,16 @@ ELSEWHERE = {
 
 
 def nearest(word: str, known: list[str]) -> str:
-    """The entry of `known` that is spelled most like `word`, or nothing where none is near."""
+    """Return the entry of `known` with the most similar spelling, or '' when none is similar."""
     word = word[:40]
-    for each in known:
-        if each.lower() in (word.lower(), word.translate(LOOKALIKES).lower()):
-            return each
+    for entry in known:
+        if entry.lower() in (word.lower(), word.translate(LOOKALIKES).lower()):
+            return entry
     return next(iter(difflib.get_close_matches(word, known, n=1, cutoff=0.6)), "")
 
 
 def nearest_element(word: str) -> str:
-    """The identifier of the element that `word` may mean: an identifier misspelled, or the element's name."""
+    """Return the identifier that `word` may mean, a misspelled identifier or an element's name; or ''."""
     glued = GLUED.match(word)
     if glued and glued[1] in SPELLINGS:
         return SPELLINGS[glued[1]].code
@@ -49,11 +49,11 @@ def nearest_element(word: str) -> str:
 
 
 def nearest_key(word: str, known: list[str]) -> str:
-    """The key of `known` that `word` may mean, or nothing."""
-    meant = next((key for start, key in ELSEWHERE.items() if word.lower().startswith(start)), "")
-    return meant if meant in known else nearest(word, known)
+    """Return the key of `known` that `word` may mean, or ''."""
+    key = next((key for prefix, key in FOREIGN_KEYS.items() if word.lower().startswith(prefix)), "")
+    return key if key in known else nearest(word, known)
 
 
 def hint(word: str) -> str:
-    """`, did you mean 'sp'?` or nothing."""
+    """Return `, did you mean 'sp'?`, or '' without a suggestion."""
     return f", did you mean '{word}'?" if word else ""

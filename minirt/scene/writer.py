@@ -1,4 +1,4 @@
-"""Writes scene files: Scene -> text. What was read and did not change is written as it stood."""
+"""Writer of scene files: Scene -> text. Unchanged lines are written as they were read."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from minirt.scene.scene import Scene
 
 
 def dump(scene: Scene) -> str:
-    """The text of a scene file."""
+    """Return the text of a scene file."""
     lines = [line for page in scene.pages for line in lines_of(page.items)]
     return "\n".join(lines[:1] + [line.removeprefix(BOM) for line in lines[1:]])
 
 
 def lines_of(items: tuple[Item, ...]) -> Iterator[str]:
-    """The lines of a file that hold those items."""
+    """Yield the lines of items."""
     sources = [item if isinstance(item, str) else item.source for item in items]
-    for item, source, said in zip(items, sources, fast.read(sources), strict=True):
-        yield source if isinstance(item, str) or item == said else line_of(item)
+    for item, source, read in zip(items, sources, fast.read(sources), strict=True):
+        yield source if isinstance(item, str) or item == read else line_of(item)
 
 
 def save(scene: Scene, path: str | os.PathLike[str]) -> None:
-    """Writes a scene file, all of it or nothing; SceneError where that is not possible.
+    """Write a scene file as a whole or not at all; SceneError when that fails.
 
     An existing file keeps its permissions, and a symbolic link stays one.
     """
@@ -36,4 +36,4 @@ def save(scene: Scene, path: str | os.PathLike[str]) -> None:
     try:
         atomic_write.write(path, data)
     except (OSError, ValueError) as error:
-        raise files.refused(path, f"cannot be written: {regular_files.reason(error)}") from None
+        raise files.file_error(path, f"cannot be written: {regular_files.reason(error)}") from None

@@ -52,7 +52,7 @@ class Mesh(Shape):
     def triangles(self) -> meshes.Triangles:
         """What was read from its file; FileError where that is still to be done and cannot be."""
         found: meshes.Triangles | None = self.file.triangles
-        return meshes.mesh(self.file.name) if found is None else found
+        return meshes.load_mesh(self.file.name) if found is None else found
 
     @property
     def parts(self) -> int:

@@ -1,5 +1,5 @@
-"""python -m tests.bench: how fast this program is beside others, how its time grows with the scene, and what its exact
-formulas cost beside those of textbooks."""
+"""`python -m tests.bench`: benchmark miniRT against other renderers, over growing scenes, and its exact formulas
+against textbook formulas."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ WIDTH, HEIGHT = 1280, 720
 
 
 class Plan(NamedTuple):
-    """How thorough to be."""
+    """The extent of the benchmark."""
 
-    rounds: int  # in which scenes are compared
-    grown_rounds: int  # for the growth curve
-    most: int  # spheres of it
+    rounds: int  # rounds of the comparison
+    grown_rounds: int  # rounds of the growth curve
+    most: int  # spheres of the growth curve, at most
     seconds: float  # of a turn
 
 
@@ -100,13 +100,13 @@ def names(systems: list[System]) -> list[str]:
 
 
 def draw(compared: Cells, growth: Cells, out: Path) -> None:
-    """The pictures, where there is what draws them."""
+    """Draw the charts if matplotlib is installed."""
     if find_spec("matplotlib") is None:
         print("no pictures: matplotlib is not installed (pip install -e '.[report]')")
         return
     from tests.bench import charts
 
-    charts.bars(compared, out / "bench.png")
+    charts.dots(compared, out / "bench.png")
     charts.growth(growth, out / "growth.png")
     print(f"{out}: bench.json, bench.png, growth.png")
 

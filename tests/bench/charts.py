@@ -1,4 +1,4 @@
-"""Pictures of what was measured (matplotlib)."""
+"""Charts of the benchmark (drawn by matplotlib)."""
 
 from __future__ import annotations
 
@@ -13,33 +13,35 @@ from tests.bench.table import figure
 
 COLOURS = {"miniRT double": "#d1495b", "miniRT single": "#edae49", "C++ yardstick": "#7a8b99"}
 OTHERS = "#30638e"
-ROOT_FROM = 100  # spheres, where the line of comparison begins
+SCENES, MARKS = ("#d1495b", "#30638e", "#edae49"), "osD"  # of the dots of each scene
+ROOT_FROM = 100  # spheres at which the line of comparison begins
 STYLE = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False, "svg.hashsalt": "minirt"}
 
 
-def bars(cells: Cells, path: Path) -> None:
-    """A panel for each scene with a bar for each system; the axis is logarithmic."""
+def dots(cells: Cells, path: Path) -> None:
+    """Draw a dot plot: a row for each system, a dot for each scene, milliseconds on a logarithmic axis."""
     rcParams.update(STYLE)
     systems, scenes = names(cells)
-    canvas, panels = pyplot.subplots(1, len(scenes), sharey=True, figsize=(9, 0.9 + 0.38 * len(systems)), squeeze=False)
-    longest = max(cell.ms for cell in cells.values())
-    for panel, scene in zip(panels[0], scenes, strict=True):
+    canvas, panel = pyplot.subplots(figsize=(9, 1.3 + 0.55 * len(systems)))
+    for scene, colour, mark, offset in zip(scenes, SCENES, MARKS, (7, -15, 7), strict=False):
         values = [cells[system, scene].ms for system in systems]
-        panel.barh(systems, values, color=[COLOURS.get(system, OTHERS) for system in systems], height=0.7)
+        panel.plot(values, systems, mark, color=colour, markersize=9, label=scene)
         for row, value in enumerate(values):
-            panel.text(value * 1.12, row, figure(value), va="center")
-        panel.set(xscale="log", xlim=(0.3, longest * 4), title=scene)
-        panel.xaxis.set_major_locator(NullLocator())
-        panel.xaxis.set_minor_locator(NullLocator())
-        panel.spines["bottom"].set_visible(False)
-        panel.tick_params(length=0)
-    panels[0][0].invert_yaxis()
-    canvas.supxlabel("milliseconds a frame of 1280 x 720, logarithmic", fontsize=10)
+            panel.annotate(
+                figure(value), (value, row), (0, offset), textcoords="offset points", ha="center", fontsize=9
+            )
+    panel.invert_yaxis()
+    panel.margins(x=0.05, y=0.14)
+    panel.set(xscale="log", xlabel="milliseconds per frame of 1280 x 720, logarithmic axis")
+    panel.xaxis.set_major_formatter(StrMethodFormatter("{x:,g}"))
+    panel.grid(alpha=0.3)
+    panel.tick_params(length=0)
+    panel.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, 1.14), ncols=len(scenes))
     save(canvas, path)
 
 
 def growth(cells: Cells, path: Path) -> None:
-    """The time of a frame over the number of spheres, and what a growth with its root would be."""
+    """Draw the time per frame against the number of spheres, with a line of growth by its square root."""
     rcParams.update(STYLE)
     systems, scenes = names(cells)
     counts = [int(scene) for scene in scenes]
@@ -51,7 +53,7 @@ def growth(cells: Cells, path: Path) -> None:
     base = cells[systems[0], str(beyond[0])].ms
     root = [base * (count / beyond[0]) ** 0.5 for count in beyond]
     panel.plot(beyond, root, "--", color="#999999", linewidth=1, label="growth with $\\sqrt{N}$")
-    panel.set(xscale="log", yscale="log", xlabel="spheres in view, N", ylabel="milliseconds a frame")
+    panel.set(xscale="log", yscale="log", xlabel="spheres in view, N", ylabel="milliseconds per frame")
     for axis in (panel.xaxis, panel.yaxis):
         axis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
         axis.set_minor_locator(NullLocator())
@@ -61,7 +63,7 @@ def growth(cells: Cells, path: Path) -> None:
 
 
 def names(cells: Cells) -> tuple[list[str], list[str]]:
-    """The systems and the scenes, in the order in which they were measured."""
+    """Return the systems and the scenes, in the order in which they were measured."""
     return list(dict.fromkeys(system for system, _ in cells)), list(dict.fromkeys(scene for _, scene in cells))
 
 

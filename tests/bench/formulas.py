@@ -1,4 +1,4 @@
-"""Times of the exact formulas of shapes beside those of textbooks."""
+"""Benchmark of the exact intersection formulas against textbook formulas."""
 
 from __future__ import annotations
 
@@ -14,28 +14,30 @@ from minirt.report.measurements.regimes import REGIMES
 from minirt.shapes import KINDS
 from tests.bench.table import MARK, aligned, times
 
-REGIME = next(each for each in REGIMES if each.name == "benign")  # rays that neither formula finds hard
-SHAPES, RAYS, SEED = 6, 32, 1  # of each kind; of each shape
+REGIME = next(each for each in REGIMES if each.name == "benign")  # rays that are easy for both formulas
+SHAPES, RAYS, SEED = 6, 32, 1  # shapes of each type, rays per shape
 UNIT = "ns a ray"
 MEANING = (
-    f"{UNIT}: nanoseconds of one thread, the best of {formula_errors.RUNS} runs, of rays that start {REGIME.about} from the\n"
-    "shape; the ratio is of processor times, the median of runs in turn."
+    f"{UNIT}: nanoseconds on one thread, the best of {formula_errors.RUNS} runs; rays start {REGIME.about} from\n"
+    "the shape; the ratio is of processor times, the median of alternating runs."
 )
 
 
 def measured() -> Iterator[Row]:
-    """The rows of the exact formula and of the textbook's, of each kind that textbooks have one for."""
+    """Measure both formulas of each shape type that has a textbook formula."""
     for kind in KINDS:
         if kind.element in textbook.FORMULAS:
             print(f"formula of the {kind.element.title}", file=sys.stderr, flush=True)
             rays = REGIME.pose(kind, np.random.default_rng(SEED), SHAPES, RAYS)
             yield from (
-                row for row in formula_errors.measured(kind, REGIME.name, rays) if row.formula in ("miniRT", "textbook")
+                row
+                for row in formula_errors.measure_formulas(kind, REGIME.name, rays)
+                if row.formula in ("miniRT", "textbook")
             )
 
 
 def table(rows: Sequence[Row]) -> str:
-    """A line for each kind: nanoseconds a ray of the exact formula and of the textbook's, and the ratio."""
+    """Return a table: nanoseconds per ray of the exact and the textbook formula of each shape type, and the ratio."""
     found = {(row.kind, row.formula): row for row in rows}
     lines = [[UNIT, "textbook", "miniRT"]]
     for kind in dict.fromkeys(row.kind for row in rows):
@@ -45,12 +47,12 @@ def table(rows: Sequence[Row]) -> str:
 
 
 def cell(row: Row, ratio: float) -> str:
-    """A time, marked where other programs disturbed it, and its ratio to the textbook's."""
+    """Format a time, marked if other programs disturbed it, and its ratio to the textbook formula's."""
     return f"{row.ns_ray:.2f}{' ' if row.valid else MARK} {times(ratio):>5}"
 
 
 def records(rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """The same for a JSON file."""
+    """Return the table for a JSON file."""
     return [
         {
             "kind": row.kind,

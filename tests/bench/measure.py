@@ -1,4 +1,4 @@
-"""Taking turns: each system renders each scene once a round, so that whatever slows the machine down slows down all."""
+"""Measure systems in turn: each renders each scene once a round, so that a slow moment of the machine affects all."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from typing import NamedTuple
 from minirt.rendering.running.cores import usable_cores
 from tests.bench.system import MissingError, System
 
-PROCESSOR_TIME = Path("/proc/stat")  # of all programs, in ticks
+PROCESSOR_TIME = Path("/proc/stat")  # processor time of all programs, in ticks
 QUIET = 0.1  # processors that others may use before a round counts as disturbed
 
 
 class Clock(NamedTuple):
-    """Seconds that have passed, those of all processors that were used, and those that this program used of them."""
+    """Wall time, processor time of all programs and of this one, in seconds."""
 
     wall: float
     all: float
@@ -27,7 +27,7 @@ class Clock(NamedTuple):
 
 
 def clock() -> Clock:
-    """Where nobody tells what other programs do, they count as idle."""
+    """Read the clock; where the system does not tell about other programs, they count as idle."""
     own = sum(os.times()[:4])
     try:
         user, nice, system, _, _, *interrupts_and_stolen = map(int, PROCESSOR_TIME.read_text().split()[1:9])
@@ -38,45 +38,45 @@ def clock() -> Clock:
 
 
 def elsewhere(start: Clock, end: Clock) -> float:
-    """Processors that other programs kept busy, on average."""
+    """Return how many processors other programs kept busy, on average."""
     return max(0.0, (end.all - start.all) - (end.own - start.own)) / (end.wall - start.wall)
 
 
 class Round(NamedTuple):
-    """A turn of a system on a scene."""
+    """One turn of a system on a scene."""
 
-    ms: float  # of a frame, the median
+    ms: float  # milliseconds per frame, the median
     elsewhere: float
 
 
 @dataclass
 class Cell:
-    """What a system takes for a scene, over all rounds."""
+    """All rounds of a system on a scene."""
 
     threads: int
     rounds: list[Round] = field(default_factory=list)
 
     def quiet(self) -> list[Round]:
-        """The rounds in which nobody else needed the processors."""
+        """The rounds in which no other program needed the processors."""
         spare = usable_cores() - self.threads
         return [each for each in self.rounds if each.elsewhere - max(0, spare) <= QUIET]
 
     @property
     def disturbed(self) -> bool:
-        """Whether no round was quiet."""
+        """Whether all rounds were disturbed."""
         return not self.quiet()
 
     @property
     def ms(self) -> float:
-        """Of a frame: the median of the quiet rounds, or of all where none was quiet."""
+        """Milliseconds per frame: the median of the quiet rounds, or of all rounds if none was quiet."""
         return median(each.ms for each in self.quiet() or self.rounds)
 
 
-Cells = dict[tuple[str, str], Cell]  # by the names of system and scene
+Cells = dict[tuple[str, str], Cell]  # (system, scene) -> cell
 
 
 def available(makers: Iterable[Callable[[], System]]) -> tuple[list[System], list[str]]:
-    """The systems that can be made here, and why the others cannot."""
+    """Return the systems that are installed, and for each other system the reason why it cannot be measured."""
     systems, reasons = [], []
     for make in makers:
         try:
@@ -87,7 +87,7 @@ def available(makers: Iterable[Callable[[], System]]) -> tuple[list[System], lis
 
 
 def take_turns(systems: list[System], scenes: list[Path], rounds: int, seconds: float) -> Cells:
-    """Measure each system on each scene. What no round was quiet for is tried again in as many further rounds."""
+    """Measure each system on each scene; cells without a quiet round get as many further rounds."""
     cells: Cells = {}
     for number in range(2 * rounds):
         for scene in scenes:

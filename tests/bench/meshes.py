@@ -1,4 +1,4 @@
-"""Scenes of one mesh, the same at each run: a ball with waves on it, whose triangles fill half of the picture."""
+"""Benchmark scenes of one mesh, the same at each run: a wavy ball that fills half of the picture."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ ob {}.obj 0,0,0 5 200,140,90
 
 
 def grid(count: int) -> tuple[int, int]:
-    """How many rings of points, and how many points in each, make about so many triangles: two for each but the first
-    and the last."""
+    """Return how many rings of points, and points per ring, give about `count` triangles: two per point, except at both
+    poles."""
     rings = max(2, round((count / 4) ** 0.5))
     return rings, 2 * rings
 
 
 def ball(count: int) -> Iterator[str]:
-    """The lines of a closed mesh of about so many triangles, in squares but for its two ends."""
+    """Yield the lines of a closed .obj mesh of about `count` triangles, in quads except at its poles."""
     rings, around = grid(count)
     yield "v 0 1 0\n"
     for ring in range(1, rings + 1):
@@ -49,6 +49,6 @@ def ball(count: int) -> Iterator[str]:
 
 
 def waves(folder: Path, count: int) -> Path:
-    """The file of a scene of a mesh of about so many triangles."""
+    """Write the scene of a mesh of about `count` triangles; return its file."""
     write(folder / "meshes" / f"{count}.obj", ball(count))
     return write(folder / "meshes" / f"{count}.rt", iter([SCENE.format(count)]))

@@ -1,4 +1,4 @@
-"""This program, by its library."""
+"""miniRT as a system of the benchmark, through its library."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from minirt.rendering import Renderer
 from tests.bench.system import Setting, System
 
 LEAST_FRAMES = 3
-RECENT = 3  # scenes that are kept
-STEP = 1e-3  # of the eye, from frame to frame
+RECENT = 3  # packed scenes that are kept
+STEP = 1e-3  # scene units that the eye moves from frame to frame
 
 read = lru_cache(RECENT)(load)
 
@@ -32,7 +32,7 @@ class MiniRT(System):
         self.renderer = lru_cache(RECENT)(self.new_renderer)
 
     def new_renderer(self, _: Path) -> Renderer:
-        """One for each scene, because it keeps what it works out for the last scene that it rendered."""
+        """Make a renderer for a scene; each scene has its own, since a renderer keeps only the last packed scene."""
         return Renderer(self.setting.threads, self.precision)
 
     def frame_times(self, path: Path, seconds: float) -> list[float]:

@@ -1,7 +1,7 @@
-"""Scenes of many spheres, the same at each run.
+"""Benchmark scenes of many spheres, the same at each run.
 
-`tenthousand` fills a box with small balls. `growth` keeps the picture as full whatever the number of spheres: all lie
-in view, and their radius goes with 1 / sqrt(count), so that together they would cover it once if none overlapped.
+`tenthousand` fills a box with small balls. `growth` keeps the picture equally full for any count: all spheres are in
+view, and their radius goes with 1 / sqrt(count), so that they would cover the picture once if none overlapped.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ HERE = Path(__file__).parent
 COUNTS = (10, 100, 1_000, 10_000, 100_000, 1_000_000)
 
 FOV, ASPECT = 70.0, 16 / 9
-WIDE = tan(radians(FOV) / 2)  # half of the picture at distance 1
+WIDE = tan(radians(FOV) / 2)  # half the width of the picture at distance 1
 HIGH = WIDE / ASPECT
 NEAREST, FARTHEST = 50.0, 150.0  # depth of the centres
 
@@ -34,14 +34,14 @@ pl 0,-80,0 0,1,0 200,200,200
 
 
 def sphere(random: Random, centre: tuple[float, float, float], diameter: float) -> str:
-    """A line with a sphere of some light colour."""
+    """Return the line of a sphere of a random light colour."""
     red, green, blue = (60 + int(random.random() * 196) for _ in range(3))
     x, y, z = centre
     return f"sp {x:.5g},{y:.5g},{z:.5g} {diameter:.5g} {red},{green},{blue}\n"
 
 
 def tenthousand() -> Iterator[str]:
-    """The lines of a scene of 10,000 spheres in a box of 100 x 60 x 100, with diameters from 1 to 2."""
+    """Yield the lines of a scene of 10,000 spheres in a box of 100 x 60 x 100, with diameters from 1 to 2."""
     random = Random(42)
     yield TEN_THOUSAND
     for _ in range(10_000):
@@ -50,13 +50,13 @@ def tenthousand() -> Iterator[str]:
 
 
 def radius(count: int) -> float:
-    """Of each of `count` spheres: their discs are as large as the picture, seen from where they lie on average."""
+    """Return the radius of `count` spheres whose discs together are as large as the picture, at their mean depth."""
     mean_inverse_square = 3 * (FARTHEST - NEAREST) / (FARTHEST**3 - NEAREST**3)  # of the depth
     return sqrt(4 * WIDE * HIGH / (count * pi * mean_inverse_square))
 
 
 def growth(count: int) -> Iterator[str]:
-    """The lines of a scene of `count` spheres whose centres fill the frustum of the camera evenly."""
+    """Yield the lines of a scene of `count` spheres whose centres fill the camera's frustum evenly."""
     random = Random(count)
     yield GROWTH
     for _ in range(count):
@@ -66,7 +66,7 @@ def growth(count: int) -> Iterator[str]:
 
 
 def write(path: Path, lines: Iterator[str]) -> Path:
-    """Write a scene, unless the file is there."""
+    """Write a scene unless its file exists."""
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
         unfinished = path.with_suffix(".part")
@@ -77,10 +77,10 @@ def write(path: Path, lines: Iterator[str]) -> Path:
 
 
 def compared(folder: Path) -> list[Path]:
-    """The three scenes on which all systems are compared; what is not at hand is written into the folder."""
+    """Return the three scenes on which all systems are compared; generated ones are written into the folder."""
     return [HERE / "one.rt", HERE / "fifty.rt", write(folder / "tenthousand.rt", tenthousand())]
 
 
 def grown(folder: Path, count: int) -> Path:
-    """The file of a scene of the growth curve."""
+    """Write a scene of the growth curve; return its file."""
     return write(folder / "growth" / f"{count}.rt", growth(count))

@@ -1,4 +1,4 @@
-"""What is measured: systems that render the frames of a scene."""
+"""The interface of the systems that the benchmark measures."""
 
 from __future__ import annotations
 
@@ -6,35 +6,35 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import NamedTuple
 
-INSTALL = "`make bench-peers` installs it"  # what a comparison needs, on Debian and Ubuntu
+INSTALL = "`make bench-peers` installs it"  # on Debian and Ubuntu
 
 
 class MissingError(Exception):
-    """A system that cannot be measured here, and what it lacks."""
+    """Raised for a system that cannot be measured here; the text says what is missing."""
 
 
 class Setting(NamedTuple):
-    """What is alike for all systems."""
+    """Settings that all systems share."""
 
     width: int
     height: int
     threads: int
-    folder: Path  # for what they write
+    folder: Path  # for files that systems write
 
 
 class System(ABC):
-    """A ray tracer. `MissingError` where it is not installed."""
+    """A ray tracer; `MissingError` if it is not installed."""
 
     name: str
-    how: str  # what its time is
+    how: str  # what its time includes
 
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
 
     @abstractmethod
     def frame_times(self, path: Path, seconds: float) -> list[float]:
-        """Render frames of the scene in a file for about so long, at least one; milliseconds of each."""
+        """Render frames of a scene file for about `seconds`, at least one; return the milliseconds of each."""
 
     def picture(self, path: Path) -> Path:
-        """Where the picture of that scene goes, for systems that write one."""
+        """Return the path of the scene's picture, for systems that write one."""
         return self.setting.folder / f"{path.stem}-{self.name}.png"

@@ -1,4 +1,4 @@
-"""What was measured, as text and as JSON."""
+"""Results of the benchmark as text and as JSON."""
 
 from __future__ import annotations
 
@@ -6,23 +6,23 @@ from typing import Any
 
 from tests.bench.measure import Cells
 
-MARK = "*"  # of a figure that other programs disturbed
+MARK = "*"  # marks a figure that other programs disturbed
 
 
 def figure(ms: float) -> str:
-    """Milliseconds in three digits, or as many as there are before the point."""
+    """Format milliseconds in three significant digits, without an exponent."""
     digits = 2 if ms < 9.995 else 1 if ms < 99.95 else 0
     return f"{ms:.{digits}f}"
 
 
 def times(ratio: float) -> str:
-    """A ratio in two digits, or as many as there are before the point."""
+    """Format a ratio in two significant digits, without an exponent."""
     digits = 2 if ratio < 0.995 else 1 if ratio < 9.95 else 0
     return f"x{ratio:.{digits}f}"
 
 
 def table(cells: Cells, systems: list[str], scenes: list[str], title: str = "ms a frame") -> str:
-    """A row for each system and a column for each scene; the ratios are to the first row."""
+    """Return a table with a row per system and a column per scene; ratios are to the first row."""
     rows = [[title, *scenes]]
     for system in systems:
         row = [system]
@@ -35,7 +35,7 @@ def table(cells: Cells, systems: list[str], scenes: list[str], title: str = "ms 
 
 
 def aligned(rows: list[list[str]]) -> str:
-    """Rows of cells, one below the other: the first column to the left, the others to the right."""
+    """Align rows of cells: the first column to the left, the others to the right."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = (
         "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(cells))
@@ -45,7 +45,7 @@ def aligned(rows: list[list[str]]) -> str:
 
 
 def records(cells: Cells) -> list[dict[str, Any]]:
-    """The same for a JSON file."""
+    """Return the results for a JSON file."""
     return [
         {
             "system": system,

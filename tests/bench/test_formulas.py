@@ -1,4 +1,4 @@
-"""The table of formulas, from invented figures."""
+"""The table of formula times, from invented figures."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ def test_each_formula_of_a_textbook_is_measured_beside_the_exact_one(monkeypatch
         assert (regime, rays.origins.shape, {*map(type, rays.shapes)}) == ("benign", (6, 32, 3), {kind.element})
         return [row(kind.element.title, name, 2.0, 0.5) for name in ("miniRT", "textbook", "miniRT, float32")]
 
-    monkeypatch.setattr(formula_errors, "measured", measured)
+    monkeypatch.setattr(formula_errors, "measure_formulas", measured)
     rows = list(formulas.measured())
     assert [(each.kind, each.formula) for each in rows] == [
         (element.title, formula) for element in textbook.FORMULAS for formula in ("miniRT", "textbook")
     ]
     assert formulas.table(rows).count("2.00  x0.50") == len(textbook.FORMULAS)
-    assert "nanoseconds of one thread" in formulas.MEANING
+    assert "nanoseconds on one thread" in formulas.MEANING

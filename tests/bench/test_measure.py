@@ -1,4 +1,4 @@
-"""Rounds, medians, tables: from figures that are known."""
+"""Rounds, medians and tables, from known figures."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.bench.table import figure, records, table, times
 
 
 class Counting(System):
-    """Takes 1, 2, 3, ... milliseconds, and as many times that as its name has letters."""
+    """A fake system: its n-th frame takes n milliseconds times the letters of its name."""
 
     how = "invented"
 
@@ -41,7 +41,7 @@ def test_systems_take_turns(monkeypatch: pytest.MonkeyPatch) -> None:
     assert cells["bb", "x"].ms == 6
 
 
-def test_what_was_always_disturbed_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cells_that_were_always_disturbed_are_measured_again(monkeypatch: pytest.MonkeyPatch) -> None:
     loads = iter([9.0, 9.0, 0.0, 9.0, 0.0])  # of bb and a in two rounds, then of a alone
     monkeypatch.setattr("tests.bench.measure.elsewhere", lambda start, end: next(loads))
     calls: list[str] = []
@@ -71,7 +71,7 @@ STAT = "cpu  {} 20 30 4000 500 6 7 8 9 10\ncpu0 1 2 3 4 5 6 7 8 9 10\nctxt 12345
 
 @pytest.fixture
 def machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The file in which the system counts ticks, a hundredth of a second each, and its other clocks."""
+    """Fake the clocks of a system and its file of ticks, a hundredth of a second each."""
     monkeypatch.setattr(measure, "PROCESSOR_TIME", tmp_path / "stat")
     monkeypatch.setattr(measure, "perf_counter", lambda: 77.0)
     monkeypatch.setattr(os, "times", lambda: (1.0, 2.0, 0.25, 0.5, 9.0))
@@ -80,8 +80,8 @@ def machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_the_clock_is_that_of_the_system(machine: Path) -> None:
-    """Ticks of users, nice ones, of the system, of interrupts and of other machines: not of idleness, and not those of
-    guests, which are among the first two already. Of this program what it and its children used."""
+    """All busy ticks count: user, nice, system, interrupts, steal; not idle ones, nor guests, which user and nice
+    include. This program's time includes its children's."""
     machine.write_text(STAT.format(100))
     assert clock() == Clock(77.0, (100 + 20 + 30 + 6 + 7 + 8) / 100, 3.75)
     before = clock()

@@ -1,4 +1,4 @@
-"""The meshes of the benchmark are closed, outward and of the size that they say."""
+"""The meshes of the benchmark are closed, have outward normals and the stated size."""
 
 from __future__ import annotations
 

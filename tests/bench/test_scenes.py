@@ -1,4 +1,4 @@
-"""The scenes that are measured are what they are said to be."""
+"""The scenes of the benchmark are as documented."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A folder with a scene in it, and the program inside of this process."""
+"""Fixtures: a folder with a scene, and the program run inside this process."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from pathlib import Path
 import pytest
 
 from minirt import cli
-from tests.cli.program import SCENE, Ended
+from tests.cli.program import SCENE, Result
 
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The current folder, with ball.rt in it."""
+    """The current folder, which contains ball.rt."""
     (tmp_path / "ball.rt").write_text(SCENE)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
 @pytest.fixture
-def run(folder: Path, capsysbinary: pytest.CaptureFixture[bytes]) -> Callable[..., Ended]:
-    """Call the program with arguments."""
+def run(folder: Path, capsysbinary: pytest.CaptureFixture[bytes]) -> Callable[..., Result]:
+    """A function that calls the program with arguments."""
 
-    def call(*arguments: str) -> Ended:
+    def call(*arguments: str) -> Result:
         try:
             status = cli.main(arguments)
-        except SystemExit as exit:  # argparse leaves so
+        except SystemExit as exit:  # raised by argparse
             status = exit.code
         out, err = capsysbinary.readouterr()
-        return Ended(status, out, err.decode())
+        return Result(status, out, err.decode())
 
     return call

@@ -1,4 +1,4 @@
-"""The program, as people start it."""
+"""Run the program as a process, as users do."""
 
 from __future__ import annotations
 
@@ -23,38 +23,40 @@ sp 0,0,0 2 10,0,255
 pl 0,-1,0 0,1,0 200,200,200
 """
 PROGRAM = [sys.executable, "-m", "minirt"]
-TELLING = [sys.executable, "-m", "tests.cli.telling"]
+ANNOUNCING = [sys.executable, "-m", "tests.cli.announcing"]
 
 
-class Ended(NamedTuple):
+class Result(NamedTuple):
+    """Exit status and output of a run."""
+
     status: int
     out: bytes
     err: str
 
 
 def environment() -> dict[str, str]:
-    """Without a display, and with this source tree."""
-    kept = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    return kept | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error"}
+    """Return the environment of the program: no display, this source tree, warnings as errors."""
+    inherited = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    return inherited | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error"}
 
 
 def start(
     folder: Path, *arguments: str, command: Sequence[str] = PROGRAM, stderr: int = subprocess.PIPE
 ) -> AbstractContextManager[subprocess.Popen[bytes]]:
-    """The program, or another one, running in a folder; it is killed when the block ends."""
+    """Start the program, or another command, in a folder; it is killed when the block ends."""
     return started([*command, *arguments], cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=stderr)
 
 
-def program(folder: Path, *arguments: str) -> Ended:
-    """Run the program in a folder to its end."""
+def program(folder: Path, *arguments: str) -> Result:
+    """Run the program in a folder until it ends."""
     ended = run([*PROGRAM, *arguments], cwd=folder, env=environment())
-    return Ended(ended.returncode, ended.stdout, ended.stderr.decode())
+    return Result(ended.returncode, ended.stdout, ended.stderr.decode())
 
 
-def interrupt(process: subprocess.Popen[bytes], told: Terminal) -> tuple[int, bytes]:
-    """Send what Ctrl+C in its terminal sends, to the program and to all that it started; its status, and what it has
-    written to standard output. What it wrote in the terminal is `told.text`."""
+def interrupt(process: subprocess.Popen[bytes], screen: Terminal) -> tuple[int, bytes]:
+    """Send SIGINT, as Ctrl+C does, to the program and its children; return its exit status and standard output. Its
+    standard error, the terminal, is in `screen.text`."""
     os.killpg(process.pid, signal.SIGINT)
-    told.wait_for_end()
+    screen.wait_for_end()
     out, _ = process.communicate(timeout=HANG_LIMIT)
     return process.returncode, out

@@ -1,4 +1,4 @@
-"""What the program makes of its arguments: statuses and messages."""
+"""Arguments of the program give the right exit statuses and messages."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 import minirt
-from minirt import arguments
+from minirt.cli import arguments
 from minirt.kernel.shading import whitted
 from minirt.rendering.packing import features
-from tests.cli.program import SCENE, Ended
+from tests.cli.program import SCENE, Result
 from tests.paths import ROOT
 from tests.simulated import PACKET, packets, simulated
 
-Run = Callable[..., Ended]
+Run = Callable[..., Result]
 
 BAD_ARGUMENTS = [
     ["--nonsense"],
@@ -58,8 +58,8 @@ BAD_SCENES = {
 }
 
 
-def assert_refused(ended: Ended, folder: Path, status: int = 1) -> None:
-    """`Error` comes first, nothing is printed elsewhere, no picture is made."""
+def assert_refused(ended: Result, folder: Path, status: int = 1) -> None:
+    """Check the status, that standard error begins with `Error`, and that nothing else is printed or written."""
     assert ended.status == status
     assert ended.out == b""
     lines = ended.err.split("\n")
@@ -69,7 +69,7 @@ def assert_refused(ended: Ended, folder: Path, status: int = 1) -> None:
 
 
 @pytest.mark.parametrize("arguments", BAD_ARGUMENTS, ids=" ".join)
-def test_bad_arguments(run: Run, folder: Path, arguments: list[str]) -> None:
+def test_wrong_arguments_are_refused(run: Run, folder: Path, arguments: list[str]) -> None:
     ended = run(*arguments)
     assert_refused(ended, folder, 2)
     assert "usage: miniRT" in ended.err
@@ -84,23 +84,23 @@ def test_bad_arguments(run: Run, folder: Path, arguments: list[str]) -> None:
         (["--check"], "expected one scene file, got 0"),
     ],
 )
-def test_not_exactly_one_scene(run: Run, folder: Path, arguments: list[str], message: str) -> None:
+def test_exactly_one_scene_is_required(run: Run, folder: Path, arguments: list[str], message: str) -> None:
     ended = run(*arguments)
     assert_refused(ended, folder)
     assert ended.err.split("\n")[1] == message
 
 
 @pytest.mark.parametrize("name", BAD_SCENES)
-@pytest.mark.parametrize("how", [["-o", "x.png"], ["--check"], []])
-def test_bad_scenes(run: Run, folder: Path, name: str, how: list[str]) -> None:
+@pytest.mark.parametrize("mode", [["-o", "x.png"], ["--check"], []])
+def test_a_wrong_scene_is_an_error_in_every_mode(run: Run, folder: Path, name: str, mode: list[str]) -> None:
     (folder / name).write_text(BAD_SCENES[name])
-    ended = run(name, *how)
+    ended = run(name, *mode)
     assert_refused(ended, folder)
     assert ended.err.split("\n")[1].startswith(f"{name}:")
 
 
 @pytest.mark.parametrize("name", ["missing.rt", "folder.rt"])
-def test_no_file(run: Run, folder: Path, name: str) -> None:
+def test_a_scene_that_is_no_file_is_an_error(run: Run, folder: Path, name: str) -> None:
     (folder / "folder.rt").mkdir()
     assert_refused(run(name, "-o", "x.png"), folder)
 
@@ -120,24 +120,24 @@ def test_an_error_names_file_line_and_column_and_shows_the_line(run: Run, folder
     ]
 
 
-def test_check_makes_no_picture(run: Run, folder: Path) -> None:
+def test_check_renders_nothing(run: Run, folder: Path) -> None:
     assert run("ball.rt", "--check", "-o", "x.png") == (0, b"ball.rt: no errors, 2 shapes, 1 lights\n", "")
     assert not (folder / "x.png").exists()
 
 
-def test_the_subjects_own_example_is_read_leniently(run: Run, folder: Path) -> None:
-    printed = str(ROOT / "scenes" / "subject-as-printed.rt")
-    assert_refused(run(printed, "--check"), folder)
-    ended = run(printed, "--check", "--lenient")
+def test_the_example_of_the_subject_needs_the_lenient_reader(run: Run, folder: Path) -> None:
+    path = str(ROOT / "scenes" / "subject-as-printed.rt")
+    assert_refused(run(path, "--check"), folder)
+    ended = run(path, "--check", "--lenient")
     assert ended.status == 0
     assert ended.out.endswith(b"no errors, 3 shapes, 1 lights\n")
     assert ended.err.startswith("notice: ")
-    assert run(printed, "--lenient", "-o", "printed.png", "--size", "16x9").status == 0
+    assert run(path, "--lenient", "-o", "printed.png", "--size", "16x9").status == 0
     assert (folder / "printed.png").exists()
 
 
-def test_bench_says_what_it_measured(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    """By a clock on which a packet of rays takes a millisecond."""
+def test_bench_prints_its_measurements(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a simulated clock a packet of rays takes a millisecond."""
     clock = simulated(monkeypatch)
     clock.slowness = 1e-3 / PACKET
     ended = run("ball.rt", "--bench", "--json", "--size", "16x9", "--threads", "2")
@@ -148,10 +148,10 @@ def test_bench_says_what_it_measured(run: Run, monkeypatch: pytest.MonkeyPatch) 
         "size": "16x9",
         "threads": 2,
         "precision": "double",
-        "frames": -(-1000 // frame),  # of a second
+        "frames": -(-1000 // frame),  # frames that fill a second
         "ms_min": frame,
         "ms_median": frame,
-        "compile_s": 0.001,  # until there is a picture of one pixel
+        "compile_s": 0.001,  # a picture of one pixel
         "load_s": 0.0,
     }
     clock.slowness *= 100
@@ -162,7 +162,7 @@ def test_bench_says_what_it_measured(run: Run, monkeypatch: pytest.MonkeyPatch) 
     )
 
 
-def test_version(run: Run) -> None:
+def test_version_is_printed(run: Run) -> None:
     assert run("--version") == (0, f"miniRT {minirt.__version__}\n".encode(), "")
 
 
@@ -179,8 +179,8 @@ def test_list_keys_needs_no_scene(run: Run) -> None:
     assert len(ended.out.splitlines()) > 10
 
 
-def test_the_depth(run: Run, folder: Path) -> None:
-    assert (arguments.DEPTH, arguments.DEEPEST) == (features.DEPTH, whitted.MAX_DEPTH)
+def test_depth_limits_the_reflections_and_has_a_range(run: Run, folder: Path) -> None:
+    assert (arguments.DEPTH, arguments.MAX_DEPTH) == (features.DEPTH, whitted.MAX_DEPTH)
     mirror = "A 1 255,255,255\nC 0,0,-5 0,0,1 60\nbg 0,0,255\npl 0,0,0 0,0,-1 255,0,0 mirror:1\n"
     (folder / "mirror.rt").write_text(mirror)
     for depth, colour in (("0", [255, 0, 0]), ("1", [0, 0, 255])):

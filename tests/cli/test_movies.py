@@ -1,4 +1,4 @@
-"""Turntables and films, as the program writes them."""
+"""The program writes turntables and replays as movies."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 import minirt
-from tests.cli.program import TELLING, Ended, interrupt, start
-from tests.cli.telling import RENDERING
+from tests.cli.announcing import RENDERING
+from tests.cli.program import ANNOUNCING, Result, interrupt, start
 from tests.terminals import terminal
 
-Run = Callable[..., Ended]
+Run = Callable[..., Result]
 
 
-def test_a_turntable_begins_with_the_picture(run: Run, folder: Path) -> None:
+def test_a_turntable_begins_with_the_view_of_the_scene(run: Run, folder: Path) -> None:
     assert run("ball.rt", "--turntable", "3", "-o", "spin.png", "--size", "32x18") == (0, b"", "")
     names = ["spin-0001.png", "spin-0002.png", "spin-0003.png"]
     assert sorted(file.name for file in folder.glob("spin*")) == names
@@ -26,40 +26,40 @@ def test_a_turntable_begins_with_the_picture(run: Run, folder: Path) -> None:
     assert not np.array_equal(first, second)
 
 
-def test_a_turntable_in_one_file(run: Run, folder: Path) -> None:
+def test_a_turntable_can_be_one_gif(run: Run, folder: Path) -> None:
     assert run("ball.rt", "--turntable", "5", "-o", "spin.GIF", "--size", "32x18").status == 0
-    with pillow.open(folder / "spin.GIF") as found:
-        assert (found.n_frames, found.size) == (5, (32, 18))
+    with pillow.open(folder / "spin.GIF") as movie:
+        assert (movie.n_frames, movie.size) == (5, (32, 18))
 
 
 @pytest.mark.parametrize("wrong", [("--turntable", "3"), ("--turntable", "3", "-o", "-"), ("--turntable", "0")])
-def test_where_to_is_asked_for(run: Run, wrong: tuple[str, ...]) -> None:
+def test_a_turntable_needs_a_number_and_a_file(run: Run, wrong: tuple[str, ...]) -> None:
     ended = run("ball.rt", *wrong)
     assert (ended.status, ended.out) == (2, b"")
     assert "--turntable" in ended.err
 
 
-def test_a_replay_becomes_a_film(run: Run, folder: Path) -> None:
+def test_a_replay_can_be_a_gif(run: Run, folder: Path) -> None:
     (folder / "keys.txt").write_text("press I\npress I\nhold d 1\nwait 0.2\n")
     assert run("ball.rt", "--replay", "keys.txt", "-o", "film.gif", "--size", "32x18").status == 0
-    with pillow.open(folder / "film.gif") as found:
-        assert found.n_frames > 8
+    with pillow.open(folder / "film.gif") as movie:
+        assert movie.n_frames > 8
 
 
 @pytest.mark.parametrize("name", ["spin.gif", "spin.png"])
 def test_an_interrupt_leaves_no_half_file(folder: Path, name: str) -> None:
-    """In the third of many pictures."""
+    """The interrupt comes in the third of many pictures."""
     arguments = "ball.rt", "-o", name, "--turntable", "3600", "--size", "640x360", "--samples", "64", "--threads", "1"
-    with terminal() as told, start(folder, *arguments, command=TELLING, stderr=told.end) as process:
-        told.leave()
-        told.wait_for(b"picture 2 of 3600")
-        told.wait_for(RENDERING)
-        assert interrupt(process, told) == (130, b"")
-    assert b"Traceback" not in told.text
+    with terminal() as screen, start(folder, *arguments, command=ANNOUNCING, stderr=screen.end) as process:
+        screen.leave()
+        screen.wait_for(b"picture 2 of 3600")
+        screen.wait_for(RENDERING)
+        assert interrupt(process, screen) == (130, b"")
+    assert b"Traceback" not in screen.text
     written = [file for file in folder.iterdir() if file.name != "ball.rt"]
     assert {file.name for file in written} >= ({"spin-0001.png", "spin-0002.png"} if name == "spin.png" else set())
     assert all(file.name.startswith("spin-") for file in written)
     assert bool(written) == (name == "spin.png")
     for file in written:
-        with pillow.open(file) as found:
-            found.load()
+        with pillow.open(file) as movie:
+            movie.load()

@@ -1,4 +1,4 @@
-"""Pictures that the program writes: formats, sizes, and files that are whole or not there."""
+"""The program writes pictures in the right format and size, as a whole or not at all."""
 
 from __future__ import annotations
 
@@ -15,17 +15,19 @@ from PIL import Image
 import minirt
 from minirt import atomic_write
 from minirt.cli import main
-from tests.cli.program import SCENE, Ended
+from tests.cli.program import SCENE, Result
 
-Run = Callable[..., Ended]
+Run = Callable[..., Result]
 
 
 def pixels(data: bytes | Path) -> np.ndarray:
+    """Return the RGB pixels of a picture file or of its bytes."""
     with Image.open(io.BytesIO(data) if isinstance(data, bytes) else data) as image:
         return np.asarray(image.convert("RGB"))
 
 
 def rendered(width: int, height: int, samples: int = 1) -> np.ndarray:
+    """Return the pixels of ball.rt, rendered by the library."""
     return minirt.render(minirt.load("ball.rt"), width, height, samples=samples).array
 
 
@@ -33,31 +35,31 @@ def rendered(width: int, height: int, samples: int = 1) -> np.ndarray:
     ("suffix", "format"),
     [("png", "PNG"), ("jpg", "JPEG"), ("bmp", "BMP"), ("ppm", "PPM"), ("webp", "WEBP"), ("PNG", "PNG")],
 )
-def test_the_extension_says_which_format(run: Run, folder: Path, suffix: str, format: str) -> None:
+def test_the_extension_selects_the_format(run: Run, folder: Path, suffix: str, format: str) -> None:
     target = folder / f"ball.{suffix}"
     assert run("ball.rt", "-o", str(target), "--size", "40x30") == (0, b"", "")
     with Image.open(target) as image:
         assert image.format == format
-    near = 30 if format in ("JPEG", "WEBP") else 0
-    assert np.abs(pixels(target).astype(int) - rendered(40, 30)).mean() <= near
+    tolerance = 30 if format in ("JPEG", "WEBP") else 0
+    assert np.abs(pixels(target).astype(int) - rendered(40, 30)).mean() <= tolerance
     assert {path.name for path in folder.iterdir()} == {"ball.rt", target.name}
 
 
 @pytest.mark.parametrize("name", ["x.xyz", "x", "x.", "x.mp3", "x.rt", ".png"])
-def test_a_format_that_cannot_be_written(run: Run, folder: Path, name: str) -> None:
+def test_an_unknown_extension_is_an_error(run: Run, folder: Path, name: str) -> None:
     ended = run("ball.rt", "-o", name, "--size", "4x4")
     assert (ended.status, ended.out) == (1, b"")
     assert ended.err.startswith(f"Error\n{name}: cannot write pictures with the extension")
     assert [path.name for path in folder.iterdir()] == ["ball.rt"]
 
 
-def test_a_folder_that_does_not_exist(run: Run, folder: Path) -> None:
+def test_a_missing_folder_is_an_error(run: Run, folder: Path) -> None:
     ended = run("ball.rt", "-o", "nowhere/x.png", "--size", "4x4")
     assert ended == (1, b"", "Error\nnowhere/x.png: cannot write: No such file or directory\n")
     assert [path.name for path in folder.iterdir()] == ["ball.rt"]
 
 
-def test_a_folder_in_the_place_of_the_file(run: Run, folder: Path) -> None:
+def test_an_output_that_is_a_folder_is_an_error(run: Run, folder: Path) -> None:
     (folder / "x.png").mkdir()
     ended = run("ball.rt", "-o", "x.png", "--size", "4x4")
     assert (ended.status, ended.err.split("\n")[0]) == (1, "Error")
@@ -69,7 +71,7 @@ def test_an_existing_file_is_replaced_as_a_whole(run: Run, folder: Path) -> None
     assert np.array_equal(pixels(folder / "x.png"), rendered(8, 6))
 
 
-def test_an_existing_file_stays_where_writing_fails(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_existing_file_stays_when_writing_fails(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (folder / "x.png").write_bytes(b"old")
 
     def full(descriptor: int) -> None:
@@ -82,7 +84,7 @@ def test_an_existing_file_stays_where_writing_fails(run: Run, folder: Path, monk
     assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
 
 
-def test_an_existing_file_stays_where_the_scene_is_wrong(run: Run, folder: Path) -> None:
+def test_an_existing_file_stays_when_the_scene_is_wrong(run: Run, folder: Path) -> None:
     (folder / "x.png").write_bytes(b"old")
     (folder / "bad.rt").write_text("nonsense")
     assert run("bad.rt", "-o", "x.png").status == 1
@@ -96,56 +98,56 @@ def test_standard_output_gets_a_png(run: Run) -> None:
     assert np.array_equal(pixels(ended.out), rendered(20, 10))
 
 
-def test_size_and_samples(run: Run) -> None:
+def test_size_and_samples_are_those_of_the_options(run: Run) -> None:
     ended = run("ball.rt", "-o", "-", "--size", "20x10", "--samples", "9")
     assert np.array_equal(pixels(ended.out), rendered(20, 10, 9))
     assert not np.array_equal(pixels(ended.out), rendered(20, 10))
 
 
 @pytest.mark.parametrize("goal", [("--error", "0.01"), ("--time", "0.1"), ("--error", "0.01", "--time", "5"), ()])
-def test_as_many_samples_as_an_error_or_a_time_asks_for(run: Run, goal: tuple[str, ...]) -> None:
+def test_auto_samples_reach_the_error_or_fill_the_time(run: Run, goal: tuple[str, ...]) -> None:
     ended = run("ball.rt", "-o", "-", "--size", "80x60", "--samples", "auto", *goal)
     assert ended.status == 0
-    told = re.fullmatch(
+    match = re.fullmatch(
         r"([0-9.]+) samples a pixel on average, ([0-9]+) at most; estimated error ([0-9.e-]+); ([0-9.]+) s\n", ended.err
     )
-    assert told
-    mean, most, error, _ = map(float, told.groups())
+    assert match
+    mean, most, error, _ = map(float, match.groups())
     assert 2 <= mean <= most
     assert error <= (0.01 if "--error" in goal else 0.0021 if not goal else 1)
     if "--time" not in goal:
-        wanted = {"error": float(goal[1])} if goal else {}
-        image = minirt.render(minirt.load("ball.rt"), 80, 60, samples="auto", **wanted)
+        goals = {"error": float(goal[1])} if goal else {}
+        image = minirt.render(minirt.load("ball.rt"), 80, 60, samples="auto", **goals)
         assert np.array_equal(pixels(ended.out), image.array)
 
 
-def test_the_scene_may_name_the_size(run: Run, folder: Path) -> None:
+def test_the_scene_may_set_the_size(run: Run, folder: Path) -> None:
     (folder / "sized.rt").write_text("R 33 21\n" + SCENE)
     assert pixels(run("sized.rt", "-o", "-").out).shape == (21, 33, 3)
     assert pixels(run("sized.rt", "-o", "-", "--size", "7x5").out).shape == (5, 7, 3)
     assert pixels(run("ball.rt", "-o", "-").out).shape == (720, 1280, 3)
 
 
-def test_verbose_says_how_long_it_took(run: Run) -> None:
+def test_verbose_prints_durations_and_features(run: Run) -> None:
     ended = run("ball.rt", "-o", "x.png", "--size", "8x6", "--samples", "2", "--threads", "1", "-v")
     assert (ended.status, ended.out) == (0, b"")
-    ready, made, finite, *rest = ended.err.splitlines()
+    ready, duration, finite, *rest = ended.err.splitlines()
     assert re.fullmatch(r"kernel ready after [0-9.]+ s", ready)
-    assert re.fullmatch(r"8x6, 2 samples a pixel, 1 threads, double precision: [0-9.]+ ms", made)
+    assert re.fullmatch(r"8x6, 2 samples a pixel, 1 threads, double precision: [0-9.]+ ms", duration)
     assert finite == "rays whose light is not finite: 0"
     assert rest[0] == "kernel for spheres, planes"
     assert rest[1].startswith("kernel without cylinders")
 
 
-def test_verbose_leaves_it_to_what_was_reached_how_many_samples_there_are(run: Run) -> None:
+def test_verbose_prints_the_samples_of_auto_only_once(run: Run) -> None:
     ended = run("ball.rt", "-o", "x.png", "--size", "40x30", "--samples", "auto", "--error", "0.1", "-v")
-    _, reached, made, finite, *_ = ended.err.splitlines()
+    _, reached, duration, finite, *_ = ended.err.splitlines()
     assert reached.startswith("2.0 samples a pixel on average, 2 at most; ")
-    assert re.fullmatch(r"40x30, [0-9]+ threads, double precision: [0-9.]+ ms", made)
+    assert re.fullmatch(r"40x30, [0-9]+ threads, double precision: [0-9.]+ ms", duration)
     assert finite == "rays whose light is not finite: 0"
 
 
-def test_precision(run: Run) -> None:
+def test_precision_is_an_option(run: Run) -> None:
     for precision in ("double", "single"):
         ended = run("ball.rt", "-o", f"{precision}.png", "--size", "80x60", "--precision", precision, "-v")
         assert f"{precision} precision" in ended.err
@@ -153,12 +155,12 @@ def test_precision(run: Run) -> None:
     assert (ended.status, "invalid choice: 'half'" in ended.err) == (2, True)
 
 
-def test_what_single_precision_cannot_show_is_told(run: Run, folder: Path) -> None:
+def test_a_notice_names_shapes_that_single_precision_cannot_show(run: Run, folder: Path) -> None:
     (folder / "huge.rt").write_text("A 0.2 255,255,255\nC 0,1.7,0 0,0,1 60\nsp 0,-5e8,0 1e9 9,9,9\nsp 0,2,9 1 9,9,9\n")
-    for precision, told in (("double", 0), ("single", 1)):
+    for precision, count in (("double", 0), ("single", 1)):
         ended = run("huge.rt", "-o", "x.png", "--size", "8x6", "--precision", precision)
         notices = [line for line in ended.err.splitlines() if line.startswith("notice: single precision cannot show ")]
-        assert len(notices) == told
+        assert len(notices) == count
         assert all("show sphere 1: the eye is close to it for its size (size 1e+09, " in line for line in notices)
 
 
@@ -167,7 +169,7 @@ def test_threads_do_not_change_the_picture(run: Run) -> None:
     assert one == three
 
 
-def test_without_a_display_the_picture_falls_back_to_a_file(
+def test_without_a_display_the_fallback_file_is_rendered(
     run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from minirt import viewer
@@ -185,27 +187,25 @@ def test_without_a_display_the_picture_falls_back_to_a_file(
 
 
 @pytest.mark.parametrize("samples", [(), ("--samples", "1"), ("--samples", "6")])
-def test_the_last_frame_of_a_replay_is_the_picture_without_a_window(
-    run: Run, folder: Path, samples: tuple[str, ...]
-) -> None:
+def test_the_last_frame_of_a_replay_is_the_rendered_picture(run: Run, folder: Path, samples: tuple[str, ...]) -> None:
     (folder / "keys.txt").write_text("press I\npress I\nhold d 0.2\npress Home\n")
     ended = run("ball.rt", "--replay", "keys.txt", "--size", "40x30", *samples, "-o", "-")
     assert (ended.status, ended.err) == (0, "")
     assert np.array_equal(pixels(ended.out), rendered(40, 30, int(samples[1]) if samples else 1))
 
 
-def test_the_window_gets_more_samples_than_a_file(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_default_samples_of_the_window_are_more_than_of_a_file(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     from minirt import viewer
 
-    asked: list[object] = []
-    monkeypatch.setattr(viewer, "run", lambda *_, samples, **more: asked.append(samples) or 0)
+    passed: list[object] = []
+    monkeypatch.setattr(viewer, "run", lambda *_, samples, **more: passed.append(samples) or 0)
     run("ball.rt")
     run("ball.rt", "--samples", "1")
     run("ball.rt", "--samples", "64")
-    assert asked == [16, 1, 64]
+    assert passed == [16, 1, 64]
 
 
-def test_a_replay_takes_the_layout_that_is_asked_for(tmp_path: Path) -> None:
+def test_a_replay_uses_the_keyboard_layout_of_the_options(tmp_path: Path) -> None:
     scene, keys = tmp_path / "scene.rt", tmp_path / "keys.txt"
     scene.write_text("A 0.5 255,255,255\nC 0,0,0 0,0,1 70\nsp 1,0,9 4 200,30,30\n")
     pictures = []
@@ -214,6 +214,6 @@ def test_a_replay_takes_the_layout_that_is_asked_for(tmp_path: Path) -> None:
         out = tmp_path / f"{layout}-{pressed}.png"
         assert main([str(scene), "--replay", str(keys), "--keys", layout, "--size", "48x32", "-o", str(out)]) == 0
         pictures.append(pixels(out))
-    to_the_left, also, down = pictures
-    assert (to_the_left == also).all()
-    assert (to_the_left != down).any()
+    left_qwerty, left_azerty, down_azerty = pictures
+    assert (left_qwerty == left_azerty).all()
+    assert (left_qwerty != down_azerty).any()

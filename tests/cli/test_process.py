@@ -1,4 +1,4 @@
-"""The program as a process: what it imports, how much it does, how it is interrupted."""
+"""The program as a process: its imports, the work of its start, interrupts."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import TELLING, environment, interrupt, program, start
-from tests.cli.telling import RENDERING
+from tests.cli.announcing import RENDERING
+from tests.cli.program import ANNOUNCING, environment, interrupt, program, start
 from tests.processes import run
 from tests.terminals import terminal
 from tests.waiting import HANG_LIMIT
@@ -33,7 +33,7 @@ print(calls[0])
 
 
 def printed(code: str, folder: Path) -> list[str]:
-    """The words that a process prints which runs some code."""
+    """Run code in a Python process; return the words that it prints."""
     done = run([sys.executable, "-c", code], cwd=folder, env=environment(), text=True)
     assert (done.returncode, done.stderr) == (0, "")
     words: list[str] = done.stdout.split()
@@ -41,7 +41,7 @@ def printed(code: str, folder: Path) -> list[str]:
 
 
 def modules(code: str, folder: Path) -> set[str]:
-    """What a process has imported after some code."""
+    """Run code in a Python process; return the modules that it has imported."""
     return set(printed(f"{code}\n{LOADED}", folder))
 
 
@@ -61,20 +61,21 @@ def test_rendering_to_a_file_imports_no_window(folder: Path) -> None:
     assert not {"pyglet", "minirt.mlx", "minirt.viewer"} & loaded
 
 
-def test_the_module_is_the_program(folder: Path) -> None:
+def test_python_m_minirt_runs_the_program(folder: Path) -> None:
     ended = program(folder)
     assert (ended.status, ended.out) == (1, b"")
     assert ended.err.startswith("Error\nexpected one scene file, got 0\n")
 
 
 @pytest.mark.parametrize("option", ["--help", "--version"])
-def test_help_and_version_come_at_once(folder: Path, option: str) -> None:
-    """Nothing but the standard library is imported, little of the program is, and little is done."""
+def test_help_and_version_start_fast(folder: Path, option: str) -> None:
+    """Only the standard library and a few modules of the program are imported, and few functions called."""
     assert program(folder, option).status == 0
-    few = {"minirt", *(f"minirt.{each}" for each in ("argument_values", "arguments", "cli", "errors", "gc_pause"))}
+    allowed = {"minirt", "minirt.cli", "minirt.errors"}
+    allowed |= {f"minirt.cli.{each}" for each in ("argument_values", "arguments", "exit_status")}
     loaded = modules(f"{QUIETLY}    with contextlib.suppress(SystemExit): main(['{option}'])", folder)
     loaded -= modules("import contextlib, io", folder)
-    assert {each for each in loaded if each.split(".")[0] not in sys.stdlib_module_names} == few
+    assert {each for each in loaded if each.split(".")[0] not in sys.stdlib_module_names} == allowed
     (calls,) = printed(COUNTED.format(option=option), folder)
     assert 100 < int(calls) < 100_000
 
@@ -82,16 +83,16 @@ def test_help_and_version_come_at_once(folder: Path, option: str) -> None:
 def test_an_interrupt_ends_a_long_render_without_a_trace(folder: Path) -> None:
     (folder / "x.png").write_bytes(b"old")
     arguments = "ball.rt", "-o", "x.png", "--size", "1920x1080", "--samples", "65536", "--threads", "2"  # hours
-    with terminal() as told, start(folder, *arguments, command=TELLING, stderr=told.end) as process:
-        told.leave()
-        told.wait_for(RENDERING)
-        assert interrupt(process, told) == (130, b"")
-    assert told.text.split() == [RENDERING]
+    with terminal() as screen, start(folder, *arguments, command=ANNOUNCING, stderr=screen.end) as process:
+        screen.leave()
+        screen.wait_for(RENDERING)
+        assert interrupt(process, screen) == (130, b"")
+    assert screen.text.split() == [RENDERING]
     assert (folder / "x.png").read_bytes() == b"old"
     assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
 
 
-def test_a_reader_that_leaves_early_is_no_traceback(folder: Path) -> None:
+def test_a_closed_pipe_gives_no_traceback(folder: Path) -> None:
     with start(folder, "ball.rt", "-o", "-", "--size", "900x700") as process:
         assert process.stdout is not None
         assert process.stderr is not None

@@ -1,4 +1,4 @@
-"""Meshes that tests begin with, and brute force to know where rays hit them."""
+"""Example meshes, and brute-force intersection of rays with their triangles."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.fields import MeshFile
-from minirt.meshes import Triangles, mesh
+from minirt.meshes import Triangles, load_mesh
 from minirt.shapes.mesh import Mesh
 from tests.paths import SCENES
 
@@ -19,12 +19,12 @@ Array = NDArray[np.float64]
 
 
 def named(name: str, position: tuple[float, float, float] = (0, 0, 0), scale: float = 1.0, **how: Any) -> Mesh:
-    """A mesh of scenes/meshes."""
-    return Mesh(MeshFile(f"{name}.obj", mesh(FOLDER / f"{name}.obj")), position, scale, GREY, **how)
+    """Load a mesh of scenes/meshes."""
+    return Mesh(MeshFile(f"{name}.obj", load_mesh(FOLDER / f"{name}.obj")), position, scale, GREY, **how)
 
 
 def soup(random: np.random.Generator, count: int, size: float = 1.0) -> Mesh:
-    """Triangles that have nothing to do with each other."""
+    """Make a triangle soup: unconnected random triangles."""
     points = random.normal(size=(count, 1, 3)) * 3 + size * random.normal(size=(count, 3, 3))
     corners = np.arange(3 * count).reshape(count, 3)
     return Mesh(MeshFile("soup.obj", Triangles(points.reshape(-1, 3), corners)), (0, 0, 0), 1.0, GREY)
@@ -32,15 +32,18 @@ def soup(random: np.random.Generator, count: int, size: float = 1.0) -> Mesh:
 
 @cache
 def ball(subdivisions: int) -> Triangles:
-    """A sphere of triangles with the sphere's normals at the corners."""
-    made = mesh(FOLDER / "icosphere.obj" if subdivisions == 3 else FOLDER / "icosahedron.obj")
-    points = made.points / np.linalg.norm(made.points, axis=1)[:, None]
-    return Triangles(points, made.corners, points[made.corners])
+    """Return a triangulated unit sphere with the sphere's normals at the corners."""
+    triangles = load_mesh(FOLDER / "icosphere.obj" if subdivisions == 3 else FOLDER / "icosahedron.obj")
+    points = triangles.points / np.linalg.norm(triangles.points, axis=1)[:, None]
+    return Triangles(points, triangles.corners, points[triangles.corners])
 
 
 def first_hits(corners: Array, origins: Array, directions: Array) -> tuple[Array, NDArray[np.int64], Array]:
-    """Distances of the first hits of rays with triangles, which they are, and how near to an edge the ray passes that
-    decides it, in shares of a triangle. Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection, 1997."""
+    """Return for each ray the distance of its closest hit, the triangle, and its least distance from an edge.
+
+    The latter is a barycentric coordinate: when it is near 0, rounding decides. Möller and Trumbore, Fast, Minimum
+    Storage Ray/Triangle Intersection, 1997.
+    """
     nearest, owner = np.full(len(origins), np.inf), np.full(len(origins), -1)
     doubt = np.full(len(origins), np.inf)
     for i, (a, b, c) in enumerate(corners):

@@ -1,4 +1,4 @@
-"""Progress is shown to people, and to nobody else."""
+"""The progress bar is shown on terminals only."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def test_a_terminal_shows_how_far_it_is_and_is_left_clean(monkeypatch: pytest.Mo
     assert three.endswith(" 50% three")
 
 
-def test_it_is_left_clean_after_an_interrupt_too(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_terminal_is_left_clean_after_an_interrupt(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stderr", terminal := Terminal())
 
     def interrupted() -> None:

@@ -1,4 +1,4 @@
-"""A report from the first step to the last file."""
+"""Whole reports: files, figures, errors and interrupts."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ from minirt.errors import RenderError
 from minirt.report import __main__, generate, report, report_formulas
 from minirt.report.generate import NO_DIAGRAM
 from minirt.report.measurements.picture_errors import Budget
-from minirt.report.measurements.plan import QUICK, fitting
+from minirt.report.measurements.plan import QUICK, fitting_size
 from minirt.report.output.error_image import HEAT
 from minirt.scene import Scene, dump
 from minirt.shapes import KINDS
+from tests.cli.announcing import RENDERING
 from tests.cli.conftest import folder, run
-from tests.cli.program import Ended, interrupt, start
-from tests.cli.telling import RENDERING
+from tests.cli.program import Result, interrupt, start
 from tests.kernel.pictures import ALL, AMBIENT, EYE
 from tests.simulated import PACKET, Clock, packets, simulated
 from tests.terminals import terminal
 
 __all__ = ["folder", "run"]
-Run = Callable[..., Ended]
+Run = Callable[..., Result]
 TABLES = {"report.md", "report.json", "pictures.csv", "kernels.csv"}
 
 
 @pytest.fixture(autouse=True)
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    """A plan for tests, with little work, and a clock that moves on by that alone."""
+    """Use a plan with little work, and a simulated clock that only rendering moves on."""
     plan = QUICK._replace(shapes=1, samples=64, most=4, budget=Budget(0.0, inf, tries=1))
     monkeypatch.setattr(generate, "QUICK", plan)
     return simulated(monkeypatch)
@@ -45,7 +45,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 @pytest.fixture
 def made(tmp_path: Path) -> Path:
-    """The folder of a report."""
+    """Write a report and return its folder."""
     report(ALL, "all.rt", tmp_path / "deep" / "folder", (64, 40), 1, quick=True)
     return tmp_path / "deep" / "folder"
 
@@ -70,7 +70,7 @@ def test_the_files_agree(made: Path) -> None:
         assert f"| {kind} | this scene |" in text
 
 
-def test_it_can_be_done_again(made: Path) -> None:
+def test_a_report_can_be_repeated(made: Path) -> None:
     found = json.loads((made / "report.json").read_text())
     about = found["subject"]
     assert (about["scene"], about["width"], about["height"], about["threads"]) == ("all.rt", 64, 40, 1)
@@ -84,11 +84,11 @@ def test_it_can_be_done_again(made: Path) -> None:
             assert [row[figure] for row in found[table]] == [row[figure] for row in again[table]]
 
 
-def test_what_it_says(made: Path) -> None:
+def test_the_text_names_what_was_left_out_and_the_best_settings(made: Path) -> None:
     found, text = json.loads((made / "report.json").read_text()), (made / "report.md").read_text()
     assert "plane 1 hides nothing from light 1" in text
     assert found["same"] == [1, 4]
-    assert "trying every shape for every ray: the same pictures, bit for bit (samples: 1 and 4)" in text
+    assert "testing every ray against every shape gives the same pictures, bit for bit (samples: 1 and 4)" in text
     assert found["reference_samples"] == 64
     assert 0 < found["reference_error"] < min(row["rmse"] for row in found["pictures"])
     assert f"about {found['reference_error']:.1g}" in text
@@ -137,7 +137,7 @@ def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
         report(ALL, "all.rt", tmp_path, (16, 16), 1, quick=True)
 
 
-def test_kinds_that_nothing_exact_is_known_of_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_shape_types_without_an_exact_reference_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(generate, "SOLIDS", {})
     assert "formula of the sphere: none in 60 digits" in report(ALL, "all.rt", tmp_path, (16, 16), 1, quick=True)
     assert (tmp_path / "kernels.csv").read_text().strip() == ""
@@ -158,7 +158,7 @@ def test_the_formulas_of_all_kinds(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_pictures_are_as_small_as_the_time_asks() -> None:
-    assert fitting(ALL, (64, 36), QUICK) == (64, 36)
+    assert fitting_size(ALL, (64, 36), QUICK) == (64, 36)
     plan = QUICK._replace(width=320)
     seconds = plan.samples * packets(320, 180) * PACKET
     for given, size in (
@@ -168,8 +168,8 @@ def test_pictures_are_as_small_as_the_time_asks() -> None:
         (seconds / 4.01, (80, 45)),
         (seconds / 4**8, (1, 1)),
     ):
-        assert fitting(ALL, (1280, 720), plan._replace(seconds=given)) == size
-    assert fitting(ALL, (10_000, 1), QUICK) == (320, 1)
+        assert fitting_size(ALL, (1280, 720), plan._replace(seconds=given)) == size
+    assert fitting_size(ALL, (10_000, 1), QUICK) == (320, 1)
 
 
 def test_the_program_writes_a_report(run: Run, folder: Path) -> None:
@@ -196,13 +196,13 @@ from minirt.report import generate
 from minirt.report.measurements import formula_errors, plan
 from minirt.report.measurements.picture_errors import Budget
 from minirt.timing import runs
-from tests.cli.telling import tell
+from tests.cli.announcing import announce_rendering
 
 def endless(work, least, seconds):
     print("fitting", file=sys.stderr, flush=True)
     return runs(work, 10**9, seconds)
 
-tell()
+announce_rendering()
 
 phase, short = sys.argv.pop(1), generate.QUICK._replace(samples=64, seconds=1e30, budget=Budget(0.0, inf, tries=1))
 generate.FULL = short
@@ -220,7 +220,7 @@ sys.exit(cli.main())
 
 @pytest.mark.parametrize("phase", ["fitting", "reference", "uniform 1", "sphere, benign"])
 def test_an_interrupt_leaves_no_files(folder: Path, phase: str) -> None:
-    """In each phase of the work, which there would take hours, or for ever."""
+    """Interrupt each phase of the work, all of which would take hours."""
     arguments = "ball.rt", "--report", "out", "--size", "1920x1080"
     with (
         terminal() as told,

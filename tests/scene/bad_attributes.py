@@ -1,19 +1,19 @@
-"""Lines with one wrong attribute each, or a wrong lamp or background: the column, and all that is said of it."""
+"""Lines with one wrong attribute, light or background each: the line, the column and the whole message."""
 
 from __future__ import annotations
 
 from tests.scene.examples import SPHERE
 
-Case = tuple[str, int, str]
+Case = tuple[str, int, str]  # a line, the column of its error, the message
 
-COLUMN = len(SPHERE) + 2  # of the first attribute
+COLUMN = len(SPHERE) + 2  # column of the first attribute behind a sphere
 NUMBER = "must be a number, got"
 OWN = "sphere has specular, mirror, glass, checker, texture, bump, normal"
 MISSING = "cannot be read: no such file or directory"
 
 
 def on_sphere(*cases: Case) -> list[Case]:
-    """The same behind a sphere; the columns are those of the attributes."""
+    """Return cases with their attributes behind a sphere; columns are counted from the first attribute."""
     return [(f"{SPHERE} {words}", COLUMN + column, message) for words, column, message in cases]
 
 
@@ -73,7 +73,7 @@ SHAPES: list[Case] = on_sphere(
     ("chessboard", 0, "sphere has no further field 'chessboard', did you mean 'checker:size[,R,G,B]'?"),
 )
 
-LAMPS: list[Case] = [
+LIGHTS: list[Case] = [
     ("l 0,0,0 1 mirror:0.5", 11, "further light has no attribute 'mirror': it belongs to shapes"),
     (
         "l 0,0,0 1 checker",

@@ -1,12 +1,12 @@
-"""Lines with one error each: the column that it stands in, and what is said of it."""
+"""Lines with one error each: the line, the column and a part of the message."""
 
-# ruff: noqa: RUF001 - characters that look like others are among what is refused
+# ruff: noqa: RUF001 - refused lines have characters that look like others
 
 from __future__ import annotations
 
 from tests.scene.examples import PLANE, SPHERE
 
-Case = tuple[str, int, str]  # a line, the column of its one error, what is said
+Case = tuple[str, int, str]  # a line, the column of its error, a part of the message
 
 IDENTIFIERS: list[Case] = [
     ("Sp 0,0,20 5 255,0,0", 1, "unknown element 'Sp', did you mean 'sp'?"),
@@ -99,7 +99,7 @@ VECTORS: list[Case] = [
     ("L 0,0,0 0.5 255", 13, "light colour must be R,G,B"),
 ]
 
-NO_NUMBERS = [
+NOT_NUMBERS = [
     *("nan", "NaN", "-nan", "inf", "+inf", "-Infinity", "INF", "0x14", "0b1", "0o7", "0x1p3", "1p3", "1d5", "1j"),
     *("2..0", "0.2.3", "1.5.", ".5.", "..5", ".", "-", "+", "-.", "--1", "++1", "+-1", "-+1", "20-", "2-0", "2+0"),
     *("20a", "20f", "20F", "20L", "20px", "5cm", "a", "e", "e5", ".e1", "-e1", "1e", "1e+", "1E-", "1e1.5", "1ee5"),
@@ -108,7 +108,7 @@ NO_NUMBERS = [
 ]
 
 NUMBERS: list[Case] = [
-    *((f"sp 0,0,20 {word} 255,0,0", 11, f"sphere diameter must be a number, got '{word}'") for word in NO_NUMBERS),
+    *((f"sp 0,0,20 {word} 255,0,0", 11, f"sphere diameter must be a number, got '{word}'") for word in NOT_NUMBERS),
     ("sp 0,0,20 - 5 255,0,0", 11, "sphere diameter must be a number, got '-'"),
     ("sp 0,0,20 1'000 255,0,0", 11, 'must be a number, got "1\'000"'),
     ("sp 0,0,20 1e400 255,0,0", 11, "must be a number that a float64 can hold, got '1e400'"),

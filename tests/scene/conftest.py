@@ -1,4 +1,4 @@
-"""All that any test of this folder parses is read by both readers."""
+"""Every text that a test of this folder parses is read by both readers, the fast and the diagnosing one."""
 
 from __future__ import annotations
 
@@ -13,5 +13,6 @@ from tests.scene.readers import read_by_both
 
 @pytest.fixture(autouse=True, scope="package")
 def both_readers() -> Iterator[None]:
+    """Let both readers read, and compare them."""
     with patch.object(parser, "read_lines", read_by_both):
         yield

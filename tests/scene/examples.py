@@ -1,4 +1,4 @@
-"""Scenes that the tests of this folder start from."""
+"""Example scenes of the tests of this folder."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PLANE = "pl 0,-1,0 0,1,0 200,200,200"
 CYLINDER = "cy 0,0,20 0,1,0 2 5 255,200,0"
 WHOLE = "\n".join((AMBIENT, CAMERA, LIGHT, "", "# shapes", SPHERE, PLANE, CYLINDER, ""))
 
-SUBJECT = "\n".join(  # as it is printed in the subject, whose camera looks nowhere and whose plane has a fourth number
+SUBJECT = "\n".join(  # as printed in the subject: a camera without a direction, a normal of four numbers
     (
         "A 0.2 255,255,255",
         "C -50,0,20 0,0,0 70",
@@ -27,17 +27,17 @@ SUBJECT = "\n".join(  # as it is printed in the subject, whose camera looks nowh
 
 
 def scene_with(*lines: str) -> str:
-    """The text of a scene whose third and following lines are `lines`."""
+    """Return the text of a scene: ambient light, camera, then `lines`."""
     return "\n".join((AMBIENT, CAMERA, *lines, ""))
 
 
 def read(*lines: str, lenient: bool = False) -> Scene:
-    """The scene with `lines`."""
+    """Parse the scene with `lines`."""
     return parse(scene_with(*lines), "test.rt", lenient).scene
 
 
 def problems(text: str | bytes, lenient: bool = False) -> tuple[Problem, ...]:
-    """What is wrong with a scene; AssertionError where nothing is."""
+    """Return the errors of a scene; AssertionError when it is accepted."""
     try:
         parse(text, "test.rt", lenient)
     except SceneError as error:
@@ -46,5 +46,5 @@ def problems(text: str | bytes, lenient: bool = False) -> tuple[Problem, ...]:
 
 
 def notices(*lines: str, lenient: bool = False) -> list[tuple[int, int, str]]:
-    """Line, column and message of what is said about a scene with `lines` that is read."""
+    """Return line, column and message of the notices about an accepted scene with `lines`."""
     return [(each.line, each.column, each.message) for each in parse(scene_with(*lines), "test.rt", lenient).notices]

@@ -1,4 +1,4 @@
-"""The reader of plain lines against the careful one: whatever is read is read by both, to the last bit."""
+"""Compare the fast path with the diagnosing reader: the same errors, and the same elements to the last bit."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from minirt.scene.parser import read_lines
 Outcome = tuple[list[Problem], list[Problem], list[object] | tuple[Problem, ...]]
 
 
-def none_plain(sources: Sequence[str]) -> Sequence[None]:
-    """What `plain.read` would say if no line were plain."""
+def no_plain_lines(sources: Sequence[str]) -> Sequence[None]:
+    """Stand in for `fast.read`: leave all lines to the diagnosing reader."""
     return [None] * len(sources)
 
 
-def exactly(item: Item) -> object:
-    """An item with its type, its source and all bits of its numbers."""
+def exact(item: Item) -> object:
+    """Return an item's type and all of its attributes, with all bits of its numbers."""
     return item if isinstance(item, str) else (type(item), repr(vars(item)))
 
 
 def outcome(sources: list[str], log: Log) -> tuple[list[Item], Outcome]:
-    """What `read_lines` gives, and all that can be told of it."""
+    """Return the items of `read_lines`, and everything by which two readers are compared."""
     try:
         items = read_lines(sources, log)
     except SceneError as error:
         return [], (log.errors, log.notices, error.problems)
-    return items, (log.errors, log.notices, list(map(exactly, items)))
+    return items, (log.errors, log.notices, list(map(exact, items)))
 
 
 def read_by_both(sources: list[str], log: Log) -> list[Item]:
-    """Like `read_lines`; AssertionError where the careful reader alone tells another story."""
-    with patch.object(fast, "read", none_plain):
-        careful = outcome(sources, Log(log.file, log.lenient))[1]
-    items, quick = outcome(sources, log)
-    assert quick == careful
-    if isinstance(quick[2], tuple):
-        raise SceneError(quick[2])
+    """Read lines as `read_lines` does; AssertionError when the diagnosing reader alone gives another outcome."""
+    with patch.object(fast, "read", no_plain_lines):
+        diagnosed = outcome(sources, Log(log.file, log.lenient))[1]
+    items, both = outcome(sources, log)
+    assert both == diagnosed
+    if isinstance(both[2], tuple):
+        raise SceneError(both[2])
     return items

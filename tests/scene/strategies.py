@@ -1,4 +1,4 @@
-"""Random elements, lines and scenes."""
+"""Hypothesis strategies for elements, lines and scenes."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ from minirt.scene import Camera, Scene, describe
 from minirt.scene.registry import ELEMENTS
 from tests.paths import ROOT
 
-Known = TypeVar("Known", bound=Record)
+R = TypeVar("R", bound=Record)
 
-FOLDER = tempfile.TemporaryDirectory(prefix="minirt-")  # names in scenes have no blanks; the project's folder may
+FOLDER = tempfile.TemporaryDirectory(prefix="minirt-")  # file names in scenes have no blanks; the project's folder may
 PICTURES = [shutil.copy(path, FOLDER.name) for path in sorted((ROOT / "assets").glob("*.png"))[:2]]
 MESH = shutil.copy(ROOT / "scenes" / "meshes" / "icosahedron.obj", FOLDER.name)
 BLANKS = st.text(" \t", min_size=1, max_size=3)
@@ -66,24 +66,23 @@ VALUES: dict[type[Field], Callable[[Any], st.SearchStrategy[object]]] = {
 
 
 def values(field: Field) -> st.SearchStrategy[object]:
-    """Random values of a field."""
+    """Return a strategy for the values of a field."""
     return next(make(field) for sort, make in VALUES.items() if isinstance(field, sort))
 
 
 @cache
-def chosen(kind: type[Record]) -> dict[str, st.SearchStrategy[object]]:
-    """Random values of the fields of a kind, None for attributes that may be absent. They are made once: to make them
-    takes longer than to draw from them."""
-    known = {field.name: values(field) for field in fields_of(kind)}
-    absent = [field.name for field in fields_of(kind) if field.keyed and field.default is None]
-    return {**known, **{name: st.none() | known[name] for name in absent}}
+def field_values(kind: type[Record]) -> dict[str, st.SearchStrategy[object]]:
+    """Return strategies for the fields of a kind, None for optional attributes; cached, for they are slow to make."""
+    strategies = {field.name: values(field) for field in fields_of(kind)}
+    optional = [field.name for field in fields_of(kind) if field.keyed and field.default is None]
+    return {**strategies, **{name: st.none() | strategies[name] for name in optional}}
 
 
 @st.composite
-def built(draw: st.DrawFn, kind: type[Known]) -> Known:
-    """Random records or elements of a kind, whose attributes may be absent."""
+def built(draw: st.DrawFn, kind: type[R]) -> R:
+    """Draw a record or an element of a kind; optional attributes may be absent."""
     try:
-        return kind(**{name: draw(value) for name, value in chosen(kind).items()})
+        return kind(**{name: draw(value) for name, value in field_values(kind).items()})
     except ElementError:
         reject()
 
@@ -99,7 +98,7 @@ BEGINS, ENDINGS = st.sampled_from(["", "\ufeff"]), st.sampled_from(["", "\n", "\
 
 @st.composite
 def scenes(draw: st.DrawFn) -> Scene:
-    """Random scenes whose elements have no source."""
+    """Draw a scene whose elements have no source lines."""
     items = [draw(each) for each in REQUIRED]
     items += [draw(each) for each in ONCE if draw(COIN)]
     return Scene(draw(st.permutations(items + draw(MORE))))
@@ -110,7 +109,7 @@ SCENES = scenes()
 
 @st.composite
 def texts(draw: st.DrawFn) -> str:
-    """Random scene files with blanks, comments, byte order marks and both line ends."""
+    """Draw the text of a scene file with blanks, comments, byte order marks and both line ends."""
     lines = []
     for element in draw(SCENES).elements:
         blank = draw(BEFORE)

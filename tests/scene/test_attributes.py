@@ -1,4 +1,4 @@
-"""Materials, lamps and backgrounds in a scene file: what is read, refused and written."""
+"""Materials, lights and backgrounds in a scene file are read, refused and written."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from minirt.scene import Background, FurtherLight, Light, ParallelLight, Scene, 
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from tests.scene.bad_attributes import BACKGROUNDS, LAMPS, SHAPES, Case
+from tests.scene.bad_attributes import BACKGROUNDS, LIGHTS, SHAPES, Case
 from tests.scene.examples import AMBIENT, CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, notices, problems, read, scene_with
 from tests.shapes.examples import example
 
@@ -24,7 +24,7 @@ ABSENT = dict.fromkeys(("specular", "mirror", "glass", "checker", "texture", "bu
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder with a picture in it and one in a folder below."""
+    """A folder with a picture, and another picture in a subfolder."""
     (tmp_path / "below").mkdir()
     for name in ("a.png", "below/b.png"):
         Image.new("RGB", (2, 2)).save(tmp_path / name)
@@ -32,7 +32,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def attributes(shape: Any) -> dict[str, Any]:
-    """Those of a shape that are not absent."""
+    """Return the attributes of a shape that are present."""
     return {name: value for name in ABSENT if (value := getattr(shape, name)) is not None}
 
 
@@ -54,7 +54,7 @@ def attributes(shape: Any) -> dict[str, Any]:
     ],
 )
 @pytest.mark.parametrize("line", [SPHERE, PLANE, CYLINDER])
-def test_every_shape_has_them_in_any_order(line: str, words: str, values: dict[str, Any] | None) -> None:
+def test_every_shape_takes_attributes_in_any_order(line: str, words: str, values: dict[str, Any] | None) -> None:
     together = {"specular": Specular(0.5, 30.0), "mirror": 0.3, "glass": Glass(2.0), "checker": Checker(1.0)}
     (plain, shape) = read(line, f"{line} {words}").shapes
     assert attributes(plain) == {}
@@ -65,31 +65,31 @@ def test_every_shape_has_them_in_any_order(line: str, words: str, values: dict[s
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
-def test_a_checkerboard_alone_has_8_by_8_squares_and_on_a_plane_those_of_a_unit(kind: Kind) -> None:
+def test_checker_without_a_size_has_8_by_8_squares_or_unit_squares_on_a_plane(kind: Kind) -> None:
     line = describe(example(kind, np.random.default_rng(1)))
     for word in ("checker", "pat"):
         (*_, shape) = read(f"{line} {word}").shapes
         assert shape.checker == Checker(1.0 if kind.element is Plane else 0.125, (0, 0, 0))
 
 
-@pytest.mark.parametrize(("line", "column", "message"), SHAPES + LAMPS + BACKGROUNDS)
-def test_what_is_wrong_is_said_at_its_place(line: str, column: int, message: str) -> None:
+@pytest.mark.parametrize(("line", "column", "message"), SHAPES + LIGHTS + BACKGROUNDS)
+def test_a_wrong_line_has_one_error_at_its_place(line: str, column: int, message: str) -> None:
     (problem,) = problems(scene_with(line))
     assert (problem.line, problem.column, problem.message) == (3, column, message)
 
 
-def test_all_wrong_attributes_of_a_line_are_named_in_one_run() -> None:
-    found = problems(scene_with(f"{SPHERE} mirror:2 zzz:1 glass:0 texture:no.png"))
-    assert [problem.column - len(SPHERE) for problem in found] == [9, 11, 23, 33]
+def test_all_wrong_attributes_of_a_line_are_reported_in_one_run() -> None:
+    errors = problems(scene_with(f"{SPHERE} mirror:2 zzz:1 glass:0 texture:no.png"))
+    assert [problem.column - len(SPHERE) for problem in errors] == [9, 11, 23, 33]
 
 
-def test_a_plane_has_a_normal_and_a_map_of_normals(folder: Path) -> None:
+def test_a_plane_has_a_normal_and_a_normal_map(folder: Path) -> None:
     (plane,) = parse(scene_with(f"{PLANE} normal:a.png"), folder / "s.rt").scene.planes
     assert (plane.normal, plane.normal_map) == ((0.0, 1.0, 0.0), "a.png")
     assert describe(plane) == f"{PLANE} normal:a.png"
 
 
-def test_the_way_to_a_picture_begins_at_the_folder_of_the_scene(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_picture_paths_are_relative_to_the_folder_of_the_scene(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = folder / "s.rt"
     words = ["texture:a.png", "bump:below/b.png,0.5", "normal:below/../a.png", "bg below/b.png", f"txm:{folder}/a.png"]
     text = scene_with(*(f"{SPHERE} {each}" for each in words if " " not in each), words[3])
@@ -113,7 +113,7 @@ def test_the_way_to_a_picture_begins_at_the_folder_of_the_scene(folder: Path, mo
     assert dump(scene.replace(a, diameter=2.0)) == text.replace("12.6", "2", 1)  # saving needs no pictures
 
 
-def test_a_scene_without_a_file_has_its_pictures_where_the_program_runs(
+def test_picture_paths_of_a_scene_without_a_file_are_relative_to_the_current_folder(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(folder)
@@ -121,7 +121,7 @@ def test_a_scene_without_a_file_has_its_pictures_where_the_program_runs(
     assert scene.beside("a.png") == Path("a.png")
 
 
-def test_lamps_in_the_order_of_the_file() -> None:
+def test_lights_are_in_the_order_of_the_file() -> None:
     scene = read("sl 1,2,3 0,-1,0 40 0.5", "l 0,0,0 1 1,2,3 fade:20", "dl 0,-1,0 0.25 9,8,7", LIGHT)
     assert scene.lights == (
         SpotLight((1, 2, 3), (0, -1, 0), 40, 0.5),
@@ -138,7 +138,7 @@ def test_lamps_in_the_order_of_the_file() -> None:
     assert [light.colour for light in scene.lights] == [(255, 255, 255), (1, 2, 3), (9, 8, 7), (255, 255, 255)]
 
 
-def test_one_background() -> None:
+def test_there_is_at_most_one_background() -> None:
     assert read().background is None
     assert read("bg 1,2,3").background == Background((1, 2, 3))
     (problem,) = problems(scene_with("bg 1,2,3", "bg 1,2,3"))
@@ -168,7 +168,7 @@ def test_one_background() -> None:
         ("bg 1,2,3", {"paint": (4, 5, 6)}, "bg 4,5,6"),
     ],
 )
-def test_only_what_changed_is_written(before: str, changes: dict[str, Any], after: str) -> None:
+def test_only_changed_fields_are_rewritten(before: str, changes: dict[str, Any], after: str) -> None:
     scene = read("# one", before, "# two")
     changed = scene.replace(scene.elements[2], **changes)
     assert dump(changed) == scene_with("# one", after, "# two")
@@ -203,20 +203,20 @@ def test_only_what_changed_is_written(before: str, changes: dict[str, Any], afte
         (lambda: Background((1, 2)), "background paint must be R,G,B, three numbers, got (1, 2)"),  # type: ignore[arg-type]
     ],
 )
-def test_what_cannot_be_made(make: Any, message: str) -> None:
+def test_wrong_values_are_refused_in_python_too(make: Any, message: str) -> None:
     with pytest.raises(ValueError, match=r".") as caught:
         make()
     assert str(caught.value).startswith(message)
 
 
-def test_a_shape_without_attributes_keeps_none() -> None:
-    shapes = read(f"{SPHERE} mirror:0.5", SPHERE, f"{SPHERE} # careful ,", " \tsp 0,0,20 1e1 1,2,3").spheres
+def test_absent_attributes_take_no_memory_in_a_shape() -> None:
+    shapes = read(f"{SPHERE} mirror:0.5", SPHERE, f"{SPHERE} # a comma ,", " \tsp 0,0,20 1e1 1,2,3").spheres
     assert [set(vars(shape)) & set(ABSENT) for shape in shapes] == [{"mirror"}, set(), set(), set()]
     assert Scene([*read().elements, *shapes]).spheres == shapes
 
 
-def test_the_cases_are_those_of_one_line() -> None:
-    cases: list[Case] = SHAPES + LAMPS + BACKGROUNDS
+def test_no_case_is_listed_twice() -> None:
+    cases: list[Case] = SHAPES + LIGHTS + BACKGROUNDS
     assert len({line for line, _, _ in cases}) == len(cases)
     assert AMBIENT.startswith("A ")
     assert CAMERA.startswith("C ")

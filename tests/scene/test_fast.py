@@ -1,6 +1,6 @@
-"""Plain lines: which they are, that both readers agree on them, and that a disagreement is found.
+"""The fast path reads plain lines, both readers agree on all lines, and a disagreement is found.
 
-`conftest` has every text of this folder read by both readers.
+`conftest` lets both readers read every text of this folder.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from minirt.scene.diagnostics import Log
 from minirt.scene.lines import line_from
 from minirt.scene.parser import read_lines
 from tests.scene.examples import CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, problems, scene_with
-from tests.scene.readers import exactly, none_plain, read_by_both
+from tests.scene.readers import exact, no_plain_lines, read_by_both
 from tests.scene.strategies import ANY
 
 COMPONENTS = [
@@ -60,13 +60,13 @@ COMPONENTS += ["0" * LONGEST]
         ),
     ],
 )
-def test_a_plain_line(line: str) -> None:
+def test_the_fast_path_reads_plain_lines(line: str) -> None:
     (element,) = fast.read([line])
     log = Log("test.rt", lenient=False)
-    careful = parser.read_line(line_from(1, line), {}, log)
+    diagnosed = parser.read_line(line_from(1, line), {}, log)
     assert element is not None
-    assert careful is not None
-    assert exactly(element) == exactly(careful)
+    assert diagnosed is not None
+    assert exact(element) == exact(diagnosed)
     assert not log.errors + log.notices
 
 
@@ -82,12 +82,12 @@ def test_a_plain_line(line: str) -> None:
         *("l 0,0,0 1.5 1,2,3", f"\v{SPHERE}", "sp\xa00,0,20 5 1,2,3", "sp 0,0,20\v5 1,2,3", "Sp 0,0,20 5 1,2,3"),
     ],
 )
-def test_a_line_that_needs_care_and_does_not_spoil_those_beside_it(line: str) -> None:
-    before, element, behind = fast.read([SPHERE, line, SPHERE])
+def test_the_fast_path_skips_a_line_and_reads_its_neighbours(line: str) -> None:
+    before, element, after = fast.read([SPHERE, line, SPHERE])
     assert element is None
     assert before is not None
-    assert behind is not None
-    assert before.source == behind.source == SPHERE
+    assert after is not None
+    assert before.source == after.source == SPHERE
 
 
 COMPONENT = st.sampled_from(COMPONENTS)
@@ -105,14 +105,14 @@ LINES = st.lists(
 
 @given(LINES, st.booleans())
 @settings(max_examples=300, deadline=None)
-def test_lines_of_good_and_bad_fields_among_each_other(lines: list[str], lenient: bool) -> None:
+def test_both_readers_agree_on_mixed_good_and_bad_fields(lines: list[str], lenient: bool) -> None:
     with suppress(SceneError):
         parse(scene_with(*lines), lenient=lenient)
 
 
 @given(st.lists(st.one_of(ANY), max_size=30))
 @settings(max_examples=100, deadline=None)
-def test_what_describes_an_element_without_attributes_is_plain(elements: list[Any]) -> None:
+def test_the_description_of_an_element_without_attributes_is_plain(elements: list[Any]) -> None:
     lines = [describe(element) for element in elements]
     assert list(fast.read(lines)) == [
         each if type(each) in fast.KINDS.values() and ":" not in line else None
@@ -124,7 +124,7 @@ def test_what_describes_an_element_without_attributes_is_plain(elements: list[An
 @example("1e5")
 @example("1.")
 @example("E")
-def test_of_plain_characters_the_interpreter_takes_what_the_format_takes(text: str) -> None:
+def test_numbers_of_plain_characters_are_those_of_python(text: str) -> None:
     for read, pattern in ((numbers, NUMBER), (wholes, WHOLE)):
         if pattern.fullmatch(text):
             assert read([text]) == [float(text)]
@@ -143,25 +143,25 @@ FIELDS: list[Field] = [
 @pytest.mark.parametrize("index", range(len(FIELDS)))
 @given(data=st.data())
 @settings(deadline=None)
-def test_a_column_has_the_values_of_its_spellings(index: int, data: st.DataObject) -> None:
+def test_a_column_is_parsed_like_its_single_values(index: int, data: st.DataObject) -> None:
     field, column = FIELDS[index], data.draw(columns(index))
     assert list(map(repr, field.column(column))) == list(map(repr, map(field.quiet, column)))
 
 
 @cache
 def columns(index: int) -> st.SearchStrategy[list[str]]:
-    """Plain spellings for a field."""
+    """Return a strategy for columns of plain texts of a field."""
     field = FIELDS[index]
     return st.lists(st.from_regex(field.plain, fullmatch=True) | spelled(field), min_size=1, max_size=6)
 
 
 def spelled(field: Field) -> st.SearchStrategy[str]:
-    """Plain spellings, most of them of good values."""
+    """Return a strategy for plain texts of a field, most of them of good values."""
     one = st.sampled_from([each for each in COMPONENTS if re.fullmatch(PLAIN, each)])
     return st.tuples(one, one, one).map(",".join) if isinstance(field, Three) else one
 
 
-def test_a_field_reads_columns_one_by_one_where_it_knows_no_better() -> None:
+def test_by_default_a_field_parses_a_column_value_by_value() -> None:
     @dataclass(frozen=True, kw_only=True)
     class Even(Field):
         plain = PLAIN
@@ -180,54 +180,55 @@ def test_a_field_reads_columns_one_by_one_where_it_knows_no_better() -> None:
     assert Even(doc="").column(["2", "1", "e", "0", "-4"]) == [2, None, None, None, -4]
 
 
-def test_a_file_of_plain_lines_only_is_no_empty_file() -> None:
+def test_a_file_of_plain_lines_only_is_not_called_empty() -> None:
     assert [problem.message[:13] for problem in problems(SPHERE)] == ["no ambient li", "no camera: a "]
 
 
-def careless_range(field: Any, values: Any) -> Any:
+def unchecked(field: Any, values: Any) -> Any:
+    """Stand in for `check_all`: accept all values."""
     return values
 
 
 @pytest.mark.parametrize(
-    ("where", "name", "instead", "line"),
+    ("cls", "name", "wrong", "line"),
     [
-        (Length, "check_all", careless_range, "sp 0,0,0 -1 1,2,3"),
-        (Three, "check_all", careless_range, "sp 0,0,0 1 1,2,300"),
-        (Direction, "check_all", careless_range, "pl 0,0,0 0,0.9995,0 1,2,3"),
+        (Length, "check_all", unchecked, "sp 0,0,0 -1 1,2,3"),
+        (Three, "check_all", unchecked, "sp 0,0,0 1 1,2,300"),
+        (Direction, "check_all", unchecked, "pl 0,0,0 0,0.9995,0 1,2,3"),
         (Direction, "check_all", lambda field, values: list(map(field.check, values)), "pl 0,0,0 0,0.5,0 1,2,3"),
         (Three, "components", lambda _field, texts: list(map(float, texts)), "sp -0,0,0 1 1,2,3"),
         (Colour, "components", lambda _field, texts: list(map(float, texts)), "sp 0,0,0 1 1,2,3"),
         (Field, "quiet", lambda field, text: field.parse(text), "sp 0,0,0 0 1,2,3"),
     ],
 )
-def test_readers_that_disagree_are_found(where: type[Field], name: str, instead: Any, line: str) -> None:
+def test_a_disagreement_of_the_readers_is_found(cls: type[Field], name: str, wrong: Any, line: str) -> None:
     sources = scene_with(line).split("\n")
     read_by_both(sources, Log("test.rt", lenient=False))
-    with patch.object(where, name, instead), pytest.raises(AssertionError):
+    with patch.object(cls, name, wrong), pytest.raises(AssertionError):
         read_by_both(sources, Log("test.rt", lenient=False))
 
 
-def test_the_careful_reader_sees_no_plain_line() -> None:
+def test_plain_lines_skip_the_diagnosing_reader() -> None:
     lines = [f"sp {index},0,20 1 255,0,{index % 256}" for index in range(10_000)]
     lines[7000] = "sp 0,0,20 -1 1,2,3"
     sources = scene_with(*lines).split("\n")
     seen: list[int] = []
 
-    def cut(line: Any, log: Log) -> Any:
+    def split_line(line: Any, log: Log) -> Any:
         seen.append(line.number)
-        return careful(line, log)
+        return original(line, log)
 
-    careful = parser.cut
-    with patch.object(parser, "cut", cut):
+    original = parser.split_line
+    with patch.object(parser, "split_line", split_line):
         read_lines(sources, Log("test.rt", lenient=False))
     assert seen == [1, 2, 7003, 10_003]
-    with patch.object(parser, "cut", cut), patch.object(fast, "read", none_plain):
+    with patch.object(parser, "split_line", split_line), patch.object(fast, "read", no_plain_lines):
         seen.clear()
         read_lines(sources, Log("test.rt", lenient=False))
     assert len(seen) == 10_003
 
 
-def test_the_collector_is_left_as_it_was() -> None:
+def test_garbage_collection_is_left_as_it_was() -> None:
     assert gc.isenabled()
     parse(scene_with())
     assert gc.isenabled()

@@ -1,4 +1,4 @@
-"""Fields: what they take, what they refuse, what a key press makes of them."""
+"""Fields accept, refuse and spell values, and key presses change them."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ U = 2.0**-53
 RATIO = Real(doc="a ratio", low=0.0, high=1.0, step=0.05)
 SIZE = Length(doc="a size")
 PIXELS = Whole(doc="pixels", low=1, high=100)
-PLACE = Point(doc="a place")
-WAY = Direction(doc="a way")
-PAINT = Colour(doc="a paint")
+POINT = Point(doc="a point")
+DIRECTION = Direction(doc="a direction")
+COLOUR = Colour(doc="a colour")
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
@@ -35,7 +35,7 @@ def test_a_spelled_number_reads_back_to_the_last_bit(value: float) -> None:
 
 
 @given(st.text("0123456789+-.eE_ xnaif", max_size=8))
-def test_no_number_is_read_that_float_does_not_read_alike(text: str) -> None:
+def test_every_number_is_read_as_float_reads_it(text: str) -> None:
     try:
         value = number(text)
     except FieldError:
@@ -45,7 +45,7 @@ def test_no_number_is_read_that_float_does_not_read_alike(text: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["1.5", "1.", "1e2", "", "+", "\uff11", "1_0", " 1", "0x1", "9" * 301])
-def test_no_whole_number(text: str) -> None:
+def test_a_text_that_is_no_whole_number_is_refused(text: str) -> None:
     with pytest.raises(FieldError, match="must be a whole number"):
         whole(text)
 
@@ -83,24 +83,24 @@ def test_normalising_again_changes_no_bit() -> None:
         *((RATIO, value) for value in (-0.1, 1.1, math.nan, math.inf)),
         *((SIZE, value) for value in (0, -1, math.nan, math.inf, 1.1e15)),
         *((PIXELS, value) for value in (0, 101, 1.5, math.nan, math.inf)),
-        *((PLACE, value) for value in ((0, 0), (0, 0, 0, 0), 5, (0, math.nan, 0), (0, 0, 1.1e15), ("a", 0, 0))),
-        *((WAY, value) for value in ((0, 0, 0), (0, 1.1, 0), (math.nan, 0, 1), (1, 0))),
-        *((PAINT, value) for value in ((256, 0, 0), (0, -1, 0), (0, 0, 0.5), (0, math.nan, 0), (0, 0), None)),
+        *((POINT, value) for value in ((0, 0), (0, 0, 0, 0), 5, (0, math.nan, 0), (0, 0, 1.1e15), ("a", 0, 0))),
+        *((DIRECTION, value) for value in ((0, 0, 0), (0, 1.1, 0), (math.nan, 0, 1), (1, 0))),
+        *((COLOUR, value) for value in ((256, 0, 0), (0, -1, 0), (0, 0, 0.5), (0, math.nan, 0), (0, 0), None)),
     ],
 )
-def test_what_a_field_does_not_take(field: Field, value: Any) -> None:
+def test_a_field_refuses_wrong_values(field: Field, value: Any) -> None:
     with pytest.raises(FieldError):
         field.check(value)
 
 
-def test_an_element_names_itself_and_the_field_it_does_not_take() -> None:
+def test_the_error_names_the_element_and_the_field() -> None:
     with pytest.raises(ValueError, match=r"^sphere diameter must be > 0, got -3$"):
         Sphere((0, 0, 0), -3, (0, 0, 0))
     with pytest.raises(ValueError, match=r"^camera direction y must be in \[-1, 1\], got 2$"):
         Camera((0, 0, 0), (0, 2, 0), 70)
 
 
-def test_an_element_has_its_values_in_their_normal_form() -> None:
+def test_an_element_normalises_its_values() -> None:
     camera = Camera((1, 2, 3), (0, 0, -0.5), 70)
     assert camera.direction == (0.0, 0.0, -1.0)
     assert all(type(each) is float for each in (*camera.position, *camera.direction, camera.fov))
@@ -118,17 +118,17 @@ def test_an_element_has_its_values_in_their_normal_form() -> None:
         (SIZE, 2.0, -1e9, 1e-9),
         (SIZE, 1e-12, -1, 1e-12),
         (SIZE, 2.0, 1e9, 1e15),
-        (PAINT, (0, 100, 255), 1, (8, 108, 255)),
-        (PAINT, (0, 100, 255), -1, (0, 92, 247)),
-        (PLACE, (1.0, 2.0, 3.0), 5, (1.0, 2.0, 3.0)),
+        (COLOUR, (0, 100, 255), 1, (8, 108, 255)),
+        (COLOUR, (0, 100, 255), -1, (0, 92, 247)),
+        (POINT, (1.0, 2.0, 3.0), 5, (1.0, 2.0, 3.0)),
     ],
 )
-def test_a_key_press(field: Field, value: Any, steps: float, after: Any) -> None:
+def test_a_key_press_steps_a_value_within_its_range(field: Field, value: Any, steps: float, after: Any) -> None:
     assert field.nudge(value, steps) == pytest.approx(after)
     assert field.check(field.nudge(value, steps)) == field.nudge(value, steps)
 
 
-def test_the_table_of_an_element_has_names_and_defaults() -> None:
+def test_the_fields_of_an_element_have_names_and_defaults() -> None:
     assert [field.name for field in fields_of(Camera)] == ["position", "direction", "fov", "roll"]
     assert [field.keyed for field in fields_of(Camera)] == [False, False, False, True]
     assert [field.default for field in fields_of(Light)] == [None, None, (255, 255, 255), None]

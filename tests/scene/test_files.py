@@ -1,4 +1,4 @@
-"""The file itself: what is refused before a line of it is read, and that nothing hangs."""
+"""A file that is no scene is refused before its lines are read, and nothing hangs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.scene.examples import AMBIENT, CAMERA, SPHERE, WHOLE, problems, scene
 
 
 def refusal(path: Path | str) -> Problem:
-    """The one problem of a file that is not read, or not beyond the first that is wrong."""
+    """Load a file; return its one problem."""
     with pytest.raises(SceneError) as caught:
         load(path)
     (problem,) = caught.value.problems
@@ -29,7 +29,7 @@ def refusal(path: Path | str) -> Problem:
 
 @contextmanager
 def lines_run() -> Iterator[Callable[[], int]]:
-    """How many lines of Python the block runs."""
+    """Count the lines of Python that a block runs."""
     count = 0
 
     def trace(frame: FrameType, event: str, argument: object) -> Any:
@@ -63,12 +63,12 @@ def test_the_name_must_end_in_rt(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["a.b.rt", "-.rt", "..rt", "größe 球.rt", "x" * 200 + ".rt"])
-def test_any_other_name_will_do(tmp_path: Path, name: str) -> None:
+def test_any_name_that_ends_in_rt_is_read(tmp_path: Path, name: str) -> None:
     (tmp_path / name).write_text(WHOLE)
     assert load(tmp_path / name).scene.spheres
 
 
-def test_a_path_that_leads_nowhere(tmp_path: Path) -> None:
+def test_a_path_without_a_file_is_refused(tmp_path: Path) -> None:
     assert "cannot be read: no such file or directory" in refusal(tmp_path / "missing.rt").message
     (tmp_path / "loop.rt").symlink_to("loop.rt")
     (tmp_path / "dangling.rt").symlink_to("missing.rt")
@@ -80,7 +80,7 @@ def test_a_path_that_leads_nowhere(tmp_path: Path) -> None:
     assert "ends in '.rt'" in refusal("").message
 
 
-def test_a_folder(tmp_path: Path) -> None:
+def test_a_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "folder.rt").mkdir()
     assert refusal(tmp_path / "folder.rt").message == "is a folder"
 
@@ -104,14 +104,14 @@ def test_a_fifo_that_takes_the_place_of_the_file_does_not_hang(tmp_path: Path, m
         assert refusal(fifo).message == "is not a regular file"
 
 
-def test_a_file_that_must_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_without_read_permission_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "secret.rt"
     path.write_text(WHOLE)
 
     def denied(*_: object) -> int:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(os, "open", denied)  # the owner of all files may read also what has no permissions
+    monkeypatch.setattr(os, "open", denied)  # root may read files without permissions
     assert refusal(path).message == "cannot be read: permission denied"
 
 
@@ -145,7 +145,7 @@ def test_a_file_of_64_mib_is_read(tmp_path: Path) -> None:
         ("\ufeff", "holds only blanks and comments"),
     ],
 )
-def test_a_file_without_a_scene(tmp_path: Path, text: str, message: str) -> None:
+def test_a_file_without_elements_is_refused(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "empty.rt"
     path.write_text(text, newline="")
     problem = refusal(path)
@@ -171,7 +171,9 @@ def test_a_file_without_a_scene(tmp_path: Path, text: str, message: str) -> None
         (b"\xff\xd8\xff\xe0JFIF", 1, 1, "must be UTF-8, got the byte 0xff"),
     ],
 )
-def test_what_is_not_text(data: bytes, line: int, column: int, message: str) -> None:
+def test_a_file_that_is_not_utf8_text_is_refused_at_its_first_wrong_byte(
+    data: bytes, line: int, column: int, message: str
+) -> None:
     (problem,) = problems(data)
     assert (problem.line, problem.column, problem.message) == (line, column, message)
 
@@ -199,10 +201,10 @@ def test_a_lone_surrogate_is_not_text() -> None:
     ],
     ids=range(12),
 )
-def test_a_line_of_a_megabyte_is_refused_at_once_and_in_few_words(line: str, column: int, message: str) -> None:
+def test_a_line_of_a_megabyte_is_refused_quickly_with_a_short_message(line: str, column: int, message: str) -> None:
     with ends(), lines_run() as count:
         (problem,) = problems(scene_with(line))
-    assert 500 < count() < 20_000  # so nothing is done for each character but by functions in C
+    assert 500 < count() < 20_000  # so only functions in C look at each character
     assert (problem.line, problem.column) == (3, column)
     assert message in problem.message
     assert len(str(problem)) < 600

@@ -1,4 +1,4 @@
-"""The documentation of the format is made from the fields."""
+"""The tables that document the scene format are generated from the fields."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from minirt.scene.registry import ELEMENTS
 from tests.scene.examples import CAMERA, CYLINDER
 
 
-def test_the_pattern_of_a_line_is_that_of_the_format() -> None:
+def test_the_pattern_of_an_element_shows_its_line() -> None:
     assert pattern(ELEMENTS["C"]) == "C x,y,z dx,dy,dz fov [roll:degree]"
     assert pattern(ELEMENTS["cy"]) == "cy x,y,z ax,ay,az diameter height R,G,B"
     assert pattern(ELEMENTS["pl"]) == "pl x,y,z nx,ny,nz R,G,B"
@@ -23,12 +23,12 @@ def test_the_table_has_a_row_for_every_element_and_every_field_in_it() -> None:
     for kind, row in zip(ELEMENTS.values(), rows, strict=True):
         assert row.startswith(f"| `{pattern(kind)}` | {kind.title}")
         assert all(f"`{alias}`" in row for alias in kind.aliases)
-        named = [field for field in fields_of(kind) if not field.sort]
-        assert row.count("`") == 2 + 2 * len(named) + 2 * len(kind.aliases)
+        own = [field for field in fields_of(kind) if not field.sort]
+        assert row.count("`") == 2 + 2 * len(own) + 2 * len(kind.aliases)
         assert row.replace("\\|", "").count("|") == 4
 
 
-def test_a_second_table_has_the_attributes_of_all_shapes() -> None:
+def test_a_second_table_has_the_shared_attributes_of_shapes() -> None:
     head, rule, *rows = format_table().partition("\n\n")[2].splitlines()
     assert (head, rule) == ("| attribute | of | meaning |", "|---|---|---|")
     shared = [field for field in fields_of(ELEMENTS["sp"]) if field.sort]
@@ -45,7 +45,7 @@ def test_a_second_table_has_the_attributes_of_all_shapes() -> None:
     assert "| `checker:size[,R,G,B]`, or `checker` for `checker:0.125` (planes: `checker:1`); also `pat:` |" in rows[3]
 
 
-def test_the_row_of_the_camera() -> None:
+def test_the_row_of_the_camera_has_count_ranges_units_and_defaults() -> None:
     row = next(row for row in format_table().splitlines() if row.startswith("| `C "))
     assert "| camera (exactly one) |" in row
     assert "`fov` horizontal field of view, in [0, 180], unit: degree<br>" in row

@@ -1,4 +1,4 @@
-"""Damaged files give a scene or a SceneError, and nothing else."""
+"""Fuzzing: a damaged file gives a scene or a SceneError, and nothing else."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ INSERTIONS = st.one_of(st.sampled_from(ODD), st.text(max_size=3), st.none())
 
 @st.composite
 def damaged(draw: st.DrawFn) -> str:
-    """A scene file with characters deleted, doubled, swapped or put in."""
+    """Draw a scene file with characters deleted, doubled, replaced or inserted."""
     text = draw(UNDAMAGED)
     for _ in range(draw(HOW_OFTEN)):
         at = draw(st.integers(0, len(text)))
@@ -68,8 +68,8 @@ def damaged(draw: st.DrawFn) -> str:
     return text
 
 
-def survives(text: str | bytes) -> None:
-    """A text is read as one scene or refused with places in it, also when lenient, and lenient takes no less."""
+def check_outcome(text: str | bytes) -> None:
+    """Parse a text strictly and leniently: each accepts it or refuses it with columns in the text."""
     accepted = []
     for lenient in (False, True):
         try:
@@ -88,8 +88,8 @@ def survives(text: str | bytes) -> None:
 
 @given(damaged())
 @settings(max_examples=400)
-def test_a_damaged_file(text: str) -> None:
-    survives(text)
+def test_a_damaged_file_is_read_or_refused(text: str) -> None:
+    check_outcome(text)
 
 
 @given(st.text())
@@ -97,23 +97,23 @@ def test_a_damaged_file(text: str) -> None:
 @example("sp 0,0,0 1 1,1,1,\n,")
 @example("\r")
 @example(" ,")
-def test_any_text(text: str) -> None:
-    survives(text)
+def test_any_text_is_read_or_refused(text: str) -> None:
+    check_outcome(text)
 
 
 @given(st.binary())
 @settings(max_examples=200)
-def test_any_bytes(data: bytes) -> None:
-    survives(data)
+def test_any_bytes_are_read_or_refused(data: bytes) -> None:
+    check_outcome(data)
 
 
-def test_every_character_of_a_line_left_out_doubled_or_replaced() -> None:
+def test_a_line_with_any_character_dropped_doubled_or_replaced_is_read_or_refused() -> None:
     frame = "A 0.2 1,2,3\nC 0,0,0 0,0,1 70\n"
     for at in range(len(CYLINDER)):
         for insertion in ["", CYLINDER[at] * 2, *ODD]:
-            survives(frame + CYLINDER[:at] + insertion + CYLINDER[at + 1 :])
+            check_outcome(frame + CYLINDER[:at] + insertion + CYLINDER[at + 1 :])
 
 
-def test_every_beginning_of_a_file() -> None:
+def test_every_prefix_of_a_file_is_read_or_refused() -> None:
     for end in range(len(WHOLE)):
-        survives(WHOLE[:end])
+        check_outcome(WHOLE[:end])

@@ -1,4 +1,4 @@
-"""What only a lenient reader takes: an error without the flag, and a notice at the same place with it."""
+"""Mistakes that only a lenient reader tolerates: errors without the flag, notices at the same place with it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ CASES = [
 
 
 @pytest.mark.parametrize(("line", "meant", "column", "message"), CASES)
-def test_a_line_is_an_error_or_a_notice(line: str, meant: str, column: int, message: str) -> None:
+def test_a_tolerated_mistake_is_an_error_or_with_the_flag_a_notice(
+    line: str, meant: str, column: int, message: str
+) -> None:
     (error,) = problems(scene_with(line))
     scene, (notice,) = parse(scene_with(line), "test.rt", lenient=True)
     assert notice == error
@@ -33,14 +35,14 @@ def test_a_line_is_an_error_or_a_notice(line: str, meant: str, column: int, mess
     assert dump(scene) == scene_with(line)
 
 
-def test_one_line_may_need_it_twice() -> None:
+def test_one_line_may_have_several_tolerated_mistakes() -> None:
     line = "pl 0, -1, 0 0, 0, 0 199.6, 200 , 200 // floor"
     scene, notices = parse(scene_with(line), lenient=True)
     assert scene.elements == read(PLANE).elements
     assert len(notices) == 4
 
 
-def test_the_camera_looks_along_z() -> None:
+def test_a_camera_without_a_direction_looks_along_z() -> None:
     text = f"{AMBIENT}\nC 0,0,0 0,0,0 70\n"
     assert "(--lenient takes 0,0,1)" in problems(text)[0].message
     assert parse(text, lenient=True).scene.camera.direction == (0, 0, 1)
@@ -59,7 +61,7 @@ def test_later_lights_become_further_lights() -> None:
     assert dump(moved) == scene_with(*lines).replace("L 0,0,0 0.5", "l 0,0,0 0.25")
 
 
-def test_a_scene_without_ambient_light() -> None:
+def test_a_scene_without_ambient_light_is_tolerated() -> None:
     text = f"{CAMERA}\n{SPHERE}\n"
     (error,) = problems(text)
     scene, (notice,) = parse(text, "test.rt", lenient=True)
@@ -77,7 +79,7 @@ def test_a_comment_line_of_two_slashes_is_kept() -> None:
     assert dump(scene) == text
 
 
-def test_the_example_of_the_subject() -> None:
+def test_the_example_of_the_subject_is_tolerated() -> None:
     assert [(each.line, each.column) for each in problems(SUBJECT)] == [(2, 12), (4, 16)]
     scene, notices = parse(SUBJECT, lenient=True)
     assert len(notices) == 2
@@ -86,7 +88,7 @@ def test_the_example_of_the_subject() -> None:
     assert dump(scene) == SUBJECT
 
 
-def test_a_later_light_with_an_error() -> None:
+def test_an_error_in_a_later_light_is_found() -> None:
     for line, column in (("L", 2), ("L 0,0,0", 8), ("L 0,0,0 2", 9), ("  L 0,0,0 1 1,2,3 4", 19)):
         (error,) = problems(scene_with(LIGHT, line), lenient=True)
         assert (error.line, error.column) == (4, column)
@@ -114,7 +116,7 @@ def test_a_later_light_with_an_error() -> None:
         ("R 640, 480", 11, "resolution height is missing"),
     ],
 )
-def test_lenient_does_not_guess(line: str, column: int, message: str) -> None:
+def test_other_mistakes_are_errors_also_when_lenient(line: str, column: int, message: str) -> None:
     (error,) = problems(scene_with(line), lenient=True)
     assert (error.line, error.column) == (3, column)
     assert message in error.message

@@ -1,4 +1,4 @@
-"""Lines `ob` of a scene file: read, refused, written."""
+"""Mesh lines `ob` of a scene file are read, refused and written."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ ONE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
+    """A folder with a mesh file in a subfolder and a broken one."""
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes" / "one.obj").write_text(ONE)
     (tmp_path / "bad.obj").write_text("v 0 0 0\nv 1 0 x\n")
@@ -23,19 +24,20 @@ def folder(tmp_path: Path) -> Path:
 
 
 def scene(folder: Path, *lines: str) -> Path:
+    """Write a scene file with `lines`."""
     path = folder / "scene.rt"
     path.write_text("\n".join([AMBIENT, CAMERA, *lines, ""]))
     return path
 
 
-def test_a_mesh_is_read_from_beside_the_scene(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_mesh_paths_are_relative_to_the_folder_of_the_scene(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir("/")
     path = scene(folder, "ob meshes/one.obj 1,2,3 2 255,0,0 mirror:0.5", f"obj {folder}/meshes/one.obj 0,0,0 1 9,9,9")
     one, other = load(path).scene.shapes
     assert isinstance(one, Mesh)
     assert one.bounds() == ((1, 2, 3), (3, 4, 3))
     assert (one.mirror, one.colour, one.parts) == (0.5, (255, 0, 0), 1)
-    assert one.file.triangles is other.file.triangles  # read once
+    assert one.file.triangles is other.file.triangles  # the file is read once
 
 
 REFUSED = {
@@ -46,14 +48,14 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("line", "told"), REFUSED.items())
-def test_a_mesh_that_cannot_be_read(folder: Path, line: str, told: tuple[int, str]) -> None:
+@pytest.mark.parametrize(("line", "expected"), REFUSED.items())
+def test_an_unreadable_mesh_file_is_an_error_at_its_name(folder: Path, line: str, expected: tuple[int, str]) -> None:
     with pytest.raises(SceneError) as caught:
         load(scene(folder, line))
     (problem,) = caught.value.problems
     name = line.split()[1]
-    assert problem.message == f"mesh file must be a mesh file, got '{name}': {told[1]}"
-    assert (problem.line, problem.column, problem.length, problem.text) == (3, told[0], len(name), line)
+    assert problem.message == f"mesh file must be a mesh file, got '{name}': {expected[1]}"
+    assert (problem.line, problem.column, problem.length, problem.text) == (3, expected[0], len(name), line)
 
 
 @pytest.mark.parametrize(
@@ -69,26 +71,26 @@ def test_a_mesh_that_cannot_be_read(folder: Path, line: str, told: tuple[int, st
         ),
     ],
 )
-def test_a_line_that_is_wrong(folder: Path, line: str, message: str) -> None:
+def test_a_wrong_mesh_line_is_refused(folder: Path, line: str, message: str) -> None:
     with pytest.raises(SceneError) as caught:
         load(scene(folder, line))
     assert caught.value.problems[0].message == message
 
 
-def test_a_changed_mesh_is_written_with_what_changed(folder: Path) -> None:
-    line = "ob  meshes/one.obj   0,0,0  1.50   9,9,9   mirror:.5  # mine"
+def test_only_the_changed_fields_of_a_mesh_are_rewritten(folder: Path) -> None:
+    line = "ob  meshes/one.obj   0,0,0  1.50   9,9,9   mirror:.5  # a mesh"
     read = load(scene(folder, line)).scene
     assert dump(read).splitlines()[2] == line
     moved = read.replace(read.meshes[0], position=(1.0, 0.0, 0.0))
-    assert dump(moved).splitlines()[2] == "ob  meshes/one.obj   1,0,0  1.50   9,9,9   mirror:.5  # mine"
+    assert dump(moved).splitlines()[2] == "ob  meshes/one.obj   1,0,0  1.50   9,9,9   mirror:.5  # a mesh"
     larger = moved.replace(moved.meshes[0], scale=3.0, mirror=None)
-    assert dump(larger).splitlines()[2] == "ob  meshes/one.obj   1,0,0  3      9,9,9  # mine"
+    assert dump(larger).splitlines()[2] == "ob  meshes/one.obj   1,0,0  3      9,9,9  # a mesh"
     assert describe(larger.meshes[0]) == "ob meshes/one.obj 1,0,0 3 9,9,9"
     again = parse(dump(larger), folder / "scene.rt").scene
     assert again.items == larger.items
 
 
-def test_a_mesh_that_is_another_file_now_is_another_mesh(folder: Path) -> None:
+def test_a_changed_mesh_file_is_read_again(folder: Path) -> None:
     path = scene(folder, "ob meshes/one.obj 0,0,0 1 9,9,9")
     before = load(path).scene.meshes[0]
     (folder / "meshes" / "one.obj").write_text(ONE + "f 3 2 1\n")
@@ -98,7 +100,9 @@ def test_a_mesh_that_is_another_file_now_is_another_mesh(folder: Path) -> None:
     assert load(path).scene.meshes[0] == after
 
 
-def test_a_text_of_no_file_names_meshes_in_the_current_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_mesh_paths_of_a_scene_without_a_file_are_relative_to_the_current_folder(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     text = "\n".join([AMBIENT, CAMERA, "ob meshes/one.obj 0,0,0 1 9,9,9", ""])
     monkeypatch.chdir(folder)
     assert parse(text).scene.shapes[0].parts == 1

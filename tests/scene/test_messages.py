@@ -1,4 +1,4 @@
-"""How a problem is shown: file, line, column, the line and a caret."""
+"""Messages show the file, line, column, text and a caret of a problem."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_the_excerpt_of_a_long_line_is_the_part_around_the_column(column: int) -
     assert (line + " ")[caret.index("^")] == (text + " ")[column - 1]
 
 
-def test_what_is_quoted_is_short_and_printable() -> None:
+def test_quoted_text_is_short_and_printable() -> None:
     assert quoted("a") == "'a'"
     assert quoted("\x1b\n") == r"'\x1b\n'"
     assert quoted("x" * 1000) == "'" + "x" * 39 + "…'"
@@ -57,9 +57,9 @@ def test_a_problem_of_the_whole_file_names_no_line() -> None:
         ("", ""),
     ],
 )
-def test_the_nearest_element(word: str, meant: str) -> None:
+def test_a_misspelled_identifier_or_a_name_suggests_an_element(word: str, meant: str) -> None:
     assert nearest_element(word) == meant
 
 
-def test_the_nearest_of_none() -> None:
+def test_no_known_words_give_no_suggestion() -> None:
     assert nearest("roll", []) == ""

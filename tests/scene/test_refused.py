@@ -1,4 +1,4 @@
-"""What is refused: each case with the line, the column and what the message says, and nothing else said."""
+"""Wrong lines and files are refused with one error, whose line, column and message are given."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_a_bad_line_has_one_error_at_its_place(line: str, column: int, message: 
     assert problem.text == line.removesuffix("\r")
 
 
-TOLERATED = ("//", ", ", " ,")  # or said in another way
+TOLERATED = ("//", ", ", " ,")  # by a lenient reader, or reported differently
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def test_a_bad_file_has_one_error_at_its_place(text: str, line: int, column: int
     assert (problem.line, problem.column) == (line, column)
 
 
-def test_an_element_on_two_lines_is_wrong_in_both() -> None:
+def test_an_element_split_over_two_lines_is_an_error_in_both() -> None:
     first, second = problems(scene_with("cy 0,0,20 0,1,0", "2 5 255,200,0"))
     assert (first.line, first.column) == (3, 16)
     assert "cylinder diameter and height and colour are missing" in first.message
@@ -81,23 +81,23 @@ def test_an_element_on_two_lines_is_wrong_in_both() -> None:
     assert "a line begins with one of" in second.message
 
 
-def test_all_errors_of_a_file_come_in_one_run_in_their_order() -> None:
-    found = problems("A 2 255,0,0\nC 0,0,0 0,0,2 200 rol:1\nsp 0,nan,20 -1 1,2,3,4\nspp\n\nL 0,0,0 0.5\nL 0,0,0 0.5\n")
-    assert [(each.line, each.column) for each in found] == [
+def test_one_run_reports_all_errors_of_a_file_in_order() -> None:
+    errors = problems("A 2 255,0,0\nC 0,0,0 0,0,2 200 rol:1\nsp 0,nan,20 -1 1,2,3,4\nspp\n\nL 0,0,0 0.5\nL 0,0,0 0.5\n")
+    assert [(each.line, each.column) for each in errors] == [
         *((1, 3), (2, 13), (2, 15), (2, 19)),
         *((3, 6), (3, 13), (3, 22), (4, 1), (7, 1)),
     ]
 
 
-def test_what_is_wrong_is_not_called_missing_too() -> None:
+def test_a_wrong_line_is_not_also_reported_as_missing() -> None:
     assert len(problems("a 0.2 1,2,3\nc 0,0,0 0,0,1 70\n")) == 2
     assert len(problems("A0.2 1,2,3\nC 0, 0, 0 0,0,1 70\n")) == 2
 
 
-def test_a_file_of_errors_is_not_read_to_its_end() -> None:
-    found = problems("x\n" * 100_000)
-    assert len(found) == 1001
-    assert (found[-1].line, found[-1].message) == (1000, "too many errors: the rest of the file is not read")
+def test_reading_stops_after_1000_errors() -> None:
+    errors = problems("x\n" * 100_000)
+    assert len(errors) == 1001
+    assert (errors[-1].line, errors[-1].message) == (1000, "too many errors: the rest of the file is not read")
 
 
 @pytest.mark.parametrize("line", [SPHERE, PLANE, CYLINDER, LIGHT], ids=["sp", "pl", "cy", "L"])

@@ -1,4 +1,4 @@
-"""Random scenes survive writing and reading, and random edits change nothing but their own lines."""
+"""Round trips: random scenes survive writing and reading, and a random edit changes only its own line."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_an_edit_changes_one_line_and_keeps_its_comment(text: str, data: st.Data
     changes: dict[str, Any] = {field.name: data.draw(values(field)) for field in fields}
     try:
         changed = scene.replace(element, **changes)
-    except ElementError:  # of fields that do not go together
+    except ElementError:  # the fields do not go together
         reject()
     before, after = text.split("\n"), dump(changed).split("\n")
     assert before[:index] + before[index + 1 :] == after[:index] + after[index + 1 :]

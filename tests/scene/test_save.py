@@ -1,4 +1,4 @@
-"""Saving: all of the file or nothing, in its place."""
+"""Saving replaces a scene file as a whole or not at all."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ SCENE = parse(WHOLE).scene
 
 
 def refusal(path: Path | str) -> str:
-    """Why the scene is not saved."""
+    """Save to a path that is refused; return the message."""
     with pytest.raises(SceneError) as caught:
         save(SCENE, path)
     return str(caught.value)
 
 
 def names(folder: Path) -> list[str]:
-    """What is in a folder."""
+    """Return the sorted file names of a folder."""
     return sorted(path.name for path in folder.iterdir())
 
 
@@ -99,7 +99,7 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.
     assert names(tmp_path) == []
 
 
-def test_what_cannot_be_written(tmp_path: Path) -> None:
+def test_paths_that_cannot_be_written_are_refused(tmp_path: Path) -> None:
     (tmp_path / "folder.rt").mkdir()
     os.mkfifo(tmp_path / "fifo.rt")
     assert "not a regular file" in refusal(tmp_path / "folder.rt")
@@ -114,11 +114,11 @@ def test_what_cannot_be_written(tmp_path: Path) -> None:
 def test_a_write_protected_file_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "scene.rt"
     path.write_text("old")
-    monkeypatch.setattr(os, "access", lambda *_: False)  # the owner of all files may write everywhere
+    monkeypatch.setattr(os, "access", lambda *_: False)  # root may write everywhere
     assert "cannot be written: permission denied" in refusal(path)
     assert path.read_text() == "old"
 
 
-def test_bytes_are_written_as_they_are(tmp_path: Path) -> None:
+def test_bytes_are_written_unchanged(tmp_path: Path) -> None:
     atomic_write.write(tmp_path / "data", b"\r\n\0\xff")
     assert (tmp_path / "data").read_bytes() == b"\r\n\0\xff"

@@ -1,4 +1,4 @@
-"""What real files have and what is read without a word, and the notices about what is read with one."""
+"""Variants of real files that the strict reader accepts, without a notice or with one."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from minirt.fields import Real
 from minirt.scene import Camera, Light, parse
 from minirt.scene.diagnostics import Log
-from minirt.scene.element_reader import Slot, value_of
+from minirt.scene.element_reader import Slot, parse_slot
 from minirt.scene.lines import Line, Word
 from minirt.shapes.sphere import Sphere
 from tests.scene.examples import AMBIENT, CAMERA, LIGHT, SPHERE, WHOLE, notices, read, scene_with
@@ -43,7 +43,7 @@ BALL = Sphere((0.0, 0.0, 20.0), 12.6, (10, 0, 255))
         f"sp 0,0,20 12.6{'0' * 296} 10,0,255",
     ],
 )
-def test_a_line_means_the_same_however_it_is_spelled(line: str) -> None:
+def test_all_spellings_of_a_line_give_the_same_element(line: str) -> None:
     reading = parse(scene_with(line))
     assert reading.scene.spheres == (BALL,)
     assert reading.scene.spheres[0].source == line
@@ -73,20 +73,20 @@ def test_blank_lines_and_comments_are_kept(line: str) -> None:
         WHOLE + "\r",
     ],
 )
-def test_a_file_means_the_same_however_its_lines_end_and_follow(text: str) -> None:
+def test_line_ends_blank_lines_and_order_do_not_change_the_elements(text: str) -> None:
     scene = parse(text).scene
     assert set(scene.elements) == set(parse(WHOLE).scene.elements)
     assert "\n".join(item if isinstance(item, str) else item.source for item in scene.items) == text
     assert parse(text.encode()).scene == scene
 
 
-def test_the_light_and_its_colour_may_be_left_out() -> None:
+def test_the_light_and_its_colour_are_optional() -> None:
     assert parse(scene_with()).scene.lights == ()
     assert read("L 0,0,0 0.5").lights == (Light((0.0, 0.0, 0.0), 0.5, (255, 255, 255)),)
     assert read("L 0,0,0 0.5 # warm").lights[0].colour == (255, 255, 255)
 
 
-def test_further_lights_and_a_size() -> None:
+def test_further_lights_and_a_resolution_are_read() -> None:
     scene = read("l 0,0,0 0.5 1,2,3", "R 640 480", LIGHT, "l 1,0,0 1")
     assert [light.code for light in scene.lights] == ["l", "L", "l"]
     assert scene.resolution is not None
@@ -99,7 +99,7 @@ def test_the_camera_may_roll() -> None:
 
 
 @pytest.mark.parametrize(("low", "high"), [("0", "1"), ("0.0", "1.0"), ("-0", "+1e0")])
-def test_the_ends_of_a_range_belong_to_it(low: str, high: str) -> None:
+def test_the_ends_of_a_range_are_accepted(low: str, high: str) -> None:
     assert [light.brightness for light in read(f"l 0,0,0 {low}", f"l 0,0,0 {high}").lights] == [0, 1]
 
 
@@ -115,13 +115,13 @@ def test_the_field_of_view_of_0_and_180_is_read_with_a_notice() -> None:
 
 def test_a_notice_about_a_keyed_field_stands_under_its_value() -> None:
     log, field = Log("test.rt", lenient=False), Real(doc="", low=0, high=1, ends="is an end", name="share", keyed=True)
-    assert value_of(Slot(field, Word(4, "share:1"), 6), Sphere, Line(1, "", "sp share:1"), log) == 1
+    assert parse_slot(Slot(field, Word(4, "share:1"), 6), Sphere, Line(1, "", "sp share:1"), log) == 1
     (notice,) = log.notices
     assert (notice.column, notice.length, notice.message) == (10, 1, "sphere share 1 is an end")
 
 
 @pytest.mark.parametrize(
-    ("normal", "told"),
+    ("normal", "notice"),
     [
         ("0,1,0", ""),
         ("0.577,0.577,0.577", ""),
@@ -132,12 +132,12 @@ def test_a_notice_about_a_keyed_field_stands_under_its_value() -> None:
         ("0,0.998,0", "plane normal has length 0.998, and is scaled to 1"),
     ],
 )
-def test_a_direction_gets_unit_length_and_a_notice_where_it_was_far_off(normal: str, told: str) -> None:
+def test_a_direction_is_normalised_with_a_notice_when_its_length_was_far_from_1(normal: str, notice: str) -> None:
     line = f"pl 0,0,0 {normal} 1,2,3"
     (plane,) = read(line).planes
     assert math.hypot(*plane.normal) == pytest.approx(1, abs=4 * 2**-53)
     assert plane.source == line
-    assert notices(line) == ([(3, 10, told)] if told else [])
+    assert notices(line) == ([(3, 10, notice)] if notice else [])
 
 
 def test_ten_thousand_spheres_are_read_in_order() -> None:

@@ -1,4 +1,4 @@
-"""Scenes as other programs have them: their words mean what they mean there."""
+"""Scenes in the dialects of other miniRT programs are read with the meaning that they have there."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ UP, DOWN = (0, 1, 0), (0, -1, 0)
 
 
 def wild(name: str, lenient: bool = False) -> Scene:
-    """That scene, as it is read."""
+    """Load a scene of the folder `wild`."""
     return load(WILD / f"{name}.rt", lenient).scene
 
 
-def test_each_of_them_is_tried() -> None:
+def test_every_scene_of_the_folder_is_tested() -> None:
     tried = Path(__file__).read_text()
     assert all(f'wild("{path.stem}"' in tried for path in WILD.glob("*.rt"))
     assert len(list(WILD.glob("*.rt"))) >= 6
 
 
-# What only a lenient reader takes: two lamps; comments and vectors of four; blanks around commas.
+# Lines that only a lenient reader accepts: two lights; comments, vectors of four numbers; blanks around commas.
 LENIENT = {"cornell-box": [8], "party-hats": [1, 3, 6, 7], "pyramid": [3]}
 
 
 @pytest.mark.parametrize("name", [path.stem for path in WILD.glob("*.rt")])
-def test_what_is_odd_in_them_is_said(name: str) -> None:
+def test_lines_outside_the_format_are_errors(name: str) -> None:
     try:
         load(WILD / f"{name}.rt")
         odd = []
@@ -45,7 +45,7 @@ def test_what_is_odd_in_them_is_said(name: str) -> None:
     assert odd == LENIENT.get(name, [])
 
 
-def test_a_cornell_box_with_two_lamps_in_capitals() -> None:
+def test_a_cornell_box_with_two_lights_l_in_capitals() -> None:
     scene = wild("cornell-box", lenient=True)
     assert scene.lights == (
         Light((0, 4.6, -1), 0.7, (255, 240, 220)),
@@ -61,7 +61,7 @@ def test_a_cornell_box_with_two_lamps_in_capitals() -> None:
     )
 
 
-def test_planets_have_their_pictures() -> None:
+def test_planets_with_textures_bump_maps_and_normal_maps() -> None:
     scene = wild("planets")
     assert scene.background == Background(f"{PICTURES}stars.png")
     earth, moon, mars = scene.spheres
@@ -75,7 +75,7 @@ def test_planets_have_their_pictures() -> None:
     assert all(scene.beside(name).is_file() for name in (earth.texture, mars.normal_map))
 
 
-def test_cones_by_all_their_names() -> None:
+def test_cones_by_all_aliases() -> None:
     scene = wild("party-hats", lenient=True)
     assert scene.cones == (
         Cone((0, 3, 0), DOWN, 2.5, 3, (255, 180, 0), specular=Specular(0.5, 40)),
@@ -108,7 +108,7 @@ def test_a_stage_with_spots() -> None:
     assert (scene.planes[0].checker, scene.planes[0].mirror) == (Checker(2), 0.15)
 
 
-def test_an_atom_with_numbers_of_all_spellings() -> None:
+def test_an_atom_with_all_spellings_of_numbers() -> None:
     scene = wild("atom")
     nucleus, electron, mirrored = scene.spheres
     assert nucleus.specular == Specular(1, 8)
@@ -119,7 +119,7 @@ def test_an_atom_with_numbers_of_all_spellings() -> None:
     assert scene.lights == (Light((5, 5, -5), 0.6, fade=40.0),)
 
 
-def test_a_bar_with_the_further_shapes() -> None:
+def test_a_bar_with_further_shapes() -> None:
     scene = wild("bar")
     assert [type(shape).code for shape in scene.shapes] == ["pl", "bo", "pa", "hy", "di"]
     assert scene.of(Disc) == (Disc((0, 0.01, -1), UP, 1.2, (200, 30, 60), checker=Checker(0.125)),)

@@ -1,4 +1,4 @@
-"""What is written: the file as it was, but for what changed."""
+"""The writer keeps a file as it was read, but for the changed fields."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_only_the_changed_field_of_a_line_changes(before: str, changes: dict[str
         ("C 0,0,0 0,0,1 70", {"direction": (0.0, 1.0, 0.0)}, "C 0,0,0 0,1,0 70"),
     ],
 )
-def test_a_keyed_field_is_changed_or_added(before: str, changes: dict[str, Any], after: str) -> None:
+def test_an_attribute_is_rewritten_or_added(before: str, changes: dict[str, Any], after: str) -> None:
     scene = parse(f"{AMBIENT}\n{before}\n").scene
     changed = scene.replace(scene.camera, **changes)
     assert dump(changed) == f"{AMBIENT}\n{after}\n"
@@ -72,7 +72,7 @@ def test_changing_back_restores_the_file() -> None:
     assert dump(there.replace(there.spheres[0], diameter=12.6)) == text
 
 
-def test_a_byte_order_mark_stays_where_it_is() -> None:
+def test_a_byte_order_mark_stays_in_the_first_line() -> None:
     text = f"\ufeff  {AMBIENT} # a\r\n{CAMERA}\r\n"
     scene = parse(text).scene
     assert scene.ambient is not None
@@ -101,7 +101,7 @@ def test_a_copy_of_the_first_line_has_no_byte_order_mark() -> None:
         ),
     ],
 )
-def test_an_element_with_another_or_no_source_is_written_afresh(source: str) -> None:
+def test_an_element_without_a_fitting_source_line_gets_a_new_line(source: str) -> None:
     scene = Scene([*read().items[:2], Sphere(BALL.centre, BALL.diameter, BALL.colour, source=source)])
     assert dump(scene) == f"{AMBIENT}\n{CAMERA}\n{SPHERE}"
 
@@ -122,7 +122,7 @@ def test_an_element_is_described_by_its_line(element: Element, line: str) -> Non
     assert describe(element) == line
 
 
-def test_a_direction_is_written_so_that_it_stays_the_same() -> None:
+def test_a_written_direction_reads_back_to_the_same_bits() -> None:
     normal = unit((0.1, 0.2, 0.3))
     scene = read(PLANE)
     changed = scene.replace(scene.planes[0], normal=normal)

@@ -1,10 +1,10 @@
-"""What must hold where numbers are hard: near edges, far away, very small, very large.
+"""Tests of numerical stability: near edges, far away, very small, very large.
 
-A regime (`regime.Regime`) is a recipe for shapes and rays that are hard in one way, and says how exact the answers must
-be nonetheless. `table.REGIMES` lists them for every shape: `common` ones are made from the table of a shape's fields,
-further ones are in the file that is called like the shape. The formulas run on single numbers, on arrays, compiled, and
-through `minirt.trace`; right is what `tests.oracle` says.
+A regime (`regime.Regime`) is a recipe for shapes and rays that are hard in one way, with the accuracy that answers must
+still have. `table.REGIMES` lists the regimes of every shape: those in `common` are made from the shape's declared
+fields, further ones are in the file named after the shape. The formulas run on single numbers, on arrays, compiled, and
+through `minirt.trace`; `tests.oracle` gives the right answers.
 
-Formulas that look right and are not are in `mutants`: the same checks must fail on them. `python -m
+`mutants` holds formulas that look right but are wrong: the same checks must fail on them. `python -m
 tests.stability.mutation` changes the real formulas, one place at a time, and lists the changes that no test notices.
 """

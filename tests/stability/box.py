@@ -1,4 +1,4 @@
-"""Where a box is hard."""
+"""Regimes of the box: rays along its axes, at edges and at corners."""
 
 from __future__ import annotations
 

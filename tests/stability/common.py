@@ -1,4 +1,4 @@
-"""Regimes of every shape, made from the table of its fields. Lengths are in sizes of the shape."""
+"""Regimes common to all shapes, made from their declared fields. Lengths are in units of the shape's size."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.shapes.examples import example, place
 from tests.shapes.regimes import RAYS, Array, Rays, log, unit, ways
 from tests.stability.regime import Regime
 
-COUNT = 8  # shapes of a regime
+COUNT = 8  # shapes per regime
 
 
 def towards(
@@ -24,7 +24,7 @@ def towards(
     offset: float = 0.0,
     count: int = COUNT,
 ) -> Rays:
-    """From `far` sizes away at places in and around shapes of a `size`, in a scene at `offset`."""
+    """Rays from `far` sizes away at points in and around shapes of a `size`, in a scene at `offset`."""
     random = np.random.default_rng(seed)
     shapes = [example(kind, random, size, offset) for _ in range(count)]
     middles = places(shapes)
@@ -34,7 +34,7 @@ def towards(
 
 
 def touching(kind: Kind, seed: int) -> Rays:
-    """Along the surface, from 1e-16 to 1e-4 sizes above and below it."""
+    """Rays along the surface, 1e-16 to 1e-4 sizes above and below it."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
@@ -49,7 +49,7 @@ def touching(kind: Kind, seed: int) -> Rays:
 
 
 def leaving(kind: Kind, seed: int, height: tuple[float, float] = (1e-12, 1e-3)) -> Rays:
-    """From closely above the surface and below it, in all directions."""
+    """Rays in all directions from just above and just below the surface."""
     random = np.random.default_rng(seed)
     shapes, origins = [], np.empty((COUNT, RAYS, 3))
     for i in range(COUNT):
@@ -61,7 +61,7 @@ def leaving(kind: Kind, seed: int, height: tuple[float, float] = (1e-12, 1e-3)) 
 
 
 def on_surface(shape: Shape, random: np.random.Generator) -> tuple[Array, Array]:
-    """Points of the surface of a shape of size 1 and the normals there, (RAYS, 3) each."""
+    """Return points on the surface of a shape of size 1 and the normals there, (RAYS, 3) each."""
     found = []
     while len(found) < RAYS:
         origin = place(shape) + log(random, 0.1, 10) * ways(random)
@@ -79,18 +79,18 @@ def places(shapes: list[Shape]) -> Array:
 
 
 def common(kind: Kind) -> list[Regime]:
-    """Of a kind of shape."""
-    made = partial(towards, kind)
+    """Return the common regimes of a shape type."""
+    rays = partial(towards, kind)
     solid = body(example(kind, np.random.default_rng(1))).solid
     regimes = [
-        Regime("usual", partial(made, 1)),
-        Regime("a million sizes away", partial(made, 2, (1e2, 1e6))),
-        Regime("a scene at 1e6", partial(made, 10, offset=1e6)),
-        Regime("a scene at 1e8", partial(made, 3, offset=1e8)),
-        Regime("a size of 1e-6, seen from 1e6", partial(made, 4, (1e11, 1e12), 1e-6)),
-        Regime("a size of 1e-12", partial(made, 5, size=1e-12)),
-        Regime("a size of 1e12", partial(made, 6, size=1e12)),
-        Regime("from the middle", partial(made, 7, (1e-9, 0.1))),
+        Regime("usual", partial(rays, 1)),
+        Regime("a million sizes away", partial(rays, 2, (1e2, 1e6))),
+        Regime("a scene at 1e6", partial(rays, 10, offset=1e6)),
+        Regime("a scene at 1e8", partial(rays, 3, offset=1e8)),
+        Regime("a size of 1e-6, seen from 1e6", partial(rays, 4, (1e11, 1e12), 1e-6)),
+        Regime("a size of 1e-12", partial(rays, 5, size=1e-12)),
+        Regime("a size of 1e12", partial(rays, 6, size=1e12)),
+        Regime("from the middle", partial(rays, 7, (1e-9, 0.1))),
     ]
     if solid:
         regimes += [

@@ -1,4 +1,4 @@
-"""Where a cone is hard."""
+"""Regimes of the cone: rays at apex and rim, along generators, at the mirrored nappe; steep and flat cones."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.stability.regime import Regime
 
 
 def make(random: Random, angle: tuple[float, float] = (20.0, 60.0)) -> Cone:
-    """A cone of about size 1 with a half-angle of so many degrees."""
+    """Make a cone of about size 1 with a half-angle in a range of degrees."""
     slope = np.tan(np.radians(random.uniform(*angle)))
     height = random.uniform(0.5, 2) / max(1.0, slope)
     return Cone(tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1)), 2 * slope * height, height, GREY)
@@ -34,13 +34,13 @@ def generator(random: Random, cone: Cone) -> Array:
 
 
 def anywhere(random: Random, cone: Cone) -> Array:
-    """Places on the side."""
+    """Random points on the side."""
     share = random.uniform(0.05, 0.95, (RAYS, 1))
     return np.array(cone.apex) + share * (rim(random, cone) - cone.apex)
 
 
 def at_the_mirror_image(seed: int) -> Rays:
-    """At the other nappe, and past the apex on that side."""
+    """Rays at the mirrored nappe, which is not part of the cone, and past the apex on that side."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):

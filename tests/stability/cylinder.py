@@ -1,4 +1,4 @@
-"""Where a cylinder is hard."""
+"""Regimes of the cylinder: rays along axis, side and rim; tubes, needles and discs."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tests.stability.regime import Regime
 
 
 def flat(seed: int, height: float) -> Rays:
-    """At cylinders that are next to flat, from above and below."""
+    """Rays from above and below at cylinders that are nearly flat."""
     return given.disc(seed, height, COUNT)
 
 
 def needle(seed: int) -> Rays:
-    """At needles: a height of 1e9 and a diameter of 1e-3."""
+    """Rays at needles: a height of 1e9 and a diameter of 1e-3."""
     random = np.random.default_rng(seed)
     shapes = [Cylinder(tuple(ways(random)), tuple(ways(random).clip(-1, 1)), 1e-3, 1e9, GREY) for _ in range(COUNT)]
     axes = np.array([shape.axis for shape in shapes])[:, None]
@@ -29,7 +29,7 @@ def needle(seed: int) -> Rays:
 
 
 def short_axis(seed: int) -> Rays:
-    """Rays at cylinders whose axis is written 6e-8 too short, as one with seven digits is."""
+    """Rays at cylinders whose axis is 6e-8 shorter than 1, as an axis written with seven digits is."""
     rays = given.aimed(given.cylinder, seed, count=COUNT)
     shortened = [shape.replace(axis=tuple((1 - 6e-8) * x for x in shape.axis)) for shape in rays.shapes]
     return rays._replace(shapes=shortened)
@@ -42,7 +42,7 @@ REGIMES = [
     Regime("nearly along the axis, a scene at 1e8", partial(given.along_axis, 14, (1e-12, 1e-3), 1e8, COUNT)),
     Regime("at the rim", partial(given.rim, 15, 2 * COUNT), blur=1e-12),
     Regime("along the side", partial(given.tangent_to_side, 16, COUNT), blur=1e-6),
-    # 1e-8 off the axis, an axis that is exact to 2^-53 leaves 1e-8 of the angle, and so of t.
+    # At 1e-8 off the axis, an axis exact to 2^-53 leaves a relative error of 1e-8 in the angle, and so in t.
     Regime("inside a tube of height 1e9", partial(given.inside_tube, 17, 1e9, COUNT), 3e-8),
     Regime("across a tube from its wall", partial(given.from_the_wall, 18, COUNT)),
     Regime("an axis off unit length by 6e-8", partial(short_axis, 21)),

@@ -1,4 +1,4 @@
-"""Ways to intersect that look right and are not: the checks of the real ones must reject them."""
+"""Mutants: intersection formulas that look right but are wrong, which the checks must reject."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from tests.shapes.ways import Array, Intersect, kind_of, on_arrays, vec
 
 
 def from_1e_4_on(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """Hits nearer than a fixed distance do not count: a remedy against acne that knows no scale."""
+    """Ignore hits nearer than a fixed distance: a remedy against shadow acne that ignores the scene's scale."""
     t = on_arrays(shapes, origins, directions)
     return np.where(t > 1e-4, t, np.inf)
 
 
 def moved_on_by_1e_4(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """Rays start a fixed distance further on: another."""
+    """Start rays a fixed distance further on: another remedy that ignores the scene's scale."""
     return on_arrays(shapes, origins + 1e-4 * directions, directions) + 1e-4
 
 
 def in_single_precision(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """The real formulas on float32."""
+    """Run the real formulas in float32."""
     t = np.full(origins.shape[:2], np.inf)
     for i, shape in enumerate(shapes):
         rays = (vec(part[i].astype(np.float32)) for part in (origins, directions))
@@ -36,12 +36,12 @@ def in_single_precision(shapes: list[Shape], origins: Array, directions: Array) 
 
 
 def single(packed: Any) -> Any:
-    """A packed shape whose numbers are float32."""
+    """Convert the numbers of a packed shape to float32."""
     parts = (Vec(*map(np.float32, (p.x, p.y, p.z))) if isinstance(p, Vec) else np.float32(p) for p in packed)
     return type(packed)(*parts)
 
 
-# For each mutant regimes that it must fail; it passes those that are easy for it.
+# Each mutant with regimes in which it must fail; in easy regimes it passes.
 ANY: dict[str, tuple[Intersect, tuple[str, ...]]] = {
     "from 1e-4 on": (from_1e_4_on, ("a size of 1e-12",)),
     "moved on by 1e-4": (moved_on_by_1e_4, ("a size of 1e-12", "a scene at 1e8")),

@@ -1,12 +1,12 @@
-"""Changes the formulas, one place at a time, and lists the changes that no test notices.
+"""Mutation testing: change the formulas, one place at a time, and list the changes that no test notices.
 
     python -m tests.stability.mutation [sphere cylinder ...]
     python -m tests.stability.mutation trace shade
 
-The interpreted tests run once, so that all is imported and all right answers are known; then each change gets a copy of
-this process (POSIX only) in which the functions have the changed code, and the regimes and then the tests are tried
-again until one fails. A change that they let pass, and that is no other way to write the same, calls for a test.
-Files of the kernel, which must not be mixed with those of shapes, are tested by pictures that are made uncompiled.
+The interpreted tests run once, so that everything is imported and all right answers are known. Then each change gets a
+fork of this process (POSIX only) in which the functions have the changed code; the regimes and then the tests run until
+one fails. A change that survives, and is not just another way to write the same formula, calls for a new test.
+Files of the kernel are tested by pictures that are rendered uncompiled; do not mix them with files of shapes.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ from tests.stability.mutations import Change, changes
 from tests.stability.regime import posed
 from tests.stability.table import REGIMES
 
-SHARED = ("quadric", "compensated", "basis", "bounds")  # of several shapes
-TOPICS = {"uv_mapping": "mapping"}  # what the tests of a file are called, where not as the file
+SHARED = ("quadric", "compensated", "basis", "bounds")  # files that several shapes use
+TOPICS = {"uv_mapping": "mapping"}  # file -> the word in the names of its tests, if that is another
 FILES = (*SHARED, *TOPICS, "pyramid", *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.ALL_KINDS))
 TESTS = ("tests/shapes", "tests/stability/test_surfaces.py", "tests/stability/test_properties.py")
-# What starts threads does not survive a fork.
+# Tests that start threads cannot run after a fork.
 UNFIT = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
 KERNEL = {"trace": "kernel/trace.py", "shade": "kernel/shading/shade.py"}
 PICTURES = (
@@ -47,11 +47,11 @@ PICTURES = (
     "tests/rendering/culling/test_visibility.py",
 )
 COMPILED = "not compiled and not every_scene and not many_shapes and not light_is_finite and not lists_begin"
-SECONDS = 120  # a change may make a loop endless
+SECONDS = 120  # limit for a change, which may make a loop endless
 
 
 def main(names: list[str]) -> int:
-    """Print the survivors, and return whether there are any."""
+    """Print the surviving changes, and return whether there are any."""
     names = names or [*FILES]
     if any(map(fails, names)) or tested(names) != 0:
         raise SystemExit("the tests fail without any change")
@@ -69,34 +69,34 @@ def main(names: list[str]) -> int:
 
 
 def tested(names: list[str]) -> int:
-    """Run the tests of some files, those of a shape's file by its name; 0 if all pass."""
+    """Run the tests of some files; return 0 if all pass."""
     if set(names) <= set(KERNEL):
         pictures.picture = interpreted
         return int(pytest.main([*PICTURES, "-x", "-q", "-p", "no:cacheprovider", "-k", COMPILED]))
-    own = [f"tests/shapes/test_{name}.py" for name in names]  # first: they tell soonest
+    own = [f"tests/shapes/test_{name}.py" for name in names]  # first, since they are most likely to fail
     topics = " or ".join(TOPICS.get(name, name) for name in names)
     chosen = UNFIT if set(names) & set(SHARED) else f"{UNFIT} and ({topics})"
     return int(pytest.main([*filter(os.path.exists, own), *TESTS, "-x", "-q", "-p", "no:cacheprovider", "-k", chosen]))
 
 
 def interpreted(scene: Scene, width: int = 24, height: int = 16, samples: int = 1, renderer: object = None) -> Any:
-    """`tests.kernel.pictures.picture` without the compiler."""
+    """Render a picture as `tests.kernel.pictures.picture` does, but without the compiler."""
     return preview.picture(scene, width, height)
 
 
 def path_of(name: str) -> str:
-    """The file of that name, in the package."""
+    """Return the path of a file in the package."""
     return KERNEL.get(name, f"shapes/{name}.py")
 
 
 def fails(name: str) -> bool:
-    """Whether a regime already tells that the formulas of a file have been changed: most changes are found at once."""
+    """Test whether a regime fails, which finds most changed formulas at once."""
     rights = [posed(regime) for kind, regime in REGIMES if name in SHARED or kind.element.__module__.endswith(name)]
     return any(any(right.errors(on_arrays(*right.rays))) for right in rights)
 
 
 def tried(name: str, change: Change) -> int:
-    """The number of a process that runs the tests with a change; it ends with 0 if they all pass."""
+    """Fork a process that runs the tests with a change and exits with 0 if they all pass; return its number."""
     process = os.fork()
     if process:
         return process
@@ -112,7 +112,7 @@ def tried(name: str, change: Change) -> int:
 
 
 def ended(running: dict[int, tuple[str, Change]]) -> bool:
-    """Wait for the next process to end: whether its change has passed all tests, or they took too long to tell."""
+    """Wait for the next process to end; return whether its change passed all tests or ran out of time."""
     process, status = os.wait()
     name, change = running.pop(process)
     late = " (too slow)" if os.WIFSIGNALED(status) else ""
@@ -122,7 +122,7 @@ def ended(running: dict[int, tuple[str, Change]]) -> bool:
 
 
 def put(module: ModuleType, change: Change) -> None:
-    """Give the functions and constants of a module what they are after a change."""
+    """Replace the functions and constants of a module by the changed ones."""
     changed: dict[str, Any] = {"__name__": module.__name__}
     exec(compile(change.tree, str(module.__file__), "exec"), changed)
     for name, new in changed.items():
@@ -139,7 +139,7 @@ def put(module: ModuleType, change: Change) -> None:
 
 
 def users_of(module: ModuleType, name: str) -> list[ModuleType]:
-    """Those of the package that have a constant of one of its modules, and it itself."""
+    """Return the modules of the package that import a constant of a module, and the module itself."""
     imports = f"from {module.__name__} import "
     found = [each for each in sys.modules.values() if each.__name__.startswith("minirt.") and hasattr(each, name)]
     return [each for each in found if each is module or imports in Path(str(each.__file__)).read_text()]

@@ -1,4 +1,4 @@
-"""Single changes of a source: a sign, a comparison, a constant, a root, a guard, a component, a name."""
+"""Single mutations of a source: a sign, a comparison, a constant, a root, a guard, a component, a name."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ WRAPPERS = {"fabs", "sqrt", "unit", "copysign", "splat", "rounded_product", "pro
 
 
 class Change(NamedTuple):
-    """A changed source, and which line was changed from what to what."""
+    """A changed source: the line, the expression before and after, and the syntax tree."""
 
     line: int
     before: str
@@ -39,7 +39,7 @@ class Change(NamedTuple):
 
 
 def changes(source: str) -> Iterator[Change]:
-    """All single changes of the functions and constants of a source; annotations and docstrings stay as they are."""
+    """Yield all single changes of the functions and constants of a source, except annotations and docstrings."""
     tree = ast.parse(source)
     for number, node in enumerate(ast.walk(tree)):
         if not isinstance(node, ast.expr) or id(node) in untouched(tree):
@@ -52,7 +52,7 @@ def changes(source: str) -> Iterator[Change]:
 
 
 def variants(node: ast.expr) -> Iterator[ast.expr]:
-    """What may stand in the place of an expression."""
+    """Yield the variants of an expression."""
     match node:
         case ast.BinOp(left, operator, right):
             if type(operator) in OPERATORS:
@@ -85,7 +85,7 @@ def variants(node: ast.expr) -> Iterator[ast.expr]:
 
 
 def untouched(tree: ast.Module) -> set[int]:
-    """The expressions that no formula is made of."""
+    """Return the expressions that are not part of a formula."""
     found: set[int] = set()
     for node in ast.walk(tree):
         aside: list[ast.AST | None] = []
@@ -93,7 +93,7 @@ def untouched(tree: ast.Module) -> set[int]:
             aside = [node.annotation]
         if isinstance(node, ast.FunctionDef):
             aside = [node.args, node.returns, *node.decorator_list]
-        if isinstance(node, ast.ClassDef):  # of a class, only what is in its methods
+        if isinstance(node, ast.ClassDef):  # change only the methods of a class
             aside = [each for each in node.body if not isinstance(each, ast.FunctionDef)]
             aside += [*node.bases, *node.decorator_list]
         found |= {id(inner) for each in aside if each is not None for inner in ast.walk(each)}
@@ -101,7 +101,7 @@ def untouched(tree: ast.Module) -> set[int]:
 
 
 def replace(tree: ast.AST, old: ast.AST, new: ast.AST) -> None:
-    """Put one node in the place of another."""
+    """Replace one node by another."""
     for parent in ast.walk(tree):
         for name, value in ast.iter_fields(parent):
             if value is old:

@@ -1,4 +1,4 @@
-"""Where a paraboloid is hard."""
+"""Regimes of the paraboloid: rays at vertex and rim and along the axis; high paraboloids."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.stability.regime import Regime
 
 
 def make(random: Random, height: float = 1.0) -> Paraboloid:
-    """A paraboloid of about size 1, or as much higher."""
+    """Make a paraboloid of about size 1, times `height` along the axis."""
     point, axis = tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1))
     return Paraboloid(point, axis, random.uniform(0.5, 2), height * random.uniform(0.5, 2), GREY)
 

@@ -1,4 +1,4 @@
-"""Where a square and a disc are hard."""
+"""Regimes of square and disc: rays at the border and at grazing angles."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def rim(random: Random, disc: Disc) -> Array:
 
 
 def grazing(seed: int, make: Callable[[Random], Sheet], slope: tuple[float, float]) -> Rays:
-    """At slopes in `slope`, at places around the centre, from both sides."""
+    """Rays at slopes in `slope`, at points around the centre, from both sides."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):

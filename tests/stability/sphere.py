@@ -1,4 +1,4 @@
-"""Where a sphere is hard."""
+"""Regimes of the sphere: rays that start just inside, just above or on the surface; the horizon; the centre."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.stability.regime import Regime
 
 
 def just_inside(seed: int) -> Rays:
-    """From a millionth of the radius, or less, under the surface of a sphere of diameter 1e9."""
+    """Rays from at most a millionth of the radius below the surface of a sphere of diameter 1e9."""
     random = np.random.default_rng(seed)
     out = ways(random, COUNT, RAYS)
     shapes = [Sphere((0, 0, 0), 1e9, GREY)] * COUNT
@@ -22,7 +22,7 @@ def just_inside(seed: int) -> Rays:
 
 
 def near_the_surface(seed: int) -> Rays:
-    """From a billionth of the radius to all of it above the surface, downwards, and as far below it."""
+    """Rays downwards from a billionth of the radius to a whole radius above the surface, and as far below it."""
     random = np.random.default_rng(seed)
     count = 4 * COUNT
     out = ways(random, count, RAYS)
@@ -34,8 +34,10 @@ def near_the_surface(seed: int) -> Rays:
 
 
 def on_the_surface(seed: int) -> Rays:
-    """From points that are inside by less than a rounding, and outside by as much as rounding can make of that, away
-    from the centre: each of these rays hits at once."""
+    """Rays away from the centre, from points inside by less than a rounding: each of them hits at once.
+
+    Rounding may take these points for points outside.
+    """
     random = np.random.default_rng(seed)
     shapes = [Sphere(tuple(10.0**e * ways(random)), 10.0**e, GREY) for e in np.linspace(-12, 12, COUNT)]
     origins, directions = np.empty((2, COUNT, RAYS, 3))
@@ -51,14 +53,14 @@ def on_the_surface(seed: int) -> Rays:
 
 
 def above(points: Array, centre: Array, radius: Any) -> Array:
-    """The power of points with respect to a sphere."""
+    """Return the power of points with respect to a sphere."""
     f = points - centre
     height: Array = (f * f).sum(axis=-1) - radius * radius
     return height
 
 
 def to_the_horizon(seed: int, above: tuple[float, float], dips: tuple[float, ...]) -> Rays:
-    """From so far above a sphere of diameter 1e9, at such parts of the dip of its horizon."""
+    """Rays from above a sphere of diameter 1e9, at given fractions of the dip of its horizon."""
     random = np.random.default_rng(seed)
     up = ways(random, COUNT, RAYS)
     height = log(random, *above, COUNT, RAYS, 1)
@@ -68,7 +70,7 @@ def to_the_horizon(seed: int, above: tuple[float, float], dips: tuple[float, ...
 
 
 def in_the_centre(seed: int) -> Rays:
-    """From the centre of spheres of all sizes."""
+    """Rays from the centre of spheres of all sizes."""
     random = np.random.default_rng(seed)
     shapes = [Sphere(tuple(ways(random)), 10.0**exponent, GREY) for exponent in np.linspace(-15, 15, COUNT)]
     origins = np.stack([shape.centre for shape in shapes])[:, None] * np.ones((COUNT, RAYS, 1))
@@ -83,7 +85,7 @@ REGIMES = [
     Regime("from inside a diameter of 1e9", partial(just_inside, 12), 1e-9, 0.0),
     Regime("from 1e-9 to 1 radius off the surface", partial(near_the_surface, 14), 3e-14, 0.0),
     Regime("from less than a rounding inside", partial(on_the_surface, 17), 1e-13, 0.0),
-    # There the angle below the horizon is 1e-8 of a direction that is exact to 2^-53.
+    # The angle below the horizon is 1e-8 there, and the direction is exact to 2^-53.
     Regime(
         "to the horizon of a diameter of 1e9",
         partial(to_the_horizon, 15, (1e-3, 2.0), (0.5, 0.99, 1.01, 1.1, 3.0)),

@@ -1,4 +1,4 @@
-"""All regimes, by the kind of shape."""
+"""Table of all regimes of all shape types."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ OWN = {
 
 
 def regimes(kind: Kind) -> list[Regime]:
-    """Of a kind: those that all have, those of solids and its own, which for tori are the thin ones."""
+    """Return the regimes of a shape type: common ones, stretched ones for solids, and its own."""
     plain = body(example(kind, np.random.default_rng(1))).solid and kind.element is not Torus
     return [*common(kind), *(stretched.regimes(kind) if plain else []), *OWN[kind.element.title]]
 

@@ -1,4 +1,4 @@
-"""What looks right and is not does not pass."""
+"""Formulas that look right but are wrong fail the checks."""
 
 from __future__ import annotations
 
@@ -46,8 +46,10 @@ def test_no_naive_formula_passes(title: str) -> None:
 
 
 def guards(D: float, t: float) -> tuple[bool, bool, bool, float]:
-    """The guards that formulas and renderer rely on: NaN is no hit, infinity is no nearer hit, and light that is NaN or
-    infinite ends in [0, 1]."""
+    """Evaluate the guards that formulas and renderer rely on.
+
+    NaN is no hit, infinity is no nearer hit, and radiance that is NaN or infinite ends in [0, 1].
+    """
     hit = D >= 0.0
     nearer = t < np.inf
     light = t if t > 0.0 else 0.0
@@ -55,7 +57,7 @@ def guards(D: float, t: float) -> tuple[bool, bool, bool, float]:
 
 
 def guarded(flags: dict[str, Any]) -> bool:
-    """Whether the guards hold when they are compiled with these flags."""
+    """Test whether the guards hold when they are compiled with the given flags."""
     compiled = njit(**flags)(guards)
     cases = [(np.nan, np.inf), (np.nan, np.nan), (np.inf, np.inf), (-1.0, -np.inf), (0.0, 0.5)]
     return all(compiled(*case) == guards(*case) for case in cases)

@@ -1,4 +1,4 @@
-"""Every formula in every regime, against 60 digits."""
+"""Every formula in every regime, against exact answers."""
 
 from __future__ import annotations
 

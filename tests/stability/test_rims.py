@@ -1,6 +1,8 @@
-"""Which part of a solid a ray meets that nearly meets a rim: the verdict is right, but for rays closer to it than
-64 roundings of t, of the way from the origin to the shape and of the shape's size. Of these one may miss the rim and
-meet the shape far behind it, as a hyperboloid's other end."""
+"""Rays that nearly meet a rim of a solid.
+
+Hit or miss is right for every ray that passes a rim farther away than 64 roundings of t, of the distance from the
+origin to the shape and of the shape's size. A ray closer than that may miss the rim and meet the shape far behind it,
+such as the other end of a hyperboloid."""
 
 from __future__ import annotations
 
@@ -28,7 +30,7 @@ AT_THE_RIM = {kind.element.title: regime for kind, regime in REGIMES if regime.n
 
 
 def beside_rim(shape: Any, point: str, share: float, origin: Any, direction: Any) -> mpfr:
-    """How far a ray passes from a rim: from the rim's tangent where the ray crosses its plane, to first order."""
+    """Return the distance from a ray to a rim, to first order: to its tangent where the ray crosses its plane."""
     axis, d = unit(shape.axis), exact(direction)
     p = minus(exact(origin), exact(getattr(shape, point)))
     s = (mpfr(share) * mpfr(shape.height) - dot(p, axis)) / dot(d, axis)
@@ -36,7 +38,7 @@ def beside_rim(shape: Any, point: str, share: float, origin: Any, direction: Any
     radial = minus(crossed, [dot(crossed, axis) * x for x in axis])
     radius = sqrt(dot(radial, radial))
     out = [x / radius for x in radial]
-    across = cross(d, cross(axis, out))  # the way and the tangent are both perpendicular to it
+    across = cross(d, cross(axis, out))  # perpendicular to the ray and to the tangent
     return abs(radius - mpfr(shape.diameter) / 2) * abs(dot(out, across)) / sqrt(dot(across, across))
 
 
@@ -45,7 +47,7 @@ def beside(shape: Shape, origin: Any, direction: Any) -> float:
 
 
 def wrong(title: str, intersect: Intersect) -> int:
-    """How many rays get another answer though they pass the rims farther away."""
+    """Count the rays with a wrong answer that pass the rims farther away than 64 roundings."""
     right = posed(AT_THE_RIM[title])
     shapes, origins, directions = right.rays
     t = intersect(*right.rays)

@@ -1,4 +1,4 @@
-"""Where a torus is hard."""
+"""Regimes of the torus: rays along its symmetries and tangents; thin tubes."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from tests.stability.regime import Regime
 
 
 def make(random: Random, tube: float = 0.4) -> Torus:
-    """A torus of about size 1 whose tube is such a share of its diameter."""
+    """Make a torus of about size 1; its tube is a share of its diameter."""
     diameter = random.uniform(0.5, 2)
     return Torus(tuple(random.normal(size=3)), tuple(ways(random).clip(-1, 1)), diameter, tube * diameter, GREY)
 
 
 def ring(random: Random, torus: Torus) -> Array:
-    """Places of the circle in the middle of the tube."""
+    """Random points of the centre circle of the tube."""
     return np.array(torus.centre) + torus.diameter / 2 * across(random, axis_of(torus), RAYS)
 
 
 def inside(random: Random, torus: Torus) -> Array:
-    """Places in the tube."""
+    """Random points inside the tube."""
     return ring(random, torus) + torus.tube / 2 * random.random((RAYS, 1)) * ways(random, RAYS)
 
 
 def top(random: Random, torus: Torus) -> Array:
-    """Places of the circle along which a plane lies on it."""
+    """Random points of the circle along which a plane touches the top."""
     return ring(random, torus) + torus.tube / 2 * axis_of(torus)
 
 
 def inner(random: Random, torus: Torus) -> Array:
-    """Places of the inner equator, where it is curved like a saddle."""
+    """Random points of the inner equator, where the surface is saddle-shaped."""
     middle = np.array(torus.centre)
     return middle + (1 - torus.tube / torus.diameter) * (ring(random, torus) - middle)
 
@@ -53,14 +53,14 @@ def level(random: Random, torus: Torus) -> Array:
 
 
 def from_inside(seed: int, tube: float = 0.4) -> Rays:
-    """From within the tube, in all directions."""
+    """Rays from inside the tube in all directions."""
     random = np.random.default_rng(seed)
     shapes = [make(random, tube) for _ in range(COUNT)]
     return Rays(shapes, np.stack([inside(random, shape) for shape in shapes]), ways(random, COUNT, RAYS))
 
 
 def over_the_top(seed: int) -> Rays:
-    """In the plane that lies on it, or from 1e-14 to 1e-4 off that: up to four hits are next to one another."""
+    """Rays in the plane that touches the top, or 1e-14 to 1e-4 off it: up to four hits lie close together."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
@@ -74,7 +74,7 @@ def over_the_top(seed: int) -> Rays:
 
 
 def touching_twice(seed: int, off: tuple[float, float]) -> Rays:
-    """Through the centre, along the plane that touches it on both sides, which it meets in two circles (Villarceau)."""
+    """Rays through the centre in the doubly tangent plane, which cuts the torus in two circles (Villarceau)."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
@@ -87,7 +87,7 @@ def touching_twice(seed: int, off: tuple[float, float]) -> Rays:
     return Rays(shapes, origins, directions)
 
 
-# Where the tube is touched a hit is the square root of a rounding away from where the ray is nearest to it.
+# A tangent ray hits within the square root of a rounding of the point where it is nearest to the tube.
 REGIMES = [
     Regime("at the tube", partial(at, 11, make, inside)),
     Regime("from inside", partial(from_inside, 12)),

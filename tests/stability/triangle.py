@@ -1,4 +1,4 @@
-"""Where a triangle is hard."""
+"""Regimes of the triangle: rays at edges and corners, at grazing angles; slivers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.stability.regime import Regime
 
 
 def make(random: Random, height: float = 1.0) -> Triangle:
-    """A triangle of about size 1, its last corner as far from the opposite edge."""
+    """Make a triangle of about size 1; its last corner is `height` from the opposite edge."""
     a, along = random.normal(size=3), ways(random)
     c = a + random.uniform(0, 1) * along + height * across(random, along)
     return Triangle(tuple(a), tuple(a + along), tuple(c), GREY)
@@ -38,7 +38,7 @@ def corner(random: Random, triangle: Triangle) -> Array:
 
 
 def grazing(seed: int, slope: tuple[float, float]) -> Rays:
-    """At slopes in `slope`, from both sides."""
+    """Rays at slopes in `slope`, from both sides."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):

@@ -29,12 +29,12 @@ PLAIN = (None,) * 7
 
 def features(scene: Scene) -> frozenset[Hashable]:
     """The kinds of shapes in the scene, "parallel" where a lamp is, and the keys of `FEATURES` that it uses."""
-    return frozenset().union(*(page.ask(features_of_items) for page in scene.pages))
+    return frozenset().union(*(page.cached(features_of_items) for page in scene.pages))
 
 
 def primitive_count(scene: Scene) -> int:
     """How many things the kernel knows: shapes, of meshes the triangles."""
-    return sum(page.ask(primitive_count_of_items) for page in scene.pages)
+    return sum(page.cached(primitive_count_of_items) for page in scene.pages)
 
 
 def primitive_count_of_items(items: Iterable[Element | str]) -> int:

@@ -1,4 +1,4 @@
-"""A packed scene without its acceleration structure: every ray tries every shape."""
+"""Brute force: a packed scene without culling, in which every ray tries every shape."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 
-EVERYWHERE = (0.0, 0.0, 0.0, -2.0, 0.0)  # a view that leaves nothing out: all directions, from distance 0 on
-MOST = 2**24  # entries of lists
+EVERYWHERE = (0.0, 0.0, 0.0, -2.0, 0.0)  # a bounding cone of all directions, from distance 0 on
+MOST = 2**24  # entries of all lists together
 
 
 class BruteForce(Packing):
-    """Packs scenes with all shapes in the list of every tile, and of every lamp."""
+    """Packs scenes with all shapes in the list of every tile and of every light."""
 
     def traced(self, scene: Scene, width: int, height: int) -> SceneArrays:
-        """RenderError where the lists would fill the memory."""
+        """Pack the scene; RenderError if the lists would fill the memory."""
         traced, count = super().traced(scene, width, height), tile_count(width) * tile_count(height)
         if count * len(traced.slots) > MOST:
             raise RenderError(f"{len(traced.slots)} shapes in each of {count} tiles are too many")
-        return with_all_shapes(traced, count)
+        return without_culling(traced, count)
 
 
-def with_all_shapes(traced: SceneArrays, tiles: int) -> SceneArrays:
-    """The scene with so many tiles, all shapes in each; and around each lamp one cell, likewise."""
+def without_culling(traced: SceneArrays, tiles: int) -> SceneArrays:
+    """Put all shapes into the list of each tile, and into one light-buffer cell around each light."""
     kinds, lamps = traced.slots[:, 0], len(traced.lights)
     members = np.argsort(kinds, kind="stable").astype(traced.tile_shapes.dtype)
     counts = np.bincount(kinds, minlength=len(traced.groups))
     starts = np.concatenate([[0], np.cumsum(counts)])
-    # The lists of a kind lie one behind the other, those of the next kind behind them.
+    # All lists of one kind come first, then all lists of the next kind.
     seen = [np.tile(members[a:b], tiles) for a, b in pairwise(starts)]
     lit = [members] * lamps
     return traced._replace(

@@ -1,4 +1,4 @@
-"""Surfaces that lie so close to each other that rounding decides which of them is seen."""
+"""Find coincident surfaces: pairs so close together that rounding decides which of them is seen (z-fighting)."""
 
 from __future__ import annotations
 
@@ -18,24 +18,22 @@ from minirt.rendering.queries.pick import columns
 from minirt.report.measurements.stiffness import DOUBLE, SINGLE, Stiff
 from minirt.scene import Scene
 
-ACROSS, DOWN = 64, 36  # rays that are tried, over the whole picture
-LEAST = 4  # of them that show two surfaces close together; where surfaces cross, a ray may do so by chance
-MOST_SHAPES = 1000  # or parts of them, for which that is done
-TIE = (
-    4 * ROUNDING
-)  # unit roundoffs between surfaces that the kernel takes for one, see `minirt.kernel.trace.closer_hit`
-CLOSE = 1000  # times that: nearly
+ACROSS, DOWN = 64, 36  # test rays over the whole picture
+LEAST = 4  # test rays that must show two close surfaces: where surfaces cross, a ray may do so by chance
+MOST_SHAPES = 1000  # shapes or mesh triangles; larger scenes are not tested
+TIE = 4 * ROUNDING  # unit roundoffs up to which `minirt.kernel.trace.closer_hit` takes two surfaces for one
+CLOSE = 1000  # times TIE: surfaces that nearly coincide
 
 
 def coincident(scene: Scene, tables: ShapeArrays) -> Iterator[Stiff]:
-    """Pairs of shapes of which the eye sees both surfaces in one place, or nearly."""
+    """Yield the pairs of shapes whose surfaces coincide, or nearly coincide, as seen from the eye."""
     if not 2 <= len(tables.owner) <= MOST_SHAPES:
         return
     camera = pixel_rays(camera_numbers(scene.camera, ACROSS, DOWN), ACROSS, DOWN)
     y, x = np.mgrid[:DOWN, :ACROSS].reshape(2, -1) + 0.5
     eye, ways = camera[:3], unit(ray_direction(camera, x, y))
     with np.errstate(all="ignore"):
-        t, slopes = hits(tables, Vec(*eye), ways)
+        t, slopes = all_hits(tables, Vec(*eye), ways)
         pair = np.argsort(t, axis=0, kind="stable")[:2]
         near, far = np.take_along_axis(t, pair, axis=0)
         gap = (far - near) * np.take_along_axis(slopes, pair[:1], axis=0)[0]  # between the surfaces
@@ -60,8 +58,8 @@ def coincident(scene: Scene, tables: ShapeArrays) -> Iterator[Stiff]:
             )
 
 
-def hits(tables: ShapeArrays, eye: Vec, ways: Vec) -> tuple[np.ndarray, np.ndarray]:
-    """For each shape and ray the distance, infinity where it misses, and the cosine to the surface's normal."""
+def all_hits(tables: ShapeArrays, eye: Vec, ways: Vec) -> tuple[np.ndarray, np.ndarray]:
+    """For each shape and ray return the hit distance, infinity for a miss, and the cosine of ray and normal."""
     t, slopes = np.empty((2, len(tables.owner), len(ways.x)))
     for index, (group, row) in enumerate(tables.slots):
         packed = columns(tables.rows[group][row : row + 1])

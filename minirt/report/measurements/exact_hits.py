@@ -1,9 +1,9 @@
-"""Where a ray meets a shape, to 60 digits, in the decimal arithmetic of the standard library.
+"""Exact hit distances to 60 digits, in the decimal arithmetic of the standard library.
 
-The numbers of scene, ray and shape are taken as they are, to the last bit; only axes and normals, which a scene means
-to have unit length, are scaled to it. Every shape here is where some solids of revolution overlap, most of them one
-alone: of a point, h high along the axis and d off it, d^2 <= square + linear h + quadratic h^2 and low <= h <= high.
-A sheet is a solid without thickness.
+The numbers of ray and shape are taken as they are, to the last bit; only axes and normals, which should have unit
+length, are normalised. Every shape is an intersection of solids of revolution, mostly of one. A point at height h along
+the axis and at distance d from it is inside if d^2 <= square + linear h + quadratic h^2 and low <= h <= high. A flat
+shape is a solid without thickness.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ END, ZERO = Decimal("Infinity"), Decimal(0)
 
 
 class Solid(NamedTuple):
-    """A solid of revolution; without a `square` it has no side."""
+    """A solid of revolution; with `square` None it has no side and is bounded by low and high alone."""
 
     place: Exact
     axis: Exact  # of unit length
@@ -44,7 +44,7 @@ class Solid(NamedTuple):
 
 
 def plane(shape: Any, _: Decimal) -> Solid:
-    """What is below a plane: as a sheet it has no thickness that could grow."""
+    """The half-space below a plane; a plane has no thickness that could grow."""
     return Solid(exact(shape.point), unit(exact(shape.normal)), square=None, high=ZERO)
 
 
@@ -61,7 +61,7 @@ def cylinder(shape: Any, swell: Decimal) -> Solid:
 
 
 def cone(shape: Any, swell: Decimal) -> Solid:
-    """d <= slope h below the base. The one around it at a distance has its apex so far behind."""
+    """d <= slope h below the base; a cone that is thicker by `swell` has its apex further back."""
     axis, slope = unit(exact(shape.axis)), Decimal(shape.diameter) / 2 / Decimal(shape.height)
     back = swell * (1 + slope * slope).sqrt() / slope
     apex = [x - back * a for x, a in zip(exact(shape.apex), axis, strict=True)]
@@ -92,7 +92,7 @@ def disc(shape: Any, swell: Decimal) -> Solid:
 
 
 def square(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
-    """A plane, half a side to the left and right and half a side up and down."""
+    """The plane of the square, cut by a slab along each of its two edges."""
     centre, normal, half = exact(shape.centre), unit(exact(shape.normal)), Decimal(shape.side) / 2 + swell
     level = cross(exact((0, 1, 0)), normal)
     right = unit(level) if any(level) else exact((1, 0, 0))
@@ -100,7 +100,7 @@ def square(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
 
 
 def triangle(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
-    """A plane, and what is within each of three edges."""
+    """The plane of the triangle, cut by a half-space at each of its three edges."""
     corners = [exact(corner) for corner in (shape.a, shape.b, shape.c)]
     edges = [minus(corners[i - 2], corners[i]) for i in range(3)]
     normal = unit(cross(edges[0], edges[1]))
@@ -109,8 +109,10 @@ def triangle(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
 
 
 def box(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
-    """Half a size to both sides of the centre along each of its axes. Half a turn about what is half-way between y and
-    the axis, or its opposite, takes the axes of the scene to its own."""
+    """Three slabs, half a size to both sides of the centre along each axis of the box.
+
+    Half a turn about the bisector of y and the box's axis, or of -y and the axis, takes the scene's axes to the box's.
+    """
     centre, y = exact(shape.centre), unit(exact(shape.axis))
     between = [y[0], y[1] + (1 if y[1] >= 0 else -1), y[2]]
     share = [2 * each / dot(between, between) for each in between]
@@ -120,7 +122,7 @@ def box(shape: Any, swell: Decimal) -> tuple[Solid, ...]:
 
 
 def slab(place: Exact, axis: Exact, low: Decimal, high: Decimal) -> Solid:
-    """All between two heights."""
+    """The slab between two heights along an axis."""
     return Solid(place, axis, square=None, low=low, high=high)
 
 
@@ -139,24 +141,24 @@ SOLIDS: dict[type[Shape], Callable[[Any, Decimal], Solid | tuple[Solid, ...]]] =
 
 
 def distance(shape: Shape, origin: Sequence[float], direction: Sequence[float], swell: float = 0.0) -> Decimal:
-    """The least t > 0 at which origin + t direction lies on the surface, or infinity.
+    """Return the least t > 0 at which origin + t direction lies on the surface, or infinity.
 
-    The surface of a solid, or the edge of a sheet, is moved outwards by `swell`: what a formula in fewer digits may
-    answer lies between the answers for a shape a little larger and one a little smaller. KeyError for a shape that is
-    not in `SOLIDS`.
+    The surface of a solid, or the edge of a flat shape, is moved outwards by `swell`: an answer in fewer digits is
+    right if it lies between those for a slightly larger and a slightly smaller shape. KeyError for a shape that is not
+    in `SOLIDS`.
     """
     with localcontext(DIGITS):
         found = SOLIDS[type(shape)](shape, Decimal(swell))
         solids = (found,) if isinstance(found, Solid) else found
-        inside = reduce(both, (crossed(solid, exact(origin), exact(direction)) for solid in solids))
+        inside = reduce(intersection, (inside_intervals(solid, exact(origin), exact(direction)) for solid in solids))
         return min((t for interval in inside for t in interval if t > 0), default=END)
 
 
-def crossed(solid: Solid, origin: Exact, direction: Exact) -> Intervals:
-    """For which t a line is in a solid."""
+def inside_intervals(solid: Solid, origin: Exact, direction: Exact) -> Intervals:
+    """Return the intervals of t in which a line is inside a solid."""
     out = minus(origin, solid.place)
     height, climb = dot(out, solid.axis), dot(direction, solid.axis)
-    within = both(not_above(climb, height - solid.high), not_above(-climb, solid.low - height))
+    within = intersection(not_above(climb, height - solid.high), not_above(-climb, solid.low - height))
     if solid.square is None:
         return within
     p, d = across(out, solid.axis, height), across(direction, solid.axis, climb)
@@ -165,11 +167,11 @@ def crossed(solid: Solid, origin: Exact, direction: Exact) -> Intervals:
         dot(p, d) - (solid.linear / 2 + solid.quadratic * height) * climb,
         dot(p, p) - solid.square - (solid.linear + solid.quadratic * height) * height,
     )
-    return both(side, within)
+    return intersection(side, within)
 
 
 def not_positive(a: Decimal, b: Decimal, c: Decimal) -> Intervals:
-    """Where a t^2 + 2 b t + c <= 0."""
+    """Return the intervals of t in which a t^2 + 2 b t + c <= 0."""
     if a == 0:
         return not_above(2 * b, c)
     square = b * b - a * c
@@ -180,25 +182,25 @@ def not_positive(a: Decimal, b: Decimal, c: Decimal) -> Intervals:
 
 
 def not_above(slope: Decimal, start: Decimal) -> Intervals:
-    """Where start + t slope <= 0."""
+    """Return the interval of t in which start + t slope <= 0."""
     if slope == 0 or start.is_infinite():
         return [(-END, END)] if start <= 0 else []
     return [(-END, -start / slope)] if slope > 0 else [(-start / slope, END)]
 
 
-def both(some: Intervals, others: Intervals) -> Intervals:
-    """What lies in both."""
+def intersection(some: Intervals, others: Intervals) -> Intervals:
+    """Intersect two lists of intervals."""
     found = [(max(a, c), min(b, d)) for a, b in some for c, d in others]
     return [(start, end) for start, end in found if start <= end]
 
 
 def exact(numbers: Sequence[float]) -> Exact:
-    """Numbers as they are, to the last bit."""
+    """Convert floats to decimals, exactly."""
     return [Decimal(float(number)) for number in numbers]
 
 
 def dot(a: Exact, b: Exact) -> Decimal:
-    """The scalar product."""
+    """Scalar product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
@@ -208,7 +210,7 @@ def minus(a: Exact, b: Exact) -> Exact:
 
 
 def cross(a: Exact, b: Exact) -> Exact:
-    """The vector product."""
+    """Vector product."""
     return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
 
 
@@ -219,5 +221,5 @@ def unit(v: Exact) -> Exact:
 
 
 def across(v: Exact, axis: Exact, along: Decimal) -> Exact:
-    """The part of v that is perpendicular to the axis, of which it has so much along it."""
+    """Return the part of v that is perpendicular to the axis; `along` is its component along the axis."""
     return [x - along * y for x, y in zip(v, axis, strict=True)]

@@ -1,4 +1,4 @@
-"""Rays as a scene has them: from its eye, at its own shapes."""
+"""Random rays from the eye of a scene at its own shapes."""
 
 from __future__ import annotations
 
@@ -10,19 +10,18 @@ from minirt.scene import Scene
 from minirt.shapes import Kind, Shape
 
 
-def from_the_eye(kind: Kind, scene: Scene, random: Random, m: int, n: int) -> Rays:
-    """At up to m shapes of a kind, n rays for each: into the box around it, or, where it has no end, into the
-    picture."""
+def rays_from_the_eye(kind: Kind, scene: Scene, random: Random, m: int, n: int) -> Rays:
+    """Make n rays at each of up to m shapes of a type: into its bounding box, or into the picture if it is infinite."""
     shapes = [shape for shape in scene.shapes if type(shape) is kind.element]
     if len(shapes) > m:
         shapes = [shapes[index] for index in sorted(random.choice(len(shapes), m, replace=False))]
     eye = np.array(scene.camera.position)
-    directions = np.stack([ways_to(shape, scene, random, n) for shape in shapes])
+    directions = np.stack([directions_towards(shape, scene, random, n) for shape in shapes])
     return Rays(shapes, np.broadcast_to(eye, directions.shape).copy(), directions)
 
 
-def ways_to(shape: Shape, scene: Scene, random: Random, n: int) -> Array:
-    """Random directions from the eye to a shape, (n, 3)."""
+def directions_towards(shape: Shape, scene: Scene, random: Random, n: int) -> Array:
+    """Return random unit directions from the eye to a shape, (n, 3)."""
     box = shape.bounds()
     if not box:
         _, right, up, forward = camera_numbers(scene.camera, 16, 9).reshape(4, 3)

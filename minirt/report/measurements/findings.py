@@ -1,4 +1,4 @@
-"""All that a report says."""
+"""The findings of a report, as plain data."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from minirt.report.measurements.pareto import closest, fastest
 from minirt.report.measurements.stiffness import Stiff
 from minirt.scene import Scene, dump
 
-ERRORS = (0.03, 0.01, 0.003, 0.001)  # RMSE that somebody may want
-TIMES = (16.0, 100.0, 1000.0)  # milliseconds
+ERRORS = (0.03, 0.01, 0.003, 0.001)  # target errors, RMSE
+TIMES = (16.0, 100.0, 1000.0)  # target times, milliseconds
 
 
 class Subject(NamedTuple):
-    """What was measured, and on what."""
+    """The scene that was measured, the size of its pictures, and the machine."""
 
     scene: str
     sha256: str  # of the scene as text
@@ -29,28 +29,30 @@ class Subject(NamedTuple):
 
 
 class Findings(NamedTuple):
-    """What was found out about it."""
+    """All results of the measurements."""
 
     subject: Subject
     reference_samples: int
-    reference_error: float  # its own, root mean square
+    reference_error: float  # RMSE of the reference itself
     pictures: list[picture_errors.Row]
     kernels: list[formula_errors.Row]
     stiff: list[Stiff]
-    notes: list[str]  # what was decided about the scene, and what it did without
-    same: list[int]  # samples for which the picture without lists is the same, bit for bit
+    notes: list[str]  # how the scene was packed, and which features were left out
+    same: list[int]  # sample counts for which the picture without culling is the same, bit for bit
     not_measured: list[str]
 
 
 def subject(scene: Scene, name: str, width: int, height: int, threads: int, seed: int) -> Subject:
-    """A scene, on this machine."""
+    """Describe a scene and this machine."""
     digest = hashlib.sha256(dump(scene).encode()).hexdigest()
     return Subject(name, digest, width, height, threads, seed, processor(), versions())
 
 
 def choices(rows: list[picture_errors.Row], doubt: float) -> list[dict[str, Any]]:
-    """The best setting for each wanted error and each wanted time, None where there is none; errors are known but for
-    a `doubt`. A time that was disturbed is too long, so what is said of it holds."""
+    """Find the best setting for each target error and each target time; None if no setting reaches it.
+
+    Errors are known up to `doubt`. Disturbed times are too long, never too short, so they recommend nothing wrongly.
+    """
     wanted: list[dict[str, Any]] = [
         {"wanted": f"error at most {error:g}", "best": fastest(rows, error)} for error in ERRORS
     ]

@@ -1,8 +1,8 @@
-"""FLIP: how large the difference of two pictures looks to somebody who flips between them, in [0, 1] for each pixel.
+"""FLIP: perceived difference of two pictures that alternate on a screen, in [0, 1] for each pixel.
 
-Andersson et al., FLIP: A Difference Evaluator for Alternating Images, 2020, for pictures of low dynamic range: colours,
-as blurred as the eye has them, are compared in L*a*b*, and what differs counts for more where edges or points do too.
-Pictures are (h, w, 3) sRGB in [0, 1].
+Andersson et al., FLIP: A Difference Evaluator for Alternating Images, 2020, for pictures of low dynamic range. Colours
+are blurred by the contrast sensitivity of the eye and compared in L*a*b*; differences of edges and points amplify the
+colour difference. Pictures are (h, w, 3) sRGB in [0, 1].
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-PER_DEGREE = 0.7 * (3840 / 0.7) * radians(1.0)  # pixels: of a screen 3840 across, 0.7 m wide, seen from 0.7 m
+PER_DEGREE = 0.7 * (3840 / 0.7) * radians(1.0)  # pixels per degree: a screen of 3840 pixels and 0.7 m, seen from 0.7 m
 # Contrast sensitivity of the eye as sums of Gaussians: (a, b) of each, for luminance, red against green and blue
 # against yellow.
 SENSITIVITY = (((1.0, 0.0047),), ((1.0, 0.0053),), ((34.1, 0.04), (13.5, 0.025)))
-BLUR = ceil(3 * sqrt(0.04 / (2 * pi * pi)) * PER_DEGREE)  # pixels that the widest of them reaches
-FEATURE = 0.5 * 0.082 * PER_DEGREE  # pixels: half of the width of an edge that the eye makes out
+BLUR = ceil(3 * sqrt(0.04 / (2 * pi * pi)) * PER_DEGREE)  # radius of the widest Gaussian in pixels
+FEATURE = 0.5 * 0.082 * PER_DEGREE  # pixels: half of the width of an edge that the eye can resolve
 COLOUR_POWER, FEATURE_POWER = 0.7, 0.5
-KNEE, KNEE_ERROR = 0.4, 0.95  # so much of the largest difference of colours counts as so much of an error
+KNEE, KNEE_ERROR = 0.4, 0.95  # this share of the largest colour difference maps to this error
 
 PRIMARIES = np.array([[0.64, 0.30, 0.15], [0.33, 0.60, 0.06], [0.03, 0.10, 0.79]])  # of sRGB: x, y and z
 WHITE = np.array([0.3127, 0.3290, 0.3583]) / 0.3290  # D65
@@ -30,42 +30,42 @@ TO_XYZ = PRIMARIES * np.linalg.solve(PRIMARIES, WHITE) / WHITE[:, None]  # white
 FROM_XYZ = np.linalg.inv(TO_XYZ)
 
 
-class Seen(NamedTuple):
-    """What the eye makes of a picture."""
+class Perceived(NamedTuple):
+    """A picture as the eye perceives it."""
 
     colours: Array  # (h, w, 3)
-    edges: Array  # (h, w) how strong they are
-    points: Array
+    edges: Array  # (h, w) strength of edges
+    points: Array  # (h, w) strength of points
 
 
-def flip(a: Seen, b: Seen) -> Array:
-    """The error of each pixel, (h, w)."""
-    colour = spread(difference(a.colours, b.colours) ** COLOUR_POWER)
+def flip(a: Perceived, b: Perceived) -> Array:
+    """Return the FLIP error of each pixel, (h, w)."""
+    colour = colour_error(difference(a.colours, b.colours) ** COLOUR_POWER)
     feature = np.maximum(np.abs(a.edges - b.edges), np.abs(a.points - b.points)) / sqrt(2)
     error: Array = colour ** (1 - feature**FEATURE_POWER)
     return error
 
 
-def seen(picture: Array) -> Seen:
-    """A picture as the eye has it."""
+def perceived(picture: Array) -> Perceived:
+    """Filter a picture as the eye does."""
     xyz = linear(picture) @ TO_XYZ.T
     x = np.arange(-ceil(3 * FEATURE), ceil(3 * FEATURE) + 1) / FEATURE
     bell = np.exp(-x * x / 2)
-    return Seen(
+    return Perceived(
         colours(xyz),
-        strength(xyz[..., 1], bell, balanced(-x * bell)),
-        strength(xyz[..., 1], bell, balanced((x * x - 1) * bell)),
+        gradient_strength(xyz[..., 1], bell, balanced(-x * bell)),
+        gradient_strength(xyz[..., 1], bell, balanced((x * x - 1) * bell)),
     )
 
 
 def linear(srgb: Array) -> Array:
-    """The light that sRGB stands for."""
+    """Decode sRGB to linear light."""
     low: Array = srgb / 12.92
     return np.where(srgb <= 0.04045, low, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
 def colours(xyz: Array) -> Array:
-    """Light as the eye blurs it, in L*a*b*, where what is dark has less colour (Hunt)."""
+    """Blur by contrast sensitivity and convert to L*a*b* with the Hunt effect: darker colours are less saturated."""
     x, y, z = np.moveaxis(xyz, -1, 0)
     y, red_green, blue_yellow = (
         blurred(channel, sums) for channel, sums in zip((y, x - y, y - z), SENSITIVITY, strict=True)
@@ -75,7 +75,7 @@ def colours(xyz: Array) -> Array:
 
 
 def lab(xyz: Array) -> Array:
-    """L*a*b*, a* and b* times a hundredth of L*."""
+    """Convert XYZ to L*a*b*, with a* and b* scaled by L* / 100 for the Hunt effect."""
     delta = 6 / 29
     x, y, z = np.moveaxis(np.where(xyz > delta**3, np.cbrt(xyz), xyz / (3 * delta**2) + 4 / 29), -1, 0)
     lightness = 116 * y - 16
@@ -83,7 +83,7 @@ def lab(xyz: Array) -> Array:
 
 
 def blurred(channel: Array, sums: tuple[tuple[float, float], ...]) -> Array:
-    """A channel as the eye with such a sensitivity has it."""
+    """Filter a channel by a contrast sensitivity function."""
     squares = (np.arange(-BLUR, BLUR + 1) / PER_DEGREE) ** 2
     total, weight = np.zeros_like(channel), 0.0
     for a, b in sums:
@@ -93,21 +93,21 @@ def blurred(channel: Array, sums: tuple[tuple[float, float], ...]) -> Array:
     return total / weight
 
 
-def strength(channel: Array, bell: Array, slope: Array) -> Array:
-    """How much a channel changes: the length of what a filter and the same upright make of it."""
+def gradient_strength(channel: Array, bell: Array, slope: Array) -> Array:
+    """Return the magnitude of a channel's response to a filter across and the same filter down."""
     bell = bell / bell.sum()
     return np.hypot(filtered(channel, slope, bell), filtered(channel, bell, slope))
 
 
 def balanced(weights: Array) -> Array:
-    """Weights that sum to 0, those above it scaled to a sum of 1."""
+    """Scale filter weights so that the positive ones sum to 1 and the negative ones to -1."""
     positive, negative = np.maximum(weights, 0.0), np.minimum(weights, 0.0)
     scaled: Array = positive / positive.sum() - negative / negative.sum()
     return scaled
 
 
 def filtered(channel: Array, across: Array, down: Array) -> Array:
-    """A channel under weights across and then down; beyond its edges it goes on as it ends there."""
+    """Apply a separable filter, across and then down; pixels beyond the border repeat the border."""
     for weights in (across, down):  # each turn filters along the last axis and swaps both
         wide, total = np.pad(channel, ((0, 0), (len(weights) // 2,) * 2), "edge"), np.zeros_like(channel)
         for start, weight in enumerate(weights):
@@ -117,15 +117,15 @@ def filtered(channel: Array, across: Array, down: Array) -> Array:
 
 
 def difference(a: Array, b: Array) -> Array:
-    """The distance of colours for large differences (HyAB, Abasi et al. 2020)."""
+    """HyAB colour distance, for large differences (Abasi et al. 2020)."""
     far: Array = np.abs(a[..., 0] - b[..., 0]) + np.hypot(a[..., 1] - b[..., 1], a[..., 2] - b[..., 2])
     return far
 
 
 GREEN, BLUE = (lab(np.array([[colour]]) @ TO_XYZ.T) for colour in ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
-MOST = float(difference(GREEN, BLUE)[0, 0]) ** COLOUR_POWER  # no two colours of a screen differ more
+MOST = float(difference(GREEN, BLUE)[0, 0]) ** COLOUR_POWER  # the largest difference of two sRGB colours
 
 
-def spread(far: Array) -> Array:
-    """Differences of colours in [0, MOST] as errors in [0, 1]: the small ones get most of the room."""
+def colour_error(far: Array) -> Array:
+    """Map colour differences in [0, MOST] to errors in [0, 1]; small differences take most of the range."""
     return np.interp(far, (0.0, KNEE * MOST, MOST), (0.0, KNEE_ERROR, 1.0))

@@ -1,4 +1,4 @@
-"""How precise and how fast the formulas of shapes are, one kind and one regime at a time."""
+"""Measure accuracy and cost of the intersection formulas, for one shape type and one regime at a time."""
 
 from __future__ import annotations
 
@@ -24,43 +24,43 @@ from minirt.shapes.square import Square
 from minirt.timing import Run, in_turn, is_disturbed
 
 U = 2.0**-53
-SLACK = 64 * U  # of distance and size: a verdict so close to the boundary may be either
-ELSEWHERE = 1e-5  # of t; even along a round surface the slack changes no more than about its root, 1e-7
-TIMED = 100_000  # rays of a run
+SLACK = 64 * U  # of distance and size: so close to the boundary both hit and miss are right
+ELSEWHERE = 1e-5  # of t, for two different hits; even along a round surface SLACK moves a hit by about its root, 1e-7
+TIMED = 100_000  # rays per run
 RUNS = 15
 
 
 class Row(NamedTuple):
-    """A formula in a regime."""
+    """Accuracy and cost of one formula in one regime."""
 
     kind: str
     regime: str
     formula: str
     rays: int
-    hits: int  # that count for the errors
-    max_error: float  # of t, relative; NaN where nothing is hit
+    hits: int  # hits that count for the errors
+    max_error: float  # relative error of t; NaN without hits
     rms_error: float
     false_misses: int
     false_hits: int
-    ns_ray: float  # of one thread
+    ns_ray: float  # nanoseconds per ray on one thread
     cpu_ns_ray: float
-    times_textbook: float  # the processor time in that of the textbook's formula; NaN where that is none
-    valid: bool  # False: other programs disturbed the measurement of time
+    times_textbook: float  # processor time / that of the textbook formula; NaN if there is none
+    valid: bool  # False: other programs disturbed the time
 
 
 class Answers(NamedTuple):
-    """t for each ray: of the shape, and of one thicker and one thinner by the slack. Infinity where it misses."""
+    """Exact t of each ray, infinity for a miss: for the shape, and for one thicker and one thinner by SLACK."""
 
     t: list[Decimal]
     thicker: list[Decimal]
     thinner: list[Decimal]
 
 
-def measured(kind: Kind, regime: str, rays: Rays) -> Iterator[Row]:
-    """The rows of all formulas for the rays of a regime; the number of rays for a shape is a multiple of 32."""
-    right = answers(rays)
+def measure_formulas(kind: Kind, regime: str, rays: Rays) -> Iterator[Row]:
+    """Measure all formulas on the rays of a regime; the number of rays per shape must be a multiple of 32."""
+    right = exact_answers(rays)
     names, *parts = zip(*formulas(kind), strict=True)
-    works = [prepared(formula, rays, kind, number) for formula, number in zip(*parts, strict=True)]
+    works = [prepare(formula, rays, kind, number) for formula, number in zip(*parts, strict=True)]
     count = len(works[0][1])
     often = ceil(TIMED / count)
     for shoot, _ in works:
@@ -73,32 +73,34 @@ def measured(kind: Kind, regime: str, rays: Rays) -> Iterator[Row]:
             regime,
             name,
             count,
-            *verdicts(found.astype(np.float64), right),
+            *compare(found.astype(np.float64), right),
             best.wall * 1e9 / (often * count),
             best.cpu * 1e9 / (often * count),
-            times_as_long(times[name], times.get("textbook", ())),
+            time_ratio(times[name], times.get("textbook", ())),
             not is_disturbed(best, 1),
         )
 
 
-def times_as_long(some: Sequence[Run], others: Sequence[Run]) -> float:
-    """The median of the processor time of one run in that of another of the same turn; NaN for none."""
+def time_ratio(some: Sequence[Run], others: Sequence[Run]) -> float:
+    """Return the median ratio of processor times of runs made in the same turn; NaN without others."""
     return median(one.cpu / other.cpu for one, other in zip(some, others, strict=True)) if others else nan
 
 
 def formulas(kind: Kind) -> Iterator[tuple[str, Callable[..., Any], type[np.floating[Any]]]]:
-    """What is compared: name, formula, and the precision in which it is computed."""
+    """Yield the formulas to compare: name, function and precision."""
     yield "miniRT", kind.intersect, np.float64
     if kind.element in textbook.FORMULAS:
         yield "textbook", textbook.FORMULAS[kind.element], np.float64
     yield "miniRT, float32", kind.intersect, np.float32
 
 
-def prepared(
+def prepare(
     formula: Callable[..., Any], rays: Rays, kind: Kind, number: type[np.floating[Any]]
 ) -> tuple[Callable[[int], None], np.ndarray]:
-    """What computes all distances so many times, and where it puts them. float32 is relative to the first origin of
-    each shape, as the renderer has it relative to the eye."""
+    """Return a function that computes all distances so many times, and the array that it writes them to.
+
+    In float32 coordinates are relative to the first origin of each shape, as the renderer's are relative to the eye.
+    """
     packed = np.ascontiguousarray(numbers([shape.pack() for shape in rays.shapes])).view(row_type(kind))[:, 0]
     origins = rays.origins
     if number is np.float32:
@@ -110,35 +112,37 @@ def prepared(
     return lambda times: run(packed, rays.origins.shape[1], o, d, found, times), found
 
 
-def answers(rays: Rays) -> Answers:
-    """The right ones."""
+def exact_answers(rays: Rays) -> Answers:
+    """Compute the exact answers of all rays."""
     found = Answers([], [], [])
     for shape, origins, directions in zip(*rays, strict=True):
         for origin, direction in zip(origins, directions, strict=True):
             t = exact_hits.distance(shape, origin, direction)
-            slack = SLACK * (reach(shape, origin) + (float(t) if t.is_finite() else 0.0)) / slope(shape, direction)
+            slack = SLACK * (magnitude(shape, origin) + (float(t) if t.is_finite() else 0.0)) / slope(shape, direction)
             found.t.append(t)
             found.thicker.append(exact_hits.distance(shape, origin, direction, slack))
             found.thinner.append(exact_hits.distance(shape, origin, direction, -slack))
     return found
 
 
-def reach(shape: Shape, origin: Array) -> float:
-    """How large the numbers are that a hit is computed from: the way to the shape and its lengths."""
+def magnitude(shape: Shape, origin: Array) -> float:
+    """Return the magnitude of the numbers that a hit is computed from: distance to the shape plus its lengths."""
     return float(np.linalg.norm(origin - own_points(shape)[0])) + float(sizes([shape]).sum())
 
 
 def slope(shape: Shape, direction: Array) -> float:
-    """The sine of the angle of a ray to a square or a disc: where it meets that is known to roundings by this. Of
-    others the edges are met from all sides: 1."""
+    """Return the sine of the angle between a ray and a square or a disc; 1 for other shapes.
+
+    The hit on a flat shape is known up to roundings divided by this; edges of other shapes are met from all sides.
+    """
     return max(abs(float(np.dot(shape.normal, direction))), U) if isinstance(shape, (Square, Disc)) else 1.0
 
 
-def verdicts(found: Array, right: Answers) -> tuple[int, float, float, int, int]:
-    """Hits, largest and root mean square of the relative errors of t, false misses and false hits.
+def compare(found: Array, right: Answers) -> tuple[int, float, float, int, int]:
+    """Return hits, maximum and root mean square of the relative errors of t, false misses and false hits.
 
-    Counted are rays about which the thicker and the thinner shape agree. Where one has them meet an edge and the other
-    has them pass it, and meet the shape elsewhere behind, either may be met.
+    Only rays count for which the thicker and the thinner shape agree on hit or miss. If they agree on a hit but in
+    different places, since a ray meets an edge of one and passes that of the other, both places are right.
     """
     errors: list[float] = []
     misses = hits = 0

@@ -1,4 +1,4 @@
-"""What the figures of a report depend on, beside the scene."""
+"""The machine and the package versions that the figures of a report depend on."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ PACKAGES = ("numpy", "numba", "llvmlite", "pillow", "matplotlib")
 
 
 def processor() -> str:
-    """Its name, where Linux tells it."""
+    """Return the name of the processor: from /proc/cpuinfo on Linux, from `platform` elsewhere."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
@@ -21,7 +21,7 @@ def processor() -> str:
 
 
 def versions() -> dict[str, str]:
-    """Those of this program, of Python and of the packages that compute."""
+    """Return the versions of miniRT, of Python and of the packages that compute or draw."""
     found = {"minirt": minirt.__version__, "python": platform.python_version()}
     for package in PACKAGES:
         try:

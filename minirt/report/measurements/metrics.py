@@ -1,4 +1,7 @@
-"""How far a picture is from another. Pictures are float64 (h, w, 3) as shown: light, clamped to [0, 1]."""
+"""Error metrics of pictures: RMSE, PSNR, changed pixels.
+
+Pictures are float64 (h, w, 3): radiance clamped to [0, 1], as a screen shows it.
+"""
 
 from __future__ import annotations
 
@@ -10,26 +13,26 @@ from numpy.typing import NDArray
 Picture = NDArray[np.float64]
 
 
-def shown(light: Picture) -> Picture:
-    """What a screen shows of light."""
+def clamped(light: Picture) -> Picture:
+    """Clamp radiance to what a screen shows."""
     return np.clip(light, 0.0, 1.0)
 
 
 def rmse(a: Picture, b: Picture) -> float:
-    """The root of the mean square error, 1 from black to white."""
+    """Root mean square error over all pixels and channels; 1 from black to white."""
     return float(np.sqrt(np.mean((a - b) ** 2)))
 
 
 def psnr(error: float) -> float:
-    """The peak signal-to-noise ratio of a root mean square error, in decibels."""
+    """Peak signal-to-noise ratio of an RMSE, in decibels."""
     return -20.0 * log10(error) if error > 0 else inf
 
 
-def levels(picture: Picture) -> NDArray[np.uint8]:
-    """The picture in 8 bits a colour, rounded as the kernel does."""
+def to_8_bits(picture: Picture) -> NDArray[np.uint8]:
+    """Round a picture to 8 bits per channel, as the kernel does."""
     return (picture * 255.0 + 0.5).astype(np.uint8)
 
 
 def changed(a: Picture, b: Picture) -> int:
-    """The number of pixels that differ in 8 bits."""
-    return int(np.any(levels(a) != levels(b), axis=-1).sum())
+    """Count the pixels that differ in 8 bits."""
+    return int(np.any(to_8_bits(a) != to_8_bits(b), axis=-1).sum())

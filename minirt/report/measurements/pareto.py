@@ -1,4 +1,4 @@
-"""Which setting to take."""
+"""Pareto front of the settings, and the best setting for a given error or time."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar
 
 
 class Point(Protocol):
-    """What a setting costs and how wrong it is; NaN where it failed."""
+    """Error and time of a setting; NaN if it failed."""
 
     @property
     def rmse(self) -> float: ...
@@ -21,14 +21,13 @@ Setting = TypeVar("Setting", bound=Point)
 
 
 def by_time(points: Iterable[Setting]) -> list[Setting]:
-    """Those that did not fail, the fastest first."""
+    """Return the settings that did not fail, the fastest first."""
     measured = [point for point in points if isfinite(point.rmse) and isfinite(point.wall_ms)]
     return sorted(measured, key=lambda point: (point.wall_ms, point.rmse))
 
 
-def front(points: Iterable[Setting], doubt: float) -> list[Setting]:
-    """Those of which no other is both as fast and as close, the fastest first. Who takes longer has to be closer by
-    more than the `doubt` about errors."""
+def pareto_front(points: Iterable[Setting], doubt: float) -> list[Setting]:
+    """Return the Pareto front, the fastest first: each slower setting has an error smaller by more than `doubt`."""
     best: list[Setting] = []
     for point in by_time(points):
         if not best or point.rmse < best[-1].rmse - doubt:
@@ -37,10 +36,10 @@ def front(points: Iterable[Setting], doubt: float) -> list[Setting]:
 
 
 def fastest(points: Iterable[Setting], rmse: float) -> Setting | None:
-    """The fastest whose error is at most so large; None where no one's is."""
+    """Return the fastest setting with an error of at most `rmse`; None if there is none."""
     return next((point for point in by_time(points) if point.rmse <= rmse), None)
 
 
 def closest(points: Iterable[Setting], wall_ms: float, doubt: float) -> Setting | None:
-    """The one of the front with the least error in at most so much time; None where no one is that fast."""
-    return next((point for point in reversed(front(points, doubt)) if point.wall_ms <= wall_ms), None)
+    """Return the most accurate setting that takes at most `wall_ms`; None if there is none."""
+    return next((point for point in reversed(pareto_front(points, doubt)) if point.wall_ms <= wall_ms), None)

@@ -1,4 +1,4 @@
-"""How far pictures are from the reference, and how long they take."""
+"""Measure the error and the run time of pictures against a reference picture."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.rendering import Renderer
 from minirt.report.measurements import flip
-from minirt.report.measurements.metrics import Picture, changed, psnr, rmse, shown
+from minirt.report.measurements.metrics import Picture, changed, clamped, psnr, rmse
 from minirt.report.measurements.reference import Reference
 from minirt.report.measurements.settings import Setting
 from minirt.scene import Scene
@@ -22,7 +22,7 @@ RUNS = 7
 
 
 class Row(NamedTuple):
-    """A setting, against the reference."""
+    """Error and run time of one setting."""
 
     knob: str
     samples: int
@@ -33,22 +33,22 @@ class Row(NamedTuple):
     not_finite: float = nan  # rays whose light was infinite or NaN, and is 0 in the picture
     wall_ms: float = nan
     cpu_ms: float = nan
-    sort_ms: float = nan  # sorting the scene into lists, once for a scene
-    compile_s: float = nan  # or loading what was compiled before
-    valid: bool = False  # False: failed, or other programs disturbed the measurement of time
+    sort_ms: float = nan  # packing and culling, once per scene
+    compile_s: float = nan  # compiling the kernel, or loading it from the cache
+    valid: bool = False  # False: failed, or other programs disturbed the time
     remark: str = ""
 
 
 class Budget(NamedTuple):
-    """What measuring may take."""
+    """Time that measuring a setting may take."""
 
-    seconds: float  # that the runs of a setting fill, at least
-    longest: float  # seconds for a picture; one that would take longer is left out
-    tries: int  # rounds of runs, until one is not disturbed
+    seconds: float  # least total of the runs of a setting
+    longest: float  # seconds for a picture; a slower setting is left out
+    tries: int  # rounds of runs at most, until one is undisturbed
 
 
-class Stage:
-    """Renders a scene in one size, with so many threads; keeps a renderer for each knob."""
+class SettingRenderer:
+    """Renders one scene in one size under all settings; keeps a prepared renderer for each knob."""
 
     def __init__(self, scene: Scene, width: int, height: int, threads: int) -> None:
         self.scene, self.threads = scene, threads
@@ -56,7 +56,7 @@ class Stage:
         self.ready: dict[str, tuple[Renderer, float, float]] = {}
 
     def renderer(self, setting: Setting) -> tuple[Renderer, float, float]:
-        """The one of a knob; how long it took to compile, in seconds, and to sort the scene, in milliseconds."""
+        """Return the renderer of a knob, its compile time in seconds and its packing time in milliseconds."""
         if setting.knob.name not in self.ready:
             renderer = setting.knob.renderer(self.threads)
             start = perf_counter()
@@ -68,17 +68,20 @@ class Stage:
         return self.ready[setting.knob.name]
 
     def light(self, setting: Setting) -> tuple[Picture, int]:
-        """The picture of a setting, and how many of its rays brought light that is not finite."""
+        """Return the picture of a setting, and how many of its rays brought light that is not finite."""
         linear = np.zeros((*self.pixels.shape[:2], 3))
         renderer, *_ = self.renderer(setting)
         return linear, setting.knob.picture(renderer, self.scene, self.pixels, setting.samples, linear)
 
 
-def measured(
-    stage: Stage, settings: list[Setting], reference: Reference, budget: Budget, step: Callable[[str], object]
+def measure_settings(
+    stage: SettingRenderer, settings: list[Setting], reference: Reference, budget: Budget, step: Callable[[str], object]
 ) -> Iterator[tuple[Row, Picture | None]]:
-    """A row for each setting and its picture, None where it failed. `step` is told the name of each that begins."""
-    right = flip.seen(reference.picture)
+    """Yield a row and a picture for each setting; None in place of a picture if it failed.
+
+    `step` is called with the name of each setting before it is measured.
+    """
+    right = flip.perceived(reference.picture)
     cost: dict[str, float] = {}  # seconds a sample
     for setting in settings:
         step(setting.name)
@@ -88,7 +91,7 @@ def measured(
             yield Row(knob, samples, remark=f"left out: takes about {expected:.2g} s"), None
             continue
         try:
-            row, picture = measure(stage, setting, reference, right, budget)
+            row, picture = measure_setting(stage, setting, reference, right, budget)
         except RenderError as error:
             yield Row(knob, samples, remark=f"failed: {error}"), None
             continue
@@ -96,15 +99,15 @@ def measured(
         yield row, picture
 
 
-def measure(
-    stage: Stage, setting: Setting, reference: Reference, right: flip.Seen, budget: Budget
+def measure_setting(
+    stage: SettingRenderer, setting: Setting, reference: Reference, right: flip.Perceived, budget: Budget
 ) -> tuple[Row, Picture]:
-    """The row of a setting, and its picture."""
+    """Measure one setting; return its row and its picture."""
     renderer, compile_s, sort_ms = stage.renderer(setting)
     lights: list[tuple[Picture, int]] = []
     (first,) = runs(lambda: lights.append(stage.light(setting)), 1, 0.0)
-    picture = shown(lights[0][0])
-    best, remark = timed(
+    picture = clamped(lights[0][0])
+    best, remark = best_time(
         lambda: setting.knob.picture(renderer, stage.scene, stage.pixels, setting.samples, None),
         first,
         stage.threads,
@@ -116,7 +119,7 @@ def measure(
         setting.samples,
         rmse=error,
         psnr=psnr(error),
-        flip=float(flip.flip(flip.seen(picture), right).mean()),
+        flip=float(flip.flip(flip.perceived(picture), right).mean()),
         changed=changed(picture, reference.picture),
         not_finite=lights[0][1],
         wall_ms=best.wall * 1e3,
@@ -129,8 +132,8 @@ def measure(
     return row, picture
 
 
-def timed(work: Callable[[], object], first: Run, threads: int, budget: Budget) -> tuple[Run, str]:
-    """The best of some runs after the first one, which warmed up, and what is wrong with it, if anything."""
+def best_time(work: Callable[[], object], first: Run, threads: int, budget: Budget) -> tuple[Run, str]:
+    """Return the fastest run after the warm-up run `first`, and a remark if that time is not reliable."""
     if first.wall > budget.longest:
         return first, "takes too long for more than the first run"
     best = Run(inf, inf)

@@ -1,4 +1,4 @@
-"""How thorough a report is, and how large its pictures are."""
+"""Plan of a report: how many rays and samples it takes, and how large its pictures are."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from minirt.report.measurements.picture_errors import Budget
 from minirt.scene import Scene
 from minirt.timing import runs
 
-RAYS = 32  # for each shape: a packet in float32
+RAYS = 32  # per shape: a packet in float32
 
 
 class Plan(NamedTuple):
-    """What is measured."""
+    """The extent of the measurements."""
 
-    shapes: int  # random ones of each kind, in each regime
-    samples: int  # of a pixel of the reference
-    most: int  # samples of the pictures that are compared with it
+    shapes: int  # random shapes of each type in each regime
+    samples: int  # samples per pixel of the reference
+    most: int  # samples per pixel of the compared pictures, at most
     width: int  # pixels, at most
-    seconds: float  # that the reference may take
+    seconds: float  # time for the reference, at most
     budget: Budget
 
 
@@ -30,19 +30,21 @@ FULL = Plan(64, 1024, 64, 16384, 300.0, Budget(0.3, 5.0, tries=3))
 QUICK = Plan(8, 1024, 16, 320, 5.0, Budget(0.0, 0.1, tries=1))
 
 
-def fitting(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, int]:
-    """The size of the pictures: as it is wanted, or halved until the plan's time is enough; by halves, so that it is
-    mostly the same when it is worked out again."""
+def fitting_size(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, int]:
+    """Return the requested size, halved until the reference fits the plan's time.
+
+    Halving, unlike exact scaling, mostly gives the same size when the report is repeated.
+    """
     renderer = Renderer()
     renderer.prepare(scene)
-    width, height = scaled(size, min(1.0, plan.width / size[0]))
+    width, height = scaled_size(size, min(1.0, plan.width / size[0]))
     pixels = np.zeros((height, width, 4), np.uint8)
     renderer.render(scene, pixels)
     once = min(runs(lambda: renderer.render(scene, pixels), 2, 0.0)).wall
     halvings = ceil(log2(once * plan.samples / plan.seconds) / 2)
-    return scaled((width, height), 0.5 ** max(0, halvings))
+    return scaled_size((width, height), 0.5 ** max(0, halvings))
 
 
-def scaled(size: tuple[int, int], factor: float) -> tuple[int, int]:
-    """A size times a factor, at least a pixel."""
+def scaled_size(size: tuple[int, int], factor: float) -> tuple[int, int]:
+    """Scale a size; at least one pixel remains."""
     return max(1, round(size[0] * factor)), max(1, round(size[1] * factor))

@@ -1,4 +1,4 @@
-"""The picture that others are compared with: many samples, in other places of the pixels than theirs."""
+"""Reference picture: many samples per pixel, at other positions than those of the compared pictures."""
 
 from __future__ import annotations
 
@@ -10,45 +10,47 @@ import numpy as np
 from minirt.rendering import Renderer
 from minirt.rendering.frame_arguments import frame_arguments, sample_places
 from minirt.rendering.packing.camera import packet_rays
-from minirt.report.measurements.metrics import Picture, rmse, shown
+from minirt.report.measurements.metrics import Picture, clamped, rmse
 from minirt.scene import Scene
 
-PASS = 32  # samples that are taken in one go
+PASS = 32  # samples per pixel of one call of the kernel
 
 
 class Reference(NamedTuple):
-    """A picture in float64 and what is known about it."""
+    """A picture in float64, its samples per pixel and its estimated error."""
 
     picture: Picture
     samples: int
-    error: float  # of its own: root mean square
+    error: float  # estimated RMSE of the reference itself
 
 
 def reference(
     scene: Scene, width: int, height: int, samples: int, seed: int, step: Callable[[], object] = lambda: None
 ) -> Reference:
-    """The reference picture, of two halves; `step` is called `passes(samples)` times on the way.
+    """Render the reference picture as the mean of two halves; `step` is called `passes(samples)` times.
 
-    Each half has the usual lattice of samples, shifted by a random phase. Their errors have nothing to do with each
-    other, so that of the mean of both is half of the difference between them.
+    Each half has the usual lattice of samples, shifted by a random phase. The errors of the halves are independent, so
+    the RMSE of their mean is half of the RMSE between them.
     """
     renderer, random = Renderer(), np.random.default_rng(seed)
     one, other = (
-        shown(half(renderer, scene, width, height, (sample_places(samples // 2) + random.random(2)) % 1.0, step))
+        clamped(
+            half_reference(renderer, scene, width, height, (sample_places(samples // 2) + random.random(2)) % 1.0, step)
+        )
         for _ in range(2)
     )
     return Reference((one + other) / 2, samples, rmse(one, other) / 2)
 
 
 def passes(samples: int) -> int:
-    """The number of steps of a reference."""
+    """Return the number of steps that rendering a reference takes."""
     return 2 * -(-(samples // 2) // PASS)
 
 
-def half(
+def half_reference(
     renderer: Renderer, scene: Scene, width: int, height: int, places: np.ndarray, step: Callable[[], object]
 ) -> Picture:
-    """The mean of the light at some places (n, 2) of each pixel."""
+    """Render the mean radiance over sample positions `places`, (n, 2) in units of a pixel."""
     total = np.zeros((height, width, 3))
     if not scene.shapes:
         return total

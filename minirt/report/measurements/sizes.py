@@ -1,4 +1,4 @@
-"""How large shapes are, by their fields."""
+"""Lengths of shapes, from their fields."""
 
 from __future__ import annotations
 
@@ -15,8 +15,10 @@ from minirt.shapes.mesh import Mesh
 
 
 def sizes(shapes: Sequence[Shape]) -> NDArray[np.float64]:
-    """For each shape of one kind the lengths that it is given by, or the distances between the points that it is given
-    by, (n, k); a plane has none, and a mesh is as large as the box around it."""
+    """Return the lengths that define each shape of one type, or the distances of its points, (n, k).
+
+    A plane has none; a mesh has the diagonal of its bounding box.
+    """
     if isinstance(shapes[0], Mesh):
         diagonals: NDArray[np.float64] = np.linalg.norm(np.diff(boxes(list(shapes)), axis=1)[:, 0], axis=1)
         return diagonals[:, None]

@@ -1,4 +1,4 @@
-"""Where a scene asks for more digits, or for more samples, than there are."""
+"""Find stiff shapes: shapes that need more digits or more samples than the renderer has."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from minirt.report.measurements.sizes import sizes
 from minirt.scene import Scene
 
 DOUBLE, SINGLE = 2.0**-53, 2.0**-24  # unit roundoffs
-VISIBLE = 1 / 255  # of what is looked at: an error that turns surfaces by so much changes a level of a colour
-LISTED = 3  # shapes that are named, the worst first; the others are counted
+VISIBLE = 1 / 255  # relative error of a hit that turns a normal enough to change a level of a colour
+LISTED = 3  # shapes that are named, the worst first; the rest is counted
 
 
 class Stiff(NamedTuple):
-    """A shape that is stiff, and by how much."""
+    """A stiff shape, the reason, and the figures that show it."""
 
     element: str
     why: str
@@ -35,20 +35,20 @@ class Stiff(NamedTuple):
         return f"{self.element}: {self.why} ({figures})"
 
 
-class Views(NamedTuple):
-    """How the eye and n parts of shapes lie to each other, in scene units."""
+class ShapeViews(NamedTuple):
+    """Distances, sizes and rounding errors of n primitives as seen from the eye, in scene units."""
 
     distance: np.ndarray  # (n,) from the eye to the surface
-    size: np.ndarray  # (n,) the shortest length of each shape, infinity where it has none
-    double: np.ndarray  # (n,) what rounding may do to a point on it
-    single: np.ndarray  # (n,) the same in float32, relative to the eye
-    ahead: np.ndarray  # (n,) whether the nearest point is before the camera
+    size: np.ndarray  # (n,) shortest length of each shape, infinity if it has none
+    double: np.ndarray  # (n,) rounding error of a point on the surface in float64
+    single: np.ndarray  # (n,) rounding error in float32, relative to the eye
+    ahead: np.ndarray  # (n,) whether the nearest point lies in front of the camera
 
 
 def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> Iterator[Stiff]:
-    """What is stiff about the shapes of a scene, one by one, in a picture of that size."""
+    """Yield the stiff shapes of a scene in a picture of the given size."""
     camera = camera_numbers(scene.camera, width, height)
-    seen = views(tables, camera)
+    seen = shape_views(tables, camera)
     with np.errstate(divide="ignore", invalid="ignore"):
         scale = np.minimum(seen.size, seen.distance)
         double, single = seen.double / scale, seen.single / scale
@@ -71,7 +71,7 @@ def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> 
 
 
 def lost_in_single(scene: Scene, packing: Packing, width: int, height: int) -> Iterator[Stiff]:
-    """What looks otherwise than it should in a picture that was made of a scene in float32."""
+    """Yield the shapes that look wrong in a picture that was rendered in float32."""
     if scene.shapes and packing.pack(scene, width, height).camera.dtype == np.float32:
         for each in stiff_shapes(scene, packing.tables, width, height):
             if each.figures.get("single", 0.0) > VISIBLE:
@@ -79,19 +79,18 @@ def lost_in_single(scene: Scene, packing: Packing, width: int, height: int) -> I
 
 
 def worst(tables: ShapeArrays, amounts: np.ndarray, limit: float) -> Iterator[tuple[int, str]]:
-    """The shapes with the largest amounts above a limit: indices and names, the last one with how many more there
-    are."""
+    """Yield index and name of the shapes with the largest amounts above a limit; the last name counts the rest."""
     order = np.argsort(-amounts, kind="stable")
     order = order[amounts[order] > limit]
     _, first = np.unique(tables.owner[order], return_index=True)
-    order = order[np.sort(first)]  # of each shape the worst part
+    order = order[np.sort(first)]  # the worst primitive of each shape
     more = len(order) - LISTED
     for place, index in enumerate(order[:LISTED].tolist(), 1):
         yield index, name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
 
 
-def views(tables: ShapeArrays, camera: np.ndarray) -> Views:
-    """How the eye and the shapes in some tables lie to each other."""
+def shape_views(tables: ShapeArrays, camera: np.ndarray) -> ShapeViews:
+    """Compute distances, sizes and rounding errors of all primitives as seen from the camera's eye."""
     eye, forward = camera[:3], camera[9:]
     nearest, size = np.zeros((len(tables.owner), 3)), np.full(len(tables.owner), np.inf)
     for group, packed in enumerate(tables.rows):
@@ -99,15 +98,15 @@ def views(tables: ShapeArrays, camera: np.ndarray) -> Views:
         with np.errstate(all="ignore"):
             on, _ = kind_of(packed.dtype.names).surface(columns(packed), Vec(*eye))
         nearest[mine] = np.stack([np.broadcast_to(part, len(mine)) for part in (on.x, on.y, on.z)], axis=-1)
-        if not tables.is_flat[group]:  # one with an end is in its box, not everywhere on the plane that it lies in
+        if not tables.is_flat[group]:  # a bounded shape lies within its box, not everywhere on its surface's extension
             middle, half = tables.boxes[mine, :3], tables.boxes[mine, 3:]
             nearest[mine] = np.clip(nearest[mine], middle - half, middle + half)
         owners, part_of = np.unique(tables.owner[mine], return_inverse=True)
         size[mine] = sizes([tables.shapes[i] for i in owners]).min(axis=1, initial=np.inf)[part_of]
-    nearest = np.where(np.isfinite(nearest), nearest, tables.boxes[:, :3])  # from the very middle no point is nearest
+    nearest = np.where(np.isfinite(nearest), nearest, tables.boxes[:, :3])  # at the exact centre no point is nearest
     way = nearest - eye
     reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]  # of the shape, seen from the eye
-    return Views(
+    return ShapeViews(
         np.linalg.norm(way, axis=1),
         size,
         ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + tables.colours_and_extents[:, 3]),

@@ -1,8 +1,8 @@
-"""The formulas that are in every textbook, to compare those of `minirt.shapes` with.
+"""Textbook intersection formulas, to compare the formulas of `minirt.shapes` with.
 
-They are right on paper. With the digits that a computer has they lose what is small and far away, what lies at an edge
-and what is nearly parallel. Those of a box, a square and a disc are not here, as theirs in `minirt.shapes` are those of
-textbooks; nor is that of a torus, the quartic of which textbooks leave to a library.
+They are right on paper. In floating point they lose shapes that are small and far away, hits at edges and rays that are
+nearly parallel. Box, square and disc are not here, as `minirt.shapes` uses the textbook formulas for them; nor is the
+torus, whose quartic textbooks leave to a library.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from minirt.shapes.plane import PackedPlane, Plane
 from minirt.shapes.sphere import PackedSphere, Sphere
 from minirt.shapes.triangle import PackedTriangle, Triangle
 
-EPSILON = 1e-6  # what textbooks take for zero
+EPSILON = 1e-6  # textbooks take smaller numbers for zero
 
 
 def meets_sphere(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
@@ -100,7 +100,7 @@ def meets_hyperboloid(hyperboloid: PackedHyperboloid, origin: Vec, direction: Ve
 
 
 def meets_triangle(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Cramer's rule for t and for the shares of the corners (Moller and Trumbore, Fast, Minimum Storage Ray/Triangle
+    """Cramer's rule for t and the barycentric coordinates (Moller and Trumbore, Fast, Minimum Storage Ray/Triangle
     Intersection, 1997)."""
     to_b, to_c, f = triangle.b - triangle.a, triangle.c - triangle.a, origin - triangle.a
     p, q = cross(direction, to_c), cross(f, to_b)
@@ -112,7 +112,7 @@ def meets_triangle(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tup
 
 
 def sides(p: Vec, d: Vec, a: Number, b: Number, c: Number, low: Number, high: Number) -> Number:
-    """The distance to the nearest point of a t^2 + 2 b t + c = 0 between two heights, or infinity."""
+    """Return the least positive root of a t^2 + 2 b t + c = 0 between two heights, or infinity."""
     D = b * b - a * c
     best = splat(inf, D)
     if any(D >= 0.0):
@@ -123,20 +123,20 @@ def sides(p: Vec, d: Vec, a: Number, b: Number, c: Number, low: Number, high: Nu
 
 
 def on_side(p: Vec, d: Vec, t: Number, low: Number, high: Number) -> tuple[Mask, Number]:
-    """Whether the point at t lies between two heights."""
+    """Test whether the point at t lies between two heights."""
     height = p.z + t * d.z
     return (t > 0.0) & (height >= low) & (height <= high), t
 
 
 def on_cap(p: Vec, d: Vec, height: Number, square: Number) -> tuple[Mask, Number]:
-    """Whether and where the plane at a height is hit within a radius, of which this is the square."""
+    """Intersect the plane at a height, within a radius given by its square."""
     t = (height - p.z) / d.z
     x, y = p.x + t * d.x, p.y + t * d.y
     return (t > 0.0) & (x * x + y * y <= square), t
 
 
 def nearer(found: tuple[Mask, Number], best: Number) -> Number:
-    """The lesser distance, where there is another one."""
+    """Return the lesser of the best distance and a hit."""
     hit, t = found
     return where(hit, minimum(t, best), best)
 

@@ -1,4 +1,4 @@
-"""The work-precision diagram: error against run time (matplotlib, of the extra `report`)."""
+"""Work-precision diagram: error against run time (drawn by matplotlib, which the extra `report` installs)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from minirt.report.measurements.pareto import front
+from minirt.report.measurements.pareto import pareto_front
 from minirt.report.measurements.picture_errors import Row
 
 STYLE = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False}
@@ -20,20 +20,25 @@ MARKS = "osD^vP"
 
 
 def diagram(rows: Iterable[Row], reference_error: float, title: str) -> bytes:
-    """A PNG with a line for each knob, a point for each number of samples. Hollow: not valid. What is best for some
-    error or some time lies on the grey line."""
+    """Draw a PNG: a line for each knob, a point for each number of samples, hollow if its time was disturbed.
+
+    The grey line is the Pareto front. `reference_error` is the RMSE of the reference itself.
+    """
     rows = list(rows)
     knobs = list(dict.fromkeys(row.knob for row in rows))
     with rc_context(STYLE):
         canvas = Figure(figsize=(9, 5.2), layout="constrained")
         panel = canvas.add_subplot(xscale="log", yscale="log", title=title)
-        best = front(rows, reference_error)
+        best = pareto_front(rows, reference_error)
         panel.plot([row.rmse for row in best], [row.wall_ms for row in best], color="#cccccc", linewidth=7, zorder=0)
         for knob, colour, mark in zip(knobs, COLOURS, MARKS, strict=False):
-            line(panel, [row for row in rows if row.knob == knob], colour, mark)
-        if reference_error > 0:
+            draw_setting(panel, [row for row in rows if row.knob == knob], colour, mark)
+        low, high = panel.get_xlim()
+        if low < reference_error < high:
             panel.axvline(reference_error, color="#999999", linestyle="--", linewidth=1, label="error of the reference")
-        panel.set(xlabel="error: RMSE of colours, 1 from black to white", ylabel="milliseconds a picture")
+        elif reference_error > 0:
+            panel.plot([], [], " ", label=f"error of the reference: {reference_error:.1g}")
+        panel.set(xlabel="error: RMSE of colours, 1 from black to white", ylabel="milliseconds per picture")
         for axis in (panel.xaxis, panel.yaxis):
             axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
             axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
@@ -45,8 +50,8 @@ def diagram(rows: Iterable[Row], reference_error: float, title: str) -> bytes:
     return data.getvalue()
 
 
-def line(panel: Axes, rows: list[Row], colour: str, mark: str) -> None:
-    """The points of a knob, joined, each with its number of samples."""
+def draw_setting(panel: Axes, rows: list[Row], colour: str, mark: str) -> None:
+    """Draw the points of one knob, joined by a line and labelled with their numbers of samples."""
     errors, times = [row.rmse for row in rows], [row.wall_ms for row in rows]
     panel.plot(errors, times, color=colour, marker=mark, label=rows[0].knob)
     for row in rows:

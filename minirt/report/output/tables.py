@@ -1,4 +1,4 @@
-"""Rows of figures as CSV, as JSON and as Markdown."""
+"""Write rows of figures as CSV, JSON and Markdown."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Rows = Sequence[Any]  # NamedTuples, all of one type
 
 
 def as_csv(rows: Rows) -> str:
-    """A line of names, and a line for each row."""
+    """Return CSV: a line of field names, then a line for each row."""
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(rows[0]._fields if rows else ())
@@ -22,23 +22,23 @@ def as_csv(rows: Rows) -> str:
 
 
 def as_json(value: Any) -> str:
-    """JSON, in which NaN and infinity are null."""
-    return json.dumps(plain(value), indent=1, allow_nan=False) + "\n"
+    """Return JSON, with null for NaN and infinity."""
+    return json.dumps(json_value(value), indent=1, allow_nan=False) + "\n"
 
 
-def plain(value: Any) -> Any:
-    """What JSON has: rows are objects."""
+def json_value(value: Any) -> Any:
+    """Convert a value to types that JSON has: NamedTuples become objects."""
     if isinstance(value, tuple) and hasattr(value, "_asdict"):
-        return plain(value._asdict())
+        return json_value(value._asdict())
     if isinstance(value, dict):
-        return {key: plain(each) for key, each in value.items()}
+        return {key: json_value(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
-        return [plain(each) for each in value]
+        return [json_value(each) for each in value]
     return None if isinstance(value, float) and not isfinite(value) else value
 
 
 class Column(NamedTuple):
-    """A column of a table: what stands above it, which field of the rows it shows and how that is written."""
+    """A column of a table: its title, the field of the rows that it shows, and the format of the field."""
 
     title: str
     field: str
@@ -46,7 +46,7 @@ class Column(NamedTuple):
 
 
 def as_markdown(rows: Rows, columns: Iterable[Column]) -> str:
-    """A table; what is NaN is a dash."""
+    """Return a Markdown table, with a dash for NaN."""
     columns = list(columns)
     lines = ["| " + " | ".join(column.title for column in columns) + " |"]
     lines.append("|" + "|".join("---" if not column.format else "---:" for column in columns) + "|")
@@ -55,5 +55,5 @@ def as_markdown(rows: Rows, columns: Iterable[Column]) -> str:
 
 
 def cell(value: Any, format: str) -> str:
-    """A figure as it is written; NaN as a dash."""
+    """Format one cell; a dash for NaN."""
     return "-" if isinstance(value, float) and isnan(value) else f"{value:{format}}"

@@ -31,7 +31,7 @@ class Icon(NamedTuple):
 
 def signed(scene: Scene) -> list[int]:
     """The indices of the elements that have an icon."""
-    return sorted({index for kind in SIGNED for index in scene.places(kind)})
+    return sorted({index for kind in SIGNED for index in scene.indices_of(kind)})
 
 
 def icons(scene: Scene, indices: Iterable[int], lens: Projection, scale: float) -> list[Icon]:

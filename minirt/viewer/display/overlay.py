@@ -8,7 +8,7 @@ from enum import IntEnum
 
 from minirt.element import fields_of
 from minirt.mlx.text import draw_text, measure
-from minirt.scene.line_rewriting import spelling
+from minirt.scene.line_rewriting import field_text
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.input.bindings import FINE, Group, groups
@@ -66,9 +66,9 @@ def line(state: State) -> str:
     words = [element.code]
     for field in fields_of(type(element)):
         if active and field == active.field:
-            words.append(bracketed(spelling(field, element), active.part))
+            words.append(bracketed(field_text(field, element), active.part))
         elif not field.keyed or getattr(element, field.name) != field.default:
-            words.append(spelling(field, element))
+            words.append(field_text(field, element))
     return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", " ".join(words))
 
 

@@ -23,7 +23,7 @@ from minirt.fields import (
 )
 from minirt.materials import Compound
 from minirt.scene import Scene
-from minirt.scene.camera_frame import camera_frame, mix
+from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.viewer.editing.motion import limited
@@ -78,11 +78,13 @@ def corners(state: State, count: int) -> list[Triple]:
     camera = state.scene.camera
     right, up, forward = camera_frame(camera)
     size = LARGE * state.size
-    middle = mix(1.0, mix(1.0, camera.position, AWAY * state.size, forward), -size / 2, up)
+    middle = linear_combination(
+        1.0, linear_combination(1.0, camera.position, AWAY * state.size, forward), -size / 2, up
+    )
     radius = size if count > 1 else 0.0
     turns = [pi / 2 + 2 * pi * corner / max(count, 1) for corner in range(count)]
-    around = [mix(radius * cos(turn), right, radius * sin(turn), up) for turn in turns]
-    return [round_place(limited(mix(1.0, middle, 1.0, each)), state.stride) for each in around]
+    around = [linear_combination(radius * cos(turn), right, radius * sin(turn), up) for turn in turns]
+    return [round_place(limited(linear_combination(1.0, middle, 1.0, each)), state.stride) for each in around]
 
 
 def round_place(place: Triple, stride: float) -> Triple:

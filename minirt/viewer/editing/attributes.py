@@ -8,7 +8,7 @@ from typing import Any
 
 from minirt.element import Element, fields_of
 from minirt.fields import Field
-from minirt.scene.line_rewriting import spelling
+from minirt.scene.line_rewriting import field_text
 from minirt.viewer.editing import history
 from minirt.viewer.editing.adding import usual
 from minirt.viewer.editing.state import State
@@ -35,7 +35,7 @@ def give(state: State, _amount: float, now: float) -> State:
     found = [value.field.name for value in values(changed)].index(name)
     field = values(changed)[found].field
     return replace(given, value=found).say(
-        f"{field.doc}: {spelling(field, changed)}; again for another: {number + 1} of {len(known)}"
+        f"{field.doc}: {field_text(field, changed)}; again for another: {number + 1} of {len(known)}"
     )
 
 

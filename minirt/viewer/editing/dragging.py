@@ -12,7 +12,7 @@ from typing import NamedTuple
 from minirt.element import Element
 from minirt.fields import Direction, Triple
 from minirt.scene import Camera
-from minirt.scene.camera_frame import camera_frame, mix
+from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.viewer.editing.measure import ball, middle_of
 from minirt.viewer.editing.motion import WORLD, handedness, limited, looked, orbited, rotated, translated
 from minirt.viewer.editing.projection import Projection, minus, projection
@@ -53,7 +53,7 @@ def move(state: State, held: Grip, x: int, y: int) -> State:
         distance = held.lens.along(x + MIDDLE, y + MIDDLE, held.point, axis)
         if distance is None:
             return state.say("seen along the axis nothing moves")
-        way = mix(distance, axis, 0.0, axis)
+        way = linear_combination(distance, axis, 0.0, axis)
     else:
         way = minus(under(held, x, y, held.point), under(held, held.x, held.y, held.point))
     moved, met = translated(held.element, way, 1.0)
@@ -99,10 +99,12 @@ def orbit(state: State, held: Grip, x: int, y: int) -> State:
 
 def pan(state: State, held: Grip, x: int, y: int) -> State:
     """Move the camera in the plane of its picture: what is under the pointer stays there."""
-    ahead = mix(1.0, held.camera.position, state.size, held.camera.direction)
+    ahead = linear_combination(1.0, held.camera.position, state.size, held.camera.direction)
     point = held.point or ahead
     way = minus(under(held, held.x, held.y, point), under(held, x, y, point))
-    return state.put_camera(held.camera.replace(position=limited(mix(1.0, held.camera.position, 1.0, way))), *DRAG)
+    return state.put_camera(
+        held.camera.replace(position=limited(linear_combination(1.0, held.camera.position, 1.0, way))), *DRAG
+    )
 
 
 def angles(held: Grip, x: int, y: int) -> tuple[float, float]:

@@ -6,7 +6,7 @@ from math import atan, radians, sin, tan
 
 from minirt.fields import clamp
 from minirt.scene import Camera
-from minirt.scene.camera_frame import camera_frame, mix
+from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.viewer.editing.measure import ball
 from minirt.viewer.editing.motion import limited
 from minirt.viewer.editing.state import State
@@ -26,7 +26,7 @@ def look_at(state: State, _amount: float, now: float) -> State:
     half = atan(tan(radians(clamp(camera.fov, 1.0, 120.0)) / 2) * FLAT)
     distance = ROOM * (radius or POINT * state.size) / sin(half)
     _, _, forward = camera_frame(camera)
-    moved = camera.replace(position=limited(mix(1.0, centre, -distance, forward)))
+    moved = camera.replace(position=limited(linear_combination(1.0, centre, -distance, forward)))
     return state.put_camera(moved, "", now)
 
 

@@ -22,7 +22,7 @@ def redo(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
 
 
 def here(state: State) -> Moment:
-    return Moment(state.scene.lighten(), state.selected)
+    return Moment(state.scene.drop_caches(), state.selected)
 
 
 def back_to(moment: Moment, state: State) -> State:

@@ -7,7 +7,7 @@ from math import atan2, cos, fmod, fsum, hypot, pi, radians, sin
 from minirt.element import Element
 from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit, upright
 from minirt.scene import Camera
-from minirt.scene.camera_frame import camera_frame, mix
+from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.viewer.editing.state import Frame, named
 
 WORLD: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
@@ -21,7 +21,10 @@ def translated(element: Element, axis: Triple, distance: float) -> tuple[Element
         clamp(part, -FARTHEST - min(coordinates), FARTHEST - max(coordinates))
         for part, coordinates in zip(way, zip(*points.values(), strict=True), strict=True)
     ]
-    moved = {name: limited(mix(1.0, point, 1.0, (kept[0], kept[1], kept[2]))) for name, point in points.items()}
+    moved = {
+        name: limited(linear_combination(1.0, point, 1.0, (kept[0], kept[1], kept[2])))
+        for name, point in points.items()
+    }
     return element.replace(**moved), kept != way
 
 
@@ -39,8 +42,8 @@ def rotated(element: Element, axis: Triple, degrees: float) -> Element:
     if len(points) > 1:
         x, y, z = (fsum(part) / len(points) for part in zip(*points.values(), strict=True))
         for name, point in points.items():
-            about = rodrigues(mix(1.0, point, -1.0, (x, y, z)), axis, degrees)
-            changes[name] = limited(mix(1.0, (x, y, z), 1.0, about))
+            about = rodrigues(linear_combination(1.0, point, -1.0, (x, y, z)), axis, degrees)
+            changes[name] = limited(linear_combination(1.0, (x, y, z), 1.0, about))
     return element.replace(**changes)
 
 
@@ -55,7 +58,7 @@ def rodrigues(vector: Triple, axis: Triple, degrees: float) -> Triple:
     (x, y, z), (a, b, d) = vector, axis
     cross = b * z - d * y, d * x - a * z, a * y - b * x
     along = (x * a + y * b + z * d) * (1 - c)
-    return mix(1.0, mix(c, vector, s, cross), along, axis)
+    return linear_combination(1.0, linear_combination(c, vector, s, cross), along, axis)
 
 
 def looked(camera: Camera, right: float, up: float) -> Camera:
@@ -78,7 +81,7 @@ def orbited(camera: Camera, pivot: Triple, right: float, up: float) -> Camera:
     place = pivot
     for old, new in zip(camera_frame(camera), camera_frame(turned_camera), strict=True):
         along = sum((at - middle) * part for at, middle, part in zip(camera.position, pivot, old, strict=True))
-        place = mix(1.0, place, along, new)
+        place = linear_combination(1.0, place, along, new)
     return turned_camera.replace(position=limited(place))
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from minirt.fields import Triple, unit
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.scene import Camera
-from minirt.scene.camera_frame import mix
+from minirt.scene.camera_frame import linear_combination
 
 Pixel = tuple[float, float]
 
@@ -31,7 +31,7 @@ class Projection(NamedTuple):
     def towards(self, x: float, y: float) -> Triple:
         """What leads from the eye through a point of the picture; its part along `forward` has length 1."""
         across, down = 2 * x / self.width - 1, 1 - 2 * y / self.height
-        return mix(1.0, mix(across, self.right, down, self.up), 1.0, self.forward)
+        return linear_combination(1.0, linear_combination(across, self.right, down, self.up), 1.0, self.forward)
 
     def ray(self, x: float, y: float) -> Triple:
         """The same at length 1."""
@@ -43,7 +43,7 @@ class Projection(NamedTuple):
 
     def at_depth(self, x: float, y: float, depth: float) -> Triple:
         """The place that is so far in front of the eye and shows at a point of the picture."""
-        return mix(1.0, self.eye, depth, self.towards(x, y))
+        return linear_combination(1.0, self.eye, depth, self.towards(x, y))
 
     def pixel(self, point: Triple) -> Pixel | None:
         """Where in the picture, or beside it, a place shows; None where it is not in front of the eye."""
@@ -77,7 +77,7 @@ class Projection(NamedTuple):
             high = min(high, (near - depth) / slope)
         elif depth < near:
             return None
-        start, end = (self.pixel(mix(1.0, point, reach, axis)) for reach in (low, high))
+        start, end = (self.pixel(linear_combination(1.0, point, reach, axis)) for reach in (low, high))
         return (start, end) if low < high and start and end else None
 
 

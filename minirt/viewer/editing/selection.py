@@ -21,7 +21,7 @@ def camera(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
 
 def next_light(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
     """The next light behind the selected element, and round again."""
-    lights = list(state.scene.places(Lamp))
+    lights = list(state.scene.indices_of(Lamp))
     if not lights:
         return state.say("there is no light")
     return state.select(next((index for index in lights if index > state.selected), lights[0]))

@@ -83,7 +83,7 @@ class State:
     def change(self, scene: Scene, kind: str, now: float, selected: int | None = None) -> State:
         """Another scene; `kind` tells which changes may be undone together. With none that is so for no other."""
         same = bool(kind) and self.recent is not None and self.recent[0] == kind and now - self.recent[1] <= MERGE
-        past = self.past if same else (*self.past[1 - MOST :], Moment(self.scene.lighten(), self.selected))
+        past = self.past if same else (*self.past[1 - MOST :], Moment(self.scene.drop_caches(), self.selected))
         chosen = self.selected if selected is None else selected
         return replace(self, scene=scene, selected=chosen, past=past, future=(), recent=(kind, now))
 

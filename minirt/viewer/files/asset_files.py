@@ -8,7 +8,7 @@ from pathlib import Path
 from minirt.errors import FieldError, FileError
 from minirt.fields import MeshFile
 from minirt.fields.pictures import file_name
-from minirt.meshes import mesh
+from minirt.meshes import load_mesh
 from minirt.scene import Scene
 
 SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".tga", ".webp", ".xpm"}
@@ -50,7 +50,7 @@ def pictures(scene: Scene) -> Iterator[str]:
 def read_mesh(scene: Scene, name: str) -> MeshFile | None:
     """The mesh in a file, where a line can name it and it holds one."""
     try:
-        return MeshFile(file_name(name), mesh(scene.beside(name)))
+        return MeshFile(file_name(name), load_mesh(scene.beside(name)))
     except (FieldError, FileError):
         return None
 

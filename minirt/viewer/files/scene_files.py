@@ -11,7 +11,7 @@ from minirt.errors import MiniRTError, SceneError
 from minirt.image import Image
 from minirt.regular_files import reason
 from minirt.scene import Camera, Scene, save
-from minirt.scene.files import refused
+from minirt.scene.files import file_error
 from minirt.viewer.display.painter import Pixels
 
 
@@ -40,7 +40,7 @@ def keep(path: Path) -> Path:
     try:
         atomic_write.write(copy, path.read_bytes())
     except OSError as error:
-        raise refused(copy, f"cannot be written: {reason(error)}") from None
+        raise file_error(copy, f"cannot be written: {reason(error)}") from None
     return copy
 
 

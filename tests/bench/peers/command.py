@@ -1,4 +1,4 @@
-"""Ray tracers that are programs: a scene is translated to their language, and they tell how long it took."""
+"""Peers that are programs: translate a scene to their language, run them, and read the time that they print."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.processes import run
 
 
 def light(source: Ambient | Light | None) -> Triple:
-    """Red, green and blue of a source in [0, 1], its brightness included; black where there is none."""
+    """Return the radiance of a light source, red green blue in [0, 1]; black for None."""
     if source is None:
         return 0.0, 0.0, 0.0
     red, green, blue = (source.brightness * level / 255 for level in source.colour)
@@ -24,18 +24,18 @@ def light(source: Ambient | Light | None) -> Triple:
 
 
 def words(numbers: Iterable[float]) -> list[str]:
-    """Numbers as they are written, without negative zeros."""
+    """Format numbers, without negative zeros."""
     return [f"{number + 0.0:.9g}" for number in numbers]
 
 
 def ends(cylinder: Cylinder) -> tuple[Triple, Triple]:
-    """The middles of bottom and top."""
+    """Return the centres of the bottom and the top cap."""
     (x, y, z), (u, v, w), half = cylinder.centre, cylinder.axis, cylinder.height / 2
     return (x - half * u, y - half * v, z - half * w), (x + half * u, y + half * v, z + half * w)
 
 
 class Command(System):
-    """A ray tracer that is started for each frame. `MissingError` where it is not on the path."""
+    """A ray tracer that is started for each frame; `MissingError` if it is not on the PATH."""
 
     command: str
     suffix: str
@@ -48,11 +48,11 @@ class Command(System):
 
     @abstractmethod
     def arguments(self, file: Path, picture: Path) -> list[str]:
-        """Of the command that renders a file into a picture."""
+        """Return the arguments of the command that renders a file into a picture."""
 
     @abstractmethod
     def milliseconds(self, printed: str) -> float:
-        """What the command says that rendering took."""
+        """Read the render time from the command's output."""
 
     def frame_times(self, path: Path, seconds: float) -> list[float]:
         width, height, _, folder = self.setting

@@ -1,8 +1,8 @@
-"""Embree 4, from the package `embreex`. Its Python interface traces ray by ray on one thread, which is not what the
-library is for; here it is called as in C: packets of 16 coherent rays, by a compiled kernel on all threads.
+"""Embree 4 from the package `embreex`, called as in C: packets of 16 coherent rays, compiled, on all threads.
 
-Spheres are Embree's own. It has no cylinders with flat ends and no planes, so these are triangles: 2 * 64 for the side
-of a cylinder and 64 for each cap, two for a plane. Its time is that of the whole frame, without building its trees.
+The package's own Python interface traces single rays on one thread, which is no fair comparison. Spheres are Embree's
+own; it has no planes and no capped cylinders, so these are triangles: 2 * 64 for the side of a cylinder, 64 for each
+cap, two for a plane. Its time is that of the whole frame, without building its BVH.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ TRIANGLES, SPHERES = 0, 50  # RTCGeometryType
 INDEX, VERTEX = 0, 1  # RTCBufferType
 UINT3, FLOAT3, FLOAT4 = 0x5003, 0x9003, 0x9004  # RTCFormat
 COHERENT, ALL_FEATURES = 1 << 16, 0xFFFFFFFF
-ROWS = 16  # of pixels that a thread takes at a time
+ROWS = 16  # rows of pixels that a thread renders at a time
 SIGNATURES = {
     "rtcNewDevice": (c_size_t, [c_char_p]),
     "rtcNewScene": (c_size_t, [c_size_t]),
@@ -52,7 +52,7 @@ SIGNATURES = {
 
 
 def library() -> CDLL:
-    """Embree itself, which lies beside the Python package. `MissingError` where it does not."""
+    """Load Embree's shared library, which the package `embreex` brings; `MissingError` without it."""
     found = find_spec("embreex")
     if found is None or found.origin is None:
         raise MissingError(f"Embree: embreex is not installed; {INSTALL}")
@@ -68,15 +68,15 @@ def library() -> CDLL:
 
 
 class Traceable(NamedTuple):
-    """A scene as Embree and the kernel have it."""
+    """A scene prepared for Embree and the kernel around it."""
 
     handle: int  # of Embree's scene
     camera: Floats
     ambient: Floats
-    lights: Floats  # place and light of each
+    lights: Floats  # position and radiance of each light
     colours: Floats  # of spheres, then of triangles
-    starts: NDArray[np.int64]  # in `colours`, of each geometry
-    kept: list[Words]  # what Embree reads and does not own
+    starts: NDArray[np.int64]  # first row in `colours` of each geometry
+    kept: list[Words]  # buffers that Embree reads but does not own
 
 
 class Embree(System):
@@ -104,7 +104,7 @@ class Embree(System):
         return times
 
     def render(self, scene: Traceable, pixels: NDArray[np.uint8]) -> None:
-        """A frame, in bands that the threads take one after the other."""
+        """Render a frame in bands of rows, which the threads take one after the other."""
         from tests.bench.peers.embree_rays import render_rows
 
         calls = self.library.rtcIntersect16, self.library.rtcOccluded16
@@ -119,7 +119,7 @@ class Embree(System):
         )
 
     def read(self, path: Path) -> Traceable:
-        """The scene in a file, with the trees over it built."""
+        """Read a scene file and build Embree's BVH over it."""
         scene = load(path)
         handle = self.library.rtcNewScene(self.device)
         balls = np.array([[*each.centre, each.diameter / 2] for each in scene.spheres], np.float32).reshape(-1, 4)
@@ -157,7 +157,7 @@ class Embree(System):
 
 
 def triangles(scene: Scene) -> tuple[Floats, list[tuple[float, float, float]]]:
-    """The corners (n, 3, 3) of all planes and cylinders, and the colour of each triangle."""
+    """Return the corners (n, 3, 3) of all planes and cylinders as triangles, and the colour of each triangle."""
     parts = [np.zeros((0, 3, 3))]
     colours = []
     for shape in scene.shapes:

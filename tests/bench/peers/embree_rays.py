@@ -1,4 +1,4 @@
-"""The rays of a frame for Embree, in packets of 4 x 4 pixels, and what they bring back."""
+"""Packets of 4 x 4 rays for Embree, and the shading of their hits."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ import numba
 import numpy as np
 
 LANES, ACROSS = 16, 4
-# Rows of an RTCRayHit16, of 16 numbers each; a vector takes three rows.
+# Rows of an RTCRayHit16 with 16 numbers each; a vector takes three rows.
 ORIGIN, NEAR, DIRECTION, TIME, FAR, MASK, FLAGS = 0, 3, 4, 7, 8, 9, 11
 NORMAL, PRIMITIVE, GEOMETRY, INSTANCE = 12, 17, 18, 19
 FIELDS = 24  # more than there are in any version
 NONE = 0xFFFFFFFF
-OFF_SURFACE = 1e-3  # where shadow rays start, and from where on a hit counts
+OFF_SURFACE = 1e-3  # offset of shadow rays, and least distance of a hit
 
 compiled = numba.njit(nogil=True, error_model="numpy")
 
 
 class Packet(NamedTuple):
-    """What a thread keeps of the rays that it traces."""
+    """Ray buffers of one thread."""
 
     rays: Any  # an RTCRayHit16
-    words: Any  # the same, as integers
+    words: Any  # the RTCRayHit16 viewed as integers
     shadows: Any  # an RTCRay16
-    valid: Any  # -1 for a ray that is traced
+    valid: Any  # -1 for an active ray
     points: Any
     normals: Any
     cosines: Any
@@ -33,7 +33,7 @@ class Packet(NamedTuple):
 
 @compiled  # type: ignore[untyped-decorator]
 def aligned(rows: int) -> Any:
-    """Rows of as many numbers as there are lanes, at an address that 64 divides."""
+    """Allocate rows of 16 numbers at an address that is a multiple of 64."""
     words = np.zeros(rows * LANES + 16, np.float32)
     start = (64 - words.ctypes.data % 64) // 4
     return words[start : start + rows * LANES].reshape(rows, LANES)
@@ -61,7 +61,7 @@ def aim(packet: Packet, camera: Any, x: int, y: int, width: int, height: int) ->
 
 @compiled  # type: ignore[untyped-decorator]
 def find_surfaces(packet: Packet) -> None:
-    """The points that were hit, and the normals on the side that is seen."""
+    """Compute hit points, and normals on the visible side."""
     for i in range(LANES):
         if packet.words[GEOMETRY, i] == NONE:
             continue
@@ -75,7 +75,7 @@ def find_surfaces(packet: Packet) -> None:
 
 @compiled  # type: ignore[untyped-decorator]
 def aim_at_lamp(packet: Packet, lamp: Any) -> bool:
-    """Point shadow rays from the surfaces at a lamp; whether there are any that face it."""
+    """Aim shadow rays from the surfaces at a light; return whether any surface faces it."""
     some = False
     for i in range(LANES):
         packet.valid[i] = 0
@@ -94,7 +94,7 @@ def aim_at_lamp(packet: Packet, lamp: Any) -> bool:
 
 @compiled  # type: ignore[untyped-decorator]
 def store(packet: Packet, colours: Any, starts: Any, pixels: Any, x: int, y: int) -> None:
-    """Put the light of the surfaces in their colours into the picture."""
+    """Write the shaded packet into the picture."""
     for i in range(LANES):
         pixel = pixels[y + i // ACROSS, x + i % ACROSS]
         if packet.words[GEOMETRY, i] == NONE:

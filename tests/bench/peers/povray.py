@@ -1,4 +1,4 @@
-"""POV-Ray: `povray` on the path. Its time is what it calls Trace Time: of the rays alone, without reading the scene."""
+"""POV-Ray: the program `povray`. Its time is its "Trace Time": rays alone, without reading the scene."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def surface(colour: Iterable[float]) -> str:
 
 
 def solid(shape: Shape) -> str:
-    """A shape in POV-Ray's language."""
+    """Translate a shape to POV-Ray's language."""
     match shape:
         case Sphere():
             return f"sphere {{ {vector(shape.centre)}, {shape.diameter / 2:.9g} {surface(shape.colour)} }}"
@@ -40,7 +40,7 @@ def solid(shape: Shape) -> str:
 
 
 def translated(scene: Scene, width: int, height: int) -> Iterator[str]:
-    """The lines of the scene in POV-Ray's language. The camera is given by vectors, so that it is as right-handed."""
+    """Translate a scene to POV-Ray's language; camera vectors keep it as right-handed as ours."""
     eye, right, up, forward = camera_numbers(scene.camera, width, height).reshape(4, 3)
     yield "#version 3.7;"
     yield f"global_settings {{ assumed_gamma 1 ambient_light rgb {vector(light(scene.ambient))} }}"

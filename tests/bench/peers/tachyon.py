@@ -1,4 +1,4 @@
-"""Tachyon: `tachyon` on the path. Its time is what it calls Ray Tracing Time, without building its grid of shapes."""
+"""Tachyon: the program `tachyon`. Its time is its "Ray Tracing Time", without building its grid of shapes."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def numbers(triple: Triple) -> str:
 
 
 def mirrored(triple: Triple) -> str:
-    """A vector as Tachyon takes it, whose coordinates are left-handed."""
+    """Convert a vector to Tachyon's left-handed coordinates."""
     x, y, z = triple
     return numbers((-x, y, z))
 
 
 def solid(shape: Shape, ambient: float) -> Iterator[str]:
-    """A shape in Tachyon's language; a cylinder is a tube and two discs."""
+    """Translate a shape to Tachyon's language; a cylinder becomes a tube and two discs."""
     red, green, blue = (level / 255 for level in shape.colour)
     finish = (
         f"TEXTURE AMBIENT {ambient:.9g} DIFFUSE 1 SPECULAR 0 OPACITY 1 COLOR {numbers((red, green, blue))} TEXFUNC 0"
@@ -52,7 +52,7 @@ def solid(shape: Shape, ambient: float) -> Iterator[str]:
 
 
 def translated(scene: Scene, width: int, height: int) -> Iterator[str]:
-    """The lines of the scene in Tachyon's language. Its ambient light has no colour: the green of ours is taken."""
+    """Translate a scene to Tachyon's language; its ambient light has no colour, so it gets the green of ours."""
     _, up, forward = camera_frame(scene.camera)
     upward = camera_numbers(scene.camera, width, height)[6:9]  # from the middle to the edge, at distance 1
     zoom = 0.5 / hypot(*upward)

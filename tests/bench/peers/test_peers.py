@@ -1,4 +1,4 @@
-"""Scenes in other languages, and pictures of those who speak them."""
+"""Scenes translated for the peers, and the pictures that the peers make of them."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def test_the_time_that_they_print(kind: type[Command], printed: str, ms: float) 
     assert unset.milliseconds(printed) == pytest.approx(ms)
 
 
-# Prisms have flat sides, and Tachyon's rays go through the corners of pixels.
+# Embree's prisms have flat sides, and Tachyon's rays go through the corners of pixels.
 @pytest.mark.parametrize(("kind", "tolerance"), [(PovRay, 1), (Tachyon, 6), (Embree, 12)])
 def test_they_show_the_same_scene(kind: type[System], tolerance: int, path: Path, tmp_path: Path) -> None:
     try:

@@ -23,7 +23,7 @@ def across(axis: Triple) -> tuple[Corners, Corners]:
 
 
 def cylinder(shape: Cylinder) -> Corners:
-    """A prism with as many sides, which touches the cylinder at its edges."""
+    """Approximate a cylinder by a prism of SIDES sides that touches it at its edges."""
     u, v = across(shape.axis)
     angles = np.arange(SIDES) * (2 * np.pi / SIDES)
     around = shape.diameter / 2 * (np.outer(np.cos(angles), u) + np.outer(np.sin(angles), v))
@@ -36,7 +36,7 @@ def cylinder(shape: Cylinder) -> Corners:
 
 
 def plane(shape: Plane) -> Corners:
-    """A large square."""
+    """Approximate a plane by a large square."""
     u, v = (ENDLESS * each for each in across(shape.normal))
     point = np.array(shape.point)
     return np.array([[point - u - v, point + u - v, point + u + v], [point - u - v, point + u + v, point - u + v]])

@@ -1,4 +1,4 @@
-"""The yardstick: the same pictures by C++ that is written by hand for the vector registers of this processor."""
+"""The yardstick: hand-written C++ with SIMD intrinsics for this processor that renders the same pictures."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FLAGS = [
 
 
 def build(folder: Path) -> Path:
-    """Compile the yardstick, unless that is done; `MissingError` where there is no compiler that can."""
+    """Compile the yardstick unless it is compiled; `MissingError` without a suitable compiler."""
     program = folder / "yardstick"
     sources = [*HERE.glob("*.cpp"), *HERE.glob("*.h")]
     if program.exists() and program.stat().st_mtime > max(source.stat().st_mtime for source in sources):
@@ -48,7 +48,7 @@ class Yardstick(System):
         self.name = "C++ yardstick"
 
     def run(self, path: Path, *arguments: str) -> dict[str, float]:
-        """What the program prints about the scene in a file."""
+        """Run the program on a scene file and return the figures that it prints."""
         size = f"{self.setting.width}x{self.setting.height}"
         command = [str(self.program), str(path), "--size", size, "--threads", str(self.setting.threads), *arguments]
         ran = run(command, text=True)

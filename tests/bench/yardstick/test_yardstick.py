@@ -1,4 +1,4 @@
-"""The yardstick measures the work of this program only if it makes the same pictures."""
+"""The yardstick renders the same pictures as miniRT, so its time measures the same work."""
 
 from __future__ import annotations
 

@@ -89,7 +89,7 @@ def test_other_sources_do_not_change_the_fingerprint(monkeypatch: pytest.MonkeyP
     before = cache_folder.fingerprint()
     package = shutil.copytree(PACKAGE, tmp_path / "elsewhere", ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.setattr(cache_folder, "PACKAGE", package)
-    (package / "cli.py").write_text("")
+    (package / "cli/__init__.py").write_text("")
     assert cache_folder.fingerprint() == before
 
 

@@ -163,7 +163,7 @@ def test_look_at_has_the_target_in_the_middle(roll: float) -> None:
 
 
 def test_look_at_needs_two_places() -> None:
-    with pytest.raises(ValueError, match="two places"):
+    with pytest.raises(ValueError, match="two different points"):
         Camera.look_at((1, 2, 3), (1, 2, 3))
 
 

@@ -1,4 +1,4 @@
-"""The operations that a formula takes for a packet of rays, counted as it is interpreted: as many on every processor.
+"""Count the operations of a formula for a packet of rays while it is interpreted: the same on every processor.
 
 A packet is what the compiled formula works on too, and what a formula skips for all rays of one is not counted. Numbers
 of the shape alone, which are the same for all rays of the packet, count nothing.
@@ -24,14 +24,14 @@ FAST = {
 
 
 class Work(NamedTuple):
-    """The operations of a formula for a packet of rays, on average."""
+    """Mean number of operations of a formula for a packet of rays."""
 
     all: float
-    slow: float  # of these divisions, roots, and whatever else is not `FAST`
+    slow: float  # divisions, roots and all other operations that are not in `FAST`
 
 
 class Counted(np.ndarray[Any, Any]):
-    """An array whose operations are counted, by their names in numpy."""
+    """An array that counts its operations by their numpy names."""
 
     operations: ClassVar[Counter[str]] = Counter()
 
@@ -45,17 +45,17 @@ class Counted(np.ndarray[Any, Any]):
 
 
 def counted(x: Any) -> Any:
-    """The same number for each ray, whose operations are counted."""
+    """Return a number for each ray as an array that counts its operations."""
     return x.view(Counted) if isinstance(x, np.ndarray) else x
 
 
 def plain(x: Any) -> Any:
-    """The same number for each ray, whose operations are not counted."""
+    """Return a number for each ray as a plain array."""
     return np.asarray(x) if isinstance(x, Counted) else x
 
 
 def work(formula: Callable[..., Any], rays: Rays) -> Work:
-    """What a formula, like `Kind.intersect`, takes for the rays."""
+    """Count the operations of a formula, such as `Kind.intersect`, for some rays."""
     Counted.operations.clear()
     packets = 0
     for shape, *each in zip(*rays, strict=True):

@@ -1,4 +1,4 @@
-"""Without lists: everything is tried, and the picture is the same, bit for bit."""
+"""Brute force tries every shape for every ray and gives the same picture, bit for bit."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ def test_the_picture_is_the_same(seed: int) -> None:
     assert np.array_equal(brute, linear(scene, WIDTH, HEIGHT, 3))
 
 
-def test_without_lamps() -> None:
+def test_scenes_without_lights() -> None:
     scene = Scene((AMBIENT, EYE, *SHAPES))
     assert np.array_equal(linear(scene, WIDTH, HEIGHT, 1, brute_force(1)), linear(scene, WIDTH, HEIGHT))
 
 
-def test_every_tile_and_every_lamp_has_every_shape() -> None:
+def test_every_tile_and_every_light_has_every_shape() -> None:
     traced = BruteForce().pack(ALL, WIDTH, HEIGHT)
     for kind, group in enumerate(traced.groups):
         mine = np.flatnonzero(traced.slots[:, 0] == kind).tolist()

@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.report.measurements.flip import flip, seen
+from minirt.report.measurements.flip import flip, perceived
 
 Array = NDArray[np.float64]
 
 
 def waves(height: int = 120, width: int = 160) -> Array:
-    """A picture of soft and of hard edges."""
+    """Make a picture of soft and hard edges."""
     y, x = np.mgrid[:height, :width] / 40
     hard = (np.sin(3 * y) > 0) * 0.8 + 0.1
     return np.stack([np.sin(x * 2 + y) * 0.5 + 0.5, hard, np.cos(x * y) * 0.5 + 0.5], -1)
 
 
 def board(contrast: float, height: int = 120, width: int = 160) -> Array:
-    """Grey, with squares that are bluer and yellower."""
+    """Make a grey picture with bluer and yellower squares."""
     y, x = np.mgrid[:height, :width] // 4
     picture = np.full((height, width, 3), 0.5)
     picture[..., 2] += ((x + y) % 2 - 0.5) * contrast
@@ -27,7 +27,7 @@ def board(contrast: float, height: int = 120, width: int = 160) -> Array:
 
 
 def mean(a: Array, b: Array) -> float:
-    return float(flip(seen(a), seen(b)).mean())
+    return float(flip(perceived(a), perceived(b)).mean())
 
 
 @pytest.mark.parametrize(
@@ -46,13 +46,13 @@ def test_the_figures_of_the_authors(a: Array, b: Array, right: float) -> None:
 
 
 def test_the_same_picture_has_no_error() -> None:
-    assert not flip(seen(waves()), seen(waves())).any()
+    assert not flip(perceived(waves()), perceived(waves())).any()
 
 
 def test_an_error_is_where_the_pictures_differ() -> None:
     one, other = waves(), waves()
     other[60, 80] = 1 - other[60, 80]
-    errors = flip(seen(one), seen(other))
+    errors = flip(perceived(one), perceived(other))
     assert np.unravel_index(errors.argmax(), errors.shape) == (60, 80)
     assert errors[60, 80] > 0.3
     assert not errors[:30].any()

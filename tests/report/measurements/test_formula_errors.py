@@ -1,4 +1,4 @@
-"""Errors of formulas that are wrong by a known amount are found, and those of the real ones are small."""
+"""Known errors of formulas are measured right, and the real formulas have small errors."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from numba.core.registry import cpu_target
 
 from minirt import timing
 from minirt.report.measurements import exact_hits, formula_errors, textbook
-from minirt.report.measurements.eye_rays import from_the_eye
-from minirt.report.measurements.formula_errors import Answers, Row, measured, times_as_long, verdicts
+from minirt.report.measurements.eye_rays import rays_from_the_eye
+from minirt.report.measurements.formula_errors import Answers, Row, compare, measure_formulas, time_ratio
 from minirt.report.measurements.random_rays import Rays
 from minirt.report.measurements.regimes import REGIMES, regimes_of
 from minirt.shapes import KINDS, Kind, Shape, sphere
@@ -36,7 +36,7 @@ EVERY = pytest.mark.parametrize(
 
 @pytest.fixture(autouse=True)
 def machine(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Turns whose times are known."""
+    """Simulate a machine whose runs take known times."""
     monkeypatch.setattr(formula_errors, "in_turn", in_turn)
 
 
@@ -46,7 +46,7 @@ def rays_of(kind: Kind, name: str, shapes: int = 6) -> Rays:
 
 
 def rows_of(kind: Kind, name: str, shapes: int = 6) -> dict[str, Row]:
-    return {row.formula: row for row in measured(kind, name, rays_of(kind, name, shapes))}
+    return {row.formula: row for row in measure_formulas(kind, name, rays_of(kind, name, shapes))}
 
 
 def answers(*t: float, thicker: Any = (), thinner: Any = ()) -> Answers:
@@ -55,15 +55,15 @@ def answers(*t: float, thicker: Any = (), thinner: Any = ()) -> Answers:
 
 def test_errors_by_hand() -> None:
     right = answers(2, 4, inf, 8)
-    assert verdicts(np.array([2.0, 4.0, inf, 8.0]), right) == (3, 0, 0, 0, 0)
-    hits, largest, rms, misses, false = verdicts(np.array([2.5, 4.0, 3.0, inf]), right)
+    assert compare(np.array([2.0, 4.0, inf, 8.0]), right) == (3, 0, 0, 0, 0)
+    hits, largest, rms, misses, false = compare(np.array([2.5, 4.0, 3.0, inf]), right)
     assert (hits, largest, misses, false) == (2, 0.25, 1, 1)
     assert rms == pytest.approx(0.25 / 2**0.5)
 
 
 def test_errors_far_below_the_roundoff_of_the_answer_are_found() -> None:
     exactly = Decimal(1) / 3
-    largest = verdicts(np.array([1 / 3]), Answers([exactly], [exactly], [exactly]))[1]
+    largest = compare(np.array([1 / 3]), Answers([exactly], [exactly], [exactly]))[1]
     assert largest == pytest.approx(float(abs(Decimal(1 / 3) * 3 - 1)), rel=1e-12)
     assert 0 < largest < 2.0**-53
 
@@ -71,20 +71,20 @@ def test_errors_far_below_the_roundoff_of_the_answer_are_found() -> None:
 def test_where_rounding_decides_both_verdicts_are_right() -> None:
     edge = answers(2, thicker=(2,), thinner=(inf,))
     for t in (2.0, inf):
-        hits, largest, _, misses, false = verdicts(np.array([t]), edge)
+        hits, largest, _, misses, false = compare(np.array([t]), edge)
         assert (hits, misses, false) == (0, 0, 0)
         assert isnan(largest)
 
 
 def test_at_an_edge_either_place_that_rounding_chooses_between_is_right() -> None:
     edge = answers(3, thicker=(2,), thinner=(3,))
-    assert [verdicts(np.array([t]), edge)[1] for t in (2.0, 3.0, 2.5)] == [0, 0, pytest.approx(0.5 / 3)]
+    assert [compare(np.array([t]), edge)[1] for t in (2.0, 3.0, 2.5)] == [0, 0, pytest.approx(0.5 / 3)]
     beside = answers(3, thicker=(3 - 1e-6,), thinner=(3,))
-    assert verdicts(np.array([3 - 1e-6]), beside)[1] == pytest.approx(1e-6 / 3)
+    assert compare(np.array([3 - 1e-6]), beside)[1] == pytest.approx(1e-6 / 3)
 
 
 def test_nan_is_a_miss() -> None:
-    assert verdicts(np.array([nan]), answers(2))[3] == 1
+    assert compare(np.array([nan]), answers(2))[3] == 1
 
 
 @EVERY
@@ -123,8 +123,8 @@ def test_times_are_those_of_a_ray_in_the_best_turn(monkeypatch: pytest.MonkeyPat
 
 def test_a_turn_in_which_the_machine_was_slow_counts_no_more_than_another() -> None:
     some, others = [Run(9, 2), Run(9, 30), Run(9, 4)], [Run(9, 1), Run(9, 10), Run(9, 4)]
-    assert times_as_long(some, others) == 2
-    assert isnan(times_as_long(some, []))
+    assert time_ratio(some, others) == 2
+    assert isnan(time_ratio(some, []))
 
 
 def test_runs_of_the_machine_take_time(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -134,7 +134,7 @@ def test_runs_of_the_machine_take_time(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_textbooks_lose_what_is_tiny_and_far() -> None:
-    """float32 loses all of it where the processor rounds a product and a sum once, and most of it where twice."""
+    """float32 loses all such shapes with fused multiply-add, and most of them without."""
     rows = rows_of(BALL, "tiny and far", 12)
     own, naive, single = (rows[name] for name in ("miniRT", "textbook", "miniRT, float32"))
     assert own.max_error < 1e-15
@@ -163,12 +163,12 @@ def test_textbooks_crack_at_rims_and_take_grazing_for_parallel() -> None:
 
 def test_a_worse_formula_has_a_larger_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(formula_errors, "formulas", lambda kind: [("planted", textbook.meets_sphere, np.float64)])
-    (planted,) = measured(BALL, "just above", rays_of(BALL, "just above"))
+    (planted,) = measure_formulas(BALL, "just above", rays_of(BALL, "just above"))
     assert planted.max_error > 1e-6
 
 
 def test_a_formula_and_its_double_are_the_same_rays() -> None:
-    shoot, found = formula_errors.prepared(sphere.intersect, rays_of(BALL, "benign"), BALL, np.float64)
+    shoot, found = formula_errors.prepare(sphere.intersect, rays_of(BALL, "benign"), BALL, np.float64)
     shoot(1)
     once = found.copy()
     shoot(3)
@@ -215,9 +215,9 @@ def test_rays_of_a_scene_start_at_its_eye_and_hit_its_shapes() -> None:
     for kind in KINDS:
         if not any(type(shape) is kind.element for shape in ALL.shapes):
             continue
-        rays = from_the_eye(kind, ALL, np.random.default_rng(1), 8, 32)
+        rays = rays_from_the_eye(kind, ALL, np.random.default_rng(1), 8, 32)
         assert set(rays.shapes) == {shape for shape in ALL.shapes if type(shape) is kind.element}
         assert (rays.origins == ALL.camera.position).all()
-        assert next(measured(kind, "this scene", rays)).hits > 20
-    many = from_the_eye(BALL, ALL, np.random.default_rng(1), 1, 32)
+        assert next(measure_formulas(kind, "this scene", rays)).hits > 20
+    many = rays_from_the_eye(BALL, ALL, np.random.default_rng(1), 1, 32)
     assert len(many.shapes) == 1

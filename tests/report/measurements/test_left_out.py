@@ -1,4 +1,4 @@
-"""What the report says that a scene does without changes no bit of its picture."""
+"""Work that the report says was left out changes no bit of the picture."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def notes(scene: Scene) -> list[str]:
     return packing.notes
 
 
-def test_lamps_without_light() -> None:
+def test_lights_of_no_brightness() -> None:
     off, black = FurtherLight((3, 3, -3), 0.0, (255, 255, 255)), FurtherLight((1, 5, 0), 0.7, (0, 0, 0))
     dark = Scene((*ALL.elements, off, black))
     assert {"light 3 has brightness 0", "light 4 is black"} <= set(notes(dark))
@@ -35,7 +35,7 @@ def test_planes_that_hide_nothing() -> None:
     assert np.array_equal(linear(ALL, 60, 40, 1, brute_force(1)), linear(ALL, 60, 40))  # which tries them
 
 
-def test_kinds_of_shapes_that_are_not_there() -> None:
+def test_shape_types_that_the_scene_lacks() -> None:
     balls = Scene((AMBIENT, EYE, LAMP, *(shape for shape in SHAPES if isinstance(shape, Sphere))))
     assert any(note.startswith("kernel without") and "planes, cylinders" in note for note in notes(balls))
     behind = Cylinder((0, 0, -900), (0, 1, 0), 1, 1, GREY), Plane((0, 0, -901), (0, 0, 1), GREY)

@@ -1,4 +1,4 @@
-"""Errors of pictures, by hand."""
+"""Error metrics of pictures, against values worked out by hand."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from math import inf
 import numpy as np
 import pytest
 
-from minirt.report.measurements.metrics import changed, levels, psnr, rmse, shown
-from minirt.report.output.error_image import HEAT, error_picture
+from minirt.report.measurements.metrics import changed, clamped, psnr, rmse, to_8_bits
+from minirt.report.output.error_image import HEAT, error_image
 
 
 def grey(*values: float) -> np.ndarray:
-    """A line of grey pixels."""
+    """Make a row of grey pixels."""
     return np.repeat(np.array(values)[None, :, None], 3, axis=2)
 
 
@@ -23,11 +23,11 @@ def test_root_mean_square() -> None:
 
 
 def test_what_a_screen_shows() -> None:
-    assert shown(grey(0, 0.5, 7))[0, :, 0].tolist() == [0, 0.5, 1]
+    assert clamped(grey(0, 0.5, 7))[0, :, 0].tolist() == [0, 0.5, 1]
 
 
 def test_levels_are_those_of_the_kernel() -> None:
-    assert levels(grey(0, 0.4999 / 255, 0.5001 / 255, 1))[0, :, 0].tolist() == [0, 0, 1, 255]
+    assert to_8_bits(grey(0, 0.4999 / 255, 0.5001 / 255, 1))[0, :, 0].tolist() == [0, 0, 1, 255]
 
 
 def test_a_pixel_changes_as_a_whole() -> None:
@@ -37,5 +37,5 @@ def test_a_pixel_changes_as_a_whole() -> None:
 
 
 def test_heat_is_logarithmic() -> None:
-    picture = error_picture(grey(0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1), grey(0, 0, 0, 0, 0, 0, 0))
+    picture = error_image(grey(0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1), grey(0, 0, 0, 0, 0, 0, 0))
     assert picture.array[0].tolist() == HEAT[[0, 0, 0, 1, 2, 3, 4]].tolist()

@@ -1,4 +1,4 @@
-"""Exact formulas take little more work than those of textbooks, counted in operations."""
+"""The exact formulas take few more operations than the textbook formulas."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ from tests.report.measurements.operation_counts import PACKET, Work, work
 KIND = {kind.element: kind for kind in KINDS}
 ELEMENTS = pytest.mark.parametrize("element", textbook.FORMULAS, ids=lambda element: element.title)
 
-# All operations, in those of the textbook's formula. A triangle's pay for that no ray passes between two triangles, a
-# sphere's for what is small and far away.
+# Limits of all operations, as multiples of the textbook formula's. The triangle pays for being watertight, the sphere
+# for precision with small and far shapes.
 TIMES = {Sphere: 2.0, Triangle: 1.6} | dict.fromkeys((Plane, Cylinder, Cone, Paraboloid, Hyperboloid), 1.25)
 # Divisions and roots more than those of the textbook's, a packet. The tenth is for packets that a formula skips: which
 # have no ray that may hit is not quite the same for both.
@@ -41,7 +41,7 @@ def rays_of(kind: Kind, count: int = 32) -> Rays:
 
 
 def is_cheap(element: type[Shape], formula: Any) -> bool:
-    """Whether a formula takes as little as is promised beside that of the textbook."""
+    """Test whether a formula stays within its limits relative to the textbook formula."""
     rays = rays_of(KIND[element])
     own, other = work(formula, rays), work(textbook.FORMULAS[element], rays)
     return own.all <= TIMES[element] * other.all and own.slow <= other.slow + SLOW[element]
@@ -54,13 +54,13 @@ def test_exact_formulas_take_little_more_than_those_of_textbooks(element: type[S
 
 
 def always_exact(ball: PackedSphere, origin: Vec, direction: Vec) -> Any:
-    """A sphere's formula that works out the power of each origin with twice the digits, wherever it is."""
+    """Planted expensive formula of the sphere: it computes the power of each origin with twice the digits."""
     hit, t = sphere.intersect(ball, origin, direction)
     return hit & (power(origin, ball.centre, ball.radius) > 0.0), t
 
 
 def with_unit_directions(ball: PackedSphere, origin: Vec, direction: Vec) -> Any:
-    """A sphere's formula that takes a root and a division more than it needs."""
+    """Planted expensive formula of the sphere: it takes a root and a division more than it needs."""
     return sphere.intersect(ball, origin, unit(direction))
 
 
@@ -82,9 +82,9 @@ def test_operations_by_hand() -> None:
 
 @ELEMENTS
 def test_a_compiled_formula_is_one_function(element: type[Shape]) -> None:
-    """Nothing that it calls was left outside of it: a call would pass vectors through memory."""
+    """All called functions are inlined: a call would pass vectors through memory."""
     for formula in (KIND[element].intersect, textbook.FORMULAS[element]):
-        shoot, _ = formula_errors.prepared(formula, rays_of(KIND[element]), KIND[element], np.float64)
+        shoot, _ = formula_errors.prepare(formula, rays_of(KIND[element]), KIND[element], np.float64)
         shoot(1)
         (code, *_) = probe(formula).inspect_llvm().values()
         body = re.search(r"^define .*?^}", code, re.MULTILINE | re.DOTALL)

@@ -1,4 +1,4 @@
-"""What is best is not beaten in time and error both."""
+"""No setting beats one of the Pareto front in both time and error."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 from hypothesis import given
 from hypothesis import strategies as some
 
-from minirt.report.measurements.pareto import closest, fastest, front
+from minirt.report.measurements.pareto import closest, fastest, pareto_front
 
 
 class Point(NamedTuple):
@@ -22,26 +22,26 @@ FEW = some.integers(1, 6).map(float)
 
 
 def test_by_hand() -> None:
-    assert front(POINTS, 0.0) == [ROUGH, FINE]
+    assert pareto_front(POINTS, 0.0) == [ROUGH, FINE]
     assert fastest(POINTS, 0.06) == FINE
     assert fastest(POINTS, 0.1) == ROUGH
     assert fastest(POINTS, 0.001) is None
     assert closest(POINTS, 9.9, 0.0) == ROUGH
     assert closest(POINTS, 1000, 0.0) == FINE
     assert closest(POINTS, 0.5, 0.0) is None
-    assert front([FAILED], 0.0) == []
+    assert pareto_front([FAILED], 0.0) == []
 
 
-def test_who_is_closer_by_less_than_the_doubt_is_not_closer() -> None:
+def test_an_error_smaller_by_less_than_the_doubt_counts_as_equal() -> None:
     close = Point(0.0099, 30)
-    assert front([*POINTS, close], 0.0) == [ROUGH, FINE, close]
-    assert front([*POINTS, close], 0.001) == [ROUGH, FINE]
+    assert pareto_front([*POINTS, close], 0.0) == [ROUGH, FINE, close]
+    assert pareto_front([*POINTS, close], 0.001) == [ROUGH, FINE]
     assert closest([*POINTS, close], 1000, 0.001) == FINE
 
 
 @given(some.lists(some.builds(Point, FEW, FEW), max_size=12), FEW)
-def test_nothing_beats_it(points: list[Point], wanted: float) -> None:
-    best = front(points, 0.0)
+def test_nothing_beats_the_front(points: list[Point], wanted: float) -> None:
+    best = pareto_front(points, 0.0)
     for point in points:
         assert any(other.rmse <= point.rmse and other.wall_ms <= point.wall_ms for other in best)
     for point in best:

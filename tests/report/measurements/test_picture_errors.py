@@ -1,4 +1,4 @@
-"""The figures of pictures, against an independent measurement of the same."""
+"""The measured errors of pictures agree with an independent measurement."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import minirt
 from minirt.errors import RenderError
 from minirt.rendering import scene_packing
 from minirt.report.measurements import picture_errors
-from minirt.report.measurements.picture_errors import Budget, Row, Stage, measured
+from minirt.report.measurements.picture_errors import Budget, Row, SettingRenderer, measure_settings
 from minirt.report.measurements.reference import Reference, passes, reference
 from minirt.report.measurements.settings import KNOBS, Knob, Setting, knobs_of, settings
 from minirt.scene import FurtherLight, Scene
@@ -26,7 +26,7 @@ ONCE = packets(WIDTH, HEIGHT) * PACKET  # seconds of the simulated clock that on
 
 @pytest.fixture(autouse=True)
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    """Time passes by what is rendered alone."""
+    """Simulate a clock that only rendering moves on."""
     return simulated(monkeypatch)
 
 
@@ -36,7 +36,7 @@ def right() -> Reference:
 
 
 def light(samples: int) -> np.ndarray:
-    """The program's own picture."""
+    """Render a picture with the program."""
     made = minirt.render(ALL, WIDTH, HEIGHT, samples=samples).linear
     assert made is not None
     return np.clip(made, 0, 1)
@@ -47,7 +47,12 @@ def error(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def rows_for(*wanted: Setting, budget: Budget = EASY) -> list[Row]:
-    return [row for row, _ in measured(Stage(ALL, WIDTH, HEIGHT, 1), list(wanted), right(), budget, lambda name: None)]
+    return [
+        row
+        for row, _ in measure_settings(
+            SettingRenderer(ALL, WIDTH, HEIGHT, 1), list(wanted), right(), budget, lambda name: None
+        )
+    ]
 
 
 @cache
@@ -100,7 +105,7 @@ def test_more_samples_are_closer_and_take_longer() -> None:
 def test_knobs_do_what_they_say(clock: Clock) -> None:
     uniform, adaptive = rows()["uniform", 16], rows()["adaptive", 16]
     assert adaptive.rmse == pytest.approx(uniform.rmse, rel=0.3)
-    stage, (knob,) = Stage(ALL, WIDTH, HEIGHT, 1), (knob for knob in KNOBS if knob.name == "adaptive")
+    stage, (knob,) = SettingRenderer(ALL, WIDTH, HEIGHT, 1), (knob for knob in KNOBS if knob.name == "adaptive")
     stage.renderer(Setting(knob, 16))
     before = clock.packets
     stage.light(Setting(knob, 16))
@@ -121,13 +126,13 @@ def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
     assert [knob.name for knob in knobs_of(mirrors)] == [*names[:2], names[3], "no bounces", "1 bounce", "3 bounces"]
     right = reference(mirrors, WIDTH, HEIGHT, 256, seed=3)
     wanted = [setting for setting in settings(mirrors, 16) if setting.samples == 16]
-    stage = Stage(mirrors, WIDTH, HEIGHT, 1)
-    rmse = {row.knob: row.rmse for row, _ in measured(stage, wanted, right, EASY, lambda name: None)}
+    stage = SettingRenderer(mirrors, WIDTH, HEIGHT, 1)
+    rmse = {row.knob: row.rmse for row, _ in measure_settings(stage, wanted, right, EASY, lambda name: None)}
     assert rmse["no bounces"] > 2 * rmse["1 bounce"] > 4 * rmse["3 bounces"] > 4 * rmse["uniform"]
 
 
 def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
-    stage = Stage(ALL, WIDTH, HEIGHT, 1)
+    stage = SettingRenderer(ALL, WIDTH, HEIGHT, 1)
     (knob,) = (knob for knob in KNOBS if knob.name == "adaptive")
     made, _ = stage.light(Setting(knob, 4))
     once, everywhere = minirt.render(ALL, WIDTH, HEIGHT, samples=1).linear, minirt.render(ALL, WIDTH, HEIGHT, samples=4)
@@ -139,14 +144,14 @@ def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
 
 
 def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two lamps as bright as no file may have: where both shine straight down, their sum is infinite."""
+    """Two lights brighter than any file may say: where both shine straight down, their sum is infinite."""
     bright = Scene((AMBIENT, EYE, LAMP, FurtherLight(LAMP.position, 1.0), *SHAPES))
     monkeypatch.setattr(
         scene_packing, "light_numbers", lambda lamps: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps))
     )
-    stage = Stage(bright, WIDTH, HEIGHT, 1)
+    stage = SettingRenderer(bright, WIDTH, HEIGHT, 1)
     wanted = list(settings(bright, 4))
-    rows = [row for row, _ in measured(stage, wanted, right(), EASY, lambda name: None)]
+    rows = [row for row, _ in measure_settings(stage, wanted, right(), EASY, lambda name: None)]
     counts = {(row.knob, row.samples): row.not_finite for row in rows}
     assert 0 < counts["uniform", 1] < WIDTH * HEIGHT
     assert counts["uniform", 4] == pytest.approx(4 * counts["uniform", 1], rel=0.05)

@@ -1,4 +1,4 @@
-"""Stiff scenes are found, with figures that are known by hand; easy ones are not."""
+"""Stiff scenes are found, with figures worked out by hand; easy scenes are not reported."""
 
 from __future__ import annotations
 
@@ -149,6 +149,6 @@ def test_a_cap_on_a_wall_is_found_and_surfaces_that_cross_are_not() -> None:
     assert close(wall, Sphere((0, 0, 9), 6, RED), across) == []
 
 
-def test_what_it_says_has_its_figures() -> None:
+def test_the_text_has_the_figures() -> None:
     found = Stiff("sphere 1", "small", {"size": 1e-6, "single": 0.1234})
     assert str(found) == "sphere 1: small (size 1e-06, single 0.12)"

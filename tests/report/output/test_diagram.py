@@ -1,4 +1,4 @@
-"""The diagram shows what was measured."""
+"""The work-precision diagram shows the measured settings."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ def drawn(*rows: Row, reference: float = 0.001) -> np.ndarray:
 
 
 def area(picture: np.ndarray, colour: str) -> int:
-    """How many pixels have that colour."""
+    """Count the pixels of a colour."""
     return int((picture == list(bytes.fromhex(colour[1:]))).all(axis=-1).sum())
 
 
 def uprights(picture: np.ndarray) -> int:
-    """How many lines, dashed or not, go from the bottom to the top."""
+    """Count the vertical lines, dashed or not, from the bottom to the top."""
     dark = (picture.max(axis=-1) < 190).mean(axis=0) > 0.4
     return int((np.diff(dark.astype(int)) == 1).sum())
 
@@ -56,12 +56,22 @@ def test_points_that_are_not_valid_are_hollow() -> None:
     assert area(hollow, RED) < area(solid, RED) - 50
 
 
-def test_the_error_of_the_reference_is_a_line() -> None:
+def test_the_error_of_the_reference_is_a_line_among_the_points() -> None:
     rows = row("uniform", 1), row("uniform", 4)
-    assert uprights(drawn(*rows)) == uprights(drawn(*rows, reference=0.0)) + 1
+    without = drawn(*rows, reference=0.0)
+    assert uprights(drawn(*rows, reference=0.05)) == uprights(without) + 1
 
 
-def test_what_failed_is_not_drawn_and_does_no_harm() -> None:
+def test_the_error_of_the_reference_takes_no_room_beside_the_points() -> None:
+    """Far left of all points it is told in the legend, and the axis stays as it is."""
+    rows = row("uniform", 1), row("uniform", 4)
+    without, beside = drawn(*rows, reference=0.0), drawn(*rows, reference=1e-5)
+    assert uprights(beside) == uprights(without)
+    assert np.array_equal(beside[-60:], without[-60:])  # the labels of the axis of errors
+    assert not np.array_equal(beside, without)
+
+
+def test_failed_settings_are_not_drawn() -> None:
     picture = drawn(row("uniform", 1), row("uniform", 4), Row("failed", 1))
     assert area(picture, RED) > 500
     assert drawn(Row("failed", 1)).shape == picture.shape

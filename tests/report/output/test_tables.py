@@ -1,4 +1,4 @@
-"""What is written can be read again."""
+"""Tables that were written as CSV or JSON can be read again."""
 
 from __future__ import annotations
 

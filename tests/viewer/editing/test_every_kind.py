@@ -16,7 +16,7 @@ from minirt.fields import Direction, Picture, Point
 from minirt.materials import Compound
 from minirt.rendering.queries.pick import covers
 from minirt.scene import Background, Resolution, Scene, dump, load, parse
-from minirt.scene.camera_frame import camera_frame, mix
+from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
@@ -115,7 +115,7 @@ def test_it_moves_and_turns(kind: type[Element], path: Path) -> None:
     for action, axis in axes.items():
         moved = fine(apply(state, action))
         for name in named(kind, Point):
-            there = mix(1.0, getattr(state.element, name), state.stride, axis)
+            there = linear_combination(1.0, getattr(state.element, name), state.stride, axis)
             assert getattr(moved.element, name) == pytest.approx(there, abs=1e-4 * state.stride)
         assert bool(named(kind, Point)) == (moved.element != state.element) == (not moved.message)
     for action in ("turn right", "turn up"):

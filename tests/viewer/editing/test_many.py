@@ -7,7 +7,7 @@ from unittest.mock import patch
 import pytest
 
 from minirt.scene import Scene, parse
-from minirt.scene.pages import ITEMS
+from minirt.scene.pages import PAGE_LENGTH
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.display.overlay import line
 from minirt.viewer.editing.editor import apply
@@ -22,7 +22,7 @@ CHOICES = ("select next", "select previous", "select camera", "select light", "n
 @pytest.fixture(scope="module")
 def many() -> Scene:
     """A scene of many pages."""
-    spheres = "\n".join(f"sp 0,0,{1 + index % 100} 0.5 1,2,3" for index in range(30 * ITEMS))
+    spheres = "\n".join(f"sp 0,0,{1 + index % 100} 0.5 1,2,3" for index in range(30 * PAGE_LENGTH))
     return parse(HEAD + spheres + "\nl 0,0,0 1\n").scene
 
 
@@ -38,7 +38,7 @@ def test_an_action_asks_few_spheres_for_anything(many: Scene, action: str, selec
     state = apply(apply(opened(many), selected), "right")
     with patch.object(Sphere, "__getattribute__", ask):
         line(apply(state, action))
-        assert len(asked) <= 2 * ITEMS
+        assert len(asked) <= 2 * PAGE_LENGTH
 
 
 def test_undo_shares_all_but_a_page_of_each_scene(many: Scene) -> None:

@@ -1,4 +1,4 @@
-"""Many tuples as one sequence, so that two long sequences can share most of what they hold."""
+"""Concatenation of tuples that is not copied, so that two long sequences can share most of their parts."""
 
 from __future__ import annotations
 
@@ -10,20 +10,23 @@ from typing import TypeVar, overload
 T_co = TypeVar("T_co", covariant=True)
 
 
-class Chained(Sequence[T_co]):
-    """Immutable; equal to every tuple, and to every other chain, that holds the same. A slice is a tuple."""
+class Concatenation(Sequence[T_co]):
+    """Immutable sequence of the entries of several tuples; equal to a tuple or concatenation of equal entries.
+
+    A slice is a tuple.
+    """
 
     def __init__(self, parts: Iterable[tuple[T_co, ...]]) -> None:
         self.parts = tuple(parts)
         self.ends = tuple(accumulate(map(len, self.parts)))
 
     def locate(self, index: int) -> tuple[int, int]:
-        """Which part the entry at `index` is in, and where in that part; IndexError where there is none."""
-        at = index + len(self) if index < 0 else index
-        if not 0 <= at < len(self):
+        """Return the number of the part with entry `index`, and the index in that part; IndexError beyond the end."""
+        position = index + len(self) if index < 0 else index
+        if not 0 <= position < len(self):
             raise IndexError(f"no index {index} in a sequence of {len(self)}")
-        part = bisect_right(self.ends, at)
-        return part, at - (self.ends[part - 1] if part else 0)
+        part = bisect_right(self.ends, position)
+        return part, position - (self.ends[part - 1] if part else 0)
 
     def __len__(self) -> int:
         return self.ends[-1] if self.ends else 0
@@ -40,13 +43,13 @@ class Chained(Sequence[T_co]):
     def __getitem__(self, index: int | slice) -> T_co | tuple[T_co, ...]:
         if isinstance(index, slice):
             return tuple(self)[index]
-        part, at = self.locate(index)
-        return self.parts[part][at]
+        part, offset = self.locate(index)
+        return self.parts[part][offset]
 
     def __eq__(self, other: object) -> bool:
-        if isinstance(other, Chained) and self.parts == other.parts:
+        if isinstance(other, Concatenation) and self.parts == other.parts:
             return True
-        return isinstance(other, (Chained, tuple)) and len(self) == len(other) and tuple(self) == tuple(other)
+        return isinstance(other, (Concatenation, tuple)) and len(self) == len(other) and tuple(self) == tuple(other)
 
     def __hash__(self) -> int:
         return hash(tuple(self))

@@ -1,6 +1,6 @@
-"""python -m tests.cli.telling: the program, which tells on standard error when threads are at work on a picture.
+"""`python -m tests.cli.announcing`: the program, which prints a line to standard error when it begins to render.
 
-So a test that interrupts it has an event to wait for.
+Tests that interrupt it wait for this line.
 """
 
 from __future__ import annotations
@@ -18,24 +18,24 @@ from tests.waiting import until
 RENDERING = b"rendering"
 
 
-def tell() -> None:
-    """Tell of each picture from now on, but for those of a pixel, for which kernels are compiled."""
+def announce_rendering() -> None:
+    """Patch the renderer to announce each picture, except pictures of one pixel, which only compile kernels."""
     run = Renderer.run
 
-    def telling(self: Renderer, frames: list[Frame], threads: int) -> None:
+    def announcing(self: Renderer, frames: list[Frame], threads: int) -> None:
         if frames[0].pixels.size > 1:
             Thread(target=watch, args=(frames[0].next_row,), daemon=True).start()
         run(self, frames, threads)
 
-    Renderer.run = telling  # type: ignore[method-assign]
+    Renderer.run = announcing  # type: ignore[method-assign]
 
 
 def watch(next_row: Any) -> None:
-    """Tell when a thread has taken the first row, in one piece: others write on standard error, too."""
+    """Announce when a thread has taken the first row; in one write, for others write to standard error too."""
     until(lambda: bool(next_row[0]), "the first row")
     os.write(2, RENDERING + b"\n")
 
 
 if __name__ == "__main__":
-    tell()
+    announce_rendering()
     sys.exit(main())

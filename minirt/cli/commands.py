@@ -1,0 +1,58 @@
+"""Commands of the program, and their selection by options.
+
+A command takes a scene and the options, and returns an exit status.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from minirt.cli.exit_status import OK
+from minirt.cli.picture import render_to_file
+from minirt.cli.turntable import render_turntable
+from minirt.cli.window import replay, show
+
+if TYPE_CHECKING:
+    from minirt.scene import Scene
+
+Command = Callable[["Scene", argparse.Namespace], int]
+
+
+def command_for(options: argparse.Namespace) -> Command:
+    """Return the command that the options select; showing a window is the default."""
+    commands: tuple[tuple[object, Command], ...] = (
+        (options.check, check),
+        (options.bench, bench),
+        (options.report, report),
+        (options.replay, replay),
+        (options.turntable, render_turntable),
+        (options.output, render_to_file),
+    )
+    return next((command for selected, command in commands if selected), show)
+
+
+def check(scene: Scene, options: argparse.Namespace) -> int:
+    """Print that the scene was read without errors, and the number of its shapes and lights."""
+    print(f"{options.scene[0]}: no errors, {len(scene.shapes)} shapes, {len(scene.lights)} lights")
+    return OK
+
+
+def bench(scene: Scene, options: argparse.Namespace) -> int:
+    """Measure the frame time and print it."""
+    from minirt.bench import measure, report
+
+    measured = measure(options.scene[0], scene, options.size, options.threads, options.precision)
+    print(report(measured, options.json))
+    return OK
+
+
+def report(scene: Scene, options: argparse.Namespace) -> int:
+    """Measure error against run time and write the report into a folder."""
+    import minirt
+    from minirt.report import report as write_report
+
+    size = options.size or minirt.size_of(scene)
+    print(write_report(scene, options.scene[0], options.report, size, options.threads, options.quick))
+    return OK

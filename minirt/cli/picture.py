@@ -1,0 +1,76 @@
+"""Rendering one picture to a file or to standard output."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from minirt.cli.arguments import SAMPLES
+from minirt.cli.exit_status import OK
+from minirt.gc_pause import uncollected
+
+if TYPE_CHECKING:
+    from minirt.image import Image
+    from minirt.scene import Scene
+
+
+def render_to_file(scene: Scene, options: argparse.Namespace) -> int:
+    """Render the scene and write the picture to the output."""
+    with uncollected():
+        write(render(scene, options), options.output)
+    return OK
+
+
+def render(scene: Scene, options: argparse.Namespace) -> Image:
+    """Render the scene as the options ask; print measurements and notices to standard error."""
+    from time import perf_counter
+
+    import minirt
+
+    width, height = options.size or minirt.size_of(scene)
+    start = perf_counter()
+    renderer = minirt.renderer(options.threads, options.precision, options.depth)
+    if options.verbose:
+        renderer.prepare(scene)
+        print(f"kernel ready after {perf_counter() - start:.2f} s", file=sys.stderr)
+        start = perf_counter()
+    samples = options.samples or SAMPLES
+    image = minirt.render(
+        scene,
+        width,
+        height,
+        samples=samples,
+        error=options.error,
+        time=options.time,
+        threads=options.threads,
+        precision=options.precision,
+        depth=options.depth,
+    )
+    if image.reached:
+        print(image.reached, file=sys.stderr)
+    if options.precision == "single":
+        from minirt.report.measurements.stiffness import lost_in_single
+
+        for stiff in lost_in_single(scene, renderer.packing, width, height):
+            print(f"notice: single precision cannot show {stiff}", file=sys.stderr)
+    if options.verbose:
+        sampling = "" if image.reached else f"{samples} samples a pixel, "
+        print(
+            f"{width}x{height}, {sampling}{renderer.threads} threads, {renderer.precision} precision: "
+            f"{(perf_counter() - start) * 1e3:.1f} ms",
+            f"rays whose light is not finite: {renderer.not_finite}",
+            *renderer.packing.notes,
+            sep="\n",
+            file=sys.stderr,
+        )
+    return image
+
+
+def write(image: Image, output: str) -> None:
+    """Write a picture to a file, or to standard output as PNG when `output` is `-`."""
+    if output == "-":
+        sys.stdout.buffer.write(image.encode())
+        sys.stdout.buffer.flush()
+        return
+    image.save(output)

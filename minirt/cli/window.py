@@ -1,0 +1,74 @@
+"""Showing a scene in a window, and replaying recorded keys without one."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from typing import TYPE_CHECKING, Any
+
+from minirt.cli.arguments import SAMPLES, WINDOW_SAMPLES
+from minirt.cli.exit_status import OK
+from minirt.cli.picture import render, write
+from minirt.errors import MlxError, ReplayError
+
+if TYPE_CHECKING:
+    from minirt.scene import Scene
+
+
+def show(scene: Scene, options: argparse.Namespace) -> int:
+    """Show the scene in a window until it is closed; without a display, render to the fallback file if there is one."""
+    import minirt
+    from minirt import viewer
+
+    try:
+        return viewer.run(
+            scene,
+            path=options.scene[0],
+            size=options.size,
+            keys=options.keys,
+            lenient=options.lenient,
+            samples=options.samples or WINDOW_SAMPLES,
+            watch=options.watch,
+            renderer=minirt.renderer(options.threads, options.precision, options.depth),
+        )
+    except MlxError as error:
+        if not options.fallback:
+            raise
+        print(f"{error}\nNo window: rendering to {options.fallback} instead.")
+        write(render(scene, options), options.fallback)
+        print(f"The picture is in {os.path.abspath(options.fallback)}")  # noqa: PTH100
+        return OK
+
+
+def replay(scene: Scene, options: argparse.Namespace) -> int:
+    """Play recorded keys without a window; write the last frame, or all frames as a GIF, to the output if given."""
+    import minirt
+    from minirt.viewer.app.animation import FPS, animation
+    from minirt.viewer.app.replay import replay as play
+
+    lines = read_lines(options.replay)
+    settings: dict[str, Any] = {
+        "file": options.replay,
+        "renderer": minirt.renderer(options.threads, options.precision, options.depth),
+        "size": options.size or minirt.size_of(scene),
+        "path": options.scene[0],
+        "keys": "qwerty" if options.keys == "auto" else options.keys,  # the same on every machine
+        "lenient": options.lenient,
+        "samples": options.samples or SAMPLES,
+    }
+    if options.output and options.output.lower().endswith(".gif"):
+        minirt.save_movie(animation(scene, lines, **settings), options.output, FPS)
+        return OK
+    pixels = play(scene, lines, **settings)
+    if options.output:
+        write(minirt.Image.from_bgra(pixels), options.output)
+    return OK
+
+
+def read_lines(path: str) -> list[str]:
+    """Return the lines of a file of recorded keys; ReplayError when it cannot be read."""
+    try:
+        with open(path, encoding="utf-8") as file:  # noqa: PTH123
+            return file.read().split("\n")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ReplayError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
