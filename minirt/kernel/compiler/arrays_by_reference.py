@@ -1,4 +1,4 @@
-"""Items of arrays that are passed by reference: read, set, and given to operations that read arrays."""
+"""Arrays that are passed by reference: reading and writing items, and operations that read whole arrays."""
 
 from __future__ import annotations
 

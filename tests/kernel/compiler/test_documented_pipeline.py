@@ -1,4 +1,4 @@
-"""Where numba's private interfaces have changed: the same pictures by its documented means, and one notice."""
+"""Fallback to numba's documented pipeline: the same pictures bit by bit, and one notice."""
 
 from __future__ import annotations
 
