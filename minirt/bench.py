@@ -1,4 +1,4 @@
-"""How long a frame takes."""
+"""Benchmark of a scene: time to load, to compile and to render a frame."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ LEAST_FRAMES, LEAST_SECONDS = 9, 1.0
 def measure(
     path: str, scene: Scene, size: tuple[int, int] | None, threads: int | None, precision: str
 ) -> dict[str, str | float]:
-    """Time of reading, in seconds, and of frames, in milliseconds.
+    """Measure the time to load a scene, in seconds, and to render frames, in milliseconds.
 
-    `compile_s` is the time until the kernel is ready: of compiling it, or of loading it where it was compiled before.
+    `compile_s` is the time until the kernel is ready: to compile it, or to load it if it was compiled before.
     """
     start = perf_counter()
     load(path, lenient=True)
@@ -48,5 +48,5 @@ def measure(
 
 
 def report(measured: dict[str, str | float], as_json: bool) -> str:
-    """What was measured as a JSON object, or as a line of text."""
+    """Format measurements as a JSON object or as a line of text."""
     return json.dumps(measured) if as_json else ", ".join(f"{name} {value}" for name, value in measured.items())

@@ -1,4 +1,4 @@
-"""How long something takes, and whether other programs had a part in that."""
+"""Measures run times, and whether other programs disturbed them."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from collections.abc import Callable, Collection
 from time import perf_counter, process_time
 from typing import NamedTuple
 
-DISTURBED = 1.15  # of the time that passed to the time of the processors
+DISTURBED = 1.15  # ratio of wall time to processor time from which a run counts as disturbed
 
 
 class Run(NamedTuple):
-    """Seconds that passed, and those of the processors, of all threads of this program together."""
+    """Wall time and processor time of a run in seconds; the latter is the sum over all threads of this program."""
 
     wall: float
     cpu: float
 
 
 def runs(work: Callable[[], object], least: int, seconds: float) -> list[Run]:
-    """The times of at least so many runs, and of as many more as it takes to fill so many seconds."""
+    """Time at least `least` runs of some work, and more until they take `seconds` together."""
     times: list[Run] = []
     while len(times) < least or sum(run.wall for run in times) < seconds:
         wall, cpu = perf_counter(), process_time()
@@ -27,10 +27,10 @@ def runs(work: Callable[[], object], least: int, seconds: float) -> list[Run]:
 
 
 def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[Run, ...]]:
-    """The times of so many runs of each work. They take turns: what else the machine does slows all of them alike."""
+    """Time so many runs of each work. The works take turns, so that other load on the machine slows them all alike."""
     return [*zip(*([runs(work, 1, 0.0)[0] for work in works] for _ in range(times)), strict=True)]
 
 
 def is_disturbed(run: Run, threads: int) -> bool:
-    """Whether the threads had to wait for a processor: more time passed than they worked."""
+    """Whether the threads of a run had to wait for a processor: its wall time exceeds their processor time."""
     return run.wall * threads > DISTURBED * run.cpu

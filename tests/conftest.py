@@ -1,4 +1,4 @@
-"""Set the tests up: share them out to all processors, and make them run alike on every machine."""
+"""Set up the tests: distribute them to all processors, and make them independent of the machine."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import threading
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests import scheduling, surroundings
+from tests import environment, scheduling
 from tests.windows import desktop
 
 __all__ = ["desktop"]
 
-surroundings.prepare()  # before the compiler is imported, which reads the environment once
+environment.prepare()  # before the compiler is imported, which reads the environment once
 
-# A slow machine is no failure: hypothesis does not look at the clock.
+# A slow machine is no failure: hypothesis has no time limits.
 settings.register_profile("miniRT", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("miniRT")
 
@@ -23,15 +23,14 @@ pytest_xdist_make_scheduler = pytest.hookimpl(optionalhook=True)(scheduling.make
 
 
 def pytest_configure() -> None:
-    """Let Ctrl+C reach the tests, and the programs that they start, where the caller ignores it, as `nohup make test &`
-    in a script does."""
+    """Enable Ctrl+C for the tests and their programs even if the caller ignores it, as `nohup make test &` in a
+    script does."""
     if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark slow tests, and put the largest pieces of work first, so that no process has one left when the others have
-    nothing to do."""
+    """Mark slow tests, and sort the largest groups first, so that no process starts one when the others are idle."""
     for item in items:
         if scheduling.is_slow(item.nodeid):
             item.add_marker(pytest.mark.slow)

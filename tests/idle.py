@@ -1,9 +1,9 @@
-"""Whether a program sleeps, by Linux's count of how often each of its threads gave up a processor or lost it.
+"""Detect that a program sleeps, by Linux's count of context switches of each of its threads.
 
-A thread that runs, however shortly, and sleeps again has a higher count than before. So a thread that sleeps at both
-ends of a stretch, with the same count, slept all the while, on any machine and under any load.
+A thread that runs, however briefly, and sleeps again has a higher count than before. So a thread that sleeps at both
+ends of a period with the same count slept all the time, on any machine and under any load.
 
-How long a stretch has to be is said in steps of a clock, which is anything that counts up, such as the turns of another
+The length of the period is given in steps of a clock, which is any counter, such as the context switches of another
 program:
 
     until_idle(process.pid, lambda: switches(other.pid), 30)
@@ -20,37 +20,37 @@ from tests.waiting import until
 
 
 class Thread(NamedTuple):
-    """A thread at one moment."""
+    """State of a thread at one moment."""
 
     asleep: bool
-    switches: int  # how often it gave up a processor or lost it
+    switches: int  # context switches so far
 
 
 def threads(process: int) -> dict[int, Thread]:
-    """The threads of a process by Linux's numbers; the main thread's is that of the process."""
-    found = {}
+    """Return the threads of a process by their ids; that of the main thread is the process id."""
+    result = {}
     for folder in Path(f"/proc/{process}/task").iterdir():
-        with suppress(FileNotFoundError, ProcessLookupError):  # it ended while we looked
-            found[int(folder.name)] = _thread((folder / "status").read_text())
-    return found
+        with suppress(FileNotFoundError, ProcessLookupError):  # the thread has just ended
+            result[int(folder.name)] = _thread((folder / "status").read_text())
+    return result
 
 
 def switches(process: int, thread: int | None = None) -> int:
-    """Count how often a thread gave up a processor or lost it; without a number it is the main thread."""
+    """Count the context switches of a thread; by default of the main thread."""
     return threads(process)[process if thread is None else thread].switches
 
 
 def until_idle(process: int, clock: Callable[[], int], steps: int, awake: Collection[int] = ()) -> None:
-    """Wait for a stretch of so many steps of the clock in which no thread of the process ran.
+    """Wait for a period of `steps` steps of the clock in which no thread of the process ran.
 
-    `awake`: numbers of threads that may run all the same.
+    awake: ids of threads that are ignored.
     """
     before: dict[int, Thread] = {}
     start = 0
 
-    def still() -> bool:
+    def is_idle() -> bool:
         nonlocal before, start
-        end = clock()  # before the threads are looked at, and after that where a stretch begins
+        end = clock()  # read before the threads are examined; the start of a period is read after that
         now = {number: thread for number, thread in threads(process).items() if number not in awake}
         assert now, f"process {process} has no such threads"
         if now == before and all(thread.asleep for thread in now.values()):
@@ -58,11 +58,11 @@ def until_idle(process: int, clock: Callable[[], int], steps: int, awake: Collec
         before, start = now, clock()
         return False
 
-    until(still, f"a stretch of {steps} steps in which process {process} sleeps")
+    until(is_idle, f"a period of {steps} steps in which process {process} sleeps")
 
 
 def _thread(status: str) -> Thread:
-    """Read what Linux says of a thread."""
+    """Parse the status file of a thread in /proc."""
     fields = dict(line.split(":", 1) for line in status.splitlines())
     counts = (fields[name] for name in ("voluntary_ctxt_switches", "nonvoluntary_ctxt_switches"))
     return Thread(fields["State"].split()[0] == "S", sum(map(int, counts)))

@@ -1,4 +1,4 @@
-"""Lines that a running program writes, one by one."""
+"""Read the output of a running program line by line."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from tests.waiting import until
 
 
 def next_line(process: subprocess.Popen[Any]) -> str:
-    """Wait for the next line of standard output, a pipe, and return it without its end; EOFError where none comes.
+    """Wait for the next line of standard output, a pipe, and return it without its line end. EOFError at the end.
 
-    No more than the line is taken: `communicate` finds the rest.
+    Only the line is read from the pipe: `communicate` returns the rest.
     """
     assert process.stdout is not None
     pipe = process.stdout.fileno()

@@ -1,5 +1,7 @@
-"""Programs that tests start. Each has a process group of its own, so that a test which fails or is interrupted leaves
-nothing running: neither the program nor what the program started."""
+"""Start programs in tests, each in its own process group.
+
+A test that fails or is interrupted leaves nothing running: neither the program nor its child processes.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,7 @@ from tests.waiting import HANG_LIMIT
 
 @contextmanager
 def started(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen[Any]]:
-    """A running program; when the block ends, whatever of its process group still runs is killed.
+    """Start a program. At the end of the block all processes of its group are killed.
 
     `options` are those of `subprocess.Popen`.
     """
@@ -27,13 +29,13 @@ def started(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen
 
 
 def kill_group(process: subprocess.Popen[Any]) -> None:
-    """Kill the program and all that it started."""
+    """Kill a program and its child processes."""
     with suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
 
 
 def run(command: Sequence[str], **options: Any) -> subprocess.CompletedProcess[Any]:
-    """Run a program to its end, with what it wrote; subprocess.TimeoutExpired after `HANG_LIMIT`.
+    """Run a program to its end and return its output. subprocess.TimeoutExpired after `HANG_LIMIT`.
 
     `options` are those of `subprocess.Popen`; `text=True` decodes standard output and standard error.
     """

@@ -1,5 +1,8 @@
-"""Which process runs which tests: files as a whole, so that what a file prepares is prepared once. Some files are one
-piece of work: all that open windows, which share a screen, and all that compile the kernels of all scenes."""
+"""Distribute tests to processes: each file is a whole, so that its fixtures are made once.
+
+Some files form a group in one process: those that open windows, which share a screen, and those that compile the
+kernels of all scenes.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +14,10 @@ import pytest
 from tests.paths import ROOT
 
 WINDOWS, SCENES = "windows", "scenes"
-FIRST = (WINDOWS, SCENES)  # they take longest
-OF_SCENES = {"tests/test_goldens.py", "tests/stability/test_pictures.py", "tests/rendering/queries/test_preview.py"}
+LARGEST = (WINDOWS, SCENES)  # the groups that take longest start first
+SCENE_TESTS = {"tests/test_goldens.py", "tests/stability/test_pictures.py", "tests/rendering/queries/test_preview.py"}
 
-# What `make quick` leaves out: these take two thirds of the time of all tests that open no window.
+# Files that `make quick` skips: they take two thirds of the time of all tests that open no window.
 SLOW = {
     "tests/bench/yardstick/test_yardstick.py",
     "tests/kernel/bvh/test_queries.py",
@@ -54,35 +57,35 @@ def is_slow(test: str) -> bool:
 
 
 def file_of(test: str) -> str:
-    """The file of a test, such as tests/shapes/test_torus.py::test_a_waist[0.1]."""
+    """Return the file of a test, such as tests/shapes/test_torus.py::test_a_waist[0.1]."""
     return test.split("::", maxsplit=1)[0]
 
 
 @cache
 def opens_windows(file: str) -> bool:
-    """Whether tests of a file open windows: whether its source has the mark."""
+    """Whether tests of a file open windows, by the mark in its source."""
     return "pytest.mark.window" in (ROOT / file).read_text(encoding="utf-8")
 
 
-def piece_of_work(test: str) -> str:
-    """The name of all that a test is run together with, in one process."""
+def work_group(test: str) -> str:
+    """Return the name of the group of tests that run in one process with a test."""
     file = file_of(test)
-    return SCENES if file in OF_SCENES else WINDOWS if opens_windows(file) else file
+    return SCENES if file in SCENE_TESTS else WINDOWS if opens_windows(file) else file
 
 
 def order(test: str) -> int:
-    """A number by which tests are sorted."""
-    piece = piece_of_work(test)
-    return FIRST.index(piece) if piece in FIRST else len(FIRST)
+    """Sort key of a test: the largest groups come first."""
+    group = work_group(test)
+    return LARGEST.index(group) if group in LARGEST else len(LARGEST)
 
 
 def make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """The scheduler of pytest-xdist for these pieces of work, in the order in which pytest has them."""
+    """Make a scheduler of pytest-xdist for these groups, in pytest's order."""
     from xdist.scheduler import LoadScopeScheduling
 
-    class Pieces(LoadScopeScheduling):
+    class GroupScheduling(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
-            return piece_of_work(nodeid)
+            return work_group(nodeid)
 
     config.option.loadscopereorder = False
-    return Pieces(config, log)
+    return GroupScheduling(config, log)

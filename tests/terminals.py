@@ -1,4 +1,4 @@
-"""A terminal for programs that tests start: what they write on it tells how far they are."""
+"""Pseudo-terminal for programs in tests, whose output shows their progress."""
 
 from __future__ import annotations
 
@@ -10,59 +10,61 @@ from tests.waiting import until
 
 
 class Terminal:
-    """`end` is where a program writes; what it wrote is kept in `text`."""
+    """A pseudo-terminal: programs write to the descriptor `end`, and `text` collects their output."""
 
     def __init__(self, reader: int, end: int) -> None:
         self.reader, self.end = reader, end
         self.text = b""
-        self.seen = 0  # characters of it that were waited for
+        self.seen = 0  # length of the text up to the last awaited words
         self.is_open = True
 
     def read(self) -> bytes:
-        """All that was written until now."""
+        """Read and return all output until now."""
         part = b"."
         while part:
             try:
                 part = os.read(self.reader, 4096)
             except BlockingIOError:
                 break
-            except OSError:  # nobody has the other end any more: Linux
+            except OSError:  # Linux: the other end is closed
                 part = b""
             self.text += part
             self.is_open = bool(part)
         return self.text
 
     def wait_for(self, words: bytes) -> None:
-        """Wait until a program has written these words, after those of the last wait; AssertionError where it ends
-        without them."""
+        """Wait until a program has written these words after those of the last wait.
 
-        def are_there() -> bool:
+        AssertionError if it ends without them.
+        """
+
+        def written() -> bool:
             self.read()
-            found = self.text.find(words, self.seen)
-            assert found >= 0 or self.is_open, self.text
-            self.seen = self.seen if found < 0 else found + len(words)
-            return found >= 0
+            index = self.text.find(words, self.seen)
+            assert index >= 0 or self.is_open, self.text
+            self.seen = self.seen if index < 0 else index + len(words)
+            return index >= 0
 
-        until(are_there, repr(words))
+        until(written, repr(words))
 
     def wait_for_end(self) -> bytes:
-        """Wait until no program can write any more, and return all that was written."""
+        """Wait until all programs have closed the terminal, and return all output."""
 
-        def is_over() -> bool:
+        def is_closed() -> bool:
             self.read()
             return not self.is_open
 
-        until(is_over, "the end of what is written")
+        until(is_closed, "the end of the output")
         return self.text
 
     def leave(self) -> None:
-        """Let go of the end that programs have, after they were started."""
+        """Close this process's copy of the programs' end. Call this after they were started."""
         os.close(self.end)
 
 
 @contextmanager
 def terminal() -> Iterator[Terminal]:
-    """A terminal; `leave` must be called when the program has been started."""
+    """Open a pseudo-terminal; `leave` must be called after the program was started."""
     reader, end = os.openpty()
     os.set_blocking(reader, False)
     try:

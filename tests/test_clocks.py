@@ -1,4 +1,4 @@
-"""No test looks at a clock, sleeps, or gives up a wait before `HANG_LIMIT`: read from the sources of all tests."""
+"""No test reads a clock, sleeps, or limits a wait other than by `HANG_LIMIT`: checked in the sources of all tests."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ CLOCKS = {
     for unit in ("", "_ns")
 }
 CLOCKS |= {"sleep"}
-WAITS = {"wait", "join", "communicate", "acquire", "result"}  # methods that take seconds
-LIMITS = {"timeout", "patience", "deadline"}  # arguments that are seconds
-MEASURES = {  # what is there to measure time, or to play for as long as somebody says
+WAITS = {"wait", "join", "communicate", "acquire", "result"}  # methods with seconds as an argument
+LIMITS = {"timeout", "patience", "deadline"}  # arguments in seconds
+EXEMPT = {  # files that measure time, or run for a given time
     "waiting.py",
     "stability/mutation.py",
     "viewer/monkey.py",
@@ -30,13 +30,13 @@ MEASURES = {  # what is there to measure time, or to play for as long as somebod
 }
 
 
-def wrong(source: str) -> list[str]:
-    """The places of a source at which time counts, as line and reason."""
+def violations(source: str) -> list[str]:
+    """List the places of a source that depend on time, as line and reason."""
     return [f"{node.lineno}: {reason}" for node in ast.walk(ast.parse(source)) for reason in reasons(node)]
 
 
 def reasons(node: ast.AST) -> Iterator[str]:
-    """What is wrong with a piece of a program."""
+    """Yield the reasons why a node of the syntax tree depends on time."""
     if isinstance(node, ast.ImportFrom) and node.module == "time":
         yield from (f"imports {each.name}" for each in node.names if each.name in CLOCKS)
     if isinstance(node, ast.Attribute) and ast.unparse(node.value) == "time" and node.attr in CLOCKS:
@@ -58,19 +58,20 @@ def reasons(node: ast.AST) -> Iterator[str]:
 
 
 def in_simulated_time(function: ast.AST) -> bool:
-    """Whether it is a method of the window without a screen, whose seconds nobody waits for."""
+    """Whether a function is a method of the memory back end, whose seconds are simulated."""
     return isinstance(function, ast.Attribute) and ast.unparse(function.value).split(".")[-1].strip("_") == "memory"
 
 
 def is_number(node: ast.AST) -> bool:
+    """Whether a node is a literal number."""
     return isinstance(node, ast.Constant) and isinstance(node.value, (int, float)) and not isinstance(node.value, bool)
 
 
 @pytest.mark.parametrize("path", sorted(TESTS.rglob("*.py")), ids=lambda path: path.relative_to(TESTS).as_posix())
-def test_time_does_not_count(path: Path) -> None:
+def test_no_test_depends_on_time(path: Path) -> None:
     name = path.relative_to(TESTS).as_posix()
-    if name not in MEASURES and path != Path(__file__):
-        assert wrong(path.read_text(encoding="utf-8")) == []
+    if name not in EXEMPT and path != Path(__file__):
+        assert violations(path.read_text(encoding="utf-8")) == []
 
 
 @pytest.mark.parametrize(
@@ -88,8 +89,8 @@ def test_time_does_not_count(path: Path) -> None:
         "@settings(deadline=500)\ndef test(): ...",
     ],
 )
-def test_where_time_counts_it_is_found(source: str) -> None:
-    assert len(wrong(source)) == 1
+def test_a_dependence_on_time_is_found(source: str) -> None:
+    assert len(violations(source)) == 1
 
 
 @pytest.mark.parametrize(
@@ -104,5 +105,5 @@ def test_where_time_counts_it_is_found(source: str) -> None:
         "@settings(deadline=None)\ndef test(): ...",
     ],
 )
-def test_where_it_does_not_nothing_is_found(source: str) -> None:
-    assert wrong(source) == []
+def test_a_source_independent_of_time_passes(source: str) -> None:
+    assert violations(source) == []

@@ -1,4 +1,4 @@
-"""Looks at a program tell whether it slept all the while."""
+"""Detection of a sleeping program by repeated looks at its threads."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ ASLEEP, LATER, RUNS = Thread(True, 7), Thread(True, 8), Thread(False, 7)
 
 
 class NothingLeftError(Exception):
-    """Every look was made, and no stretch was long enough."""
+    """All looks were used up, and no period was long enough."""
 
 
 @pytest.fixture
 def looks(monkeypatch: pytest.MonkeyPatch) -> list[dict[int, Thread]]:
-    """The threads that looks at a process see, one after another; there are no more looks than these."""
+    """States of the threads that successive looks at a process find; NothingLeftError after the last one."""
     seen: list[dict[int, Thread]] = []
 
     def look(_: int) -> dict[int, Thread]:
@@ -37,10 +37,11 @@ def looks(monkeypatch: pytest.MonkeyPatch) -> list[dict[int, Thread]]:
 
 @pytest.fixture
 def clock() -> Iterator[int]:
+    """A clock that advances by one step at each reading."""
     return itertools.count()
 
 
-def test_a_process_whose_threads_sleep_all_the_while_is_idle(looks, clock):
+def test_a_process_whose_threads_sleep_all_the_time_is_idle(looks, clock):
     looks += [{1: ASLEEP, 2: ASLEEP}] * 9
     until_idle(1, clock.__next__, 3)
     assert len(looks) > 0
@@ -49,36 +50,36 @@ def test_a_process_whose_threads_sleep_all_the_while_is_idle(looks, clock):
 @pytest.mark.parametrize(
     "seen",
     [
-        [{1: ASLEEP, 2: ASLEEP}, {1: ASLEEP, 2: LATER}],  # it ran between the looks
+        [{1: ASLEEP, 2: ASLEEP}, {1: ASLEEP, 2: LATER}],  # a thread ran between the looks
         [{1: RUNS}, {1: RUNS}],
-        [{1: ASLEEP}, {1: ASLEEP, 2: ASLEEP}],  # a thread came
+        [{1: ASLEEP}, {1: ASLEEP, 2: ASLEEP}],  # a thread was started
     ],
 )
-def test_a_process_that_runs_between_the_looks_is_not(looks, clock, seen):
+def test_a_process_that_runs_between_the_looks_is_not_idle(looks, clock, seen):
     looks += seen * 9
     with pytest.raises(NothingLeftError):
         until_idle(1, clock.__next__, 3)
 
 
-def test_a_stretch_is_as_long_as_the_clock_says(looks):
+def test_the_clock_measures_the_period(looks):
     looks += [{1: ASLEEP}] * 9
     with pytest.raises(NothingLeftError):
         until_idle(1, lambda: 7, 3)
 
 
-def test_threads_may_be_left_out(looks, clock):
+def test_threads_may_be_ignored(looks, clock):
     looks += [{1: ASLEEP, 2: ASLEEP}, {1: ASLEEP, 2: LATER}] * 9
     until_idle(1, clock.__next__, 3, awake=[2])
 
 
-def test_no_thread_at_all_is_a_mistake(looks, clock):
+def test_a_process_without_threads_raises(looks, clock):
     looks += [{2: ASLEEP}] * 9
     with pytest.raises(AssertionError, match="no such threads"):
         until_idle(1, clock.__next__, 3, awake=[2])
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="reads what Linux tells of processes")
-def test_linux_counts_each_time_that_a_thread_falls_asleep():
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc, which only Linux has")
+def test_linux_counts_the_context_switches_of_a_thread():
     program = "for line in iter(input, 'end'): print(line, flush=True)"
     with processes.started([sys.executable, "-c", program], stdin=-1, stdout=-1) as process:
         counts = []

@@ -15,8 +15,8 @@ from minirt.errors import RenderError
 from minirt.movie import save_movie, with_progress
 from minirt.viewer.app.animation import FPS as ANIMATION_FPS
 from minirt.viewer.app.animation import TICKS, animation, turntable
-from minirt.viewer.editing.measure import middle_of
-from minirt.viewer.editing.projection import projection
+from minirt.viewer.editing.measure import scene_centre
+from minirt.viewer.editing.projection import projection_of
 from tests.viewer.fake import FakeRenderer, scene
 
 COLOURS = [(250, 0, 0), (0, 250, 0), (0, 0, 250)]
@@ -64,7 +64,7 @@ def test_no_pictures_and_unwritable_paths_are_errors(tmp_path):
 
 def test_a_turntable_circles_the_scene_once():
     start = scene()
-    middle = middle_of(start)
+    middle = scene_centre(start)
     views = list(turntable(start, 8))
     assert views[0] is start
     cameras = [view.camera for view in views]
@@ -72,7 +72,9 @@ def test_a_turntable_circles_the_scene_once():
     for camera in cameras:
         assert dist(camera.position, middle) == pytest.approx(dist(start.camera.position, middle))
         assert camera.position[1] == start.camera.position[1]
-        assert projection(camera, 64, 48).pixel(middle) == pytest.approx(projection(start.camera, 64, 48).pixel(middle))
+        assert projection_of(camera, 64, 48).pixel(middle) == pytest.approx(
+            projection_of(start.camera, 64, 48).pixel(middle)
+        )
     opposite = cameras[4].position
     assert [opposite[0] + 0, opposite[2] + 10] == pytest.approx([2 * middle[0], 2 * middle[2]])
     assert dist(cameras[7].position, cameras[0].position) == pytest.approx(

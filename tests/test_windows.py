@@ -1,4 +1,4 @@
-"""The desktop for tests of windows: how it starts, what it says where it cannot, and what it leaves."""
+"""The desktop for tests of windows: its start, its errors, and its cleanup."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 
 from tests import windows
 from tests.waiting import HANG_LIMIT
-from tests.windows import MANAGER, Desktop, open_desktop, require
+from tests.windows import MANAGER_VARIABLE, Desktop, open_desktop, require_tools
 
 WINDOW = """
 from minirt.mlx import Mlx
@@ -25,19 +25,20 @@ m.mlx_loop(mlx)
 
 @pytest.fixture
 def without_xdotool_and_wmctrl(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pretend that two tools are not installed."""
     monkeypatch.setattr(windows.shutil, "which", lambda tool: None if tool in ("xdotool", "wmctrl") else tool)
 
 
 def test_a_skipped_test_says_what_is_missing_and_how_to_install_it(without_xdotool_and_wmctrl, monkeypatch):
     monkeypatch.delenv("MINIRT_REQUIRE_WINDOW", raising=False)
     with pytest.raises(pytest.skip.Exception, match=r"need xdotool, wmctrl; .*: apt-get install .*\bxdotool wmctrl\b"):
-        require()
+        require_tools()
 
 
-def test_where_windows_are_required_it_fails(without_xdotool_and_wmctrl, monkeypatch):
+def test_missing_tools_fail_the_test_if_windows_are_required(without_xdotool_and_wmctrl, monkeypatch):
     monkeypatch.setenv("MINIRT_REQUIRE_WINDOW", "1")
     with pytest.raises(pytest.fail.Exception, match="apt-get install"):
-        require()
+        require_tools()
 
 
 @pytest.mark.window
@@ -57,16 +58,16 @@ def test_a_desktop_whose_window_manager_does_not_start_leaves_no_display(desktop
 def test_a_program_leaves_no_window(desktop):
     with desktop.program(sys.executable, "-c", WINDOW) as process:
         window = desktop.find("small")
-        assert desktop.is_there(window)
+        assert desktop.exists(window)
         assert desktop.windows() == [(window, "small")]
     assert process.wait(HANG_LIMIT) < 0
     assert desktop.windows() == []
-    assert not desktop.is_there(window)
+    assert not desktop.exists(window)
 
 
 @pytest.mark.window
-def test_a_program_is_over_when_the_window_manager_knows_that_its_window_is_gone(desktop, monkeypatch):
-    manager = int(desktop.environment[MANAGER])
+def test_a_program_ends_when_the_window_manager_knows_that_its_window_is_closed(desktop, monkeypatch):
+    manager = int(desktop.environment[MANAGER_VARIABLE])
     looks = []
 
     def look():
@@ -80,7 +81,7 @@ def test_a_program_is_over_when_the_window_manager_knows_that_its_window_is_gone
         with desktop.program(sys.executable, "-c", WINDOW):
             desktop.find("small")
             monkeypatch.setattr(desktop, "windows", look)
-            stack.enter_context(desktop.manager_stopped())
+            stack.enter_context(desktop.manager_paused())
         assert len(looks) > 1
 
 

@@ -1,7 +1,7 @@
-"""Wait for events, never for seconds.
+"""Wait for conditions, never for a number of seconds.
 
-No test holds a time against a limit: machines differ, and other programs want their processors. A test that needs
-something to happen waits until it has happened, however long that takes.
+No test compares a time with a limit, since machines and their loads differ. A test that needs an effect waits until it
+has happened, however long that takes.
 """
 
 from __future__ import annotations
@@ -9,12 +9,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-HANG_LIMIT = 300.0  # seconds after which a wait counts as a hang; it asks nothing about speed
-POLL = 0.01  # seconds between two looks
+HANG_LIMIT = 300.0  # seconds after which a wait counts as a hang: far above any expected time
+POLL = 0.01  # seconds between two checks
 
 
 def until(condition: Callable[[], bool], what: str) -> None:
-    """Wait until `condition` holds; TimeoutError, which says `what` did not come, after `HANG_LIMIT`."""
+    """Wait until `condition` holds. After `HANG_LIMIT` a TimeoutError says that `what` did not come."""
     deadline = time.monotonic() + HANG_LIMIT
     while not condition():
         if time.monotonic() > deadline:

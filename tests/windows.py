@@ -1,4 +1,4 @@
-"""A desktop of its own for tests of real windows: Xvfb with the window manager openbox, and a user's hands.
+"""Desktop: an X server (Xvfb) with a window manager (openbox) for tests of real windows, and a user's actions.
 
     from tests.windows import desktop  # a fixture, one desktop for the whole session
 
@@ -41,25 +41,25 @@ if TYPE_CHECKING:
 
 TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd", "xwininfo", "setxkbmap")
 SCREEN = (2560, 1600)  # its size in pixels
-STILL = """\
+OPENBOX_CONFIG = """\
 <openbox_config xmlns="http://openbox.org/3.4/rc">
   <theme><animateIconify>no</animateIconify></theme>
 </openbox_config>
-"""  # or windows that are minimised and restored fly about, and are not where the pointer is moved to
-MANAGER = "MINIRT_TEST_WINDOW_MANAGER"  # in the environment: the number of the window manager's process
-AT_ONCE = ("--delay", "0")  # for xdotool, which otherwise rests between pressing and letting go
+"""  # without animation: a window that is being minimised or restored is not where the pointer moves to
+MANAGER_VARIABLE = "MINIRT_TEST_WINDOW_MANAGER"  # environment variable with the process id of the window manager
+NO_DELAY = ("--delay", "0")  # for xdotool, which otherwise pauses between press and release
 
 
 class Desktop:
-    """The user's hands on the display that `environment` names. Windows are X11's numbers."""
+    """A user's actions on the display that `environment` names. Windows are given by X11's ids."""
 
     def __init__(self, environment: dict[str, str]) -> None:
         self.environment = environment
-        self._programs: list[subprocess.Popen[str]] = []  # those whose blocks have not ended
-        self._held: list[str] = []  # keys
+        self._programs: list[subprocess.Popen[str]] = []  # running inside their `with` blocks
+        self._held: list[str] = []  # keys that are down
 
     def run(self, *command: str) -> bytes:
-        """Standard output of a command; CalledProcessError where it fails, TimeoutExpired where it hangs."""
+        """Run a command and return its standard output. CalledProcessError if it fails, TimeoutExpired if it hangs."""
         done = processes.run(command, env=self.environment)
         try:
             done.check_returncode()
@@ -70,15 +70,15 @@ class Desktop:
         return output
 
     def is_managed(self) -> bool:
-        """Whether a window manager answers, and has its list of windows."""
-        asked = (processes.run(["wmctrl", option], env=self.environment) for option in ("-m", "-l"))
-        return all(done.returncode == 0 for done in asked)
+        """Whether a window manager answers and has a list of windows."""
+        answers = (processes.run(["wmctrl", option], env=self.environment) for option in ("-m", "-l"))
+        return all(answer.returncode == 0 for answer in answers)
 
     @contextmanager
-    def manager_stopped(self) -> Iterator[None]:
-        """Meanwhile the window manager does nothing: no new window is shown, and none gets the focus."""
-        manager = int(self.environment[MANAGER])
-        until_idle(manager, itertools.count().__next__, 3)  # it must not stop while the display is its alone
+    def manager_paused(self) -> Iterator[None]:
+        """Stop the window manager for a while: no new window is shown, and none gets the focus."""
+        manager = int(self.environment[MANAGER_VARIABLE])
+        until_idle(manager, itertools.count().__next__, 3)  # it must not be stopped while it has grabbed the display
         os.kill(manager, signal.SIGSTOP)
         try:
             yield
@@ -87,13 +87,13 @@ class Desktop:
 
     @contextmanager
     def program(self, *command: str, **options: Any) -> Iterator[subprocess.Popen[str]]:
-        """Start a program on this desktop, from the project's root; afterwards neither it nor its windows are left.
+        """Start a program on this desktop, from the project's root; afterwards it is ended and its windows are closed.
 
         `options` are those of `subprocess.Popen`; by default standard output and standard error are pipes.
         """
         options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
         started = processes.started(command, env=self.environment, cwd=ROOT, text=True, **options)
-        with self._left_as_it_was(), started as process:
+        with self._cleanup(), started as process:
             self._programs.append(process)
             try:
                 yield process
@@ -101,15 +101,15 @@ class Desktop:
                 self._programs.remove(process)
 
     def find(self, title: str, size: tuple[int, int] | None = None) -> int:
-        """Wait for the window of this title, and of this size, until it has the focus.
+        """Wait until the window with this title and size has the focus, and return it.
 
-        AssertionError where no program is left that could open it.
+        AssertionError if no program is left that could open it.
         """
         found: list[int] = []
 
         def look() -> bool:
-            self._expect_a_program()
-            with _windows_may_go():  # the program may make another one instead
+            self._expect_program()
+            with _closed_windows_ignored():  # the program may be replacing its window
                 found[:] = [window for window, name in self.windows() if name == title]
                 if found and size in (None, self.size(found[0])):
                     self.activate(found[0])
@@ -120,34 +120,36 @@ class Desktop:
         return found[0]
 
     def windows(self) -> list[tuple[int, str]]:
-        """The windows that the window manager knows, with their titles."""
+        """List the windows that the window manager knows, with their titles."""
         rows = (line.split(None, 3) for line in self.run("wmctrl", "-l").decode().splitlines())
         return [(int(row[0], 16), "".join(row[3:])) for row in rows]
 
     def activate(self, window: int) -> None:
-        """Bring a window to the front, and wait until it has the focus; CalledProcessError where there is none."""
+        """Bring a window to the front and wait until it has the focus. CalledProcessError if it does not exist."""
 
-        def asked() -> bool:
+        def has_focus() -> bool:
             self.run("xdotool", "windowactivate", str(window))
             return self._active() == window
 
-        until(asked, f"the focus of window {window}")
+        until(has_focus, f"the focus of window {window}")
 
     def key(self, window: int, *names: str) -> None:
-        """Press and release; xdotool's names, such as Escape, shift+Tab."""
+        """Press and release keys by xdotool's names, such as Escape, shift+Tab."""
         self.activate(window)
-        self.run("xdotool", "key", *AT_ONCE, *names)
+        self.run("xdotool", "key", *NO_DELAY, *names)
 
     def keydown(self, name: str) -> None:
+        """Press a key and hold it."""
         self._held.append(name)
-        self.run("xdotool", "keydown", *AT_ONCE, name)
+        self.run("xdotool", "keydown", *NO_DELAY, name)
 
     def keyup(self, name: str) -> None:
-        self.run("xdotool", "keyup", *AT_ONCE, name)
+        """Release a key."""
+        self.run("xdotool", "keyup", *NO_DELAY, name)
         self._held.remove(name)
 
-    def let_go(self) -> None:
-        """Let all keys go that a test which failed may still hold."""
+    def release_keys(self) -> None:
+        """Release all keys that a failed test may have left pressed."""
         while self._held:
             self.keyup(self._held[-1])
 
@@ -155,9 +157,9 @@ class Desktop:
         self.run("xdotool", "mousemove", "--window", str(window), str(x), str(y))
 
     def click(self, window: int, x: int, y: int, button: int = 1) -> None:
-        """Buttons 4 to 7 turn the wheel."""
+        """Click at x, y of a window; buttons 4 to 7 turn the wheel."""
         move = ("mousemove", "--window", str(window), str(x), str(y))
-        self.run("xdotool", *move, "click", *AT_ONCE, str(button))
+        self.run("xdotool", *move, "click", *NO_DELAY, str(button))
 
     def resize(self, window: int, width: int, height: int) -> None:
         self.run("xdotool", "windowsize", str(window), str(width), str(height))
@@ -169,15 +171,15 @@ class Desktop:
         return int(values["WIDTH"]), int(values["HEIGHT"])
 
     def minimise(self, window: int) -> None:
-        """Minimise a window, and wait until the window manager has done it.
+        """Minimise a window and wait until the window manager has done it.
 
-        A `restore` before that would take the focus that the window still has for that which it gets."""
+        A `restore` before that would mistake the focus that the window still has for the focus that it gets."""
         self.run("xdotool", "windowminimize", str(window))
 
-        def done() -> bool:
+        def is_minimised() -> bool:
             return not self._is_shown(window) and self._active() != window
 
-        until(done, f"minimised window {window}")
+        until(is_minimised, f"minimised window {window}")
 
     def restore(self, window: int) -> None:
         self.activate(window)
@@ -185,39 +187,39 @@ class Desktop:
     def close_button(self, window: int) -> None:
         self.run("wmctrl", "-i", "-c", hex(window))
 
-    def is_there(self, window: int) -> bool:
+    def exists(self, window: int) -> bool:
         return processes.run(["xwininfo", "-id", str(window)], env=self.environment).returncode == 0
 
     def screenshot(self, window: int) -> NDArray[np.uint8]:
-        """The picture that the window shows: (h, w, 3) uint8, red, green, blue."""
+        """Return the picture that a window shows: (h, w, 3) uint8, red, green, blue."""
         return _pixels(self.run("xwd", "-silent", "-id", str(window)))
 
     @contextmanager
-    def _left_as_it_was(self) -> Iterator[None]:
-        """Afterwards no key is held and, where no program is left, no window: the next test may look for that title."""
+    def _cleanup(self) -> Iterator[None]:
+        """Release all keys afterwards and, after the last program, wait until no window is left for the next test."""
         try:
             yield
         finally:
-            self.let_go()
+            self.release_keys()
             if not self._programs:
                 until(self._is_empty, "the end of all windows")
 
-    def _expect_a_program(self) -> None:
-        """Fail at once, and say why, where no window can come any more."""
+    def _expect_program(self) -> None:
+        """Fail at once, with the output of the programs, if none is left that could open a window."""
         if self._programs and all(process.poll() is not None for process in self._programs):
             for process in self._programs:
-                processes.kill_group(process)  # what it started may hold the pipes
-            ends = [(process.returncode, *process.communicate()) for process in self._programs]
-            raise AssertionError(f"no program is left that could open a window: {ends}")
+                processes.kill_group(process)  # its child processes may keep the pipes open
+            results = [(process.returncode, *process.communicate()) for process in self._programs]
+            raise AssertionError(f"no program is left that could open a window: {results}")
 
     def _is_empty(self) -> bool:
-        with _windows_may_go():
+        with _closed_windows_ignored():
             return not self.windows()
         return False
 
     def _active(self) -> int | None:
-        """The window that has the focus."""
-        with suppress(subprocess.CalledProcessError):  # there is none
+        """The window that has the focus, or None."""
+        with suppress(subprocess.CalledProcessError):  # no window has the focus
             return int(self.run("xdotool", "getactivewindow"))
         return None
 
@@ -226,25 +228,25 @@ class Desktop:
 
 
 @contextmanager
-def _windows_may_go() -> Iterator[None]:
-    """Leave the block where a window of it goes meanwhile, as nobody can tell when."""
+def _closed_windows_ignored() -> Iterator[None]:
+    """Leave the block if one of its windows is closed meanwhile, which may happen at any time."""
     try:
         yield
     except subprocess.CalledProcessError as error:
-        if not re.search(rb"Bad(Window|Drawable)", error.stderr):  # by where a tool was when it went
+        if not re.search(rb"Bad(Window|Drawable)", error.stderr):  # which of the two depends on the moment
             raise
 
 
 @pytest.fixture(scope="session")
 def desktop() -> Iterator[Desktop]:
-    """One desktop for all tests of the session."""
-    require()
+    """Fixture: one desktop for all tests of the session."""
+    require_tools()
     with open_desktop() as opened:
         yield opened
 
 
-def require() -> None:
-    """Skip the test where the tools are missing, or fail it if they have to be there."""
+def require_tools() -> None:
+    """Skip the test if tools are missing, or fail it if MINIRT_REQUIRE_WINDOW is 1."""
     missing = [tool for tool in TOOLS if shutil.which(tool) is None]
     if missing:
         reason = f"tests of real windows need {', '.join(missing)}; install them: {install_command()}"
@@ -254,7 +256,7 @@ def require() -> None:
 
 
 def install_command() -> str:
-    """The command of CONTRIBUTING.md that installs the tools."""
+    """Return the command of CONTRIBUTING.md that installs the tools."""
     lines: list[str] = re.findall(
         r"^apt-get install .*\bxvfb\b.*$", (ROOT / "CONTRIBUTING.md").read_text(), re.MULTILINE
     )
@@ -263,17 +265,17 @@ def install_command() -> str:
 
 @contextmanager
 def open_desktop() -> Iterator[Desktop]:
-    """Start a display on a free number and a window manager on it; both end with the block."""
+    """Start an X server with a free display number, and a window manager on it; both end with the block."""
     with ExitStack() as stack:
-        home = stack.enter_context(tempfile.TemporaryDirectory())  # no configuration of this user's
+        home = stack.enter_context(tempfile.TemporaryDirectory())  # so that the user's configuration is not read
         (Path(home) / "openbox").mkdir()
-        (Path(home) / "openbox" / "rc.xml").write_text(STILL)
+        (Path(home) / "openbox" / "rc.xml").write_text(OPENBOX_CONFIG)
         environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"}
         environment |= {"PYTHONPATH": str(ROOT), "XDG_CONFIG_HOME": home}
         environment["DISPLAY"] = stack.enter_context(_display())
         command = ["openbox", "--sm-disable"]
         manager = stack.enter_context(_server(command, env=environment | {"XDG_CACHE_HOME": home}))
-        opened = Desktop(environment | {MANAGER: str(manager.pid)})
+        opened = Desktop(environment | {MANAGER_VARIABLE: str(manager.pid)})
         until(lambda: opened.is_managed() or manager.poll() is not None, "openbox")
         if manager.poll() is not None:
             raise RuntimeError("openbox did not start")
@@ -282,10 +284,10 @@ def open_desktop() -> Iterator[Desktop]:
 
 @contextmanager
 def _display() -> Iterator[str]:
-    """The name of a display that lasts as long as the block.
+    """Start an X server, whose display name is returned; it ends with the block.
 
-    Its keyboard does not repeat held keys by itself: where other programs want the processor, the time between a press
-    and its release may be as long as a person's who holds the key. Tests of repetition turn it on.
+    Its keyboard does not repeat held keys: on a busy machine the time between a press and its release may be so long
+    that a key would repeat. Tests of key repeat turn it on.
     """
     with ExitStack() as stack:
         reader, writer = os.pipe()
@@ -293,11 +295,17 @@ def _display() -> Iterator[str]:
         with os.fdopen(writer):
             width, height = SCREEN
             command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp"]
-            command += ["-noreset"]  # or it starts afresh, without openbox, when its last client leaves
-            command += ["-r", "-ardelay", "100", "-arinterval", "20"]  # milliseconds, where a test turns it on
+            command += ["-noreset"]  # otherwise it restarts, without openbox, when its last client leaves
+            command += [
+                "-r",
+                "-ardelay",
+                "100",
+                "-arinterval",
+                "20",
+            ]  # key repeat in milliseconds, if a test turns it on
             stack.enter_context(_server(command, pass_fds=(writer,)))
-        # Xvfb writes it when it is ready, or goes and closes its end.
-        until(lambda: bool(select.select([number], [], [], 0)[0]), "Xvfb's number")
+        # Xvfb writes its number when it is ready, or closes the pipe when it ends.
+        until(lambda: bool(select.select([number], [], [], 0)[0]), "Xvfb's display number")
         name = number.readline().strip()
         if not name:
             raise RuntimeError("Xvfb did not start")
@@ -306,18 +314,18 @@ def _display() -> Iterator[str]:
 
 @contextmanager
 def _server(command: list[str], **options: Any) -> Iterator[subprocess.Popen[bytes]]:
-    """Run a program that is asked to end, since it may have files to take away, before it is killed."""
+    """Run a program, which is terminated before it is killed, so that it can remove its files."""
     with processes.started(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **options) as process:
         try:
             yield process
         finally:
             process.terminate()
-            process.send_signal(signal.SIGCONT)  # a test that was killed may have stopped it
+            process.send_signal(signal.SIGCONT)  # a test that was killed may have left it stopped
             process.wait(HANG_LIMIT)
 
 
 def _pixels(dump: bytes) -> NDArray[np.uint8]:
-    """Read the X Window Dump format: a header of big-endian words, a colour table, rows of 32-bit pixels."""
+    """Decode the X Window Dump format: a header of big-endian words, a colour table, rows of 32-bit pixels."""
     header = np.frombuffer(dump, ">u4", 25)
     header_size, width, height, row_size, colors = (int(header[i]) for i in (0, 4, 5, 12, 19))
     if header[11] != 32 or header[7] != 0:  # bits per pixel; byte order, 0 is least significant first

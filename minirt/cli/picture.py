@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from minirt.cli.arguments import SAMPLES
 from minirt.cli.exit_status import OK
-from minirt.gc_pause import uncollected
+from minirt.gc_pause import gc_paused
 
 if TYPE_CHECKING:
     from minirt.image import Image
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def render_to_file(scene: Scene, options: argparse.Namespace) -> int:
     """Render the scene and write the picture to the output."""
-    with uncollected():
+    with gc_paused():
         write(render(scene, options), options.output)
     return OK
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from minirt.cli.arguments import SAMPLES
 from minirt.cli.exit_status import OK
-from minirt.gc_pause import uncollected
+from minirt.gc_pause import gc_paused
 
 if TYPE_CHECKING:
     from minirt.scene import Scene
@@ -32,6 +32,6 @@ def render_turntable(scene: Scene, options: argparse.Namespace) -> int:
         )
         for view in with_progress(turntable(scene, options.turntable), options.turntable, "picture")
     )
-    with uncollected():
+    with gc_paused():
         minirt.save_movie(pictures, options.output)
     return OK

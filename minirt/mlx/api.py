@@ -1,4 +1,4 @@
-"""MiniLibX's calls, under their own names, with the arguments and results of its official Python wrapper.
+"""Mlx: MiniLibX's functions under their own names, with the arguments and results of its official Python wrapper.
 
     m = Mlx()
     mlx = m.mlx_init()
@@ -7,7 +7,7 @@
     m.mlx_key_hook(win, lambda key, _: m.mlx_loop_exit(mlx), None)
     m.mlx_loop(mlx)
 
-Where the wrapper has numbers for handles, these are objects: `Display`, `Window`, `Image`. Failures raise MlxError.
+Handles, which are numbers in the wrapper, are objects here: `Display`, `Window`, `Image`. Failures raise MlxError.
 """
 
 from __future__ import annotations
@@ -21,20 +21,22 @@ from minirt.errors import MlxError
 from minirt.mlx.display import Display
 from minirt.mlx.events import Event
 from minirt.mlx.extensions import Extensions
-from minirt.mlx.handles import Image, Window
+from minirt.mlx.image import Image
 from minirt.mlx.text import draw_text
+from minirt.mlx.window import Window
 
 if TYPE_CHECKING:
     from os import PathLike
 
     from minirt.mlx.backend import Backend
-    from minirt.mlx.handles import Hook
+    from minirt.mlx.hooks import Hook
+    from minirt.mlx.window import WindowHost
 
 
 class Mlx(Extensions):
-    """Calls return 0 where MiniLibX has nothing to say. Colours are 0xAARRGGBB; x goes right, y down.
+    """MiniLibX's functions as methods; those without a result return 0. Colours are 0xAARRGGBB; x goes right, y down.
 
-    backend: where windows open; None is the screen, `minirt.mlx.memory.Memory()` needs none.
+    backend: the window system; None is the screen, `minirt.mlx.memory.Memory()` needs none.
     """
 
     SYNC_IMAGE_WRITABLE = 1
@@ -47,8 +49,8 @@ class Mlx(Extensions):
     # --- opening and closing ---
 
     def mlx_init(self) -> Display:
-        """Open the display. Raises MlxError with the reason where there is none."""
-        backend = self._backend or _screen()
+        """Open the display. Raises MlxError with the reason if there is none."""
+        backend = self._backend or _pyglet_backend()
         display = Display(backend)
         backend.open(display)
         return display
@@ -61,7 +63,7 @@ class Mlx(Extensions):
     mlx_destroy_display = mlx_release
 
     def mlx_new_window(self, mlx: Display, width: int, height: int, title: str, *, resizable: bool = False) -> Window:
-        """Several windows may be open. The size of a resizable one may come out differently: read it back."""
+        """Open a window; several may be open. A resizable window may get another size: read it back."""
         if width < 1 or height < 1:
             raise MlxError(f"a window of {width}x{height} pixels cannot be opened")
         window = Window(mlx, width, height, title, resizable)
@@ -71,47 +73,47 @@ class Mlx(Extensions):
         return window
 
     def mlx_destroy_window(self, mlx: Display, win: Window) -> int:
-        """May be called inside any hook, and again."""
+        """Close a window. May be called inside any hook, and twice for the same window."""
         mlx.destroy(win)
         return 0
 
-    # --- drawing on a window; it is shown at the end of the loop's turn ---
+    # --- drawing on a window, which is shown at the end of the loop's turn; `mlx` is unused, as in MiniLibX ---
 
-    def mlx_clear_window(self, mlx: Display, win: Window) -> int:
+    def mlx_clear_window(self, mlx: WindowHost, win: Window) -> int:
         win.canvas.clear()
         return 0
 
-    def mlx_pixel_put(self, mlx: Display, win: Window, x: int, y: int, color: int) -> int:
+    def mlx_pixel_put(self, mlx: WindowHost, win: Window, x: int, y: int, color: int) -> int:
         win.canvas.point(x, y, color)
         return 0
 
-    def mlx_string_put(self, mlx: Display, win: Window, x: int, y: int, color: int, string: str) -> int:
-        """x, y is the top left corner of the text."""
+    def mlx_string_put(self, mlx: WindowHost, win: Window, x: int, y: int, color: int, string: str) -> int:
+        """Draw text with its top left corner at x, y."""
         canvas = win.canvas
         width, height = draw_text(canvas.pixels, x, y, string, color)
         canvas.touch(x, y, x + width, y + height)
         return 0
 
-    def mlx_put_image_to_window(self, mlx: Display, win: Window, img: Image, x: int, y: int) -> int:
-        """Copies the picture as it is now, without regard to alpha."""
+    def mlx_put_image_to_window(self, mlx: WindowHost, win: Window, img: Image, x: int, y: int) -> int:
+        """Copy the image into the window with its top left corner at x, y. Alpha is ignored."""
         win.canvas.put(img.pixels, x, y)
         return 0
 
     # --- images ---
 
-    def mlx_new_image(self, mlx: Display, width: int, height: int) -> Image:
+    def mlx_new_image(self, mlx: WindowHost, width: int, height: int) -> Image:
         return Image(np.zeros((height, width, 4), np.uint8))
 
     def mlx_get_data_addr(self, img: Image) -> tuple[memoryview, int, int, int]:
-        """(bytes, bits per pixel, bytes per row, 0): blue, green, red and alpha follow one another."""
+        """Return (bytes, bits per pixel, bytes per row, 0). The bytes of a pixel are blue, green, red, alpha."""
         return img.pixels.reshape(-1).data, 32, 4 * img.width, 0
 
     def mlx_destroy_image(self, mlx: Display, img: Image) -> int:
-        """Nothing to do: an image goes when nobody holds it."""
+        """Do nothing: Python frees an image without references."""
         return 0
 
     def mlx_png_file_to_image(self, mlx: Display, filename: str | PathLike[str]) -> tuple[Image, int, int]:
-        """(image, width, height). Raises MlxError."""
+        """Return (image, width, height) of a picture file. Raises MlxError if it cannot be read."""
         from PIL import Image as Pillow
 
         try:
@@ -127,7 +129,7 @@ class Mlx(Extensions):
     # --- hooks and the loop ---
 
     def mlx_hook(self, win: Window, x_event: int, x_mask: int, f: Hook | None, param: object) -> int:
-        """One hook for each event and window; None removes it. See `Event` for what it receives before `param`."""
+        """Set the one hook of an event and window; None removes it. `Event` lists the arguments before `param`."""
         if f is None:
             win.hooks.pop(x_event, None)
         else:
@@ -135,42 +137,42 @@ class Mlx(Extensions):
         return 0
 
     def mlx_key_hook(self, win: Window, f: Hook | None, param: object) -> int:
-        """f(keycode, param), when a key is released."""
+        """Call f(keycode, param) when a key is released."""
         return self.mlx_hook(win, Event.KEY_RELEASE, 0, f, param)
 
     def mlx_mouse_hook(self, win: Window, f: Hook | None, param: object) -> int:
-        """f(button, x, y, param), when a button is pressed or the wheel turned."""
+        """Call f(button, x, y, param) when a button is pressed or the wheel turned."""
         return self.mlx_hook(win, Event.BUTTON_PRESS, 0, f, param)
 
     def mlx_expose_hook(self, win: Window, f: Hook | None, param: object) -> int:
-        """f(param), when the window has to be drawn; what was drawn before is still there."""
+        """Call f(param) when the window has to be drawn; its earlier content is still there."""
         return self.mlx_hook(win, Event.EXPOSE, 0, f, param)
 
     def mlx_loop_hook(self, mlx: Display, f: Hook | None, param: object) -> int:
-        """f(param), about 60 times a second; with None the loop sleeps until something happens."""
+        """Call f(param) about 60 times a second; with None the loop sleeps until an event."""
         mlx.loop_hook = None if f is None else (f, param)
         return 0
 
     def mlx_loop(self, mlx: Display) -> int:
-        """Runs until `mlx_loop_exit` or until no window is left. Raises what a hook raised."""
+        """Run until `mlx_loop_exit` or until no window is left. Raises the exception of a hook."""
         mlx.loop()
         return 0
 
     def mlx_loop_exit(self, mlx: Display) -> int:
-        """No hook is called after this."""
+        """End the loop; no hook is called after this."""
         mlx.ending = True
         return 0
 
     mlx_loop_end = mlx_loop_exit
 
     def mlx_do_sync(self, mlx: Display) -> int:
-        """Show what was drawn, now."""
+        """Show all windows as they are drawn now."""
         for window in mlx.windows:
             mlx.show(window)
         return 0
 
     def mlx_sync(self, mlx: Display, cmd: int, img_or_win: Image | Window) -> int:
-        """`cmd` is one of SYNC_…; images can always be written to, and hidden windows are shown later."""
+        """Show a window now, or later if it is hidden. `cmd` is one of SYNC_…; images are always writable."""
         if isinstance(img_or_win, Window) and img_or_win.is_open and img_or_win.visible:
             mlx.show(img_or_win)
         return 0
@@ -178,7 +180,7 @@ class Mlx(Extensions):
     # --- mouse, keyboard, screen ---
 
     def mlx_mouse_get_pos(self, win: Window) -> tuple[int, int, int]:
-        """(0, x, y), as of the last event."""
+        """Return (0, x, y) of the pointer, as of the last event."""
         return 0, *win.pointer
 
     def mlx_mouse_move(self, win: Window, x: int, y: int) -> int:
@@ -196,7 +198,7 @@ class Mlx(Extensions):
         return 0
 
     def mlx_do_key_autorepeaton(self, mlx: Display) -> int:
-        """A held key is released and pressed again and again; off at first, and in this program only."""
+        """Let held keys repeat, each time as a release and a press; off by default, and in this program only."""
         mlx.autorepeat = True
         return 0
 
@@ -205,18 +207,18 @@ class Mlx(Extensions):
         return 0
 
     def mlx_get_screen_size(self, mlx: Display) -> tuple[int, int, int]:
-        """(0, width, height)."""
+        """Return (0, width, height) of the screen in pixels."""
         return 0, *mlx.backend.screen_size()
 
 
-def _screen() -> Backend:
-    """The back end on a real screen, imported only now because its import opens the display."""
-    from minirt.mlx.on_pyglet.interrupt import handlers_kept
+def _pyglet_backend() -> Backend:
+    """Make the back end on a real screen, imported only now because its import opens the display."""
+    from minirt.mlx.on_pyglet.interrupt import signal_handlers_preserved
 
     try:
-        with handlers_kept():
+        with signal_handlers_preserved():
             from minirt.mlx.on_pyglet.loop import PygletBackend
-    except Exception as error:  # whatever the window system says here, there is no window
+    except Exception as error:  # any error of the window system means that there is no window
         missing = type(error).__name__ == "NoSuchDisplayException" and not os.environ.get("DISPLAY")
         reason = "there is no display" if missing else str(error) or type(error).__name__
         raise MlxError(f"no window can be opened ({reason}); -o FILE renders without one") from error

@@ -1,33 +1,56 @@
-"""The contract of a back end: what opens windows and brings their canvases to a screen, and events to their hooks."""
+"""Backend: the contract of a window system, which shows canvases on a screen and reports events to windows."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from minirt.mlx.display import Display
-    from minirt.mlx.handles import Window
+    from minirt.mlx.window import Window
+
+
+class Loop(Protocol):
+    """The part of a display that its back end uses; `minirt.mlx.display.Display` describes it."""
+
+    windows: list[Window]
+
+    @property
+    def running(self) -> bool: ...
+
+    @property
+    def over(self) -> bool: ...
+
+    @property
+    def busy(self) -> bool: ...
+
+    @property
+    def woken(self) -> bool: ...
+
+    def turn(self, *, tick: bool) -> None: ...
+
+    def fail(self, failure: BaseException) -> None: ...
+
+    def raise_failure(self) -> None: ...
 
 
 class Backend(ABC):
-    """One display at a time. All methods but `wake` are called from the thread that called `open`.
+    """A window system for one display at a time. All methods but `wake` are called from the thread that called `open`.
 
-    A back end reports events through the methods of `Display` (press, motion, resize, …) from inside `run`, and calls
-    `Display.turn` once after the events that came together. It draws from `Window.shown` and writes nothing there.
+    A back end reports events to `Window.on_…` and `Window.keyboard` from inside `run`, and calls `Display.turn` once
+    after all events that came together. It draws from `Window.shown` and writes nothing there.
     """
 
     @abstractmethod
-    def open(self, display: Display) -> None:
+    def open(self, display: Loop) -> None:
         """Connect to the screen. Raises MlxError with the reason where there is none."""
 
     @abstractmethod
     def close(self) -> None:
-        """Let everything go; all windows are closed before."""
+        """Disconnect from the screen; all windows are closed before."""
 
     @abstractmethod
     def open_window(self, window: Window) -> None:
-        """Show a new window; sets the size that a resizable one really got. Raises MlxError."""
+        """Show a new window, and set the size that a resizable window really got. Raises MlxError."""
 
     @abstractmethod
     def close_window(self, window: Window) -> None:
@@ -48,11 +71,11 @@ class Backend(ABC):
 
     @abstractmethod
     def wake(self) -> None:
-        """From any thread: make `run` take a turn soon. Calls that come together may share one turn."""
+        """Make `run` take a turn soon. May be called from any thread; calls that come together may share one turn."""
 
     @abstractmethod
     def time(self) -> float:
-        """Seconds from some moment on; never runs backwards."""
+        """Seconds of a clock that never runs backwards."""
 
     @abstractmethod
     def screen_size(self) -> tuple[int, int]:
@@ -64,11 +87,11 @@ class Backend(ABC):
 
     @abstractmethod
     def set_fullscreen(self, window: Window, on: bool) -> None:
-        """Cover the screen, or go back to the size before; the new size comes as a resize."""
+        """Cover the screen, or return to the size before; the new size is reported as a resize."""
 
     @abstractmethod
     def move_pointer(self, window: Window, x: int, y: int) -> None:
-        """Put the pointer at x, y from the window's top left corner."""
+        """Move the pointer to x, y from the window's top left corner."""
 
     @abstractmethod
     def show_pointer(self, window: Window, on: bool) -> None:
@@ -76,7 +99,7 @@ class Backend(ABC):
 
     @abstractmethod
     def clipboard(self, window: Window) -> str:
-        """The text on the clipboard, or nothing."""
+        """The text on the clipboard, or an empty string."""
 
     @abstractmethod
     def set_clipboard(self, window: Window, text: str) -> None:

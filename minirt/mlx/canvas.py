@@ -1,4 +1,4 @@
-"""A window's picture in memory, and drawing on it: what is not on the canvas is never on the screen."""
+"""Canvas: the frame buffer of a window in memory, which all drawing goes to and the screen is updated from."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ BLACK = 0xFF000000
 
 
 class Canvas:
-    """(h, w, 4) uint8 pixels, BGRA, and the smallest box around what changed since `take_changes`."""
+    """(h, w, 4) uint8 pixels, BGRA, and the bounding box of all changes since the last `take_changes`."""
 
     def __init__(self, width: int, height: int) -> None:
         self._words = np.full((height, width), BLACK, "<u4")  # 0xAARRGGBB
@@ -31,18 +31,18 @@ class Canvas:
         return int(self.pixels.shape[0])
 
     def clear(self) -> None:
-        """All black."""
+        """Fill the canvas with black."""
         self._words[...] = BLACK
         self.touch(0, 0, self.width, self.height)
 
     def point(self, x: int, y: int, color: int) -> None:
-        """One pixel, 0xAARRGGBB; nothing outside."""
+        """Set one pixel to 0xAARRGGBB; pixels outside are ignored."""
         if 0 <= x < self.width and 0 <= y < self.height:
             self._words[y, x] = color & 0xFFFFFFFF
             self.touch(x, y, x + 1, y + 1)
 
     def put(self, source: NDArray[np.uint8], x: int, y: int) -> None:
-        """Copy a picture with its top left corner at x, y; what falls outside is left out."""
+        """Copy a picture with its top left corner at x, y, clipped at the borders."""
         left, top = max(x, 0), max(y, 0)
         right, bottom = min(x + source.shape[1], self.width), min(y + source.shape[0], self.height)
         if left < right and top < bottom:
@@ -50,7 +50,7 @@ class Canvas:
             self.touch(left, top, right, bottom)
 
     def touch(self, left: int, top: int, right: int, bottom: int) -> None:
-        """Note that this box changed; it may reach outside."""
+        """Extend the box of changes by this box, clipped at the borders."""
         left, top, right, bottom = max(left, 0), max(top, 0), min(right, self.width), min(bottom, self.height)
         if left >= right or top >= bottom:
             return
@@ -60,13 +60,13 @@ class Canvas:
         self.changes = left, top, right, bottom
 
     def take_changes(self) -> Box | None:
-        """The box that has to be brought to the screen, or None; the next call starts afresh."""
+        """Return the box of changes, or None, and reset it."""
         changes, self.changes = self.changes, None
         return changes
 
 
 def stretch(pixels: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
-    """The picture at another size: each pixel is the one of `pixels` nearest to its centre."""
+    """Resample a picture to another size by nearest neighbour."""
     source_height, source_width = pixels.shape[:2]
     rows = (2 * np.arange(height) + 1) * source_height // (2 * height)
     columns = (2 * np.arange(width) + 1) * source_width // (2 * width)
@@ -75,5 +75,5 @@ def stretch(pixels: NDArray[np.uint8], width: int, height: int) -> NDArray[np.ui
 
 
 def bgra(color: int) -> tuple[int, int, int, int]:
-    """0xAARRGGBB as the four bytes of a pixel."""
+    """Split 0xAARRGGBB into the four bytes of a pixel: blue, green, red, alpha."""
     return color & 0xFF, color >> 8 & 0xFF, color >> 16 & 0xFF, color >> 24 & 0xFF

@@ -1,10 +1,10 @@
-"""Events and mouse buttons, with X11's numbers, as `Mlx.mlx_hook` takes them."""
+"""Events and mouse buttons, with X11's numbers, for `Mlx.mlx_hook`."""
 
 from enum import IntEnum
 
 
 class Event(IntEnum):
-    """What a hook can be set on, and what the hook receives before its own parameter."""
+    """Events that a hook can be set on; each comment lists the arguments before the hook's own parameter."""
 
     KEY_PRESS = 2  # keycode
     KEY_RELEASE = 3  # keycode
@@ -19,7 +19,7 @@ class Event(IntEnum):
     DESTROY_NOTIFY = 17  # the close button; the window stays until the program destroys it
     UNMAP_NOTIFY = 18  # hidden, minimised
     MAP_NOTIFY = 19
-    CONFIGURE_NOTIFY = 22  # another size
+    CONFIGURE_NOTIFY = 22  # resized
     CLIENT_MESSAGE = 33  # the close button, after DESTROY_NOTIFY
 
 

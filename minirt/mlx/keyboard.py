@@ -1,4 +1,4 @@
-"""The keys of one window: which are held, with which modifiers, and when a held one repeats."""
+"""Keyboard state of one window: held keys, modifiers and key repeat."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 REPEAT_DELAY = 0.5  # seconds until a held key repeats
-REPEAT_INTERVAL = 0.04
+REPEAT_INTERVAL = 0.04  # seconds
 
 
 class Keyboard:
-    """Turns what a platform says about keys into presses and releases that always come in pairs.
+    """Pairs every press of a key with a release, although platforms lose releases.
 
-    Platforms lose releases: when the focus leaves, when Cmd is held on macOS, and when a symbol changes under the
-    finger (Shift and = is +; with Shift let go first, what is released is =). Such keys are released here.
+    Releases are lost when the window loses the focus, when Cmd is held on macOS, and when the symbol of a held key
+    changes (Shift and = is +; with Shift released first, the platform reports the release of =). This class releases
+    the keys concerned.
     """
 
     def __init__(self, report: Callable[[Event, int], None]) -> None:
@@ -29,8 +30,8 @@ class Keyboard:
         self._repeat_at = 0.0
 
     def press(self, key: int, now: float, modifiers: Modifier | None = None) -> None:
-        """`modifiers`: what the platform says was held; None takes it from the keys held."""
-        self._see(modifiers)
+        """Hold a key down. `modifiers`: the held modifiers by the platform; None derives them from the held keys."""
+        self._update_modifiers(modifiers)
         self.modifiers |= MODIFIER_KEYS.get(key, Modifier.NONE)
         if key not in self.held:
             self.held.append(key)
@@ -39,13 +40,13 @@ class Keyboard:
             self._report(Event.KEY_PRESS, key)
 
     def release(self, key: int, modifiers: Modifier | None = None) -> list[int]:
-        """Returns the keys that were released: this one, and those that a modifier takes with it."""
+        """Release a key. Returns the released keys: this key, and the keys whose releases a modifier hides."""
         modifier = MODIFIER_KEYS.get(key, Modifier.NONE)
         released = [key] if key in self.held else []
         if modifier:
-            released += [other for other in self.held if other != key and _lost_with(modifier, other)]
+            released += [other for other in self.held if other != key and _hides_release(modifier, other)]
         self.held = [other for other in self.held if other not in released]
-        self._see(modifiers)
+        self._update_modifiers(modifiers)
         self.modifiers &= ~modifier
         self.modifiers |= self._held_modifiers()
         for lost in released:
@@ -53,7 +54,7 @@ class Keyboard:
         return released
 
     def release_all(self) -> None:
-        """The focus is lost: no release will come."""
+        """Release all keys, when the focus is lost and no release will come."""
         released, self.held = self.held, []
         self.modifiers = Modifier.NONE
         for key in released:
@@ -65,13 +66,13 @@ class Keyboard:
         return self._repeating in self.held
 
     def repeat(self, now: float) -> None:
-        """Report the newest key once more when its time has come: a release and a press, as X11 does."""
+        """Report a release and a press of the newest key, as X11 does, when its repeat is due."""
         if self._repeating in self.held and now >= self._repeat_at:
             self._repeat_at = max(self._repeat_at + REPEAT_INTERVAL, now)
             self._report(Event.KEY_RELEASE, self._repeating)
             self._report(Event.KEY_PRESS, self._repeating)
 
-    def _see(self, modifiers: Modifier | None) -> None:
+    def _update_modifiers(self, modifiers: Modifier | None) -> None:
         self.modifiers = self._held_modifiers() if modifiers is None else modifiers
 
     def _held_modifiers(self) -> Modifier:
@@ -81,8 +82,8 @@ class Keyboard:
         return modifiers
 
 
-def _lost_with(modifier: Modifier, key: int) -> bool:
-    """Whether letting `modifier` go may hide the release of `key`: printed symbols change with it, letters do not."""
+def _hides_release(modifier: Modifier, key: int) -> bool:
+    """Whether releasing `modifier` may hide the release of `key`: printed symbols change with it, letters do not."""
     if key in MODIFIER_KEYS:
         return False
     if modifier is Modifier.COMMAND:

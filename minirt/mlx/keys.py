@@ -1,13 +1,13 @@
-"""Key codes: the numbers of X11's keysyms, as MiniLibX gives them to hooks."""
+"""Key codes: X11's keysyms, as MiniLibX passes them to hooks."""
 
 import sys
 from enum import IntEnum, IntFlag
 
 
 class Key(IntEnum):
-    """The keys that a program is likely to name; a hook receives plain integers and may see others.
+    """Named keys. A hook receives plain integers, which may be keys without a name here.
 
-    Letters are lower case whatever Shift says; a printable symbol is its own character code.
+    A letter has its lower case code with or without Shift; a printable symbol has its character code.
     """
 
     SPACE = 0x20
@@ -110,14 +110,14 @@ class Key(IntEnum):
 
 
 class Modifier(IntFlag):
-    """What is held while something else is pressed, see `Mlx.mlx_get_modifiers`."""
+    """Modifier keys that are held, as `Mlx.mlx_get_modifiers` returns them."""
 
     NONE = 0
     SHIFT = 1
     CTRL = 2
     ALT = 4
     COMMAND = 8  # macOS
-    ACCEL = COMMAND if sys.platform == "darwin" else CTRL  # what this platform makes its shortcuts with
+    ACCEL = COMMAND if sys.platform == "darwin" else CTRL  # the modifier of this platform's shortcuts
 
 
 MODIFIER_KEYS: dict[int, Modifier] = {

@@ -1,16 +1,16 @@
-"""The back end without a screen: pictures are read back, events come from a script, time is simulated.
+"""Memory: the back end without a screen. Pictures are read back, events come from a script, time is simulated.
 
     memory = Memory()
     m = Mlx(backend=memory)
     mlx = m.mlx_init()
     ...                                   # windows, hooks
-    memory.press(Key.W)                   # each call adds to the script
+    memory.press(Key.W)                   # each call adds a step to the script
     memory.wait(0.5)
     memory.release(Key.W)
     memory.play()                         # or m.mlx_loop(mlx), which plays the script and goes on
     picture = memory.screenshot()
 
-What the user does becomes a list of steps. Between two of them the program's loop takes a turn.
+The script is a list of steps of a user. Between two steps the program's loop takes a turn.
 """
 
 from __future__ import annotations
@@ -32,16 +32,19 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from minirt.mlx.display import Display
-    from minirt.mlx.handles import Window
+    from minirt.mlx.backend import Loop
+    from minirt.mlx.window import Window
 
 TICK = 1 / 60  # simulated seconds between two turns of a busy loop
 
 
 class Memory(Backend):
-    """`patience`: real seconds after the end of the script in which the program has to end, or MlxError is raised.
+    """A scripted user and a simulated screen.
 
-    The methods of the script take the window that they are meant for; None is the first that is open by then.
+    screen: width and height in pixels.
+    patience: real seconds after the end of the script in which the program has to end, or MlxError is raised.
+
+    The methods of the script take the target window; None is the first window that is open when the step is played.
     """
 
     def __init__(self, screen: tuple[int, int] = (2560, 1600), patience: float = 30.0) -> None:
@@ -49,23 +52,24 @@ class Memory(Backend):
         self.patience = patience
         self.clipboard_text = ""
         self.pointer_shown = True
-        self.after_tick: Callable[[], object] = lambda: None  # called whenever simulated time has gone by
+        self.after_tick: Callable[[], object] = lambda: None  # called after each step of simulated time
         self._script: deque[Callable[[], object]] = deque()
-        self._display: Display | None = None
-        self._stir = threading.Event()
+        self._display: Loop | None = None
+        self._wakeup = threading.Event()
         self._now = 0.0
         self._screens: dict[Window, NDArray[np.uint8]] = {}
-        self._sizes: dict[Window, tuple[int, int]] = {}  # of the framebuffers
-        self._windowed: dict[Window, tuple[int, int]] = {}  # what the full-screen ones had before
+        self._sizes: dict[Window, tuple[int, int]] = {}  # of the frame buffers
+        self._windowed: dict[Window, tuple[int, int]] = {}  # sizes of full-screen windows before
 
-    # --- the script: what the user does, in this order ---
+    # --- the script: steps of the user, in this order ---
 
     def press(self, key: int, window: Window | None = None) -> None:
         """Hold a key down; a modifier is a key like any other."""
-        self.do(lambda: self.display.press(self._at(window), key))
+        self.do(lambda: self._target(window).keyboard.press(key, self._now))
 
     def release(self, key: int, window: Window | None = None) -> None:
-        self.do(lambda: self._at(window).keyboard.release(key))
+        """Let a key go."""
+        self.do(lambda: self._target(window).keyboard.release(key))
 
     def tap(self, *keys: int, window: Window | None = None) -> None:
         """Press the keys in this order and release them in the opposite one: tap(Key.CONTROL_L, Key.Z)."""
@@ -75,69 +79,69 @@ class Memory(Backend):
             self.release(key, window)
 
     def text(self, text: str, window: Window | None = None) -> None:
-        """Type text; what comes as text alone, without presses of keys."""
-        self.do(lambda: self.display.text(self._at(window), text))
+        """Type text, without presses of keys."""
+        self.do(lambda: self._target(window).on_text(text))
 
     def button_press(self, button: int, x: int, y: int, window: Window | None = None) -> None:
-        self.do(lambda: self.display.button(self._at(window), Event.BUTTON_PRESS, button, x, y))
+        self.do(lambda: self._target(window).on_button(Event.BUTTON_PRESS, button, x, y))
 
     def button_release(self, button: int, x: int, y: int, window: Window | None = None) -> None:
-        self.do(lambda: self.display.button(self._at(window), Event.BUTTON_RELEASE, button, x, y))
+        self.do(lambda: self._target(window).on_button(Event.BUTTON_RELEASE, button, x, y))
 
     def click(self, x: int, y: int, button: int = Button.LEFT, window: Window | None = None) -> None:
         self.button_press(button, x, y, window)
         self.button_release(button, x, y, window)
 
     def motion(self, x: int, y: int, window: Window | None = None) -> None:
-        self.do(lambda: self.display.motion(self._at(window), x, y))
+        self.do(lambda: self._target(window).on_motion(x, y))
 
     def scroll(self, up: int, x: int, y: int, window: Window | None = None, right: int = 0) -> None:
-        """Turn the wheel by so many steps; negative ones go down and left."""
-        self.do(lambda: self.display.scroll(self._at(window), right, up, x, y))
+        """Turn the wheel by a number of steps; negative steps go down and left."""
+        self.do(lambda: self._target(window).on_scroll(right, up, x, y))
 
     def drop(self, *files: str, window: Window | None = None) -> None:
         """Drop files on the window."""
-        self.do(lambda: self.display.drop(self._at(window), files))
+        self.do(lambda: self._target(window).on_drop(files))
 
     def enter(self, inside: bool, window: Window | None = None) -> None:
-        """The pointer comes into the window, or leaves it."""
-        self.do(lambda: self._at(window).deliver(Event.ENTER_NOTIFY if inside else Event.LEAVE_NOTIFY))
+        """Move the pointer into the window, or out of it."""
+        self.do(lambda: self._target(window).deliver(Event.ENTER_NOTIFY if inside else Event.LEAVE_NOTIFY))
 
     def focus(self, focused: bool, window: Window | None = None) -> None:
-        self.do(lambda: self.display.focus(self._at(window), focused))
+        self.do(lambda: self._target(window).on_focus(focused))
 
     def resize(self, width: int, height: int, window: Window | None = None) -> None:
-        self.do(lambda: self._resize(self._at(window), width, height))
+        self.do(lambda: self._resize(self._target(window), width, height))
 
     def minimise(self, hidden: bool, window: Window | None = None) -> None:
         """Hide the window, or bring it back."""
-        self.do(lambda: self.display.set_visible(self._at(window), not hidden))
+        self.do(lambda: self._target(window).on_visibility(not hidden))
 
     def expose(self, window: Window | None = None) -> None:
-        self.do(lambda: self.display.expose(self._at(window)))
+        self.do(lambda: self._target(window).on_expose())
 
     def close_button(self, window: Window | None = None) -> None:
-        self.do(lambda: self.display.close_button(self._at(window)))
+        self.do(lambda: self._target(window).on_close_button())
 
     def wait(self, seconds: float) -> None:
-        """Let simulated time go by, in turns of at most TICK."""
-        self.do(lambda: self._pass(seconds))
+        """Advance simulated time, in ticks of at most TICK seconds."""
+        self.do(lambda: self._advance(seconds))
 
     def await_wake(self) -> None:
-        """Stop, in real time, until `mlx_wake` is called."""
+        """Wait, in real time, until `mlx_wake` is called."""
         self.do(self._await_wake)
 
     def do(self, action: Callable[[], object]) -> None:
-        """Any other step of the script, for example to look at a picture half way. From any thread."""
+        """Add any other step, for example to check a picture half way. May be called from any thread."""
         self._script.append(action)
-        self._stir.set()
+        self._wakeup.set()
 
-    # --- playing it ---
+    # --- playing the script ---
 
     def play(self) -> None:
-        """Play the script to its end, without `mlx_loop`; raises what a hook raises.
+        """Play the script to its end, without `mlx_loop`. Raises the exception of a hook.
 
-        A step comes when nothing is left to do after the one before."""
+        Each step starts when the program has nothing left to do after the step before."""
         self._settle()
         while self._script and not self.display.over:
             self._script.popleft()()
@@ -155,36 +159,38 @@ class Memory(Backend):
             elif time.monotonic() > deadline:
                 raise MlxError(f"the script is over and the program did not end within {self.patience} s")
             elif self.display.busy:
-                self._pass(TICK)
-            elif self._stir.wait(max(0.0, deadline - time.monotonic())):
-                self._stir.clear()
+                self._advance(TICK)
+            elif self._wakeup.wait(max(0.0, deadline - time.monotonic())):
+                self._wakeup.clear()
                 self.display.turn(tick=False)
-        self._script.clear()  # what the user does later meets nobody
+        self._script.clear()  # steps after the end of the loop are dropped
 
     def screenshot(self, window: Window | None = None) -> NDArray[np.uint8]:
-        """What the window shows now: (h, w, 4) uint8, BGRA."""
-        return self._screens[self._at(window)].copy()
+        """Return the picture that the window shows now: (h, w, 4) uint8, BGRA."""
+        return self._screens[self._target(window)].copy()
 
     @property
-    def display(self) -> Display:
+    def display(self) -> Loop:
+        """The display that `mlx_init` opened."""
         assert self._display is not None, "mlx_init was not called"
         return self._display
 
     @property
     def windows(self) -> list[Window]:
-        """The open windows, in the order of their opening."""
+        """The open windows, oldest first."""
         return list(self.display.windows)
 
-    def _at(self, window: Window | None) -> Window:
+    def _target(self, window: Window | None) -> Window:
         return self.display.windows[0] if window is None else window
 
     def _settle(self) -> None:
-        """Take a turn, and more of them for as long as hooks call `mlx_wake`."""
+        """Take turns until no hook calls `mlx_wake`."""
         self.display.turn(tick=False)
         while self.display.woken and not self.display.over:
             self.display.turn(tick=False)
 
-    def _pass(self, seconds: float) -> None:
+    def _advance(self, seconds: float) -> None:
+        """Advance simulated time, in ticks of at most TICK seconds."""
         ticks = max(1, math.ceil(seconds / TICK - 1e-9))
         for _ in range(ticks):
             if not self.display.over:
@@ -195,17 +201,17 @@ class Memory(Backend):
     def _await_wake(self) -> None:
         deadline = time.monotonic() + self.patience
         while not self.display.woken:
-            if not self._stir.wait(max(0.0, deadline - time.monotonic())):
+            if not self._wakeup.wait(max(0.0, deadline - time.monotonic())):
                 raise MlxError(f"mlx_wake was not called within {self.patience} s")
-            self._stir.clear()
+            self._wakeup.clear()
 
     def _resize(self, window: Window, width: int, height: int) -> None:
         self._sizes[window] = width, height
-        self.display.resize(window, width, height)
+        window.on_resize(width, height)
 
-    # --- the rest of the contract ---
+    # --- the rest of the contract of a back end ---
 
-    def open(self, display: Display) -> None:
+    def open(self, display: Loop) -> None:
         self._display = display
 
     def close(self) -> None:
@@ -222,7 +228,7 @@ class Memory(Backend):
         self._screens[window] = stretch(window.shown.pixels, *self._sizes[window])
 
     def wake(self) -> None:
-        self._stir.set()
+        self._wakeup.set()
 
     def time(self) -> float:
         return self._now
@@ -231,7 +237,7 @@ class Memory(Backend):
         return self.screen
 
     def set_title(self, window: Window) -> None:
-        """Nothing to do: there is no title bar."""
+        """Do nothing: there is no title bar."""
 
     def set_fullscreen(self, window: Window, on: bool) -> None:
         if on:

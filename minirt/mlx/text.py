@@ -1,8 +1,8 @@
-"""Text drawn into BGRA pixels, with the font that comes inside Pillow: the same pixels on every platform.
+"""Draw text into BGRA pixels with Pillow's built-in font, which gives the same pixels on every platform.
 
     draw_text(pixels, 10, 10, "hello", 0xFFFFFF, size=16, background=0x80000000)
 
-A line that was drawn before, at whatever place and in whatever colour, is not rendered again.
+Rendered lines are cached, independent of position and colour.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def draw_text(
     """Draw `text` (0xRRGGBB, opaque) with its top left corner at x, y. Returns its width and height.
 
     text: newlines start lines.
-    pixels: (h, w, 4) uint8, BGRA, written in place; what falls outside is not drawn.
+    pixels: (h, w, 4) uint8, BGRA, written in place; text outside is clipped.
     background: 0xAARRGGBB, blended by its alpha below the text and `padding` pixels around it.
     """
     width, height = measure(text, size)
@@ -48,12 +48,13 @@ def draw_text(
 
 
 def measure(text: str, size: int = SIZE) -> tuple[int, int]:
-    """Width and height in pixels that `draw_text` would take."""
+    """Return the width and height in pixels that `draw_text` would take."""
     lines = text.split("\n")
     return max(_width(line, size) for line in lines), len(lines) * _line_height(size)
 
 
 def _blend(pixels: NDArray[np.uint8], x: int, y: int, coverage: NDArray[np.uint8], color: int) -> None:
+    """Blend a colour into the pixels at x, y by its coverage, 0 to 255, clipped at the borders."""
     height, width = pixels.shape[:2]
     left, top = max(0, -x), max(0, -y)
     ink = coverage[top : max(0, height - y), left : max(0, width - x)].astype(np.uint16)
@@ -66,7 +67,7 @@ def _blend(pixels: NDArray[np.uint8], x: int, y: int, coverage: NDArray[np.uint8
 
 @lru_cache(maxsize=1024)
 def _coverage(line: str, size: int) -> NDArray[np.uint8]:
-    """How much of each pixel the ink of one line covers, 0 to 255; kept, since a drawn line seldom changes."""
+    """Coverage of each pixel by one line of text, 0 to 255; cached, since lines seldom change."""
     from PIL import Image, ImageDraw
 
     width = _width(line, size)
@@ -81,12 +82,13 @@ def _coverage(line: str, size: int) -> NDArray[np.uint8]:
 
 @lru_cache(maxsize=1024)
 def _width(line: str, size: int) -> int:
-    """Of one line, in pixels; six times as fast as drawing it."""
+    """Width of one line in pixels; six times as fast as drawing it."""
     return int(np.ceil(_font(size).getlength(line)))
 
 
 @lru_cache(maxsize=64)
 def _line_height(size: int) -> int:
+    """Height of a line in pixels."""
     return sum(_font(size).getmetrics())
 
 

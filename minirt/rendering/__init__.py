@@ -1,4 +1,7 @@
-"""Scene -> pixels. Knows no window and no file; imports the compiler only when the first picture is made."""
+"""Renders scenes to pixels: packing, culling, sampling and threads.
+
+Knows no window and no file; imports the compiler only when the first picture is made.
+"""
 
 from minirt.rendering.queries.pick import pick
 from minirt.rendering.renderer import Renderer

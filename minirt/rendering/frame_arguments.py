@@ -1,38 +1,44 @@
-"""What the kernel is called with for a picture or a part of it."""
+"""Arguments of the kernel for a picture or a part of it."""
 
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from minirt.kernel.frame import TILE
 from minirt.rendering.packing.camera import packet_rays
 
-if TYPE_CHECKING:
-    from minirt.rendering.sampling.auto import Task
-
 NO_LINEAR = np.zeros((0, 0, 3))
 ALL_PACKETS = np.zeros((0, 0), np.uint8)
-GOLDEN = (5**0.5 - 1) / 2
+GOLDEN_RATIO = (5**0.5 - 1) / 2  # its conjugate, 0.618...
 
 
 @cache
-def sample_places(samples: int) -> np.ndarray:
-    """Where in a pixel its samples lie, (samples, 2): a Fibonacci lattice whose middle is the middle of the pixel.
+def sample_positions(samples: int) -> np.ndarray:
+    """Positions of the samples in a pixel, (samples, 2): a Fibonacci lattice, centred on the centre of the pixel.
 
-    With its middle elsewhere the whole picture would be moved: of 4 samples by a fourteenth of a pixel, which was a
+    A lattice that is not centred moves the whole picture: with 4 samples by a fourteenth of a pixel, which was a
     seventh of their error.
     """
-    each = np.arange(samples)
-    lattice = np.stack([(each + 0.5) / samples, (each * GOLDEN + 0.5) % 1.0], axis=1)
+    index = np.arange(samples)
+    lattice = np.stack([(index + 0.5) / samples, (index * GOLDEN_RATIO + 0.5) % 1.0], axis=1)
     centred: np.ndarray = lattice - lattice.mean(axis=0) + 0.5
     return centred
 
 
+class SamplePass(NamedTuple):
+    """Samples to take at the same positions in the pixels of some packets."""
+
+    positions: np.ndarray  # (k, pixels of a packet, 2)
+    packets: np.ndarray  # uint8 (rows, columns), 0 where a packet gets no samples
+    light: np.ndarray  # output: their mean, as `linear` of `minirt.kernel.frame`
+    pixels: np.ndarray  # output: their mean as colours, uint8 (h, w, 4)
+
+
 class Frame(NamedTuple):
-    """What `minirt.kernel.frame.frame` is called with."""
+    """Arguments of `minirt.kernel.frame.frame`."""
 
     next_row: np.ndarray
     pixels: np.ndarray
@@ -43,44 +49,44 @@ class Frame(NamedTuple):
     sums: np.ndarray
     scene: Any
 
-    def of(self, task: Task, counter: np.ndarray) -> Frame:
-        """The frame of a task of `minirt.rendering.sampling.auto`."""
+    def with_pass(self, samples: SamplePass, counter: np.ndarray) -> Frame:
+        """Return the arguments for a pass of samples over the same scene."""
         return self._replace(
             next_row=counter,
-            pixels=as_words(task.pixels),
-            linear=task.light,
-            rays=packet_rays(self.scene.camera, task.places),
-            wanted=task.packets,
+            pixels=as_uint32(samples.pixels),
+            linear=samples.light,
+            rays=packet_rays(self.scene.camera, samples.positions),
+            wanted=samples.packets,
         )
 
 
 def frame_arguments(
-    traced: Any, pixels: np.ndarray, samples: int = 1, linear: np.ndarray = NO_LINEAR, counter: np.ndarray | None = None
+    arrays: Any, pixels: np.ndarray, samples: int = 1, linear: np.ndarray = NO_LINEAR, counter: np.ndarray | None = None
 ) -> Frame:
-    """A frame of all packets."""
+    """Return the arguments for a picture of all packets of a packed scene."""
     return Frame(
         next_row=np.zeros(1, np.int64) if counter is None else counter,
-        pixels=as_words(pixels),
+        pixels=as_uint32(pixels),
         linear=linear,
-        rays=packet_rays(traced.camera, sample_places(samples)),
+        rays=packet_rays(arrays.camera, sample_positions(samples)),
         wanted=ALL_PACKETS,
-        memory=memory_for(traced),
-        sums=room_for_sums(traced),
-        scene=traced,
+        memory=thread_memory(arrays),
+        sums=sum_buffer(arrays),
+        scene=arrays,
     )
 
 
-def as_words(pixels: np.ndarray) -> np.ndarray:
-    """Pixels (h, w, 4) as numbers 0xAARRGGBB (h, w), in the same memory."""
-    words: np.ndarray = pixels.view(np.uint32)[..., 0]
-    return words
+def as_uint32(pixels: np.ndarray) -> np.ndarray:
+    """View pixels (h, w, 4) as numbers 0xAARRGGBB (h, w), in the same memory."""
+    numbers: np.ndarray = pixels.view(np.uint32)[..., 0]
+    return numbers
 
 
-def room_for_sums(traced: Any) -> np.ndarray:
-    """Room for the light of a tile."""
-    return np.empty(3 * TILE * TILE, traced.camera.dtype)
+def sum_buffer(arrays: Any) -> np.ndarray:
+    """Allocate the buffer in which a thread sums the light of a tile."""
+    return np.empty(3 * TILE * TILE, arrays.camera.dtype)
 
 
-def memory_for(traced: Any) -> np.ndarray:
-    """What a thread remembers from one packet to the next, see `minirt.kernel.trace`: nothing yet."""
-    return np.zeros((len(traced.lights) + 1, 4), traced.lights.dtype)
+def thread_memory(arrays: Any) -> np.ndarray:
+    """Allocate the memory of a thread from one packet to the next, still empty: see `minirt.kernel.trace`."""
+    return np.zeros((len(arrays.lights) + 1, 4), arrays.lights.dtype)

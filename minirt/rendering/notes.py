@@ -1,4 +1,4 @@
-"""What was decided about a scene when it was packed, in words."""
+"""Sentences about the decisions made for a packed scene: its kernel, tiles, light buffers and lights without effect."""
 
 from __future__ import annotations
 
@@ -15,47 +15,48 @@ from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Shape
 
 
-def notes(scene: Scene, tables: ShapeArrays, traced: SceneArrays) -> Iterator[str]:
-    """Sentences; lights and shapes have the numbers of their places among those of their kind in the file."""
-    shapes = f"{len(tables.slots)} shape{'s' * (len(tables.slots) != 1)}"
+def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Iterator[str]:
+    """Describe the decisions. Lights, and the shapes of each kind, are numbered in the order of the file."""
+    shapes = f"{len(shape_arrays.slots)} shape{'s' * (len(shape_arrays.slots) != 1)}"
     used = {type(shape) for shape in scene.shapes}
     yield f"kernel for {plurals(used)}"
-    if idle_kinds := {kind.element for kind in ALL_KINDS} - used:
-        yield f"kernel without {plurals(idle_kinds)}"
-    needed = features(scene)
-    yield f"kernel without {', '.join(words for feature, words in FEATURES.items() if feature not in needed)}"
-    sizes = sum(np.diff(group.tile_starts) for group in traced.groups)
+    if unused := {kind.element for kind in ALL_KINDS} - used:
+        yield f"kernel without {plurals(unused)}"
+    used_features = features(scene)
+    yield f"kernel without {', '.join(words for feature, words in FEATURES.items() if feature not in used_features)}"
+    sizes = sum(np.diff(group.tile_starts) for group in arrays.groups)
     yield f"tiles: {len(sizes)}, {np.mean(sizes):.1f} of {shapes} in each, {np.count_nonzero(sizes == 0)} without any"
-    if traced.light_buffer_cells == 1:
+    if arrays.light_buffer_cells == 1:
         yield f"light buffer: none, every shape is tried ({shapes})"
     else:
-        yield f"light buffer: {' or '.join(cells(traced))} a lamp ({shapes})"
+        yield f"light buffer: {' or '.join(light_buffer_sizes(arrays))} per light ({shapes})"
     for number, light in enumerate(scene.lights, 1):
         if not light.brightness:
             yield f"light {number} has brightness 0"
         elif not any(light.colour):
             yield f"light {number} is black"
         else:
-            for index in tables.flat[never_occludes(tables, np.array(scene.camera.position), light)].tolist():
-                yield f"{name(tables, index)} hides nothing from light {number}"
+            harmless = never_occludes(shape_arrays, np.array(scene.camera.position), light)
+            for index in shape_arrays.plane_indices[harmless].tolist():
+                yield f"{shape_name(shape_arrays, index)} hides nothing from light {number}"
 
 
-def cells(traced: SceneArrays) -> Iterator[str]:
-    """What cells lamps have: around them, or ahead of them where they see all shapes there."""
-    ahead, edge = traced.light_buffers[:, SCALE] > 0, FRUSTUM_FACTOR * traced.light_buffer_cells
-    if not ahead.all() or not len(ahead):
-        yield f"6 x {traced.light_buffer_cells} x {traced.light_buffer_cells} cells"
-    if ahead.any():
-        yield f"{edge} x {edge} cells ahead of"
+def light_buffer_sizes(arrays: SceneArrays) -> Iterator[str]:
+    """Describe the cells of the lights: on the faces of a cube, or in a frustum towards a cluster of shapes."""
+    frustum, edge = arrays.light_buffers[:, SCALE] > 0, FRUSTUM_FACTOR * arrays.light_buffer_cells
+    if not frustum.all() or not len(frustum):
+        yield f"6 x {arrays.light_buffer_cells} x {arrays.light_buffer_cells} cells"
+    if frustum.any():
+        yield f"{edge} x {edge} cells in a frustum"
 
 
 def plurals(elements: set[type[Shape]]) -> str:
-    """What people call shapes of these kinds, in the order of the registry."""
+    """List the names of some kinds of shapes, in the order of the registry: spheres, planes."""
     return ", ".join(kind.element.plural for kind in ALL_KINDS if kind.element in elements)
 
 
-def name(tables: ShapeArrays, index: int) -> str:
-    """What people call a shape, or that of which it is a part: plane 2."""
-    owner = int(tables.owner[index])
-    kind = type(tables.shapes[owner])
-    return f"{kind.title} {sum(type(shape) is kind for shape in tables.shapes[: owner + 1])}"
+def shape_name(shape_arrays: ShapeArrays, index: int) -> str:
+    """Name a shape, or the mesh that owns a triangle, by its kind and number: plane 2."""
+    owner = int(shape_arrays.owner[index])
+    kind = type(shape_arrays.shapes[owner])
+    return f"{kind.title} {sum(type(shape) is kind for shape in shape_arrays.shapes[: owner + 1])}"

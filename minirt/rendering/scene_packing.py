@@ -1,4 +1,4 @@
-"""Scene -> the arrays that the kernel reads; what did not change since the last scene is kept."""
+"""Packs a scene into the arrays that the kernel reads, and reuses what has not changed since the last scene."""
 
 from __future__ import annotations
 
@@ -11,15 +11,21 @@ import numpy as np
 
 from minirt.kernel.culling import binning
 from minirt.kernel.scene_arrays import Group, SceneArrays
-from minirt.rendering.culling.light_frustum import cluster
+from minirt.rendering.culling.light_frustum import dense_cluster
 from minirt.rendering.culling.planes import never_occludes
-from minirt.rendering.culling.visibility import Lists, grid_for, seen_by_eye, seen_by_lamp, seen_by_sun
+from minirt.rendering.culling.visibility import (
+    BinnedShapes,
+    light_buffer_cells,
+    seen_by_eye,
+    seen_by_light,
+    seen_by_parallel_light,
+)
 from minirt.rendering.notes import notes
-from minirt.rendering.packing.bvh import bvh_of
+from minirt.rendering.packing.bvh import build_bvh
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.features import DEPTH, features
-from minirt.rendering.packing.lights import light_numbers, light_of, shining, spot_numbers
-from minirt.rendering.packing.materials import environment_of, materials_of
+from minirt.rendering.packing.lights import emitting_lights, intensity, positions_and_intensities, spot_parameters
+from minirt.rendering.packing.materials import pack_environment, pack_materials
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.packing.single_precision import in_single
 from minirt.scene import ParallelLight, Scene
@@ -27,127 +33,133 @@ from minirt.shapes import Shape
 
 
 class Packing:
-    """Packs scene after scene, in "double" or, where a scene allows it, "single" `precision`. Given
-    `minirt.kernel.culling.binning` for the kernel it does without the compiler."""
+    """Packs scene after scene, in "double" precision or, where a scene allows it, in "single".
+
+    Given `minirt.kernel.culling.binning` as the kernel, it does without the compiler.
+    """
 
     def __init__(self, kernel: Any = None, precision: str = "double", depth: int = DEPTH) -> None:
         self.kernel = kernel
         self.precision = precision
         self.depth = depth  # bounces at most
-        self.tables = ShapeArrays()
-        self.known: dict[Hashable, Any] = {}  # what was worked out for the last scene, by what it was worked out from
+        self.shape_arrays = ShapeArrays()
+        self.cache: dict[Hashable, Any] = {}  # results for the last scene, by what they depend on beside its shapes
         self.last: tuple[Scene, int, int, SceneArrays] | None = None
 
-    def tables_of(self, shapes: tuple[Shape, ...]) -> ShapeArrays:
-        """The arrays of those shapes; what was worked out for others is forgotten."""
-        if self.tables.update(shapes):
-            self.known, self.last = {}, None
-        return self.tables
+    def shape_arrays_for(self, shapes: tuple[Shape, ...]) -> ShapeArrays:
+        """Return the arrays of these shapes. Where the last scene had other shapes its results are dropped."""
+        if self.shape_arrays.update(shapes):
+            self.cache, self.last = {}, None
+        return self.shape_arrays
 
     def pack(self, scene: Scene, width: int, height: int) -> SceneArrays:
-        """The scene, seen in a picture of that size."""
+        """Return the arrays of a scene for a picture of that size."""
         if self.last and self.last[0] is scene and self.last[1:3] == (width, height):
             return self.last[3]
-        traced = self.traced(scene, width, height)
-        if self.precision == "single" and may_be_single(traced):
-            traced = in_single(traced, self.tables.boxes)
-        self.last = scene, width, height, traced
-        return traced
+        arrays = self.pack_double(scene, width, height)
+        if self.precision == "single" and fits_single(arrays):
+            arrays = in_single(arrays, self.shape_arrays.boxes)
+        self.last = scene, width, height, arrays
+        return arrays
 
-    def traced(self, scene: Scene, width: int, height: int) -> SceneArrays:
-        """The same in double precision, anew."""
+    def pack_double(self, scene: Scene, width: int, height: int) -> SceneArrays:
+        """Return the arrays in double precision, packed again even if the scene is the last one."""
         self.kernel = self.kernel or import_module("minirt.kernel.compiler.jit_binning")
-        tables = self.tables_of(scene.shapes)
-        before, self.known = self.known, {}
+        shapes = self.shape_arrays_for(scene.shapes)
+        before, self.cache = self.cache, {}
 
-        def keep(key: Hashable, work: Callable[..., Any], *given: Any) -> Any:
-            self.known[key] = before[key] if key in before else work(*given)
-            return self.known[key]
+        def cached(key: Hashable, compute: Callable[..., Any], *arguments: Any) -> Any:
+            self.cache[key] = before[key] if key in before else compute(*arguments)
+            return self.cache[key]
 
         used = features(scene) - (set() if self.depth else {"reflective"})
-        camera, lamps = camera_numbers(scene.camera, width, height), shining(scene)
-        lights = light_numbers(lamps)
-        eye = keep((camera.tobytes(), width, height), seen_by_eye, self.kernel, tables, camera, width, height)
-        grid, most = grid_for(tables), keep("crowd", cluster, tables)
-        seen: list[Lists] = []
+        camera, sources = camera_numbers(scene.camera, width, height), emitting_lights(scene)
+        lights = positions_and_intensities(sources)
+        eye = cached((camera.tobytes(), width, height), seen_by_eye, self.kernel, shapes, camera, width, height)
+        cells, dense = light_buffer_cells(shapes), cached("cluster", dense_cluster, shapes)
+        binned: list[BinnedShapes] = []
         keys: list[Hashable] = []
-        for lamp, place in zip(lamps, lights[:, :3], strict=True):
-            skipped = never_occludes(tables, camera[:3], lamp)
-            if isinstance(lamp, ParallelLight):
+        for light, position in zip(sources, lights[:, :3], strict=True):
+            skipped = never_occludes(shapes, camera[:3], light)
+            if isinstance(light, ParallelLight):
                 keys.append(("parallel", skipped.tobytes()))
-                seen.append(keep(keys[-1], seen_by_sun, tables, grid, skipped))
+                binned.append(cached(keys[-1], seen_by_parallel_light, shapes, cells, skipped))
             else:
-                keys.append((place.tobytes(), skipped.tobytes()))
-                seen.append(keep(keys[-1], seen_by_lamp, self.kernel, tables, most, place, grid, skipped))
-        lamp_starts, lit, lamp_views, around = keep(tuple(keys), joined, seen, eye)
-        materials = keep(("materials", used), materials_of, scene, tables.owner, used)
-        tree = "reflective" in used or ("parallel" in used and grid > 1)
+                keys.append((position.tobytes(), skipped.tobytes()))
+                binned.append(cached(keys[-1], seen_by_light, self.kernel, shapes, dense, position, cells, skipped))
+        light_starts, light_shapes, light_cones, light_buffers = cached(tuple(keys), joined_light_buffers, binned, eye)
+        materials = cached(("materials", used), pack_materials, scene, shapes.owner, used)
+        needs_bvh = "reflective" in used or ("parallel" in used and cells > 1)
         paint: Any = scene.background and scene.background.paint
         return SceneArrays(
             camera=pixel_rays(camera, width, height),
-            ambient=light_of(scene.ambient) if scene.ambient else np.zeros(3),
+            ambient=intensity(scene.ambient) if scene.ambient else np.zeros(3),
             lights=lights,
-            colours_and_extents=tables.colours_and_extents,
-            slots=tables.slots,
+            colours_and_extents=shapes.colours_and_extents,
+            slots=shapes.slots,
             tile_shapes=eye.members,
             cones=eye.cones,
-            light_buffer_cells=grid,
-            light_buffers=around,
-            light_shapes=lit,
-            light_cones=lamp_views,
-            groups=tuple(map(Group, tables.rows, eye.tile_starts, lamp_starts)),
-            spots=spot_numbers(lamps) if "spots" in used else None,
+            light_buffer_cells=cells,
+            light_buffers=light_buffers,
+            light_shapes=light_shapes,
+            light_cones=light_cones,
+            groups=tuple(map(Group, shapes.rows, eye.starts, light_starts)),
+            spots=spot_parameters(sources) if "spots" in used else None,
             depth=self.depth,
             background=np.divide(paint, 255) if "background" in used else None,
-            environment=keep(("environment", paint), environment_of, scene, paint) if "environment" in used else None,
-            bvh=keep("bvh", bvh_of, tables, self.planter) if tree else None,
+            environment=cached(("environment", paint), pack_environment, scene, paint)
+            if "environment" in used
+            else None,
+            bvh=cached("bvh", build_bvh, shapes, self.bvh_kernel) if needs_bvh else None,
             **materials._asdict(),
         )
 
     @cached_property
-    def planter(self) -> Any:
-        """What builds trees: `minirt.kernel.compiler.jit_bvh`, or the same without the compiler."""
+    def bvh_kernel(self) -> Any:
+        """The functions that build a BVH: `minirt.kernel.compiler.jit_bvh`, or their interpreted form."""
         return import_module(
             "minirt.kernel.bvh.interpreted" if self.kernel is binning else "minirt.kernel.compiler.jit_bvh"
         )
 
     @property
     def notes(self) -> list[str]:
-        """What was decided about the last scene, in words."""
+        """Sentences about the decisions made for the last scene."""
         if not self.last:
             return []
-        scene, _, _, traced = self.last
-        told = list(notes(scene, self.tables, traced))
-        if self.precision == "single" and not may_be_single(traced):
-            told.insert(0, "double precision: single has neither pictures nor a tree of shapes")
-        return told
+        scene, _, _, arrays = self.last
+        sentences = list(notes(scene, self.shape_arrays, arrays))
+        if self.precision == "single" and not fits_single(arrays):
+            sentences.insert(0, "double precision: single supports neither images nor a BVH")
+        return sentences
 
 
-def may_be_single(traced: SceneArrays) -> bool:
-    """Whether float32 will do: the tree is made of float64, and float32 cannot count the pixels of a large picture."""
+def fits_single(arrays: SceneArrays) -> bool:
+    """Whether float32 will do: a BVH consists of float64, and float32 cannot count the pixels of a large picture."""
     return (
-        traced.bvh is None
-        and traced.environment is None
-        and (traced.surface_maps is None or not len(traced.surface_maps.pictures))
+        arrays.bvh is None
+        and arrays.environment is None
+        and (arrays.surface_maps is None or not len(arrays.surface_maps.pictures))
     )
 
 
-def joined(lamps: list[Lists], eye: Lists) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The lists of all lamps as one: starts (kinds, m, cells + 1), members, views (m, n, 5), around (m, 11)."""
-    if len(lamps) == 1:
-        return lamps[0].tile_starts[:, None], lamps[0].members, lamps[0].cones[None], lamps[0].light_buffers[None]
-    if not lamps:
+def joined_light_buffers(
+    lights: list[BinnedShapes], eye: BinnedShapes
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Join the bins of m lights: starts (kinds, m, cells + 1), members, cones (m, n, 5), light buffers (m, 11)."""
+    if len(lights) == 1:
+        return lights[0].starts[:, None], lights[0].members, lights[0].cones[None], lights[0].light_buffer[None]
+    if not lights:
         return (
-            np.zeros((len(eye.tile_starts), 0, 1), np.int64),
+            np.zeros((len(eye.starts), 0, 1), np.int64),
             eye.members[:0],
             np.zeros((0, *eye.cones.shape)),
             np.zeros((0, 11)),
         )
-    before = np.cumsum([0, *(len(each.members) for each in lamps[:-1])])
-    starts = np.stack([each.tile_starts + first for each, first in zip(lamps, before, strict=True)], axis=1)
+    offsets = np.cumsum([0, *(len(each.members) for each in lights[:-1])])
+    starts = np.stack([each.starts + offset for each, offset in zip(lights, offsets, strict=True)], axis=1)
     return (
         starts,
-        np.concatenate([each.members for each in lamps]),
-        np.stack([each.cones for each in lamps]),
-        np.stack([each.light_buffers for each in lamps]),
+        np.concatenate([each.members for each in lights]),
+        np.stack([each.cones for each in lights]),
+        np.stack([each.light_buffer for each in lights]),
     )

@@ -61,7 +61,7 @@ def report(
         rows = list(formula_rows(kinds, plan, shown.step, scene))
     packing = Renderer().packing
     packing.pack(scene, width, height)
-    stiff = [*stiff_shapes(scene, packing.tables, width, height), *coincident(scene, packing.tables)]
+    stiff = [*stiff_shapes(scene, packing.shape_arrays, width, height), *coincident(scene, packing.shape_arrays)]
     findings = Findings(
         about,
         right.samples,

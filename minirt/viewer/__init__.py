@@ -1,6 +1,6 @@
-"""The desktop viewer: a window in which the keys move, turn and resize what a scene is made of.
+"""The desktop viewer: a window in which keys and mouse move, turn and resize the elements of a scene.
 
-Importing this loads neither the window library nor the compiler.
+Importing this package loads neither the window library nor the compiler.
 """
 
 from minirt.viewer.app.desktop import run, view

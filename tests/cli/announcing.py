@@ -11,8 +11,8 @@ from threading import Thread
 from typing import Any
 
 from minirt.cli import main
-from minirt.rendering import Renderer
 from minirt.rendering.frame_arguments import Frame
+from minirt.rendering.running.frame_runner import FrameRunner
 from tests.waiting import until
 
 RENDERING = b"rendering"
@@ -20,14 +20,14 @@ RENDERING = b"rendering"
 
 def announce_rendering() -> None:
     """Patch the renderer to announce each picture, except pictures of one pixel, which only compile kernels."""
-    run = Renderer.run
+    run = FrameRunner.run
 
-    def announcing(self: Renderer, frames: list[Frame], threads: int) -> None:
+    def announcing(self: FrameRunner, frames: list[Frame], threads: int) -> None:
         if frames[0].pixels.size > 1:
             Thread(target=watch, args=(frames[0].next_row,), daemon=True).start()
         run(self, frames, threads)
 
-    Renderer.run = announcing  # type: ignore[method-assign]
+    FrameRunner.run = announcing  # type: ignore[method-assign]
 
 
 def watch(next_row: Any) -> None:

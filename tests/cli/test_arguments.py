@@ -16,7 +16,7 @@ from minirt.kernel.shading import whitted
 from minirt.rendering.packing import features
 from tests.cli.program import SCENE, Result
 from tests.paths import ROOT
-from tests.simulated import PACKET, packets, simulated
+from tests.simulated_clock import PACKET_SECONDS, packets, simulate_clock
 
 Run = Callable[..., Result]
 
@@ -138,8 +138,8 @@ def test_the_example_of_the_subject_needs_the_lenient_reader(run: Run, folder: P
 
 def test_bench_prints_its_measurements(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     """On a simulated clock a packet of rays takes a millisecond."""
-    clock = simulated(monkeypatch)
-    clock.slowness = 1e-3 / PACKET
+    clock = simulate_clock(monkeypatch)
+    clock.slowness = 1e-3 / PACKET_SECONDS
     ended = run("ball.rt", "--bench", "--json", "--size", "16x9", "--threads", "2")
     assert (ended.status, ended.err) == (0, "")
     frame = packets(16, 9)

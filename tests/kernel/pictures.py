@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from minirt.kernel import frame
 from minirt.kernel.culling import binning
 from minirt.rendering import Renderer
-from minirt.rendering.frame_arguments import ALL_PACKETS, memory_for, room_for_sums, sample_places
+from minirt.rendering.frame_arguments import ALL_PACKETS, sample_positions, sum_buffer, thread_memory
 from minirt.rendering.packing.camera import packet_rays
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.scene_packing import Packing
@@ -79,8 +79,8 @@ def interpreted(
     words, light = np.zeros((height, width), np.uint32), np.full((height, width, 3), np.nan)
     traced = Packing(binning, precision, depth).pack(scene, width, height)
     with np.errstate(all="ignore"):
-        rays = packet_rays(traced.camera, sample_places(samples))
+        rays = packet_rays(traced.camera, sample_positions(samples))
         frame.frame(
-            np.zeros(1, np.int64), words, light, rays, ALL_PACKETS, memory_for(traced), room_for_sums(traced), traced
+            np.zeros(1, np.int64), words, light, rays, ALL_PACKETS, thread_memory(traced), sum_buffer(traced), traced
         )
     return words.view(np.uint8).reshape(height, width, 4), light

@@ -123,8 +123,9 @@ def test_a_renderer_counts_rays_whose_light_is_not_finite(monkeypatch: pytest.Mo
     renderer, pixels = Renderer(2), np.zeros((32, 32, 4), np.uint8)
     assert renderer.render(ALL, pixels)
     assert renderer.not_finite == 0
-    light_numbers = scene_packing.light_numbers
-    monkeypatch.setattr(scene_packing, "light_numbers", lambda scene: light_numbers(scene) * [1, 1, 1, np.nan, 1, 1])
+    rows = scene_packing.positions_and_intensities
+    factors = [1, 1, 1, np.nan, 1, 1]
+    monkeypatch.setattr(scene_packing, "positions_and_intensities", lambda lights: rows(lights) * factors)
     spoiled = Renderer(2)
     assert spoiled.render(ALL, pixels)
     assert 100 < spoiled.not_finite <= 32 * 32

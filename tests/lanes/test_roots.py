@@ -14,10 +14,10 @@ from numba import njit
 import minirt.lanes.compiled  # noqa: F401
 from minirt.lanes import Vec, inverse_root, lane, load, unit, width
 from minirt.lanes.compiled.inverse_root import SERIES
+from tests.environment import FEATURES
 from tests.lanes.numbers import DTYPES, PRECISIONS
 from tests.lanes.test_operators import store
 from tests.processes import run
-from tests.surroundings import FEATURES
 
 LLVM_NAMES = {np.float64: "double", np.float32: "float"}
 

@@ -14,7 +14,7 @@ from PIL import Image
 from minirt.errors import FileError
 from minirt.materials import picture_cache
 from minirt.materials.picture_cache import heights, picture
-from tests.hangs import unopened
+from tests.guards import must_not_open
 
 COLOURS = np.array([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [10, 20, 30]], [[255, 255, 255], [0, 0, 0]]], np.uint8)
 
@@ -103,7 +103,7 @@ def test_files_that_are_no_pictures(tmp_path: Path) -> None:
     (tmp_path / "program.eps").write_text("%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 2 2\n%%EndComments\n")
     assert refusal(tmp_path / "missing") == "cannot be read: no such file or directory"
     assert refusal(tmp_path / "folder") == "is a folder"
-    with unopened(tmp_path / "fifo", Path("/dev/zero")):
+    with must_not_open(tmp_path / "fifo", Path("/dev/zero")):
         assert refusal(tmp_path / "fifo") == "is not a regular file"
         assert refusal(Path("/dev/zero")) == "is not a regular file"
     assert refusal(tmp_path / "empty") == "is empty"

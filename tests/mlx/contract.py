@@ -1,7 +1,7 @@
-"""The window contract as programs with known logs, on either back end.
+"""The contract of back ends as scenarios: small programs with known logs.
 
-Each scenario is held to the same log on both by test_contract. Run as a module, this plays scenarios on the screen: it
-reads their names from standard input, a line each, and answers each with the log as a line of JSON.
+`test_contract` runs each scenario on both back ends and expects the same log. Run as a module, this file runs scenarios
+on the screen: it reads their names from standard input, one a line, and answers each with its log as a line of JSON.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import traceback
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from minirt.mlx import Mlx
-from tests.mlx.stage import Stage
+from tests.mlx.harness import Harness
 from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
@@ -24,49 +24,49 @@ Log: TypeAlias = list[list[Any]]
 
 
 class Scenario(NamedTuple):
-    """A program, and the log that it must leave."""
+    """A program and its expected log."""
 
-    play: Callable[[Stage], None]
+    program: Callable[[Harness], None]
     log: Log
 
 
 SCENARIOS: dict[str, Scenario] = {}
 
 
-def scenario(*log: list[Any]) -> Callable[[Callable[[Stage], None]], None]:
-    """Register a scenario under its function's name."""
+def scenario(*log: list[Any]) -> Callable[[Callable[[Harness], None]], None]:
+    """Register a scenario with its expected log under the name of its function."""
 
-    def register(play: Callable[[Stage], None]) -> None:
-        SCENARIOS[play.__name__] = Scenario(play, list(log))
+    def register(program: Callable[[Harness], None]) -> None:
+        SCENARIOS[program.__name__] = Scenario(program, list(log))
 
     return register
 
 
 def load() -> dict[str, Scenario]:
-    """All scenarios by name."""
-    for room in ("input", "picture", "loop"):
-        importlib.import_module(f"tests.mlx.contract_{room}")
-    # Run as a module, this file exists twice; the scenarios are in the imported one.
+    """Import and return all scenarios by name."""
+    for part in ("input", "picture", "loop"):
+        importlib.import_module(f"tests.mlx.contract_{part}")
+    # Run as a module, this file is loaded twice; the scenarios are registered in the imported module.
     scenarios: dict[str, Scenario] = importlib.import_module("tests.mlx.contract").SCENARIOS
     return scenarios
 
 
-def observe(name: str, mlx: Mlx) -> Log:
-    """Play a scenario and return its log, with the traceback where it raised."""
-    play, expected = load()[name]
-    stage = Stage(mlx, name, expected)
+def run_scenario(name: str, mlx: Mlx) -> Log:
+    """Run a scenario and return its log, with the traceback if it raised."""
+    program, expected = load()[name]
+    harness = Harness(mlx, name, expected)
     try:
-        play(stage)
+        program(harness)
     except Exception:
-        stage.note("raised", traceback.format_exc())
+        harness.record("raised", traceback.format_exc())
     finally:
-        mlx.mlx_release(stage.mlx)
-    return stage.log
+        mlx.mlx_release(harness.mlx)
+    return harness.log
 
 
 if __name__ == "__main__":
     for line in sys.stdin:
-        # A wait in vain ends by itself; where even that hangs, this says in which line, and ends the program.
+        # A wait ends by itself after HANG_LIMIT; if even that hangs, print the traceback and end the program.
         faulthandler.dump_traceback_later(2 * HANG_LIMIT, exit=True)
-        print(json.dumps(observe(line.strip(), Mlx())), flush=True)
+        print(json.dumps(run_scenario(line.strip(), Mlx())), flush=True)
         faulthandler.cancel_dump_traceback_later()

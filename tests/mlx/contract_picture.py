@@ -1,4 +1,4 @@
-"""The window contract: what is drawn, and how it stands in the window."""
+"""Scenarios of the contract: drawing, clipping, resizing, full screen."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from minirt.mlx import Image
-    from tests.mlx.stage import Stage
+    from tests.mlx.harness import Harness
     from tests.mlx.user import User
 
 RGB = list[int]
 
 
 def at(*places: tuple[int, int]) -> Callable[[NDArray[np.uint8]], list[RGB]]:
-    """Sees the colours (red, green, blue) at these x, y."""
+    """Make a function that reads the colours (red, green, blue) at these x, y."""
     return lambda picture: [picture[y, x].tolist() for x, y in places]
 
 
-def quarters(stage: Stage, width: int, height: int) -> Image:
-    """Red and green above, blue and white below."""
-    image = stage.m.mlx_new_image(stage.mlx, width, height)
+def quarters(harness: Harness, width: int, height: int) -> Image:
+    """Make an image with red and green quarters above, blue and white quarters below."""
+    image = harness.m.mlx_new_image(harness.mlx, width, height)
     top, left = slice(0, height // 2), slice(0, width // 2)
     image.pixels[...] = 255
     image.pixels[top, left] = 0, 0, 255, 255
@@ -38,89 +38,90 @@ def quarters(stage: Stage, width: int, height: int) -> Image:
     return image
 
 
-def solid(stage: Stage, width: int, height: int, color: int) -> Image:
-    image = stage.m.mlx_new_image(stage.mlx, width, height)
+def solid(harness: Harness, width: int, height: int, color: int) -> Image:
+    """Make an image of one colour."""
+    image = harness.m.mlx_new_image(harness.mlx, width, height)
     image.pixels.view("<u4")[...] = color
     return image
 
 
 @scenario(["size", [100, 200, 3]], ["black", 0])
-def a_new_window_is_black(stage: Stage) -> None:
-    def acts(user: User) -> None:
-        user.look("size", lambda picture: list(picture.shape))
-        user.look("black", lambda picture: int(picture.max()))
+def a_new_window_is_black(harness: Harness) -> None:
+    def actions(user: User) -> None:
+        user.log_picture("size", lambda picture: list(picture.shape))
+        user.log_picture("black", lambda picture: int(picture.max()))
 
-    stage.play(acts)
+    harness.run(actions)
 
 
 @scenario(["picture", True])
-def every_pixel_is_shown_as_it_is(stage: Stage) -> None:
-    image = stage.m.mlx_new_image(stage.mlx, 200, 100)
+def every_pixel_is_shown_unchanged(harness: Harness) -> None:
+    image = harness.m.mlx_new_image(harness.mlx, 200, 100)
     image.pixels[...] = np.random.default_rng(1).integers(0, 256, (100, 200, 4), np.uint8)
-    stage.m.mlx_put_image_to_window(stage.mlx, stage.win, image, 0, 0)
+    harness.m.mlx_put_image_to_window(harness.mlx, harness.win, image, 0, 0)
     expected = image.pixels[..., 2::-1].copy()
     image.pixels[...] = 0  # the window has its copy
-    stage.play(lambda user: user.look("picture", lambda picture: np.array_equal(picture, expected)))
+    harness.run(lambda user: user.log_picture("picture", lambda picture: np.array_equal(picture, expected)))
 
 
 @scenario(["picture", True])
-def pictures_are_clipped_at_the_borders(stage: Stage) -> None:
+def pictures_are_clipped_at_the_borders(harness: Harness) -> None:
     expected = np.zeros((100, 200, 3), np.uint8)
     for x, y, blue in ((-5, -5, 1), (195, -5, 2), (-5, 95, 3), (195, 95, 4), (300, 0, 5), (0, -10, 6), (0, 100, 7)):
-        stage.m.mlx_put_image_to_window(stage.mlx, stage.win, solid(stage, 10, 10, blue), x, y)
+        harness.m.mlx_put_image_to_window(harness.mlx, harness.win, solid(harness, 10, 10, blue), x, y)
     expected[:5, :5] = 0, 0, 1
     expected[:5, 195:] = 0, 0, 2
     expected[95:, :5] = 0, 0, 3
     expected[95:, 195:] = 0, 0, 4
-    stage.play(lambda user: user.look("picture", lambda picture: np.array_equal(picture, expected)))
+    harness.run(lambda user: user.log_picture("picture", lambda picture: np.array_equal(picture, expected)))
 
 
 @scenario(["picture", True])
-def single_pixels_and_clear(stage: Stage) -> None:
-    stage.m.mlx_put_image_to_window(stage.mlx, stage.win, quarters(stage, 200, 100), 0, 0)
-    stage.m.mlx_clear_window(stage.mlx, stage.win)
+def single_pixels_and_clear(harness: Harness) -> None:
+    harness.m.mlx_put_image_to_window(harness.mlx, harness.win, quarters(harness, 200, 100), 0, 0)
+    harness.m.mlx_clear_window(harness.mlx, harness.win)
     expected = np.zeros((100, 200, 3), np.uint8)
     for x, y in ((0, 0), (199, 99), (200, 0), (0, 100), (-1, -1), (7, 3)):
-        stage.m.mlx_pixel_put(stage.mlx, stage.win, x, y, 0xFF102030)
+        harness.m.mlx_pixel_put(harness.mlx, harness.win, x, y, 0xFF102030)
     expected[[0, 99, 3], [0, 199, 7]] = 0x10, 0x20, 0x30
-    stage.play(lambda user: user.look("picture", lambda picture: np.array_equal(picture, expected)))
+    harness.run(lambda user: user.log_picture("picture", lambda picture: np.array_equal(picture, expected)))
 
 
 @scenario(["before", [[0, 0, 0], [0, 0, 0]]], ["after", [[9, 0, 0], [0, 9, 0]]])
-def drawing_in_a_hook_is_shown_after_it(stage: Stage) -> None:
-    """Two far pixels, one after the other: both are in the box that is brought to the screen."""
+def drawing_in_a_hook_is_shown_after_it(harness: Harness) -> None:
+    """Two distant pixels are drawn: both are in the box of changes that is uploaded."""
 
     def draw(*_: object) -> None:
-        stage.m.mlx_pixel_put(stage.mlx, stage.win, 20, 30, 0x090000)
-        stage.m.mlx_pixel_put(stage.mlx, stage.win, 190, 5, 0x000900)
+        harness.m.mlx_pixel_put(harness.mlx, harness.win, 20, 30, 0x090000)
+        harness.m.mlx_pixel_put(harness.mlx, harness.win, 190, 5, 0x000900)
 
-    stage.m.mlx_key_hook(stage.win, draw, None)
-    see = at((20, 30), (190, 5))
+    harness.m.mlx_key_hook(harness.win, draw, None)
+    colours = at((20, 30), (190, 5))
 
-    def acts(user: User) -> None:
-        user.look("before", see)
+    def actions(user: User) -> None:
+        user.log_picture("before", colours)
         user.keys("+a -a")
-        user.look("after", see)
+        user.log_picture("after", colours)
 
-    stage.play(acts)
+    harness.run(actions)
 
 
 @scenario(["picture", True], ["box", True])
-def text_has_its_top_left_corner_at_the_place(stage: Stage) -> None:
+def text_has_its_top_left_corner_at_x_y(harness: Harness) -> None:
     expected = np.zeros((100, 200, 4), np.uint8)
     width, height = draw_text(expected, 30, 40, "Hello", 0x80C0FF)
-    stage.m.mlx_string_put(stage.mlx, stage.win, 30, 40, 0x80C0FF, "Hello")
+    harness.m.mlx_string_put(harness.mlx, harness.win, 30, 40, 0x80C0FF, "Hello")
 
     def inside(picture: NDArray[np.uint8]) -> bool:
         rows, columns = np.nonzero(picture.any(axis=2))
         box = rows.min() >= 40, rows.max() < 40 + height, columns.min() >= 30, columns.max() < 30 + width
         return all(map(bool, box)) and bool(columns.min() <= 33)
 
-    def acts(user: User) -> None:
-        user.look("picture", lambda picture: np.array_equal(picture, expected[..., 2::-1]))
-        user.look("box", inside)
+    def actions(user: User) -> None:
+        user.log_picture("picture", lambda picture: np.array_equal(picture, expected[..., 2::-1]))
+        user.log_picture("box", inside)
 
-    stage.play(acts)
+    harness.run(actions)
 
 
 CORNERS = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]]
@@ -132,55 +133,61 @@ CORNERS = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]]
     ["stretched", CORNERS],
     ["drawn", [[0, 0, 0], [1, 2, 3], [0, 0, 0]]],
 )
-def the_old_picture_is_stretched_until_the_next(stage: Stage) -> None:
-    def acts(user: User) -> None:
+def the_old_picture_is_stretched_until_the_next_is_drawn(harness: Harness) -> None:
+    def actions(user: User) -> None:
         user.resize(400, 300)
-        user.until(lambda: len(stage.log) == 2)
-        user.look("stretched", at((199, 149), (200, 149), (199, 150), (200, 150)))
+        user.until(lambda: len(harness.log) == 2)
+        user.log_picture("stretched", at((199, 149), (200, 149), (199, 150), (200, 150)))
         user.keys("+a -a")
-        user.look("drawn", at((0, 0), (399, 299), (200, 150)))
+        user.log_picture("drawn", at((0, 0), (399, 299), (200, 150)))
 
-    stage.m.mlx_put_image_to_window(stage.mlx, stage.win, quarters(stage, 200, 100), 0, 0)
-    stage.m.mlx_resize_hook(stage.win, lambda width, height, param: stage.note(param, width, height), "resize")
-    size = stage.m.mlx_get_window_size
-    stage.m.mlx_hook(
-        stage.win, Event.CONFIGURE_NOTIFY, 0, lambda param: stage.note(param, list(size(stage.win))), "configure"
+    harness.m.mlx_put_image_to_window(harness.mlx, harness.win, quarters(harness, 200, 100), 0, 0)
+    harness.m.mlx_resize_hook(harness.win, lambda width, height, param: harness.record(param, width, height), "resize")
+    size = harness.m.mlx_get_window_size
+    harness.m.mlx_hook(
+        harness.win,
+        Event.CONFIGURE_NOTIFY,
+        0,
+        lambda param: harness.record(param, list(size(harness.win))),
+        "configure",
     )
-    stage.m.mlx_key_hook(stage.win, lambda *_: stage.m.mlx_pixel_put(stage.mlx, stage.win, 399, 299, 0xFF010203), None)
-    stage.play(acts)
+    harness.m.mlx_key_hook(
+        harness.win, lambda *_: harness.m.mlx_pixel_put(harness.mlx, harness.win, 399, 299, 0xFF010203), None
+    )
+    harness.run(actions)
 
 
 @scenario(["full", [2560, 1600]], ["back", [200, 100]], ["key", 122])
-def full_screen_and_back(stage: Stage) -> None:
-    """Keys go on working: where the window is made anew, the release of the key that asked for it may be lost."""
+def full_screen_and_back(harness: Harness) -> None:
+    """Keys still work if full screen replaces the window and the release of the pressed key is lost."""
     sizes: list[list[int]] = []
 
-    def acts(user: User) -> None:
+    def actions(user: User) -> None:
         for number in (1, 2):
-            user.press_for_another_window("f")
+            user.press_to_replace_window("f")
             user.until(lambda number=number: len(sizes) >= number)  # type: ignore[misc]
         user.keys("+z -z")
 
     def pressed(key: int, _: object) -> None:
         if key == Key.F:
-            stage.m.mlx_set_fullscreen(stage.win, not sizes)
+            harness.m.mlx_set_fullscreen(harness.win, not sizes)
         else:
-            stage.note("key", key)
+            harness.record("key", key)
 
     def resized(width: int, height: int, _: object) -> None:
         sizes.append([width, height])
-        stage.note("back" if len(sizes) > 1 else "full", [width, height])
+        harness.record("back" if len(sizes) > 1 else "full", [width, height])
 
-    stage.m.mlx_resize_hook(stage.win, resized)
-    stage.m.mlx_hook(stage.win, Event.KEY_PRESS, 0, pressed, None)
-    stage.play(acts)
+    harness.m.mlx_resize_hook(harness.win, resized)
+    harness.m.mlx_hook(harness.win, Event.KEY_PRESS, 0, pressed, None)
+    harness.run(actions)
 
 
 @scenario(["title", "another"])
-def the_title_changes(stage: Stage) -> None:
-    def acts(user: User) -> None:
+def the_title_changes(harness: Harness) -> None:
+    def actions(user: User) -> None:
         user.keys("+a -a")
-        user.read_title()
+        user.log_title()
 
-    stage.m.mlx_key_hook(stage.win, lambda *_: stage.m.mlx_set_window_title(stage.win, "another"), None)
-    stage.play(acts)
+    harness.m.mlx_key_hook(harness.win, lambda *_: harness.m.mlx_set_window_title(harness.win, "another"), None)
+    harness.run(actions)

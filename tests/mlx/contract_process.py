@@ -1,4 +1,4 @@
-"""A process that plays scenarios of the window contract on the screen, one after another."""
+"""ScenarioProcess: a process that runs scenarios of the contract on the screen, one after another."""
 
 from __future__ import annotations
 
@@ -22,31 +22,31 @@ if TYPE_CHECKING:
 COMMAND = (sys.executable, "-W", "error", "-m", "tests.mlx.contract")
 
 
-class Troupe:
-    """One process for all scenarios. A scenario that fails leaves nothing to the next, which has another process.
+class ScenarioProcess:
+    """One process for all scenarios; after a failed scenario the next one gets a new process.
 
-    `errors` is a file for what the process writes on standard error.
+    errors: file for the standard error of the process.
     """
 
     def __init__(self, desktop: Desktop, errors: Path) -> None:
         self._desktop = desktop
         self._errors = errors
         self._process: subprocess.Popen[str] | None = None
-        self._end = ExitStack()
+        self._exit_stack = ExitStack()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: BaseException | TracebackType | None) -> None:
-        """End the process; it has nothing to complain of."""
-        with self._end:
+        """End the process, and expect status 0 and no errors."""
+        with self._exit_stack:
             if self._process is not None and kind is None:
                 assert self._process.stdin is not None
                 self._process.stdin.close()
                 assert (self._process.wait(HANG_LIMIT), self._errors.read_text()) == (0, "")
 
-    def play(self, name: str) -> Log:
-        """Play a scenario and return its log; AssertionError where the process ends or complains."""
+    def run(self, name: str) -> Log:
+        """Run a scenario and return its log. AssertionError if the process ends or writes errors."""
         try:
             log = self._ask(name)
             assert self._errors.read_text() == ""
@@ -58,7 +58,7 @@ class Troupe:
         return log
 
     def _ask(self, name: str) -> Log:
-        """Send the name and wait for the answer. The process watches itself: it answers or ends."""
+        """Send the name and wait for the log. The process has a time limit of its own: it answers or ends."""
         process = self._process or self._start()
         assert process.stdin is not None
         assert process.stdout is not None
@@ -70,11 +70,11 @@ class Troupe:
         return log
 
     def _start(self) -> subprocess.Popen[str]:
-        errors = self._end.enter_context(self._errors.open("w"))
+        errors = self._exit_stack.enter_context(self._errors.open("w"))
         program = self._desktop.program(*COMMAND, stdin=subprocess.PIPE, stderr=errors)
-        self._process = self._end.enter_context(program)
+        self._process = self._exit_stack.enter_context(program)
         return self._process
 
     def _stop(self) -> None:
         self._process = None
-        self._end.close()
+        self._exit_stack.close()

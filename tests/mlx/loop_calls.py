@@ -1,4 +1,4 @@
-"""Calls from another thread into the loop of pyglet on X11, for tests."""
+"""Call functions in the thread of pyglet's event loop on X11 from another thread."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 ROUNDS = 3  # events, the turn that follows them with its hooks, and one to come after that
 
 
-class Call:
-    """An event of pyglet's that calls an action in so many rounds of the loop."""
+class LoopCall:
+    """A pyglet event that calls an action in each of a number of rounds of the loop."""
 
     def __init__(self, action: Callable[[], object], rounds: int) -> None:
         self.done = threading.Event()
@@ -22,13 +22,13 @@ class Call:
         self._left = rounds
 
     def post(self) -> None:
-        """From any thread: call the action in the next round."""
+        """Call the action in the next round. May be called from any thread."""
         import pyglet.app
 
         pyglet.app.platform_event_loop.post_event(self, "call")
 
     def dispatch_event(self, _name: str) -> None:
-        """Called by pyglet in the loop's thread."""
+        """Call the action; pyglet calls this in the thread of the loop."""
         self._action()
         self._left -= 1
         if self._left:
@@ -38,23 +38,23 @@ class Call:
 
 
 def call_in_loop(action: Callable[[], object], running: Callable[[], bool], rounds: int = 1) -> None:
-    """Call the action in the loop's thread and wait until that is done, or the loop does not run any more."""
-    call = Call(action, rounds)
+    """Call the action in the loop's thread and wait until it is done or the loop has ended."""
+    call = LoopCall(action, rounds)
     call.post()
     until(lambda: call.done.is_set() or not running(), "a round of the loop")
 
 
-def fence(running: Callable[[], bool]) -> None:
-    """Wait until the loop has handled all that the X server had for it before this call.
+def wait_for_events(running: Callable[[], bool]) -> None:
+    """Wait until the loop has handled all events that the X server had for it before this call.
 
-    In the first round the server's answer to a request of the loop's own puts all events before it into the loop's
-    queue. When the last has begun, their hooks were called, and what they drew has been brought to the server.
+    In the first round the loop sends a request to the server, whose answer comes after all earlier events. When the
+    last round begins, the hooks of these events were called, and their drawings were sent to the server.
     """
     call_in_loop(_synchronise, running, ROUNDS)
 
 
-def repeat_keys(on: bool) -> None:
-    """In the loop's thread: let the X server repeat keys that are held, or not."""
+def set_key_repeat(on: bool) -> None:
+    """Turn the X server's repetition of held keys on or off. Call this in the thread of the loop."""
     from pyglet.libs.x11 import xlib
 
     (xlib.XAutoRepeatOn if on else xlib.XAutoRepeatOff)(_display())
@@ -62,6 +62,7 @@ def repeat_keys(on: bool) -> None:
 
 
 def _synchronise() -> None:
+    """Wait for the X server's answer to all requests so far."""
     from pyglet.libs.x11 import xlib
 
     xlib.XSync(_display(), 0)

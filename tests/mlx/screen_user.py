@@ -1,4 +1,4 @@
-"""The user of the window contract on a screen: xdotool in a second thread, while the loop runs in the first."""
+"""ScreenUser: a simulated user on a screen, by xdotool in a second thread while the loop runs in the main thread."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import threading
 from typing import TYPE_CHECKING
 
 from tests.idle import threads, until_idle
-from tests.mlx.loop_calls import call_in_loop, fence, repeat_keys
+from tests.mlx.loop_calls import call_in_loop, set_key_repeat, wait_for_events
 from tests.mlx.user import User
 from tests.waiting import until
 from tests.windows import Desktop
@@ -21,60 +21,63 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from minirt.mlx import Window
-    from tests.mlx.stage import Stage
+    from tests.mlx.harness import Harness
 
 X_NAMES = {"shift": "Shift_L", "ctrl": "Control_L", "escape": "Escape", "tab": "Tab"}
-REST = 10  # looks at a main thread that sleeps all the while
+IDLE_LOOKS = 10  # consecutive looks that find the main thread asleep
 
 
 class ScreenUser(User):
-    def __init__(self, stage: Stage) -> None:
-        self._stage = stage
+    """A user who acts on real windows."""
+
+    def __init__(self, harness: Harness) -> None:
+        self._harness = harness
         self._desktop = Desktop(dict(os.environ))
         self._failure: BaseException | None = None
         self._running = threading.Event()
-        self._ids = {window: self._desktop.find(window.title) for window in reversed(stage.mlx.windows)}
+        self._ids = {window: self._desktop.find(window.title) for window in reversed(harness.mlx.windows)}
 
-    def play(self, acts: Callable[[User], object]) -> None:
-        stage = self._stage
-        hands = threading.Thread(target=self._act, args=(acts,))
+    def run(self, actions: Callable[[User], object]) -> None:
+        """Run the loop while the second thread performs the actions."""
+        harness = self._harness
+        thread = threading.Thread(target=self._perform, args=(actions,))
         self._running.set()
-        hands.start()
+        thread.start()
         try:
-            stage.m.mlx_loop(stage.mlx)
+            harness.m.mlx_loop(harness.mlx)
         finally:
             self._running.clear()
-            hands.join()
-            stage.m.mlx_wake_hook(stage.mlx, None)
+            thread.join()
+            harness.m.mlx_wake_hook(harness.mlx, None)
         if self._failure is not None:
             raise self._failure
 
-    def _act(self, acts: Callable[[User], object]) -> None:
-        """The second thread: do what the user does, wait for the whole log, and end the loop."""
-        stage = self._stage
+    def _perform(self, actions: Callable[[User], object]) -> None:
+        """Perform the actions, wait for the whole log, and end the loop; runs in the second thread."""
+        harness = self._harness
         try:
-            acts(self)
-            until(lambda: self._is_over() or len(stage.log) == len(stage.expected), "the whole log")
-            self.settle()  # and nothing too much
+            actions(self)
+            until(lambda: self._is_over() or len(harness.log) == len(harness.expected), "the whole log")
+            self.wait_until_handled()  # so that a surplus entry is found, too
         except BaseException as failure:
             self._failure = failure
         finally:
-            stage.m.mlx_wake_hook(stage.mlx, lambda _: stage.m.mlx_loop_exit(stage.mlx))
-            stage.m.mlx_wake(stage.mlx)
-            self._desktop.let_go()
+            harness.m.mlx_wake_hook(harness.mlx, lambda _: harness.m.mlx_loop_exit(harness.mlx))
+            harness.m.mlx_wake(harness.mlx)
+            self._desktop.release_keys()
 
-    def hold(self, key: str) -> None:
+    def press(self, key: str) -> None:
         self._desktop.keydown(X_NAMES.get(key, key))
 
     def hold_until(self, key: str, enough: Callable[[], bool]) -> None:
-        self._call(lambda: repeat_keys(True))
+        self._call(lambda: set_key_repeat(True))
         try:
-            self.hold(key)
+            self.press(key)
             self.until(enough)
         finally:
-            self._call(lambda: repeat_keys(False))
+            self._call(lambda: set_key_repeat(False))
 
-    def let_go(self, key: str) -> None:
+    def release(self, key: str) -> None:
         self._desktop.keyup(X_NAMES.get(key, key))
 
     def move(self, x: int, y: int) -> None:
@@ -84,7 +87,7 @@ class ScreenUser(User):
         self._desktop.click(self._id, x, y, button)
 
     def drop(self, *files: str) -> None:
-        self._desktop.run(sys.executable, "-m", "tests.mlx.dropper", str(self._id), "20", "20", "3", *files)
+        self._desktop.run(sys.executable, "-m", "tests.mlx.drag_source", str(self._id), "20", "20", "3", *files)
 
     def enter(self) -> None:
         self._desktop.move(self._id, 50, 50)
@@ -95,13 +98,13 @@ class ScreenUser(User):
     def focus(self, window: Window) -> None:
         self._desktop.activate(self._ids[window])
 
-    def press_for_another_window(self, key: str) -> None:
+    def press_to_replace_window(self, key: str) -> None:
         old = self._id
-        with self._desktop.manager_stopped():
-            self.hold(key)
-            self.until(lambda: not self._desktop.is_there(old))
-            self.let_go(key)
-        self._ids[self._stage.win] = self._desktop.find(self._stage.win.title)
+        with self._desktop.manager_paused():
+            self.press(key)
+            self.until(lambda: not self._desktop.exists(old))
+            self.release(key)
+        self._ids[self._harness.win] = self._desktop.find(self._harness.win.title)
 
     def resize(self, width: int, height: int) -> None:
         self._desktop.resize(self._id, width, height)
@@ -113,61 +116,64 @@ class ScreenUser(User):
         self._desktop.restore(self._id)
 
     def close_button(self, window: Window | None = None) -> None:
-        self._desktop.close_button(self._ids[window or self._stage.win])
+        self._desktop.close_button(self._ids[window or self._harness.win])
 
-    def then(self, action: Callable[[], object]) -> None:
+    def do(self, action: Callable[[], object]) -> None:
         action()
 
     def until(self, condition: Callable[[], bool]) -> None:
-        until(lambda: condition() or self._is_over(), "what the program does")
-        assert condition(), f"the user waits in vain: the log is {self._stage.log}"
+        until(lambda: condition() or self._is_over(), "the effect in the program")
+        assert condition(), f"the effect did not come: the log is {self._harness.log}"
 
     def wait_until(self, condition: Callable[[], bool], seconds: float) -> None:
         self.until(condition)
 
-    def settle(self) -> None:
-        fence(self._running.is_set)
+    def wait_until_handled(self) -> None:
+        wait_for_events(self._running.is_set)
 
-    def rest(self, seconds: float) -> None:
+    def wait_until_asleep(self, seconds: float) -> None:
         main = os.getpid()
-        until_idle(main, itertools.count().__next__, REST, threads(main).keys() - {main})
+        until_idle(main, itertools.count().__next__, IDLE_LOOKS, threads(main).keys() - {main})
 
     def wake(self) -> None:
-        self.rest(0.0)
-        self._stage.m.mlx_wake(self._stage.mlx)
+        self.wait_until_asleep(0.0)
+        self._harness.m.mlx_wake(self._harness.mlx)
 
-    def look(self, name: str, see: Callable[[NDArray[np.uint8]], object]) -> None:
-        self._observe(name, lambda: see(self._desktop.screenshot(self._id)))
+    def log_picture(self, name: str, read: Callable[[NDArray[np.uint8]], object]) -> None:
+        self._log_when_expected(name, lambda: read(self._desktop.screenshot(self._id)))
 
-    def read_title(self) -> None:
-        self._observe("title", lambda: self._desktop.run("xdotool", "getwindowname", str(self._id)).decode().strip())
+    def log_title(self) -> None:
+        self._log_when_expected(
+            "title", lambda: self._desktop.run("xdotool", "getwindowname", str(self._id)).decode().strip()
+        )
 
     @property
     def _id(self) -> int:
-        return self._ids[self._stage.win]
+        return self._ids[self._harness.win]
 
     def _is_over(self) -> bool:
-        """Whether nothing that anybody waits for will come."""
-        return self._stage.astray or not self._running.is_set()
+        """Whether waiting is useless: the log has diverged, or the loop has ended."""
+        return self._harness.has_diverged or not self._running.is_set()
 
     def _call(self, action: Callable[[], object]) -> None:
+        """Call an action in the thread of the loop."""
         call_in_loop(action, self._running.is_set)
 
-    def _observe(self, name: str, see: Callable[[], object]) -> None:
-        """Log what `see` returns, once it is what the log must have there, or else what it was at last.
+    def _log_when_expected(self, name: str, read: Callable[[], object]) -> None:
+        """Log the value of `read` as soon as it is the expected one, or its last value after the time limit.
 
-        It may come later than the hooks: other programs, the window manager above all, take their turns, too."""
-        stage = self._stage
-        place = next(n for n in range(len(stage.log), len(stage.expected)) if stage.expected[n][0] == name)
-        self.until(lambda: len(stage.log) == place)
-        self.settle()
-        seen: list[object] = [None]
+        The value may come later than the hooks: other programs, above all the window manager, run in between."""
+        harness = self._harness
+        index = next(n for n in range(len(harness.log), len(harness.expected)) if harness.expected[n][0] == name)
+        self.until(lambda: len(harness.log) == index)
+        self.wait_until_handled()
+        value: list[object] = [None]
 
-        def right() -> bool:
-            seen[0] = see()
-            return [name, *seen] == stage.expected[place]
+        def is_expected() -> bool:
+            value[0] = read()
+            return [name, *value] == harness.expected[index]
 
         try:
-            until(right, f"{name} as it must be")
+            until(is_expected, f"{name} as expected")
         finally:
-            stage.note(name, *seen)
+            harness.record(name, *value)

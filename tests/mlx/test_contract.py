@@ -1,4 +1,4 @@
-"""Both back ends are held to one contract: see contract_input, contract_picture and contract_loop."""
+"""Run the scenarios of contract_input, contract_picture and contract_loop on both back ends."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import pytest
 
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
-from tests.mlx.contract import load, observe
-from tests.mlx.contract_process import Troupe
+from tests.mlx.contract import load, run_scenario
+from tests.mlx.contract_process import ScenarioProcess
 from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
 
 
 @pytest.fixture(scope="module")
-def troupe(desktop: Desktop, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Troupe]:
+def scenario_process(desktop: Desktop, tmp_path_factory: pytest.TempPathFactory) -> Iterator[ScenarioProcess]:
     """One process for all scenarios on the screen."""
-    folder: Path = tmp_path_factory.mktemp("troupe")
-    with Troupe(desktop, folder / "errors") as opened:
-        yield opened
+    folder: Path = tmp_path_factory.mktemp("process")
+    with ScenarioProcess(desktop, folder / "errors") as started:
+        yield started
 
 
 @pytest.mark.parametrize("name", load())
 def test_memory(name: str) -> None:
-    assert observe(name, Mlx(Memory(patience=HANG_LIMIT))) == load()[name].log
+    assert run_scenario(name, Mlx(Memory(patience=HANG_LIMIT))) == load()[name].log
 
 
 @pytest.mark.window
 @pytest.mark.parametrize("name", load())
-def test_screen(name: str, troupe: Troupe) -> None:
-    assert troupe.play(name) == load()[name].log
+def test_screen(name: str, scenario_process: ScenarioProcess) -> None:
+    assert scenario_process.run(name) == load()[name].log

@@ -1,4 +1,4 @@
-"""Canvases, text and images, without any window."""
+"""Canvases, text and images without a window."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ sizes = st.integers(1, 25)
 
 
 @given(places, places, sizes, sizes)
-def test_put_is_a_copy_of_what_overlaps(x: int, y: int, width: int, height: int) -> None:
+def test_put_copies_the_overlap(x: int, y: int, width: int, height: int) -> None:
     canvas = Canvas(20, 10)
     source = np.random.default_rng(0).integers(0, 256, (height, width, 4), np.uint8)
     canvas.take_changes()
@@ -42,7 +42,7 @@ def test_put_is_a_copy_of_what_overlaps(x: int, y: int, width: int, height: int)
         assert canvas.changes is None
 
 
-def test_changes_are_the_box_around_all_of_them() -> None:
+def test_changes_are_the_bounding_box_of_all_changes() -> None:
     canvas = Canvas(20, 10)
     assert canvas.take_changes() == (0, 0, 20, 10)
     assert canvas.take_changes() is None
@@ -59,7 +59,7 @@ def test_stretch_takes_the_nearest_pixel() -> None:
     assert np.array_equal(stretch(pixels, 3, 2), pixels)
 
 
-def test_text_stays_in_what_measure_says() -> None:
+def test_text_stays_within_the_measured_size() -> None:
     pixels = np.zeros((120, 300, 4), np.uint8)
     text = "Sphere |gjQ|\nsecond line"
     assert draw_text(pixels, 20, 30, text, 0xFF8000, size=20) == measure(text, 20)
@@ -70,7 +70,7 @@ def test_text_stays_in_what_measure_says() -> None:
     assert pixels.max(axis=(0, 1)).tolist() == [0, 0x80, 0xFF, 0]  # blue, green, red; alpha is left alone
 
 
-def test_text_is_mixed_with_what_is_below() -> None:
+def test_text_is_blended_with_the_pixels_below() -> None:
     black = np.zeros((40, 100, 4), np.uint8)
     grey = np.full((40, 100, 4), 100, np.uint8)
     draw_text(black, 5, 5, "mix", 0xFFFFFF)
@@ -91,7 +91,7 @@ def test_background_is_blended_by_its_alpha() -> None:
 
 @given(st.integers(-90, 110), st.integers(-50, 60))
 def test_text_is_clipped(x: int, y: int) -> None:
-    """The same as a part of a larger picture."""
+    """Clipped text equals a part of a larger picture."""
     large = np.zeros((150, 300, 4), np.uint8)
     small = np.zeros((50, 100, 4), np.uint8)
     for pixels, left, top in ((large, 100, 50), (small, 0, 0)):
@@ -105,7 +105,7 @@ def test_empty_text_draws_nothing() -> None:
     assert not pixels.any()
 
 
-def test_data_addr_is_the_image_itself() -> None:
+def test_data_addr_is_the_memory_of_the_image() -> None:
     m = Mlx(Memory())
     image = m.mlx_new_image(m.mlx_init(), 6, 4)
     data, bits, line, kind = m.mlx_get_data_addr(image)
@@ -128,7 +128,7 @@ def test_files_become_images(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [None, b"", b"\x89PNG\r\n\x1a\nbroken"])
-def test_files_that_are_no_pictures_are_errors(tmp_path: Path, content: bytes | None) -> None:
+def test_a_file_that_is_no_picture_raises(tmp_path: Path, content: bytes | None) -> None:
     m = Mlx(Memory())
     path = tmp_path / "broken.png"
     if content is not None:
@@ -138,7 +138,7 @@ def test_files_that_are_no_pictures_are_errors(tmp_path: Path, content: bytes | 
 
 
 @pytest.mark.parametrize("size", [(0, 10), (10, 0), (-1, 5)])
-def test_windows_have_pixels(size: tuple[int, int]) -> None:
+def test_a_window_without_pixels_raises(size: tuple[int, int]) -> None:
     m = Mlx(Memory())
     with pytest.raises(MlxError):
         m.mlx_new_window(m.mlx_init(), *size, "none")

@@ -1,4 +1,4 @@
-"""The back end without a screen, beyond the contract: simulated time, steps by hand, and programs that do not end."""
+"""The back end without a screen, beyond the contract: simulated time, single steps, and programs that do not end."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import pytest
 import minirt.mlx.memory as memory_module
 from minirt.mlx import Event, Key, Mlx, MlxError, Modifier
 from minirt.mlx.memory import TICK, Memory
-from tests.mlx.waker import waker
+from tests.mlx.wake_thread import wake_thread
 from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
-    from minirt.mlx.handles import Hook
+    from minirt.mlx.hooks import Hook
 
 
 def test_time_is_simulated() -> None:
@@ -53,22 +53,22 @@ PATIENCE = 20.0  # simulated seconds
 
 
 class Clock:
-    """The machine's clock for `Memory`, which moves by as much as is waited for, and by a little when it is read."""
+    """A clock for `Memory` that advances by the time of each wait, and by a little at each reading."""
 
     def __init__(self) -> None:
         self.now = 1000.0
 
     def monotonic(self) -> float:
         self.now += 0.125
-        assert self.now < 2000.0, "it has no end"
+        assert self.now < 2000.0, "the loop does not end"
         return self.now
 
     def event(self) -> threading.Event:
-        """An event that nobody sets."""
+        """Make an event that is never set."""
         event = threading.Event()
 
         def wait(timeout: float | None = None) -> bool:
-            assert timeout is not None, "it waits without end"
+            assert timeout is not None, "a wait without a limit"
             self.now += timeout
             return event.is_set()
 
@@ -78,20 +78,21 @@ class Clock:
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    """A simulated clock instead of the machine's."""
-    made = Clock()
-    monkeypatch.setattr(memory_module, "time", SimpleNamespace(monotonic=made.monotonic))
-    monkeypatch.setattr(memory_module, "threading", SimpleNamespace(Event=made.event))
-    return made
+    """Replace the machine's clock by a simulated one."""
+    simulated = Clock()
+    monkeypatch.setattr(memory_module, "time", SimpleNamespace(monotonic=simulated.monotonic))
+    monkeypatch.setattr(memory_module, "threading", SimpleNamespace(Event=simulated.event))
+    return simulated
 
 
 def tick(ticks: list[int]) -> None:
+    """Count the ticks of a loop that must end."""
     ticks.append(1)
-    assert len(ticks) < 10_000, "it has no end"
+    assert len(ticks) < 10_000, "the loop does not end"
 
 
 @pytest.mark.parametrize("hook", [None, tick], ids=["asleep", "ticking"])
-def test_a_program_that_does_not_end_is_an_error(clock: Clock, hook: Hook | None) -> None:
+def test_a_program_that_does_not_end_raises(clock: Clock, hook: Hook | None) -> None:
     m = Mlx(Memory(patience=PATIENCE))
     mlx = m.mlx_init()
     m.mlx_new_window(mlx, 10, 10, "for ever")
@@ -111,14 +112,14 @@ def test_the_script_can_wait_for_another_thread() -> None:
     m.mlx_wake_hook(mlx, seen.append, "woken")
     memory.await_wake()
     memory.do(lambda: seen.append("after"))
-    thread = waker(m, mlx)
+    thread = wake_thread(m, mlx)
     thread.start()
     memory.play()
     thread.join()
     assert seen == ["woken", "after"]
 
 
-def test_waiting_in_vain_is_an_error(clock: Clock) -> None:
+def test_waiting_for_a_wake_that_never_comes_raises(clock: Clock) -> None:
     memory = Memory(patience=PATIENCE)
     m = Mlx(memory)
     m.mlx_new_window(m.mlx_init(), 10, 10, "wake")
@@ -130,7 +131,7 @@ def test_waiting_in_vain_is_an_error(clock: Clock) -> None:
 
 
 def test_a_window_of_fixed_size_keeps_it() -> None:
-    """If it is shown larger, its picture is stretched."""
+    """A window of fixed size that is shown larger keeps its size, and its picture is stretched."""
     memory = Memory()
     m = Mlx(memory)
     mlx = m.mlx_init()
@@ -144,16 +145,17 @@ def test_a_window_of_fixed_size_keeps_it() -> None:
     assert memory.screenshot()[..., 0].tolist() == [[0, 0, 255, 255]] * 2
 
 
-def test_a_hidden_window_is_brought_up_to_date_when_it_is_seen_again() -> None:
+def test_a_hidden_window_is_redrawn_when_it_is_shown_again() -> None:
     memory = Memory()
     m = Mlx(memory)
-    win = m.mlx_new_window(m.mlx_init(), 4, 3, "hidden")
+    mlx = m.mlx_init()
+    win = m.mlx_new_window(mlx, 4, 3, "hidden")
     memory.play()
     memory.minimise(True)
     memory.play()
-    m.mlx_pixel_put(win.display, win, 1, 1, 0xFFFFFFFF)
-    m.mlx_sync(win.display, m.SYNC_WIN_FLUSH, win)
-    assert not memory.screenshot()[..., :3].any()  # a flip may take a second there
+    m.mlx_pixel_put(mlx, win, 1, 1, 0xFFFFFFFF)
+    m.mlx_sync(mlx, m.SYNC_WIN_FLUSH, win)
+    assert not memory.screenshot()[..., :3].any()  # a buffer swap of a hidden window may take a second
     memory.minimise(False)
     memory.play()
     assert memory.screenshot()[1, 1].tolist() == [255] * 4

@@ -1,4 +1,4 @@
-"""Whole programs in real windows: how they start, sleep and end."""
+"""Whole programs in real windows: start, sleep and end."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.window
 
 GRADIENT = str(Path(__file__).with_name("gradient.py"))
-REST = 10  # looks at a program that sleeps all the while
+IDLE_LOOKS = 10  # consecutive looks that find the program asleep
 
 SLEEPER = """
 import signal, sys, threading
@@ -44,7 +44,7 @@ except KeyboardInterrupt:
 
 TICKS = "m.mlx_loop_hook(mlx, lambda _: None, None)"
 
-# A line on standard input sends the signal to a thread that is not the main one, which sleeps on undisturbed.
+# A line on standard input sends the signal to another thread than the main thread, which stays asleep.
 ELSEWHERE = """
 helper = threading.Thread(target=threading.Event().wait, daemon=True)
 helper.start()
@@ -77,23 +77,24 @@ m.mlx_key_hook(win, lambda key, _: m.mlx_release(mlx), None)
 
 
 def sleeper(setup: str) -> tuple[str, ...]:
-    """The command of the program with these lines in it."""
+    """Command of the SLEEPER program with these lines of set-up."""
     return sys.executable, "-c", SLEEPER.format(setup=setup)
 
 
 def outcome(process: subprocess.Popen[str]) -> tuple[int, str, str]:
-    """Status, standard output and standard error of a program that has to end by itself."""
+    """Wait until a program ends by itself; return its status, standard output and standard error."""
     output, errors = process.communicate(timeout=HANG_LIMIT)
     return process.returncode, output, errors
 
 
 def ctrl_c(process: subprocess.Popen[str]) -> None:
-    """Do what a terminal does."""
+    """Send SIGINT to the process group, as a terminal does."""
     os.killpg(process.pid, signal.SIGINT)
 
 
 def until_asleep(process: subprocess.Popen[str]) -> None:
-    until_idle(process.pid, itertools.count().__next__, REST)
+    """Wait until a program sleeps."""
+    until_idle(process.pid, itertools.count().__next__, IDLE_LOOKS)
 
 
 def test_the_gradient_is_shown_and_escape_ends_it(desktop: Desktop) -> None:
@@ -106,7 +107,7 @@ def test_the_gradient_is_shown_and_escape_ends_it(desktop: Desktop) -> None:
         assert outcome(process) == (0, "", "")
 
 
-def test_the_close_button_ends_it(desktop: Desktop) -> None:
+def test_the_close_button_ends_the_gradient(desktop: Desktop) -> None:
     with desktop.program(sys.executable, "-W", "error", GRADIENT) as process:
         desktop.close_button(desktop.find("gradient"))
         assert outcome(process) == (0, "", "")
@@ -153,7 +154,7 @@ def test_a_second_ctrl_c_stops_a_hook_that_hangs(desktop: Desktop) -> None:
         assert outcome(process) == (130, "", "")
 
 
-def test_a_handler_of_the_program_s_own_runs_at_once(desktop: Desktop) -> None:
+def test_a_signal_handler_of_the_program_runs_at_once(desktop: Desktop) -> None:
     with desktop.program(*sleeper(OWN_HANDLER)) as process:
         assert next_line(process) == "loops"
         until_asleep(process)

@@ -12,6 +12,7 @@ NO_SCREEN = {name: value for name, value in os.environ.items() if name not in ("
 
 
 def run(program: str) -> str:
+    """Run a program without a screen and return its output."""
     command = [sys.executable, "-W", "error", "-c", program]
     done = processes.run(command, env=NO_SCREEN | {"PYTHONPATH": str(ROOT)}, text=True)
     assert done.stderr == ""

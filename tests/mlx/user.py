@@ -1,4 +1,4 @@
-"""The user of the window contract; without a screen, the acts become the script of `Memory`."""
+"""User: a simulated user of a scenario, and MemoryUser, whose actions become the script of `Memory`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 from minirt.mlx import Key, Window
-from tests.mlx.waker import waker
+from tests.mlx.wake_thread import wake_thread
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -15,29 +15,29 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from minirt.mlx.memory import Memory
-    from tests.mlx.stage import Stage
+    from tests.mlx.harness import Harness
 
-SHIFTED = {"equal": "plus", "slash": "question"}  # of the layout us
+SHIFTED_SYMBOLS = {"equal": "plus", "slash": "question"}  # with Shift, on the layout us
 KEYS = {"shift": Key.SHIFT_L, "ctrl": Key.CONTROL_L}
 
 
 class User(ABC):
-    """The acts of a user at the stage's window, and waits for the program."""
+    """Actions of a user at the harness's window, and waits for their effects."""
 
-    def keys(self, acts: str) -> None:
-        """Hold down (+) and let go (-) keys, by their names on the board."""
-        for act in acts.split():
-            (self.hold if act[0] == "+" else self.let_go)(act[1:])
+    def keys(self, actions: str) -> None:
+        """Press (+) and release (-) keys, by their names on the keyboard."""
+        for action in actions.split():
+            (self.press if action[0] == "+" else self.release)(action[1:])
 
     @abstractmethod
-    def hold(self, key: str) -> None: ...
+    def press(self, key: str) -> None: ...
 
     @abstractmethod
     def hold_until(self, key: str, enough: Callable[[], bool]) -> None:
-        """Hold a key down, which the platform types again and again, until `enough`."""
+        """Hold a key down, which the platform repeats, until `enough` is true. The key stays down."""
 
     @abstractmethod
-    def let_go(self, key: str) -> None: ...
+    def release(self, key: str) -> None: ...
 
     @abstractmethod
     def move(self, x: int, y: int) -> None: ...
@@ -47,7 +47,7 @@ class User(ABC):
 
     @abstractmethod
     def drop(self, *files: str) -> None:
-        """Drag files from elsewhere to the window and let them go."""
+        """Drag files to the window and drop them."""
 
     @abstractmethod
     def enter(self) -> None: ...
@@ -59,10 +59,10 @@ class User(ABC):
     def focus(self, window: Window) -> None: ...
 
     @abstractmethod
-    def press_for_another_window(self, key: str) -> None:
-        """Press a key that makes another window of the window system instead of the stage's, and let it go.
+    def press_to_replace_window(self, key: str) -> None:
+        """Press and release a key that makes the window system replace the harness's window by a new one.
 
-        It is let go when the old window is not there any more, and the new one has not got the focus yet.
+        It is released when the old window is gone and the new one does not have the focus yet.
         """
 
     @abstractmethod
@@ -78,142 +78,147 @@ class User(ABC):
     def close_button(self, window: Window | None = None) -> None: ...
 
     @abstractmethod
-    def then(self, action: Callable[[], object]) -> None:
-        """Note or prepare something at this moment; calls of MiniLibX belong into hooks."""
+    def do(self, action: Callable[[], object]) -> None:
+        """Call a function at this point; calls of MiniLibX belong into hooks."""
 
     @abstractmethod
     def until(self, condition: Callable[[], bool]) -> None:
-        """Wait for what the program does about what the user did; no time goes by where time is simulated."""
+        """Wait for the effect of an action; simulated time stands still."""
 
     @abstractmethod
     def wait_until(self, condition: Callable[[], bool], seconds: float) -> None:
-        """Wait for what the program does as time goes by: so many seconds where time is simulated."""
+        """Wait for an effect that takes time: this many simulated seconds."""
 
     @abstractmethod
-    def settle(self) -> None:
-        """Wait until the program has handled all that the user did."""
+    def wait_until_handled(self) -> None:
+        """Wait until the program has handled all actions."""
 
     @abstractmethod
-    def rest(self, seconds: float) -> None:
-        """Wait until the loop sleeps; let so many seconds go by where time is simulated."""
+    def wait_until_asleep(self, seconds: float) -> None:
+        """Wait until the loop sleeps, or for this many simulated seconds."""
 
     @abstractmethod
     def wake(self) -> None:
-        """Let another thread call `mlx_wake` when the loop sleeps."""
+        """Call `mlx_wake` from another thread when the loop sleeps."""
 
     @abstractmethod
-    def look(self, name: str, see: Callable[[NDArray[np.uint8]], object]) -> None:
-        """Log what `see` says of the picture (h, w, 3), red first, that the window shows."""
+    def log_picture(self, name: str, read: Callable[[NDArray[np.uint8]], object]) -> None:
+        """Log the value of `read` for the picture that the window shows: (h, w, 3), red first."""
 
     @abstractmethod
-    def read_title(self) -> None:
-        """Log the title."""
+    def log_title(self) -> None:
+        """Log the title of the window."""
 
 
 class MemoryUser(User):
-    def __init__(self, stage: Stage, memory: Memory) -> None:
-        self._stage, self._memory = stage, memory
+    """A user whose actions become the script of `Memory`."""
+
+    def __init__(self, harness: Harness, memory: Memory) -> None:
+        self._harness, self._memory = harness, memory
         self._held: list[str] = []
-        self._focus = stage.win
+        self._focus = harness.win
         self._inside = False
 
-    def hold(self, key: str) -> None:
+    def press(self, key: str) -> None:
         self._held.append(key)
-        symbol = SHIFTED.get(key, key) if "shift" in self._held else key
+        symbol = SHIFTED_SYMBOLS.get(key, key) if "shift" in self._held else key
         self._memory.press(_code(symbol), self._focus)
         self._type(symbol)
 
     def hold_until(self, key: str, enough: Callable[[], bool]) -> None:
-        self.hold(key)
+        self.press(key)
         for _ in range(10):
             self._memory.wait(0.1)
             self._type(key)
         self.until(enough)
 
-    def let_go(self, key: str) -> None:
+    def release(self, key: str) -> None:
         self._held.remove(key)
-        self._memory.release(_code(SHIFTED.get(key, key) if "shift" in self._held else key), self._focus)
+        self._memory.release(_code(SHIFTED_SYMBOLS.get(key, key) if "shift" in self._held else key), self._focus)
 
     def move(self, x: int, y: int) -> None:
-        self._memory.motion(x, y, self._stage.win)
+        self._memory.motion(x, y, self._harness.win)
 
     def click(self, x: int, y: int, button: int = 1) -> None:
         if button in (4, 5):
-            self._memory.scroll({4: 1, 5: -1}[button], x, y, self._stage.win)
+            self._memory.scroll({4: 1, 5: -1}[button], x, y, self._harness.win)
         elif button in (6, 7):
-            self._memory.scroll(0, x, y, self._stage.win, right={6: -1, 7: 1}[button])
+            self._memory.scroll(0, x, y, self._harness.win, right={6: -1, 7: 1}[button])
         else:
-            self._memory.click(x, y, button, self._stage.win)
+            self._memory.click(x, y, button, self._harness.win)
 
     def drop(self, *files: str) -> None:
-        self._memory.drop(*files, window=self._stage.win)
+        self._memory.drop(*files, window=self._harness.win)
 
     def enter(self) -> None:
         self._inside = True
-        self._memory.enter(True, self._stage.win)
+        self._memory.enter(True, self._harness.win)
 
     def leave(self) -> None:
         if self._inside:
             self._inside = False
-            self._memory.enter(False, self._stage.win)
+            self._memory.enter(False, self._harness.win)
 
     def focus(self, window: Window) -> None:
         self._memory.focus(False, self._focus)
         self._memory.focus(True, window)
         self._focus = window
 
-    def press_for_another_window(self, key: str) -> None:
-        """Windows are never made anew here."""
+    def press_to_replace_window(self, key: str) -> None:
+        """Press and release a key: windows are never replaced here."""
         self.keys(f"+{key} -{key}")
 
     def resize(self, width: int, height: int) -> None:
-        self._memory.resize(width, height, self._stage.win)
+        self._memory.resize(width, height, self._harness.win)
 
     def minimise(self) -> None:
-        self._memory.minimise(True, self._stage.win)
+        self._memory.minimise(True, self._harness.win)
 
     def restore(self) -> None:
-        self._memory.minimise(False, self._stage.win)
-        self._memory.expose(self._stage.win)
+        self._memory.minimise(False, self._harness.win)
+        self._memory.expose(self._harness.win)
 
     def close_button(self, window: Window | None = None) -> None:
-        self._memory.close_button(window or self._stage.win)
+        self._memory.close_button(window or self._harness.win)
 
     def until(self, condition: Callable[[], bool]) -> None:
         def check() -> None:
-            assert condition(), "the program did not do what the user waits for"
+            assert condition(), "the effect did not come"
 
         self._memory.do(check)
 
-    def then(self, action: Callable[[], object]) -> None:
+    def do(self, action: Callable[[], object]) -> None:
         self._memory.do(action)
 
     def wait_until(self, condition: Callable[[], bool], seconds: float) -> None:
         self._memory.wait(seconds)
         self.until(condition)
 
-    def settle(self) -> None:
-        """Nothing to do: each step waits for the one before."""
+    def wait_until_handled(self) -> None:
+        """Do nothing: each step waits for the effects of the step before."""
 
-    def rest(self, seconds: float) -> None:
+    def wait_until_asleep(self, seconds: float) -> None:
         self._memory.wait(seconds)
 
     def wake(self) -> None:
-        self._memory.do(waker(self._stage.m, self._stage.mlx).start)
+        self._memory.do(wake_thread(self._harness.m, self._harness.mlx).start)
         self._memory.await_wake()
 
-    def look(self, name: str, see: Callable[[NDArray[np.uint8]], object]) -> None:
-        self._memory.do(lambda: self._stage.note(name, see(self._memory.screenshot(self._stage.win)[..., 2::-1])))
+    def log_picture(self, name: str, read: Callable[[NDArray[np.uint8]], object]) -> None:
+        self._memory.do(
+            lambda: self._harness.record(name, read(self._memory.screenshot(self._harness.win)[..., 2::-1]))
+        )
 
-    def read_title(self) -> None:
-        self._memory.do(lambda: self._stage.note("title", self._stage.win.title))
+    def log_title(self) -> None:
+        self._memory.do(lambda: self._harness.record("title", self._harness.win.title))
 
     def _type(self, symbol: str) -> None:
-        """Text comes with a key that prints something."""
+        """Type the character of a key, if it prints one."""
         if symbol not in KEYS and "ctrl" not in self._held:
             character = chr(_code(symbol)) if _code(symbol) < 0x100 else "\t"
             self._memory.text(character, self._focus)
 
 
 def _code(name: str) -> int:
+    """Key code of a name."""
     return KEYS.get(name) or Key[name.upper()]

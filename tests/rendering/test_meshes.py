@@ -1,4 +1,4 @@
-"""Meshes among other shapes: traced, packed, edited, picked and outlined, each as one shape."""
+"""Meshes among other shapes are traced, packed, edited, picked and outlined, each as one shape."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import minirt
 from minirt.fields import MeshFile
 from minirt.materials import Specular
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.pick import covers, pick, place
+from minirt.rendering.queries.pick import covers, pick, surface_point
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.mesh import Mesh
@@ -21,14 +21,14 @@ from tests.shapes.regimes import unit, ways
 
 WHITE = (255, 255, 255)
 EYE = Camera((0, 0, -9), (0, 0, 1), 60)
-LAMP = Light((5, 8, -9), 0.9, WHITE)
+LIGHT = Light((5, 8, -9), 0.9, WHITE)
 
 
 def corners(*shapes: Mesh) -> np.ndarray:
     return np.concatenate([each.rows()[:, :9].reshape(-1, 3, 3) for each in shapes])
 
 
-def test_rays_hit_what_brute_force_says() -> None:
+def test_rays_hit_the_same_triangles_as_brute_force() -> None:
     random = np.random.default_rng(1)
     shapes = soup(random, 300), named("icosahedron", (1, 0, 0), 2.0), named("icosahedron", (-2, 1, 1), 0.7)
     origins, directions = 6 * random.normal(size=(3000, 3)), ways(random, 3000)
@@ -38,11 +38,11 @@ def test_rays_hit_what_brute_force_says() -> None:
     sure = doubt > 1e-9
     assert sure.mean() > 0.999
     assert np.array_equal(hits.owner[sure], owner[sure])
-    there = sure & np.isfinite(right)
-    assert there.sum() > 500
-    assert np.abs(hits.distance[there] / right[there] - 1).max() < 1e-10
+    is_hit = sure & np.isfinite(right)
+    assert is_hit.sum() > 500
+    assert np.abs(hits.distance[is_hit] / right[is_hit] - 1).max() < 1e-10
     points = origins + right[:, None] * directions
-    assert np.abs(hits.point[there] - points[there]).max() < 1e-10
+    assert np.abs(hits.point[is_hit] - points[is_hit]).max() < 1e-10
 
 
 @pytest.mark.parametrize(("position", "scale"), [((0, 0, 0), 1.0), ((1e6, -3e5, 1 / 3), 1e-2)])
@@ -79,11 +79,11 @@ def test_a_ball_with_normals_is_lit_like_a_sphere() -> None:
     half = np.tan(np.radians(30))
     directions = unit(np.stack([(1 - x / 80) * half, (1 - y / 60) * half * 0.75, np.ones_like(x)], axis=1))
     hits = minirt.trace(scene, np.broadcast_to(np.array(EYE.position), directions.shape), directions)
-    there = hits.owner == 0
-    assert 4000 < there.sum() < 9000
-    cosines = -np.einsum("ij,ij->i", unit(hits.point[there]), directions[there])
-    assert np.abs(seen[there] - np.maximum(cosines, 0)).max() < 1e-9  # at the rim a normal may lean away
-    assert not seen[~there].any()
+    is_hit = hits.owner == 0
+    assert 4000 < is_hit.sum() < 9000
+    cosines = -np.einsum("ij,ij->i", unit(hits.point[is_hit]), directions[is_hit])
+    assert np.abs(seen[is_hit] - np.maximum(cosines, 0)).max() < 1e-9  # at the rim a normal may lean away
+    assert not seen[~is_hit].any()
 
 
 def test_a_ball_with_normals_mirrors_like_a_sphere() -> None:
@@ -99,16 +99,16 @@ def test_a_ball_with_normals_mirrors_like_a_sphere() -> None:
 
 def test_single_precision_shows_the_same() -> None:
     shapes = named("knot", (1, 0, 0), 2.0), named("pot", (-3, -1, 2), 1.5), Plane((0, -3, 0), (0, 1, 0), GREY)
-    scene = Scene((Ambient(0.2, WHITE), EYE, LAMP, *shapes))
+    scene = Scene((Ambient(0.2, WHITE), EYE, LIGHT, *shapes))
     double, single = (minirt.render(scene, 160, 120, precision=each).array.astype(int) for each in ("double", "single"))
     assert len(np.unique(double)) > 100
     assert (np.abs(double - single).max(axis=-1) > 2).mean() < 2e-3
 
 
-def test_what_is_packed_after_edits_is_what_would_be_packed_at_first() -> None:
+def test_arrays_after_edits_equal_those_of_a_fresh_packing() -> None:
     ico, knot = named("icosahedron"), named("icosphere", (2, 0, 0), 0.5)
     balls = Sphere((0, 3, 0), 1, GREY), Sphere((0, -3, 0), 1, GREY)
-    scene = Scene((Ambient(0.2, WHITE), EYE, LAMP, balls[0], ico, Plane((0, -5, 0), (0, 1, 0), GREY), knot, balls[1]))
+    scene = Scene((Ambient(0.2, WHITE), EYE, LIGHT, balls[0], ico, Plane((0, -5, 0), (0, 1, 0), GREY), knot, balls[1]))
     packing = Packing()
     packing.pack(scene, 24, 16)
     edits = [
@@ -126,33 +126,33 @@ def test_what_is_packed_after_edits_is_what_would_be_packed_at_first() -> None:
         scene = edit(scene)
         assert_same(packing.pack(scene, 24, 16), scene)
         sizes = [shape.parts for shape in scene.shapes]
-        assert np.array_equal(packing.tables.owner, np.repeat(np.arange(len(sizes)), sizes))
-        assert packing.tables.start.tolist() == [0, *np.cumsum(sizes)]
+        assert np.array_equal(packing.shape_arrays.owner, np.repeat(np.arange(len(sizes)), sizes))
+        assert packing.shape_arrays.first_primitive.tolist() == [0, *np.cumsum(sizes)]
 
 
-def test_materials_are_those_of_the_mesh() -> None:
+def test_triangles_have_the_materials_of_their_mesh() -> None:
     first = named("icosahedron", specular=Specular(0.5, 20), mirror=0.25)
     second = named("icosahedron", (3, 0, 0), specular=Specular(0.1, 5))
-    traced = Packing().pack(Scene((EYE, LAMP, first, Sphere((0, 3, 0), 1, GREY), second)), 32, 32)
-    assert np.array_equal(traced.specular[:, :2], np.repeat([[0.5, 20], [0, 0], [0.1, 5]], [20, 1, 20], axis=0))
-    assert np.array_equal(traced.reflective[:, 0], np.repeat([0.25, 0, 0], [20, 1, 20]))
+    arrays = Packing().pack(Scene((EYE, LIGHT, first, Sphere((0, 3, 0), 1, GREY), second)), 32, 32)
+    assert np.array_equal(arrays.specular[:, :2], np.repeat([[0.5, 20], [0, 0], [0.1, 5]], [20, 1, 20], axis=0))
+    assert np.array_equal(arrays.reflective[:, 0], np.repeat([0.25, 0, 0], [20, 1, 20]))
 
 
 def test_a_pixel_is_picked_for_the_mesh_that_it_shows() -> None:
     shapes = named("knot", (1, 0, 0), 2.0), named("pot", (-3, -1, 2), 1.5), Sphere((0, 2, 0), 2, GREY)
-    scene, tables = Scene((EYE, *shapes)), ShapeArrays()
-    shown = [pick(scene, 40, 30, x, y, tables) for y in range(0, 30, 2) for x in range(0, 40, 2)]
+    scene, shape_arrays = Scene((EYE, *shapes)), ShapeArrays()
+    shown = [pick(scene, 40, 30, x, y, shape_arrays) for y in range(0, 30, 2) for x in range(0, 40, 2)]
     assert {*shapes, None} == set(shown)
     for x, y in ((11, 9), (15, 20), (30, 18), (0, 0)):
         found = pick(scene, 40, 30, x, y)
-        where = found and place(found, EYE, 40, 30, x, y)
-        if where:
-            way = np.array(where) - EYE.position
-            hits = minirt.trace(scene, [EYE.position], [way])
-            assert hits.distance[0] == pytest.approx(np.linalg.norm(way), rel=1e-9)
+        point = found and surface_point(found, EYE, 40, 30, x, y)
+        if point:
+            direction = np.array(point) - EYE.position
+            hits = minirt.trace(scene, [EYE.position], [direction])
+            assert hits.distance[0] == pytest.approx(np.linalg.norm(direction), rel=1e-9)
 
 
-def test_of_meshes_in_the_same_place_the_first_is_picked() -> None:
+def test_the_first_of_coincident_meshes_is_picked() -> None:
     one, other = named("icosphere", scale=2.0), named("icosphere", scale=2.0, mirror=0.5)
     for shapes in ((one, other), (other, one)):
         for x, y in ((32, 24), (30, 20), (36, 27)):
@@ -160,7 +160,7 @@ def test_of_meshes_in_the_same_place_the_first_is_picked() -> None:
 
 
 @pytest.mark.parametrize("name", ["icosahedron", "icosphere", "knot", "pot", "soup"])
-def test_an_outline_is_that_of_what_rays_meet(name: str) -> None:
+def test_an_outline_encloses_the_pixels_whose_rays_hit(name: str) -> None:
     random = np.random.default_rng(3)
     shape = soup(random, 60).replace(scale=0.7) if name == "soup" else named(name, (0.3, 0.2, 0.1), 2.5)
     camera = Camera((3.0, 4.0, -9.0), (-0.3, -0.35, 0.9), 70, roll=20)
@@ -176,12 +176,3 @@ def test_a_mesh_around_the_eye_has_no_outline() -> None:
     camera = Camera((0, 0, 0), (0, 0, 1), 70)
     x, y = np.meshgrid(np.arange(8), np.arange(6))
     assert not covers(named("icosphere"), camera, 8, 6, x, y).any()
-
-
-def test_a_scene_of_a_large_mesh_gets_its_kernel_from_a_small_one() -> None:
-    from minirt.rendering.renderer import small
-
-    scene = Scene((EYE, LAMP, named("knot"), Sphere((0, 3, 0), 1, GREY), named("pot")))
-    made = small(scene)
-    assert {type(shape) for shape in made.shapes} == {Mesh, Sphere}
-    assert sum(shape.parts for shape in made.shapes) < 20

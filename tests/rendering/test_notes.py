@@ -1,4 +1,4 @@
-"""What a packing says of the scene that it packed."""
+"""The notes of a packing describe its decisions for a scene."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from minirt.shapes.sphere import Sphere
 GREY = (128, 128, 128)
 
 
-def said(*balls: Sphere) -> list[str]:
+def notes_of(*balls: Sphere) -> list[str]:
     lights = Light((0, 5, 0), 1), FurtherLight((0, 5, 0), 0), FurtherLight((0, -5, 0), 1)
     black = FurtherLight((0, 0, 9), 1, (0, 0, 0))
     planes = Plane((0, -9, 0), (0, 1, 0), GREY), Plane((0, -1, 0), (0, -1, 0), GREY)
@@ -23,8 +23,8 @@ def said(*balls: Sphere) -> list[str]:
     return packing.notes
 
 
-def test_what_is_left_out_and_why() -> None:
-    kernel, without, plain, tiles, buffer, *rest = said(Sphere((0, 0, 0), 1, GREY))
+def test_features_that_are_left_out_are_named_with_the_reason() -> None:
+    kernel, without, plain, tiles, buffer, *rest = notes_of(Sphere((0, 0, 0), 1, GREY))
     others = [kind.element.plural for kind in ALL_KINDS if kind.element not in (Sphere, Plane)]
     assert (kernel, without) == ("kernel for spheres, planes", f"kernel without {', '.join(others)}")
     assert plain == f"kernel without {', '.join(FEATURES.values())}"
@@ -39,29 +39,28 @@ def test_what_is_left_out_and_why() -> None:
     ]
 
 
-def test_single_precision_where_there_is_none() -> None:
+def test_a_fallback_to_double_precision_is_noted() -> None:
     packing = Packing(precision="single")
     for mirror in (None, 0.5):
         packing.pack(Scene((Camera((0, 0, -9), (0, 0, 1), 60), Sphere((0, 0, 0), 1, GREY, mirror=mirror))), 64, 48)
-        told = packing.notes[0]
-        assert told == (
-            "double precision: single has neither pictures nor a tree of shapes" if mirror else "kernel for spheres"
+        assert packing.notes[0] == (
+            "double precision: single supports neither images nor a BVH" if mirror else "kernel for spheres"
         )
 
 
-def test_the_size_of_the_light_buffer() -> None:
-    *_, buffer, _, _, _, _, _ = said(*(Sphere((i, 0, 0), 1, GREY) for i in range(48)))
-    assert buffer == "light buffer: 6 x 32 x 32 cells a lamp (50 shapes)"
+def test_the_size_of_the_light_buffer_is_noted() -> None:
+    *_, buffer, _, _, _, _, _ = notes_of(*(Sphere((i, 0, 0), 1, GREY) for i in range(48)))
+    assert buffer == "light buffer: 6 x 32 x 32 cells per light (50 shapes)"
 
 
-def test_which_cells_lamps_have() -> None:
+def test_the_cells_of_every_light_are_noted() -> None:
     heap = [Sphere((i % 10, i // 10 % 10, i // 100), 0.5, GREY) for i in range(1000)]
-    lamps = Light((50, 20, -9), 1), FurtherLight((5, 5, 5), 1)
+    lights = Light((50, 20, -9), 1), FurtherLight((5, 5, 5), 1)
     for shown, cells in (
-        (lamps[:1], "128 x 128 cells ahead of a lamp"),
-        (lamps[1:], "6 x 64 x 64 cells a lamp"),
-        (lamps, "6 x 64 x 64 cells or 128 x 128 cells ahead of a lamp"),
-        ((), "6 x 64 x 64 cells a lamp"),
+        (lights[:1], "128 x 128 cells in a frustum per light"),
+        (lights[1:], "6 x 64 x 64 cells per light"),
+        (lights, "6 x 64 x 64 cells or 128 x 128 cells in a frustum per light"),
+        ((), "6 x 64 x 64 cells per light"),
     ):
         packing = Packing()
         packing.pack(Scene((Camera((0, 0, -9), (0, 0, 1), 60), *shown, *heap)), 64, 48)

@@ -1,4 +1,4 @@
-"""Packing: what the kernel reads is the scene, and an edit costs no more than what it changes."""
+"""Packing of scenes: the arrays are those of the scene, and an edit packs only what it changes."""
 
 from __future__ import annotations
 
@@ -21,39 +21,41 @@ from tests.kernel.pictures import ALL, EYE, LAMP, SHAPES, linear
 
 @pytest.fixture
 def packed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """What was packed so far."""
+    """The shapes that were packed so far."""
     done: list[Any] = []
-    monkeypatch.setattr(primitives, "numbers", lambda new, numbers=primitives.numbers: done.extend(new) or numbers(new))
+    monkeypatch.setattr(
+        primitives, "packed_rows", lambda new, numbers=primitives.packed_rows: done.extend(new) or numbers(new)
+    )
     return done
 
 
-def assert_same(traced: Any, scene: Scene) -> None:
-    """As if the scene were packed for the first time."""
+def assert_same(arrays: Any, scene: Scene) -> None:
+    """Assert that arrays equal those of a fresh packing."""
     fresh = Packing().pack(scene, 24, 16)
     for name, value in zip(fresh._fields, fresh, strict=True):
         if name != "groups":
-            assert np.array_equal(getattr(traced, name), value), name
-    for group, expected in zip(traced.groups, fresh.groups, strict=True):
+            assert np.array_equal(getattr(arrays, name), value), name
+    for group, expected in zip(arrays.groups, fresh.groups, strict=True):
         assert all(np.array_equal(part, right) for part, right in zip(group, expected, strict=True))
 
 
-def test_the_numbers_of_a_scene() -> None:
+def test_the_arrays_have_the_numbers_of_the_scene() -> None:
     blue = (0, 51, 255)
-    lamps = Light((1, 2, 3), 0.5, blue), FurtherLight((0, 0, 0), 0.0), FurtherLight((4, 5, 6), 1.0, (0, 0, 0))
+    lights = Light((1, 2, 3), 0.5, blue), FurtherLight((0, 0, 0), 0.0), FurtherLight((4, 5, 6), 1.0, (0, 0, 0))
     ball, wall = Sphere((1, 2, 3), 4, (255, 0, 51)), Plane((7, -9, 2), (0, 1, 0), blue)
-    traced = Packing().pack(Scene((Ambient(0.5, blue), EYE, *lamps, wall, ball)), 24, 16)
-    assert traced.ambient.tolist() == [0, 0.1, 0.5]
-    assert traced.lights.tolist() == [[1, 2, 3, 0, 0.1, 0.5]]  # the dark ones are left out
-    assert traced.colours_and_extents.tolist() == [[0, 0.2, 1, 9], [1, 0, 0.2, 5]]
-    assert traced.slots.tolist() == [[1, 0], [0, 0]]  # kinds in the order of the registry
-    ball_again = read(traced.groups[0].rows, 0)
+    arrays = Packing().pack(Scene((Ambient(0.5, blue), EYE, *lights, wall, ball)), 24, 16)
+    assert arrays.ambient.tolist() == [0, 0.1, 0.5]
+    assert arrays.lights.tolist() == [[1, 2, 3, 0, 0.1, 0.5]]  # lights that are off or black are left out
+    assert arrays.colours_and_extents.tolist() == [[0, 0.2, 1, 9], [1, 0, 0.2, 5]]
+    assert arrays.slots.tolist() == [[1, 0], [0, 0]]  # kinds in the order of the registry
+    ball_again = read(arrays.groups[0].rows, 0)
     assert (ball_again.centre.x, ball_again.centre.y, ball_again.centre.z, ball_again.radius) == (1, 2, 3, 2)
 
 
-def test_without_ambient_light_and_lamps() -> None:
-    traced = Packing().pack(Scene((EYE, *SHAPES)), 24, 16)
-    assert traced.ambient.tolist() == [0, 0, 0]
-    assert traced.lights.shape == (0, 6)
+def test_a_scene_may_have_no_ambient_light_and_no_lights() -> None:
+    arrays = Packing().pack(Scene((EYE, *SHAPES)), 24, 16)
+    assert arrays.ambient.tolist() == [0, 0, 0]
+    assert arrays.lights.shape == (0, 6)
 
 
 @pytest.mark.parametrize(
@@ -70,20 +72,20 @@ def test_the_extent_is_the_largest_coordinate(shape: Any, expected: float) -> No
 
 
 def test_an_edit_packs_again_only_what_it_changed(packed: list[Any]) -> None:
-    keeper = Packing()
-    keeper.pack(ALL, 24, 16)
+    packing = Packing()
+    packing.pack(ALL, 24, 16)
     assert len(packed) == len(SHAPES)
     packed.clear()
 
     moved = ALL.replace(ALL.spheres[1], centre=(9, 9, 9))
-    keeper.pack(moved, 24, 16)
+    packing.pack(moved, 24, 16)
     assert [repr(each) for each in packed] == [repr(moved.spheres[1].pack())]
     packed.clear()
-    keeper.pack(moved, 24, 16)
-    keeper.pack(moved.replace(moved.camera, fov=30), 24, 16)
-    keeper.pack(moved.replace(moved.lights[0], brightness=0.1), 30, 20)
+    packing.pack(moved, 24, 16)
+    packing.pack(moved.replace(moved.camera, fov=30), 24, 16)
+    packing.pack(moved.replace(moved.lights[0], brightness=0.1), 30, 20)
     assert packed == []
-    keeper.pack(ALL, 24, 16)
+    packing.pack(ALL, 24, 16)
     assert [repr(each) for each in packed] == [repr(ALL.spheres[1].pack())]
 
 
@@ -105,26 +107,26 @@ def test_an_edit_packs_again_only_what_it_changed(packed: list[Any]) -> None:
     ],
 )
 def test_after_an_edit_the_arrays_are_those_of_the_new_scene(edit: Any) -> None:
-    keeper = Packing()
+    packing = Packing()
     for scene in (ALL, edit(ALL), ALL):
         if scene.shapes:
-            assert_same(keeper.pack(scene, 24, 16), scene)
+            assert_same(packing.pack(scene, 24, 16), scene)
 
 
-def test_who_looks_at_the_arrays_of_another_scene_does_no_harm() -> None:
+def test_using_the_arrays_of_another_scene_does_no_harm() -> None:
     edited = ALL.replace(ALL.spheres[0], centre=(0, 3, 2))
-    keeper = Packing()
+    packing = Packing()
     for scene, other in ((ALL, edited), (edited, ALL), (ALL, edited)):
-        keeper.pack(scene, 24, 16)
-        assert keeper.tables_of(other.shapes).shapes == other.shapes
-        assert keeper.notes == []
-        assert_same(keeper.pack(other, 24, 16), other)
-        keeper.tables_of(scene.shapes)
-        assert_same(keeper.pack(other, 24, 16), other)
+        packing.pack(scene, 24, 16)
+        assert packing.shape_arrays_for(other.shapes).shapes == other.shapes
+        assert packing.notes == []
+        assert_same(packing.pack(other, 24, 16), other)
+        packing.shape_arrays_for(scene.shapes)
+        assert_same(packing.pack(other, 24, 16), other)
 
 
 def test_pictures_follow_edits() -> None:
-    # One renderer keeps its arrays from picture to picture; another starts anew.
+    # One renderer keeps its arrays from picture to picture; the other packs anew.
     scene = ALL
     for sphere in ALL.spheres:
         scene = scene.replace(sphere, centre=(0, 3, 2))

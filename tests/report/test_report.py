@@ -27,7 +27,7 @@ from tests.cli.announcing import RENDERING
 from tests.cli.conftest import folder, run
 from tests.cli.program import Result, interrupt, start
 from tests.kernel.pictures import ALL, AMBIENT, EYE
-from tests.simulated import PACKET, Clock, packets, simulated
+from tests.simulated_clock import PACKET_SECONDS, Clock, packets, simulate_clock
 from tests.terminals import terminal
 
 __all__ = ["folder", "run"]
@@ -40,7 +40,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     """Use a plan with little work, and a simulated clock that only rendering moves on."""
     plan = QUICK._replace(shapes=1, samples=64, most=4, budget=Budget(0.0, inf, tries=1))
     monkeypatch.setattr(generate, "QUICK", plan)
-    return simulated(monkeypatch)
+    return simulate_clock(monkeypatch)
 
 
 @pytest.fixture
@@ -160,7 +160,7 @@ def test_the_formulas_of_all_kinds(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 def test_pictures_are_as_small_as_the_time_asks() -> None:
     assert fitting_size(ALL, (64, 36), QUICK) == (64, 36)
     plan = QUICK._replace(width=320)
-    seconds = plan.samples * packets(320, 180) * PACKET
+    seconds = plan.samples * packets(320, 180) * PACKET_SECONDS
     for given, size in (
         (1e9, (320, 180)),
         (1.01 * seconds, (320, 180)),

@@ -14,7 +14,7 @@ import pytest
 
 from minirt.errors import Problem, SceneError
 from minirt.scene import load, parse
-from tests.hangs import ends, unopened
+from tests.guards import must_end, must_not_open
 from tests.scene.examples import AMBIENT, CAMERA, SPHERE, WHOLE, problems, scene_with
 
 
@@ -89,7 +89,7 @@ def test_a_fifo_or_a_device_does_not_hang(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "fifo.rt")
     (tmp_path / "device.rt").symlink_to("/dev/zero")
     fifo, device = tmp_path / "fifo.rt", tmp_path / "device.rt"
-    with unopened(fifo, device):
+    with must_not_open(fifo, device):
         assert refusal(fifo).message == "is not a regular file"
         assert refusal(device).message == "is not a regular file"
 
@@ -100,7 +100,7 @@ def test_a_fifo_that_takes_the_place_of_the_file_does_not_hang(tmp_path: Path, m
     os.mkfifo(fifo)
     status = regular.stat()
     monkeypatch.setattr(Path, "stat", lambda *_, **__: status)
-    with ends():
+    with must_end():
         assert refusal(fifo).message == "is not a regular file"
 
 
@@ -202,7 +202,7 @@ def test_a_lone_surrogate_is_not_text() -> None:
     ids=range(12),
 )
 def test_a_line_of_a_megabyte_is_refused_quickly_with_a_short_message(line: str, column: int, message: str) -> None:
-    with ends(), lines_run() as count:
+    with must_end(), lines_run() as count:
         (problem,) = problems(scene_with(line))
     assert 500 < count() < 20_000  # so only functions in C look at each character
     assert (problem.line, problem.column) == (3, column)

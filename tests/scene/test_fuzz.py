@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from minirt.errors import SceneError
 from minirt.scene import dump, parse
-from tests.hangs import ends
+from tests.guards import must_end
 from tests.scene.examples import CYLINDER, SUBJECT, WHOLE
 from tests.scene.strategies import texts
 
@@ -73,7 +73,7 @@ def check_outcome(text: str | bytes) -> None:
     accepted = []
     for lenient in (False, True):
         try:
-            with ends():
+            with must_end():
                 scene = parse(text, "test.rt", lenient).scene
         except SceneError as error:
             refused = error

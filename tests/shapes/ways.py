@@ -14,7 +14,7 @@ import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel import rows
 from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, lane, load, where, width
-from minirt.rendering.packing.primitives import numbers
+from minirt.rendering.packing.primitives import packed_rows
 from minirt.shapes import KINDS, Kind, Shape
 
 Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ def on_arrays(shapes: list[Shape], origins: Array, directions: Array, formula: A
 
 def table(shapes: list[Shape]) -> Any:
     """The rows of shapes of one kind."""
-    packed = np.ascontiguousarray(numbers([shape.pack() for shape in shapes]))
+    packed = np.ascontiguousarray(packed_rows([shape.pack() for shape in shapes]))
     return packed.view(rows.row_type(kind_of(shapes[0])))[:, 0]
 
 

@@ -81,7 +81,7 @@ def tested(names: list[str]) -> int:
 
 def interpreted(scene: Scene, width: int = 24, height: int = 16, samples: int = 1, renderer: object = None) -> Any:
     """Render a picture as `tests.kernel.pictures.picture` does, but without the compiler."""
-    return preview.picture(scene, width, height)
+    return preview.render_interpreted(scene, width, height)
 
 
 def path_of(name: str) -> str:

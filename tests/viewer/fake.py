@@ -1,4 +1,4 @@
-"""A renderer whose pictures take no time, or as long as a test says, and small scenes."""
+"""A fake renderer whose pictures take no time or as long as a test says, and sessions from recorded keys."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from minirt.rendering import pick
 from minirt.scene import Scene, dump, parse
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.painter import Wanted
+from minirt.viewer.display.painter import IsWanted
 from tests.waiting import HANG_LIMIT, until
 
 TEXT = """\
@@ -28,30 +28,31 @@ pl 0,-1,0 0,1,0 0,255,0
 cy 3,0,0 0,1,0 1 4 0,0,255
 """
 
-MARK = (1, 2, 3, 255)  # a pixel that was refined
+MARK = (1, 2, 3, 255)  # BGRA of a refined pixel
 
 
 def scene(text: str = TEXT) -> Scene:
+    """Parse a scene."""
     return parse(text, "scene.rt").scene
 
 
 class FakeRenderer:
-    """Paints one colour, which is another for each scene."""
+    """A renderer that fills each picture with one colour, which depends on the scene."""
 
     def __init__(self) -> None:
-        self.rendered: list[tuple[int, int]] = []  # width, height of what was finished
-        self.samples: list[int] = []  # of what was begun
-        self.refined: list[int] = []  # samples of what was begun
+        self.rendered: list[tuple[int, int]] = []  # width and height of the finished pictures
+        self.samples: list[int] = []  # of the pictures that were started
+        self.refined: list[int] = []  # samples of the refinements that were started
         self.cancelled = 0
         self.ready = True
         self.previews = True
         self.stops = False  # whether `stop` ends `prepare`
         self.error: Exception | None = None
         self.prepare_error: Exception | None = None
-        self.gate = threading.Event()  # pictures wait for it
+        self.gate = threading.Event()  # while it is closed, pictures are not finished
         self.gate.set()
         self.started = threading.Event()
-        self.cancel_asked = threading.Event()
+        self.cancel_requested = threading.Event()
 
     def is_ready(self, _scene: Scene) -> bool:
         return self.ready
@@ -76,7 +77,7 @@ class FakeRenderer:
         return np.full((2, 3, 4), colour_of(scene), np.uint8)
 
     def render(
-        self, scene: Scene, pixels: NDArray[np.uint8], samples: int = 1, is_wanted: Wanted = lambda: True
+        self, scene: Scene, pixels: NDArray[np.uint8], samples: int = 1, is_wanted: IsWanted = lambda: True
     ) -> bool:
         self.samples.append(samples)
         if not self.may_finish(is_wanted):
@@ -85,8 +86,8 @@ class FakeRenderer:
         self.rendered.append((pixels.shape[1], pixels.shape[0]))
         return True
 
-    def refine(self, scene: Scene, pixels: NDArray[np.uint8], samples: int, is_wanted: Wanted = lambda: True) -> bool:
-        """Marks as many pixels of the first row as there are samples, the first half before it can be cancelled."""
+    def refine(self, scene: Scene, pixels: NDArray[np.uint8], samples: int, is_wanted: IsWanted = lambda: True) -> bool:
+        """Mark as many pixels of the first row as there are samples, half of them before `cancel` has effect."""
         assert (pixels[1:] == colour_of(scene)).all()
         self.refined.append(samples)
         pixels[0, : samples // 2] = MARK
@@ -95,15 +96,15 @@ class FakeRenderer:
         pixels[0, :samples] = MARK
         return True
 
-    def may_finish(self, is_wanted: Wanted) -> bool:
-        """Wait for the gate; False where the picture was cancelled."""
-        self.cancel_asked.clear()
+    def may_finish(self, is_wanted: IsWanted) -> bool:
+        """Wait for the gate to open; return False if the picture was cancelled."""
+        self.cancel_requested.clear()
         self.started.set()
         if not is_wanted():
             self.cancelled += 1
             return False
-        until(lambda: self.gate.is_set() or self.cancel_asked.is_set(), "the gate's opening")
-        if self.cancel_asked.is_set():
+        until(lambda: self.gate.is_set() or self.cancel_requested.is_set(), "the gate's opening")
+        if self.cancel_requested.is_set():
             self.cancelled += 1
             return False
         if self.error:
@@ -111,11 +112,11 @@ class FakeRenderer:
         return True
 
     def cancel(self) -> None:
-        self.cancel_asked.set()
+        self.cancel_requested.set()
 
 
 def colour_of(scene: Scene) -> tuple[int, int, int, int]:
-    """BGRA."""
+    """Return the colour of a scene's pictures, BGRA."""
     blue, green, red, _ = zlib.crc32(dump(scene).encode()).to_bytes(4)
     return blue, green, red, 255
 
@@ -127,5 +128,5 @@ def played(
     keys: str = "qwerty",
     watch: Callable[[Session], object] = lambda _: None,
 ) -> Session:
-    """The session after these recorded keys; `watch` as in `minirt.viewer.app.replay.play`."""
+    """Return the session after these recorded keys; `watch` as in `minirt.viewer.app.replay.play`."""
     return play(scene(text), lines, renderer=FakeRenderer(), size=(64, 48), path=path, keys=keys, watch=watch)

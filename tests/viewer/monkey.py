@@ -1,4 +1,4 @@
-"""A monkey at the viewer: keys and mouse at random, and nothing may break.
+"""Monkey test of the viewer: random keys, mouse events, window sizes and file changes, without errors or memory leaks.
 
 python -m tests.viewer.monkey 20        # minutes, in a real window under Xvfb
 python -m tests.viewer.monkey 20 7      # with another seed
@@ -20,59 +20,59 @@ from PIL import Image
 from minirt.scene import load
 from minirt.viewer.input.bindings import BINDINGS
 from minirt.viewer.input.chords import MOUSE
-from tests.viewer.family import compilers
-from tests.viewer.hands import do
-from tests.viewer.resting import until_at_rest, until_events_are_done
+from tests.viewer.idle_waits import until_at_rest, until_events_are_done
+from tests.viewer.process_tree import compilers
+from tests.viewer.scenes import WITH_CYLINDER
+from tests.viewer.xdotool import do
 from tests.waiting import HANG_LIMIT, until
 from tests.windows import SCREEN, Desktop, open_desktop
 
-TEXT = """\
-A 0.2 255,255,255
-C 0,1,8 0,-0.1,-0.995 60
-L 5,5,5 0.6 255,255,255
-sp 0,0,0 2 255,60,60
-pl 0,-1,0 0,1,0 90,200,90
-cy 2,0,0 0,1,0 1 2 60,60,255
-"""
 SIZE = (320, 240)
-KEPT_AWAY = {"quit"}
-SELDOM = {"save", "save copy", "screenshot", "reload", "toggle help", "toggle full screen", "delete"}
+EXCLUDED = {"quit"}
+RARE = {"save", "save copy", "screenshot", "reload", "toggle help", "toggle full screen", "delete"}
 FULL_SCREEN = [f"press {key}" for each in BINDINGS if each.action == "toggle full screen" for key in each.keys]
-OTHERS = (TEXT, TEXT.replace("A 0.2", "A 0.6"), "A 0.2\n", "sp", "", TEXT + "sp 1,1,1 0.5 9,99,200 mirror:0.4\n")
-BATCH = 15  # lines between two looks at the program
-FILE_CHANGES = 0.15  # how often another program writes the file then
-SETTLED = 0.5  # of the play: what the program needs to have seen everything once
-FLAT = 1.05  # times the memory of then: what it may have at the end
+FILE_VERSIONS = (
+    WITH_CYLINDER,
+    WITH_CYLINDER.replace("A 0.2", "A 0.6"),
+    "A 0.2\n",
+    "sp",
+    "",
+    WITH_CYLINDER + "sp 1,1,1 0.5 9,99,200 mirror:0.4\n",
+)
+BATCH = 15  # lines between two checks of the program
+FILE_CHANGES = 0.15  # probability that another program writes the file after a batch
+WARM_UP = 0.5  # share of the run after which the program has allocated everything once
+MAX_GROWTH = 1.05  # ratio of memory at the end to memory after the warm-up
 
 
 class Report(NamedTuple):
-    """How it went."""
+    """The result of a run."""
 
     status: int
     output: str
     errors: str
-    before: int  # bytes of memory when everything was seen once
+    before: int  # bytes of memory after the warm-up
     after: int  # bytes of memory at the end
-    lines: int  # that were done
-    full_screens: int  # how often the window began or ceased to fill the screen
+    lines: int  # that were performed
+    full_screens: int  # how often full screen was entered or left
 
 
 def lines(chance: random.Random) -> Iterator[str]:
-    """What a monkey does, without end."""
+    """Yield random lines of a recording, without end."""
     keys = [
         key
         for binding in BINDINGS
         for key in binding.keys
-        if binding.action not in KEPT_AWAY and not any(key.endswith(part) for part in MOUSE)
-        for _ in range(1 if binding.action in SELDOM else 5)
+        if binding.action not in EXCLUDED and not any(key.endswith(part) for part in MOUSE)
+        for _ in range(1 if binding.action in RARE else 5)
     ]
 
     width, height = SIZE
 
     def place() -> str:
-        return f"{chance.randrange(width)},{chance.randrange(height)}"  # beside it is what belongs to others
+        return f"{chance.randrange(width)},{chance.randrange(height)}"  # within the window: outside are those of others
 
-    yield f"move {place()}"  # the wheel turns where the pointer is
+    yield f"move {place()}"  # the wheel acts on the window under the pointer
     while True:
         kind = chance.random()
         button = chance.choice(["", "", " right", " middle"])
@@ -94,13 +94,13 @@ def lines(chance: random.Random) -> Iterator[str]:
 
 
 def memory(process: subprocess.Popen[str]) -> int:
-    """Bytes that the program holds."""
+    """Return the resident memory of the program, in bytes."""
     status = Path(f"/proc/{process.pid}/status").read_text()
     return 1024 * int(next(line.split()[1] for line in status.splitlines() if line.startswith("VmRSS")))
 
 
-class Play:
-    """A monkey's time with a window of its own."""
+class Monkey:
+    """Random input to one window."""
 
     def __init__(self, desktop: Desktop, process: subprocess.Popen[str], path: Path, seed: int) -> None:
         self.desktop = desktop
@@ -109,18 +109,18 @@ class Play:
         self.chance = random.Random(seed)
         self.lines = lines(self.chance)
         self.done = 0
-        self.size = SIZE  # of the window, while it does not fill the screen
-        self.wanted = SIZE
-        self.fills_screen = False
+        self.size = SIZE  # of the window, while it is not full screen
+        self.requested_size = SIZE
+        self.full_screen = False
         self.full_screens = 0
         self.find()
 
     def find(self) -> None:
-        """Another window may be the program's since the screen was filled or left."""
-        self.window = self.desktop.find(f"miniRT - {self.path.name}", SCREEN if self.fills_screen else self.size)
+        """Find the program's window, which may be a new one after full screen was entered or left."""
+        self.window = self.desktop.find(f"miniRT - {self.path.name}", SCREEN if self.full_screen else self.size)
 
     def batch(self) -> None:
-        """Some lines, and now and then another program that writes the file."""
+        """Perform some lines, and now and then write the file as another program would."""
         batch: list[str] = []
         while len(batch) < BATCH and not (batch and batch[-1] in FULL_SCREEN):
             batch.append(next(self.lines))
@@ -134,12 +134,12 @@ class Play:
             raise
         self.done += len(batch)
         if self.chance.random() < FILE_CHANGES:
-            self.write(self.chance.choice(OTHERS))
+            self.write(self.chance.choice(FILE_VERSIONS))
         for written in self.path.parent.glob("scene-*"):
             written.unlink()
 
     def do(self, *batch: str) -> None:
-        """Do lines; wait where the window manager has something to do, or where they say so."""
+        """Perform lines; wait after a resize for the window manager, and where a line says so."""
         ready: list[str] = []
         for line in batch:
             word, _, size = line.partition(" ")
@@ -156,76 +156,76 @@ class Play:
         do(self.desktop, self.window, *ready)
 
     def resize(self, size: tuple[int, int]) -> None:
-        """Resize the window; one that fills the screen is asked to in vain, and again when it has left the screen."""
-        self.wanted = size
-        if self.fills_screen:
+        """Resize the window; in full screen the request has no effect and is repeated when full screen is left."""
+        self.requested_size = size
+        if self.full_screen:
             do(self.desktop, self.window, f"resize {size[0]}x{size[1]}")
         else:
             self.desktop.resize(self.window, *size)
             self.size = size
 
     def await_full_screen(self) -> None:
-        """Wait until the window fills the screen, or does no more, after the key for that."""
-        self.fills_screen = not self.fills_screen
+        """Wait until full screen is entered or left, after its key was pressed."""
+        self.full_screen = not self.full_screen
         self.full_screens += 1
         self.find()
-        self.resize(self.wanted)
+        self.resize(self.requested_size)
         self.do("move 0,0")
 
     def write(self, text: str) -> None:
-        """Be another program."""
+        """Replace the file as another program would."""
         new = self.path.with_name("new")
         new.write_text(text)
         new.replace(self.path)
 
-    def settled(self) -> int:
-        """Bytes of memory with the scene of the file in a window of the first size; then it has the last one again."""
-        wanted = self.wanted
+    def idle_memory(self) -> int:
+        """Return the memory with the first scene at the first size, in bytes; then restore the window's size."""
+        size = self.requested_size
         self.desktop.restore(self.window)
-        if self.fills_screen:
+        if self.full_screen:
             self.do(FULL_SCREEN[0])
             self.await_full_screen()
-        self.write(TEXT)
+        self.write(WITH_CYLINDER)
         self.do("press Ctrl+R", "resize {}x{}".format(*SIZE))
         until(lambda: not compilers(self.process.pid), "the end of the compiler")
         until_at_rest(self.process.pid)
-        held = memory(self.process)
-        self.do("resize {}x{}".format(*wanted), "move 0,0")
-        return held
+        used = memory(self.process)
+        self.do("resize {}x{}".format(*size), "move 0,0")
+        return used
 
 
-def play(desktop: Desktop, share: Callable[[int], float], seed: int, folder: Path) -> Report:
-    """Let the monkey play in a window; AssertionError where the program ends before it is told to.
+def run_monkey(desktop: Desktop, share: Callable[[int], float], seed: int, folder: Path) -> Report:
+    """Send random input to a window; AssertionError if the program ends before its end is requested.
 
-    `share`: of the whole play, how much is over after so many lines.
+    `share(lines)`: the share of the run that is over after so many lines.
     """
     path = folder / "scene.rt"
-    path.write_text(TEXT)
+    path.write_text(WITH_CYLINDER)
     Image.new("RGB", (8, 8), (200, 120, 40)).save(folder / "picture.png")
     command = [sys.executable, "-W", "error", "-m", "minirt", str(path), "--size", f"{SIZE[0]}x{SIZE[1]}"]
     with desktop.program(*command) as process:
-        monkey = Play(desktop, process, path, seed)
+        monkey = Monkey(desktop, process, path, seed)
         before = 0
-        while (over := share(monkey.done)) < 1:
+        while (progress := share(monkey.done)) < 1:
             monkey.batch()
-            if over > SETTLED and not before:
-                before = monkey.settled()
-        after = monkey.settled()
+            if progress > WARM_UP and not before:
+                before = monkey.idle_memory()
+        after = monkey.idle_memory()
         desktop.key(monkey.window, "Escape")
         output, errors = process.communicate(timeout=HANG_LIMIT)
-        load(path)  # whatever was saved is a scene
+        load(path)  # the saved file is a valid scene
         return Report(process.returncode, output, errors, before, after, monkey.done, monkey.full_screens)
 
 
 def share_of_time(seconds: float) -> Callable[[int], float]:
-    """The share of so many seconds that is over, whatever the number of lines."""
+    """Return a function that tells which share of so many seconds is over."""
     start = time.monotonic()
     return lambda _: (time.monotonic() - start) / seconds
 
 
 if __name__ == "__main__":
     minutes, seed = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1
-    with open_desktop() as opened, tempfile.TemporaryDirectory() as room:
-        found = play(opened, share_of_time(60 * minutes), seed, Path(room))
-    print(found)
-    sys.exit(found.status != 0 or bool(found.errors) or found.after > FLAT * found.before)
+    with open_desktop() as opened, tempfile.TemporaryDirectory() as folder:
+        report = run_monkey(opened, share_of_time(60 * minutes), seed, Path(folder))
+    print(report)
+    sys.exit(report.status != 0 or bool(report.errors) or report.after > MAX_GROWTH * report.before)

@@ -1,1 +1,1 @@
-"""The back end on a real screen. Importing any module in here opens the display."""
+"""The back end on a real screen, by pyglet. Importing any of its modules opens the display."""

@@ -1,8 +1,8 @@
-"""Ctrl+C while the main thread sleeps in the platform's event wait.
+"""Handle Ctrl+C promptly while the main thread sleeps in the platform's event wait.
 
-Python handles a signal between two steps of the main thread's program. That thread may sleep in the window system, and
-the signal may even arrive in another thread, so nothing would happen. Here the signal's number, which Python writes
-into a socket at once, wakes a thread that nudges the event loop.
+Python runs signal handlers between two instructions of the main thread. That thread may sleep in the window system,
+and the signal may even arrive in another thread, so the handler would not run. Python writes the signal's number into a
+socket at once (`signal.set_wakeup_fd`); a thread that reads the socket wakes the event loop.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def interruptible(interrupted: Callable[[], None], nudge: Callable[[], None]) -> Iterator[None]:
-    """Ctrl+C calls `interrupted`, in the main thread, instead of raising KeyboardInterrupt anywhere in its program.
+def interruptible(interrupted: Callable[[], None], wake: Callable[[], None]) -> Iterator[None]:
+    """Call `interrupted` in the main thread on Ctrl+C, instead of raising KeyboardInterrupt at any instruction.
 
-    `nudge`, called from another thread, has to make the main thread run. A second Ctrl+C raises as usual, which stops
-    a hook that does not come back. A program's own handler of SIGINT stays, and runs promptly.
+    `wake` is called from another thread and has to make the main thread run. A second Ctrl+C raises as usual, which
+    stops a hook that does not return. A program's own handler of SIGINT stays, and runs promptly.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     reader, writer = socket.socketpair()
     writer.setblocking(False)
-    watcher = threading.Thread(target=_watch, args=(reader, nudge), daemon=True)
+    watcher = threading.Thread(target=_watch, args=(reader, wake), daemon=True)
     old_handler = signal.getsignal(signal.SIGINT)
     old_descriptor = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
     if old_handler is signal.default_int_handler:
@@ -47,20 +47,22 @@ def interruptible(interrupted: Callable[[], None], nudge: Callable[[], None]) ->
 
 
 @contextmanager
-def handlers_kept() -> Iterator[None]:
-    """What happens inside changes no handler of signals for good; pyglet's import does, on macOS."""
+def signal_handlers_preserved() -> Iterator[None]:
+    """Restore the handlers of SIGINT and SIGTERM afterwards: pyglet's import changes them on macOS."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    kept = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield
     finally:
-        for number, handler in kept.items():
+        for number, handler in handlers.items():
             signal.signal(number, handler)
 
 
 def _once(interrupted: Callable[[], None]) -> Callable[[int, FrameType | None], None]:
+    """Make a handler that calls `interrupted` and restores Python's handler, which raises KeyboardInterrupt."""
+
     def handler(_number: int, _frame: FrameType | None) -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
         interrupted()
@@ -68,6 +70,7 @@ def _once(interrupted: Callable[[], None]) -> Callable[[int, FrameType | None], 
     return handler
 
 
-def _watch(reader: socket.socket, nudge: Callable[[], None]) -> None:
-    while reader.recv(1):  # nothing comes when the other end is closed
-        nudge()
+def _watch(reader: socket.socket, wake: Callable[[], None]) -> None:
+    """Call `wake` for each signal until the other end of the socket is closed."""
+    while reader.recv(1):
+        wake()

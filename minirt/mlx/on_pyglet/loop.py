@@ -1,4 +1,4 @@
-"""The back end on pyglet: `PygletBackend`, and the event loop that sleeps when there is nothing to do."""
+"""PygletBackend: windows by pyglet, and an event loop that sleeps while nothing happens."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ from minirt.mlx.on_pyglet.native import NativeWindow
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from minirt.mlx.display import Display
-    from minirt.mlx.handles import Window
+    from minirt.mlx.backend import Loop
+    from minirt.mlx.window import Window
 
 TICK = 1 / 60  # seconds between two turns of a busy loop
 
 
 class PygletBackend(Backend):
-    """Turns are functions of pyglet's clock: every platform calls those, even while a window is being resized."""
+    """A back end on pyglet. Turns are scheduled on pyglet's clock, which every platform runs even during a resize."""
 
     def __init__(self) -> None:
         self._natives: dict[Window, NativeWindow] = {}
-        self._requested = False  # a turn will come
+        self._requested = False  # a turn is scheduled
         self._ticking = False
-        self._before_turn: list[Callable[[], None]] = []  # what may not happen inside a handler of pyglet
+        self._before_turn: list[Callable[[], None]] = []  # actions that are not allowed inside a pyglet event handler
 
-    def open(self, display: Display) -> None:
+    def open(self, display: Loop) -> None:
         self._display = display
         self._screen = pyglet.display.get_display().get_default_screen()
 
     def close(self) -> None:
-        """Nothing is left: pyglet keeps its connection to the screen for as long as the program runs."""
+        """Do nothing: pyglet keeps its connection to the screen as long as the program runs."""
 
     def open_window(self, window: Window) -> None:
         try:
-            self._natives[window] = NativeWindow(window, self._request_turn)
-        except Exception as error:  # whatever pyglet says here, there is no window
+            self._natives[window] = NativeWindow(window, self.time, self._request_turn)
+        except Exception as error:  # any error of pyglet means that there is no window
             raise MlxError(f"no window with OpenGL 3.3 can be opened ({error}); -o FILE renders without one") from error
 
     def close_window(self, window: Window) -> None:
@@ -55,7 +55,7 @@ class PygletBackend(Backend):
 
     def run(self) -> None:
         self._request_turn()
-        # On some Macs pyglet has another loop, which cannot sleep: there it ticks.
+        # On some Macs pyglet uses another loop, which cannot sleep: it ticks.
         interval = None if type(pyglet.app.event_loop) is EventLoop else TICK
         with interruptible(lambda: self._display.fail(KeyboardInterrupt()), self.wake):
             pyglet.app.event_loop.run(interval)
@@ -65,7 +65,7 @@ class PygletBackend(Backend):
         pyglet.app.platform_event_loop.post_event(self, "wake")
 
     def dispatch_event(self, _name: str) -> None:
-        """How pyglet hands a posted event to the main thread."""
+        """Request a turn: pyglet calls this in the main thread for a posted event."""
         self._request_turn()
 
     def time(self) -> float:
@@ -110,8 +110,9 @@ class PygletBackend(Backend):
         self._take_turn(tick=True)
 
     def _take_turn(self, *, tick: bool) -> None:
+        """Run the deferred actions, take a turn of the display, and end pyglet's loop when it is over."""
         if not self._display.running:
-            return  # asked for in a loop that is over
+            return  # scheduled in a loop that has ended
         actions, self._before_turn = self._before_turn, []
         for action in actions:
             action()
@@ -122,6 +123,7 @@ class PygletBackend(Backend):
             pyglet.app.event_loop.exit()
 
     def _tick_while(self, busy: bool) -> None:
+        """Start or stop the ticks."""
         if busy and not self._ticking:
             pyglet.clock.schedule_interval(self._tick, TICK)
         elif self._ticking and not busy:

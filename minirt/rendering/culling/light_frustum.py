@@ -1,6 +1,8 @@
-"""The cells of a lamp that sees a crowd of shapes from outside: only ahead, where those are, and so much the finer.
+"""Light buffer over a frustum: for a light outside of a dense cluster of shapes, cells only towards the cluster, and so
+much the finer.
 
-Shapes beside the crowd are left out of it where they are few: they are in the list of all directions elsewhere.
+All directions outside of the frustum share one more cell. A few shapes outside of the cluster may therefore be left out
+of it.
 """
 
 from __future__ import annotations
@@ -13,50 +15,54 @@ from minirt.kernel.culling.binning import Grid
 from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 
-CROWD = 1000  # shapes at least: with fewer a cube takes less time
-BESIDE = 8  # shapes at most
-SPREAD = 0.5  # of the angle that cells have on average: a cell's list holds for directions so close to one in it
-WIDEST = 1.0  # slope at the edges of the square: where more would be needed there is a cube
-FINEST = 2.0**-18  # slope that a cell has at least: float32 could not tell closer directions apart
-BORDER = 4  # cells on each side for what of a shape at the edge of the crowd rounding and `SPREAD` may take out of it
+LEAST_SHAPES = 1000  # in a cluster: with fewer a cube takes less time
+MOST_OUTSIDE = 8  # shapes left out of the cluster
+SPREAD = 0.5  # of the mean angle of a cell: the list of a cell holds for all directions so close to one in it
+WIDEST_SLOPE = 1.0  # at the edges of the frustum: where more would be needed a cube is used
+LEAST_SLOPE = 2.0**-18  # that a cell spans: float32 could not tell closer directions apart
+BORDER = 4  # cells on each side, so that rounding and `SPREAD` leave no shape at the edge of the cluster outside
 
 
 class Cluster(NamedTuple):
-    """A ball around most of the shapes."""
+    """A ball that encloses all but a few shapes."""
 
-    middle: np.ndarray
+    centre: np.ndarray
     radius: float
 
 
-def cluster(tables: ShapeArrays) -> Cluster | None:
-    """The crowd of a scene; None where there is none."""
-    boxes = np.delete(tables.boxes, tables.flat, axis=0) if len(tables.flat) else tables.boxes
-    if len(boxes) < CROWD:
+def dense_cluster(shape_arrays: ShapeArrays) -> Cluster | None:
+    """Find the cluster of a scene; None where there are too few shapes for one."""
+    boxes = shape_arrays.boxes
+    if len(shape_arrays.plane_indices):
+        boxes = np.delete(boxes, shape_arrays.plane_indices, axis=0)
+    if len(boxes) < LEAST_SHAPES:
         return None
-    middle = boxes[:, :3].mean(axis=0)
-    away = boxes[:, :3] - middle
-    reach = np.sqrt(np.einsum("ij,ij->i", away, away)) + np.sqrt(3) * boxes[:, 3]
-    last = len(reach) - 1 - BESIDE
-    return Cluster(middle, float(np.partition(reach, last)[last]))
+    centre = boxes[:, :3].mean(axis=0)
+    offsets = boxes[:, :3] - centre
+    reach = np.sqrt(np.einsum("ij,ij->i", offsets, offsets)) + np.sqrt(3) * boxes[:, 3]
+    last = len(reach) - 1 - MOST_OUTSIDE
+    return Cluster(centre, float(np.partition(reach, last)[last]))
 
 
-def square_ahead(found: Cluster | None, lamp: np.ndarray, grid: int) -> Grid | None:
-    """The cells ahead of a lamp; None where a cube with `grid` cells along an edge should be around it."""
-    if found is None:
+def frustum_grid(cluster: Cluster | None, light: np.ndarray, cells: int) -> Grid | None:
+    """The frustum from a light to the cluster as a grid; None where the light needs a cube, with so many `cells` along
+    an edge."""
+    if cluster is None:
         return None
-    way = found.middle - lamp
-    distance = float(np.linalg.norm(way))
-    cells = FRUSTUM_FACTOR * grid
-    if not found.radius < distance / np.sqrt(1 + WIDEST**-2):
+    to_centre = cluster.centre - light
+    distance = float(np.linalg.norm(to_centre))
+    edge_cells = FRUSTUM_FACTOR * cells
+    if not cluster.radius < distance / np.sqrt(1 + WIDEST_SLOPE**-2):
         return None
-    slope = found.radius / np.sqrt(distance**2 - found.radius**2)
-    size = max(slope / (cells / 2 - BORDER), FINEST)
-    edge = size * (cells / 2 + 2)
-    forward = way / distance
+    slope = cluster.radius / np.sqrt(distance**2 - cluster.radius**2)
+    size = max(slope / (edge_cells / 2 - BORDER), LEAST_SLOPE)
+    edge = size * (edge_cells / 2 + 2)
+    forward = to_centre / distance
     across = np.cross(forward, np.eye(3)[np.abs(forward).argmin()])
     across /= np.linalg.norm(across)
     frames = np.stack([across, np.cross(forward, across), forward])[None]
     # An angle changes a slope by at most its product with both roots, where both slopes are those at the edge.
     margin = 1.02 * SPREAD * np.sqrt(1 + edge**2) * np.sqrt(1 + 2 * edge**2)
-    half = cells / 2
-    return Grid(frames, cells, cells, 1 / size, half, 1 / size, half, margin, 6 * grid * grid, cells * cells)
+    half = edge_cells / 2
+    cube_cells, square_cells = 6 * cells * cells, edge_cells * edge_cells
+    return Grid(frames, edge_cells, edge_cells, 1 / size, half, 1 / size, half, margin, cube_cells, square_cells)

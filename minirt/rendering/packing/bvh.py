@@ -1,4 +1,4 @@
-"""The shapes of a scene in the tree of the kernel."""
+"""Builds the BVH of a scene: bounding boxes, SAH (Wald 2007), wide nodes, and blocks of shapes as its leaves."""
 
 from __future__ import annotations
 
@@ -13,82 +13,85 @@ from minirt.rendering.packing.primitives import primitives_of
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Kind
 
-LINE = 64  # bytes of a line of the cache
+CACHE_LINE = 64  # bytes
 EMPTY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 def block_type(kind: Kind) -> np.dtype[Any]:
-    """The dtype of the blocks of a kind: a row for `WIDTH` shapes at once."""
+    """The dtype of the blocks of a kind: the row of a shape, with `WIDTH` shapes side by side."""
     fields = row_type(kind)
     return np.dtype([(name, np.float64, (*fields[name].shape, WIDTH)) for name in fields.names or ()])
 
 
-def boxes_of(tables: ShapeArrays) -> tuple[np.ndarray, np.ndarray]:
-    """The boxes of the shapes as `BinaryTree` has them, and the indices of the shapes that have no end."""
-    bounds = [shape.bounds() for shape in tables.shapes]
-    endless = tables.start[np.array([index for index, box in enumerate(bounds) if not box], np.int64)]
-    bounded = np.delete(np.arange(len(tables.slots)), endless)
-    corners = np.repeat([box or EMPTY for box in bounds], np.diff(tables.start), axis=0)
-    for index, shape in enumerate(tables.shapes):
+def primitive_boxes(shape_arrays: ShapeArrays) -> tuple[np.ndarray, np.ndarray]:
+    """The bounding boxes of the primitives as `BinaryTree` has them, and the indices of those that are infinite."""
+    bounds = [shape.bounds() for shape in shape_arrays.shapes]
+    first = shape_arrays.first_primitive
+    infinite = first[np.array([index for index, box in enumerate(bounds) if not box], np.int64)]
+    bounded = np.delete(np.arange(len(shape_arrays.slots)), infinite)
+    corners = np.repeat([box or EMPTY for box in bounds], np.diff(first), axis=0)
+    for index, shape in enumerate(shape_arrays.shapes):
         if shape.parts > 1:
-            corners[tables.start[index] : tables.start[index + 1]] = primitives_of([shape]).boxes
+            corners[first[index] : first[index + 1]] = primitives_of([shape]).boxes
     boxes = np.empty((len(bounded), 8))
     boxes[:, :3], boxes[:, 3:6] = -corners[bounded, 0], corners[bounded, 1]
-    boxes[:, INDEX], boxes[:, GROUP] = bounded, tables.slots[bounded, 0]
-    return boxes, endless
+    boxes[:, INDEX], boxes[:, GROUP] = bounded, shape_arrays.slots[bounded, 0]
+    return boxes, infinite
 
 
-def bvh_of(tables: ShapeArrays, kernel: Any) -> Tree:
-    """The tree over the shapes of some tables, built by the functions of `kernel`, compiled or not."""
-    boxes, endless = boxes_of(tables)
+def build_bvh(shape_arrays: ShapeArrays, kernel: Any) -> Tree:
+    """Build the BVH over the shapes with the functions of `kernel`, compiled or interpreted."""
+    boxes, infinite = primitive_boxes(shape_arrays)
     nodes, leaves = wide_nodes(boxes, kernel)
-    # Each kind has its blocks in the order of the leaves.
+    # The blocks of each kind are in the order of the leaves.
     kinds = boxes[leaves[:, 0], GROUP]
     blocks = np.zeros(len(leaves), np.int64)
-    extents = np.ascontiguousarray(tables.colours_and_extents[:, 3])
+    extents = np.ascontiguousarray(shape_arrays.colours_and_extents[:, 3])
     groups = []
-    for group, rows in enumerate(tables.rows):
-        mine = np.flatnonzero(kinds == group)
-        blocks[mine] = np.arange(len(mine))
-        start, stop = leaves[mine, :2, None].transpose(1, 0, 2)
-        owners = boxes[np.minimum(start + np.arange(WIDTH), stop - 1), INDEX].astype(np.int64)
-        table = side_by_side(rows, tables.slots[owners, 1])
-        labels = np.stack([owners, extents[owners]], axis=-1)
-        groups.append(Group(rows, table, labels, endless[tables.slots[endless, 0] == group]))
+    for group, rows in enumerate(shape_arrays.rows):
+        of_group = np.flatnonzero(kinds == group)
+        blocks[of_group] = np.arange(len(of_group))
+        start, stop = leaves[of_group, :2, None].transpose(1, 0, 2)
+        members = boxes[np.minimum(start + np.arange(WIDTH), stop - 1), INDEX].astype(np.int64)
+        group_blocks = as_blocks(rows, shape_arrays.slots[members, 1])
+        labels = np.stack([members, extents[members]], axis=-1)
+        groups.append(Group(rows, group_blocks, labels, infinite[shape_arrays.slots[infinite, 0] == group]))
     names = nodes.reshape(-1, 7, WIDTH)[:, 6]
-    leaf = names < 0
-    which = (-1 - names[leaf]).astype(np.int64)
-    names[leaf] = -1 - (blocks[which] * len(groups) + kinds[which])
+    is_leaf = names < 0
+    leaf = (-1 - names[is_leaf]).astype(np.int64)
+    names[is_leaf] = -1 - (blocks[leaf] * len(groups) + kinds[leaf])
     names[...] = names.astype(np.int32).view(np.uint32).astype(np.uint64).view(np.float64)
-    return Tree(nodes, extents, tables.slots, tuple(groups))
+    return Tree(nodes, extents, shape_arrays.slots, tuple(groups))
 
 
 def wide_nodes(boxes: np.ndarray, kernel: Any) -> tuple[np.ndarray, np.ndarray]:
-    """The nodes of the tree over boxes, which are sorted by it, and for each leaf its first box and that behind its
-    last."""
+    """Build a binary tree over boxes, sorting them, and collapse it into wide nodes.
+
+    Returns the nodes, and for each leaf its first box and the box behind its last.
+    """
     most = max(1, 2 * len(boxes) - 1)
-    whole, reaches = np.empty((most, 3), np.int64), np.empty((most, 6))
-    todo = np.empty((most + 1, 2), np.int64)
-    tree = BinaryTree(boxes, reaches, whole, np.empty((BINS + 1, 7)), np.empty(BINS), np.empty(6), todo)
+    links, bounds = np.empty((most, 3), np.int64), np.empty((most, 6))
+    stack = np.empty((most + 1, 2), np.int64)
+    tree = BinaryTree(boxes, bounds, links, np.empty((BINS + 1, 7)), np.empty(BINS), np.empty(6), stack)
     count = kernel.divide(tree)
-    tree = tree._replace(bounds=reaches[:count], links=whole[:count])
+    tree = tree._replace(bounds=bounds[:count], links=links[:count])
     choices = np.empty((count, WIDTH + 1), np.int64)
     kernel.weigh(tree, np.empty((count, WIDTH + 1)), choices)
     nodes, leaves = aligned(NODE * (count // 2 + 1), np.dtype(np.float64)), np.empty(count, np.int64)
-    used, named = kernel.collapse(tree, choices, nodes, leaves, todo, np.empty((WIDTH, 2), np.int64))
-    return nodes[: used * NODE], whole[leaves[:named]]
+    used, named = kernel.collapse(tree, choices, nodes, leaves, stack, np.empty((WIDTH, 2), np.int64))
+    return nodes[: used * NODE], links[leaves[:named]]
 
 
-def side_by_side(rows: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """The rows at some places (n, WIDTH) as n blocks."""
-    blocks = aligned(len(places), block_type(kind_of(rows.dtype.names)))
+def as_blocks(rows: np.ndarray, indices: np.ndarray) -> np.ndarray:
+    """Gather the rows with some indices (n, WIDTH) into n blocks."""
+    blocks = aligned(len(indices), block_type(kind_of(rows.dtype.names)))
     for name in rows.dtype.names or ():
-        blocks[name] = np.moveaxis(rows[name][places], 1, -1)
+        blocks[name] = np.moveaxis(rows[name][indices], 1, -1)
     return blocks
 
 
 def aligned(length: int, dtype: np.dtype[Any]) -> np.ndarray:
-    """An array that begins with a line of the cache, so that no load of lanes needs two."""
-    memory = np.empty(length * dtype.itemsize + LINE, np.uint8)
-    start = -memory.ctypes.data % LINE
+    """Allocate an array aligned to a cache line, so that no load into a SIMD register needs two lines."""
+    memory = np.empty(length * dtype.itemsize + CACHE_LINE, np.uint8)
+    start = -memory.ctypes.data % CACHE_LINE
     return memory[start : start + length * dtype.itemsize].view(dtype)

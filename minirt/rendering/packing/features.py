@@ -1,4 +1,4 @@
-"""What a scene asks of the kernel: kinds of shapes, and features that are compiled only where they are used."""
+"""Features of a scene: the shapes, materials and lights that its kernel is compiled for."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from minirt.element import Element
 from minirt.scene import Background, Lamp, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes import Shape
 
-# In words, each with the fields of `minirt.kernel.scene_arrays` or `minirt.kernel.shading.texturing` that it stands for.
+# The names of features in words, by the field of `minirt.kernel.scene_arrays` or `minirt.kernel.shading.texturing`.
 FEATURES = {
     "specular": "highlights",
     "reflective": "mirrors and glass",
@@ -22,33 +22,33 @@ FEATURES = {
     "background": "a coloured background",
     "environment": "a picture as background",
 }
-DEPTH = 8  # how often light is mirrored or refracted on its way, at most
+DEPTH = 8  # reflections and refractions of a ray, at most
 ATTRIBUTES = attrgetter("specular", "mirror", "glass", "checker", "texture", "bump", "normal_map")
 PLAIN = (None,) * 7
 
 
 def features(scene: Scene) -> frozenset[Hashable]:
-    """The kinds of shapes in the scene, "parallel" where a lamp is, and the keys of `FEATURES` that it uses."""
+    """The kinds of shapes in a scene, "parallel" if it has parallel light, and the keys of `FEATURES` that it uses."""
     return frozenset().union(*(page.cached(features_of_items) for page in scene.pages))
 
 
 def primitive_count(scene: Scene) -> int:
-    """How many things the kernel knows: shapes, of meshes the triangles."""
+    """Count the primitives of a scene: its shapes, and for each mesh its triangles."""
     return sum(page.cached(primitive_count_of_items) for page in scene.pages)
 
 
 def primitive_count_of_items(items: Iterable[Element | str]) -> int:
-    """Those of some elements."""
+    """Count the primitives of some elements."""
     return sum(item.parts for item in items if isinstance(item, Shape))
 
 
 def features_of_items(items: Iterable[Element | str]) -> frozenset[Hashable]:
-    """Those of some elements."""
+    """The features that some elements use."""
     return frozenset().union(*map(features_of, items))
 
 
 def features_of(item: Element | str) -> Iterable[Hashable]:
-    """Those of an element."""
+    """The features that an element uses, with repetitions."""
     if isinstance(item, Shape):
         kind: Any = type(item)
         return (kind,) if ATTRIBUTES(item) == PLAIN else (kind, *material_features(item))
@@ -63,7 +63,7 @@ def features_of(item: Element | str) -> Iterable[Hashable]:
 
 
 def material_features(shape: Shape) -> Iterable[str]:
-    """The features that a shape uses."""
+    """The features that the materials of a shape use."""
     if shape.specular and shape.specular.share:
         yield "specular"
     if shape.mirror or (shape.glass and shape.glass.share):

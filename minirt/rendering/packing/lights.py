@@ -1,4 +1,4 @@
-"""The lamps of a scene as the tables of the kernel."""
+"""Packs the lights of a scene into the arrays of the kernel."""
 
 from __future__ import annotations
 
@@ -8,48 +8,48 @@ import numpy as np
 
 from minirt.scene import Ambient, Lamp, Light, ParallelLight, Scene, SpotLight
 
-EVERYWHERE = (0.0, 0.0, 0.0, -2.0, 1.0)  # axis, end and steepness of a lamp that shines into all directions
-STEEPEST = 1e30  # the rim of a spot that has none
+ALL_DIRECTIONS = (0.0, 0.0, 0.0, -2.0, 1.0)  # axis, end and steepness of a light that shines in all directions
+STEEPEST = 1e30  # the steepness of a spot whose rim has no width
 
 
-def light_of(source: Ambient | Lamp) -> np.ndarray:
+def intensity(source: Ambient | Lamp) -> np.ndarray:
     """The light of a source at full incidence: red, green, blue."""
     return np.divide(source.colour, 255) * source.brightness
 
 
-def shining(scene: Scene) -> list[Lamp]:
-    """The lamps that give any light."""
-    return [lamp for lamp in scene.lights if lamp.brightness and any(lamp.colour)]
+def emitting_lights(scene: Scene) -> list[Lamp]:
+    """The lights of a scene that are neither off nor black."""
+    return [light for light in scene.lights if light.brightness and any(light.colour)]
 
 
-def light_numbers(lamps: list[Lamp]) -> np.ndarray:
-    """Place and light of each, (m, 6)."""
-    numbers = [(*place_of(lamp), *light_of(lamp)) for lamp in lamps]
-    return np.array(numbers, np.float64).reshape(len(lamps), 6)
+def positions_and_intensities(lights: list[Lamp]) -> np.ndarray:
+    """A row for each of m lights, (m, 6): position and intensity."""
+    rows = [(*light_position(light), *intensity(light)) for light in lights]
+    return np.array(rows, np.float64).reshape(len(lights), 6)
 
 
-def place_of(lamp: Lamp) -> np.ndarray:
-    """Where a lamp is; parallel light comes from no place, and is given the origin."""
-    return np.array(lamp.position if isinstance(lamp, Light | SpotLight) else (0.0, 0.0, 0.0))
+def light_position(light: Lamp) -> np.ndarray:
+    """The position of a light; the origin for parallel light, which has none."""
+    return np.array(light.position if isinstance(light, Light | SpotLight) else (0.0, 0.0, 0.0))
 
 
-def spot_numbers(lamps: list[Lamp]) -> np.ndarray:
-    """How the light of each goes, (m, 7), see `minirt.kernel.shading.lights`."""
-    return np.array([(*cone_of(lamp), *reach_of(lamp)) for lamp in lamps], np.float64).reshape(len(lamps), 7)
+def spot_parameters(lights: list[Lamp]) -> np.ndarray:
+    """A row for each of m lights, (m, 7): cone and attenuation, see `minirt.kernel.shading.lights`."""
+    return np.array([(*spot_cone(light), *attenuation(light)) for light in lights], np.float64).reshape(len(lights), 7)
 
 
-def cone_of(lamp: Lamp) -> tuple[float, ...]:
-    """Axis, cosine of the end, and one over what the cosine is greater by where all of the light is."""
-    if isinstance(lamp, ParallelLight):
-        return (*lamp.direction, -2.0, 1.0)
-    if isinstance(lamp, SpotLight):
-        half = radians(lamp.angle) / 2
-        end, full = cos(half), cos(half * (1 - lamp.rim))
-        return (*lamp.direction, end, 1 / (full - end) if full - end > 1 / STEEPEST else STEEPEST)
-    return EVERYWHERE
+def spot_cone(light: Lamp) -> tuple[float, ...]:
+    """Axis, cosine at the edge of the cone, and steepness: 1 / (cosine at full intensity - cosine at the edge)."""
+    if isinstance(light, ParallelLight):
+        return (*light.direction, -2.0, 1.0)
+    if isinstance(light, SpotLight):
+        half = radians(light.angle) / 2
+        end, full = cos(half), cos(half * (1 - light.rim))
+        return (*light.direction, end, 1 / (full - end) if full - end > 1 / STEEPEST else STEEPEST)
+    return ALL_DIRECTIONS
 
 
-def reach_of(lamp: Lamp) -> tuple[float, float]:
-    """One over the distance at which its light is gone, and whether it is parallel."""
-    fade = lamp.fade if isinstance(lamp, Light | SpotLight) else None
-    return 1 / fade if fade else 0.0, float(isinstance(lamp, ParallelLight))
+def attenuation(light: Lamp) -> tuple[float, float]:
+    """1 / the distance at which a light has faded out, 0 if it never does; and 1 if it is parallel, else 0."""
+    fade = light.fade if isinstance(light, Light | SpotLight) else None
+    return 1 / fade if fade else 0.0, float(isinstance(light, ParallelLight))

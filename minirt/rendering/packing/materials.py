@@ -1,4 +1,4 @@
-"""What the surfaces of a scene are made of, as the tables of the kernel; those that no shape needs are None."""
+"""Packs materials, textures and environment maps into the arrays of the kernel; None where no shape needs one."""
 
 from __future__ import annotations
 
@@ -15,109 +15,111 @@ from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
-Worn = list[tuple[int, Shape]]  # the shapes that have attributes, with their numbers
-PAINTED = {"checks", "textures", "bumps", "normals"}
-WORN = {"specular", "reflective", *PAINTED}
+NumberedShapes = list[tuple[int, Shape]]  # shapes that have materials, with their indices
+MAP_FEATURES = {"checks", "textures", "bumps", "normals"}
+MATERIAL_FEATURES = {"specular", "reflective", *MAP_FEATURES}
 Reader = Callable[[Path], np.ndarray]
 
 
 class Materials(NamedTuple):
-    """Fields of `minirt.kernel.scene_arrays.SceneArrays`."""
+    """The fields of `minirt.kernel.scene_arrays.SceneArrays` about materials."""
 
     specular: Any
     reflective: Any
     surface_maps: Any
 
 
-def materials_of(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
-    """The tables of what the kernel knows, of which `owner` (n,) tells the shape, for a scene that uses those features
-    of `minirt.rendering.packing.features`."""
-    if not used & WORN:  # not even a look at each of a million shapes
+def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
+    """Pack the materials of n primitives for the features that a scene uses; `owner` (n,) has the shape of each."""
+    if not used & MATERIAL_FEATURES:  # without a look at each of a million shapes
         return Materials(None, None, None)
-    worn = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
+    with_materials = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     count = len(scene.shapes)
     return Materials(
-        specular_of(worn, count)[owner] if "specular" in used else None,
-        reflective_of(worn, count)[owner] if "reflective" in used else None,
-        surface_maps_of(scene, worn, owner, used) if used & PAINTED else None,
+        pack_specular(with_materials, count)[owner] if "specular" in used else None,
+        pack_reflective(with_materials, count)[owner] if "reflective" in used else None,
+        pack_surface_maps(scene, with_materials, owner, used) if used & MAP_FEATURES else None,
     )
 
 
-def specular_of(worn: Worn, count: int) -> np.ndarray:
-    """See `minirt.kernel.shading.specular`."""
-    gloss = np.zeros((count, 3))
-    for i, shape in worn:
+def pack_specular(with_materials: NumberedShapes, count: int) -> np.ndarray:
+    """Specular share, exponent and model of each of `count` shapes: see `minirt.kernel.shading.specular`."""
+    rows = np.zeros((count, 3))
+    for i, shape in with_materials:
         if shape.specular:
-            gloss[i] = shape.specular.share, shape.specular.exponent, shape.specular.blinn
-    return gloss
+            rows[i] = shape.specular.share, shape.specular.exponent, shape.specular.blinn
+    return rows
 
 
-def reflective_of(worn: Worn, count: int) -> np.ndarray:
-    """See `minirt.kernel.shading.whitted`. Shares that are more than all together are made smaller alike."""
-    bounces = np.tile([0.0, 0.0, 1.0], (count, 1))
-    for i, shape in worn:
-        through, ior = (shape.glass.share, shape.glass.ior) if shape.glass else (0.0, 1.0)
-        back = shape.mirror or 0.0
-        whole = max(1.0, back + through)
-        bounces[i] = back / whole, through / whole, ior
-    return bounces
+def pack_reflective(with_materials: NumberedShapes, count: int) -> np.ndarray:
+    """Share of reflection, share of refraction and refractive index of each of `count` shapes: see
+    `minirt.kernel.shading.whitted`. Shares that exceed 1 together are scaled down to 1."""
+    rows = np.tile([0.0, 0.0, 1.0], (count, 1))
+    for i, shape in with_materials:
+        refracted, ior = (shape.glass.share, shape.glass.ior) if shape.glass else (0.0, 1.0)
+        reflected = shape.mirror or 0.0
+        total = max(1.0, reflected + refracted)
+        rows[i] = reflected / total, refracted / total, ior
+    return rows
 
 
-def surface_maps_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hashable]) -> SurfaceMaps:
-    """See `minirt.kernel.shading.texturing`."""
-    count, album = len(scene.shapes), Album(scene)
+def pack_surface_maps(
+    scene: Scene, with_materials: NumberedShapes, owner: np.ndarray, used: Set[Hashable]
+) -> SurfaceMaps:
+    """Checkers, textures, bump maps and normal maps: see `minirt.kernel.shading.texturing`."""
+    count, pool = len(scene.shapes), TexturePool(scene)
     checks = np.zeros((count, 4))
-    textures, normals, mark = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count, np.int64)
+    textures, normals, is_mapped = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count, np.int64)
     bumps = np.zeros((count, 2))
-    for i, shape in worn:
+    for i, shape in with_materials:
         if shape.checker:
             checks[i] = shape.checker.size, *np.divide(shape.checker.colour, 255)
         if shape.texture:
-            textures[i] = album.number(shape.texture, picture_cache.picture)
+            textures[i] = pool.number(shape.texture, picture_cache.picture)
         if shape.bump and shape.bump.strength:
-            bumps[i] = album.number(shape.bump.file, picture_cache.heights), shape.bump.strength
+            bumps[i] = pool.number(shape.bump.file, picture_cache.heights), shape.bump.strength
         if shape.normal_map:
-            normals[i] = album.number(shape.normal_map, picture_cache.picture)
-        mark[i] = bool(shape.checker or shape.texture or bumps[i, 0] or shape.normal_map)
+            normals[i] = pool.number(shape.normal_map, picture_cache.picture)
+        is_mapped[i] = bool(shape.checker or shape.texture or bumps[i, 0] or shape.normal_map)
     return SurfaceMaps(
         checks=checks[owner] if "checks" in used else None,
         textures=textures[owner] if "textures" in used else None,
         bumps=bumps[owner] if "bumps" in used else None,
         normals=normals[owner] if "normals" in used else None,
-        used=mark[owner],
-        **album.bound(),
+        used=is_mapped[owner],
+        **pool.arrays(),
     )
 
 
-def environment_of(scene: Scene, file: str) -> Environment:
-    """The picture of a background."""
-    album = Album(scene)
-    album.number(file, picture_cache.picture)
-    return Environment(**album.bound())
+def pack_environment(scene: Scene, file: str) -> Environment:
+    """Pack the environment map of a background."""
+    pool = TexturePool(scene)
+    pool.number(file, picture_cache.picture)
+    return Environment(**pool.arrays())
 
 
-class Album:
-    """The pictures that a scene names, each once."""
+class TexturePool:
+    """The images that a scene names, each loaded once."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self.numbers: dict[tuple[Reader, str], int] = {}
-        self.pages: list[np.ndarray] = []
+        self.images: list[np.ndarray] = []
 
     def number(self, file: str, read: Reader) -> int:
-        """The number of a picture, from 1 on. FileError where there is none that can be read."""
+        """Load an image and return its number, from 1 on. FileError where it cannot be read."""
         if (read, file) not in self.numbers:
-            self.pages.append(read(self.scene.beside(file)))
-            self.numbers[read, file] = len(self.pages)
+            self.images.append(read(self.scene.beside(file)))
+            self.numbers[read, file] = len(self.images)
         return self.numbers[read, file]
 
-    def bound(self) -> dict[str, np.ndarray]:
-        """`texels` and `pictures` of `SurfaceMaps`."""
-        ends = np.cumsum([page.size for page in self.pages])
-        texels = [page.ravel() * np.float32(1 / 255 if page.dtype == np.uint8 else 1) for page in self.pages]
+    def arrays(self) -> dict[str, np.ndarray]:
+        """Join the images into the arrays `texels` and `pictures` of `SurfaceMaps`."""
+        ends = np.cumsum([image.size for image in self.images])
+        texels = [image.ravel() * np.float32(1 / 255 if image.dtype == np.uint8 else 1) for image in self.images]
         rows = [
-            (end - page.size, page.shape[1], page.shape[0], page.size // (page.shape[0] * page.shape[1]))
-            for end, page in zip(ends, self.pages, strict=True)
+            (end - image.size, image.shape[1], image.shape[0], image.size // (image.shape[0] * image.shape[1]))
+            for end, image in zip(ends, self.images, strict=True)
         ]
         return {
             "texels": np.concatenate(texels) if texels else np.zeros(0, np.float32),

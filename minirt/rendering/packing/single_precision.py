@@ -1,7 +1,7 @@
-"""A packed scene in float32: less precise, and twice as many rays at once.
+"""Converts a packed scene to float32: less precise, and twice as many rays per SIMD register.
 
-Everything is moved so that the eye is the origin before it is rounded, so what is precise is what is near the eye,
-wherever in the world that is. What leaves shapes out is rounded to the safe side.
+Everything is moved so that the eye is the origin before it is rounded. So whatever is near the eye is precise, wherever
+in the world that is. Bounds used for culling are rounded to the safe side.
 """
 
 from __future__ import annotations
@@ -15,61 +15,66 @@ from minirt.kernel.scene_arrays import Group, SceneArrays
 MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
 
 
-def in_single(traced: SceneArrays, boxes: np.ndarray) -> SceneArrays:
-    """The scene in float32, the eye at the origin; `boxes` as in `minirt.rendering.packing.shape_arrays`."""
-    eye = traced.camera[:3]
-    looks = traced.colours_and_extents.copy()
-    looks[:, 3] = np.abs(boxes[:, :3] - eye).max(axis=1) + boxes[:, 3]
-    here = np.concatenate([eye, np.zeros(3)])
+def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
+    """Return a scene in float32, the eye at the origin; `boxes` as in `minirt.rendering.packing.shape_arrays`."""
+    eye = arrays.camera[:3]
+    colours_and_extents = arrays.colours_and_extents.copy()
+    colours_and_extents[:, 3] = np.abs(boxes[:, :3] - eye).max(axis=1) + boxes[:, 3]
+    eye_and_no_light = np.concatenate([eye, np.zeros(3)])
     return SceneArrays(
-        camera=rounded(np.concatenate([np.zeros(3), traced.camera[3:]])),
-        ambient=rounded(traced.ambient),
-        lights=rounded(traced.lights - here),
-        colours_and_extents=rounded(looks),
-        slots=traced.slots,
-        tile_shapes=traced.tile_shapes,
-        cones=wider(traced.cones),
-        light_buffer_cells=traced.light_buffer_cells,
-        light_buffers=narrower(traced.light_buffers),
-        light_shapes=traced.light_shapes,
-        light_cones=wider(traced.light_cones),
-        groups=tuple(Group(moved(group.rows, eye), group.tile_starts, group.light_starts) for group in traced.groups),
-        spots=known(traced.spots),
-        specular=known(traced.specular),
-        surface_maps=traced.surface_maps and traced.surface_maps._replace(checks=known(traced.surface_maps.checks)),
-        background=known(traced.background),
+        camera=as_single(np.concatenate([np.zeros(3), arrays.camera[3:]])),
+        ambient=as_single(arrays.ambient),
+        lights=as_single(arrays.lights - eye_and_no_light),
+        colours_and_extents=as_single(colours_and_extents),
+        slots=arrays.slots,
+        tile_shapes=arrays.tile_shapes,
+        cones=widened_cones(arrays.cones),
+        light_buffer_cells=arrays.light_buffer_cells,
+        light_buffers=narrowed_light_buffers(arrays.light_buffers),
+        light_shapes=arrays.light_shapes,
+        light_cones=widened_cones(arrays.light_cones),
+        groups=tuple(
+            Group(rows_relative_to(group.rows, eye), group.tile_starts, group.light_starts) for group in arrays.groups
+        ),
+        spots=optional_single(arrays.spots),
+        specular=optional_single(arrays.specular),
+        surface_maps=arrays.surface_maps
+        and arrays.surface_maps._replace(checks=optional_single(arrays.surface_maps.checks)),
+        background=optional_single(arrays.background),
     )
 
 
-def known(numbers: np.ndarray | None) -> np.ndarray | None:
-    """In float32, where there are such."""
-    return None if numbers is None else rounded(numbers)
+def optional_single(numbers: np.ndarray | None) -> np.ndarray | None:
+    """Round an optional array to float32; None stays None."""
+    return None if numbers is None else as_single(numbers)
 
 
-def rounded(numbers: np.ndarray) -> np.ndarray:
-    """In float32, to nearest."""
+def as_single(numbers: np.ndarray) -> np.ndarray:
+    """Round to the nearest float32."""
     with np.errstate(over="ignore"):
         return numbers.astype(np.float32)
 
 
-def wider(views: np.ndarray) -> np.ndarray:
-    """Views in float32: cones that have in them what was in the cones, also when a scalar product in float32 decides
-    that, and distances that are not greater."""
-    views = rounded(views)
-    views[..., 3] -= MARGIN
-    views[..., 4] = np.nextafter(views[..., 4], np.float32(-np.inf))
-    return views
+def widened_cones(cones: np.ndarray) -> np.ndarray:
+    """Round bounding cones to float32 so that they enclose the given ones and their distances are not greater.
+
+    That holds also when a scalar product in float32 decides whether a direction is inside.
+    """
+    cones = as_single(cones)
+    cones[..., 3] -= MARGIN
+    cones[..., 4] = np.nextafter(cones[..., 4], np.float32(-np.inf))
+    return cones
 
 
-def narrower(around: np.ndarray) -> np.ndarray:
-    """How directions from lamps are sorted into cells, in float32: fewer count as close."""
-    around = around.copy()
-    around[:, TOLERANCE] = np.maximum(np.sqrt(around[:, TOLERANCE]) - MARGIN, 0.0) ** 2
-    return rounded(around)
+def narrowed_light_buffers(light_buffers: np.ndarray) -> np.ndarray:
+    """Round the parameters of light buffers to float32 so that fewer directions count as close to another."""
+    light_buffers = light_buffers.copy()
+    light_buffers[:, TOLERANCE] = np.maximum(np.sqrt(light_buffers[:, TOLERANCE]) - MARGIN, 0.0) ** 2
+    return as_single(light_buffers)
 
 
-def moved(rows: np.ndarray, eye: np.ndarray) -> np.ndarray:
-    """Rows of shapes in float32, relative to the eye."""
+def rows_relative_to(rows: np.ndarray, eye: np.ndarray) -> np.ndarray:
+    """Move rows of shapes so that the eye is the origin, and round them to float32."""
     kind = kind_of(rows.dtype.names)
     rows = rows.copy()
     for name in point_fields(kind):

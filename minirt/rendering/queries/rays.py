@@ -1,4 +1,4 @@
-"""Single rays through a scene: what they hit, where, and how the surface lies there."""
+"""Closest-hit queries for single rays through a scene: distance, shape, point and normal, by BVH traversal."""
 
 from __future__ import annotations
 
@@ -17,43 +17,43 @@ from minirt.shapes import Shape
 
 
 class Hits(NamedTuple):
-    """What n rays hit first."""
+    """The closest hits of n rays."""
 
     distance: NDArray[np.float64]  # (n,) from the origin, in units of the scene; infinity where nothing is hit
-    owner: NDArray[np.int64]  # (n,) the index in `scene.shapes` of what is hit; -1 where nothing is
+    owner: NDArray[np.int64]  # (n,) the index in `scene.shapes` of the shape that is hit; -1 where nothing is
     point: NDArray[np.float64]  # (n, 3) on the surface; NaN where nothing is hit
     normal: NDArray[np.float64]  # (n, 3) of the surface, of unit length, outward where there is an outside; or NaN
 
 
 def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: int | None = None) -> Hits:
-    """Trace rays through a scene, each on its own: what it hits first, from t > 0 on.
+    """Find the closest hit with t > 0 of each of n rays through a scene.
 
     `origins` and `directions` are (n, 3), in units of the scene; a direction may have any length but 0. A surface on
     which a ray starts may be hit again: start it a little off. Where surfaces coincide the shape that comes first in
-    the scene is hit. The last scene stays sorted, so that further rays through it start at once. Safe to call from
-    several threads; the first call for a combination of shapes compiles for some seconds, later ones and later
-    programs do not. ValueError, naming the argument, for another shape, for a number that is infinite or NaN, and for a
-    direction of length 0.
+    the scene is hit. The BVH of the last scene is kept, so that further rays through it start at once. Safe to call
+    from several threads. The first call for a combination of shapes compiles for some seconds; later calls and later
+    programs do not. ValueError, naming the argument, if an array has another shape, a number is infinite or NaN, or a
+    direction has length 0.
     """
-    starts, ways = vectors(origins, "origins"), vectors(directions, "directions")
-    if len(starts) != len(ways):
-        raise ValueError(f"directions must be as many as origins, {len(starts)}, got {len(ways)}")
-    if not ways.any(axis=1).all():
-        raise ValueError(f"directions must not be 0,0,0, got it at {int(np.argmin(ways.any(axis=1)))}")
-    return tracer(threads).trace(scene, starts, ways)
+    starts = checked_vectors(origins, "origins")
+    vectors = checked_vectors(directions, "directions")
+    if len(starts) != len(vectors):
+        raise ValueError(f"directions must be as many as origins, {len(starts)}, got {len(vectors)}")
+    if not vectors.any(axis=1).all():
+        raise ValueError(f"directions must not be 0,0,0, got it at {int(np.argmin(vectors.any(axis=1)))}")
+    return tracer(threads).trace(scene, starts, vectors)
 
 
-def vectors(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    """An argument as an array of float64 (n, 3)."""
+def checked_vectors(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Convert an argument to an array of float64 (n, 3); ValueError with its name where that is impossible."""
     try:
-        given = np.asarray(values)
+        raw = np.asarray(values)
     except ValueError as error:
         raise ValueError(f"{name} must be numbers of shape (n, 3): {error}") from error
-    if given.dtype.kind not in "iuf":
-        raise ValueError(f"{name} must be numbers of shape (n, 3), got {given.dtype}")
-    array: NDArray[np.float64] = np.require(
-        given, np.float64, ["C", "A", "W"]
-    )  # else there would be a kernel for each sort
+    if raw.dtype.kind not in "iuf":
+        raise ValueError(f"{name} must be numbers of shape (n, 3), got {raw.dtype}")
+    # One memory layout, so that one kernel serves all arguments.
+    array: NDArray[np.float64] = np.require(raw, np.float64, ["C", "A", "W"])
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"{name} must have the shape (n, 3), got {array.shape}")
     if not np.isfinite(array).all():
@@ -62,31 +62,31 @@ def vectors(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 class Tracer:
-    """Keeps threads and the tree of the last scene. Any thread may call it; rays are traced for one call at a time."""
+    """Keeps threads and the BVH of the last scene. Any thread may call it; it serves one call at a time."""
 
-    shapes: tuple[Shape, ...] | None = None  # of the tree
+    shapes: tuple[Shape, ...] | None = None  # in the BVH
 
     def __init__(self, threads: int | None) -> None:
         self.threads = threads or usable_cores()
         self.busy = Lock()
 
     @cached_property
-    def workers(self) -> ThreadPool:
+    def pool(self) -> ThreadPool:
         """The threads that trace."""
         return ThreadPool(self.threads)
 
     @cached_property
-    def tables(self) -> Any:
-        """The shapes of the last scene."""
+    def shape_arrays(self) -> Any:
+        """The packed shapes of the last scene."""
         return import_module("minirt.rendering.packing.shape_arrays").ShapeArrays()
 
     @cached_property
     def kernel(self) -> Any:
-        """The compiled code, and the compiler where it is not there yet."""
+        """The module of the compiled queries. Importing it imports the compiler."""
         return import_module("minirt.kernel.compiler.jit_bvh")
 
     def trace(self, scene: Scene, origins: NDArray[np.float64], directions: NDArray[np.float64]) -> Hits:
-        """`trace`, with arguments that were checked."""
+        """Find the closest hits, as the function `trace` does, for arguments that were checked."""
         count = len(origins)
         hits = Hits(
             np.full(count, np.inf), np.full(count, -1), np.full((count, 3), np.nan), np.full((count, 3), np.nan)
@@ -94,24 +94,24 @@ class Tracer:
         if count and scene.shapes:
             with self.busy:
                 if self.shapes is not scene.shapes:
-                    self.plant(scene.shapes)
+                    self.build_bvh(scene.shapes)
                 # The caller's thread only waits, so that Ctrl+C reaches it.
                 counter = np.zeros(1, np.int64)
                 job = partial(self.kernel.trace_rays, counter, self.bvh, origins, directions, *hits)
-                self.workers.run([job] * self.threads, partial(counter.fill, count))
-                there = hits.owner >= 0
-                hits.owner[there] = self.tables.owner[hits.owner[there]]
+                self.pool.run([job] * self.threads, partial(counter.fill, count))
+                is_hit = hits.owner >= 0
+                hits.owner[is_hit] = self.shape_arrays.owner[hits.owner[is_hit]]
         return hits
 
-    def plant(self, shapes: tuple[Shape, ...]) -> None:
-        """Build the tree over the shapes of a scene."""
+    def build_bvh(self, shapes: tuple[Shape, ...]) -> None:
+        """Build the BVH over the shapes of a scene."""
         self.shapes = None
-        self.tables.update(shapes)
-        self.bvh = import_module("minirt.rendering.packing.bvh").bvh_of(self.tables, self.kernel)
+        self.shape_arrays.update(shapes)
+        self.bvh = import_module("minirt.rendering.packing.bvh").build_bvh(self.shape_arrays, self.kernel)
         self.shapes = shapes
 
 
 @cache
 def tracer(threads: int | None) -> Tracer:
-    """The tracer with that many threads, kept for the next rays."""
+    """Return the tracer with that many threads, which is kept for later calls."""
     return Tracer(threads)

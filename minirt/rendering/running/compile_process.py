@@ -1,4 +1,4 @@
-"""Another process that compiles, so that this one can go on with what it does."""
+"""Compiles kernels in another process, so that this one stays responsive."""
 
 from __future__ import annotations
 
@@ -11,22 +11,19 @@ from typing import Any
 
 from minirt.errors import RenderError
 
-COMMAND = (
-    sys.executable,
-    "-P",
-    "-m",
-    "minirt.kernel.compiler.process",
-)  # -P: nothing is imported from the current folder
+# With -P nothing is imported from the current folder.
+COMMAND = (sys.executable, "-P", "-m", "minirt.kernel.compiler.process")
 
 
 class CompileProcess:
-    """Compiles a kernel at a time."""
+    """Compiles one kernel at a time."""
 
     process: subprocess.Popen[bytes] | None = None
 
     def compile(self, arguments: tuple[Any, ...]) -> None:
-        """Compile the kernel for arguments of these types and keep it; do nothing where no process can be started.
-        RenderError with the reason where that fails, or where `stop` ended it."""
+        """Compile the kernel for arguments of these types into the cache on disk; do nothing if no process can start.
+
+        RenderError with the reason where compiling fails, or where `stop` ended it."""
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(each or os.curdir for each in sys.path)}
         try:
             self.process = process = subprocess.Popen(
@@ -45,12 +42,12 @@ class CompileProcess:
             with suppress(BrokenPipeError):
                 process.stdin.write(pickle.dumps(arguments))
                 process.stdin.flush()
-            told = process.stderr.read().decode(errors="replace").strip()
+            output = process.stderr.read().decode(errors="replace").strip()
         if process.returncode:
-            reason = told.splitlines()[-1] if told else f"the compiler ended with status {process.returncode}"
+            reason = output.splitlines()[-1] if output else f"the compiler ended with status {process.returncode}"
             raise RenderError(f"the kernel cannot be compiled: {reason}")
 
     def stop(self) -> None:
-        """From any thread: end the process, if there is one."""
+        """From any thread: kill the process, if there is one."""
         if self.process:
             self.process.kill()

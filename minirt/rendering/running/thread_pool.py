@@ -1,4 +1,4 @@
-"""Threads that wait for work."""
+"""Thread pool: threads that are kept from picture to picture, and run jobs side by side."""
 
 from __future__ import annotations
 
@@ -12,63 +12,66 @@ Job: TypeAlias = Callable[[], object]
 
 
 class Task(NamedTuple):
-    """A job, and where its end is told: by an item in the list, an error or None. Errors and the last of the `number`
-    of jobs ring the bell: to wake who waits takes time from those that work."""
+    """A job in the queue, and the means to report that it has ended.
+
+    Each job appends its error or None to `results`. Only errors and the last of the `total` jobs put something into
+    `wake_up`: waking the waiting thread takes time from the threads that work.
+    """
 
     job: Job
-    ended: list[BaseException | None]
-    number: int
-    bell: SimpleQueue[None]
+    results: list[BaseException | None]
+    total: int
+    wake_up: SimpleQueue[None]
 
 
 class ThreadPool:
-    """Threads that do jobs side by side, kept from one time to the next.
+    """A fixed number of threads that run jobs.
 
-    Plain queues: from giving out the jobs to having them back it takes half as long as with futures, 0.04 ms.
+    It uses plain queues: handing out the jobs and collecting the results takes half as long as with futures, 0.04 ms.
     """
 
     def __init__(self, number: int) -> None:
         self.tasks: SimpleQueue[Task | None] = SimpleQueue()
         for _ in range(number):
-            Thread(target=work, args=(self.tasks,), name="minirt-render", daemon=True).start()
-        finalize(self, dismiss, self.tasks, number)
+            Thread(target=run_tasks, args=(self.tasks,), name="minirt-render", daemon=True).start()
+        finalize(self, stop_threads, self.tasks, number)
 
     def run(self, jobs: list[Job], cancel: Callable[[], None]) -> None:
-        """Do as many jobs as there are threads, and wait for all of them; an error of one is raised.
+        """Run as many jobs as there are threads, and wait for all of them; an error of one is raised.
 
-        `cancel` makes jobs end early. It is called when one fails, and when the wait is interrupted, as by Ctrl+C.
+        `cancel` makes the jobs end early. It is called when a job fails, and when Ctrl+C interrupts the wait.
         """
-        ended: list[BaseException | None] = []
-        bell: SimpleQueue[None] = SimpleQueue()
+        results: list[BaseException | None] = []
+        wake_up: SimpleQueue[None] = SimpleQueue()
         for job in jobs:
-            self.tasks.put(Task(job, ended, len(jobs), bell))
+            self.tasks.put(Task(job, results, len(jobs), wake_up))
         interrupts: list[BaseException] = []
-        while len(ended) < len(jobs):
+        while len(results) < len(jobs):
             try:
-                bell.get()
+                wake_up.get()
             except BaseException as interrupt:
                 interrupts.append(interrupt)
-            if interrupts or any(ended):
+            if interrupts or any(results):
                 cancel()
-        for error in (*interrupts, *filter(None, ended)):
+        for error in (*interrupts, *filter(None, results)):
             raise error
 
 
-def work(tasks: SimpleQueue[Task | None]) -> None:
-    """What a thread does: one job after the other, until there is None."""
+def run_tasks(tasks: SimpleQueue[Task | None]) -> None:
+    """Run one task after the other, in a thread of the pool, until the queue holds None."""
     while task := tasks.get():
         error = None
         try:
             task.job()
         except BaseException as raised:
             error = raised
-        task.ended.append(error)
-        if error or len(task.ended) == task.number:
-            task.bell.put(None)
+        task.results.append(error)
+        if error or len(task.results) == task.total:
+            task.wake_up.put(None)
         del task, error
 
 
-def dismiss(tasks: SimpleQueue[Task | None], number: int) -> None:
-    """Let the threads end."""
+def stop_threads(tasks: SimpleQueue[Task | None], number: int) -> None:
+    """End the threads of a pool, once they have run the tasks in the queue."""
     for _ in range(number):
         tasks.put(None)

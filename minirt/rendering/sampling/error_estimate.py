@@ -1,4 +1,4 @@
-"""How good a picture is that was refined, by how far it is from the one before."""
+"""Estimates the error of a refined picture from its difference to the picture with fewer samples."""
 
 from __future__ import annotations
 
@@ -6,18 +6,19 @@ from math import sqrt
 
 import numpy as np
 
-from minirt.rendering.sampling.allocation import FALL
+from minirt.rendering.sampling.allocation import ERROR_EXPONENT
 
-ROUNDING = 1 / 12  # mean square of what rounding to whole levels changes
+ROUNDING = 1 / 12  # mean squared error of rounding to whole levels
 
 
 def estimated_error(before: np.ndarray, after: np.ndarray, fewer: int, samples: int) -> float:
-    """The error, as in `minirt.rendering.sampling.outcome` but with that of rounding, of a picture with so many `samples`.
+    """The RMSE of a picture `after` with `samples`, given the picture `before` with `fewer`.
 
-    Both are uint8 (h, w, 4), equally opaque. Their differences have the squared errors of both, which are to each other
-    as the numbers of samples are to the power of -1.5.
+    It is the error of `minirt.rendering.sampling.outcome` and that of rounding. Both are uint8 (h, w, 4), equally
+    opaque. Their squared difference is the sum of both squared errors, whose ratio is that of the numbers of
+    samples to the power of -1.5.
     """
-    far = np.maximum(before, after) - np.minimum(before, after)
-    square = float(np.square(far, dtype=np.uint16).sum(dtype=np.int64)) / (far.size * 3 / 4)
-    ratio = (samples / fewer) ** FALL
-    return sqrt(square / (1 + ratio) + ROUNDING) / 255
+    difference = np.maximum(before, after) - np.minimum(before, after)
+    squared = float(np.square(difference, dtype=np.uint16).sum(dtype=np.int64)) / (difference.size * 3 / 4)
+    ratio = (samples / fewer) ** ERROR_EXPONENT
+    return sqrt(squared / (1 + ratio) + ROUNDING) / 255

@@ -1,4 +1,4 @@
-"""What became of a picture that was to have a certain error, or to take a certain time."""
+"""Result of rendering a picture to an error or for a time: samples, estimated error, run time."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from typing import NamedTuple
 
 
 class Outcome(NamedTuple):
-    """How good a picture is.
+    """How many samples a picture has, and its estimated error.
 
-    An error is the root of the mean square, over all pixels and colours, of the difference between the light of the
-    picture and that of one with endlessly many samples, both clamped to [0, 1]: 0.004 is one of 255 levels.
+    The error is the RMSE against the converged picture, over all pixels and channels, with light clamped to [0, 1]:
+    0.004 is one of 255 levels.
     """
 
     samples: float  # of a pixel, on average
     most: int  # of a pixel
     error: float  # estimated
-    seconds: float  # that it took
+    seconds: float  # run time
 
     def __str__(self) -> str:
         return (

@@ -1,10 +1,10 @@
-"""Sample places that can be continued: each doubling of their number fills the gaps of those before.
+"""Sobol' sequence in two dimensions, with digital shifts: sample positions that can be continued.
 
-The first two dimensions of Sobol's sequence (On the distribution of points in a cube, 1967): of 2^k points from one on
-whose number divides by 2^k, each of 2^k equal strips of the pixel has one, whichever way they are cut. A digital shift
-keeps that, and makes each point uniform in the pixel, so that means over shifted points have no bias and those over
-points shifted independently have independent errors (L'Ecuyer and Lemieux, Recent advances in randomized quasi-Monte
-Carlo methods, 2002).
+Each doubling of the number of points fills the gaps between those before. Of 2^k points, from a multiple of 2^k on,
+each of 2^k equal elementary boxes of the pixel has one, whichever way it is cut (Sobol', On the distribution of points
+in a cube, 1967). A digital shift keeps that, and makes each point uniform in the pixel, so that means over shifted
+points have no bias and means over independently shifted points have independent errors (L'Ecuyer and Lemieux, Recent
+advances in randomized quasi-Monte Carlo methods, 2002).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ UNIT = 2.0**-BITS
 
 
 def sobol(first: int, last: int) -> np.ndarray:
-    """Points `first` to `last`, without that one, as (n, 2) whole numbers of 2^-32, uint32."""
+    """The points from number `first` up to, but without, `last`, as (n, 2) integer multiples of 2^-32, uint32."""
     index = np.arange(first, last, dtype=np.uint32)
     points = np.zeros((len(index), 2), np.uint32)
     column = np.uint32(1 << BITS - 1)
@@ -29,12 +29,12 @@ def sobol(first: int, last: int) -> np.ndarray:
 
 
 def digital_shifts(*shape: int) -> np.ndarray:
-    """Independent shifts, (*shape, 2) uint32; always the same ones."""
+    """Independent random shifts, (*shape, 2) uint32, the same at each call."""
     bits: np.ndarray = np.random.PCG64(2).random_raw((*shape, 2)) >> np.uint64(32)  # a stream that numpy keeps stable
     return bits.astype(np.uint32)
 
 
 def shifted(points: np.ndarray, shifts: np.ndarray) -> np.ndarray:
-    """Points (n, 2), shifted in each of m ways (m, 2): places (n, m, 2) in [0, 1)."""
-    places: np.ndarray = (points[:, None] ^ shifts) * UNIT
-    return places
+    """Shift points (n, 2) in each of m ways (m, 2): positions (n, m, 2) in [0, 1)."""
+    positions: np.ndarray = (points[:, None] ^ shifts) * UNIT
+    return positions

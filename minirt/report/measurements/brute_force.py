@@ -19,9 +19,9 @@ MOST = 2**24  # entries of all lists together
 class BruteForce(Packing):
     """Packs scenes with all shapes in the list of every tile and of every light."""
 
-    def traced(self, scene: Scene, width: int, height: int) -> SceneArrays:
+    def pack_double(self, scene: Scene, width: int, height: int) -> SceneArrays:
         """Pack the scene; RenderError if the lists would fill the memory."""
-        traced, count = super().traced(scene, width, height), tile_count(width) * tile_count(height)
+        traced, count = super().pack_double(scene, width, height), tile_count(width) * tile_count(height)
         if count * len(traced.slots) > MOST:
             raise RenderError(f"{len(traced.slots)} shapes in each of {count} tiles are too many")
         return without_culling(traced, count)

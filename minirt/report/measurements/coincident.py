@@ -11,10 +11,10 @@ from minirt.kernel.frame import ray_direction
 from minirt.kernel.rows import kind_of_packed
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec, dot, unit
-from minirt.rendering.notes import name
+from minirt.rendering.notes import shape_name
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.pick import columns
+from minirt.rendering.queries.pick import packed_columns
 from minirt.report.measurements.stiffness import DOUBLE, SINGLE, Stiff
 from minirt.scene import Scene
 
@@ -51,7 +51,7 @@ def coincident(scene: Scene, tables: ShapeArrays) -> Iterator[Stiff]:
         shared = " and ".join(precision for precision, gaps in ties.items() if gaps <= 1)
         if count >= LEAST:
             yield Stiff(
-                f"{name(tables, one)} and {name(tables, other)}",
+                f"{shape_name(tables, one)} and {shape_name(tables, other)}",
                 f"taken for one surface in {shared} precision: the first is shown" if shared else "nearly coincide",
                 {"share of the picture": count / t.shape[1], "gap": float(np.median(gap[mine]))}
                 | {f"in roundings, {precision}": gaps for precision, gaps in ties.items()},
@@ -62,7 +62,7 @@ def all_hits(tables: ShapeArrays, eye: Vec, ways: Vec) -> tuple[np.ndarray, np.n
     """For each shape and ray return the hit distance, infinity for a miss, and the cosine of ray and normal."""
     t, slopes = np.empty((2, len(tables.owner), len(ways.x)))
     for index, (group, row) in enumerate(tables.slots):
-        packed = columns(tables.rows[group][row : row + 1])
+        packed = packed_columns(tables.rows[group][row : row + 1])
         kind = kind_of_packed(type(packed))
         hit, at = kind.intersect(packed, eye, ways)
         _, normal = kind.surface(packed, eye + at * ways)

@@ -13,8 +13,8 @@ import numpy as np
 
 from minirt.kernel.compiler.jit_formula import probe
 from minirt.kernel.rows import row_type
-from minirt.rendering.packing.primitives import numbers, own_points
-from minirt.rendering.packing.single_precision import moved
+from minirt.rendering.packing.primitives import defining_points, packed_rows
+from minirt.rendering.packing.single_precision import rows_relative_to
 from minirt.report.measurements import exact_hits, textbook
 from minirt.report.measurements.random_rays import Array, Rays
 from minirt.report.measurements.sizes import sizes
@@ -101,11 +101,11 @@ def prepare(
 
     In float32 coordinates are relative to the first origin of each shape, as the renderer's are relative to the eye.
     """
-    packed = np.ascontiguousarray(numbers([shape.pack() for shape in rays.shapes])).view(row_type(kind))[:, 0]
+    packed = np.ascontiguousarray(packed_rows([shape.pack() for shape in rays.shapes])).view(row_type(kind))[:, 0]
     origins = rays.origins
     if number is np.float32:
         eyes = rays.origins[:, 0]
-        packed, origins = moved(packed, eyes), rays.origins - eyes[:, None]
+        packed, origins = rows_relative_to(packed, eyes), rays.origins - eyes[:, None]
     found = np.empty(rays.origins.shape[0] * rays.origins.shape[1], number)
     o, d = (np.ascontiguousarray(each.reshape(-1, 3).T.astype(number)) for each in (origins, rays.directions))
     run = probe(formula)
@@ -127,7 +127,7 @@ def exact_answers(rays: Rays) -> Answers:
 
 def magnitude(shape: Shape, origin: Array) -> float:
     """Return the magnitude of the numbers that a hit is computed from: distance to the shape plus its lengths."""
-    return float(np.linalg.norm(origin - own_points(shape)[0])) + float(sizes([shape]).sum())
+    return float(np.linalg.norm(origin - defining_points(shape)[0])) + float(sizes([shape]).sum())
 
 
 def slope(shape: Shape, direction: Array) -> float:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from minirt.element import fields_of
 from minirt.fields import Colour, Direction, Field, Length, Lengths, Point, Real
 from minirt.lanes import Vec
-from minirt.rendering.packing.primitives import own_points
+from minirt.rendering.packing.primitives import defining_points
 from minirt.shapes import Kind, Shape
 
 Array = NDArray[np.float64]
@@ -94,7 +94,7 @@ def random_shapes(kind: Kind, random: Random, scale: Scale, count: int) -> tuple
 
 def middle(shape: Shape) -> Array:
     """Return the middle of a shape; for an infinite shape, a point that defines it."""
-    points = [centre for centre, _ in shape.balls()] or own_points(shape)
+    points = [centre for centre, _ in shape.balls()] or defining_points(shape)
     mean: Array = np.mean(points, axis=0)
     return mean
 

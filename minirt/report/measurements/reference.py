@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.rendering import Renderer
-from minirt.rendering.frame_arguments import frame_arguments, sample_places
+from minirt.rendering.frame_arguments import frame_arguments, sample_positions
 from minirt.rendering.packing.camera import packet_rays
 from minirt.report.measurements.metrics import Picture, clamped, rmse
 from minirt.scene import Scene
@@ -35,7 +35,9 @@ def reference(
     renderer, random = Renderer(), np.random.default_rng(seed)
     one, other = (
         clamped(
-            half_reference(renderer, scene, width, height, (sample_places(samples // 2) + random.random(2)) % 1.0, step)
+            half_reference(
+                renderer, scene, width, height, (sample_positions(samples // 2) + random.random(2)) % 1.0, step
+            )
         )
         for _ in range(2)
     )
@@ -59,8 +61,8 @@ def half_reference(
         some = places[start : start + PASS]
         traced = renderer.packing.pack(scene, width, height)
         given = frame_arguments(traced, pixels, linear=linear)._replace(rays=packet_rays(traced.camera, some))
-        renderer.next_row = given.next_row  # so that it can be cancelled
-        renderer.run([given], renderer.threads)
+        renderer.runner.next_row = given.next_row  # so that it can be cancelled
+        renderer.runner.run([given], renderer.threads)
         total += linear * len(some)
         step()
     return total / len(places)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from minirt.element import fields_of
 from minirt.fields import Length, Lengths, Point
-from minirt.rendering.packing.primitives import boxes
+from minirt.rendering.packing.primitives import bounding_boxes
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 
@@ -20,7 +20,7 @@ def sizes(shapes: Sequence[Shape]) -> NDArray[np.float64]:
     A plane has none; a mesh has the diagonal of its bounding box.
     """
     if isinstance(shapes[0], Mesh):
-        diagonals: NDArray[np.float64] = np.linalg.norm(np.diff(boxes(list(shapes)), axis=1)[:, 0], axis=1)
+        diagonals: NDArray[np.float64] = np.linalg.norm(np.diff(bounding_boxes(list(shapes)), axis=1)[:, 0], axis=1)
         return diagonals[:, None]
 
     def columns(*sorts: type) -> list[NDArray[np.float64]]:

@@ -10,10 +10,10 @@ import numpy as np
 from minirt.kernel.rows import kind_of
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec
-from minirt.rendering.notes import name
+from minirt.rendering.notes import shape_name
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.pick import columns
+from minirt.rendering.queries.pick import packed_columns
 from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.sizes import sizes
 from minirt.scene import Scene
@@ -73,7 +73,7 @@ def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> 
 def lost_in_single(scene: Scene, packing: Packing, width: int, height: int) -> Iterator[Stiff]:
     """Yield the shapes that look wrong in a picture that was rendered in float32."""
     if scene.shapes and packing.pack(scene, width, height).camera.dtype == np.float32:
-        for each in stiff_shapes(scene, packing.tables, width, height):
+        for each in stiff_shapes(scene, packing.shape_arrays, width, height):
             if each.figures.get("single", 0.0) > VISIBLE:
                 yield each
 
@@ -86,7 +86,7 @@ def worst(tables: ShapeArrays, amounts: np.ndarray, limit: float) -> Iterator[tu
     order = order[np.sort(first)]  # the worst primitive of each shape
     more = len(order) - LISTED
     for place, index in enumerate(order[:LISTED].tolist(), 1):
-        yield index, name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
+        yield index, shape_name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
 
 
 def shape_views(tables: ShapeArrays, camera: np.ndarray) -> ShapeViews:
@@ -96,9 +96,9 @@ def shape_views(tables: ShapeArrays, camera: np.ndarray) -> ShapeViews:
     for group, packed in enumerate(tables.rows):
         mine = np.flatnonzero(tables.slots[:, 0] == group)
         with np.errstate(all="ignore"):
-            on, _ = kind_of(packed.dtype.names).surface(columns(packed), Vec(*eye))
+            on, _ = kind_of(packed.dtype.names).surface(packed_columns(packed), Vec(*eye))
         nearest[mine] = np.stack([np.broadcast_to(part, len(mine)) for part in (on.x, on.y, on.z)], axis=-1)
-        if not tables.is_flat[group]:  # a bounded shape lies within its box, not everywhere on its surface's extension
+        if not tables.is_plane[group]:  # a bounded shape lies within its box, not everywhere on its surface's extension
             middle, half = tables.boxes[mine, :3], tables.boxes[mine, 3:]
             nearest[mine] = np.clip(nearest[mine], middle - half, middle + half)
         owners, part_of = np.unique(tables.owner[mine], return_inverse=True)

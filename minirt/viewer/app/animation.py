@@ -1,4 +1,4 @@
-"""Moving pictures of what a window would show: of a camera that goes round a scene, and of a replay."""
+"""Animation frames: a turntable of a scene, and the frames of a replay."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from minirt.scene import Scene
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Pixels, Renderer
-from minirt.viewer.editing.measure import middle_of
-from minirt.viewer.editing.motion import orbited
+from minirt.viewer.editing.measure import scene_centre
+from minirt.viewer.editing.motion import orbit_camera
 
-FPS = 12  # pictures a second of a film
-TICKS = 60  # a second, of simulated time
-ARROW = ((0, 0), (0, 17), (4, 13), (7, 20), (10, 19), (7, 12), (12, 12))  # the pointer, in pixels
+FPS = 12  # frames per second of an animation
+TICKS = 60  # per second of simulated time
+ARROW = ((0, 0), (0, 17), (4, 13), (7, 20), (10, 19), (7, 12), (12, 12))  # corners of the pointer, in pixels
 
 
 def turntable(scene: Scene, count: int) -> Iterator[Scene]:
-    """The scene seen from so many places on a circle round its middle; the next one would be the first again."""
-    pivot = middle_of(scene)
+    """Yield the scene from `count` positions on a circle around its centre; the frames repeat seamlessly."""
+    pivot = scene_centre(scene)
     for number in range(count):
-        camera = orbited(scene.camera, pivot, 360.0 * number / count, 0.0)
+        camera = orbit_camera(scene.camera, pivot, 360.0 * number / count, 0.0)
         yield scene.replace(scene.camera, camera) if number else scene
 
 
@@ -40,24 +40,26 @@ def animation(
     lenient: bool = False,
     samples: int = 1,
 ) -> list[Image]:
-    """What the window shows while recorded keys are played, FPS times a simulated second, with the pointer where it is
-    used. ReplayError as for `minirt.viewer.app.replay.replay`."""
+    """Return the frames of a replay, FPS per simulated second, with the pointer while it is used.
+
+    ReplayError as for `minirt.viewer.app.replay.replay`.
+    """
     frames: list[Image] = []
     ticks = iter(range(10**9))
 
-    def look(session: Session) -> None:
+    def add_frame(session: Session) -> None:
         if next(ticks) % (TICKS // FPS) == 0:
-            frames.append(Image.from_bgra(with_pointer(session.screen.frame, session.win.pointer)))
+            frames.append(Image.from_bgra(with_pointer(session.screen.frame, session.window.pointer)))
 
     session = play(
         scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient, samples=samples,
-        watch=look,
+        watch=add_frame,
     )  # fmt: skip
     return [*frames, Image.from_bgra(session.screen.frame)]
 
 
 def with_pointer(pixels: Pixels, at: tuple[int, int]) -> Pixels:
-    """A copy of the picture with an arrow at a pixel; at the corner, where it is before it moves, there is none."""
+    """Return a copy of the picture with an arrow at pixel `at`; no arrow at (0, 0), where the pointer starts."""
     if at == (0, 0):
         return pixels
     from PIL import Image as pillow  # noqa: N813

@@ -1,55 +1,57 @@
-"""What the keys do that is not an edit of the scene: files, pictures, the window."""
+"""Commands: key bindings that do not edit the scene, but deal with files, pictures and the window."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from minirt.scene import describe
 from minirt.viewer.app.file_sync import reload, save_scene
-from minirt.viewer.display.overlay import Level
+from minirt.viewer.app.session import Session
+from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.files.scene_files import save_copy
-
-if TYPE_CHECKING:
-    from minirt.viewer.app.session import Session
 
 
 def save_a_copy(session: Session) -> None:
-    """Write the scene into a new file. SceneError."""
-    session.state = session.state.say(f"saved a copy: {save_copy(session.state.scene, session.path)}")
+    """Write the scene to a new file. SceneError."""
+    session.state = session.state.with_message(f"saved a copy: {save_copy(session.state.scene, session.path)}")
 
 
 def screenshot(session: Session) -> None:
-    """Save the picture, as soon as it is complete. RenderError."""
-    session.wants_screenshot = True
+    """Save the picture as soon as it is complete. RenderError."""
+    session.screenshot_pending = True
     session.take_screenshot()
 
 
 def copy_camera(session: Session) -> None:
-    """Put the camera's line on the clipboard."""
+    """Copy the camera's line of the scene to the clipboard."""
     line = describe(session.state.scene.camera)
-    session.m.mlx_set_clipboard(session.win, line)
-    session.state = session.state.say(f"copied: {line}")
+    session.mlx.mlx_set_clipboard(session.window, line)
+    session.state = session.state.with_message(f"copied: {line}")
 
 
 def toggle_hud(session: Session) -> None:
-    session.screen.level = Level((session.screen.level + 1) % len(Level))
+    """Show the next amount of information: a line, all, nothing."""
+    session.screen.level = HudLevel((session.screen.level + 1) % len(HudLevel))
 
 
 def toggle_icons(session: Session) -> None:
+    """Show or hide the icons of lights."""
     session.screen.marks.icons = not session.screen.marks.icons
 
 
 def toggle_help(session: Session) -> None:
+    """Show or hide the table of keys."""
     session.screen.help = not session.screen.help
 
 
 def toggle_full_screen(session: Session) -> None:
+    """Let the window fill the screen, or give it its former size."""
     session.full_screen = not session.full_screen
-    session.m.mlx_set_fullscreen(session.win, session.full_screen)
+    session.mlx.mlx_set_fullscreen(session.window, session.full_screen)
 
 
 def quit(session: Session) -> None:
+    """End the session."""
     session.quit()
 
 

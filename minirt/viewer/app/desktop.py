@@ -1,4 +1,4 @@
-"""The viewer as a program: it opens the window, runs the loop and leaves."""
+"""The viewer as a program: open the window, run the event loop, end."""
 
 from __future__ import annotations
 
@@ -9,20 +9,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import minirt
-from minirt.gc_pause import uncollected
+from minirt.gc_pause import gc_paused
 from minirt.mlx import Mlx
 from minirt.scene import Scene
+from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Renderer
-from minirt.viewer.files.scene_files import differ, recover
+from minirt.viewer.files.scene_files import contents_differ, save_recovery
 
 if TYPE_CHECKING:
     from minirt.mlx.display import Display
 
 OK, INTERRUPTED = 0, 130
-PATIENCE = 0.3  # seconds that a picture under way has to notice that it is cancelled
-SWITCH = 0.0005  # seconds that another thread may keep the interpreter: the loop takes it back ten times a turn
+STOP_TIMEOUT = 0.3  # seconds that a picture being rendered has to notice that it is cancelled
+SWITCH_INTERVAL = 0.0005  # seconds that another thread may keep the interpreter: a tenth of the default
 
 
 def run(
@@ -38,25 +39,26 @@ def run(
     mlx: Mlx | None = None,
     watch: bool = True,
 ) -> int:
-    """Show a scene until the user has seen enough; returns the exit status: 0, or 130 after Ctrl+C.
+    """Show a scene until the user quits; return the exit status: 0, or 130 after Ctrl+C.
 
-    `path` is the scene's file; with `watch` it is read again when another program changes it. Changes that were not
-    saved are kept in a file that standard output names. When nothing moves the edges in the picture are refined to
-    `samples` rays for each pixel.
+    `path` is the scene's file; with `watch` it is read again when another program changes it. Unsaved changes are
+    kept in a recovery file, whose name is printed. When nothing moves, the edges in the picture are refined to
+    `samples` rays per pixel.
 
-    MlxError where no window can be opened, RenderError where the pictures cannot be made.
+    MlxError if no window can be opened, RenderError if the pictures cannot be rendered.
 
-    Where the renderer cannot be stopped (inside the compiler) the process ends here and now.
+    If the renderer cannot be stopped (inside the compiler), the process ends here at once.
     """
-    maker = renderer or minirt.renderer(threads)
-    session = started(scene, Path(path), size, maker, mlx or Mlx(), keys, lenient, samples, watch)
+    renderer = renderer or minirt.renderer(threads)
+    session = open_session(scene, Path(path), size, renderer, mlx or Mlx(), keys, lenient, samples, watch)
     try:
-        status, stopped = show(session)
+        status, stopped = run_event_loop(session)
     finally:
-        if differ(session.state.scene, session.saved):
-            print(f"The changes that were not saved are in {recover(session.state.scene, session.path)}")
+        if contents_differ(session.state.scene, session.saved):
+            copy = save_recovery(session.state.scene, session.path)
+            print(f"The changes that were not saved are in {copy}")
     if not stopped:
-        leave(status)
+        exit_at_once(status)
     return status
 
 
@@ -70,77 +72,79 @@ def view(
     keys: str = "auto",
     mlx: Mlx | None = None,
 ) -> Scene:
-    """Show a scene in a window until it is closed; returns the scene as it was edited there.
+    """Show a scene in a window until it is closed; return the scene as it was edited there.
 
-    Ctrl+S in the window writes the file that the scene was read from, or `scene.rt`. The rest is as for `run` and for
-    `minirt.render`.
+    Ctrl+S in the window writes the file that the scene was read from, or `scene.rt`. The other arguments are those of
+    `run` and `minirt.render`.
     """
-    maker = minirt.renderer(threads, precision)
+    renderer = minirt.renderer(threads, precision)
     path = scene.file or Path("scene.rt")
-    session = started(scene, path, size, maker, mlx or Mlx(), keys, lenient=False, samples=samples, watch=False)
-    status, _ = show(session)
+    session = open_session(scene, path, size, renderer, mlx or Mlx(), keys, lenient=False, samples=samples, watch=False)
+    status, _ = run_event_loop(session)
     if status == INTERRUPTED:
         raise KeyboardInterrupt
     return session.state.scene
 
 
-def started(
+def open_session(
     scene: Scene,
     path: Path,
     size: tuple[int, int] | None,
-    maker: Renderer,
-    m: Mlx,
+    renderer: Renderer,
+    mlx: Mlx,
     keys: str,
     lenient: bool,
     samples: int,
     watch: bool,
 ) -> Session:
-    """A session with its window open. MlxError."""
-    display = m.mlx_init()
+    """Open a session with its window, connected to the window's events. MlxError."""
+    display = mlx.mlx_init()
     try:
-        with uncollected():
-            return Session(
-                m,
+        with gc_paused():
+            session = Session(
+                mlx,
                 display,
                 scene,
                 path=path,
-                size=fitting(m, display, size or minirt.size_of(scene)),
-                painter=partial(BackgroundPainter, maker),
-                pick=maker.pick,
+                size=fit_screen(mlx, display, size or minirt.size_of(scene)),
+                painter=partial(BackgroundPainter, renderer),
+                pick=renderer.pick,
                 keys=keys,
                 lenient=lenient,
                 samples=samples,
                 watch=watch,
             )
+            EventDispatcher(session).connect()
+            return session
     except BaseException:
-        m.mlx_release(display)
+        mlx.mlx_release(display)
         raise
 
 
-def show(session: Session) -> tuple[int, bool]:
-    """Run the loop until it ends; returns the exit status, and whether nothing is left behind, not even a thread."""
+def run_event_loop(session: Session) -> tuple[int, bool]:
+    """Run the event loop until it ends; return the exit status, and whether all threads have ended."""
     status = OK
     before = sys.getswitchinterval()
-    sys.setswitchinterval(SWITCH)
+    sys.setswitchinterval(SWITCH_INTERVAL)
     try:
-        session.m.mlx_loop(session.mlx)
+        session.mlx.mlx_loop(session.display)
     except KeyboardInterrupt:
         status = INTERRUPTED
     finally:
         sys.setswitchinterval(before)
-        session.m.mlx_release(session.mlx)
-        session.disk.close()
-        stopped = session.pictures.painter.close(PATIENCE)
+        session.mlx.mlx_release(session.display)
+        session.file.close()
+        stopped = session.refinement.painter.close(STOP_TIMEOUT)
     return status, stopped
 
 
-def fitting(m: Mlx, display: Display, size: tuple[int, int]) -> tuple[int, int]:
-    """The size of a window that is no larger than the screen."""
-    _, width, height = m.mlx_get_screen_size(display)
+def fit_screen(mlx: Mlx, display: Display, size: tuple[int, int]) -> tuple[int, int]:
+    """Return the size of a window, reduced to that of the screen if it is larger."""
+    _, width, height = mlx.mlx_get_screen_size(display)
     return min(size[0], width), min(size[1], height)
 
 
-def leave(status: int) -> NoReturn:
+def exit_at_once(status: int) -> NoReturn:
     """End the process without waiting for its threads."""
     sys.stdout.flush()
     sys.stderr.flush()

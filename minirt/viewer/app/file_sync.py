@@ -1,92 +1,94 @@
-"""Reading and writing the scene's file while other programs may do the same: nobody's work is lost."""
+"""File sync: save, reload and follow the scene's file without loss of work when other programs write it too."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from minirt.errors import SceneError
 from minirt.scene import Scene, load, save
-from minirt.viewer.editing.state import MOST, Moment, State, opened
-from minirt.viewer.files.scene_files import differ, keep, recover, summary
+from minirt.viewer.app.session import Session
+from minirt.viewer.editing.state import MAX_UNDO, Snapshot, State, initial_state
+from minirt.viewer.files.scene_files import back_up, contents_differ, error_summary, save_recovery
 from minirt.viewer.files.watched_file import WatchedFile, signature
-from minirt.viewer.input.chords import shown
-
-if TYPE_CHECKING:
-    from minirt.viewer.app.session import Session
+from minirt.viewer.input.chords import platform_spelling
 
 UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and keeps the other as a copy"
 
 
 def save_scene(session: Session) -> None:
-    """Write the scene into its file; what another program wrote there goes into a copy. SceneError."""
-    other = keep(session.path) if session.disk.changed else None
+    """Write the scene to its file; if another program has changed the file, copy it first. SceneError."""
+    copy = back_up(session.path) if session.file.changed else None
     save(session.state.scene, session.path)
-    session.disk.accept(signature(session.path))
+    session.file.accept(signature(session.path))
     session.saved = session.state.scene
     session.screen.banner = ""
-    kept = f"; what another program had written is in {other}" if other else ""
-    session.state = session.state.say(f"saved: {session.path}{kept}")
+    kept = f"; what another program had written is in {copy}" if copy else ""
+    session.state = session.state.with_message(f"saved: {session.path}{kept}")
 
 
 def reload(session: Session) -> None:
-    """Read the file again; what was there before can be had back by undo. SceneError."""
-    read(session)
-    session.state = session.state.say(f"read again: {session.path}")
+    """Read the file again; undo restores the previous scene. SceneError."""
+    read_file(session)
+    session.state = session.state.with_message(f"read again: {session.path}")
 
 
-def file_changed(session: Session) -> None:
-    """Another program wrote the file: it is shown, unless something was changed here and not saved.
+def follow_change(session: Session) -> None:
+    """Show the file after another program has written it, unless the session has unsaved changes.
 
-    While the file is wrong the last picture stays.
+    If the file has errors, the last picture stays and a banner shows the first error.
     """
-    if differ(session.state.scene, session.saved):
-        session.screen.banner = UNSAVED.format(session.path.name, shown("Ctrl+R"), shown("Ctrl+S"))
+    if contents_differ(session.state.scene, session.saved):
+        session.screen.banner = UNSAVED.format(
+            session.path.name, platform_spelling("Ctrl+R"), platform_spelling("Ctrl+S")
+        )
         return
     try:
-        read(session, keep_camera=True)
+        read_file(session, keep_camera=True)
     except SceneError as error:
-        session.screen.banner = summary(error)
+        session.screen.banner = error_summary(error)
 
 
-def read(session: Session, keep_camera: bool = False) -> None:
-    """Show what the file holds. `keep_camera`: unless the file has another one than before. SceneError."""
+def read_file(session: Session, keep_camera: bool = False) -> None:
+    """Show the scene in the file. `keep_camera`: keep the current camera unless the file changed it. SceneError."""
     seen = signature(session.path)
     scene = load(session.path, session.lenient, session.state.scene.camera.left_handed).scene
-    session.disk.accept(seen)
-    session.mouse.let_go()
-    session.state = followed(session.state, scene, session.saved if keep_camera else None)
+    session.file.accept(seen)
+    session.release_button()
+    session.state = state_after_reading(session.state, scene, session.saved if keep_camera else None)
     session.saved = scene
     session.screen.banner = ""
 
 
-def followed(old: State, scene: Scene, saved: Scene | None) -> State:
-    """The state after its file became another scene; with the camera as it is where the file has that of `saved`."""
-    new = opened(scene)
+def state_after_reading(old: State, scene: Scene, saved: Scene | None) -> State:
+    """Return the state for the new scene of the file, with selection and undo history of the old state.
+
+    The current camera stays if the file has the same camera as `saved`, the scene that the file held before.
+    """
+    new = initial_state(scene)
     if saved and scene.camera == saved.camera:
         new = replace(new, scene=scene.replace(scene.camera, old.scene.camera.replace(source=scene.camera.source)))
     same = old.selected < len(scene.elements) and type(scene.elements[old.selected]) is type(old.element)
     return replace(
         new,
         selected=old.selected if same else new.selected,
-        value=old.value if same else 0,
+        value_index=old.value_index if same else 0,
         frame=old.frame,
-        past=(*old.past[1 - MOST :], Moment(old.scene, old.selected)),
+        undo_stack=(*old.undo_stack[1 - MAX_UNDO :], Snapshot(old.scene, old.selected)),
     )
 
 
 def open_another(session: Session, path: Path) -> None:
-    """Show another file; changes that were not saved are kept beside the old one. SceneError."""
+    """Show another file; write unsaved changes to a recovery file beside the old one. SceneError."""
     scene = load(path, session.lenient, session.state.scene.camera.left_handed).scene
     kept = ""
-    if differ(session.state.scene, session.saved):
-        kept = f"; the changes that were not saved are in {recover(session.state.scene, session.path)}"
-    session.disk.close()
-    session.mouse.let_go()
-    session.path, session.disk = path, WatchedFile(path)
-    session.watch()
-    session.m.mlx_set_window_title(session.win, f"miniRT - {path.name}")
+    if contents_differ(session.state.scene, session.saved):
+        kept = f"; the changes that were not saved are in {save_recovery(session.state.scene, session.path)}"
+    session.file.close()
+    session.release_button()
+    session.path, session.file = path, WatchedFile(path)
+    session.watch_file()
+    session.mlx.mlx_set_window_title(session.window, f"miniRT - {path.name}")
     session.saved = scene
     session.screen.banner = ""
-    session.state = opened(scene).say(f"opened: {path}{kept}")
+    session.state = initial_state(scene).with_message(f"opened: {path}{kept}")

@@ -1,107 +1,101 @@
-"""Clicks and drags of the pointer in a session."""
+"""Mouse input: clicks, drags and the wheel over the picture of a session."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from minirt.errors import MiniRTError
 from minirt.mlx import Button
-from minirt.rendering.queries.pick import place
+from minirt.rendering.queries.pick import surface_point
 from minirt.scene import Camera
 from minirt.shapes import Shape
+from minirt.viewer.app.pressed_button import PressedButton
+from minirt.viewer.app.session import Session
 from minirt.viewer.display.icons import icon_at
-from minirt.viewer.display.overlay import Level
+from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing import dragging, selection
-from minirt.viewer.editing.projection import projection
-from minirt.viewer.editing.state import place_of
+from minirt.viewer.editing.projection import projection_of
+from minirt.viewer.editing.state import position_of
 from minirt.viewer.input.bindings import Binding
 from minirt.viewer.input.chords import Drag
 
 if TYPE_CHECKING:
     from minirt.fields import Triple
-    from minirt.viewer.app.session import Session
 
-SLACK = 3  # pixels that the pointer may move in a click
+CLICK_SLACK = 3  # pixels that the pointer may move during a click
 DRAGS = {Button.LEFT: Drag.LEFT, Button.MIDDLE: Drag.MIDDLE, Button.RIGHT: Drag.RIGHT}
 
 
-class Press(NamedTuple):
-    """A button that is down."""
-
-    button: int
-    x: int
-    y: int
-    drag: Binding
-    grip: dragging.Grip
-
-
 class Mouse:
-    """A press on something selects it at once; a click of another button counts when the button is let go where it was
-    pressed, since it might have become a drag."""
+    """Turn button and motion events into clicks and drags.
 
-    def __init__(self, session: Session) -> None:
+    The left button selects when it goes down. A click of another button counts when the button is released where it
+    was pressed, because until then it may become a drag.
+    """
+
+    def __init__(self, session: Session, perform: Callable[[Binding, float], None]) -> None:
         self.session = session
-        self._press: Press | None = None
-        self._dragging = False
+        self._perform = perform
 
-    def press(self, button: int, x: int, y: int) -> None:
-        self.let_go()
+    def on_press(self, button: int, x: int, y: int) -> None:
+        """A button goes down, or the wheel turns."""
         session = self.session
+        session.release_button()
         drag = session.keymap.find(DRAGS[Button(button)], session.modifiers) if button in DRAGS else None
         if drag is None:
             self.click(button)
             return
         try:
-            point = self.grasp(x, y, selecting=button == Button.LEFT)
-        except MiniRTError as error:  # a picture on a shape may be gone since
-            session.complain(error)
+            point = self.pick_point(x, y, selecting=button == Button.LEFT)
+        except MiniRTError as error:  # the file of a texture may be gone meanwhile
+            session.show_error(error)
             session.show(session.state)
             return
-        held = dragging.grip(session.state.cut(), session.win.width, session.win.height, x, y, point)
-        self._press = Press(button, x, y, drag, held)
+        grip = dragging.start_drag(
+            session.state.end_merging(), session.window.width, session.window.height, x, y, point
+        )
+        session.pressed = PressedButton(button, x, y, drag, grip)
 
-    def motion(self, x: int, y: int) -> None:
-        press = self._press
-        if press and (self._dragging or max(abs(x - press.x), abs(y - press.y)) > SLACK):
-            session = self.session
-            if not self._dragging:
-                self._dragging = True
-                session.state = session.state.cut()
-            session.show(dragging.dragged(session.state, press.drag.action, press.grip, x, y))
+    def on_motion(self, x: int, y: int) -> None:
+        """The pointer moves: drag, if a button is down and the pointer has left the slack of a click."""
+        session = self.session
+        pressed = session.pressed
+        if pressed and (pressed.dragging or max(abs(x - pressed.x), abs(y - pressed.y)) > CLICK_SLACK):
+            if not pressed.dragging:
+                session.pressed = pressed._replace(dragging=True)
+                session.state = session.state.end_merging()
+            session.show(dragging.apply_drag(session.state, pressed.drag.action, pressed.grip, x, y))
 
-    def release(self, button: int) -> None:
-        press = self._press
-        if press and press.button == button:
-            clicked = not self._dragging and button != Button.LEFT
-            self.let_go()
+    def on_release(self, button: int) -> None:
+        """A button goes up: a drag ends, or a click is complete."""
+        pressed = self.session.pressed
+        if pressed and pressed.button == button:
+            clicked = not pressed.dragging and button != Button.LEFT
+            self.session.release_button()
             if clicked:
                 self.click(button)
 
-    def let_go(self) -> None:
-        """Whatever is held is held no more."""
-        if self._dragging:
-            self.session.state = self.session.state.cut()
-        self._press, self._dragging = None, False
-
     def click(self, button: int) -> None:
-        """Do what the table says of that button."""
+        """Perform the action that is bound to a button."""
         binding = self.session.keymap.find(button, self.session.modifiers)
         if binding:
-            self.session.act(binding, self.session.step)
+            self._perform(binding, self.session.step)
 
-    def grasp(self, x: int, y: int, selecting: bool) -> Triple | None:
-        """The place in the scene under the pointer; what is there is selected."""
+    def pick_point(self, x: int, y: int, selecting: bool) -> Triple | None:
+        """Return the point of the scene under the pointer, None if there is none; select the element there."""
         session = self.session
-        state, win = session.state, session.win
-        seen = projection(state.scene.camera, win.width, win.height)
-        shown = session.screen.marks.placed(state, seen, win.scale) if session.screen.level > Level.NOTHING else []
-        icon = icon_at(shown, x, y, win.scale)
+        state, window = session.state, session.window
+        view = projection_of(state.scene.camera, window.width, window.height)
+        has_icons = session.screen.level > HudLevel.NOTHING
+        icons = session.screen.marks.visible_icons(state, view, window.scale) if has_icons else []
+        icon = icon_at(icons, x, y, window.scale)
         if icon:
             if selecting:
-                session.show(state.say("").select(icon.owner))
+                session.show(state.with_message("").select(icon.owner))
             element = state.scene.elements[icon.owner]
-            return None if isinstance(element, Camera) else place_of(element)
-        shape: Shape | None = session.pick(state.scene, win.width, win.height, x, y)
+            return None if isinstance(element, Camera) else position_of(element)
+        shape: Shape | None = session.pick(state.scene, window.width, window.height, x, y)
         if selecting:
-            session.show(selection.picked(state, shape))
-        return place(shape, state.scene.camera, win.width, win.height, x, y) if shape else None
+            session.show(selection.select_shape(state, shape))
+        return surface_point(shape, state.scene.camera, window.width, window.height, x, y) if shape else None

@@ -1,4 +1,4 @@
-"""Plays recorded keys on the viewer without a window: what the user would see, with simulated time."""
+"""Replay: play recorded keys and mouse events on the viewer without a window, in simulated time."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from pathlib import Path
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
 from minirt.scene import Scene
+from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Painter, Pixels, Renderer
-from minirt.viewer.input.recording import record
+from minirt.viewer.input.recording import add_recording
 
 
 def replay(
@@ -28,11 +29,11 @@ def replay(
     samples: int = 1,
     hud: bool = True,
 ) -> Pixels:
-    """Play `lines` (see `minirt.viewer.input.recording`) and return the last frame, (h, w, 4) BGRA; without `hud` its picture
-    alone. The same lines give the same frame.
+    """Play `lines` (see `minirt.viewer.input.recording`) and return the last frame, (h, w, 4) BGRA.
 
-    `path` is the scene's file, which keys may save and reload; `file` is what errors call the lines. ReplayError where
-    they cannot be played, before anything is done.
+    Without `hud` the frame is the picture alone. The same lines give the same frame. `path` is the scene's file, which
+    keys may save and reload; `file` is the name of the recording in error messages. If a line is wrong, ReplayError is
+    raised before any line is played.
     """
     session = play(
         scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient, samples=samples
@@ -53,18 +54,22 @@ def play(
     samples: int = 1,
     watch: Callable[[Session], object] = lambda _: None,
 ) -> Session:
-    """Like `replay`; returns the session as it is at the end. `watch` sees it sixty times a simulated second."""
+    """Play `lines` as `replay` does and return the session at the end.
+
+    `watch` is called with the session sixty times per simulated second.
+    """
     memory = Memory()
-    record(lines, file, memory)
-    m = Mlx(memory)
-    display = m.mlx_init()
+    add_recording(lines, file, memory)
+    mlx = Mlx(memory)
+    display = mlx.mlx_init()
     session = Session(
-        m, display, scene, path=Path(path), size=size, painter=partial(Painter, renderer), pick=renderer.pick,
+        mlx, display, scene, path=Path(path), size=size, painter=partial(Painter, renderer), pick=renderer.pick,
         keys=keys, lenient=lenient, samples=samples,
     )  # fmt: skip
+    EventDispatcher(session).connect()
     memory.after_tick = lambda: watch(session)
     try:
         memory.play()
     finally:
-        m.mlx_release(display)
+        mlx.mlx_release(display)
     return session

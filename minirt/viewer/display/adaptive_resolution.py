@@ -1,4 +1,4 @@
-"""How coarse pictures have to be while something moves."""
+"""Adaptive resolution: how coarse pictures must be for a steady frame rate while something moves."""
 
 from __future__ import annotations
 
@@ -7,31 +7,31 @@ from statistics import median_low
 
 from minirt.viewer.display.painter import Outcome
 
-LONGEST = 0.016  # seconds from a key to its picture on the screen while something moves
+FRAME_TIME = 0.016  # seconds from a key to its picture on the screen while something moves
 DIVISORS = (1, 2, 3, 4, 8)  # of width and height
-EASE = 0.8  # of the time: what a finer picture has to fit into before a coarser one gives way to it
-DOUBT = 1.5  # times the time: what a finer picture may seem to take when it is tried all the same ...
-PATIENCE = 30  # ... after so many pictures in a row
+FINER_SHARE = 0.8  # of the time: a finer picture must fit into it before it replaces a coarser one
+TRIAL_EXCESS = 1.5  # times the time: a finer picture that is estimated to take at most this is tried all the same ...
+TRIAL_INTERVAL = 30  # ... after so many pictures in a row
 
 
 class AdaptiveResolution:
-    """Learns from the pictures what they cost, and from showing them what time is left for that.
+    """Choose the resolution from the measured time of rendering and of displaying pictures.
 
-    A picture that is twice as coarse costs a quarter, and then what every picture costs: so coarse ones tell too much
-    of finer ones, which have to be tried now and then, ever less often until nothing moves.
+    A picture that is twice as coarse costs a quarter, plus a constant cost per picture. So the cost of coarse pictures
+    overestimates that of finer ones; a finer one is tried now and then, ever less often until nothing moves.
     """
 
     def __init__(self) -> None:
-        # Of the last ones the middle counts: one hiccup changes nothing.
-        self._costs: deque[float] = deque(maxlen=3)  # seconds a pixel
-        self._showings: deque[float] = deque(maxlen=3)  # seconds a picture
+        # The median of the last times counts: a single slow picture changes nothing.
+        self._costs: deque[float] = deque(maxlen=3)  # seconds per pixel
+        self._display_times: deque[float] = deque(maxlen=3)  # seconds per picture
         self._measured = 0  # the divisor that had these costs; 0 while nothing is known
         self._chosen = DIVISORS[-1]
-        self._doubts = 0  # pictures in a row after which a finer one seemed possible
-        self._patience = PATIENCE
+        self._candidates = 0  # pictures in a row after which a finer one seemed possible
+        self._trial_interval = TRIAL_INTERVAL
 
-    def learn(self, outcome: Outcome) -> None:
-        """A picture was finished, or was cancelled and would have taken longer."""
+    def record(self, outcome: Outcome) -> None:
+        """Record the time of a picture that was finished, or was cancelled and would have taken longer."""
         job, cost = outcome.job, outcome.seconds / outcome.job.pixels
         if job.samples > 1:
             return
@@ -44,41 +44,46 @@ class AdaptiveResolution:
             self._measured = job.divisor
         self._costs.append(cost)
         if not job.urgent:
-            self._chosen, self._doubts, self._patience = job.divisor, 0, PATIENCE
+            self._chosen, self._candidates, self._trial_interval = job.divisor, 0, TRIAL_INTERVAL
 
     @property
     def rate(self) -> float:
-        """Rays from the eye a second, 0 where nothing is known."""
+        """Primary rays per second, 0 while nothing is known."""
         cost = median_low(self._costs) if self._costs else 0.0
         return 1 / cost if cost else 0.0
 
-    def learn_showing(self, seconds: float) -> None:
-        """A picture was brought to the window in that time."""
-        self._showings.append(seconds)
+    def record_display_time(self, seconds: float) -> None:
+        """Record how long it took to bring a picture to the window."""
+        self._display_times.append(seconds)
 
     def divisor(self, width: int, height: int) -> int:
-        """The least one that is quick enough, or the greatest; that, too, while nothing is known."""
+        """Return the least divisor that is fast enough; the greatest if none is, or while nothing is known."""
         if self._measured == self._chosen:
-            self._chosen = self._better(median_low(self._costs) * width * height)
+            self._chosen = self._next_divisor(median_low(self._costs) * width * height)
         return self._chosen
 
-    def _better(self, seconds: float) -> int:
-        """What should follow the chosen one, where a whole picture seems to take so long; it stays until it is too slow
-        or a finer one is quick enough with ease."""
-        better = min(max(self._chosen, least(seconds, self._time)), least(seconds, self._time * EASE))
-        possible = least(seconds, self._time * DOUBT)
-        self._doubts = self._doubts + 1 if possible < better == self._chosen else 0
-        if self._doubts < self._patience:
+    def _next_divisor(self, seconds: float) -> int:
+        """Return the divisor that should follow the chosen one, given the estimated time of a picture at full size.
+
+        The chosen one stays until it is too slow or a finer one fits into FINER_SHARE of the time.
+        """
+        better = min(
+            max(self._chosen, least_divisor(seconds, self._time)), least_divisor(seconds, self._time * FINER_SHARE)
+        )
+        possible = least_divisor(seconds, self._time * TRIAL_EXCESS)
+        self._candidates = self._candidates + 1 if possible < better == self._chosen else 0
+        if self._candidates < self._trial_interval:
             return better
-        self._doubts, self._patience = 0, 2 * self._patience
+        self._candidates, self._trial_interval = 0, 2 * self._trial_interval
         return possible
 
     @property
     def _time(self) -> float:
-        """What is left for rendering: at least a half, since coarser pictures are no remedy for a slow screen."""
-        return max(LONGEST - (median_low(self._showings) if self._showings else 0.0), LONGEST / 2)
+        """Seconds left for rendering: at least half a frame, since coarser pictures do not help a slow screen."""
+        display_time = median_low(self._display_times) if self._display_times else 0.0
+        return max(FRAME_TIME - display_time, FRAME_TIME / 2)
 
 
-def least(seconds: float, time: float) -> int:
-    """The least divisor that brings `seconds` down to `time`, or the greatest."""
+def least_divisor(seconds: float, time: float) -> int:
+    """Return the least divisor that reduces `seconds` to `time`, or the greatest."""
     return next((each for each in DIVISORS if seconds <= time * each * each), DIVISORS[-1])

@@ -1,6 +1,6 @@
-"""Rendering beside the window: the latest request wins, and what nobody waits for any more is cancelled.
+"""Background rendering: a thread that renders the latest request and cancels pictures that are no longer wanted.
 
-Until the kernel for a scene is there, its pictures are previews; the last of them is then made again.
+Until the kernel for a scene is compiled, its pictures are previews; the last one is then rendered again.
 """
 
 from __future__ import annotations
@@ -12,19 +12,21 @@ from dataclasses import replace
 
 from minirt.viewer.display.painter import Job, Outcome, Painter, Renderer, paint, preview
 
-GRACE = 0.4  # seconds until a kernel that is not there yet is worth a preview and a word: loading one takes less
+PREVIEW_DELAY = 0.4  # seconds that a kernel may take before a preview and a message appear: loading one takes less
 
 
 class BackgroundPainter(Painter):
-    """Renders in a thread of its own, which starts with the first request; another has kernels made. `notify` is called
-    from both."""
+    """A painter with a thread for rendering, started by the first request, and another for compiling kernels.
+
+    Both threads call `notify`.
+    """
 
     def __init__(self, renderer: Renderer, notify: Callable[[], object]) -> None:
         super().__init__(renderer, notify)
         self._changed = threading.Condition()
         self._waiting: Job | None = None
         self._running: Job | None = None
-        self._previewed: Job | None = None  # to be made again when the kernel is there
+        self._previewed: Job | None = None  # to be rendered again when the kernel is ready
         self._closed = False
         self._preparing = False
         self._threads = [threading.Thread(target=self._work, name="minirt-painter", daemon=True)]
@@ -38,7 +40,7 @@ class BackgroundPainter(Painter):
         with self._changed:
             self._waiting, self._previewed = job, None
             self._changed.notify_all()
-            if self._running and self._superseded(self._running):
+            if self._running and self._is_superseded(self._running):
                 self.renderer.cancel()
         if self._threads[0].ident is None:
             self._threads[0].start()
@@ -61,53 +63,54 @@ class BackgroundPainter(Painter):
         return not any(thread.is_alive() for thread in self._threads)
 
     def _work(self) -> None:
+        """Render requests until the painter is closed: the body of the thread."""
         while job := self._next():
-            outcome = self._do(job)
+            outcome = self._render(job)
             with self._changed:
                 self._running = None
                 if outcome:
                     self._add(outcome)
-            self._tell()
+            self._notify()
 
     def _add(self, outcome: Outcome) -> None:
-        """Of the pictures that nobody took yet only the last will be looked at."""
+        """Add an outcome; a new picture replaces older ones that nobody took."""
         if outcome.pixels is not None:
             self.outcomes = [each for each in self.outcomes if each.pixels is None]
         self.outcomes.append(outcome)
 
     def _next(self) -> Job | None:
-        """The latest request, as soon as there is one; None when closed."""
+        """Wait for a request and return the latest; None when closed."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._closed)
             self._running, self._waiting = self._waiting, None
             return None if self._closed else self._running
 
-    def _do(self, job: Job) -> Outcome | None:
-        """What becomes of a job; None where there is no kernel for it yet and no preview of it."""
-        if not self.renderer.is_ready(job.scene) and not self._prepared_soon(job):
+    def _render(self, job: Job) -> Outcome | None:
+        """Render a job, or its preview while its kernel is missing; None if it has neither."""
+        if not self.renderer.is_ready(job.scene) and not self._is_soon_prepared(job):
             outcome = preview(self.renderer, job)
             return outcome if outcome.pixels is not None or outcome.error else None
         start = time.perf_counter()
-        outcome = paint(self.renderer, job, job.base, lambda: not (self._closed or self._superseded(job)))
+        outcome = paint(self.renderer, job, job.base, lambda: not (self._closed or self._is_superseded(job)))
         return replace(outcome, seconds=time.perf_counter() - start)
 
-    def _prepared_soon(self, job: Job) -> bool:
-        """Have the kernel made, unless that is under way; whether it is there before the time of grace is over."""
+    def _is_soon_prepared(self, job: Job) -> bool:
+        """Start to prepare the kernel, unless that has begun; return whether it is ready within PREVIEW_DELAY."""
         with self._changed:
             if not self._preparing:
                 self._preparing = True
                 self._threads[1:] = [threading.Thread(target=self._prepare, args=(job,), daemon=True)]
                 self._threads[1].start()
-                self._changed.wait_for(lambda: not self._preparing or self._closed, GRACE)
+                self._changed.wait_for(lambda: not self._preparing or self._closed, PREVIEW_DELAY)
             if not self._preparing:
                 return self.renderer.is_ready(job.scene)
             self.compiling = True
             self._previewed = None if self._waiting else job
-        self._tell()
+        self._notify()
         return False
 
     def _prepare(self, job: Job) -> None:
-        """Have the kernel made and then, if it was missed, the picture."""
+        """Prepare the kernel, then request the picture that was only previewed: the body of the second thread."""
         error = None
         try:
             self.renderer.prepare(job.scene)
@@ -121,13 +124,13 @@ class BackgroundPainter(Painter):
                 self._waiting = self._previewed
             self._previewed = None
             self._changed.notify_all()
-        self._tell()
+        self._notify()
 
-    def _superseded(self, job: Job) -> bool:
-        """Whether nobody waits for that picture any more."""
+    def _is_superseded(self, job: Job) -> bool:
+        """Whether a newer request makes this picture useless."""
         waiting = self._waiting
         return waiting is not None and not job.outlives(waiting)
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         if not self._closed:
             self.notify()

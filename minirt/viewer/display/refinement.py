@@ -1,4 +1,4 @@
-"""Which pictures are asked for, and when: coarse ones in haste, then finer and finer ones, and none in the end."""
+"""Progressive refinement: request coarse pictures while something moves, then finer ones until the final picture."""
 
 from __future__ import annotations
 
@@ -9,51 +9,51 @@ from minirt.viewer.display.painter import Job, Outcome, Painter
 
 
 class Refinement:
-    """The pictures of one window; the last one of what does not move has so many samples a pixel."""
+    """The sequence of pictures of one window; the final one has `samples` rays per pixel."""
 
-    def __init__(self, painter: Painter, win: Window, samples: int) -> None:
+    def __init__(self, painter: Painter, window: Window, samples: int) -> None:
         self.painter = painter
-        self.pace = AdaptiveResolution()
-        self.latest: Outcome | None = None  # the last one that came
-        self._win = win
+        self.resolution = AdaptiveResolution()
+        self.latest: Outcome | None = None  # the latest picture
+        self._window = window
         self._samples = samples
         self._requested: Job | None = None
 
     @property
     def complete(self) -> bool:
-        """Whether the latest picture is the best there will be of what was asked for last."""
-        return self._answered is not None and self._answered.job.is_last
+        """Whether the latest picture is the final one of the last request."""
+        return self._answer is not None and self._answer.job.is_final
 
-    def want(self, scene: Scene, moving: bool) -> None:
-        """Ask for what is missing of the picture of that scene; `moving`: it will soon be another."""
-        width, height = self._win.width, self._win.height
+    def request_missing(self, scene: Scene, moving: bool) -> None:
+        """Request the next picture of a scene, if one is missing; `moving`: the scene will change again soon."""
+        width, height = self._window.width, self._window.height
         last = self._requested
         if last is None:
             self._request(Job(scene, width, height, goal=self._samples))
         elif not last.shows(scene, width, height):
-            divisor = self.pace.divisor(width, height)
+            divisor = self.resolution.divisor(width, height)
             self._request(Job(scene, width, height, divisor, urgent=True, goal=self._samples))
-        elif not moving and (shown := self._answered) and shown.pixels is not None and not shown.job.is_last:
-            self._request(last.next(shown.pixels))
+        elif not moving and (answer := self._answer) and answer.pixels is not None and not answer.job.is_final:
+            self._request(last.next(answer.pixels))
 
     def collect(self) -> list[Exception]:
-        """Take what the painter has; returns the reasons for pictures that did not come."""
+        """Take the outcomes of the painter; return the errors among them."""
         errors = []
         for outcome in self.painter.take():
             if outcome.error:
                 errors.append(outcome.error)
                 continue
             if not outcome.preview:
-                self.pace.learn(outcome)
+                self.resolution.record(outcome)
             if outcome.pixels is not None:
                 self.latest = outcome
             elif outcome.job is self._requested:
-                self._request(outcome.job)  # cancelled, and there is no other
+                self._request(outcome.job)  # it was cancelled, but no other request replaced it
         return errors
 
     @property
-    def _answered(self) -> Outcome | None:
-        """The latest picture, where it is what was asked for last and no preview of it."""
+    def _answer(self) -> Outcome | None:
+        """The latest picture, if it answers the last request and is no preview."""
         latest = self.latest
         return latest if latest and latest.job is self._requested and not latest.preview else None
 

@@ -1,4 +1,4 @@
-"""The picture and what is written over it, brought to the window."""
+"""Screen: compose picture, marks and text into a frame and bring it to the window."""
 
 from __future__ import annotations
 
@@ -9,25 +9,33 @@ import numpy as np
 from minirt.mlx import Image, Mlx, Window
 from minirt.mlx.canvas import stretch
 from minirt.viewer.display.marks import Marks
-from minirt.viewer.display.overlay import COMPILING, LETTERS, Level, draw_help, draw_hud, draw_message, letters
+from minirt.viewer.display.overlay import (
+    COMPILING,
+    TEXT_SIZE,
+    HudLevel,
+    draw_help,
+    draw_hud,
+    draw_message,
+    text_size,
+)
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import State
 
 
 class Screen:
-    """What a window shows over its picture, and the drawing of both."""
+    """The frame of a window, and the settings of what is drawn over the picture."""
 
-    def __init__(self, m: Mlx, win: Window, layout: str) -> None:
-        self.m = m
-        self.win = win
-        self.layout = layout
-        self.level = Level.LINE
+    def __init__(self, mlx: Mlx, window: Window, layout: str) -> None:
+        self.mlx = mlx
+        self.window = window
+        self.layout = layout  # of the keyboard, for the help
+        self.level = HudLevel.LINE
         self.help = False
-        self.banner = ""  # what is said for as long as it holds
+        self.banner = ""  # a message that stays until its reason is gone
         self.marks = Marks()
-        self.image = m.mlx_new_image(win.display, 1, 1)
-        draw_message(self.frame, COMPILING, 0, LETTERS)  # the first text takes 50 ms: now, when nobody waits
-        self._drawn: tuple[object, ...] = ()  # what the window shows
+        self.image = mlx.mlx_new_image(window.display, 1, 1)
+        draw_message(self.frame, COMPILING, 0, TEXT_SIZE)  # loads the font, which takes 50 ms, while nobody waits
+        self._drawn: tuple[object, ...] = ()  # the contents of the window
 
     @property
     def frame(self) -> Pixels:
@@ -35,40 +43,40 @@ class Screen:
         return self.image.pixels
 
     def draw(self, state: State, picture: Outcome | None, compiling: bool, rate: float = 0.0) -> bool:
-        """Draw all of it, unless that is what was drawn last; whether it was necessary.
+        """Draw a frame unless the window already shows it; return whether it was drawn.
 
-        `rate`: rays a second.
+        `rate`: primary rays per second.
         """
-        width, height, scale = self.win.width, self.win.height, self.win.scale
-        told = COMPILING if compiling else state.message or self.banner
-        wanted = (state, picture, told, self.level, self.help, self.marks.icons, width, height, scale)
-        if wanted == self._drawn:
+        width, height, scale = self.window.width, self.window.height, self.window.scale
+        message = COMPILING if compiling else state.message or self.banner
+        contents = (state, picture, message, self.level, self.help, self.marks.icons, width, height, scale)
+        if contents == self._drawn:
             return False
-        self._drawn = wanted
-        self.image = Image(self.bare(picture))
-        size = letters(width, height, scale)
-        taken = 0
+        self._drawn = contents
+        self.image = Image(self.picture_alone(picture))
+        size = text_size(width, height, scale)
+        bottom = 0
         if self.help:
             draw_help(self.frame, self.layout, size)
         elif self.level:
-            shown = in_step(state, picture)
+            shown = state_in_picture(state, picture)
             self.marks.draw(self.frame, shown, scale, picture is not None and picture.job.urgent)
-            taken = draw_hud(self.frame, shown, picture, self.level, rate, size)
-        draw_message(self.frame, told, taken, size)
-        self.m.mlx_put_image_to_window(self.win.display, self.win, self.image, 0, 0)
+            bottom = draw_hud(self.frame, shown, picture, self.level, rate, size)
+        draw_message(self.frame, message, bottom, size)
+        self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True
 
-    def bare(self, picture: Outcome | None) -> Pixels:
-        """A copy of the picture alone, at the size of the window; black where there is none yet."""
-        width, height = self.win.width, self.win.height
+    def picture_alone(self, picture: Outcome | None) -> Pixels:
+        """Return a copy of the picture without overlay, stretched to the window; black if there is no picture yet."""
+        width, height = self.window.width, self.window.height
         if picture is None or picture.pixels is None:
             return np.full((height, width, 4), (0, 0, 0, 255), np.uint8)
         same_size = picture.pixels.shape[:2] == (height, width)
         return picture.pixels.copy() if same_size else stretch(picture.pixels, width, height)
 
 
-def in_step(state: State, picture: Outcome | None) -> State:
-    """The state with the scene of the picture, so that what is drawn over it fits to it while something moves."""
+def state_in_picture(state: State, picture: Outcome | None) -> State:
+    """Return the state with the scene of the picture, so that the overlay matches the picture while something moves."""
     if picture is None or picture.job.scene is state.scene:
         return state
     elements = picture.job.scene.elements

@@ -1,7 +1,7 @@
-"""What the pointer does to a scene while a button is held: pure functions of the state at its press.
+"""Drags of the pointer: move or turn an element, orbit, pan or turn the camera.
 
-All of them start afresh from that state, so that the way of the pointer does not matter, and nothing drifts. The whole
-of a drag is undone at once.
+All functions are pure and start from the state at the press of the button, so that the result depends on the current
+position of the pointer alone, and nothing drifts. A drag is undone as a whole.
 """
 
 from __future__ import annotations
@@ -13,107 +13,119 @@ from minirt.element import Element
 from minirt.fields import Direction, Triple
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame, linear_combination
-from minirt.viewer.editing.measure import ball, middle_of
-from minirt.viewer.editing.motion import WORLD, handedness, limited, looked, orbited, rotated, translated
-from minirt.viewer.editing.projection import Projection, minus, projection
-from minirt.viewer.editing.state import State, named
+from minirt.viewer.editing.measure import extent, scene_centre
+from minirt.viewer.editing.motion import (
+    WORLD_AXES,
+    clamp_point,
+    handedness,
+    orbit_camera,
+    rotate,
+    translate,
+    turn_camera,
+)
+from minirt.viewer.editing.projection import Projection, projection_of, subtract
+from minirt.viewer.editing.state import State, field_names
 
-MIDDLE = 0.5  # of a pixel
-DRAG = ("drag", 0.0)  # kind and time of its changes: for the undo no time goes by in it
-TURN = 180.0  # degrees: a drag over the shorter side of the picture
+PIXEL_CENTRE = 0.5  # pixels
+CHANGE = ("drag", 0.0)  # kind and time of its changes: the constant time merges them for undo
+TURN_ANGLE = 180.0  # degrees: a drag over the shorter side of the picture
 
 
-class Grip(NamedTuple):
-    """What the pointer has taken hold of."""
+class DragStart(NamedTuple):
+    """The scene at the press of the button, as far as a drag needs it."""
 
-    lens: Projection
+    projection: Projection
     x: int  # of the pointer, in pixels
     y: int
     element: Element  # the selected one, as it was
     camera: Camera  # as it was
-    point: Triple | None  # in the scene, under the pointer; None where nothing is there
+    point: Triple | None  # on the surface under the pointer; None if there is none
 
 
-def grip(state: State, width: int, height: int, x: int, y: int, point: Triple | None) -> Grip:
-    """Take hold at a pixel of a picture of that size."""
-    return Grip(projection(state.scene.camera, width, height), x, y, state.element, state.scene.camera, point)
+def start_drag(state: State, width: int, height: int, x: int, y: int, point: Triple | None) -> DragStart:
+    """Start a drag at pixel x, y of a picture of this size."""
+    return DragStart(projection_of(state.scene.camera, width, height), x, y, state.element, state.scene.camera, point)
 
 
-def dragged(state: State, action: str, held: Grip, x: int, y: int) -> State:
-    """The state with the pointer at x, y; KeyError where there is no such action."""
-    return DRAGS[action](state.say(""), held, x, y)
+def apply_drag(state: State, action: str, start: DragStart, x: int, y: int) -> State:
+    """The state with the pointer at x, y. KeyError if `action` is not in DRAGS."""
+    return DRAGS[action](state.with_message(""), start, x, y)
 
 
-def move(state: State, held: Grip, x: int, y: int) -> State:
-    """Move the element in the plane of the view, or along the axis: what is under the pointer stays there."""
-    if held.point is None or isinstance(held.element, Camera):
-        return look(state, held, x, y)
-    axis = WORLD.get(state.frame)
+def move(state: State, start: DragStart, x: int, y: int) -> State:
+    """Move the element parallel to the image plane, or along an axis, with its point under the pointer."""
+    if start.point is None or isinstance(start.element, Camera):
+        return look(state, start, x, y)
+    axis = WORLD_AXES.get(state.frame)
     if axis:
-        distance = held.lens.along(x + MIDDLE, y + MIDDLE, held.point, axis)
+        distance = start.projection.distance_along(x + PIXEL_CENTRE, y + PIXEL_CENTRE, start.point, axis)
         if distance is None:
-            return state.say("seen along the axis nothing moves")
-        way = linear_combination(distance, axis, 0.0, axis)
+            return state.with_message("the view is along the axis: nothing moves")
+        offset = linear_combination(distance, axis, 0.0, axis)
     else:
-        way = minus(under(held, x, y, held.point), under(held, held.x, held.y, held.point))
-    moved, met = translated(held.element, way, 1.0)
-    state = state.put(moved, *DRAG)
-    return state.say("the end of the range: no further") if met else state
+        offset = subtract(
+            point_under_pointer(start, x, y, start.point), point_under_pointer(start, start.x, start.y, start.point)
+        )
+    moved, clamped = translate(start.element, offset, 1.0)
+    state = state.edit_element(moved, *CHANGE)
+    return state.with_message("the end of the range: no further") if clamped else state
 
 
-def under(held: Grip, x: int, y: int, point: Triple) -> Triple:
-    """The place under the pointer that is as far away as `point`."""
-    return held.lens.at_depth(x + MIDDLE, y + MIDDLE, held.lens.depth(point))
+def point_under_pointer(start: DragStart, x: int, y: int, point: Triple) -> Triple:
+    """The point under the pointer at the depth of `point`."""
+    return start.projection.point_at_depth(x + PIXEL_CENTRE, y + PIXEL_CENTRE, start.projection.depth(point))
 
 
-def turn(state: State, held: Grip, x: int, y: int) -> State:
-    """Turn the element about the picture's up and right, or about the axis."""
-    if isinstance(held.element, Camera):
-        return look(state, held, x, y)
-    if not named(type(held.element), Direction):
-        return state.say(f"{held.element.title} looks the same from all sides: nothing to turn")
-    right, down = angles(held, x, y)
-    axis = WORLD.get(state.frame)
+def turn(state: State, start: DragStart, x: int, y: int) -> State:
+    """Turn the element about the picture's vertical and horizontal axes, or about an axis of the scene."""
+    if isinstance(start.element, Camera):
+        return look(state, start, x, y)
+    if not field_names(type(start.element), Direction):
+        return state.with_message(f"{start.element.title} looks the same from all sides: nothing to turn")
+    right, down = drag_angles(start, x, y)
+    axis = WORLD_AXES.get(state.frame)
     if axis:
-        return state.put(rotated(held.element, axis, right), *DRAG)
-    across, up, _ = camera_frame(held.camera)
-    hand = handedness(held.camera)
-    return state.put(rotated(rotated(held.element, up, right * hand), across, down * hand), *DRAG)
+        return state.edit_element(rotate(start.element, axis, right), *CHANGE)
+    across, up, _ = camera_frame(start.camera)
+    hand = handedness(start.camera)
+    return state.edit_element(rotate(rotate(start.element, up, right * hand), across, down * hand), *CHANGE)
 
 
-def look(state: State, held: Grip, x: int, y: int) -> State:
-    """Turn the camera so that far things follow the pointer."""
-    step = held.camera.fov / held.lens.width
-    camera = looked(held.camera, (held.x - x) * step, (y - held.y) * step)
-    return state.put_camera(camera, *DRAG)
+def look(state: State, start: DragStart, x: int, y: int) -> State:
+    """Turn the camera so that distant objects follow the pointer."""
+    step = start.camera.fov / start.projection.width
+    camera = turn_camera(start.camera, (start.x - x) * step, (y - start.y) * step)
+    return state.edit_camera(camera, *CHANGE)
 
 
-def orbit(state: State, held: Grip, x: int, y: int) -> State:
-    """Lead the camera round the selected element, or round the middle of the scene: what is there stays in the picture
-    where it is, and what is in front of it follows the pointer."""
-    around = None if isinstance(held.element, Camera) else ball(held.element)
-    pivot = around[0] if around else middle_of(state.scene)
-    right, down = angles(held, x, y)
-    return state.put_camera(orbited(held.camera, pivot, right, -down), *DRAG)
+def orbit(state: State, start: DragStart, x: int, y: int) -> State:
+    """Orbit the camera around the selected element, or around the centre of the scene.
+
+    The pivot stays where it is in the picture, and everything in front of it follows the pointer.
+    """
+    selected = None if isinstance(start.element, Camera) else extent(start.element)
+    pivot = selected[0] if selected else scene_centre(state.scene)
+    right, down = drag_angles(start, x, y)
+    return state.edit_camera(orbit_camera(start.camera, pivot, right, -down), *CHANGE)
 
 
-def pan(state: State, held: Grip, x: int, y: int) -> State:
-    """Move the camera in the plane of its picture: what is under the pointer stays there."""
-    ahead = linear_combination(1.0, held.camera.position, state.size, held.camera.direction)
-    point = held.point or ahead
-    way = minus(under(held, held.x, held.y, point), under(held, x, y, point))
-    return state.put_camera(
-        held.camera.replace(position=limited(linear_combination(1.0, held.camera.position, 1.0, way))), *DRAG
+def pan(state: State, start: DragStart, x: int, y: int) -> State:
+    """Move the camera parallel to its image plane, so that the point under the pointer stays there."""
+    ahead = linear_combination(1.0, start.camera.position, state.size, start.camera.direction)
+    point = start.point or ahead
+    offset = subtract(point_under_pointer(start, start.x, start.y, point), point_under_pointer(start, x, y, point))
+    return state.edit_camera(
+        start.camera.replace(position=clamp_point(linear_combination(1.0, start.camera.position, 1.0, offset))), *CHANGE
     )
 
 
-def angles(held: Grip, x: int, y: int) -> tuple[float, float]:
-    """How far the pointer went to the right and down, in degrees."""
-    step = TURN / min(held.lens.width, held.lens.height)
-    return (x - held.x) * step, (y - held.y) * step
+def drag_angles(start: DragStart, x: int, y: int) -> tuple[float, float]:
+    """Movement of the pointer to the right and down, as angles in degrees."""
+    step = TURN_ANGLE / min(start.projection.width, start.projection.height)
+    return (x - start.x) * step, (y - start.y) * step
 
 
-DRAGS: dict[str, Callable[[State, Grip, int, int], State]] = {
+DRAGS: dict[str, Callable[[State, DragStart, int, int], State]] = {
     "move by hand": move,
     "turn by hand": turn,
     "orbit": orbit,

@@ -1,4 +1,4 @@
-"""Where the camera goes by itself."""
+"""Frame the selected element in the picture, and reset the camera."""
 
 from __future__ import annotations
 
@@ -7,31 +7,31 @@ from math import atan, radians, sin, tan
 from minirt.fields import clamp
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame, linear_combination
-from minirt.viewer.editing.measure import ball
-from minirt.viewer.editing.motion import limited
+from minirt.viewer.editing.measure import extent
+from minirt.viewer.editing.motion import clamp_point
 from minirt.viewer.editing.state import State
 
-ROOM = 1.5  # the ball about the element, its corners and what is left free around them
-FLAT = 9 / 16  # height by width of a usual window
-POINT = 1 / 10  # of the scene's size: the radius that is shown around a thing without an extent
+MARGIN = 1.5  # the distance is larger than for the bounding sphere: room for corners of the box and a border
+ASPECT = 9 / 16  # height / width of a usual window
+POINT_RADIUS = 1 / 10  # of the scene's size: the radius that is shown around an element without extent
 
 
 def look_at(state: State, _amount: float, now: float) -> State:
-    """Move the camera, without turning it, until the selected element is in the middle and fills the picture."""
+    """Move the camera, without turning it, so that the selected element is centred and fills the picture."""
     element, camera = state.element, state.scene.camera
-    around = None if isinstance(element, Camera) else ball(element)
-    if around is None:
-        return state.say(f"select something with a place to look at: {element.title} has none")
-    centre, radius = around
-    half = atan(tan(radians(clamp(camera.fov, 1.0, 120.0)) / 2) * FLAT)
-    distance = ROOM * (radius or POINT * state.size) / sin(half)
+    bounds = None if isinstance(element, Camera) else extent(element)
+    if bounds is None:
+        return state.with_message(f"select an element with a position to look at: {element.title} has none")
+    centre, radius = bounds
+    half = atan(tan(radians(clamp(camera.fov, 1.0, 120.0)) / 2) * ASPECT)
+    distance = MARGIN * (radius or POINT_RADIUS * state.size) / sin(half)
     _, _, forward = camera_frame(camera)
-    moved = camera.replace(position=limited(linear_combination(1.0, centre, -distance, forward)))
-    return state.put_camera(moved, "", now)
+    moved = camera.replace(position=clamp_point(linear_combination(1.0, centre, -distance, forward)))
+    return state.edit_camera(moved, "", now)
 
 
 def reset_camera(state: State, _amount: float, now: float) -> State:
-    """The camera as the file has it."""
-    if state.scene.camera == state.home:
+    """Reset the camera to that of the file."""
+    if state.scene.camera == state.file_camera:
         return state
-    return state.change(state.scene.replace(state.scene.camera, state.home), "", now)
+    return state.change(state.scene.replace(state.scene.camera, state.file_camera), "", now)

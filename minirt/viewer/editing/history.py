@@ -1,31 +1,38 @@
-"""Undo and redo."""
+"""Undo and redo, by stacks of snapshots."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from minirt.viewer.editing.state import Moment, State
+from minirt.viewer.editing.state import Snapshot, State
 
 
 def undo(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
-    """Back to before the last change, and to what was selected then."""
-    if not state.past:
-        return state.say("nothing to undo")
-    return back_to(state.past[-1], replace(state, past=state.past[:-1], future=(*state.future, here(state))))
+    """Undo the last change, and restore the selection before it."""
+    if not state.undo_stack:
+        return state.with_message("nothing to undo")
+    return restore(
+        state.undo_stack[-1],
+        replace(state, undo_stack=state.undo_stack[:-1], redo_stack=(*state.redo_stack, current_snapshot(state))),
+    )
 
 
 def redo(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
-    """Do again what was undone last."""
-    if not state.future:
-        return state.say("nothing to redo")
-    return back_to(state.future[-1], replace(state, past=(*state.past, here(state)), future=state.future[:-1]))
+    """Redo the change that was undone last."""
+    if not state.redo_stack:
+        return state.with_message("nothing to redo")
+    return restore(
+        state.redo_stack[-1],
+        replace(state, undo_stack=(*state.undo_stack, current_snapshot(state)), redo_stack=state.redo_stack[:-1]),
+    )
 
 
-def here(state: State) -> Moment:
-    return Moment(state.scene.drop_caches(), state.selected)
+def current_snapshot(state: State) -> Snapshot:
+    """Snapshot of the current scene and selection."""
+    return Snapshot(state.scene.drop_caches(), state.selected)
 
 
-def back_to(moment: Moment, state: State) -> State:
-    """The state with that scene; the value stays active where the same element is selected."""
-    value = state.value if moment.selected == state.selected else 0
-    return replace(state, scene=moment.scene, selected=moment.selected, value=value, recent=None)
+def restore(snapshot: Snapshot, state: State) -> State:
+    """The state with the scene of a snapshot. The active value stays if the selected element stays."""
+    value_index = state.value_index if snapshot.selected == state.selected else 0
+    return replace(state, scene=snapshot.scene, selected=snapshot.selected, value_index=value_index, last_change=None)

@@ -1,4 +1,4 @@
-"""How large things are: what a step of a movement is a share of."""
+"""Sizes and centres of elements and scenes, which scale the steps of movements."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from minirt.fields import FARTHEST, LEAST_LENGTH, Point, Triple, clamp
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
 
-Ball = tuple[Triple, float]  # centre and radius
-Thing = TypeVar("Thing")
+Extent = tuple[Triple, float]  # centre and radius
+Item = TypeVar("Item")
 
-SAMPLE = 4096  # things; their median is within some percent of that of a million
+SAMPLE_SIZE = 4096  # items; their median is within some per cent of that of a million
 
 
-def ball(element: Element) -> Ball | None:
-    """A ball about an element: as wide as the box of a shape that has one, or a radius of 0 at its point."""
+def extent(element: Element) -> Extent | None:
+    """Centre and radius of an element: half the longest side of its bounding box, or 0 at its point, or None."""
     box = element.bounds() if isinstance(element, Shape) else None
     if box is not None:
         (a, b, c), (x, y, z) = box
@@ -28,31 +28,31 @@ def ball(element: Element) -> Ball | None:
     return (points[0], 0.0) if points else None
 
 
-def sample(things: Sequence[Thing]) -> Sequence[Thing]:
-    """All of few things, and of many at most SAMPLE at equal distances in the file."""
-    return things[:: max(1, -(-len(things) // SAMPLE))]
+def sample(items: Sequence[Item]) -> Sequence[Item]:
+    """Select at most SAMPLE_SIZE items, evenly spaced in the file."""
+    return items[:: max(1, -(-len(items) // SAMPLE_SIZE))]
 
 
-def balls(scene: Scene) -> list[Ball]:
-    """What is where in a scene: its shapes with an end or, where there are none, everything that has a place."""
+def extents(scene: Scene) -> list[Extent]:
+    """Extents of the bounded shapes of a scene or, if there are none, of all elements with a position."""
     bounded: list[Element] = [each for each in sample(scene.shapes) if each.bounds() is not None]
-    things = bounded or [each for each in sample(scene.elements) if not isinstance(each, Camera)]
-    return list(filter(None, map(ball, things)))
+    elements = bounded or [each for each in sample(scene.elements) if not isinstance(each, Camera)]
+    return list(filter(None, map(extent, elements)))
 
 
-def size_of(scene: Scene) -> float:
-    """The distance from the camera that is usual for the things in a scene.
+def scene_size(scene: Scene) -> float:
+    """Size of a scene: the median distance of its elements from the camera.
 
-    The median, since one far or huge thing (a sky, a sun) says nothing of the others.
+    The median ignores single distant or huge elements (a sky, a sun).
     """
-    reaches = [max(dist(scene.camera.position, centre), radius) for centre, radius in balls(scene)]
-    usual = median(reach for reach in reaches if reach > 0) if any(reaches) else 1.0
+    distances = [max(dist(scene.camera.position, centre), radius) for centre, radius in extents(scene)]
+    usual = median(distance for distance in distances if distance > 0) if any(distances) else 1.0
     return clamp(usual, LEAST_LENGTH, FARTHEST)
 
 
-def middle_of(scene: Scene) -> Triple:
-    """The usual place of the things in a scene: of each coordinate the median, for the same reason."""
-    centres = [centre for centre, _ in balls(scene)]
+def scene_centre(scene: Scene) -> Triple:
+    """Centre of a scene: the median of each coordinate, which ignores single distant elements."""
+    centres = [centre for centre, _ in extents(scene)]
     if not centres:
         return 0.0, 0.0, 0.0
     x, y, z = (median(each) for each in zip(*centres, strict=True))

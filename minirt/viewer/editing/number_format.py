@@ -1,4 +1,4 @@
-"""Numbers as a person would write them: 0.3 and not 0.30000000000000004."""
+"""Round edited numbers as a person would write them: 0.3 instead of 0.30000000000000004."""
 
 from __future__ import annotations
 
@@ -8,53 +8,53 @@ from typing import Any, TypeVar
 from minirt.element import Record, fields_of
 from minirt.fields import Factor, Field, Length, Point, Real
 
-PLACES = 5  # decimals of a step of movement that are kept
-DIGITS = 5  # of a length that are kept
-TENTHS = 3  # decimals of a step of any other number that are kept
-SLACK = 1 + 1e-9  # what rounding may have done to a power of ten
+POINT_DECIMALS = 5  # decimals that are kept, counted from the leading digit of a step of movement
+LENGTH_DIGITS = 5  # significant digits of a length that are kept
+REAL_DECIMALS = 3  # decimals of any other number that are kept, counted likewise from its own step
+SLACK = 1 + 1e-9  # allows for the rounding of a power of ten
 
-Kind = TypeVar("Kind", bound=Record)
+RecordType = TypeVar("RecordType", bound=Record)
 
 
-def decimals(number: float) -> int:
-    """The place of the first digit of `number` behind the point; 0 or less in front of it."""
+def leading_decimal(number: float) -> int:
+    """Decimal place of the leading digit of `number`: 1 for 0.3, 0 for 3, -1 for 30."""
     return -floor(log10(number * SLACK))
 
 
-def nice(length: float) -> float:
-    """The greatest of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ... that is not above `length`."""
-    places = decimals(length)
+def nice_number(length: float) -> float:
+    """Nice number (Heckbert 1990): the greatest of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ... that is not above `length`."""
+    places = leading_decimal(length)
     steps = [round(digit * 10.0**-places, places) for digit in (1, 2, 5)]
     return max(step for step in steps if step <= length * SLACK)
 
 
-def neat(old: Record, new: Kind, stride: float) -> Kind:
-    """`new` with round numbers where it differs from `old`: a tiny part of a step is left out, too little to be seen.
+def round_changes(old: Record, new: RecordType, stride: float) -> RecordType:
+    """Round the numbers of `new` that differ from `old`, by an invisible fraction of a step.
 
-    `stride` is a step of a movement, in scene units.
+    stride: a step of a movement in scene units.
     """
     changes = {}
     for field in fields_of(type(new)):
         before, after = getattr(old, field.name), getattr(new, field.name)
         if after != before:
-            changes[field.name] = rounded(field, before, after, stride)
+            changes[field.name] = round_value(field, before, after, stride)
     return new.replace(**changes)
 
 
 def round_length(length: float) -> float:
-    """To as many digits as are kept of a length."""
-    return round(length, decimals(length) + DIGITS - 1)
+    """Round a length to LENGTH_DIGITS significant digits."""
+    return round(length, leading_decimal(length) + LENGTH_DIGITS - 1)
 
 
-def rounded(field: Field, before: Any, after: Any, stride: float) -> Any:
-    """The value of a field that was edited."""
+def round_value(field: Field, before: Any, after: Any, stride: float) -> Any:
+    """Round the edited value of a field."""
     if isinstance(before, Record) and isinstance(after, Record):
-        return neat(before, after, stride)
+        return round_changes(before, after, stride)
     if isinstance(field, (Factor, Length)):
         return round_length(after)
     if isinstance(field, Point):
-        places = decimals(stride) + PLACES
+        places = leading_decimal(stride) + POINT_DECIMALS
         return tuple(b if a == b else round(b, places) for a, b in zip(before, after, strict=True))
     if isinstance(field, Real):
-        return round(after, decimals(field.step) + TENTHS)
+        return round(after, leading_decimal(field.step) + REAL_DECIMALS)
     return after

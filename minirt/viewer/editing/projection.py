@@ -1,4 +1,4 @@
-"""Between pixels of a picture and places in its scene."""
+"""Perspective projection: convert between pixels of a picture and points of its scene."""
 
 from __future__ import annotations
 
@@ -12,63 +12,65 @@ from minirt.scene.camera_frame import linear_combination
 
 Pixel = tuple[float, float]
 
-BESIDE = 1e-9  # of the distance to the eye: what is less in front of it than that is on no picture
-NEAR = 1e-3  # of the distance to the eye: how near to its plane a line is drawn
-FAR = 1e3  # times that distance: how far a line is drawn
+MIN_DEPTH = 1e-9  # of the distance to the eye: points that are less far in front of the eye are on no picture
+NEAR = 1e-3  # of the distance to the eye: depth at which a line is clipped
+FAR = 1e3  # times that distance: length to which a line is drawn
 PARALLEL = 1e-6  # square of the sine of the angle between a ray and an axis
 
 
 class Projection(NamedTuple):
-    """A camera and the size of its picture. Pixel x, y has its middle at x + 0.5, y + 0.5."""
+    """Perspective projection of a camera and picture size. Pixel x, y has its centre at x + 0.5, y + 0.5."""
 
     eye: Triple
-    right: Triple  # right and up reach from the middle of a picture at distance 1 to its edges
+    right: Triple  # right and up reach from the centre of the image plane at distance 1 to its edges
     up: Triple
     forward: Triple
     width: int
     height: int
 
-    def towards(self, x: float, y: float) -> Triple:
-        """What leads from the eye through a point of the picture; its part along `forward` has length 1."""
+    def direction_through(self, x: float, y: float) -> Triple:
+        """Vector from the eye through a point of the picture; its component along `forward` is 1."""
         across, down = 2 * x / self.width - 1, 1 - 2 * y / self.height
         return linear_combination(1.0, linear_combination(across, self.right, down, self.up), 1.0, self.forward)
 
     def ray(self, x: float, y: float) -> Triple:
-        """The same at length 1."""
-        return unit(self.towards(x, y))
+        """Unit direction of the ray from the eye through a point of the picture."""
+        return unit(self.direction_through(x, y))
 
     def depth(self, point: Triple) -> float:
-        """How far in front of the eye a place is, along `forward`; negative behind it."""
-        return dot(minus(point, self.eye), self.forward)
+        """Depth of a point: its distance from the eye along `forward`, negative behind the eye."""
+        return dot(subtract(point, self.eye), self.forward)
 
-    def at_depth(self, x: float, y: float, depth: float) -> Triple:
-        """The place that is so far in front of the eye and shows at a point of the picture."""
-        return linear_combination(1.0, self.eye, depth, self.towards(x, y))
+    def point_at_depth(self, x: float, y: float, depth: float) -> Triple:
+        """The point of the scene at this depth that projects to a point of the picture."""
+        return linear_combination(1.0, self.eye, depth, self.direction_through(x, y))
 
     def pixel(self, point: Triple) -> Pixel | None:
-        """Where in the picture, or beside it, a place shows; None where it is not in front of the eye."""
-        way = minus(point, self.eye)
-        depth = dot(way, self.forward)
-        if depth <= BESIDE * hypot(*way):
+        """Project a point of the scene, also to outside the picture. None if it is not in front of the eye."""
+        offset = subtract(point, self.eye)
+        depth = dot(offset, self.forward)
+        if depth <= MIN_DEPTH * hypot(*offset):
             return None
-        across = dot(way, self.right) / (depth * dot(self.right, self.right))
-        down = dot(way, self.up) / (depth * dot(self.up, self.up))
+        across = dot(offset, self.right) / (depth * dot(self.right, self.right))
+        down = dot(offset, self.up) / (depth * dot(self.up, self.up))
         return (1 + across) * self.width / 2, (1 - down) * self.height / 2
 
-    def along(self, x: float, y: float, point: Triple, axis: Triple) -> float | None:
-        """How far from `point` along the unit vector `axis` the place is that comes nearest to a point of the picture.
+    def distance_along(self, x: float, y: float, point: Triple, axis: Triple) -> float | None:
+        """Distance from `point` along the unit vector `axis` to where the line is nearest to the ray through x, y.
 
-        The place of the axis nearest to the ray; None where the two are all but parallel.
+        None if line and ray are almost parallel.
         """
-        ray, way = self.ray(x, y), minus(point, self.eye)
+        ray, offset = self.ray(x, y), subtract(point, self.eye)
         slant = dot(ray, axis)
         across = 1 - slant * slant
-        return (slant * dot(way, ray) - dot(way, axis)) / across if across > PARALLEL else None
+        return (slant * dot(offset, ray) - dot(offset, axis)) / across if across > PARALLEL else None
 
-    def segment(self, point: Triple, axis: Triple) -> tuple[Pixel, Pixel] | None:
-        """Two points of the picture between which the line through `point` along the unit vector `axis` shows; None
-        where all of it is behind the eye."""
-        distance = hypot(*minus(point, self.eye))
+    def visible_segment(self, point: Triple, axis: Triple) -> tuple[Pixel, Pixel] | None:
+        """Project the line through `point` along the unit vector `axis`, clipped in front of the eye, to its two ends.
+
+        None if all of the line is behind the eye.
+        """
+        distance = hypot(*subtract(point, self.eye))
         depth, slope, near = self.depth(point), dot(axis, self.forward), NEAR * distance
         low, high = -FAR * distance, FAR * distance
         if slope > 0:
@@ -81,17 +83,17 @@ class Projection(NamedTuple):
         return (start, end) if low < high and start and end else None
 
 
-def projection(camera: Camera, width: int, height: int) -> Projection:
-    """The lens of a camera."""
+def projection_of(camera: Camera, width: int, height: int) -> Projection:
+    """Projection of a camera for a picture of this size."""
     eye, right, up, forward = (tuple(part) for part in camera_numbers(camera, width, height).reshape(4, 3).tolist())
     return Projection(eye, right, up, forward, width, height)
 
 
 def dot(a: Triple, b: Triple) -> float:
-    """The scalar product."""
+    """Dot product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def minus(a: Triple, b: Triple) -> Triple:
-    """a - b."""
+def subtract(a: Triple, b: Triple) -> Triple:
+    """Difference a - b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]

@@ -1,4 +1,4 @@
-"""Choosing the element that the keys work on."""
+"""Select the element that the keys edit."""
 
 from __future__ import annotations
 
@@ -7,27 +7,27 @@ from minirt.shapes import Shape
 from minirt.viewer.editing.state import State, can_edit, index_of
 
 
-def step(way: int, state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
-    """The next or the previous element that can be edited, in the order of the file and round again."""
+def select_neighbour(step: int, state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
+    """Select the next (step 1) or previous (-1) editable element in the order of the file, cyclically."""
     count = len(state.scene.elements)
-    around = ((state.selected + way * ahead) % count for ahead in range(1, count + 1))
-    return state.select(next(index for index in around if can_edit(type(state.scene.elements[index]))))
+    indices = ((state.selected + step * number) % count for number in range(1, count + 1))
+    return state.select(next(index for index in indices if can_edit(type(state.scene.elements[index]))))
 
 
-def camera(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
-    """Back to the camera."""
+def select_camera(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
+    """Select the camera."""
     return state.select(index_of(state.scene, state.scene.camera))
 
 
-def next_light(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
-    """The next light behind the selected element, and round again."""
+def select_next_light(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
+    """Select the next light after the selected element, cyclically."""
     lights = list(state.scene.indices_of(Lamp))
     if not lights:
-        return state.say("there is no light")
+        return state.with_message("there is no light")
     return state.select(next((index for index in lights if index > state.selected), lights[0]))
 
 
-def picked(state: State, shape: Shape | None) -> State:
-    """What a pixel shows."""
-    state = state.say("" if shape else "there is nothing")
+def select_shape(state: State, shape: Shape | None) -> State:
+    """Select the shape that a pixel shows, or keep the selection if it shows none."""
+    state = state.with_message("" if shape else "there is nothing")
     return state.select(index_of(state.scene, shape)) if shape else state

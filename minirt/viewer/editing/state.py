@@ -1,4 +1,4 @@
-"""What the editor knows: a scene, what is selected in it, and the way back."""
+"""State of the editor: the scene, the selection, and the undo and redo stacks."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from typing import Any
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Point, Triple
 from minirt.scene import Camera, Scene
-from minirt.viewer.editing.measure import size_of
-from minirt.viewer.editing.number_format import neat, nice
-from minirt.viewer.editing.values import Value, grows, values
+from minirt.viewer.editing.measure import scene_size
+from minirt.viewer.editing.number_format import nice_number, round_changes
+from minirt.viewer.editing.values import Value, is_editable, values
 
-STRIDE = 1 / 40  # of the scene's size: one step of a movement, about
-MERGE = 0.5  # seconds; changes of the same kind that follow each other faster are undone together
-MOST = 1000  # changes that can be undone
+STEP_SHARE = 1 / 40  # one step of a movement as a share of the scene's size, before rounding
+MERGE_SECONDS = 0.5  # seconds; changes of the same kind at shorter intervals are undone together
+MAX_UNDO = 1000  # length of the undo stack
 
 
 class Frame(Enum):
-    """The axes along and about which objects move; the value is what the user sees."""
+    """Reference frame whose axes elements move along and turn about; the value is shown to the user."""
 
     VIEW = "view"
     X = "X axis"
@@ -29,8 +29,8 @@ class Frame(Enum):
 
 
 @dataclass(frozen=True)
-class Moment:
-    """What undo goes back to."""
+class Snapshot:
+    """An entry of the undo and redo stacks."""
 
     scene: Scene
     selected: int
@@ -38,92 +38,100 @@ class Moment:
 
 @dataclass(frozen=True)
 class State:
-    """Immutable; every action of the editor makes a new one."""
+    """Immutable state of the editor; every action returns a new one."""
 
     scene: Scene
     selected: int  # index into scene.elements
-    home: Camera  # the camera of the file
-    size: float  # how large the scene is, in scene units: movements are shares of it
-    value: int = 0  # index into `values` of the selected element
+    file_camera: Camera  # the camera as it is in the file
+    size: float  # of the scene, in scene units; movements are proportional to it
+    value_index: int = 0  # of the active value in `values` of the selected element
     frame: Frame = Frame.VIEW
     message: str = ""
-    kind: int = 0  # index into the kinds that can be added, of the last one that was
-    past: tuple[Moment, ...] = field(default=(), repr=False)  # oldest first
-    future: tuple[Moment, ...] = field(default=(), repr=False)  # furthest first
-    recent: tuple[str, float] | None = None  # kind and time of the last change, while more may be merged with it
+    kind_index: int = 0  # of the last added element in `addable_kinds`
+    undo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # oldest first
+    redo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # latest first
+    last_change: tuple[str, float] | None = None  # its kind and time, while further changes may be merged with it
 
     @property
     def element(self) -> Element:
-        """The selected one."""
+        """The selected element."""
         return self.scene.elements[self.selected]
 
     @property
     def active(self) -> Value | None:
-        """What grows and shrinks of the selected element, if anything."""
-        known = values(self.element)
-        return known[self.value % len(known)] if known else None
+        """The value of the selected element that keys increase and decrease; None if it has none."""
+        all_values = values(self.element)
+        return all_values[self.value_index % len(all_values)] if all_values else None
 
     @property
     def stride(self) -> float:
-        """One step of a movement: a round number of scene units."""
-        return nice(STRIDE * self.size)
+        """One step of a movement in scene units: a nice number."""
+        return nice_number(STEP_SHARE * self.size)
 
-    def say(self, message: str) -> State:
-        """The same with a message to the user."""
+    def with_message(self, message: str) -> State:
+        """This state with a message to the user."""
         return replace(self, message=message)
 
     def select(self, index: int) -> State:
-        """Select another element; what follows is undone by itself."""
-        return replace(self, selected=index, value=0, recent=None)
+        """Select another element. The next change is not merged with earlier ones."""
+        return replace(self, selected=index, value_index=0, last_change=None)
 
-    def cut(self) -> State:
-        """What follows is undone by itself."""
-        return replace(self, recent=None)
+    def end_merging(self) -> State:
+        """End merging: the next change is undone by itself."""
+        return replace(self, last_change=None)
 
     def change(self, scene: Scene, kind: str, now: float, selected: int | None = None) -> State:
-        """Another scene; `kind` tells which changes may be undone together. With none that is so for no other."""
-        same = bool(kind) and self.recent is not None and self.recent[0] == kind and now - self.recent[1] <= MERGE
-        past = self.past if same else (*self.past[1 - MOST :], Moment(self.scene.drop_caches(), self.selected))
-        chosen = self.selected if selected is None else selected
-        return replace(self, scene=scene, selected=chosen, past=past, future=(), recent=(kind, now))
+        """Replace the scene and push the old one on the undo stack.
 
-    def put(self, element: Element, kind: str, now: float) -> State:
-        """`element` in the place of the selected one, with round numbers where they are new."""
-        element = neat(self.element, element, self.stride)
+        kind: changes of the same kind within MERGE_SECONDS are undone together; an empty kind is never merged.
+        """
+        last = self.last_change
+        merged = bool(kind) and last is not None and last[0] == kind and now - last[1] <= MERGE_SECONDS
+        past = (
+            self.undo_stack
+            if merged
+            else (*self.undo_stack[1 - MAX_UNDO :], Snapshot(self.scene.drop_caches(), self.selected))
+        )
+        selected = self.selected if selected is None else selected
+        return replace(self, scene=scene, selected=selected, undo_stack=past, redo_stack=(), last_change=(kind, now))
+
+    def edit_element(self, element: Element, kind: str, now: float) -> State:
+        """Replace the selected element by `element`, whose changed numbers are rounded."""
+        element = round_changes(self.element, element, self.stride)
         if element == self.element:
             return self
         return self.change(self.scene.edit(self.selected, element), kind, now)
 
-    def put_camera(self, camera: Camera, kind: str, now: float) -> State:
-        """That camera in the place of the scene's, likewise."""
-        camera = neat(self.scene.camera, camera, self.stride)
+    def edit_camera(self, camera: Camera, kind: str, now: float) -> State:
+        """Replace the scene's camera by `camera`, whose changed numbers are rounded."""
+        camera = round_changes(self.scene.camera, camera, self.stride)
         if camera == self.scene.camera:
             return self
         return self.change(self.scene.replace(self.scene.camera, camera), kind, now)
 
 
-def opened(scene: Scene) -> State:
-    """The state in which a scene is first seen."""
-    return State(scene, index_of(scene, scene.camera), scene.camera, size_of(scene))
+def initial_state(scene: Scene) -> State:
+    """State of the editor for a scene that was just opened."""
+    return State(scene, index_of(scene, scene.camera), scene.camera, scene_size(scene))
 
 
 def index_of(scene: Scene, element: Element) -> int:
-    """The index of that very element in `scene.elements`."""
+    """Index in `scene.elements` of this very object."""
     return indexOf(map(id, scene.elements), id(element))
 
 
-def named(kind: type[Element], sort: type[Any]) -> tuple[str, ...]:
-    """The names of the fields of one sort: of the points, of the directions."""
-    return tuple(each.name for each in fields_of(kind) if isinstance(each, sort))
+def field_names(kind: type[Element], field_type: type[Any]) -> tuple[str, ...]:
+    """Names of the fields of a type, such as the points or the directions."""
+    return tuple(each.name for each in fields_of(kind) if isinstance(each, field_type))
 
 
-def place_of(element: Element) -> Triple | None:
-    """The first of its points, None where it has none."""
-    names = named(type(element), Point)
-    place: Triple | None = getattr(element, names[0]) if names else None
-    return place
+def position_of(element: Element) -> Triple | None:
+    """Position of an element: its first point, None if it has no points."""
+    names = field_names(type(element), Point)
+    position: Triple | None = getattr(element, names[0]) if names else None
+    return position
 
 
 def can_edit(kind: type[Element]) -> bool:
-    """Whether any key does anything to it."""
-    return any(map(grows, fields_of(kind))) or bool(named(kind, Point) or named(kind, Direction))
+    """Whether keys can edit elements of the kind."""
+    return any(map(is_editable, fields_of(kind))) or bool(field_names(kind, Point) or field_names(kind, Direction))

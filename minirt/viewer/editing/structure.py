@@ -1,4 +1,4 @@
-"""More elements, and fewer."""
+"""Add, duplicate and delete elements."""
 
 from __future__ import annotations
 
@@ -9,58 +9,58 @@ from dataclasses import replace
 from minirt.element import Element, fields_of
 from minirt.scene.registry import ELEMENTS
 from minirt.viewer.editing import history
-from minirt.viewer.editing.adding import kinds, made
+from minirt.viewer.editing.adding import addable_kinds, default_record
 from minirt.viewer.editing.state import State, index_of
 
-ADDED = "add"  # the kind of change
+CHANGE_KIND = "add"  # for undo: see `State.change`
 
 
 def duplicate(state: State, _amount: float, now: float) -> State:
-    """A copy of the selected element behind it, selected, in the same place."""
+    """Insert a copy after the selected element, at the same position, and select it."""
     element = state.element
-    copy = copied(element)
+    copy = copy_element(element)
     if copy is None:
-        return state.say(f"a scene has one {element.title}")
+        return state.with_message(f"a scene has one {element.title}")
     scene = state.scene.edit(state.selected, element, copy)
     state = state.select(state.selected).change(scene, "", now, state.selected + 1)
-    return state.say(f"a copy of the {element.title}, in the same place")
+    return state.with_message(f"a copy of the {element.title}, at the same position")
 
 
-def copied(element: Element) -> Element | None:
-    """The same as a line of its own. Of what may be there once, the kind that continues it; None without one."""
-    kinds = (kind for kind in ELEMENTS.values() if issubclass(kind, type(element)) and not kind.once)
-    kind = next(kinds, None)
+def copy_element(element: Element) -> Element | None:
+    """Copy an element. A kind that a scene has once is copied as its derived repeatable kind; None without one."""
+    repeatable = (kind for kind in ELEMENTS.values() if issubclass(kind, type(element)) and not kind.once)
+    kind = next(repeatable, None)
     return kind(**{each.name: getattr(element, each.name) for each in fields_of(type(element))}) if kind else None
 
 
 def delete(state: State, _amount: float, now: float) -> State:
-    """The scene without the selected element; then the camera is selected."""
+    """Delete the selected element, and select the camera."""
     element = state.element
     if element.required:
-        return state.say(f"a scene needs its {element.title}")
+        return state.with_message(f"a scene needs its {element.title}")
     scene = state.scene.edit(state.selected)
     state = state.change(scene, "", now, index_of(scene, scene.camera))
-    return state.select(state.selected).say(f"deleted the {element.title}")
+    return state.select(state.selected).with_message(f"deleted the {element.title}")
 
 
-def makeable(known: list[type[Element]], numbers: list[int], state: State) -> Iterator[tuple[int, Element]]:
-    """Elements of those kinds, but for what takes a file where there is none."""
+def default_elements(kinds: list[type[Element]], numbers: list[int], state: State) -> Iterator[tuple[int, Element]]:
+    """Yield default elements of the kinds with these numbers; kinds that need a missing file are skipped."""
     for number in numbers:
         with suppress(LookupError):
-            yield number, made(known[number], state)
+            yield number, default_record(kinds[number], state)
 
 
-def add(way: int, state: State, _amount: float, now: float) -> State:
-    """An element in front of the camera, selected; again, before anything is done to it, one of the next kind instead.
+def add(step: int, state: State, _amount: float, now: float) -> State:
+    """Add an element in front of the camera, of the kind that was added last, and select it.
 
-    The kind is that of the last one that was added.
+    Called again before another change, it replaces that element by one of the next (step 1) or previous (-1) kind.
     """
-    again = state.recent is not None and state.recent[0] == ADDED
+    again = state.last_change is not None and state.last_change[0] == CHANGE_KIND
     before = history.undo(state) if again else state
-    known = kinds(before.scene)
-    turns = [(state.kind + way * (again + ahead)) % len(known) for ahead in range(len(known))]
-    number, element = next(makeable(known, turns, before))
+    kinds = addable_kinds(before.scene)
+    numbers = [(state.kind_index + step * (again + skipped)) % len(kinds) for skipped in range(len(kinds))]
+    number, element = next(default_elements(kinds, numbers, before))
     last = len(before.scene.elements) - 1
     scene = before.scene.edit(last, before.scene.elements[last], element)
-    added = replace(replace(before, value=0).change(scene, ADDED, now, last + 1), kind=number)
-    return added.say(f"a new {element.title}; again for another kind: {number + 1} of {len(known)}")
+    added = replace(replace(before, value_index=0).change(scene, CHANGE_KIND, now, last + 1), kind_index=number)
+    return added.with_message(f"a new {element.title}; again for another kind: {number + 1} of {len(kinds)}")

@@ -1,5 +1,6 @@
-"""What grows and shrinks of an element: its numbers, those of its attributes, its colours as a whole, and red, green
-and blue of them. Of a picture there is a next one.
+"""Values of an element that keys increase and decrease: numbers, also of attributes, colours and their channels.
+
+For a picture or mesh file, the next value is the next file beside the scene.
 """
 
 from __future__ import annotations
@@ -10,70 +11,74 @@ from typing import Any, NamedTuple
 from minirt.element import Element, Record, fields_of
 from minirt.fields import Colour, Field, MeshField, MeshFile, Picture
 
-COLOURS = "red", "green", "blue"
+CHANNELS = "red", "green", "blue"
 
-Another = Callable[[Any, float], Any]  # the picture or mesh that so many key presses lead to from one
+NextFile = Callable[[Any, float], Any]  # (file, steps) -> the picture or mesh file that many steps further
 
 
 class Value(NamedTuple):
-    """A field of an element; or of the record that is the value of one; or one component of either."""
+    """A field of an element, a field of a record that is the value of such a field, or a channel of either."""
 
     field: Field  # of the element
     inner: Field | None = None  # of the record
-    colour: int | None = None  # 0, 1, 2: red, green, blue
+    channel: int | None = None  # 0, 1, 2: red, green, blue
     start: int = 0  # components of the record before the inner field
 
     @property
     def name(self) -> str:
-        """What the user sees."""
+        """Name that is shown to the user."""
         title = f"{self.field.title} {self.inner.title}" if self.inner else self.field.title
-        return title if self.colour is None else f"{title}: {COLOURS[self.colour]}"
+        return title if self.channel is None else f"{title}: {CHANNELS[self.channel]}"
 
     @property
     def range(self) -> str:
-        """The range in words."""
+        """Range of the value in words."""
         return (self.inner or self.field).range
 
     @property
     def part(self) -> int | None:
-        """Which component of the field it is, from 0; None for all."""
-        return None if self.inner is None and self.colour is None else self.start + (self.colour or 0)
+        """Index of the component of the field, from 0; None for the whole field."""
+        return None if self.inner is None and self.channel is None else self.start + (self.channel or 0)
 
-    def nudged(self, element: Element, steps: float, another: Another) -> Any:
-        """What becomes of the field after so many key presses."""
-        old = self.of(element)
-        new = another(old, steps) if isinstance(old, str | MeshFile) else (self.inner or self.field).nudge(old, steps)
-        if self.colour is not None:
-            new = (*old[: self.colour], new[self.colour], *old[self.colour + 1 :])
+    def stepped(self, element: Element, steps: float, next_file: NextFile) -> Any:
+        """The field's value after a number of steps."""
+        old = self.get(element)
+        new = next_file(old, steps) if isinstance(old, str | MeshFile) else (self.inner or self.field).nudge(old, steps)
+        if self.channel is not None:
+            new = (*old[: self.channel], new[self.channel], *old[self.channel + 1 :])
         return getattr(element, self.field.name).replace(**{self.inner.name: new}) if self.inner else new
 
-    def of(self, element: Element) -> Any:
-        """What it is now; of a component the whole colour."""
+    def get(self, element: Element) -> Any:
+        """The current value; for a channel, that of the whole colour."""
         value = getattr(element, self.field.name)
         return getattr(value, self.inner.name) if self.inner else value
 
 
 def values(element: Element) -> tuple[Value, ...]:
-    """All of them, the components of colours behind everything else."""
-    whole = [value for field in fields_of(type(element)) for value in within(field, getattr(element, field.name))]
-    whole.sort(key=lambda value: isinstance(value.field, MeshField))  # the size of a mesh comes before its file
-    fields = ((value, value.inner or value.field) for value in whole)
-    colours = [value for value, field in fields if isinstance(field, Colour) and not isinstance(value.of(element), str)]
-    return (*whole, *(value._replace(colour=part) for value in colours for part in range(3)))
+    """All values of an element; channels of colours come last."""
+    unsplit = [
+        value for field in fields_of(type(element)) for value in values_of_field(field, getattr(element, field.name))
+    ]
+    unsplit.sort(key=lambda value: isinstance(value.field, MeshField))  # the size of a mesh comes before its file
+    fields = ((value, value.inner or value.field) for value in unsplit)
+    colours = [
+        value for value, field in fields if isinstance(field, Colour) and not isinstance(value.get(element), str)
+    ]
+    return (*unsplit, *(value._replace(channel=channel) for value in colours for channel in range(3)))
 
 
-def within(field: Field, value: Any) -> Iterator[Value]:
-    """Those of a field of an element; none where it is absent."""
+def values_of_field(field: Field, value: Any) -> Iterator[Value]:
+    """Yield the values of a field of an element; none if the field is absent."""
     if isinstance(value, Record):
         start = 0
         for inner in fields_of(type(value)):
-            if grows(inner):
+            if is_editable(inner):
                 yield Value(field, inner, start=start)
             start += inner.width
-    elif grows(field) and value is not None:
+    elif is_editable(field) and value is not None:
         yield Value(field)
 
 
-def grows(field: Field) -> bool:
-    """Whether key presses change values of the field."""
+def is_editable(field: Field) -> bool:
+    """Whether keys can change the value of the field."""
     return type(field).nudge is not Field.nudge or isinstance(field, Picture | MeshField)

@@ -1,4 +1,4 @@
-"""The pictures and meshes beside a scene, for what takes one: files in its folder and in the folders there."""
+"""Texture and mesh files in the scene's folder and its sub-folders, from which the editor chooses."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from minirt.fields.pictures import file_name
 from minirt.meshes import load_mesh
 from minirt.scene import Scene
 
-SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".tga", ".webp", ".xpm"}
-MESHES = {".obj"}
+PICTURE_SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".tga", ".webp", ".xpm"}
+MESH_SUFFIXES = {".obj"}
 
 
-def names(scene: Scene, suffixes: Set[str] = SUFFIXES) -> list[str]:
-    """As lines of the scene name them: those in its own folder first."""
-    folder = scene.beside("")
-    inside = sorted(each for each in children(folder) if each.is_dir() and not each.name.startswith("."))
-    files = [each for room in (folder, *inside) for each in sorted(children(room)) if each.suffix.lower() in suffixes]
-    return [each.relative_to(folder).as_posix() for each in files]
+def asset_names(scene: Scene, suffixes: Set[str] = PICTURE_SUFFIXES) -> list[str]:
+    """Return the files with these suffixes, relative to the scene's folder, those in the folder itself first."""
+    top = scene.beside("")
+    inside = sorted(each for each in children(top) if each.is_dir() and not each.name.startswith("."))
+    files = [each for folder in (top, *inside) for each in sorted(children(folder)) if each.suffix.lower() in suffixes]
+    return [each.relative_to(top).as_posix() for each in files]
 
 
 def children(folder: Path) -> list[Path]:
-    """What is in a folder; nothing where that cannot be read."""
+    """Return the entries of a folder; an empty list if it cannot be read."""
     try:
         return list(folder.iterdir())
     except OSError:
         return []
 
 
-def usable(scene: Scene, name: str) -> bool:
-    """Whether a line can name it, and it holds a picture."""
-    from minirt.materials.picture_cache import picture  # with numpy and Pillow, which no other key needs
+def is_usable_picture(scene: Scene, name: str) -> bool:
+    """Whether a scene line can spell the name and the file holds a picture."""
+    from minirt.materials.picture_cache import picture  # loads numpy and Pillow, which no other key needs
 
     try:
         picture(scene.beside(file_name(name, ",")))
@@ -43,12 +43,12 @@ def usable(scene: Scene, name: str) -> bool:
 
 
 def pictures(scene: Scene) -> Iterator[str]:
-    """Those that can be used."""
-    return (name for name in names(scene) if usable(scene, name))
+    """Yield the names of the usable pictures."""
+    return (name for name in asset_names(scene) if is_usable_picture(scene, name))
 
 
 def read_mesh(scene: Scene, name: str) -> MeshFile | None:
-    """The mesh in a file, where a line can name it and it holds one."""
+    """Read a mesh; None if a scene line cannot spell the name or the file holds no mesh."""
     try:
         return MeshFile(file_name(name), load_mesh(scene.beside(name)))
     except (FieldError, FileError):
@@ -56,21 +56,21 @@ def read_mesh(scene: Scene, name: str) -> MeshFile | None:
 
 
 def meshes(scene: Scene) -> Iterator[MeshFile]:
-    """Those that can be used."""
-    return filter(None, (read_mesh(scene, name) for name in names(scene, MESHES)))
+    """Yield the usable meshes."""
+    return filter(None, (read_mesh(scene, name) for name in asset_names(scene, MESH_SUFFIXES)))
 
 
-def another(scene: Scene, file: str | MeshFile, steps: float) -> str | MeshFile:
-    """The next picture that can be used, or mesh, or with negative `steps` the previous one, round and round."""
+def next_file(scene: Scene, file: str | MeshFile, steps: float) -> str | MeshFile:
+    """Return the next usable picture or mesh after `file`, cyclically; the previous one if `steps` is negative."""
     if isinstance(file, MeshFile):
-        around = ring(names(scene, MESHES), file.name, steps)
-        return next(filter(None, (read_mesh(scene, each) for each in around)), file)
-    return next((each for each in ring(names(scene), file, steps) if usable(scene, each)), file)
+        candidates = cycle_after(asset_names(scene, MESH_SUFFIXES), file.name, steps)
+        return next(filter(None, (read_mesh(scene, each) for each in candidates)), file)
+    return next((each for each in cycle_after(asset_names(scene), file, steps) if is_usable_picture(scene, each)), file)
 
 
-def ring(known: list[str], name: str, steps: float) -> list[str]:
-    """All names from the one behind `name` on, or with negative `steps` backwards."""
+def cycle_after(names: list[str], name: str, steps: float) -> list[str]:
+    """Return all names in cyclic order from the one after `name`; in reverse order if `steps` is negative."""
     if steps < 0:
-        known.reverse()
-    behind = known.index(name) + 1 if name in known else 0
-    return known[behind:] + known[:behind]
+        names.reverse()
+    start = names.index(name) + 1 if name in names else 0
+    return names[start:] + names[:start]

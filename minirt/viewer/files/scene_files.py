@@ -1,4 +1,4 @@
-"""What the viewer writes and reads beside the scene file."""
+"""Files beside the scene's file: copies, screenshots, recovery of unsaved changes."""
 
 from __future__ import annotations
 
@@ -12,31 +12,30 @@ from minirt.image import Image
 from minirt.regular_files import reason
 from minirt.scene import Camera, Scene, save
 from minirt.scene.files import file_error
-from minirt.viewer.display.painter import Pixels
 
 
-def numbered(path: Path, suffix: str) -> Path:
-    """`name-1.suffix`, or the next number that is free."""
+def free_path(path: Path, suffix: str) -> Path:
+    """Return `name-1.suffix`, or the path with the next number that no file has."""
     return next(each for n in count(1) if not (each := path.with_name(f"{path.stem}-{n}{suffix}")).exists())
 
 
 def save_copy(scene: Scene, path: Path) -> Path:
-    """Write the scene beside its file; returns where. SceneError."""
-    copy = numbered(path, ".rt")
+    """Write the scene to a new file beside its own; return the new path. SceneError."""
+    copy = free_path(path, ".rt")
     save(scene, copy)
     return copy
 
 
-def save_picture(pixels: Pixels, path: Path) -> Path:
-    """Write a picture beside the file of its scene; returns where. RenderError."""
-    picture = numbered(path, ".png")
-    Image.from_bgra(pixels).save(picture)
+def save_picture(image: Image, path: Path) -> Path:
+    """Write a picture beside the scene's file; return its path. RenderError."""
+    picture = free_path(path, ".png")
+    image.save(picture)
     return picture
 
 
-def keep(path: Path) -> Path:
-    """Copy the file as it is beside itself; returns where. SceneError."""
-    copy = numbered(path, ".rt")
+def back_up(path: Path) -> Path:
+    """Copy a file, byte for byte, to a new file beside it; return the new path. SceneError."""
+    copy = free_path(path, ".rt")
     try:
         atomic_write.write(copy, path.read_bytes())
     except OSError as error:
@@ -44,11 +43,11 @@ def keep(path: Path) -> Path:
     return copy
 
 
-def recover(scene: Scene, path: Path) -> Path:
-    """Write unsaved changes beside the file, or where that is not possible into a new folder; returns where."""
+def save_recovery(scene: Scene, path: Path) -> Path:
+    """Write unsaved changes beside the file, or if that fails into a new temporary folder; return the path."""
     copy = path.with_name(f"{path.stem}.recovered.rt")
-    if copy.exists():  # it may hold what somebody still needs
-        copy = numbered(copy, ".rt")
+    if copy.exists():  # the user may still need an older recovery file
+        copy = free_path(copy, ".rt")
     try:
         save(scene, copy)
     except SceneError:
@@ -57,18 +56,18 @@ def recover(scene: Scene, path: Path) -> Path:
     return copy
 
 
-def differ(scene: Scene, saved: Scene) -> bool:
-    """Whether there is something to lose: another place of the camera is none, or looking around would be."""
+def contents_differ(scene: Scene, saved: Scene) -> bool:
+    """Whether two scenes differ in more than the camera: looking around is not an unsaved change."""
     return contents(scene) != contents(saved)
 
 
 def contents(scene: Scene) -> list[object]:
-    """The lines of a scene but for the camera."""
+    """Return the lines of a scene, without the camera's."""
     return [item for item in scene.items if not isinstance(item, Camera)]
 
 
-def summary(error: MiniRTError) -> str:
-    """An error in short: of many problems the first, without the line that it is in."""
+def error_summary(error: MiniRTError) -> str:
+    """Return the first problem of an error without the quoted line, and the number of further problems."""
     if not isinstance(error, SceneError):
         return str(error)
     first, others = str(error.problems[0]).split("\n")[0], len(error.problems) - 1

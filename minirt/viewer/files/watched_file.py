@@ -1,4 +1,4 @@
-"""The scene's file on the disk, where other programs change it, too."""
+"""File watching: notice when another program changes the scene's file."""
 
 from __future__ import annotations
 
@@ -6,50 +6,50 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
-INTERVAL = 0.25  # seconds from look to look
+INTERVAL = 0.25  # seconds between two checks of the file
 
-Signature = tuple[int, int, int] | None  # time of change, size, number of the file; None where there is none
+Signature = tuple[int, int, int] | None  # modification time, size, inode; None if there is no file
 
 
 class WatchedFile:
-    """Knows the file as it was last read or written here, and tells of changes by others when asked to watch it."""
+    """A file whose last state read or written here is known, so that changes by other programs can be reported."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self._known = signature(path)
-        self._told = self._known
-        self._over = threading.Event()
+        self._reported = self._known
+        self._closed = threading.Event()
 
     def accept(self, seen: Signature) -> None:
-        """The file with that signature is known."""
-        self._known = self._told = seen
+        """Record the signature of the file as it was just read or written here."""
+        self._known = self._reported = seen
 
     @property
     def changed(self) -> bool:
-        """Whether somebody else wrote the file since."""
+        """Whether another program has written the file since."""
         now = signature(self.path)
         return now is not None and now != self._known
 
-    def watch(self, tell: Callable[[], object]) -> None:
-        """From now on call `tell`, from another thread, when the file has become another and stays so for a moment."""
-        threading.Thread(target=self._watch, args=(tell,), name="minirt-watch", daemon=True).start()
+    def watch(self, notify: Callable[[], object]) -> None:
+        """Start a thread that calls `notify` when the file has changed and two checks in a row found it the same."""
+        threading.Thread(target=self._watch, args=(notify,), name="minirt-watch", daemon=True).start()
 
     def close(self) -> None:
-        """Watch no more."""
-        self._over.set()
+        """Stop watching."""
+        self._closed.set()
 
-    def _watch(self, tell: Callable[[], object]) -> None:
-        before = self._told
-        while not self._over.wait(INTERVAL):
+    def _watch(self, notify: Callable[[], object]) -> None:
+        before = self._reported
+        while not self._closed.wait(INTERVAL):
             now = signature(self.path)
-            if now == before and now not in (None, self._told):
-                self._told = now
-                tell()
+            if now == before and now not in (None, self._reported):
+                self._reported = now
+                notify()
             before = now
 
 
 def signature(path: Path) -> Signature:
-    """What changes with a file."""
+    """Return the numbers that differ when a file has changed."""
     try:
         status = path.stat()
     except (OSError, ValueError):

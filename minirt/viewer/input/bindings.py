@@ -1,7 +1,7 @@
-"""The one table of what keys and mouse do: the handler, the help in the window, `--list-keys` and the README follow it.
+"""Table of key and mouse bindings, from which the handler, the help, `--list-keys` and the documentation are made.
 
-A binding that says `held` goes on for as long as its key is held; one that says `fine` makes a tenth of its step with
-Shift, save for typed characters: many a keyboard needs Shift to type them.
+The action of a `held` binding goes on while its key is held. That of a `fine` binding takes a tenth of its step with
+Shift, except for typed characters, which many keyboards type with Shift.
 """
 
 from __future__ import annotations
@@ -10,106 +10,106 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby
 
-from minirt.viewer.input.chords import shown
-from minirt.viewer.input.layouts import detect
+from minirt.viewer.input.chords import platform_spelling
+from minirt.viewer.input.layouts import resolve_layout
 
-Group = tuple[str, list[tuple[str, str]]]  # title, rows of keys and help
+KeyGroup = tuple[str, list[tuple[str, str]]]  # title, rows of keys and help
 
 
 @dataclass(frozen=True)
 class Binding:
-    """One row; `minirt.viewer.input.chords` tells how keys are spelled."""
+    """One row of the table; `minirt.viewer.input.chords` describes the spelling of keys."""
 
     action: str
     group: str
     help: str
     keys: tuple[str, ...]
-    azerty: str = ""  # in the place of the first key, on such a keyboard
+    azerty: str = ""  # replaces the first key on an AZERTY keyboard
     held: bool = False
     fine: bool = False
 
     def spellings(self, layout: str) -> tuple[str, ...]:
-        """Its keys on a keyboard of that layout."""
+        """Keys of the binding on a keyboard of this layout."""
         return (self.azerty, *self.keys[1:]) if layout == "azerty" and self.azerty else self.keys
 
 
-def row(group: str, action: str, help: str, *keys: str) -> Binding:
-    """Something that happens once for each press."""
+def on_press(group: str, action: str, help: str, *keys: str) -> Binding:
+    """Binding of an action that happens once for each press."""
     return Binding(action, group, help, keys)
 
 
-def motion(group: str, action: str, help: str, key: str, azerty: str = "") -> Binding:
-    """A movement that goes on while its key is held."""
+def while_held(group: str, action: str, help: str, key: str, azerty: str = "") -> Binding:
+    """Binding of a movement that goes on while its key is held."""
     return Binding(action, group, help, (key,), azerty, held=True, fine=True)
 
 
-def steps(group: str, action: str, help: str, *keys: str) -> Binding:
-    """A change by one step for each press, or by a tenth of it."""
+def in_steps(group: str, action: str, help: str, *keys: str) -> Binding:
+    """Binding of a change by one step for each press, or by a tenth of a step with Shift."""
     return Binding(action, group, help, keys, fine=True)
 
 
 SELECT, MOVE, CHANGE, EDIT, FILE, WINDOW = "Select", "Move", "Change", "Edit", "File", "Window"
 
 BINDINGS = (
-    row(SELECT, "select next", "select the next element", "Tab"),
-    row(SELECT, "select previous", "select the previous element", "Shift+Tab"),
-    row(SELECT, "select at pointer", "select what the pointer is on", "left click"),
-    row(SELECT, "select camera", "back to the camera", "C", "Backspace", "right click"),
-    row(SELECT, "select light", "select the next light", "L"),
-    motion(MOVE, "left", "move left", "A", "Q"),
-    motion(MOVE, "right", "move right", "D"),
-    motion(MOVE, "forward", "move forward", "W", "Z"),
-    motion(MOVE, "back", "move back", "S"),
-    motion(MOVE, "down", "move down", "Q", "A"),
-    motion(MOVE, "up", "move up", "E"),
-    motion(MOVE, "turn left", "turn left", "Left"),
-    motion(MOVE, "turn right", "turn right", "Right"),
-    motion(MOVE, "turn up", "turn up", "Up"),
-    motion(MOVE, "turn down", "turn down", "Down"),
-    row(MOVE, "roll left", "roll counter-clockwise", ","),
-    row(MOVE, "roll right", "roll clockwise", "."),
-    row(MOVE, "next frame", "move objects in the view, or along X, Y, Z", "X"),
-    row(MOVE, "move by hand", "move what the pointer is on; on nothing: look around", "left drag"),
-    row(MOVE, "turn by hand", "turn what the pointer is on", "Shift+left drag"),
-    row(MOVE, "orbit", "lead the camera round what is selected", "right drag"),
-    row(MOVE, "pan", "slide the camera", "middle drag"),
-    steps(CHANGE, "grow", "increase the active value", "+", "=", "wheel up"),
-    steps(CHANGE, "shrink", "decrease the active value", "-", "wheel down"),
-    row(CHANGE, "next value", "which value: diameter, height, colour, ...", "V"),
-    row(CHANGE, "give attribute", "add an attribute: highlight, mirror, ...; again: the next", "M"),
-    row(CHANGE, "take attribute", "remove the attribute of the active value", "Shift+M"),
-    row(CHANGE, "look at", "bring the selected element into view", "F"),
-    row(CHANGE, "reset camera", "the camera as it is in the file", "Home", "R"),
-    row(EDIT, "undo", "undo", "Ctrl+Z"),
-    row(EDIT, "redo", "redo", "Ctrl+Shift+Z", "Ctrl+Y"),
-    row(EDIT, "add", "add something; again: of the next kind", "N"),
-    row(EDIT, "add previous", "add something; again: of the previous kind", "Shift+N"),
-    row(EDIT, "duplicate", "duplicate the selected element", "Ctrl+D"),
-    row(EDIT, "delete", "delete the selected element", "Delete"),
-    row(FILE, "save", "save the scene", "Ctrl+S"),
-    row(FILE, "save copy", "save a copy: name-1.rt", "Ctrl+Shift+S"),
-    row(FILE, "screenshot", "save the picture: name-1.png", "P", "F12"),
-    row(FILE, "reload", "read the file again", "Ctrl+R", "F5"),
-    row(FILE, "copy camera", "copy the camera's line", "Ctrl+C"),
-    row(WINDOW, "toggle HUD", "information: a line, all, none", "I"),
-    row(WINDOW, "toggle icons", "lights as icons, on or off", "G"),
-    row(WINDOW, "toggle help", "this help on or off", "H", "?", "F1"),
-    row(WINDOW, "toggle full screen", "full screen on or off", "Ctrl+F", "F11"),
-    row(WINDOW, "quit", "quit", "Escape", "Ctrl+Q"),
+    on_press(SELECT, "select next", "select the next element", "Tab"),
+    on_press(SELECT, "select previous", "select the previous element", "Shift+Tab"),
+    on_press(SELECT, "select at pointer", "select the element under the pointer", "left click"),
+    on_press(SELECT, "select camera", "select the camera", "C", "Backspace", "right click"),
+    on_press(SELECT, "select light", "select the next light", "L"),
+    while_held(MOVE, "left", "move left", "A", "Q"),
+    while_held(MOVE, "right", "move right", "D"),
+    while_held(MOVE, "forward", "move forward", "W", "Z"),
+    while_held(MOVE, "back", "move back", "S"),
+    while_held(MOVE, "down", "move down", "Q", "A"),
+    while_held(MOVE, "up", "move up", "E"),
+    while_held(MOVE, "turn left", "turn left", "Left"),
+    while_held(MOVE, "turn right", "turn right", "Right"),
+    while_held(MOVE, "turn up", "turn up", "Up"),
+    while_held(MOVE, "turn down", "turn down", "Down"),
+    on_press(MOVE, "roll left", "roll counter-clockwise", ","),
+    on_press(MOVE, "roll right", "roll clockwise", "."),
+    on_press(MOVE, "next frame", "move objects in the view, or along X, Y, Z", "X"),
+    on_press(MOVE, "move by hand", "move the element under the pointer; on nothing: look around", "left drag"),
+    on_press(MOVE, "turn by hand", "turn the element under the pointer", "Shift+left drag"),
+    on_press(MOVE, "orbit", "orbit the camera around the selected element", "right drag"),
+    on_press(MOVE, "pan", "slide the camera", "middle drag"),
+    in_steps(CHANGE, "grow", "increase the active value", "+", "=", "wheel up"),
+    in_steps(CHANGE, "shrink", "decrease the active value", "-", "wheel down"),
+    on_press(CHANGE, "next value", "next value: diameter, height, colour, ...", "V"),
+    on_press(CHANGE, "add attribute", "add an attribute: highlight, mirror, ...; again: the next", "M"),
+    on_press(CHANGE, "remove attribute", "remove the attribute of the active value", "Shift+M"),
+    on_press(CHANGE, "look at", "bring the selected element into view", "F"),
+    on_press(CHANGE, "reset camera", "reset the camera to that of the file", "Home", "R"),
+    on_press(EDIT, "undo", "undo", "Ctrl+Z"),
+    on_press(EDIT, "redo", "redo", "Ctrl+Shift+Z", "Ctrl+Y"),
+    on_press(EDIT, "add", "add an element; again: of the next kind", "N"),
+    on_press(EDIT, "add previous", "add an element; again: of the previous kind", "Shift+N"),
+    on_press(EDIT, "duplicate", "duplicate the selected element", "Ctrl+D"),
+    on_press(EDIT, "delete", "delete the selected element", "Delete"),
+    on_press(FILE, "save", "save the scene", "Ctrl+S"),
+    on_press(FILE, "save copy", "save a copy: name-1.rt", "Ctrl+Shift+S"),
+    on_press(FILE, "screenshot", "save the picture: name-1.png", "P", "F12"),
+    on_press(FILE, "reload", "read the file again", "Ctrl+R", "F5"),
+    on_press(FILE, "copy camera", "copy the camera's line", "Ctrl+C"),
+    on_press(WINDOW, "toggle HUD", "information: a line, all, none", "I"),
+    on_press(WINDOW, "toggle icons", "lights as icons, on or off", "G"),
+    on_press(WINDOW, "toggle help", "this help on or off", "H", "?", "F1"),
+    on_press(WINDOW, "toggle full screen", "full screen on or off", "Ctrl+F", "F11"),
+    on_press(WINDOW, "quit", "quit", "Escape", "Ctrl+Q"),
 )
 
-FINE = ("Shift", "hold it for a tenth of the step")  # not an action: the note below each list of keys
+FINE_NOTE = ("Shift", "hold it for a tenth of the step")  # not an action: a note below each list of keys
 
 
-def groups(layout: str) -> Iterator[Group]:
-    """The rows of the table with the keys of a layout."""
+def key_groups(layout: str) -> Iterator[KeyGroup]:
+    """Yield the rows of the table by group, with the keys of a layout."""
     for title, rows in groupby(BINDINGS, key=lambda binding: binding.group):
-        yield title, [(" / ".join(map(shown, binding.spellings(layout))), binding.help) for binding in rows]
+        yield title, [(" / ".join(map(platform_spelling, binding.spellings(layout))), binding.help) for binding in rows]
 
 
 def keys_text(layout: str = "auto") -> str:
-    """What `--list-keys` prints."""
-    listed = [*groups(detect(layout)), ("", [FINE])]
+    """Text that `--list-keys` prints."""
+    listed = [*key_groups(resolve_layout(layout)), ("", [FINE_NOTE])]
     width = max(len(keys) for _, rows in listed for keys, _ in rows)
     lines = []
     for title, rows in listed:
@@ -119,10 +119,10 @@ def keys_text(layout: str = "auto") -> str:
 
 
 def keys_markdown() -> str:
-    """The README's table."""
+    """Table of the documentation, in Markdown."""
     lines = ["| action | keys | AZERTY |", "|---|---|---|"]
     for binding in BINDINGS:
         azerty = f"`{binding.azerty}`" if binding.azerty else ""
         lines.append(f"| {binding.help} | {' '.join(f'`{key}`' for key in binding.keys)} | {azerty} |")
-    lines.append(f"| {FINE[1]} | `{FINE[0]}` | |")
+    lines.append(f"| {FINE_NOTE[1]} | `{FINE_NOTE[0]}` | |")
     return "\n".join(lines) + "\n"

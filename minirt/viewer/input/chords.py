@@ -1,7 +1,6 @@
-"""How a key, a character or a part of the mouse is spelled: `Tab`, `Shift+Tab`, `Ctrl+Z`, `+`, `wheel up`.
+"""Key chords and their spelling: `Tab`, `Shift+Tab`, `Ctrl+Z`, `+`, `wheel up`.
 
-Letters and named keys are keys; every other character is typed text, wherever a keyboard has it. Ctrl stands for Cmd
-on macOS.
+Letters and named keys are keys; any other character is typed text, wherever a keyboard has it. Ctrl means Cmd on macOS.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from minirt.mlx import Button, Key, Modifier
 
 
 class Drag(IntEnum):
-    """A button that is held while the pointer moves."""
+    """Drag with a mouse button."""
 
     LEFT = 0x100 + Button.LEFT
     MIDDLE = 0x100 + Button.MIDDLE
@@ -32,26 +31,26 @@ MOUSE: dict[str, Button | Drag] = {
 }
 KEYS = {"".join(map(str.capitalize, key.name.split("_"))): key for key in Key}  # PageUp, A, F1
 MODIFIERS = {"Ctrl": Modifier.ACCEL, "Shift": Modifier.SHIFT}
-SHOWN = {"Ctrl": "Cmd"} if sys.platform == "darwin" else {}
+PLATFORM_NAMES = {"Ctrl": "Cmd"} if sys.platform == "darwin" else {}
 
 
 class Chord(NamedTuple):
-    """A key with the modifiers that are held with it, typed text, or a button of the mouse."""
+    """A key with held modifiers, typed text, a mouse button or a drag."""
 
     code: Key | Button | Drag | str
     modifiers: Modifier = Modifier.NONE
 
 
 def key_named(name: str) -> Key | None:
-    """The key of that name: `Tab`, `PageUp`, `a`, `F5`; None where there is none."""
+    """Return the key with this name (`Tab`, `PageUp`, `a`, `F5`), or None."""
     return KEYS.get(name.upper() if len(name) == 1 else name)
 
 
-def chord(spelling: str) -> Chord:
-    """What a spelling means; ValueError with the part that is unknown."""
-    *held, name = spelling.split("+") if len(spelling) > 1 else [spelling]
+def parse_chord(spelling: str) -> Chord:
+    """Parse the spelling of a chord. ValueError with the unknown part as message."""
+    *modifier_names, name = spelling.split("+") if len(spelling) > 1 else [spelling]
     modifiers = Modifier.NONE
-    for word in held:
+    for word in modifier_names:
         if word not in MODIFIERS:
             raise ValueError(word)
         modifiers |= MODIFIERS[word]
@@ -60,11 +59,11 @@ def chord(spelling: str) -> Chord:
     key = key_named(name)
     if key is not None:
         return Chord(key, modifiers)
-    if len(name) == 1 and not name.isalnum() and not held:
+    if len(name) == 1 and not name.isalnum() and not modifier_names:
         return Chord(name)
     raise ValueError(name)
 
 
-def shown(spelling: str) -> str:
-    """The spelling as this platform's keyboards have it."""
-    return "+".join(SHOWN.get(word, word) for word in spelling.split("+")) if len(spelling) > 1 else spelling
+def platform_spelling(spelling: str) -> str:
+    """Spelling of a chord with the modifier names of this platform."""
+    return "+".join(PLATFORM_NAMES.get(word, word) for word in spelling.split("+")) if len(spelling) > 1 else spelling

@@ -1,4 +1,4 @@
-"""Held keys: how far what they do has gone at a moment, whatever the number of pictures until then."""
+"""Key repeat: steps of the actions of held keys, proportional to time and independent of the frame rate."""
 
 from __future__ import annotations
 
@@ -8,42 +8,42 @@ RATE = 8.0  # steps a second
 
 
 @dataclass
-class Hold:
-    """One key that is down."""
+class HeldKey:
+    """A key that is held down."""
 
     action: str
     since: float  # seconds
-    given: float = 1.0  # steps done so far: the first comes with the press
+    done: float = 1.0  # steps until now; the first one comes with the press
 
 
 class KeyRepeat:
-    """The keys that are down and do something for as long as they are.
+    """The held keys whose actions repeat.
 
-    After t seconds a key has done max(1, RATE t) steps: one with the press, and no jump when it goes on.
+    After t seconds a key has taken max(1, RATE t) steps: one with the press, then without a jump at a constant rate.
     """
 
     def __init__(self) -> None:
-        self._holds: dict[int, Hold] = {}  # by key code
+        self._held: dict[int, HeldKey] = {}  # by key code
 
     def __bool__(self) -> bool:
-        return bool(self._holds)
+        return bool(self._held)
 
     def press(self, key: int, action: str, now: float) -> None:
-        """The key goes down; its first step is the caller's."""
-        self._holds[key] = Hold(action, now)
+        """Note that a key goes down. The caller takes its first step."""
+        self._held[key] = HeldKey(action, now)
 
     def release(self, key: int, now: float) -> list[tuple[str, float]]:
-        """The key goes up; the steps that it still has to do."""
-        hold = self._holds.pop(key, None)
-        return [advance(hold, now)] if hold else []
+        """Note that a key goes up. Returns its action and remaining steps, or nothing for an unknown key."""
+        held = self._held.pop(key, None)
+        return [advance(held, now)] if held else []
 
     def advance(self, now: float) -> list[tuple[str, float]]:
-        """The actions of all held keys, and by how many steps each goes on."""
-        return [advance(hold, now) for hold in self._holds.values()]
+        """Return the actions of all held keys, each with its steps since the last call."""
+        return [advance(held, now) for held in self._held.values()]
 
 
-def advance(hold: Hold, now: float) -> tuple[str, float]:
-    """The action and the steps since the last call."""
-    due = max(hold.given, RATE * (now - hold.since))
-    amount, hold.given = due - hold.given, due
-    return hold.action, amount
+def advance(held: HeldKey, now: float) -> tuple[str, float]:
+    """Return the action of a key and its steps since the last call."""
+    due = max(held.done, RATE * (now - held.since))
+    amount, held.done = due - held.done, due
+    return held.action, amount

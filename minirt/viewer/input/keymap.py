@@ -1,34 +1,34 @@
-"""From what was pressed to the row of the table, for a keyboard's layout."""
+"""Keymap: look up the binding of a chord, for a keyboard layout."""
 
 from __future__ import annotations
 
 from minirt.mlx import Key, Modifier
 from minirt.viewer.input.bindings import BINDINGS, Binding
-from minirt.viewer.input.chords import Chord, chord
-from minirt.viewer.input.layouts import detect
+from minirt.viewer.input.chords import Chord, parse_chord
+from minirt.viewer.input.layouts import resolve_layout
 
-CONSIDERED = Modifier.ACCEL | Modifier.SHIFT
+SIGNIFICANT = Modifier.ACCEL | Modifier.SHIFT
 
 
-def chords(binding: Binding, layout: str) -> list[Chord]:
-    """All that the handler answers to with this row."""
-    plain = [chord(spelling) for spelling in binding.spellings(layout)]
+def chords_of(binding: Binding, layout: str) -> list[Chord]:
+    """All chords that trigger a binding."""
+    plain = [parse_chord(spelling) for spelling in binding.spellings(layout)]
     shifted = [Chord(each.code, each.modifiers | Modifier.SHIFT) for each in plain if not isinstance(each.code, str)]
     return plain + shifted if binding.fine else plain
 
 
 class Keymap:
-    """The table, turned for looking keys up."""
+    """The table of bindings, indexed by chord."""
 
     def __init__(self, layout: str = "qwerty") -> None:
-        self.layout = detect(layout)
-        self._rows = {each: binding for binding in BINDINGS for each in chords(binding, self.layout)}
+        self.layout = resolve_layout(layout)
+        self._bindings = {each: binding for binding in BINDINGS for each in chords_of(binding, self.layout)}
 
     def find(self, code: int | str, modifiers: Modifier = Modifier.NONE) -> Binding | None:
-        """The row of a key (or button, or typed character) with these modifiers, None where there is none."""
+        """Return the binding of a key, button or typed character with these modifiers, or None."""
         if code == Key.ESCAPE:
-            modifiers = Modifier.NONE  # always
-        if modifiers & ~CONSIDERED:
+            modifiers = Modifier.NONE  # with any modifiers
+        if modifiers & ~SIGNIFICANT:
             return None
-        # Equal integers are one key of a dictionary, whatever their enumeration; buttons and keys do not meet.
-        return self._rows.get(Chord(code, modifiers))  # type: ignore[arg-type]
+        # Equal integers are one dictionary key, whatever their enumeration; codes of buttons and keys do not overlap.
+        return self._bindings.get(Chord(code, modifiers))  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Layouts of keyboards. QWERTZ has the letters that matter where QWERTY has them."""
+"""Keyboard layouts. On QWERTZ all letters of the bindings are where QWERTY has them."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import locale
 from typing import Final
 
 LAYOUTS: Final = ("auto", "qwerty", "azerty", "qwertz")
-FRENCH = ("fr_FR", "fr_BE", "French_France", "French_Belgium")  # locales where AZERTY is usual
+AZERTY_LOCALES = ("fr_FR", "fr_BE", "French_France", "French_Belgium")  # locales whose usual keyboard is AZERTY
 
 
-def detect(layout: str) -> str:
-    """The layout that `auto` means here; any other is itself."""
+def resolve_layout(layout: str) -> str:
+    """Replace `auto` by the layout of the user's locale; other layouts stay."""
     if layout != "auto":
         return layout
-    return "azerty" if locale.getlocale()[0] in FRENCH else "qwerty"
+    return "azerty" if locale.getlocale()[0] in AZERTY_LOCALES else "qwerty"

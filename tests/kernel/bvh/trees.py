@@ -12,7 +12,7 @@ from minirt.fields import Point
 from minirt.kernel.bvh import build, collapse
 from minirt.kernel.bvh.nodes import WIDTH, Group, Tree
 from minirt.kernel.compiler import jit_bvh
-from minirt.rendering.packing.bvh import aligned, block_type, bvh_of
+from minirt.rendering.packing.bvh import aligned, block_type, build_bvh
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import KINDS, Shape
 from tests.shapes.examples import example, place
@@ -30,7 +30,7 @@ class Interpreted:
 def build_tree(shapes: list[Shape], kernel: Any = jit_bvh) -> Tree:
     """Build the BVH over shapes."""
     with np.errstate(all="ignore"):
-        return bvh_of(shape_arrays(shapes), kernel)
+        return build_bvh(shape_arrays(shapes), kernel)
 
 
 def brute_force(shapes: list[Shape]) -> Tree:

@@ -9,7 +9,7 @@ import pytest
 
 from minirt.kernel.shading.lights import incident_light
 from minirt.lanes import Vec
-from minirt.rendering.packing.lights import light_numbers, place_of, shining, spot_numbers
+from minirt.rendering.packing.lights import emitting_lights, light_position, positions_and_intensities, spot_parameters
 from minirt.scene import Ambient, Camera, FurtherLight, Lamp, Light, ParallelLight, Scene, SpotLight
 
 EYE = Camera((0, 0, -5), (0, 0, 1), 60)
@@ -20,7 +20,7 @@ def light_at(light: Lamp, point: tuple[float, float, float]) -> tuple[np.ndarray
     """Return the direction to a light source, its distance and its relative strength at a point."""
     coordinates = [np.full(16, each) for each in point]
     with np.errstate(all="ignore"):
-        numbers, position = spot_numbers([light]), Vec(*place_of(light))
+        numbers, position = spot_parameters([light]), Vec(*light_position(light))
         to_light, distance, strength = incident_light(numbers, 0, position, Vec(*coordinates))
     return np.array([to_light.x[0], to_light.y[0], to_light.z[0]]), float(distance[0]), float(strength[0])
 
@@ -74,5 +74,5 @@ def test_a_spot_fades_too() -> None:
 def test_lights_without_brightness_are_left_out() -> None:
     lights = Light((1, 2, 3), 0.5, (255, 0, 51)), FurtherLight((0, 0, 0), 0), SPOT.replace(colour=(0, 0, 0)), SPOT
     scene = Scene((Ambient(0.1, (255, 255, 255)), EYE, *lights))
-    assert shining(scene) == [lights[0], SPOT]
-    assert np.allclose(light_numbers(shining(scene)), [[1, 2, 3, 0.5, 0, 0.1], [0, 9, 0, 1, 1, 1]])
+    assert emitting_lights(scene) == [lights[0], SPOT]
+    assert np.allclose(positions_and_intensities(emitting_lights(scene)), [[1, 2, 3, 0.5, 0, 0.1], [0, 9, 0, 1, 1, 1]])

@@ -13,7 +13,7 @@ import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel.compiler.options import FLAGS
 from minirt.kernel.shading import texture_lookup
 from minirt.lanes import load, save, width
-from minirt.rendering.packing.materials import Album
+from minirt.rendering.packing.materials import TexturePool
 from tests.kernel.pictures import Array
 
 RANDOM = np.random.default_rng(1)
@@ -27,9 +27,9 @@ COLOURED = range(6)
 
 def all_pictures() -> tuple[Any, Any]:
     """Return all pictures as the kernel reads them: texels and layout."""
-    album = Album.__new__(Album)
-    album.pages = IMAGES
-    return tuple(album.bound().values())  # type: ignore[return-value]
+    pool = TexturePool.__new__(TexturePool)
+    pool.images = IMAGES
+    return tuple(pool.arrays().values())  # type: ignore[return-value]
 
 
 TEXELS, PICTURES = all_pictures()

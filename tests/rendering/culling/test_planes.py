@@ -1,4 +1,4 @@
-"""Endless planes: in no cell that cannot meet them, and in no lists of lamps that they can hide from nothing."""
+"""Culling of infinite planes: they are in no cell that cannot meet them, and in light buffers only to occlude."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from minirt.kernel.frame import TILE
 from minirt.rendering import Renderer, scene_packing
-from minirt.rendering.culling.planes import heights
+from minirt.rendering.culling.planes import signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, FurtherLight, Light, Scene
@@ -23,64 +23,64 @@ FLOOR = Plane((0, -1, 0), (0, 1, 0), GREY)
 
 
 def tiles_of_plane(scene: Scene, across: int = 20, down: int = 10) -> np.ndarray:
-    """In which tiles the only shape of a scene is listed."""
-    traced = Packing().pack(scene, across * TILE, down * TILE)
-    return np.diff(traced.groups[0].tile_starts[: across * down + 1]).reshape(down, across) > 0
+    """Whether the only shape of a scene is listed in each tile."""
+    arrays = Packing().pack(scene, across * TILE, down * TILE)
+    return np.diff(arrays.groups[0].tile_starts[: across * down + 1]).reshape(down, across) > 0
 
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_tiles_above_the_horizon_are_empty(side: int) -> None:
-    # The horizon is the middle of the picture; a pixel of margin reaches one row of tiles farther.
+    # The horizon is the centre line of the picture; a pixel of margin reaches one row of tiles further.
     floor = FLOOR.replace(normal=(0, side, 0))
-    seen = tiles_of_plane(Scene((Camera((0, 0, 0), (0, 0, 1), 90), floor)))
-    assert seen[5:].all()
-    assert not seen[:4].any()
+    listed = tiles_of_plane(Scene((Camera((0, 0, 0), (0, 0, 1), 90), floor)))
+    assert listed[5:].all()
+    assert not listed[:4].any()
     ceiling = FLOOR.replace(point=(0, 1, 0))
-    seen = tiles_of_plane(Scene((Camera((0, 0, 0), (0, 0, 1), 90), ceiling)))
-    assert seen[:5].all()
-    assert not seen[6:].any()
+    listed = tiles_of_plane(Scene((Camera((0, 0, 0), (0, 0, 1), 90), ceiling)))
+    assert listed[:5].all()
+    assert not listed[6:].any()
 
 
 def test_a_wall_beside_the_eye_is_on_one_side() -> None:
-    seen = tiles_of_plane(Scene((Camera((0, 0, 0), (0, 0, 1), 90), Plane((2, 0, 0), (1, 0, 0), GREY))))
-    left, right = seen[:, :9], seen[:, 11:]  # +x is on the left of an eye that looks along +z
+    listed = tiles_of_plane(Scene((Camera((0, 0, 0), (0, 0, 1), 90), Plane((2, 0, 0), (1, 0, 0), GREY))))
+    left, right = listed[:, :9], listed[:, 11:]  # +x is on the left of an eye that looks along +z
     assert left.all()
     assert not right.any()
 
 
-def test_who_looks_away_sees_nothing_of_it_and_who_is_in_it_may_see_it_anywhere() -> None:
+def test_an_eye_that_looks_away_sees_no_plane_and_an_eye_in_it_sees_it_everywhere() -> None:
     assert not tiles_of_plane(Scene((Camera((0, 0, 0), (0, 1, 0), 60), FLOOR))).any()
     assert tiles_of_plane(Scene((Camera((0, 0, 0), (0, -1, 0), 60), FLOOR))).all()
     assert tiles_of_plane(Scene((Camera((5, -1, 0), (0, 1, 0), 60), FLOOR))).all()
 
 
 @pytest.mark.parametrize("size", [1.0, 1e8])
-def test_on_a_plane_within_rounding_is_neither_above_nor_below(size: float) -> None:
+def test_a_point_on_a_plane_within_rounding_has_height_zero(size: float) -> None:
     random = np.random.default_rng(1)
     for _ in range(50):
         point, way = size * random.normal(size=3), random.normal(size=3)
         plane = Plane(tuple(point), tuple(way / np.abs(way).max()), GREY)
-        keeper = ShapeArrays()
-        keeper.update((plane,))
+        shapes = ShapeArrays()
+        shapes.update((plane,))
         along = np.cross(plane.normal, random.normal(size=3))
         above = np.array(plane.normal)
-        assert heights(keeper.planes, point + size * along)[0] == 0
-        assert heights(keeper.planes, point + size * (along + above))[0] == pytest.approx(size, rel=1e-6)
-        assert heights(keeper.planes, point + size * (along - above))[0] == pytest.approx(-size, rel=1e-6)
+        assert signed_heights(shapes.planes, point + size * along)[0] == 0
+        assert signed_heights(shapes.planes, point + size * (along + above))[0] == pytest.approx(size, rel=1e-6)
+        assert signed_heights(shapes.planes, point + size * (along - above))[0] == pytest.approx(-size, rel=1e-6)
 
 
 def lit_cells(scene: Scene) -> list[int]:
-    """In how many cells of each lamp there is a plane."""
-    traced = Packing().pack(scene, 64, 48)
+    """The number of cells of each light that list a plane."""
+    arrays = Packing().pack(scene, 64, 48)
     kind = [type(shape) for shape in scene.shapes].index(Plane)
-    starts = traced.groups[traced.slots[kind, 0]].light_starts
+    starts = arrays.groups[arrays.slots[kind, 0]].light_starts
     return [
-        int((np.diff(each) > 0).sum()) if traced.light_buffer_cells > 1 else int(each[1] - each[0]) for each in starts
+        int((np.diff(each) > 0).sum()) if arrays.light_buffer_cells > 1 else int(each[1] - each[0]) for each in starts
     ]
 
 
 @pytest.mark.parametrize("balls", [1, 20])
-def test_a_plane_is_in_the_lists_of_lamps_behind_it(balls: int) -> None:
+def test_a_plane_is_in_the_light_buffers_of_lights_behind_it(balls: int) -> None:
     eye, above, below = Camera((0, 0, -9), (0, 0, 1), 60), Light((0, 5, 0), 1), FurtherLight((0, -5, 0), 1)
     on = FurtherLight((7, -1, 0), 1)
     shapes = [FLOOR, *(Sphere((i, 0, 0), 1, GREY) for i in range(balls))]
@@ -88,32 +88,32 @@ def test_a_plane_is_in_the_lists_of_lamps_behind_it(balls: int) -> None:
     first, second, third = lit_cells(Scene((eye, above, below, on, *shapes)))
     assert first == 0
     assert third == everything
-    # From below it is in half of the directions: the upper half.
+    # From below, the plane is in the upper half of the directions.
     assert second == 1 if balls == 1 else everything / 2 <= second <= everything / 2 + 4 * 2 * 16
     first, second, third = lit_cells(Scene((eye.replace(position=(0, -3, -9)), above, below, on, *shapes)))
     assert (second, third) == (0, everything)
     assert first > 0
 
 
-def test_lists_follow_an_eye_that_goes_through_a_plane() -> None:
-    keeper = Packing()
+def test_light_buffers_follow_an_eye_that_moves_through_a_plane() -> None:
+    packing = Packing()
     for height in (0, -2, 0):
         scene = Scene((Camera((0, height, -9), (0, 0, 1), 60), Light((0, 5, 0), 1), FLOOR, Sphere((0, 0, 0), 1, GREY)))
-        traced = keeper.pack(scene, 64, 48)
-        assert (0 in traced.light_shapes) == (height < -1)
+        arrays = packing.pack(scene, 64, 48)
+        assert (0 in arrays.light_shapes) == (height < -1)
 
 
 SEEDS = [seed for seed in range(60) if any(shape.flat() for shape in random_scene(seed).shapes)]
 
 
-def test_pictures_are_the_same_with_all_planes_in_all_lists(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pictures_are_the_same_without_culling_of_planes(monkeypatch: pytest.MonkeyPatch) -> None:
     scenes = [ALL, *map(random_scene, SEEDS)]
     pictures = [linear(scene, 60, 40, renderer=Renderer(1)) for scene in scenes]
     dropped = []
 
-    def none(tables: Any, eye: Any, lamp: Any, ask: Any = scene_packing.never_occludes) -> np.ndarray:
-        dropped.append(ask(tables, eye, lamp).any())
-        return np.zeros(len(tables.planes), bool)
+    def none(shapes: Any, eye: Any, light: Any, original: Any = scene_packing.never_occludes) -> np.ndarray:
+        dropped.append(original(shapes, eye, light).any())
+        return np.zeros(len(shapes.planes), bool)
 
     monkeypatch.setattr(scene_packing, "never_occludes", none)
     for scene, picture in zip(scenes, pictures, strict=True):

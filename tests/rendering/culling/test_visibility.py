@@ -1,4 +1,4 @@
-"""The lists of what may be seen where: nothing that is hit is missing from them."""
+"""Visibility culling: no shape that a ray hits is missing from the bin of the ray."""
 
 from __future__ import annotations
 
@@ -30,51 +30,51 @@ WIDTH, HEIGHT = 70, 45  # five tiles by three, the last ones cut
 
 
 def listed(starts: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The members of the lists of a kind, one list behind the other, and to which of the lists each belongs."""
+    """The bin of each member of the bins of a kind, and the members, one bin after the other."""
     return np.repeat(np.arange(len(starts) - 1), np.diff(starts)), table[starts[0] : starts[-1]]
 
 
-def members(traced: Any, starts: str, table: np.ndarray, row: Any = ...) -> np.ndarray:
-    """Which shapes, of all kinds, are in which of the lists: (lists, shapes)."""
-    all_starts = [getattr(group, starts)[row] for group in traced.groups]
-    found = np.zeros((len(all_starts[0]) - 1, len(traced.slots)), bool)
+def members(arrays: Any, starts: str, table: np.ndarray, row: Any = ...) -> np.ndarray:
+    """Whether each shape, of all kinds, is in each of the bins: (bins, shapes)."""
+    all_starts = [getattr(group, starts)[row] for group in arrays.groups]
+    found = np.zeros((len(all_starts[0]) - 1, len(arrays.slots)), bool)
     for each in all_starts:
         found[listed(each, table)] = True
     return found
 
 
-class Seen(NamedTuple):
-    """Where the rays through all pixels meet shapes: each shape that they meet."""
+class RayHits(NamedTuple):
+    """All hits of the rays through all pixels, not only the closest ones."""
 
     tile: np.ndarray
     shape: np.ndarray
     distance: np.ndarray
-    in_cone: np.ndarray  # whether the ray is in the cone of the shape
+    in_cone: np.ndarray  # whether the ray is in the bounding cone of the shape
 
 
-def seen_rays(traced: Any) -> Seen:
-    """What the rays of a picture meet."""
+def camera_hits(arrays: Any) -> RayHits:
+    """All hits of the rays of a picture."""
     x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT)))
-    origin, direction = Vec(*traced.camera[:3]), unit(ray_direction(traced.camera, x, y))
+    origin, direction = Vec(*arrays.camera[:3]), unit(ray_direction(arrays.camera, x, y))
     tile = (y // TILE * tile_count(WIDTH) + x // TILE).astype(int)
-    found = [Seen(*np.zeros((4, 0), int))]
-    for index, (hit, t) in enumerate(meets(traced, origin, direction)):
-        cone = np.broadcast_to(in_cone(traced.cones[index], direction), x.shape)
-        found.append(Seen(tile[hit], np.full(hit.sum(), index), t[hit], cone[hit]))
-    return Seen(*map(np.concatenate, zip(*found, strict=True)))
+    found = [RayHits(*np.zeros((4, 0), int))]
+    for index, (hit, t) in enumerate(hits_of_all_shapes(arrays, origin, direction)):
+        cone = np.broadcast_to(in_cone(arrays.cones[index], direction), x.shape)
+        found.append(RayHits(tile[hit], np.full(hit.sum(), index), t[hit], cone[hit]))
+    return RayHits(*map(np.concatenate, zip(*found, strict=True)))
 
 
-def meets(traced: Any, origin: Vec, direction: Vec) -> list[Any]:
+def hits_of_all_shapes(arrays: Any, origin: Vec, direction: Vec) -> list[Any]:
     answers = []
-    for group, i in traced.slots:
-        rows = traced.groups[group].rows
+    for group, i in arrays.slots:
+        rows = arrays.groups[group].rows
         with np.errstate(all="ignore"):
             answers.append(kind_of(rows.dtype.names).intersect(read(rows, i), origin, direction))
     return answers
 
 
 def hard_scene(seed: int) -> Scene:
-    """Tiny and huge things anywhere, some at 1e8 from the origin; eye and lamp often inside or close to a surface."""
+    """Tiny and huge shapes anywhere, some at 1e8 from the origin; eye and light often inside or near a surface."""
     random = np.random.default_rng(seed)
     offset = random.choice([0, 0, 1e8]) * random.normal(size=3)
 
@@ -90,8 +90,8 @@ def hard_scene(seed: int) -> Scene:
         shapes.append(Sphere(place(5 + size / 2), size, (1, 2, 3)))
         shapes.append(Cylinder(place(5 + size / 2), way(), size, 10.0 ** random.uniform(-3, 3), (1, 2, 3)))
     near = [tuple(np.array(each.centre) + 0.5 * each.diameter * np.array(way())) for each in shapes[-2:]]
-    eye, lamp = near if random.random() < 0.6 else (place(5), place(5))
-    return Scene((Camera(eye, way(), random.choice([1e-3, 20, 90, 170, 179.99])), Light(lamp, 1), *shapes))
+    eye, light = near if random.random() < 0.6 else (place(5), place(5))
+    return Scene((Camera(eye, way(), random.choice([1e-3, 20, 90, 170, 179.99])), Light(light, 1), *shapes))
 
 
 SCENES = [*((random_scene, seed) for seed in range(12)), *((hard_scene, seed) for seed in range(40))]
@@ -100,86 +100,86 @@ KERNELS = pytest.mark.parametrize("kernel", [binning, jit_binning], ids=["interp
 
 @KERNELS
 @pytest.mark.parametrize(("make", "seed"), SCENES)
-def test_a_tile_lists_all_that_its_rays_hit(make: Any, seed: int, kernel: Any) -> None:
-    traced = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
-    seen, in_tile = seen_rays(traced), members(traced, "tile_starts", traced.tile_shapes)
+def test_a_tile_lists_all_shapes_that_its_rays_hit(make: Any, seed: int, kernel: Any) -> None:
+    arrays = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
+    seen, in_tile = camera_hits(arrays), members(arrays, "tile_starts", arrays.tile_shapes)
     assert len(in_tile) == tile_count(WIDTH) * tile_count(HEIGHT)
     assert in_tile[seen.tile, seen.shape].all()
     assert seen.in_cone.all()
-    assert (seen.distance >= traced.cones[seen.shape, 4]).all()
+    assert (seen.distance >= arrays.cones[seen.shape, 4]).all()
 
 
 def outside_scene(seed: int) -> Scene:
-    """The same shapes, all but a few in a heap, and a lamp that sees the heap from outside, near or far."""
+    """A hard scene whose shapes but a few are in a heap, with a light outside of the heap, near or far."""
     random = np.random.default_rng(seed)
     shapes = [each for each in hard_scene(seed).shapes if isinstance(each, Plane) or random.random() < 0.1]
     middle, size = 10.0 ** random.uniform(0, 6) * random.normal(size=3), 10.0 ** random.uniform(-1, 2)
     for _ in range(40):
         place = tuple(middle + size * random.uniform(-0.5, 0.5, 3))
         shapes.append(Sphere(place, size * 10.0 ** random.uniform(-4, -0.5), (1, 2, 3)))
-    lamp = middle + size * 10.0 ** random.uniform(0.1, 4) * unit_way(random)
-    return Scene((Camera((0, 0, 0), (0, 0, 1), 90), Light(tuple(lamp), 1), *shapes))
+    light = middle + size * 10.0 ** random.uniform(0.1, 4) * unit_direction(random)
+    return Scene((Camera((0, 0, 0), (0, 0, 1), 90), Light(tuple(light), 1), *shapes))
 
 
-def unit_way(random: np.random.Generator) -> Any:
+def unit_direction(random: np.random.Generator) -> Any:
     way = random.normal(size=3)
     return way / np.linalg.norm(way)
 
 
 @pytest.fixture
-def small_crowds(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Squares ahead of lamps for scenes that are small enough to try everything."""
-    monkeypatch.setattr(light_frustum, "CROWD", 30)
+def small_clusters(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Use frustums for small scenes, in which every shape can be tried."""
+    monkeypatch.setattr(light_frustum, "LEAST_SHAPES", 30)
 
 
 @KERNELS
-@pytest.mark.usefixtures("small_crowds")
+@pytest.mark.usefixtures("small_clusters")
 @pytest.mark.parametrize(("make", "seed"), [*SCENES, *((outside_scene, seed) for seed in range(40))])
-def test_a_cell_of_a_lamp_lists_all_that_is_hit_through_it(make: Any, seed: int, kernel: Any) -> None:
-    traced = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
+def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(make: Any, seed: int, kernel: Any) -> None:
+    arrays = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
     random = np.random.default_rng(seed)
     directions = random.normal(size=(3, 2000))
     directions[:, :40] = np.round(directions[:, :40])  # along axes and diagonals too
     directions[2, (directions == 0).all(axis=0)] = 1
     directions /= np.linalg.norm(directions, axis=0)
     planes = [index for index, shape in enumerate(make(seed).shapes) if shape.flat()]
-    for lamp, row in enumerate(traced.lights):
-        count, around = (
-            6 * traced.light_buffer_cells**2 if traced.light_buffer_cells > 1 else 1,
-            traced.light_buffers[lamp],
+    for light, row in enumerate(arrays.lights):
+        count, buffer = (
+            6 * arrays.light_buffer_cells**2 if arrays.light_buffer_cells > 1 else 1,
+            arrays.light_buffers[light],
         )
-        if around[SCALE] > 0:  # a half of the directions into the square, and some just beside it
-            reach = 1.1 * FRUSTUM_FACTOR / 2 * traced.light_buffer_cells / around[SCALE]
+        if buffer[SCALE] > 0:  # half of the directions into the frustum, some of them just beside it
+            reach = 1.1 * FRUSTUM_FACTOR / 2 * arrays.light_buffer_cells / buffer[SCALE]
             slopes = reach * random.uniform(-1, 1, (2, 1000))
-            directions[:, 1000:] = around[:9].reshape(3, 3).T @ np.array([*slopes, np.ones(1000)])
+            directions[:, 1000:] = buffer[:9].reshape(3, 3).T @ np.array([*slopes, np.ones(1000)])
             directions /= np.linalg.norm(directions, axis=0)
-        # The list of a cell that was looked up holds for directions close by.
-        nearby = directions + 0.99 * np.sqrt(around[TOLERANCE]) * ways(random, 2000).T
+        # The list of a cell holds for close directions, too.
+        nearby = directions + 0.99 * np.sqrt(buffer[TOLERANCE]) * ways(random, 2000).T
         nearby /= np.linalg.norm(nearby, axis=0)
-        nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= around[TOLERANCE], nearby, directions)
+        nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= buffer[TOLERANCE], nearby, directions)
         with np.errstate(all="ignore"):
             cells = (
-                light_buffer_cell(around, traced.light_buffer_cells, Vec(*nearby))
-                if traced.light_buffer_cells > 1
+                light_buffer_cell(buffer, arrays.light_buffer_cells, Vec(*nearby))
+                if arrays.light_buffer_cells > 1
                 else np.zeros(2000)
             )
-        in_cell = members(traced, "light_starts", traced.light_shapes, lamp)
+        in_cell = members(arrays, "light_starts", arrays.light_shapes, light)
         assert 0 <= cells.min() <= cells.max() < count <= len(in_cell)
         left_out = {shape for shape in planes if not in_cell[:, shape].any()}
-        for shape, (hit, t) in enumerate(meets(traced, Vec(*row[:3]), Vec(*directions))):
-            assert (t[hit] >= traced.light_cones[lamp, shape, 4]).all()
-            assert (in_cone(traced.light_cones[lamp, shape], Vec(*directions)) | ~hit).all()
+        for shape, (hit, t) in enumerate(hits_of_all_shapes(arrays, Vec(*row[:3]), Vec(*directions))):
+            assert (t[hit] >= arrays.light_cones[light, shape, 4]).all()
+            assert (in_cone(arrays.light_cones[light, shape], Vec(*directions)) | ~hit).all()
             assert shape in left_out or in_cell[cells[hit].astype(int), shape].all()
 
 
 @pytest.mark.parametrize(("make", "seed"), SCENES)
-def test_lists_begin_with_the_nearest_and_name_a_shape_once(make: Any, seed: int) -> None:
-    traced = Packing().pack(make(seed), WIDTH, HEIGHT)
+def test_bins_list_each_shape_once_and_the_nearest_first(make: Any, seed: int) -> None:
+    arrays = Packing().pack(make(seed), WIDTH, HEIGHT)
     for near, found, every in [
-        (traced.cones[:, 4], traced.tile_shapes, [group.tile_starts for group in traced.groups]),
+        (arrays.cones[:, 4], arrays.tile_shapes, [group.tile_starts for group in arrays.groups]),
         *(
-            (near, traced.light_shapes, [group.light_starts[lamp] for group in traced.groups])
-            for lamp, near in enumerate(traced.light_cones[..., 4])
+            (near, arrays.light_shapes, [group.light_starts[light] for group in arrays.groups])
+            for light, near in enumerate(arrays.light_cones[..., 4])
         ),
     ]:
         assert np.isfinite(near).all()
@@ -191,13 +191,13 @@ def test_lists_begin_with_the_nearest_and_name_a_shape_once(make: Any, seed: int
 
 
 @pytest.mark.parametrize("seed", range(30))
-def test_a_sphere_is_listed_about_where_it_is_seen(seed: int) -> None:
+def test_a_sphere_is_listed_only_near_the_pixels_that_show_it(seed: int) -> None:
     random = np.random.default_rng(seed)
     ball = Sphere(tuple(0.5 * random.normal(size=3) + (0, 0, 5)), random.uniform(0.1, 3), (1, 2, 3))
-    traced = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), ball)), 640, 640)
-    listed = np.diff(traced.groups[0].tile_starts).reshape(40, 40) > 0
+    arrays = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), ball)), 640, 640)
+    listed = np.diff(arrays.groups[0].tile_starts).reshape(40, 40) > 0
     x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(640), np.arange(640)))
-    ((hit, _),) = meets(traced, Vec(*traced.camera[:3]), unit(ray_direction(traced.camera, x, y)))
+    ((hit, _),) = hits_of_all_shapes(arrays, Vec(*arrays.camera[:3]), unit(ray_direction(arrays.camera, x, y)))
     assert not hit.reshape(640, 640)[[0, -1]].any()
     for axis in (0, 1):
         seen, there = (np.flatnonzero(each.any(axis=axis)) for each in (hit.reshape(640, 640), listed))
@@ -205,10 +205,11 @@ def test_a_sphere_is_listed_about_where_it_is_seen(seed: int) -> None:
         assert there[-1] in (seen[-1] // TILE, seen[-1] // TILE + 1)
 
 
-def test_of_a_ball_like_a_planet_nothing_is_above_its_horizon() -> None:
-    planet = Sphere((0, -101, 3), 200, (1, 2, 3))  # its centre is hardly before the eye, and its radius far greater
-    traced = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), planet)), 320, 320)
-    listed = np.diff(traced.groups[0].tile_starts).reshape(20, 20) > 0
+def test_a_huge_ball_is_not_listed_above_its_horizon() -> None:
+    # The centre is only 3 in front of the eye, and the radius far greater.
+    planet = Sphere((0, -101, 3), 200, (1, 2, 3))
+    arrays = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), planet)), 320, 320)
+    listed = np.diff(arrays.groups[0].tile_starts).reshape(20, 20) > 0
     assert listed[13:].all()
     assert not listed[:9].any()
 
@@ -216,9 +217,7 @@ def test_of_a_ball_like_a_planet_nothing_is_above_its_horizon() -> None:
 @pytest.mark.parametrize(
     ("x", "z", "radius"), [(0, 5, 1), (3, 4, 2), (-3, 1, 2), (4, 0, 1), (4, -0.5, 1), (-9, -0.1, 2)]
 )
-def test_tangents_are_turned_from_the_way_to_the_centre_by_the_angle_that_the_disc_covers(
-    x: float, z: float, radius: float
-) -> None:
+def test_tangents_differ_from_the_centre_by_the_angular_radius(x: float, z: float, radius: float) -> None:
     middle, half = np.arctan2(x, z), np.arcsin(radius / np.hypot(x, z))
     low, high = binning.tangent_slopes(x, z, radius)
     assert low == (pytest.approx(np.tan(middle - half)) if middle - half > -np.pi / 2 else -np.inf)
@@ -226,46 +225,46 @@ def test_tangents_are_turned_from_the_way_to_the_centre_by_the_angle_that_the_di
 
 
 @KERNELS
-def test_a_ball_without_end_is_everywhere_and_at_no_distance(kernel: Any) -> None:
-    balls, grid = np.array([[0.0, 0.0, 0.0, np.inf]]), visibility.cube(2)
-    rectangles, views, counts = np.zeros((6, 4), np.int32), np.ones((1, 5)), np.zeros(25, np.int64)
+def test_an_infinite_ball_is_in_all_cells_at_distance_zero(kernel: Any) -> None:
+    balls, grid = np.array([[0.0, 0.0, 0.0, np.inf]]), visibility.cube_grid(2)
+    rectangles, cones, counts = np.zeros((6, 4), np.int32), np.ones((1, 5)), np.zeros(25, np.int64)
     place = np.zeros((1, 2), np.int64)
     for origin in (np.zeros(3), np.array([1.0, 2.0, -3.0])):
         counts[:] = 0
-        assert kernel.project_all(origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, views, counts) == 6
-        assert views[0, 3:].tolist() == [-2, 0]
+        assert kernel.project_all(origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, cones, counts) == 6
+        assert cones[0, 3:].tolist() == [-2, 0]
         assert counts.tolist() == [1] * 24 + [0]
 
 
-def test_around_the_eye_a_disc_is_everywhere() -> None:
+def test_a_disc_around_the_eye_covers_all_slopes() -> None:
     assert binning.tangent_slopes(0.5, -0.5, 1.0) == (-np.inf, np.inf)
 
 
-def test_distances_are_less_by_what_may_be_one_place_and_by_little_more() -> None:
+def test_quantised_distances_are_less_by_a_little_more_than_coincident_ones() -> None:
     near = np.geomspace(1e-30, 1e30, 10_000)
-    rounded, depths = visibility.by_depth(near)
+    rounded, depths = visibility.quantised_depths(near)
     assert (rounded * (1 + COINCIDENT) <= near).all()
     assert (rounded * (1 + 4 * COINCIDENT) > near).all()
     assert (np.diff(depths) >= 0).all()
-    assert visibility.by_depth(np.array([0.0, 1e-50]))[0].tolist() == [0, 0]
+    assert visibility.quantised_depths(np.array([0.0, 1e-50]))[0].tolist() == [0, 0]
 
 
-def test_the_order_of_depth_is_that_of_the_distances() -> None:
+def test_depths_are_ordered_as_the_distances() -> None:
     near = np.random.default_rng(8).permutation(np.geomspace(1e-3, 1e3, 10_000))
-    rounded, depths = visibility.by_depth(near)
-    order = visibility.in_order(depths)
+    rounded, depths = visibility.quantised_depths(near)
+    order = visibility.depth_order(depths)
     assert sorted(order.tolist()) == list(range(10_000))
     assert (np.diff(rounded[order]) >= 0).all()
     assert (np.diff(order)[np.diff(depths[order]) == 0] > 0).all()
 
 
-def test_lists_leave_something_out() -> None:
-    traced = Packing().pack(random_scene(3), WIDTH, HEIGHT)
-    assert len(traced.tile_shapes) > 0
+def test_bins_leave_out_most_shapes() -> None:
+    arrays = Packing().pack(random_scene(3), WIDTH, HEIGHT)
+    assert len(arrays.tile_shapes) > 0
     scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Light((0, 9, 0), 1), *scattered()))
-    traced = Packing().pack(scene, WIDTH, HEIGHT)
-    assert traced.light_buffer_cells > 1
-    in_tile = members(traced, "tile_starts", traced.tile_shapes)
+    arrays = Packing().pack(scene, WIDTH, HEIGHT)
+    assert arrays.light_buffer_cells > 1
+    in_tile = members(arrays, "tile_starts", arrays.tile_shapes)
     assert in_tile.mean() < 0.3
     behind = np.array([shape.centre[2] < -2 for shape in scene.shapes])
     assert behind.any()
@@ -278,21 +277,21 @@ def scattered() -> list[Any]:
 
 
 @pytest.mark.parametrize("shapes", [1, 8, 9, 200, 2_000, 10_000])
-def test_more_shapes_more_cells(shapes: int) -> None:
-    grid, half = (visibility.grid_for(tables_of(count)) for count in (shapes, max(1, shapes // 2)))
+def test_more_shapes_have_more_cells(shapes: int) -> None:
+    grid, half = (visibility.light_buffer_cells(shape_arrays_of(count)) for count in (shapes, max(1, shapes // 2)))
     assert grid >= half
     assert (grid == 1) == (shapes <= 8)
 
 
-def tables_of(count: int) -> ShapeArrays:
+def shape_arrays_of(count: int) -> ShapeArrays:
     tables = ShapeArrays()
     tables.update((Sphere((0, 0, 0), 1, (1, 2, 3)),) * count)
     return tables
 
 
 @pytest.mark.parametrize("grid", [2, 16])
-def test_a_direction_lies_in_the_cell_that_its_face_row_and_column_say(grid: int) -> None:
-    # Through the middle of each cell, by the frames of the faces.
+def test_a_direction_is_in_the_cell_of_its_face_row_and_column(grid: int) -> None:
+    # Directions through the centre of each cell, by the frames of the faces.
     slopes = (2 * np.arange(grid) + 1) / grid - 1
     expected = 0
     for right, up, forward in visibility.FACES:
@@ -300,32 +299,35 @@ def test_a_direction_lies_in_the_cell_that_its_face_row_and_column_say(grid: int
             for across in slopes:
                 direction = forward + across * right + down * up
                 with np.errstate(all="ignore"):
-                    assert light_buffer_cell(visibility.NO_CELLS, grid, Vec(*map(np.float64, direction))) == expected
+                    assert (
+                        light_buffer_cell(visibility.NO_LIGHT_BUFFER, grid, Vec(*map(np.float64, direction)))
+                        == expected
+                    )
                 expected += 1
 
 
 @KERNELS
 @pytest.mark.parametrize("size", [1.0, 1e-3, 1e-7])
-def test_corners_and_tangents_are_in_the_cone(size: float, kernel: Any) -> None:
-    """Seen from a point, the corners of triangles and the rims of balls as small as this, and hardly more is."""
+def test_corners_and_tangents_are_in_the_bounding_cone(size: float, kernel: Any) -> None:
+    """The cone encloses corners of triangles and rims of balls of this size, seen from a point, and hardly more."""
     random = np.random.default_rng(7)
     for _ in range(300):
-        way = unit_way(random)
+        way = unit_direction(random)
         corners = 10.0 ** random.uniform(-3, 3) * (way + size * 0.4 * random.normal(size=(3, 3)))
-        axis, cosine = seen(kernel, np.c_[corners, np.zeros(3)])
+        axis, cosine = cone_from_origin(kernel, np.c_[corners, np.zeros(3)])
         assert all(np.dot(axis, corner / np.linalg.norm(corner)) >= cosine for corner in corners)
         sine = size * random.uniform(0.3, 0.99999)
-        axis, cosine = seen(kernel, np.array([[*3 * way, 3 * sine]]))
-        aside = np.cross(way, unit_way(random))
+        axis, cosine = cone_from_origin(kernel, np.array([[*3 * way, 3 * sine]]))
+        aside = np.cross(way, unit_direction(random))
         rim = np.sqrt(1 - sine * sine) * way + sine * aside / np.linalg.norm(aside)
         assert np.dot(axis, rim / np.linalg.norm(rim)) >= cosine
         wider = 1.01 * np.arcsin(sine) + 2e-7
         assert cosine > np.cos(wider)
 
 
-def seen(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]:
-    """The cone around the hull of some balls, seen from the origin: axis and cosine."""
-    rectangles, views, counts = np.zeros((6, 4), np.int32), np.zeros((1, 5)), np.zeros(25, np.int64)
-    given = np.zeros(3), visibility.cube(2), balls, 0.0, np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
-    kernel.project_all(*given, rectangles, 0, views, counts)
-    return views[0, :3], float(views[0, 3])
+def cone_from_origin(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]:
+    """The bounding cone of the hull of some balls, seen from the origin: axis and cosine."""
+    rectangles, cones, counts = np.zeros((6, 4), np.int32), np.zeros((1, 5)), np.zeros(25, np.int64)
+    arguments = np.zeros(3), visibility.cube_grid(2), balls, 0.0, np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
+    kernel.project_all(*arguments, rectangles, 0, cones, counts)
+    return cones[0, :3], float(cones[0, 3])

@@ -1,4 +1,4 @@
-"""The rays of the pixels, derived in four other ways."""
+"""Primary rays, compared with four other derivations of a pinhole camera."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ CAMERAS = [
 def ours(camera: Camera, width: int, height: int) -> Array:
     """The unit directions of the rays that the program traces, (height, width, 3)."""
     rays = pixel_rays(camera_numbers(camera, width, height), width, height)
-    ways = [ray_direction(rays, i + 0.5, j + 0.5) for j in range(height) for i in range(width)]
-    return normalized(np.array([(way.x, way.y, way.z) for way in ways]).reshape(height, width, 3))
+    directions = [ray_direction(rays, i + 0.5, j + 0.5) for j in range(height) for i in range(width)]
+    return normalized(np.array([(v.x, v.y, v.z) for v in directions]).reshape(height, width, 3))
 
 
 def normalized(vectors: Array) -> Array:
@@ -46,8 +46,7 @@ def pixels(width: int, height: int) -> tuple[Array, Array]:
 
 
 def look_at(camera: Camera) -> Array:
-    """The matrix that takes points of the world to points of the camera, which looks along its own -z with +y up; for
-    column vectors."""
+    """The matrix from world space to camera space, for column vectors; the camera looks along its -z with +y up."""
     eye, forward = np.array(camera.position), normalized(np.array(camera.direction))
     side = normalized(np.cross(forward, UP))
     matrix = np.eye(4)
@@ -57,14 +56,14 @@ def look_at(camera: Camera) -> Array:
 
 
 def from_points(camera_to_world: Array, points: Array) -> Array:
-    """Directions from the camera to points of its own space, homogeneous ones (..., 4)."""
+    """Directions from the camera to homogeneous points (..., 4) in camera space."""
     moved = points @ camera_to_world.T
     origin = camera_to_world @ [0, 0, 0, 1]
     return normalized(moved[..., :3] / moved[..., 3:] - origin[:3] / origin[3])
 
 
-def upright_angle(camera: Camera, width: int, height: int) -> float:
-    """The vertical field of view, in degrees, that goes with the horizontal one."""
+def vertical_angle(camera: Camera, width: int, height: int) -> float:
+    """The vertical field of view, in degrees, for the horizontal one of the camera."""
     return degrees(2 * atan(tan(radians(camera.fov) / 2) * height / width))
 
 
@@ -74,7 +73,7 @@ def by_normalized_coordinates(camera: Camera, width: int, height: int) -> Array:
     column, row = pixels(width, height)
     device_x, device_y = (column + 0.5) / width, (row + 0.5) / height
     screen_x, screen_y = 2 * device_x - 1, 1 - 2 * device_y
-    aspect, half = width / height, tan(radians(upright_angle(camera, width, height)) / 2)
+    aspect, half = width / height, tan(radians(vertical_angle(camera, width, height)) / 2)
     forward = np.array(camera.direction)
     right = normalized(np.cross(UP, -forward))
     camera_to_world = np.eye(4)
@@ -86,7 +85,7 @@ def by_normalized_coordinates(camera: Camera, width: int, height: int) -> Array:
 
 
 def by_look_at_matrix(camera: Camera, width: int, height: int) -> Array:
-    """What the inverse of the look-at matrix makes of the points of the plane z = -1."""
+    """Points of the plane z = -1, taken to world space by the inverse of the look-at matrix."""
     column, row = pixels(width, height)
     half = tan(radians(camera.fov) / 2)
     x = (2 * (column + 0.5) / width - 1) * half
@@ -95,12 +94,12 @@ def by_look_at_matrix(camera: Camera, width: int, height: int) -> Array:
 
 
 def by_viewport_vectors(camera: Camera, width: int, height: int) -> Array:
-    """lower left corner + u horizontal + v vertical, rows from below. There u = i / width is the left edge of a pixel;
-    half a pixel more is its centre."""
+    """Lower left corner + u horizontal + v vertical, rows from below. u = i / width is the left edge of a pixel; its
+    centre is half a pixel further."""
     column, row = pixels(width, height)
     eye, w = np.array(camera.position), -normalized(np.array(camera.direction))
     right = normalized(np.cross(UP, w))
-    half_height = tan(radians(upright_angle(camera, width, height)) / 2)
+    half_height = tan(radians(vertical_angle(camera, width, height)) / 2)
     half_width = half_height * width / height
     horizontal, vertical = 2 * half_width * right, 2 * half_height * np.cross(w, right)
     lower_left_corner = eye - horizontal / 2 - vertical / 2 - w
@@ -109,8 +108,8 @@ def by_viewport_vectors(camera: Camera, width: int, height: int) -> Array:
 
 
 def by_screen_to_camera(camera: Camera, width: int, height: int) -> Array:
-    """A matrix takes points of the screen, (column, row, 0, 1) in pixels, to those of the camera; another one from
-    there to the world."""
+    """A matrix from screen space, (column, row, 0, 1) in pixels, to camera space; another one from there to the
+    world."""
     column, row = pixels(width, height)
     half = tan(radians(camera.fov) / 2)
     pixel = 2 * half / width
@@ -133,8 +132,8 @@ def test_other_models_of_a_camera_have_the_same_rays(model: Model, camera: Camer
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_left_handed_ones_have_the_mirrored_picture(model: Model) -> None:
-    # The same formulas with left-handed coordinates: those of the scene with z the other way round.
+def test_left_handed_models_have_the_mirrored_picture(model: Model) -> None:
+    # Left-handed coordinates are those of the scene with the sign of z changed.
     camera, size = CAMERAS[3], (16, 9)
     x, y, z = camera.position
     a, b, c = camera.direction
@@ -143,8 +142,8 @@ def test_left_handed_ones_have_the_mirrored_picture(model: Model) -> None:
     assert_allclose(through_the_mirror, ours(camera, *size)[:, ::-1], atol=1e-12)
 
 
-def test_the_corner_of_a_pixel_is_half_a_pixel_off() -> None:
-    # What u = i / width would give, without the translation: the rays of a picture of twice the size.
+def test_rays_go_through_the_centres_of_pixels_not_their_corners() -> None:
+    # Rays through the corners, u = i / width, are found in a picture of twice the size.
     fine = ours(CAMERAS[1], 32, 18)
     coarse = ours(CAMERAS[1], 16, 9)
     assert np.abs(coarse - fine[::2, ::2]).max() > 0.01
@@ -152,7 +151,7 @@ def test_the_corner_of_a_pixel_is_half_a_pixel_off() -> None:
 
 
 @pytest.mark.parametrize("roll", [0.0, 30.0])
-def test_look_at_has_the_target_in_the_middle(roll: float) -> None:
+def test_look_at_has_the_target_in_the_centre(roll: float) -> None:
     eye, target = (1.0, 2.0, 3.0), (-4.0, 7.0, 11.0)
     camera = Camera.look_at(eye, target, fov=40, roll=roll)
     assert (camera.position, camera.fov, camera.roll) == (eye, 40.0, roll)
@@ -162,12 +161,12 @@ def test_look_at_has_the_target_in_the_middle(roll: float) -> None:
     assert_allclose(np.argwhere(shown[..., 0]).mean(axis=0), [10, 16], atol=0.1)
 
 
-def test_look_at_needs_two_places() -> None:
-    with pytest.raises(ValueError, match="two different points"):
+def test_look_at_needs_two_different_points() -> None:
+    with pytest.raises(ValueError, match="two places"):
         Camera.look_at((1, 2, 3), (1, 2, 3))
 
 
-def test_look_at_far_and_near() -> None:
+def test_look_at_works_far_and_near() -> None:
     assert Camera.look_at((0, 0, 0), (0, 0, 1e300)).direction == (0.0, 0.0, 1.0)
     assert_allclose(Camera.look_at((0, 0, 0), (1e-300, 0, 1e-300)).direction, [0.5**0.5, 0, 0.5**0.5])
 

@@ -1,13 +1,10 @@
-"""What a scene asks of the kernel."""
+"""The features that a scene uses."""
 
 from __future__ import annotations
 
 from minirt.materials import Checker, Glass, Specular
-from minirt.rendering.culling.visibility import SMALL
 from minirt.rendering.packing.features import features
-from minirt.rendering.renderer import needs, small
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
-from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 
@@ -18,37 +15,26 @@ BALL = Sphere((0, 0, 0), 1, GREY)
 SUN = ParallelLight((0, -1, 0), 0.5)
 
 
-def of(*elements: object) -> set[object]:
+def features_of(*elements: object) -> set[object]:
     return set(features(Scene((LIGHT, EYE, *elements))))  # type: ignore[arg-type]
 
 
-def test_a_plain_scene_asks_for_its_kinds_alone() -> None:
-    assert of(BALL, Plane((0, 0, 0), (0, 1, 0), GREY), Light((0, 9, 0), 1)) == {Sphere, Plane}
+def test_a_plain_scene_uses_only_its_kinds() -> None:
+    assert features_of(BALL, Plane((0, 0, 0), (0, 1, 0), GREY), Light((0, 9, 0), 1)) == {Sphere, Plane}
 
 
-def test_each_feature_is_asked_for_where_it_is_used() -> None:
-    assert of(BALL.replace(specular=Specular(0.5, 20))) == {Sphere, "specular"}
-    assert of(BALL.replace(mirror=0.5)) == {Sphere, "reflective"}
-    assert of(BALL.replace(glass=Glass(1.5))) == {Sphere, "reflective"}
-    assert of(BALL.replace(checker=Checker(0.5)), BALL) == {Sphere, "checks"}
-    assert of(Background((0, 0, 9))) == {"background"}
-    assert of(SUN) == {"spots", "parallel"}
-    assert of(SpotLight((0, 9, 0), (0, -1, 0), 40, 1)) == {"spots"}
-    assert of(FurtherLight((0, 9, 0), 1, fade=5.0)) == {"spots"}
+def test_each_feature_is_found_where_it_is_used() -> None:
+    assert features_of(BALL.replace(specular=Specular(0.5, 20))) == {Sphere, "specular"}
+    assert features_of(BALL.replace(mirror=0.5)) == {Sphere, "reflective"}
+    assert features_of(BALL.replace(glass=Glass(1.5))) == {Sphere, "reflective"}
+    assert features_of(BALL.replace(checker=Checker(0.5)), BALL) == {Sphere, "checks"}
+    assert features_of(Background((0, 0, 9))) == {"background"}
+    assert features_of(SUN) == {"spots", "parallel"}
+    assert features_of(SpotLight((0, 9, 0), (0, -1, 0), 40, 1)) == {"spots"}
+    assert features_of(FurtherLight((0, 9, 0), 1, fade=5.0)) == {"spots"}
 
 
-def test_what_does_nothing_asks_for_nothing() -> None:
-    idle = BALL.replace(specular=Specular(0, 20), mirror=0.0, glass=Glass(1.5, 0))
+def test_elements_without_effect_use_no_feature() -> None:
+    no_effect = BALL.replace(specular=Specular(0, 20), mirror=0.0, glass=Glass(1.5, 0))
     black = SpotLight((0, 9, 0), (0, -1, 0), 40, 0), ParallelLight((0, -1, 0), 1, (0, 0, 0))
-    assert of(idle, Background((0, 0, 0)), *black) == {Sphere}
-
-
-def test_a_small_scene_needs_the_same() -> None:
-    balls = [Sphere((i, 0, 0), 1, GREY, mirror=0.5 if i == 70 else None) for i in range(100)]
-    tube = Cylinder((0, 0, 0), (0, 1, 0), 1, 2, GREY, checker=Checker(0.1))
-    for elements in ((BALL,), (*balls, tube, SUN), (*balls[: SMALL + 1], SUN), (BALL, SUN)):
-        scene = Scene((LIGHT, EYE, *elements))
-        assert needs(small(scene)) == needs(scene)
-        assert len(small(scene).shapes) <= SMALL + 2
-    assert "bvh" in needs(Scene((LIGHT, EYE, *balls, SUN)))
-    assert "bvh" not in needs(Scene((LIGHT, EYE, *balls)))
+    assert features_of(no_effect, Background((0, 0, 0)), *black) == {Sphere}

@@ -1,4 +1,4 @@
-"""The tables of materials."""
+"""Packing of materials, textures and environment maps."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from minirt.errors import FileError
 from minirt.materials import Bump, Checker, Glass, Specular
 from minirt.rendering.packing import materials
 from minirt.rendering.packing.features import features
-from minirt.rendering.packing.materials import environment_of, materials_of
+from minirt.rendering.packing.materials import pack_environment, pack_materials
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.sphere import Sphere
@@ -23,78 +23,78 @@ BALL = Sphere((0, 0, 0), 1, GREY)
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Two pictures: three channels, 3 x 2; one of 16 bits, 2 x 1."""
+    """Two images: one of three channels, 3 x 2, and one of 16 bits, 2 x 1."""
     pillow.fromarray(np.arange(18, dtype=np.uint8).reshape(2, 3, 3)).save(tmp_path / "a.png")
     pillow.fromarray(np.array([[0, 65535]], np.uint16)).save(tmp_path / "b.png")
     return tmp_path
 
 
-def scene(folder: Path, *shapes: Shape) -> Scene:
+def scene_of(folder: Path, *shapes: Shape) -> Scene:
     return Scene((Camera((0, 0, -9), (0, 0, 1), 60), *shapes), folder / "scene.rt")
 
 
-def test_plain_shapes_have_no_tables(tmp_path: Path) -> None:
-    plain = scene(tmp_path, BALL, BALL.replace(mirror=0.0))
-    assert materials_of(plain, np.arange(2), features(plain)) == (None, None, None)
+def test_plain_shapes_have_no_material_arrays(tmp_path: Path) -> None:
+    plain = scene_of(tmp_path, BALL, BALL.replace(mirror=0.0))
+    assert pack_materials(plain, np.arange(2), features(plain)) == (None, None, None)
 
 
-def test_nobody_looks_at_shapes_that_are_all_plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    looks: list[Shape] = []
-    monkeypatch.setattr(materials, "ATTRIBUTES", lambda shape: looks.append(shape) or materials.PLAIN)
-    shown = scene(tmp_path, *[BALL] * 3)
-    materials_of(shown, np.arange(3), features(shown))
-    assert looks == []
-    materials_of(shown, np.arange(3), {"specular"})
-    assert looks == [BALL] * 3
+def test_shapes_are_not_inspected_if_all_are_plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    inspected: list[Shape] = []
+    monkeypatch.setattr(materials, "ATTRIBUTES", lambda shape: inspected.append(shape) or materials.PLAIN)
+    scene = scene_of(tmp_path, *[BALL] * 3)
+    pack_materials(scene, np.arange(3), features(scene))
+    assert inspected == []
+    pack_materials(scene, np.arange(3), {"specular"})
+    assert inspected == [BALL] * 3
 
 
-def test_rows_of_shapes(tmp_path: Path) -> None:
+def test_each_shape_has_its_row(tmp_path: Path) -> None:
     shapes = (
         BALL,
         BALL.replace(specular=Specular(0.5, 20, blinn=True), checker=Checker(0.25, (255, 0, 51))),
         BALL.replace(mirror=0.25, glass=Glass(1.5, 0.5)),
         BALL.replace(mirror=0.5, glass=Glass(1.25)),
     )
-    shown = scene(tmp_path, *shapes)
-    gloss, bounces, skins = materials_of(shown, np.arange(4), features(shown))
-    assert np.array_equal(gloss, [[0, 0, 0], [0.5, 20, 1], [0, 0, 0], [0, 0, 0]])
-    assert np.allclose(bounces, [[0, 0, 1], [0, 0, 1], [0.25, 0.5, 1.5], [1 / 3, 2 / 3, 1.25]])
-    assert np.allclose(skins.checks, [[0] * 4, [0.25, 1, 0, 0.2], [0] * 4, [0] * 4])
-    assert np.array_equal(skins.used, [0, 1, 0, 0])
-    assert (skins.textures, skins.bumps, skins.normals) == (None, None, None)
+    scene = scene_of(tmp_path, *shapes)
+    specular, reflective, maps = pack_materials(scene, np.arange(4), features(scene))
+    assert np.array_equal(specular, [[0, 0, 0], [0.5, 20, 1], [0, 0, 0], [0, 0, 0]])
+    assert np.allclose(reflective, [[0, 0, 1], [0, 0, 1], [0.25, 0.5, 1.5], [1 / 3, 2 / 3, 1.25]])
+    assert np.allclose(maps.checks, [[0] * 4, [0.25, 1, 0, 0.2], [0] * 4, [0] * 4])
+    assert np.array_equal(maps.used, [0, 1, 0, 0])
+    assert (maps.textures, maps.bumps, maps.normals) == (None, None, None)
 
 
-def test_the_parts_of_a_shape_have_its_rows(tmp_path: Path) -> None:
-    shown = scene(tmp_path, BALL, BALL.replace(mirror=0.5, checker=Checker(0.5)))
-    _, bounces, skins = materials_of(shown, np.array([0, 1, 1, 1]), features(shown))
-    assert np.array_equal(bounces[:, 0], [0, 0.5, 0.5, 0.5])
-    assert np.array_equal(skins.checks[:, 0], [0, 0.5, 0.5, 0.5])
-    assert np.array_equal(skins.used, [0, 1, 1, 1])
+def test_the_primitives_of_a_shape_have_its_row(tmp_path: Path) -> None:
+    scene = scene_of(tmp_path, BALL, BALL.replace(mirror=0.5, checker=Checker(0.5)))
+    _, reflective, maps = pack_materials(scene, np.array([0, 1, 1, 1]), features(scene))
+    assert np.array_equal(reflective[:, 0], [0, 0.5, 0.5, 0.5])
+    assert np.array_equal(maps.checks[:, 0], [0, 0.5, 0.5, 0.5])
+    assert np.array_equal(maps.used, [0, 1, 1, 1])
 
 
-def test_pictures_are_kept_once(folder: Path) -> None:
-    shown = scene(
+def test_each_image_is_packed_once(folder: Path) -> None:
+    scene = scene_of(
         folder,
         BALL.replace(texture="a.png", bump=Bump("b.png", 0.5)),
         BALL,
         BALL.replace(texture="a.png", normal_map="a.png", bump=Bump("b.png", 0.0)),
     )
-    skins = materials_of(shown, np.arange(3), features(shown)).surface_maps
-    assert np.array_equal(skins.textures, [1, 0, 1])
-    assert np.array_equal(skins.bumps, [[2, 0.5], [0, 0], [0, 0]])
-    assert np.array_equal(skins.normals, [0, 0, 1])
-    assert np.array_equal(skins.used, [1, 0, 1])
-    assert np.array_equal(skins.pictures, [[0, 3, 2, 3], [18, 2, 1, 1]])
-    assert np.allclose(skins.texels, [*(np.arange(18) / 255), 0, 1], atol=1e-7)
+    maps = pack_materials(scene, np.arange(3), features(scene)).surface_maps
+    assert np.array_equal(maps.textures, [1, 0, 1])
+    assert np.array_equal(maps.bumps, [[2, 0.5], [0, 0], [0, 0]])
+    assert np.array_equal(maps.normals, [0, 0, 1])
+    assert np.array_equal(maps.used, [1, 0, 1])
+    assert np.array_equal(maps.pictures, [[0, 3, 2, 3], [18, 2, 1, 1]])
+    assert np.allclose(maps.texels, [*(np.arange(18) / 255), 0, 1], atol=1e-7)
 
 
-def test_a_picture_as_background(folder: Path) -> None:
-    dome = environment_of(scene(folder), "a.png")
-    assert np.array_equal(dome.pictures, [[0, 3, 2, 3]])
-    assert len(dome.texels) == 18
+def test_an_image_may_be_the_background(folder: Path) -> None:
+    environment = pack_environment(scene_of(folder), "a.png")
+    assert np.array_equal(environment.pictures, [[0, 3, 2, 3]])
+    assert len(environment.texels) == 18
 
 
-def test_a_picture_that_is_gone_is_named(tmp_path: Path) -> None:
-    shown = scene(tmp_path, BALL.replace(texture="gone.png"))
+def test_a_missing_image_is_named(tmp_path: Path) -> None:
+    scene = scene_of(tmp_path, BALL.replace(texture="gone.png"))
     with pytest.raises(FileError, match=r"gone\.png"):
-        materials_of(shown, np.arange(1), features(shown))
+        pack_materials(scene, np.arange(1), features(scene))

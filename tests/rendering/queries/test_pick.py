@@ -1,4 +1,4 @@
-"""Picking: what a click hits is what the picture shows."""
+"""Picking: a click hits the shape that the picture shows."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from PIL import Image
 
 from minirt.rendering import Renderer
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.pick import pick, place
+from minirt.rendering.queries.pick import pick, surface_point
 from minirt.scene import Ambient, Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.plane import Plane
@@ -24,7 +24,7 @@ WIDTH, HEIGHT = 36, 24
 
 
 def owners(scene: Scene) -> tuple[list[Shape], np.ndarray]:
-    """The scene's shapes, each in a colour of its own that nothing changes, and the index that each pixel shows."""
+    """The shapes of a scene, each in a unique unshaded colour, and the index of the shape that each pixel shows."""
     shapes = [shape.replace(colour=(index // 16 + 1, index % 16, 255)) for index, shape in enumerate(scene.shapes)]
     flat = Scene((Ambient(1.0, (255, 255, 255)), scene.camera, *shapes))
     pixels, _ = picture(flat, WIDTH, HEIGHT)
@@ -34,45 +34,45 @@ def owners(scene: Scene) -> tuple[list[Shape], np.ndarray]:
 
 def assert_picks(scene: Scene, allowed: int = 0) -> None:
     shapes, seen = owners(scene)
-    flat, tables = Scene((scene.camera, *shapes)), ShapeArrays()
+    flat, shape_arrays = Scene((scene.camera, *shapes)), ShapeArrays()
     wrong = 0
     for (y, x), index in np.ndenumerate(seen):
-        wrong += pick(flat, WIDTH, HEIGHT, x, y, tables) is not (shapes[index] if index >= 0 else None)
+        wrong += pick(flat, WIDTH, HEIGHT, x, y, shape_arrays) is not (shapes[index] if index >= 0 else None)
     assert wrong <= allowed
 
 
-def test_a_click_hits_what_is_seen() -> None:
+def test_a_click_hits_the_shape_that_is_seen() -> None:
     assert_picks(ALL)
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_in_random_scenes(seed: int) -> None:
+def test_clicks_hit_the_shapes_of_random_scenes(seed: int) -> None:
     assert_picks(random_scene(seed), allowed=1)
 
 
 @pytest.mark.parametrize("name", SAME)
-def test_of_coincident_surfaces_the_one_that_is_seen_is_hit(name: str) -> None:
+def test_a_click_hits_the_visible_one_of_coincident_surfaces(name: str) -> None:
     assert_picks(Scene((EYE, *SAME[name])))
     assert_picks(Scene((EYE, *reversed(SAME[name]))))
 
 
-def test_coincident_surfaces_with_pictures_that_lie_elsewhere(tmp_path: Path) -> None:
+def test_coincident_surfaces_may_have_textures_in_another_folder(tmp_path: Path) -> None:
     Image.new("RGB", (2, 2), (9, 9, 9)).save(tmp_path / "grey.png")
     ball = Sphere((0, 0, 5), 2, (1, 2, 3), texture="grey.png")
     scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), ball, ball.replace(diameter=2)), tmp_path / "scene.rt")
     assert pick(scene, 11, 11, 5, 5) in scene.shapes
 
 
-def test_where_on_a_shape() -> None:
+def test_the_point_on_a_shape() -> None:
     camera = Camera((0, 0, 0), (0, 0, 1), 90)
     ball = Sphere((0, 0, 5), 2, (1, 2, 3))
-    assert place(ball, camera, 101, 101, 50, 50) == pytest.approx((0, 0, 4))
-    assert place(ball, camera, 101, 101, 0, 0) is None
-    x, y, z = place(Plane((0, -1, 0), (0, 1, 0), (1, 2, 3)), camera, 100, 100, 75, 99)
-    assert (x / z, y, y / z) == pytest.approx((-0.51, -1, -0.99))  # x goes to the left where one looks along z
+    assert surface_point(ball, camera, 101, 101, 50, 50) == pytest.approx((0, 0, 4))
+    assert surface_point(ball, camera, 101, 101, 0, 0) is None
+    x, y, z = surface_point(Plane((0, -1, 0), (0, 1, 0), (1, 2, 3)), camera, 100, 100, 75, 99)
+    assert (x / z, y, y / z) == pytest.approx((-0.51, -1, -0.99))  # looking along +z, x points to the left
 
 
-def test_who_clicks_does_not_wait_for_a_long_picture() -> None:
+def test_a_click_does_not_wait_for_a_long_picture() -> None:
     scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Sphere((0, 0, 5), 1, (1, 2, 3))))
     renderer = Renderer()
     renderer.busy.acquire()
@@ -83,7 +83,7 @@ def test_who_clicks_does_not_wait_for_a_long_picture() -> None:
     assert not renderer.busy.locked()
 
 
-def test_who_clicks_does_not_wait_for_the_compiler() -> None:
+def test_a_click_does_not_wait_for_the_compiler() -> None:
     scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Sphere((0, 0, 5), 1, (1, 2, 3))))
     renderer = Renderer()
     renderer.busy.acquire()
@@ -91,7 +91,7 @@ def test_who_clicks_does_not_wait_for_the_compiler() -> None:
     assert renderer.busy.locked()
 
 
-def test_where_nothing_is_nothing_is_hit() -> None:
+def test_a_click_on_the_background_hits_nothing() -> None:
     assert pick(Scene((Camera((0, 0, 0), (0, 0, 1), 60),)), 10, 10, 5, 5) is None
     ball, wall = Sphere((0, 0, 5), 1, (1, 2, 3)), Plane((0, 0, -3), (0, 0, 1), (1, 2, 3))
     scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), wall, ball))

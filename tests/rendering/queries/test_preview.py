@@ -1,4 +1,4 @@
-"""A preview is the compiled picture, at a lower resolution."""
+"""Previews: the interpreted picture equals the compiled one, in a resolution that fits the time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from minirt.kernel.rows import intersect
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.packing.features import features
-from minirt.rendering.queries.preview import BUDGET, FEWEST, RAY, SHAPE, picture, preview
+from minirt.rendering.queries.preview import BUDGET, FEWEST, RAY, SHAPE, preview, render_interpreted
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.sphere import Sphere
 from tests.kernel import pictures
@@ -26,17 +26,17 @@ SCENES = sorted(FOLDER_OF_SCENES.glob("*.rt"))
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
-def test_every_scene_is_as_compiled(path: Path) -> None:
+def test_every_interpreted_picture_equals_the_compiled_one(path: Path) -> None:
     scene = minirt.load(path, lenient=True)
     if "reflective" in features(scene) and path.stem not in MIRRORS:
-        return  # a preview has none, and one such scene is enough to wait for the compiler
+        return  # a preview has no reflections; compiling for one such scene is enough
     pixels, light = pictures.picture(scene, 64, 36, renderer=PLAIN)
-    made, seen = picture(scene, 64, 36)
+    made, seen = render_interpreted(scene, 64, 36)
     np.testing.assert_allclose(seen, light, rtol=0, atol=1e-12)
     assert (made == pixels).all()
 
 
-def test_without_shapes_it_is_black() -> None:
+def test_a_preview_without_shapes_is_black() -> None:
     made = preview(Scene((Camera((0, 0, 0), (0, 0, 1), 70),)), 64, 48)
     assert made is not None
     assert (made == (0, 0, 0, 255)).all()
@@ -47,7 +47,7 @@ def balls(count: int) -> Scene:
     return Scene((Ambient(0.2, (255, 255, 255)), Camera((0, 0, -9), (0, 0, 1), 70), Light((0, 9, 0), 1), *row))
 
 
-def test_it_has_the_proportions_of_the_window_and_is_no_larger() -> None:
+def test_a_preview_has_the_proportions_of_the_window_and_is_not_larger() -> None:
     small = preview(balls(1), 30, 20)
     assert small is not None
     assert small.shape == (20, 30, 4)
@@ -59,8 +59,8 @@ def test_it_has_the_proportions_of_the_window_and_is_no_larger() -> None:
 
 
 @pytest.fixture
-def tried(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """How many rays at once each formula of a shape is asked about."""
+def calls(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The number of rays in each call of the formula of a shape."""
     counts: list[int] = []
 
     def counted(shape: Any, origin: Vec, direction: Vec) -> Any:
@@ -72,19 +72,19 @@ def tried(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 
 @pytest.mark.parametrize("count", [1, 30, 150])
-def test_it_takes_as_much_work_as_its_budget_has(count: int, tried: list[int]) -> None:
-    """Counted in rays and in calls for a shape; the budget is in seconds that these are said to take."""
+def test_a_preview_uses_its_budget(count: int, calls: list[int]) -> None:
+    """The work is counted in rays and in calls for a shape; the budget is in seconds that they are assumed to take."""
     made = preview(balls(count), 1920, 1080)
     assert made is not None
     height, width, _ = made.shape
     assert FEWEST <= width * height <= 1920 * 1080
-    assert 0 < len(tried) <= 2 * count <= 300  # for the eye and for the lamp
-    assert max(tried) <= width * height
-    assert sum(tried) < 600_000
+    assert 0 < len(calls) <= 2 * count <= 300  # for the eye and for the light
+    assert max(calls) <= width * height
+    assert sum(calls) < 600_000
     work = 2 * count * (SHAPE + RAY * width * height)
     assert 0.7 * BUDGET < work <= 1.01 * BUDGET
 
 
-def test_a_scene_that_takes_more_has_none(tried: list[int]) -> None:
+def test_a_scene_that_exceeds_the_budget_has_no_preview(calls: list[int]) -> None:
     assert preview(balls(10_000), 1920, 1080) is None
-    assert not tried
+    assert not calls

@@ -1,4 +1,4 @@
-"""Single rays through a scene, as the library traces them."""
+"""Closest-hit queries of the library, compared with 50-digit arithmetic."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def scene(*shapes: Any) -> Scene:
     return Scene((AMBIENT, EYE, *shapes))
 
 
-def test_where_rays_hit() -> None:
+def test_rays_hit_at_the_expected_distances_points_and_normals() -> None:
     hits = minirt.trace(
         scene(BALL, FLOOR, COLUMN),
         [[0, 0, 0], [0, 0, 5], [0, 3, 0], [0, 0, 0], [0, 0, 0], [4, 9, 0]],
@@ -45,7 +45,7 @@ def test_where_rays_hit() -> None:
     assert np.array_equal(hits.normal, [[0, 0, -1], [0, 1, 0], [0, 1, 0], nan, [-1, 0, 0], [0, 1, 0]], equal_nan=True)
 
 
-def test_rays_as_the_oracle_traces_them() -> None:
+def test_rays_hit_as_in_exact_arithmetic() -> None:
     random = np.random.default_rng(8)
     shapes = random_shapes(random, 30)
     origins, directions = random_rays(random, shapes, 120)
@@ -77,7 +77,7 @@ def test_there_may_be_no_rays_no_shapes_and_one_ray() -> None:
     assert minirt.trace(scene(FLOOR), [[0, 0, 0]], [[0, -1, 0]]).owner.tolist() == [0]
 
 
-def test_the_arguments_may_be_any_numbers_in_any_order_of_memory() -> None:
+def test_the_arguments_may_have_any_type_and_memory_layout() -> None:
     origins, directions = np.zeros((40, 3), np.float32), np.tile([0.0, 0, 1], (40, 1))
     fixed = directions.copy()
     fixed.flags.writeable = False
@@ -105,7 +105,7 @@ GOOD = np.ones((4, 3))
         (GOOD * 1j, GOOD, r"origins must be numbers of shape \(n, 3\)"),
     ],
 )
-def test_what_is_wrong_is_named(origins: Any, directions: Any, message: str) -> None:
+def test_an_error_names_the_argument(origins: Any, directions: Any, message: str) -> None:
     for shapes in ((), (BALL,)):
         with pytest.raises(ValueError, match=f"^{message}"):
             minirt.trace(scene(*shapes), origins, directions)
@@ -121,15 +121,15 @@ def test_one_thread_and_many_give_the_same_bits() -> None:
             assert np.array_equal(part, same, equal_nan=True)
 
 
-def test_edited_scenes_are_traced_anew_and_the_same_one_is_not_sorted_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_bvh_is_built_anew_for_an_edited_scene_and_kept_for_the_same_one(monkeypatch: pytest.MonkeyPatch) -> None:
     origins, directions = np.zeros((1, 3)), np.array([[0.0, 0, 1]])
     before = scene(BALL, FLOOR)
-    planted: list[Any] = []
-    plant = rays.Tracer.plant
-    monkeypatch.setattr(rays.Tracer, "plant", lambda tracer, shapes: planted.append(shapes) or plant(tracer, shapes))
+    built: list[Any] = []
+    build = rays.Tracer.build_bvh
+    monkeypatch.setattr(rays.Tracer, "build_bvh", lambda tracer, shapes: built.append(shapes) or build(tracer, shapes))
     for made, distance in ((before, 4), (before, 4), (before.replace(BALL, diameter=4), 3), (before, 4)):
         assert minirt.trace(made, origins, directions).distance.tolist() == [distance]
-    assert len(planted) == 3
+    assert len(built) == 3
 
 
 def test_several_threads_may_trace_at_once() -> None:
@@ -142,7 +142,7 @@ def test_several_threads_may_trace_at_once() -> None:
         assert all(np.array_equal(one, other, equal_nan=True) for one, other in zip(right, hits, strict=True))
 
 
-def test_a_picture_needs_no_tree_and_no_rays_need_no_compiler() -> None:
+def test_a_picture_imports_no_bvh_kernel_and_an_import_no_compiler() -> None:
     program = """
 import sys, minirt
 scene = minirt.load("scenes/subject.rt")

@@ -1,4 +1,4 @@
-"""A process of its own compiles: what it keeps is found, what it says is told, and none is left behind."""
+"""Compiling in another process: its result is found in the cache, its errors are reported, and none is left behind."""
 
 from __future__ import annotations
 
@@ -40,8 +40,9 @@ renderer, scene, pixels = Renderer(1), minirt.load("ball.rt"), np.zeros((8, 8, 4
 renderer.prepare(scene)
 assert renderer.is_ready(scene)
 assert renderer.render(scene, pixels)
-stats = renderer.kernel.kernel_for(Packing().pack(scene, 8, 8)).stats
-print(sum(stats.cache_hits.values()), sum(stats.cache_misses.values()), renderer.helper.process is not None)
+stats = renderer.kernels.jit.kernel_for(Packing().pack(scene, 8, 8)).stats
+asked = renderer.kernels.compile_process.process is not None
+print(sum(stats.cache_hits.values()), sum(stats.cache_misses.values()), asked)
 print(pixels[4, 4].tolist())
 """
 PROGRAM = """
@@ -66,29 +67,29 @@ process.main()
 
 
 def prepared(folder: Path, place: Path, package: Path = PACKAGE) -> list[str]:
-    """What a new process prints that prepares for a scene: how often the kernel was found and not, whether another
-    process compiled it, and a pixel."""
+    """Prepare for a scene in a new process and return what it prints: cache hits and misses, whether another process
+    was asked to compile, and a pixel."""
     (folder / "ball.rt").write_text(SCENE)
     command = [sys.executable, "-P", "-W", "error", "-c", PREPARE]
     environment = os.environ | {"XDG_CACHE_HOME": str(place), "PYTHONPATH": str(package.parent)}
     done = run(command, cwd=folder, env=environment, text=True)
     assert done.returncode == 0, done.stderr
-    said: list[str] = done.stdout.split("\n")
-    return said
+    lines: list[str] = done.stdout.split("\n")
+    return lines
 
 
-def test_another_process_compiles_and_the_next_program_finds_it(tmp_path: Path) -> None:
+def test_another_process_compiles_and_the_next_program_finds_the_kernel(tmp_path: Path) -> None:
     (tmp_path / "numba.py").write_text("raise SystemExit('a module of the current folder was imported')")
     place = tmp_path / "cache"
     assert prepared(tmp_path, place)[:2] == ["1 0 True", "[30, 20, 10, 255]"]
     assert prepared(tmp_path, place)[:2] == ["1 0 False", "[30, 20, 10, 255]"]
 
 
-def test_two_programs_at_once(tmp_path: Path) -> None:
+def test_two_programs_may_compile_at_once(tmp_path: Path) -> None:
     package = copy_package(tmp_path)
     with ThreadPoolExecutor(2) as pool:
-        said = list(pool.map(lambda _: prepared(tmp_path, tmp_path / "cache", package), range(2)))
-    assert [each[1] for each in said] == ["[30, 20, 10, 255]"] * 2
+        printed = list(pool.map(lambda _: prepared(tmp_path, tmp_path / "cache", package), range(2)))
+    assert [each[1] for each in printed] == ["[30, 20, 10, 255]"] * 2
     assert prepared(tmp_path, tmp_path / "cache", package)[0] == "1 0 False"
 
 
@@ -99,13 +100,13 @@ def test_two_programs_at_once(tmp_path: Path) -> None:
         ("import os; os._exit(3)", "the compiler ended with status 3"),
     ],
 )
-def test_what_goes_wrong_is_told(monkeypatch: pytest.MonkeyPatch, code: str, reason: str) -> None:
+def test_the_reason_of_a_failure_is_reported(monkeypatch: pytest.MonkeyPatch, code: str, reason: str) -> None:
     monkeypatch.setattr(compile_process, "COMMAND", (sys.executable, "-c", code))
     with pytest.raises(RenderError, match=f"^the kernel cannot be compiled: {reason}$"):
         CompileProcess().compile(())
 
 
-def test_where_no_process_can_be_started_nothing_is_done(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_nothing_is_done_if_no_process_can_be_started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(compile_process, "COMMAND", (str(tmp_path / "nothing"),))
     CompileProcess().compile(())
 
@@ -115,28 +116,28 @@ def test_stop_ends_the_process(monkeypatch: pytest.MonkeyPatch) -> None:
         compile_process, "COMMAND", (sys.executable, "-c", "import sys; sys.stdin.read()")
     )  # waits for ever
     errors: list[RenderError] = []
-    made = CompileProcess()
-    made.stop()  # of nothing
+    compiling = CompileProcess()
+    compiling.stop()  # no process yet
 
     def compile() -> None:
         with pytest.raises(RenderError) as caught:
-            made.compile(())
+            compiling.compile(())
         errors.append(caught.value)
 
     thread = Thread(target=compile, daemon=True)
     thread.start()
-    until(lambda: made.process is not None, "the process")
+    until(lambda: compiling.process is not None, "the process")
     assert thread.is_alive()
-    made.stop()
+    compiling.stop()
     thread.join(HANG_LIMIT)
     assert errors
-    assert made.process is not None
-    assert made.process.poll() is not None
+    assert compiling.process is not None
+    assert compiling.process.poll() is not None
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills as POSIX does")
 def test_the_process_ends_when_the_program_is_killed(tmp_path: Path) -> None:
-    """Nothing else could end it: it waits for ever where it would compile."""
+    """The process waits for ever instead of compiling, so nothing else could end it."""
     arguments = pickle.dumps(frame_arguments(Packing().pack(SPHERE, 1, 1), np.zeros((1, 1, 4), np.uint8)))
     environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": str(PACKAGE.parent)}
     command = [sys.executable, "-c", PROGRAM, ENDLESS, arguments.hex()]

@@ -1,4 +1,4 @@
-"""How many threads: the processors that the system leaves to the process."""
+"""The number of usable processors: affinity of the process, limit of its container."""
 
 from __future__ import annotations
 
@@ -33,22 +33,24 @@ def machine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
         ("what is this", 8),
     ],
 )
-def test_the_limit_of_a_container(machine: Path, quota: str, expected: int) -> None:
+def test_a_container_limits_the_number(machine: Path, quota: str, expected: int) -> None:
     machine.write_text(quota)
     assert usable_cores() == expected
 
 
-def test_without_a_container() -> None:
+def test_without_a_container_all_processors_count() -> None:
     assert usable_cores() == 8
 
 
-def test_the_affinity_of_the_process(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_affinity_of_the_process_limits_the_number(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "sched_getaffinity", lambda pid: {3, 5})
     assert usable_cores() == 2
 
 
 @pytest.mark.parametrize(("count", "expected"), [(6, 6), (None, 1)])
-def test_a_system_without_affinities(monkeypatch: pytest.MonkeyPatch, count: int | None, expected: int) -> None:
+def test_without_affinities_all_processors_count(
+    monkeypatch: pytest.MonkeyPatch, count: int | None, expected: int
+) -> None:
     monkeypatch.delattr(os, "sched_getaffinity")
     monkeypatch.setattr(os, "cpu_count", lambda: count)
     assert usable_cores() == expected

@@ -1,4 +1,4 @@
-"""Promised errors against pictures with thousands of samples at other places of the pixels."""
+"""Automatic sampling: promised errors, compared with pictures of thousands of samples at other positions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 import minirt
 from minirt.kernel.frame import PACKET_HEIGHT
 from minirt.rendering import Renderer
-from minirt.rendering.sampling.auto import Auto, Task
+from minirt.rendering.frame_arguments import SamplePass
+from minirt.rendering.sampling.auto import AutoSampler
 from minirt.rendering.sampling.outcome import Outcome
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.cylinder import Cylinder
@@ -22,12 +23,12 @@ from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, TWO
 from tests.paths import SCENES
 from tests.random_scenes import random_scene
 from tests.rendering.cancelling import cancelled
-from tests.simulated import PACKET, Clock, packets, simulated
+from tests.simulated_clock import PACKET_SECONDS, Clock, packets, simulate_clock
 
 Array = NDArray[np.float64]
 
 WIDTH, HEIGHT = 160, 90
-FACTOR = 1.5  # of what is promised
+FACTOR = 1.5  # between promised and true errors
 VIEW = (Ambient(0.2, (255, 255, 255)), Camera((0, 1, -10), (0, -0.05, 1), 60), Light((-6, 9, -6), 0.7, (255, 255, 255)))
 FLOOR = Plane((0, -2, 0), (0, 1, 0), (200, 200, 200))
 FAR = (Sphere((0, 0, -50), 0.1, (9, 9, 9)), Cylinder((0, 0, -50), (0, 1, 0), 0.1, 0.1, (9, 9, 9)))  # behind the eye
@@ -85,40 +86,40 @@ def rms(difference: Array) -> float:
     return float(np.sqrt((difference**2).mean()))
 
 
-@pytest.mark.parametrize("wanted", [0.02, 0.006, 0.002])
+@pytest.mark.parametrize("requested", [0.02, 0.006, 0.002])
 @pytest.mark.parametrize("name", KNOWN)
-def test_the_true_error_is_what_was_wanted_and_what_was_told(name: str, wanted: float) -> None:
-    reached, pixels, linear = reach(KNOWN[name], wanted)
+def test_the_true_error_is_as_requested_and_as_estimated(name: str, requested: float) -> None:
+    reached, pixels, linear = reach(KNOWN[name], requested)
     true = rms(np.clip(linear, 0, 1) - reference(name))
-    assert reached.error <= wanted
+    assert reached.error <= requested
     assert 1 / FACTOR < reached.error / true < FACTOR
-    assert true < FACTOR * wanted
-    assert true > wanted / FACTOR or reached.most == 2
+    assert true < FACTOR * requested
+    assert true > requested / FACTOR or reached.most == 2
     assert 2 <= reached.samples <= reached.most
     shown = pixels[..., 2::-1] / 255
     assert np.abs(shown - np.clip(linear, 0, 1)).max() < 0.501 / 255
 
 
-def test_told_errors_are_true_on_average() -> None:
-    """Without judges that stand apart, those who stop too early would all say too little."""
+def test_estimated_errors_are_true_on_average() -> None:
+    """Without independent judges, the estimates of pictures that stop too early would all be too small."""
     ratios = []
     for name, scene in KNOWN.items():
-        for wanted in (0.01, 0.003, 0.0015):
-            reached, _, linear = reach(scene, wanted)
+        for requested in (0.01, 0.003, 0.0015):
+            reached, _, linear = reach(scene, requested)
             ratios.append(reached.error / rms(np.clip(linear, 0, 1) - reference(name)))
     assert 0.9 < np.median(ratios) < 1.1
 
 
-def test_fewer_samples_than_everywhere_are_enough() -> None:
-    wanted, even = 0.004, 1
-    while rms(np.clip(minirt.render(ALL, WIDTH, HEIGHT, samples=even).linear, 0, 1) - reference("all")) > wanted:
-        even += 1
-    reached = reach(ALL, wanted)[0]
-    assert reached.samples < even
-    assert reached.most > 2 * even
+def test_fewer_samples_are_needed_than_with_the_same_number_everywhere() -> None:
+    requested, uniform = 0.004, 1
+    while rms(np.clip(minirt.render(ALL, WIDTH, HEIGHT, samples=uniform).linear, 0, 1) - reference("all")) > requested:
+        uniform += 1
+    reached = reach(ALL, requested)[0]
+    assert reached.samples < uniform
+    assert reached.most > 2 * uniform
 
 
-def test_a_picture_that_is_good_enough_at_once() -> None:
+def test_a_picture_may_be_good_enough_after_the_first_round() -> None:
     reached, pixels, _ = reach(ALL, 0.5)
     assert (reached.samples, reached.most) == (2, 2)
     assert 0 < reached.error < 0.5
@@ -134,7 +135,7 @@ def test_threads_do_not_change_a_bit(precision: str) -> None:
         assert np.array_equal(linear, made[0][2])
 
 
-def test_single_precision_reaches_it_too() -> None:
+def test_single_precision_reaches_the_error_too() -> None:
     reached, _, linear = reach(ALL, 0.004, renderer=Renderer(2, "single"))
     true = rms(np.clip(linear, 0, 1) - reference("all"))
     assert 1 / FACTOR < true / 0.004 < FACTOR
@@ -142,7 +143,7 @@ def test_single_precision_reaches_it_too() -> None:
 
 
 @pytest.mark.parametrize("size", [(1, 1), (1, 50), (50, 1), (7, 9), (3, 3)])
-def test_pictures_of_any_size(size: tuple[int, int]) -> None:
+def test_pictures_of_any_size_reach_the_error(size: tuple[int, int]) -> None:
     reached, pixels, linear = reach(ALL, 0.01, size=size)
     fine = np.zeros((*size, 3))
     TWO.render(ALL, np.zeros_like(pixels), 1000, fine)
@@ -150,7 +151,7 @@ def test_pictures_of_any_size(size: tuple[int, int]) -> None:
     assert rms(np.clip(linear, 0, 1) - np.clip(fine, 0, 1)) < 0.05
 
 
-def test_nothing_to_render() -> None:
+def test_a_scene_without_shapes_has_no_error() -> None:
     reached, pixels, _ = reach(Scene((AMBIENT, EYE)), 0.01, size=(5, 7))
     assert reached.error == 0
     assert (pixels == (0, 0, 0, 255)).all()
@@ -158,16 +159,16 @@ def test_nothing_to_render() -> None:
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    """Time passes by what is rendered alone."""
-    return simulated(monkeypatch)
+    """A clock that only rendering moves on."""
+    return simulate_clock(monkeypatch)
 
 
-FIRST = 2 * packets(WIDTH, HEIGHT) * PACKET  # seconds of the clock that the first round takes, a sample in each half
+FIRST = 2 * packets(WIDTH, HEIGHT) * PACKET_SECONDS  # of the clock for the first round, a sample in each half
 
 
 @pytest.mark.parametrize("rounds", [0.0, 0.5, 1.0, 2.0, 10.0, 100.0])
 def test_a_time_is_kept_and_used(clock: Clock, rounds: float) -> None:
-    """In times of the first round, which is always made."""
+    """The time is in multiples of the first round, which is always rendered."""
     reached = reach(ALL, seconds=rounds * FIRST)[0]
     assert reached.seconds == pytest.approx(clock.wall)
     assert clock.wall <= max(rounds, 1.0) * FIRST * 1.0001
@@ -178,25 +179,25 @@ def test_a_time_is_kept_and_used(clock: Clock, rounds: float) -> None:
 def test_a_time_is_kept_where_each_round_is_twice_as_slow_as_the_one_before(
     clock: Clock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    grow, rounds = Auto.grow, list[int]()
+    add_samples, rounds = AutoSampler.add_samples, list[int]()
 
-    def slower(self: Auto, new: NDArray[np.int64]) -> bool:
+    def slower(self: AutoSampler, new: NDArray[np.int64]) -> bool:
         rounds.append(clock.packets)
         clock.slowness *= 2
-        return grow(self, new)
+        return add_samples(self, new)
 
-    monkeypatch.setattr(Auto, "grow", slower)
+    monkeypatch.setattr(AutoSampler, "add_samples", slower)
     reach(ALL, seconds=50 * FIRST)
     assert len(rounds) >= 3
     assert 0.8 * 50 * FIRST < clock.wall <= 50 * FIRST
 
 
-def test_the_time_that_sorting_the_scene_takes_is_part_of_it(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_time_includes_packing_the_scene(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
     pack = TWO.packing.pack
 
-    def slow(*given: Any) -> Any:
+    def slow(*arguments: Any) -> Any:
         clock.wall += 5 * FIRST
-        return pack(*given)
+        return pack(*arguments)
 
     monkeypatch.setattr(TWO.packing, "pack", slow)
     reached = reach(ALL, seconds=10 * FIRST)[0]
@@ -210,36 +211,36 @@ def test_a_time_may_end_before_an_error_is_reached(clock: Clock) -> None:
     assert reached.seconds <= 10 * FIRST
 
 
-def test_cancelling_ends_it_and_leaves_the_picture_alone() -> None:
+def test_cancelling_ends_rendering_and_leaves_the_picture_as_it_was() -> None:
     renderer = Renderer(2)
     renderer.prepare(ALL)
     pixels = np.full((720, 1280, 4), 9, np.uint8)
-    assert cancelled(renderer, lambda: renderer.reach(ALL, pixels, 1e-9)) is None  # of which a day would not be enough
+    assert cancelled(renderer, lambda: renderer.reach(ALL, pixels, 1e-9)) is None  # for which a day would not be enough
     assert (pixels == 9).all()
     assert renderer.reach(ALL, pixels, 0.1)
 
 
 def test_a_cancel_between_two_frames_is_heard(monkeypatch: pytest.MonkeyPatch) -> None:
     renderer = Renderer(2)
-    grow = Auto.grow
+    add_samples = AutoSampler.add_samples
 
-    def cancelled(self: Auto, new: NDArray[np.int64]) -> bool:
+    def cancelled(self: AutoSampler, new: NDArray[np.int64]) -> bool:
         renderer.cancel()
-        return grow(self, new)
+        return add_samples(self, new)
 
-    monkeypatch.setattr(Auto, "grow", cancelled)
+    monkeypatch.setattr(AutoSampler, "add_samples", cancelled)
     assert renderer.reach(ALL, np.zeros((HEIGHT, WIDTH, 4), np.uint8), 1e-6) is None
 
 
-def test_each_sample_is_made_once_and_both_halves_are_shifted_apart() -> None:
-    done: list[Task] = []
-    auto = Auto(lambda tasks: not done.extend(tasks), 32, 64, 4)
-    assert auto.begin()
-    assert auto.grow(np.arange(128).reshape(8, 16) % 4)
+def test_each_sample_is_taken_once_and_the_halves_have_different_shifts() -> None:
+    done: list[SamplePass] = []
+    auto = AutoSampler(lambda passes: not done.extend(passes), 32, 64, 4)
+    assert auto.first_round()
+    assert auto.add_samples(np.arange(128).reshape(8, 16) % 4)
     count = np.zeros((2, 8, 16), int)
-    for number, task in enumerate(done):
-        assert task.places.shape[1:] == (4 * PACKET_HEIGHT, 2)
-        count[number % 2] += task.packets * len(task.places)
+    for number, each in enumerate(done):
+        assert each.positions.shape[1:] == (4 * PACKET_HEIGHT, 2)
+        count[number % 2] += each.packets * len(each.positions)
     assert np.array_equal(count[0], 2 ** (np.arange(128).reshape(8, 16) % 4))
     assert np.array_equal(count[0], count[1])
-    assert all(not np.isclose(a.places, b.places).any() for a, b in zip(done[::2], done[1::2], strict=True))
+    assert all(not np.isclose(a.positions, b.positions).any() for a, b in zip(done[::2], done[1::2], strict=True))

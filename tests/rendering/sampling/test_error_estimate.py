@@ -1,4 +1,4 @@
-"""The error that the window tells, against pictures with many samples."""
+"""The estimated error of refined pictures, compared with pictures of many samples."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from tests.rendering.sampling.test_auto import FACTOR, HEIGHT, KNOWN, WIDTH, ref
 
 
 @pytest.mark.parametrize("name", ["all", "demo", "subject", "everything", "random"])
-def test_refined_pictures(name: str) -> None:
+def test_the_estimate_is_near_the_true_error(name: str) -> None:
     pixels = np.zeros((HEIGHT, WIDTH, 4), np.uint8)
     assert TWO.render(KNOWN[name], pixels)
     fewer = 1
     for samples in (4, 16):
         before = pixels.copy()
         assert TWO.refine(KNOWN[name], pixels, samples)
-        told = estimated_error(before, pixels, fewer, samples)
-        assert 1 / FACTOR < told / rms(pixels[..., 2::-1] / 255 - reference(name)) < FACTOR
+        estimate = estimated_error(before, pixels, fewer, samples)
+        assert 1 / FACTOR < estimate / rms(pixels[..., 2::-1] / 255 - reference(name)) < FACTOR
         fewer = samples
 
 
-def test_what_does_not_change_has_the_error_of_rounding() -> None:
+def test_a_picture_that_does_not_change_has_the_error_of_rounding() -> None:
     pixels = np.full((9, 7, 4), 200, np.uint8)
     assert estimated_error(pixels, pixels, 1, 4) == pytest.approx(sqrt(1 / 12) / 255)
 
 
-def test_large_differences_do_not_wrap() -> None:
+def test_large_differences_do_not_overflow() -> None:
     black, white = np.zeros((9, 7, 4), np.uint8), np.full((9, 7, 4), 255, np.uint8)
     black[..., 3] = 255
     assert estimated_error(black, white, 1, 4) == pytest.approx(1 / 3, rel=1e-4)

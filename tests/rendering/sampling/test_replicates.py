@@ -1,4 +1,4 @@
-"""Two halves of a picture: means, errors, and what becomes of them."""
+"""The two halves of a picture: their means, their errors, and the picture that they make."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from minirt.rendering.sampling.replicates import Replicates
 RANDOM = np.random.default_rng(7)
 
 
-def filled(height: int, width: int, across: int) -> Replicates:
+def filled(height: int, width: int, packet_width: int) -> Replicates:
     """Halves of a picture whose light is 0.5 with a noise of 0.1; nothing outside of the picture."""
-    halves = Replicates(height, width, across)
+    halves = Replicates(height, width, packet_width)
     halves.means[:, :height, :width] = RANDOM.normal(0.5, 0.1, (2, height, width, 3))
     halves.compare()
     return halves
 
 
-@pytest.mark.parametrize("across", [4, 8])
+@pytest.mark.parametrize("packet_width", [4, 8])
 @pytest.mark.parametrize("size", [(400, 300), (129, 250), (1, 3000), (3000, 1)])
-def test_the_error_of_the_mean_of_two_halves(size: tuple[int, int], across: int) -> None:
-    assert filled(*size, across).squared_error == pytest.approx(0.1**2 / 2, rel=0.15)
+def test_the_estimated_error_is_that_of_the_mean_of_both_halves(size: tuple[int, int], packet_width: int) -> None:
+    assert filled(*size, packet_width).squared_error == pytest.approx(0.1**2 / 2, rel=0.15)
 
 
-def test_a_picture_of_one_pixel_is_judged() -> None:
+def test_a_picture_of_one_pixel_has_an_estimate() -> None:
     assert filled(1, 1, 4).squared_error > 0
 
 
-def test_guides_and_judges_take_turns() -> None:
+def test_guides_and_judges_alternate_like_a_chessboard() -> None:
     halves = Replicates(8, 12, 4)
     for y, x in np.ndindex(8, 12):
         halves.means[...] = 0
@@ -40,7 +40,7 @@ def test_guides_and_judges_take_turns() -> None:
         assert not none.any()
 
 
-def test_what_a_picture_does_not_show_is_no_error() -> None:
+def test_differences_that_a_picture_does_not_show_are_no_error() -> None:
     halves = Replicates(4, 4, 4)
     halves.means[0], halves.means[1] = 1.5, 9.0
     halves.means[:, 0, 0] = np.nan
@@ -48,21 +48,21 @@ def test_what_a_picture_does_not_show_is_no_error() -> None:
     assert halves.squared_error == 0
 
 
-def test_samples_are_added_by_weight_and_compared() -> None:
+def test_samples_are_added_with_their_weights_and_compared() -> None:
     halves = filled(45, 50, 4)
     before = halves.means.copy()
     wanted = RANDOM.random(halves.packets) < 0.3
     weights = RANDOM.random(halves.packets)
-    halves.fresh[:, :45, :50] = RANDOM.random((2, 45, 50, 3))
+    halves.new_means[:, :45, :50] = RANDOM.random((2, 45, 50, 3))
     halves.add(wanted, weights)
     weight = np.kron(wanted * weights, np.ones((PACKET_HEIGHT, 4)))[None, ..., None]
-    assert np.abs(halves.means - (before * (1 - weight) + halves.fresh * weight)).max() < 1e-12
+    assert np.abs(halves.means - (before * (1 - weight) + halves.new_means * weight)).max() < 1e-12
     found = halves.judges.copy(), halves.guides.copy()
     halves.compare()
     assert np.allclose(found, (halves.judges, halves.guides))
 
 
-def test_the_picture_is_the_mean_of_both() -> None:
+def test_the_picture_is_the_mean_of_both_halves() -> None:
     halves = filled(37, 18, 8)
     halves.means[:, 0, 0] = np.nan
     halves.means[:, 1, 1] = (1.7, 0.5, -3)

@@ -25,7 +25,7 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.timing import Run
 from tests.kernel.pictures import ALL
-from tests.simulated import BUSY, FORMULA, in_turn
+from tests.simulated_clock import FORMULA_SECONDS, PROCESSOR_SHARE, in_turn
 
 KIND = {kind.element: kind for kind in KINDS}
 BALL = KIND[Sphere]
@@ -108,14 +108,14 @@ def test_float32_is_relative_to_the_eye(kind: Kind, name: str) -> None:
 
 
 def test_times_are_those_of_a_ray_in_the_best_turn(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(formula_errors, "is_disturbed", lambda run, threads: run.wall < 1.5 * FORMULA)
+    monkeypatch.setattr(formula_errors, "is_disturbed", lambda run, threads: run.wall < 1.5 * FORMULA_SECONDS)
     rows = rows_of(BALL, "benign")
     rays = formula_errors.TIMED
     assert list(rows) == ["miniRT", "textbook", "miniRT, float32"]
     for times, row in enumerate(rows.values(), 1):
         assert rays % row.rays, "of the last run a part is more than is asked for"
-        assert row.ns_ray == pytest.approx(times * FORMULA * 1e9 / (-(-rays // row.rays) * row.rays))
-        assert row.cpu_ns_ray == pytest.approx(BUSY * row.ns_ray)
+        assert row.ns_ray == pytest.approx(times * FORMULA_SECONDS * 1e9 / (-(-rays // row.rays) * row.rays))
+        assert row.cpu_ns_ray == pytest.approx(PROCESSOR_SHARE * row.ns_ray)
         assert row.valid == (times > 1)
         assert row.times_textbook == pytest.approx(times / 2)
     assert isnan(rows_of(KIND[Box], "benign")["miniRT"].times_textbook)

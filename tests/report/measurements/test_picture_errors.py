@@ -17,17 +17,17 @@ from minirt.report.measurements.reference import Reference, passes, reference
 from minirt.report.measurements.settings import KNOBS, Knob, Setting, knobs_of, settings
 from minirt.scene import FurtherLight, Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
-from tests.simulated import BUSY, PACKET, Clock, packets, simulated
+from tests.simulated_clock import PACKET_SECONDS, PROCESSOR_SHARE, Clock, packets, simulate_clock
 
 WIDTH, HEIGHT, SAMPLES = 96, 64, 1024
 EASY = Budget(seconds=0.0, longest=inf, tries=1)
-ONCE = packets(WIDTH, HEIGHT) * PACKET  # seconds of the simulated clock that one sample in each pixel takes
+ONCE = packets(WIDTH, HEIGHT) * PACKET_SECONDS  # seconds of the simulated clock that one sample in each pixel takes
 
 
 @pytest.fixture(autouse=True)
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     """Simulate a clock that only rendering moves on."""
-    return simulated(monkeypatch)
+    return simulate_clock(monkeypatch)
 
 
 @cache
@@ -99,7 +99,7 @@ def test_more_samples_are_closer_and_take_longer() -> None:
     assert one.flip > four.flip > sixteen.flip > 0
     for row in (one, four, sixteen):
         assert row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
-        assert row.cpu_ms == pytest.approx(row.samples * ONCE * 1e3 * BUSY)
+        assert row.cpu_ms == pytest.approx(row.samples * ONCE * 1e3 * PROCESSOR_SHARE)
 
 
 def test_knobs_do_what_they_say(clock: Clock) -> None:
@@ -111,7 +111,7 @@ def test_knobs_do_what_they_say(clock: Clock) -> None:
     stage.light(Setting(knob, 16))
     once = packets(WIDTH, HEIGHT)
     assert 2 * once < clock.packets - before < 8 * once  # of 17, if all of the picture were done again
-    assert adaptive.cpu_ms == pytest.approx((clock.packets - before) * PACKET * 1e3 * BUSY)
+    assert adaptive.cpu_ms == pytest.approx((clock.packets - before) * PACKET_SECONDS * 1e3 * PROCESSOR_SHARE)
     assert rows()["single", 4].rmse == pytest.approx(rows()["uniform", 4].rmse, rel=0.05)
     assert rows()["single", 4].rmse != rows()["uniform", 4].rmse
     brute = rows()["brute force", 4]
@@ -147,7 +147,7 @@ def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) ->
     """Two lights brighter than any file may say: where both shine straight down, their sum is infinite."""
     bright = Scene((AMBIENT, EYE, LAMP, FurtherLight(LAMP.position, 1.0), *SHAPES))
     monkeypatch.setattr(
-        scene_packing, "light_numbers", lambda lamps: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps))
+        scene_packing, "positions_and_intensities", lambda lamps: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps))
     )
     stage = SettingRenderer(bright, WIDTH, HEIGHT, 1)
     wanted = list(settings(bright, 4))

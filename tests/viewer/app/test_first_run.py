@@ -1,4 +1,4 @@
-"""The program in a real window while another process compiles its kernel."""
+"""First run of the program in a real window: it stays responsive while another process compiles the kernel."""
 
 from __future__ import annotations
 
@@ -12,57 +12,50 @@ import pytest
 
 import minirt
 from tests.viewer.app.test_real_window import SIZE, Viewer, picture, viewing
-from tests.viewer.family import compilers, group
+from tests.viewer.process_tree import compilers, group
+from tests.viewer.scenes import SPHERE_ON_PLANE
 from tests.waiting import until
 from tests.windows import Desktop
 
 pytestmark = pytest.mark.window
 
-TEXT = """\
-A 0.2 255,255,255
-C 0,1,8 0,-0.1,-0.995 60
-L 5,5,5 0.6 255,255,255
-sp 0,0,0 2 255,60,60
-pl 0,-1,0 0,1,0 90,200,90
-"""
-
 
 class FirstRun(NamedTuple):
-    """The program while it has no kernel; its compiler is stopped, so that it would never end by itself."""
+    """The program without a kernel; its compiler process is stopped by a signal and would never end by itself."""
 
     viewer: Viewer
-    compiler: int  # the number of the process
+    compiler: int  # process id
 
-    def go_on(self) -> None:
-        """Let the compiler do its work."""
+    def resume_compiler(self) -> None:
+        """Let the compiler process continue."""
         os.kill(self.compiler, signal.SIGCONT)
 
 
 @pytest.fixture
 def first_run(desktop: Desktop, tmp_path: Path) -> Iterator[FirstRun]:
-    """The first run of the program, from the moment when it shows something; afterwards no compiler is left."""
-    with viewing(desktop, tmp_path / "first.rt", cache=tmp_path / "cache", text=TEXT) as viewer:
+    """Yield the first run of the program once it shows a message; afterwards check that no process is left."""
+    with viewing(desktop, tmp_path / "first.rt", cache=tmp_path / "cache", text=SPHERE_ON_PLANE) as viewer:
         program = viewer.process.pid
         until(lambda: bool(compilers(program)), "the compiler")
         (compiler,) = compilers(program)
         os.kill(compiler, signal.SIGSTOP)
-        until(lambda: desktop.screenshot(viewer.window).any(), "words in the black window")
+        until(lambda: desktop.screenshot(viewer.window).any(), "a message in the black window")
         yield FirstRun(viewer, compiler)
-        until(lambda: not group(program), "the end of all that the program started")
+        until(lambda: not group(program), "the end of all processes of the program")
 
 
-def test_escape_waits_for_no_compiler(first_run):
+def test_escape_does_not_wait_for_the_compiler(first_run):
     first_run.viewer.key("Escape")
     assert first_run.viewer.end() == (0, "", "")
 
 
-def test_an_interrupt_waits_for_no_compiler(first_run):
+def test_an_interrupt_does_not_wait_for_the_compiler(first_run):
     os.kill(first_run.viewer.process.pid, signal.SIGINT)
     assert first_run.viewer.end() == (130, "", "")
 
 
-def test_ctrl_c_in_the_terminal_ends_the_compiler_too_without_a_word(first_run):
-    first_run.go_on()
+def test_ctrl_c_in_the_terminal_also_ends_the_compiler_silently(first_run):
+    first_run.resume_compiler()
     os.killpg(first_run.viewer.process.pid, signal.SIGINT)
     assert first_run.viewer.end() == (130, "", "")
 
@@ -70,7 +63,7 @@ def test_ctrl_c_in_the_terminal_ends_the_compiler_too_without_a_word(first_run):
 def test_keys_work_on_a_preview_until_the_picture_comes(first_run):
     viewer = first_run.viewer
     viewer.key("i", "i")
-    between = slice(80, SIZE[1] - 60)  # the words above and below
+    between = slice(80, SIZE[1] - 60)  # rows without text
     until(lambda: bool(viewer.desktop.screenshot(viewer.window)[between].any()), "the preview")
     preview = viewer.desktop.screenshot(viewer.window)[between]
     whole = picture(viewer.path)
@@ -78,10 +71,10 @@ def test_keys_work_on_a_preview_until_the_picture_comes(first_run):
     assert abs(preview.astype(int) - whole[between]).mean() < 12
 
     viewer.key("Tab", "Tab", "Tab", "Delete", "ctrl+s")
-    until(lambda: viewer.path.read_text() != TEXT, "the saved scene")
+    until(lambda: viewer.path.read_text() != SPHERE_ON_PLANE, "the saved scene")
     assert minirt.load(viewer.path).planes == ()
-    first_run.go_on()  # and then compile again: a sphere alone has another kernel
-    viewer.key("Tab")  # takes the message away
+    first_run.resume_compiler()  # and then compile again: a sphere alone has another kernel
+    viewer.key("Tab")  # clears the message
     sphere = picture(viewer.path)
     viewer.shows(sphere)
     viewer.key("ctrl+z")

@@ -1,4 +1,4 @@
-"""The whole program in a real window."""
+"""End-to-end tests: the whole program in a real window."""
 
 from __future__ import annotations
 
@@ -16,21 +16,14 @@ import pytest
 from numpy.typing import NDArray
 
 import minirt
-from minirt.rendering.sampling.adaptive import contrasts
-from tests.viewer.resting import until_at_rest, until_only_one_runs
+from minirt.rendering.sampling.adaptive import edge_pixels
+from tests.viewer.idle_waits import until_at_rest, until_only_one_runs
+from tests.viewer.scenes import WITH_CYLINDER
 from tests.waiting import HANG_LIMIT, until
 from tests.windows import SCREEN, Desktop
 
 pytestmark = pytest.mark.window
 
-TEXT = """\
-A 0.2 255,255,255
-C 0,1,8 0,-0.1,-0.995 60
-L 5,5,5 0.6 255,255,255
-sp 0,0,0 2 255,60,60
-pl 0,-1,0 0,1,0 90,200,90
-cy 2,0,0 0,1,0 1 2 60,60,255
-"""
 SIZE = (320, 240)
 
 
@@ -46,11 +39,11 @@ class Viewer(NamedTuple):
         self.desktop.key(self.window, *names)
 
     def shows(self, picture: NDArray[np.uint8]) -> None:
-        """Wait until the window shows exactly that."""
+        """Wait until the window shows exactly this picture."""
         until(lambda: np.array_equal(self.desktop.screenshot(self.window), picture), "the picture")
 
     def end(self) -> tuple[int, str, str]:
-        """Status, standard output and standard error."""
+        """Wait for the end of the program; return exit status, standard output and standard error."""
         output, errors = self.process.communicate(timeout=HANG_LIMIT)
         return self.process.returncode, output, errors
 
@@ -61,13 +54,16 @@ def viewing(
     path: Path,
     size: tuple[int, int] = SIZE,
     cache: Path | None = None,
-    more: tuple[str, ...] = (),
+    options: tuple[str, ...] = (),
     program: str = "minirt",
-    text: str = TEXT,
+    text: str = WITH_CYLINDER,
 ) -> Iterator[Viewer]:
-    """A window with the scene `text`. `cache`: an empty folder, for a program that has to compile first; `more`
-    arguments; `program`: its module."""
-    command = [sys.executable, "-W", "error", "-m", program, str(path), "--size", f"{size[0]}x{size[1]}", *more]
+    """Run the program in a window with the scene `text`.
+
+    `cache`: an empty folder, if the program is to compile its kernel; `options`: further arguments; `program`: the
+    module to run.
+    """
+    command = [sys.executable, "-W", "error", "-m", program, str(path), "--size", f"{size[0]}x{size[1]}", *options]
     if cache:
         command = ["env", f"XDG_CACHE_HOME={cache}", *command]
     path.write_text(text)
@@ -82,7 +78,7 @@ def viewer(desktop: Desktop, tmp_path: Path) -> Iterator[Viewer]:
 
 
 def picture(path: Path, size: tuple[int, int] = SIZE, passes: tuple[int, ...] = (4, 16)) -> NDArray[np.uint8]:
-    """What the renderer makes of the scene in a file; refined as the window does it when nothing moves."""
+    """Render the scene in a file, refined as in a window in which nothing moves."""
     scene, renderer = minirt.load(path), minirt.renderer(None)
     pixels = np.zeros((size[1], size[0], 4), np.uint8)
     renderer.render(scene, pixels)
@@ -97,15 +93,15 @@ def test_the_window_shows_the_refined_picture(viewer):
     viewer.shows(refined)
     plain = minirt.render(minirt.load(viewer.path), *SIZE).array
     many = minirt.render(minirt.load(viewer.path), *SIZE, samples=16).array
-    edge = contrasts(np.dstack([plain, np.full(plain.shape[:2], 255, np.uint8)]))
+    edge = edge_pixels(np.dstack([plain, np.full(plain.shape[:2], 255, np.uint8)]))
     assert np.abs(many.astype(int) - refined)[edge].mean() < 0.05 * np.abs(many.astype(int) - plain)[edge].mean()
     assert (plain == refined).all(axis=2).mean() > 0.75
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
 
 
-def test_with_one_sample_it_is_the_picture_that_is_rendered_without_a_window(desktop, tmp_path):
-    with viewing(desktop, tmp_path / "scene.rt", more=("--samples", "1")) as viewer:
+def test_with_one_sample_the_window_shows_the_picture_of_the_library(desktop, tmp_path):
+    with viewing(desktop, tmp_path / "scene.rt", options=("--samples", "1")) as viewer:
         viewer.key("i", "i")
         plain = minirt.render(minirt.load(viewer.path), *SIZE).array
         assert np.array_equal(plain, picture(viewer.path, passes=()))
@@ -116,17 +112,17 @@ def test_with_one_sample_it_is_the_picture_that_is_rendered_without_a_window(des
         assert viewer.end() == (0, "", "")
 
 
-def test_escape_at_once(viewer):
+def test_escape_right_after_the_start_ends_the_program(viewer):
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
 
 
-def test_the_close_button(viewer):
+def test_the_close_button_ends_the_program(viewer):
     viewer.desktop.close_button(viewer.window)
     assert viewer.end() == (0, "", "")
 
 
-def test_ctrl_c_in_the_terminal(viewer):
+def test_ctrl_c_in_the_terminal_ends_the_program(viewer):
     viewer.key("i", "i")
     viewer.shows(picture(viewer.path))
     os.killpg(viewer.process.pid, signal.SIGINT)
@@ -136,11 +132,11 @@ def test_ctrl_c_in_the_terminal(viewer):
 def test_keys_edit_and_save_the_scene(viewer):
     viewer.key("i", "i")
     viewer.key("Tab", "Tab", "e", "plus", "ctrl+s")  # to the light, to the sphere
-    until(lambda: viewer.path.read_text() != TEXT, "the saved scene")
+    until(lambda: viewer.path.read_text() != WITH_CYLINDER, "the saved scene")
     scene = minirt.load(viewer.path)
     assert scene.spheres[0].centre[1] > 0
     assert scene.spheres[0].diameter == pytest.approx(2.1)
-    viewer.key("Tab")  # takes the message away
+    viewer.key("Tab")  # clears the message
     viewer.shows(picture(viewer.path))
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
@@ -155,7 +151,7 @@ def test_unsaved_changes_are_kept(viewer):
     assert minirt.load(copy).spheres == ()
 
 
-def test_thirty_sizes(viewer):
+def test_after_thirty_sizes_the_last_is_shown(viewer):
     viewer.key("i", "i")
     for n in range(30):
         viewer.desktop.run("xdotool", "windowsize", str(viewer.window), str(200 + 13 * n), str(400 - 7 * n))
@@ -165,7 +161,7 @@ def test_thirty_sizes(viewer):
     assert viewer.end() == (0, "", "")
 
 
-def test_hiding_and_covering_lose_nothing(viewer, desktop, tmp_path):
+def test_a_window_shows_its_picture_again_after_hiding_and_covering(viewer, desktop, tmp_path):
     viewer.key("i", "i")
     still = picture(viewer.path)
     viewer.shows(still)
@@ -183,7 +179,7 @@ def test_hiding_and_covering_lose_nothing(viewer, desktop, tmp_path):
     assert viewer.end() == (0, "", "")
 
 
-def test_an_idle_window_only_looks_at_its_file_now_and_then(viewer):
+def test_an_idle_window_runs_only_the_thread_that_watches_its_file(viewer):
     viewer.key("i", "i")
     viewer.shows(picture(viewer.path))
     until_only_one_runs(viewer.process.pid, 8)
@@ -192,7 +188,7 @@ def test_an_idle_window_only_looks_at_its_file_now_and_then(viewer):
 
 
 def test_an_idle_window_that_does_not_watch_its_file_does_nothing(desktop, tmp_path):
-    with viewing(desktop, tmp_path / "scene.rt", more=("--no-watch",)) as viewer:
+    with viewing(desktop, tmp_path / "scene.rt", options=("--no-watch",)) as viewer:
         viewer.key("i", "i")
         viewer.shows(picture(viewer.path))
         until_at_rest(viewer.process.pid, 100)
@@ -200,7 +196,7 @@ def test_an_idle_window_that_does_not_watch_its_file_does_nothing(desktop, tmp_p
         assert viewer.end() == (0, "", "")
 
 
-def test_a_held_key_moves_until_it_is_let_go(viewer):
+def test_a_held_key_moves_until_it_is_released(viewer):
     viewer.key("i", "i")
     still = picture(viewer.path)
     viewer.shows(still)
@@ -220,8 +216,8 @@ def test_a_held_key_moves_until_it_is_let_go(viewer):
     assert viewer.end() == (0, "", "")
 
 
-def test_full_screen_and_back(viewer):
-    """Each change may open another window of the window system."""
+def test_full_screen_and_back_show_the_picture(viewer):
+    """Entering and leaving full screen may each replace the window by a new one."""
     viewer.key("i", "i")
     for size in (SCREEN, SIZE):
         viewer.key("F11")

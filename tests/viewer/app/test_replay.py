@@ -1,4 +1,4 @@
-"""Recorded keys on the whole viewer, with simulated time."""
+"""Replay: recorded keys and mouse events on the whole viewer, in simulated time."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 
 from minirt.errors import ReplayError
 from minirt.viewer.app.replay import replay
-from minirt.viewer.editing.editor import ANGLE
+from minirt.viewer.editing.editor import TURN_STEP
 from minirt.viewer.input.key_repeat import RATE
 from tests.viewer.fake import FakeRenderer, colour_of, played, scene
 
@@ -15,6 +15,7 @@ SELECT_SPHERE = ("press Tab", "press Tab")
 
 
 def frame(*lines: str, hud: bool = True):
+    """Replay lines and return the last frame."""
     return replay(scene(), lines, renderer=FakeRenderer(), size=(300, 200), path="scene.rt", hud=hud)
 
 
@@ -23,13 +24,13 @@ def test_the_same_keys_give_the_same_frame():
     assert np.array_equal(frame(*lines), frame(*lines))
 
 
-def test_the_last_frame_is_the_picture_of_the_scene_as_edited():
+def test_the_last_frame_shows_the_edited_scene():
     session = played("hold d 0.3", "press Left")
     assert (session.picture == colour_of(session.state.scene)).all()
     assert colour_of(session.state.scene) != colour_of(scene())
 
 
-def test_what_is_still_at_the_end_has_all_samples_in_all_pixels():
+def test_a_still_picture_has_all_samples_in_all_pixels():
     renderer = FakeRenderer()
     replay(scene(), ["hold d 0.3"], renderer=renderer, size=(64, 48), path="scene.rt", samples=9)
     assert renderer.samples[:3] == [1, 4, 9]  # before the key
@@ -37,10 +38,10 @@ def test_what_is_still_at_the_end_has_all_samples_in_all_pixels():
     assert set(renderer.samples[3:-3]) == {1}
     assert renderer.refined == []
     session = played("hold d 0.3")
-    assert set(session.pictures.painter.renderer.samples) == {1}
+    assert set(session.refinement.painter.renderer.samples) == {1}
 
 
-def test_the_hud_is_on_the_frame_and_not_on_the_picture():
+def test_the_hud_is_in_the_frame_but_not_in_the_picture():
     bare = frame(hud=False)
     assert (bare == colour_of(scene())).all()
     assert not np.array_equal(frame(), bare)
@@ -55,13 +56,15 @@ def test_a_held_key_moves_in_proportion_to_time(seconds):
     steps = max(1, RATE * seconds)
     x, y, z = session.state.scene.camera.position
     assert (x, y, z) == pytest.approx((steps * session.state.stride, 0, 10), rel=1e-4)
-    assert len(session.state.past) == 1
+    assert len(session.state.undo_stack) == 1
 
 
-def test_shift_is_a_tenth():
+def test_shift_makes_a_step_a_tenth():
     coarse, fine = (played(f"hold {keys} 0.5").state.scene.camera.position[0] for keys in ("d", "Shift+d"))
     assert fine == pytest.approx(coarse / 10, rel=1e-3)
-    assert played("press Shift+Left").state.scene.camera.direction[0] == pytest.approx(-np.sin(np.radians(ANGLE / 10)))
+    assert played("press Shift+Left").state.scene.camera.direction[0] == pytest.approx(
+        -np.sin(np.radians(TURN_STEP / 10))
+    )
 
 
 @pytest.mark.parametrize(
@@ -72,15 +75,15 @@ def test_shift_is_a_tenth():
         (["press -"], -1),
         (["text +++"], 3),
         (["down Shift", "wheel up", "up Shift"], 0.1),
-        (["down Shift", "text +", "up Shift"], 1),  # many keyboards type it so
+        (["down Shift", "text +", "up Shift"], 1),  # many keyboards need Shift to type "+"
     ],
 )
-def test_wheel_and_text_resize(keys, steps):
+def test_wheel_and_typed_characters_resize(keys, steps):
     (sphere,) = played(*SELECT_SPHERE, *keys).state.scene.spheres
     assert sphere.diameter == pytest.approx(2 * 1.05**steps, abs=5e-5)
 
 
-def test_clicks_select():
+def test_clicks_select_elements():
     assert played("click 32,24").state.element.title == "sphere"
     assert played("click 32,40").state.element.title == "plane"
     assert played("click 32,24", "click 0,0 right").state.element.title == "camera"
@@ -88,7 +91,7 @@ def test_clicks_select():
     assert (nothing.element.title, nothing.message) == ("light", "there is nothing")
 
 
-def test_azerty():
+def test_azerty_has_its_own_keys():
     moved = played("press q", "press z", keys="azerty").state.scene.camera.position
     assert moved[0] < 0
     assert moved[2] < 10
@@ -97,21 +100,21 @@ def test_azerty():
 def test_a_resize_renders_anew():
     session = played("resize 40x30")
     assert session.screen.frame.shape == (30, 40, 4)
-    assert session.pictures.painter.renderer.rendered == [(64, 48), (40, 30)]
+    assert session.refinement.painter.renderer.rendered == [(64, 48), (40, 30)]
 
 
-def test_what_ends_the_session_ends_the_replay():
+def test_quitting_the_session_ends_the_replay():
     for end in ("press Escape", "press Ctrl+q", "close", "press Ctrl+Shift+Escape"):
         session = played("press d", end, "press d", "resize 10x10")
-        assert len(session.state.past) == 1
+        assert len(session.state.undo_stack) == 1
         assert session.screen.frame.shape == (48, 64, 4)
 
 
-def test_hiding_loses_nothing():
+def test_a_hidden_window_loses_no_input():
     assert np.array_equal(frame("hide", "press d", "wait 1", "show"), frame("press d", "wait 1"))
 
 
-def test_help_and_full_screen():
+def test_help_and_full_screen_toggle():
     assert not np.array_equal(frame("press H"), frame())
     assert np.array_equal(frame("press H", "press F1"), frame())
     assert np.array_equal(frame("text ?"), frame("press H"))
@@ -121,12 +124,12 @@ def test_help_and_full_screen():
 
 def test_the_camera_goes_to_the_clipboard():
     session = played("press Ctrl+C")
-    assert session.m.mlx_get_clipboard(session.win) == "C 0,0,10 0,0,-1 90"
+    assert session.mlx.mlx_get_clipboard(session.window) == "C 0,0,10 0,0,-1 90"
     assert session.state.element.title == "camera"
 
 
 @pytest.mark.parametrize(
-    ("line", "column", "said"),
+    ("line", "column", "expected"),
     [
         ("pres a", 1, "unknown command 'pres', did you mean 'press'?"),
         ("press Tob", 7, "unknown key 'Tob', did you mean 'Tab'?"),
@@ -146,16 +149,16 @@ def test_the_camera_goes_to_the_clipboard():
         ("close it", 7, "expected 'close'"),
     ],
 )
-def test_bad_lines(line, column, said):
+def test_a_bad_line_gives_an_error_with_its_position(line, column, expected):
     renderer = FakeRenderer()
     with pytest.raises(ReplayError) as caught:
         replay(scene(), ["# keys", "", line], renderer=renderer, size=(8, 6), path="scene.rt", file="keys.txt")
     text = str(caught.value)
     assert text.startswith(f"keys.txt:3:{column}: ")
-    assert said in text
+    assert expected in text
     assert text.splitlines()[1].strip() == line.strip()
     assert renderer.rendered == []
 
 
-def test_comments_and_blank_lines():
+def test_comments_and_blank_lines_are_skipped():
     assert played("", "   ", "# press Tab", "press Tab  # twice").state.element.title == "light"

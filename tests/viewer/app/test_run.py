@@ -1,4 +1,4 @@
-"""The program around the session: how it ends."""
+"""The viewer as a program: how it starts and ends, and what it leaves behind."""
 
 from __future__ import annotations
 
@@ -19,32 +19,33 @@ from tests.waiting import HANG_LIMIT
 
 
 @pytest.fixture(autouse=True)
-def patient(monkeypatch) -> None:
-    """The painter may take as long as it needs to end; where it does not, the test fails and its process goes on."""
+def without_time_limit(monkeypatch) -> None:
+    """Give the painter as long as it needs to end; if it does not end, fail the test instead of ending the process."""
 
-    def leave(_status: int) -> None:
+    def fail(_status: int) -> None:
         raise AssertionError("the painter did not end")
 
-    monkeypatch.setattr(desktop, "PATIENCE", HANG_LIMIT)
-    monkeypatch.setattr(desktop, "leave", leave)
+    monkeypatch.setattr(desktop, "STOP_TIMEOUT", HANG_LIMIT)
+    monkeypatch.setattr(desktop, "exit_at_once", fail)
 
 
 class Script(Memory):
-    """What the user does; then the program may take as long as it needs to end."""
+    """The input of a user, after which the program may take as long as it needs to end."""
 
     def __init__(self, screen: tuple[int, int] = (2560, 1600)) -> None:
         super().__init__(screen, patience=HANG_LIMIT)
 
 
-def end(memory: Memory, path, renderer=None, size=None) -> int:
+def run_program(memory: Memory, path, renderer=None, size=None) -> int:
+    """Run the viewer; return its exit status."""
     return run(scene(), path=path, size=size, renderer=renderer or FakeRenderer(), mlx=Mlx(memory))
 
 
-def test_escape_ends_with_0_and_says_nothing(tmp_path, capfd):
+def test_escape_ends_with_0_and_prints_nothing(tmp_path, capfd):
     memory = Script()
     memory.tap(Key.D)
     memory.tap(Key.ESCAPE)
-    assert end(memory, tmp_path / "scene.rt") == 0
+    assert run_program(memory, tmp_path / "scene.rt") == 0
     assert capfd.readouterr() == ("", "")
     assert list(tmp_path.iterdir()) == []
 
@@ -52,14 +53,14 @@ def test_escape_ends_with_0_and_says_nothing(tmp_path, capfd):
 def test_the_close_button_ends_with_0(tmp_path):
     memory = Script()
     memory.close_button()
-    assert end(memory, tmp_path / "scene.rt") == 0
+    assert run_program(memory, tmp_path / "scene.rt") == 0
 
 
 def test_unsaved_changes_are_kept_and_named(tmp_path, capfd):
     memory = Script()
     for key in (Key.TAB, Key.D, Key.ESCAPE):
         memory.tap(key)
-    assert end(memory, tmp_path / "scene.rt") == 0
+    assert run_program(memory, tmp_path / "scene.rt") == 0
     copy = tmp_path / "scene.recovered.rt"
     assert str(copy) in capfd.readouterr().out
     assert copy.read_text() != TEXT
@@ -73,20 +74,20 @@ def test_ctrl_c_ends_with_130_and_keeps_changes(tmp_path, capfd):
     memory.tap(Key.TAB)
     memory.tap(Key.D)
     memory.do(interrupt)
-    assert end(memory, tmp_path / "scene.rt") == 130
+    assert run_program(memory, tmp_path / "scene.rt") == 130
     assert (tmp_path / "scene.recovered.rt").exists()
     assert capfd.readouterr().err == ""
 
 
-def test_an_error_that_nobody_expects_is_a_render_error_and_no_hang(tmp_path):
+def test_an_unexpected_exception_becomes_a_render_error(tmp_path):
     renderer = FakeRenderer()
     renderer.error = ValueError("odd")
     with pytest.raises(RenderError, match="ValueError: odd"):
-        end(Script(), tmp_path / "scene.rt", renderer)
+        run_program(Script(), tmp_path / "scene.rt", renderer)
 
 
 @pytest.mark.parametrize(
-    ("asked", "text", "opened"),
+    ("requested", "text", "expected"),
     [
         ((40, 30), TEXT, (40, 30)),
         (None, TEXT, (1280, 720)),
@@ -94,13 +95,13 @@ def test_an_error_that_nobody_expects_is_a_render_error_and_no_hang(tmp_path):
         (None, "R 9999 9999\n" + TEXT, (800, 600)),
     ],
 )
-def test_the_size_of_the_window(tmp_path, asked, text, opened):
+def test_the_window_has_the_requested_size_or_that_of_the_scene(tmp_path, requested, text, expected):
     memory = Script(screen=(800, 600) if "9999" in text else (2560, 1600))
     seen = []
     memory.do(lambda: seen.append((memory.windows[0].width, memory.windows[0].height, memory.windows[0].title)))
     memory.tap(Key.ESCAPE)
-    run(scene(text), path=tmp_path / "a b.rt", size=asked, renderer=FakeRenderer(), mlx=Mlx(memory))
-    assert seen == [(*opened, "miniRT - a b.rt")]
+    run(scene(text), path=tmp_path / "a b.rt", size=requested, renderer=FakeRenderer(), mlx=Mlx(memory))
+    assert seen == [(*expected, "miniRT - a b.rt")]
 
 
 STUCK = """
@@ -131,10 +132,10 @@ def test_escape_ends_the_program_inside_the_compiler():
     assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
 
 
-def test_no_thread_is_left(tmp_path):
+def test_no_thread_is_left_after_the_end(tmp_path):
     memory = Script()
     memory.tap(Key.ESCAPE)
-    end(memory, tmp_path / "scene.rt")
+    run_program(memory, tmp_path / "scene.rt")
     assert not [thread for thread in threading.enumerate() if thread.name == "minirt-painter"]
 
 

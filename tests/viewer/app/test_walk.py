@@ -1,4 +1,4 @@
-"""A person at a real window: every step has the picture that the same keys have without a window."""
+"""Walkthrough: each step of a session in a real window shows the picture of the same keys without a window."""
 
 from __future__ import annotations
 
@@ -15,13 +15,15 @@ import minirt
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
 from minirt.scene import Scene, dump, load, parse
+from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Painter
 from minirt.viewer.editing.state import State
-from minirt.viewer.input.recording import record
-from tests.viewer.app.test_real_window import SIZE, TEXT, Viewer, viewing
-from tests.viewer.hands import do
+from minirt.viewer.input.recording import add_recording
+from tests.viewer.app.test_real_window import SIZE, Viewer, viewing
+from tests.viewer.scenes import WITH_CYLINDER
+from tests.viewer.xdotool import do
 from tests.waiting import until
 from tests.windows import SCREEN
 
@@ -66,52 +68,56 @@ STEPS = (
 )
 
 
-MESSAGE = 60  # rows that it may take
-STOPPED = "tests.viewer.stopped"
+MESSAGE_ROWS = 60  # at most, at the bottom of the picture
+FROZEN_CLOCK = "tests.viewer.frozen_clock"
 
 
 class Twin:
-    """The viewer on the screen, with a clock that stands still, and one in memory that does the same lines."""
+    """A viewer on the screen, with a frozen clock, and a session in memory that gets the same input."""
 
     def __init__(self, viewer: Viewer, folder: Path, keys: str = "qwerty") -> None:
         self.viewer = viewer
         folder.mkdir()
         self.path = folder / "twin.rt"
-        self.path.write_text(TEXT)
+        self.path.write_text(WITH_CYLINDER)
         self.keys = keys
         self.renderer = minirt.renderer(None)
         self.lines: list[str] = []
         self.memory = Memory()
-        m = Mlx(self.memory)
+        mlx = Mlx(self.memory)
         self.session = Session(
-            m, m.mlx_init(), self.start, path=self.path, size=SIZE, painter=partial(Painter, self.renderer),
+            mlx, mlx.mlx_init(), self.start, path=self.path, size=SIZE, painter=partial(Painter, self.renderer),
             pick=self.renderer.pick, keys=keys,
         )  # fmt: skip
+        EventDispatcher(self.session).connect()
 
     @property
     def start(self) -> Scene:
-        """The scene of the file."""
-        return parse(TEXT, self.path).scene
+        """The scene of the file, before any edit."""
+        return parse(WITH_CYLINDER, self.path).scene
 
     @property
     def state(self) -> State:
         return self.session.state
 
     def do(self, *lines: str) -> None:
+        """Perform lines of a recording in both."""
         do(self.viewer.desktop, self.viewer.window, *lines)
-        record(lines, "twin", self.memory)
+        add_recording(lines, "twin", self.memory)
         self.memory.play()
         self.lines += lines
 
     def replayed(self) -> State:
-        """The state after all lines at once, as `miniRT --replay` does them."""
+        """Return the state after all lines are replayed at once, as by `miniRT --replay`."""
         return play(self.start, self.lines, renderer=self.renderer, size=SIZE, path=self.path, keys=self.keys).state
 
-    def agree(self) -> None:
-        """Wait until the window shows what the twin has, but for where a message is; then save, and compare the file
-        line by line with how it was written before."""
+    def check_agreement(self) -> None:
+        """Wait until the window shows the picture of the session in memory, except where a message is; then save.
+
+        Compared with the previous version of the file, at most one line may have changed.
+        """
         state = self.state
-        shown = slice(0, -MESSAGE if state.message else None)
+        shown = slice(0, -MESSAGE_ROWS if state.message else None)
         picture, viewer = still(state.scene)[shown], self.viewer
 
         def same() -> bool:
@@ -126,7 +132,7 @@ class Twin:
 
 
 def still(scene: Scene, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
-    """The picture of a scene as the window refines it when nothing moves."""
+    """Render a scene, refined as in a window in which nothing moves."""
     renderer = minirt.renderer(None)
     pixels = np.zeros((size[1], size[0], 4), np.uint8)
     renderer.render(scene, pixels)
@@ -136,29 +142,29 @@ def still(scene: Scene, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
 
 
 def test_a_walk(desktop, tmp_path):
-    with viewing(desktop, tmp_path / "scene.rt", program=STOPPED) as viewer:
+    with viewing(desktop, tmp_path / "scene.rt", program=FROZEN_CLOCK) as viewer:
         twin = Twin(viewer, tmp_path / "twin")
         viewer.key("i", "i")
         viewer.shows(still(load(viewer.path).scene))
         for step in STEPS:
             twin.do(*step.split("; "))
             if step not in ("press V", "press X"):
-                twin.agree()
+                twin.check_agreement()
         edited = twin.state.scene
         assert twin.replayed() == twin.state
 
         twin.do("press Tab", *["press Ctrl+Z"] * 40)
-        assert twin.state.scene.items == parse(TEXT).scene.items
-        twin.agree()
+        assert twin.state.scene.items == parse(WITH_CYLINDER).scene.items
+        twin.check_agreement()
         twin.do(*["press Ctrl+Shift+Z"] * 40)
         assert twin.state.scene.items == edited.items
-        twin.agree()
+        twin.check_agreement()
 
-        viewer.path.write_text(TEXT)
+        viewer.path.write_text(WITH_CYLINDER)
         viewer.key("F5", "Tab")
-        viewer.shows(still(parse(TEXT).scene))
+        viewer.shows(still(parse(WITH_CYLINDER).scene))
         viewer.key("ctrl+z", "ctrl+s")
-        until(lambda: viewer.path.read_text() == dump(edited), "what was there before it was read again")
+        until(lambda: viewer.path.read_text() == dump(edited), "the scene from before it was read again")
 
         shot = viewer.path.with_name("scene-1.png")
         viewer.key("p")
@@ -170,18 +176,18 @@ def test_a_walk(desktop, tmp_path):
         until(lambda: desktop.screenshot(viewer.window).mean() < still(edited).mean() / 2, "the help")
         viewer.key("h")
         viewer.shows(still(edited))
-        again = viewer
+        resized = viewer
         for size in (SCREEN, SIZE):
-            again.key("F11")
-            again = again._replace(window=desktop.find("miniRT - scene.rt", size))
-        again.shows(still(edited))
-        follow(again, edited)
-        again.key("Escape")
-        assert again.end() == (0, "", "")
+            resized.key("F11")
+            resized = resized._replace(window=desktop.find("miniRT - scene.rt", size))
+        resized.shows(still(edited))
+        check_following(resized, edited)
+        resized.key("Escape")
+        assert resized.end() == (0, "", "")
 
 
-def follow(viewer: Viewer, edited: Scene) -> None:
-    """Another program writes the file: well, then badly, then well again."""
+def check_following(viewer: Viewer, edited: Scene) -> None:
+    """Write the file as another program would: a valid scene, a broken one, a valid one again."""
 
     def write(text: str) -> None:
         viewer.path.with_name("new").write_text(text)
@@ -195,8 +201,8 @@ def follow(viewer: Viewer, edited: Scene) -> None:
     until(lambda: not np.array_equal(viewer.desktop.screenshot(viewer.window), brighter), "the banner")
     half = slice(0, SIZE[1] // 2)  # above the banner
     assert np.array_equal(viewer.desktop.screenshot(viewer.window)[half], brighter[half])
-    write(TEXT)
-    viewer.shows(still(parse(TEXT).scene))
+    write(WITH_CYLINDER)
+    viewer.shows(still(parse(WITH_CYLINDER).scene))
 
 
 LETTERS = {
@@ -209,11 +215,11 @@ CHORDS = ["Ctrl+Z", "Ctrl+Z", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z", "Tab", "Tab", 
 
 
 @pytest.mark.parametrize("keys", LETTERS)
-def test_the_keys_of_a_layout(desktop, tmp_path, keys):
+def test_the_keys_of_a_layout_match_the_replay(desktop, tmp_path, keys):
     layout, letters = LETTERS[keys]
     desktop.run("setxkbmap", layout)
     try:
-        with viewing(desktop, tmp_path / "scene.rt", more=("--keys", keys), program=STOPPED) as viewer:
+        with viewing(desktop, tmp_path / "scene.rt", options=("--keys", keys), program=FROZEN_CLOCK) as viewer:
             viewer.key("i", "i")
             viewer.shows(still(load(viewer.path).scene))
             twin = Twin(viewer, tmp_path / "twin", keys)

@@ -1,4 +1,4 @@
-"""Each row of the table does what its help says, with each of its keys on each layout."""
+"""Each key binding does what its help says, with each of its keys on each keyboard layout."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from minirt.scene import Camera, describe, dump, load
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.overlay import Level
-from minirt.viewer.editing.projection import projection
+from minirt.viewer.display.overlay import HudLevel
+from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import Frame
 from minirt.viewer.input.bindings import BINDINGS, Binding
 from tests.viewer.fake import TEXT, played, scene
@@ -26,26 +26,27 @@ SPHERE = ("press Tab", "press Tab")  # from the camera over the light
 CYLINDER = (*SPHERE, "press Tab", "press Tab")
 AT_SPHERE, AT_CYLINDER = "32,24", "40,24"  # pixels of a window of 64x48
 
-Seen = Callable[[Session, Session], bool]  # of the sessions without and with the key
+Check = Callable[[Session, Session], bool]  # compares the sessions without and with the key
 
 
-def moved(way: tuple[float, float, float]) -> Seen:
-    """The sphere is a step further that way."""
+def moved(direction: tuple[float, float, float]) -> Check:
+    """Check that the sphere has moved by a step in a direction."""
 
-    def seen(before: Session, after: Session) -> bool:
+    def check(before: Session, after: Session) -> bool:
         step = before.state.stride
-        there = [at + step * part for at, part in zip(before.state.element.centre, way, strict=True)]
-        return after.state.element.centre == pytest.approx(there)
+        expected = [at + step * part for at, part in zip(before.state.element.centre, direction, strict=True)]
+        return after.state.element.centre == pytest.approx(expected)
 
-    return seen
+    return check
 
 
-def looks(part: int, sign: float) -> Seen:
-    """The camera, which looked along -z, looks to one side."""
+def turned(part: int, sign: float) -> Check:
+    """Check that the camera, which looked along -z, looks to one side."""
     return lambda _, after: sign * after.state.scene.camera.direction[part] > 0.05
 
 
-def sized(sign: float) -> Seen:
+def resized(sign: float) -> Check:
+    """Check that the diameter of the selected shape has grown or shrunk."""
     return lambda before, after: sign * (after.state.element.diameter - before.state.element.diameter) > 0.05
 
 
@@ -54,36 +55,36 @@ def camera(session: Session) -> Camera:
 
 
 def memory(session: Session) -> Memory:
-    backend = session.mlx.backend
+    backend = session.display.backend
     assert isinstance(backend, Memory)
     return backend
 
 
 def centred(_: Session, after: Session) -> bool:
-    """The light is in the middle of the picture."""
-    return projection(camera(after), 64, 48).pixel((5, 5, 5)) == pytest.approx((32, 24), abs=0.1)
+    """Whether the light is in the centre of the picture."""
+    return projection_of(camera(after), 64, 48).pixel((5, 5, 5)) == pytest.approx((32, 24), abs=0.1)
 
 
-def went_round(before: Session, after: Session) -> bool:
-    """The camera is elsewhere, and as far from the sphere as before."""
+def orbit_camera(before: Session, after: Session) -> bool:
+    """Whether the camera has moved and keeps its distance from the sphere."""
     here, there = camera(before).position, camera(after).position
     return dist(here, there) > 1 and dist(there, (0, 0, 0)) == pytest.approx(dist(here, (0, 0, 0)))
 
 
-def slid(before: Session, after: Session) -> bool:
-    """The camera is elsewhere, and looks the same way from the same distance."""
+def panned(before: Session, after: Session) -> bool:
+    """Whether the camera has moved sideways and keeps its direction."""
     (x, y, z), (a, b, c) = camera(before).position, camera(after).position
     return c == z and dist((x, y), (a, b)) > 1 and camera(after).direction == camera(before).direction
 
 
-def copied(_: Session, after: Session) -> bool:
-    """The scene is in another file, too."""
+def saved_copy(_: Session, after: Session) -> bool:
+    """Whether a copy of the scene was written."""
     path = after.path.with_name("scene-1.rt")
     return path.exists() and path.read_text() == dump(scene())
 
 
-def screenshot(before: Session, after: Session) -> bool:
-    """The picture without what is written over it is in a file."""
+def saved_screenshot(before: Session, after: Session) -> bool:
+    """Whether the picture without overlay was written."""
     path = after.path.with_name("scene-1.png")
     if not path.exists():
         return False
@@ -91,8 +92,8 @@ def screenshot(before: Session, after: Session) -> bool:
         return np.array_equal(np.asarray(picture), before.picture[..., 2::-1])
 
 
-# For each action what leads to it, and what is seen of it.
-DOES: dict[str, tuple[tuple[str, ...], Seen]] = {
+# For each action the lines before it and the check of its effect.
+CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "select next": ((), lambda _, after: after.state.selected == 2),
     "select previous": (("press Tab",), lambda _, after: after.state.selected == 1),
     "select at pointer": ((), lambda _, after: isinstance(after.state.element, Sphere)),
@@ -104,22 +105,22 @@ DOES: dict[str, tuple[tuple[str, ...], Seen]] = {
     "back": (SPHERE, moved((0, 0, 1))),
     "down": (SPHERE, moved((0, -1, 0))),
     "up": (SPHERE, moved((0, 1, 0))),
-    "turn left": ((), looks(0, -1)),
-    "turn right": ((), looks(0, 1)),
-    "turn up": ((), looks(1, 1)),
-    "turn down": ((), looks(1, -1)),
+    "turn left": ((), turned(0, -1)),
+    "turn right": ((), turned(0, 1)),
+    "turn up": ((), turned(1, 1)),
+    "turn down": ((), turned(1, -1)),
     "roll left": ((), lambda _, after: camera(after).roll == -5),
     "roll right": ((), lambda _, after: camera(after).roll == 5),
     "next frame": (SPHERE, lambda _, after: after.state.frame is Frame.X),
     "move by hand": ((), lambda _, after: after.state.scene.spheres[0].centre[0] > 1),
     "turn by hand": ((), lambda _, after: after.state.scene.cylinders[0].axis != (0, 1, 0)),
-    "orbit": (SPHERE, went_round),
-    "pan": ((), slid),
-    "grow": (SPHERE, sized(1)),
-    "shrink": (SPHERE, sized(-1)),
+    "orbit": (SPHERE, orbit_camera),
+    "pan": ((), panned),
+    "grow": (SPHERE, resized(1)),
+    "shrink": (SPHERE, resized(-1)),
     "next value": (SPHERE, lambda _, after: after.state.active.name == "colour"),
-    "give attribute": (SPHERE, lambda _, after: after.state.element.specular is not None),
-    "take attribute": ((*SPHERE, "press M"), lambda _, after: after.state.element.specular is None),
+    "add attribute": (SPHERE, lambda _, after: after.state.element.specular is not None),
+    "remove attribute": ((*SPHERE, "press M"), lambda _, after: after.state.element.specular is None),
     "look at": (("press Tab",), centred),
     "reset camera": (("press D", "press Left"), lambda _, after: camera(after) == scene().camera),
     "undo": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),
@@ -135,14 +136,14 @@ DOES: dict[str, tuple[tuple[str, ...], Seen]] = {
     "duplicate": (SPHERE, lambda _, after: len(set(after.state.scene.spheres)) == 1 < len(after.state.scene.spheres)),
     "delete": (SPHERE, lambda _, after: not after.state.scene.spheres),
     "save": ((*SPHERE, "press D"), lambda before, after: load(after.path).scene.items == before.state.scene.items),
-    "save copy": ((), copied),
-    "screenshot": ((), screenshot),
+    "save copy": ((), saved_copy),
+    "screenshot": ((), saved_screenshot),
     "reload": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),
     "copy camera": ((), lambda _, after: memory(after).clipboard_text == describe(scene().camera)),
-    "toggle HUD": ((), lambda before, after: (before.screen.level, after.screen.level) == (Level.LINE, Level.ALL)),
+    "toggle HUD": ((), lambda before, after: after.screen.level == before.screen.level + 1 == HudLevel.ALL),
     "toggle icons": ((), lambda before, after: (before.screen.marks.icons, after.screen.marks.icons) == (False, True)),
     "toggle help": ((), lambda before, after: (before.screen.help, after.screen.help) == (False, True)),
-    "toggle full screen": ((), lambda _, after: (after.win.width, after.win.height) == memory(after).screen),
+    "toggle full screen": ((), lambda _, after: (after.window.width, after.window.height) == memory(after).screen),
     "quit": ((), lambda _, after: after.state.selected == 1),
 }
 MOUSE = {
@@ -157,24 +158,24 @@ MOUSE = {
 }
 
 
-def test_all_rows_are_here() -> None:
-    assert set(DOES) == {binding.action for binding in BINDINGS}
+def test_every_binding_has_a_check() -> None:
+    assert set(CHECKS) == {binding.action for binding in BINDINGS}
 
 
 @pytest.mark.parametrize("keys", LAYOUTS)
 @pytest.mark.parametrize("binding", BINDINGS, ids=lambda binding: binding.action)
-def test_a_row_does_what_it_says(binding: Binding, keys: str, tmp_path: Path) -> None:
-    way, seen = DOES[binding.action]
-    behind = ("press Tab",) if binding.action == "quit" else ()  # nobody listens to it any more
+def test_a_binding_does_what_its_help_says(binding: Binding, keys: str, tmp_path: Path) -> None:
+    setup, check = CHECKS[binding.action]
+    afterwards = ("press Tab",) if binding.action == "quit" else ()  # must have no effect any more
     for number, spelling in enumerate(binding.spellings(keys)):
         path = tmp_path / f"{number}" / "scene.rt"
         path.parent.mkdir()
         path.write_text(TEXT)
         lines = MOUSE.get(spelling, (f"press {spelling}",))
-        before = played(*way, *behind, path=path, keys=keys)
-        assert not seen(before, before), "it was so before"
-        after = played(*way, *lines, *behind, path=path, keys=keys)
-        assert seen(before, after), spelling
+        before = played(*setup, *afterwards, path=path, keys=keys)
+        assert not check(before, before), "the check holds before the key"
+        after = played(*setup, *lines, *afterwards, path=path, keys=keys)
+        assert check(before, after), spelling
 
 
 @pytest.mark.parametrize(("pressed", "steps"), [("press D", 1.0), ("press Shift+D", 0.1)])

@@ -1,4 +1,4 @@
-"""What is written over the picture."""
+"""Text over the picture: HUD, messages, help."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from minirt.viewer.display.overlay import Level, draw_help, draw_hud, draw_message, letters, line, status
+from minirt.viewer.display.overlay import HudLevel, draw_help, draw_hud, draw_message, element_line, status, text_size
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.state import opened
+from minirt.viewer.editing.state import initial_state
 from tests.viewer.fake import scene
 
 
 def blank(width: int = 640, height: int = 480):
+    """Return a white picture."""
     return np.full((height, width, 4), 255, np.uint8)
 
 
@@ -30,14 +31,14 @@ def blank(width: int = 640, height: int = 480):
         (["select previous", "shrink"], "A [0.15] 255,255,255"),
     ],
 )
-def test_the_line_of_the_selected_element(actions, text):
-    state = opened(scene())
+def test_the_line_of_the_selected_element_marks_the_active_value(actions, text):
+    state = initial_state(scene())
     for action in actions:
         state = apply(state, action)
-    assert line(state) == text
+    assert element_line(state) == text
 
 
-def test_status():
+def test_the_status_line():
     job = Job(scene(), 640, 480)
     assert status(Outcome(job, seconds=0.0123)) == "640x480    12.3 ms    1 sample"
     assert status(Outcome(Job(job.scene, 640, 480, 4, goal=16))) == "640x480 at 1/4    1 of 16 samples"
@@ -47,33 +48,33 @@ def test_status():
 def test_the_hud_leaves_the_middle_free():
     pixels = blank()
     shown = Outcome(Job(scene(), 640, 480), about=("two threads", "without three planes"))
-    taken = draw_hud(pixels, opened(scene()), shown, Level.ALL, 2e8, 16)
+    bottom = draw_hud(pixels, initial_state(scene()), shown, HudLevel.ALL, 2e8, 16)
     changed = (pixels != 255).any(axis=(1, 2))
     assert changed[:60].any()
     assert changed[-60:].any()
     assert not changed[80:-90].any()
-    assert not changed[240 : -10 - taken].any()
-    assert changed[-10 - taken : -5 - taken].any()
+    assert not changed[240 : -10 - bottom].any()
+    assert changed[-10 - bottom : -5 - bottom].any()
 
 
-def test_many_notes_leave_half_of_the_window_free():
+def test_many_notes_fill_at_most_half_of_the_window():
     pixels = blank()
     shown = Outcome(Job(scene(), 640, 480), about=tuple(f"plane {n} hides nothing from light 1" for n in range(99)))
-    draw_hud(pixels, opened(scene()), shown, Level.ALL, 0.0, 16)
+    draw_hud(pixels, initial_state(scene()), shown, HudLevel.ALL, 0.0, 16)
     assert (pixels[80:200] == 255).all()
     assert (pixels[260:460] != 255).any(axis=(1, 2)).all()
 
 
-def test_a_line_is_one_line():
+def test_the_line_level_draws_one_line():
     pixels = blank()
-    assert draw_hud(pixels, opened(scene()), Outcome(Job(scene(), 640, 480)), Level.LINE, 0.0, 16) == 0
+    assert draw_hud(pixels, initial_state(scene()), Outcome(Job(scene(), 640, 480)), HudLevel.LINE, 0.0, 16) == 0
     changed = (pixels != 255).any(axis=(1, 2))
     assert changed[:20].any()
     assert not changed[40:].any()
-    assert draw_hud(blank(), opened(scene()), None, Level.NOTHING, 0.0, 16) == 0
+    assert draw_hud(blank(), initial_state(scene()), None, HudLevel.NOTHING, 0.0, 16) == 0
 
 
-def test_a_message_is_wrapped_and_stands_above_the_status():
+def test_a_message_is_wrapped_and_drawn_above_the_status():
     pixels = blank(300, 200)
     draw_message(pixels, "a very long message " * 10, 27, 16)
     changed = (pixels != 255).any(axis=2)
@@ -86,9 +87,9 @@ def test_a_message_is_wrapped_and_stands_above_the_status():
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 720), (640, 480), (200, 100), (1, 1)])
-def test_help_fits(width, height):
+def test_the_help_fits_the_window(width, height):
     pixels = blank(width, height)
-    draw_help(pixels, "qwerty", letters(width, height, 1.0))
+    draw_help(pixels, "qwerty", text_size(width, height, 1.0))
     assert pixels[..., :3].min() == 255 // 4  # darkened, with letters that are lighter
     if width >= 640:
         border = np.concatenate([pixels[-5:].reshape(-1, 4), pixels[:, -5:].reshape(-1, 4)])

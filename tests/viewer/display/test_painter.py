@@ -1,8 +1,7 @@
-"""Rendering in the background: the latest request wins, nothing hangs."""
+"""Background rendering: the latest request wins, nothing hangs; adaptive resolution."""
 
 from __future__ import annotations
 
-import itertools
 import threading
 from dataclasses import replace
 
@@ -11,7 +10,6 @@ import pytest
 
 from minirt.errors import RenderError
 from minirt.viewer.display import background_painter
-from minirt.viewer.display.adaptive_resolution import LONGEST, AdaptiveResolution
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Job, Outcome
 from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
@@ -20,15 +18,16 @@ from tests.waiting import HANG_LIMIT, until
 JOB = Job(scene(), 64, 48)
 
 
-class Bench:
-    """A painter with its renderer, and how often it had something to tell."""
+class PainterHarness:
+    """A background painter with a fake renderer, and a count of its notifications."""
 
     def __init__(self) -> None:
         self.renderer = FakeRenderer()
-        self.told = threading.Semaphore(0)
-        self.painter = BackgroundPainter(self.renderer, self.told.release)
+        self.notifications = threading.Semaphore(0)
+        self.painter = BackgroundPainter(self.renderer, self.notifications.release)
 
     def outcomes(self, count: int) -> list[Outcome]:
+        """Wait for so many outcomes and return them."""
         taken: list[Outcome] = []
 
         def enough() -> bool:
@@ -39,7 +38,7 @@ class Bench:
         return taken
 
     def start(self, job: Job) -> None:
-        """Request a picture that takes until the gate is opened."""
+        """Request a picture that is not finished until the gate is opened."""
         self.renderer.gate.clear()
         self.renderer.started.clear()
         self.painter.request(job)
@@ -47,318 +46,213 @@ class Bench:
 
 
 @pytest.fixture
-def bench():
-    made = Bench()
-    yield made
-    made.renderer.gate.set()
-    assert made.painter.close(HANG_LIMIT)
+def harness():
+    harness = PainterHarness()
+    yield harness
+    harness.renderer.gate.set()
+    assert harness.painter.close(HANG_LIMIT)
 
 
-def test_a_picture_comes_and_is_told(bench):
-    bench.painter.request(JOB)
-    (outcome,) = bench.outcomes(1)
+def test_a_finished_picture_is_notified(harness):
+    harness.painter.request(JOB)
+    (outcome,) = harness.outcomes(1)
     assert (outcome.pixels == colour_of(JOB.scene)).all()
     assert outcome.pixels.shape == (48, 64, 4)
     assert outcome.seconds > 0
-    assert bench.told.acquire(timeout=HANG_LIMIT)
-    assert not bench.painter.busy
+    assert harness.notifications.acquire(timeout=HANG_LIMIT)
+    assert not harness.painter.busy
 
 
-def test_a_coarser_picture_covers_the_window(bench):
-    bench.painter.request(Job(JOB.scene, 65, 48, divisor=4))
-    assert bench.outcomes(1)[0].pixels.shape == (12, 17, 4)
+def test_a_coarser_picture_covers_the_window(harness):
+    harness.painter.request(Job(JOB.scene, 65, 48, divisor=4))
+    assert harness.outcomes(1)[0].pixels.shape == (12, 17, 4)
 
 
-def test_of_requests_during_an_urgent_picture_the_latest_is_made(bench):
-    bench.start(replace(JOB, urgent=True))
+def test_during_an_urgent_picture_only_the_latest_request_is_kept(harness):
+    harness.start(replace(JOB, urgent=True))
     for width in (10, 20, 64):
-        bench.painter.request(replace(JOB, divisor=64 // width, urgent=True))
-    bench.renderer.gate.set()
-    until(lambda: bench.renderer.rendered == [(64, 48), (64, 48)], "two pictures")
-    assert bench.outcomes(1)[-1].job.divisor == 1
-    assert bench.renderer.cancelled == 0
+        harness.painter.request(replace(JOB, divisor=64 // width, urgent=True))
+    harness.renderer.gate.set()
+    until(lambda: harness.renderer.rendered == [(64, 48), (64, 48)], "two pictures")
+    assert harness.outcomes(1)[-1].job.divisor == 1
+    assert harness.renderer.cancelled == 0
 
 
-def test_a_picture_that_is_not_urgent_is_cancelled(bench):
-    bench.start(JOB)
-    bench.painter.request(replace(JOB, divisor=2))
-    cancelled = bench.outcomes(1)[0]
+def test_a_picture_that_is_not_urgent_is_cancelled(harness):
+    harness.start(JOB)
+    harness.painter.request(replace(JOB, divisor=2))
+    cancelled = harness.outcomes(1)[0]
     assert (cancelled.job, cancelled.pixels, cancelled.error) == (JOB, None, None)
-    bench.renderer.gate.set()
-    assert bench.outcomes(1)[0].job.divisor == 2
+    harness.renderer.gate.set()
+    assert harness.outcomes(1)[0].job.divisor == 2
 
 
-def test_a_picture_of_another_size_is_cancelled(bench):
-    bench.start(replace(JOB, urgent=True))
-    bench.painter.request(replace(JOB, width=10, urgent=True))
-    assert bench.outcomes(1)[0].pixels is None
+def test_a_picture_of_another_size_is_cancelled(harness):
+    harness.start(replace(JOB, urgent=True))
+    harness.painter.request(replace(JOB, width=10, urgent=True))
+    assert harness.outcomes(1)[0].pixels is None
 
 
-def test_of_pictures_that_nobody_took_the_last_is_kept(bench):
+def test_only_the_latest_untaken_picture_is_kept(harness):
     for width in range(60, 70):
-        bench.painter.request(Job(scene(), width, 48))
-        until(lambda now=width: bench.renderer.rendered[-1:] == [(now, 48)], "the picture")
-        assert bench.told.acquire(timeout=HANG_LIMIT)
-    (outcome,) = bench.painter.take()
+        harness.painter.request(Job(scene(), width, 48))
+        until(lambda now=width: harness.renderer.rendered[-1:] == [(now, 48)], "the picture")
+        assert harness.notifications.acquire(timeout=HANG_LIMIT)
+    (outcome,) = harness.painter.take()
     assert outcome.job.width == 69
 
 
-def test_an_exception_is_an_outcome_and_the_painter_lives_on(bench):
-    bench.renderer.error = ZeroDivisionError("no")
-    bench.painter.request(JOB)
-    assert isinstance(bench.outcomes(1)[0].error, ZeroDivisionError)
-    bench.renderer.error = None
-    bench.painter.request(JOB)
-    assert bench.outcomes(1)[0].pixels is not None
+def test_an_exception_is_an_outcome_and_the_painter_goes_on(harness):
+    harness.renderer.error = ZeroDivisionError("no")
+    harness.painter.request(JOB)
+    assert isinstance(harness.outcomes(1)[0].error, ZeroDivisionError)
+    harness.renderer.error = None
+    harness.painter.request(JOB)
+    assert harness.outcomes(1)[0].pixels is not None
 
 
 class TestWithoutAKernel:
-    """What is shown while `prepare` takes its time."""
+    """Pictures while `prepare` compiles the kernel."""
 
     @pytest.fixture(autouse=True)
-    def no_grace(self, monkeypatch):
-        """A kernel that is not there at once is late."""
-        monkeypatch.setattr(background_painter, "GRACE", 0.0)
+    def immediate_previews(self, monkeypatch):
+        """Let previews begin at once if the kernel is not ready."""
+        monkeypatch.setattr(background_painter, "PREVIEW_DELAY", 0.0)
 
     @pytest.fixture
-    def bench(self, bench):
-        bench.renderer.ready = False
-        return bench
+    def harness(self, harness):
+        harness.renderer.ready = False
+        return harness
 
-    def test_compiling_is_told_while_it_lasts(self, bench):
-        bench.renderer.preview = lambda *_: bench.renderer.gate.wait(HANG_LIMIT) and None  # before that is there
-        bench.start(JOB)
-        assert bench.told.acquire(timeout=HANG_LIMIT)
-        assert bench.painter.compiling
-        bench.renderer.gate.set()
-        until(lambda: not bench.painter.compiling, "the kernel")
+    def test_compiling_is_true_while_the_kernel_is_prepared(self, harness):
+        harness.renderer.preview = lambda *_: harness.renderer.gate.wait(HANG_LIMIT) and None  # no preview comes first
+        harness.start(JOB)
+        assert harness.notifications.acquire(timeout=HANG_LIMIT)
+        assert harness.painter.compiling
+        harness.renderer.gate.set()
+        until(lambda: not harness.painter.compiling, "the kernel")
 
-    def test_a_preview_is_followed_by_the_picture(self, bench):
-        bench.start(JOB)
-        (outcome,) = bench.outcomes(1)
+    def test_a_preview_is_followed_by_the_picture(self, harness):
+        harness.start(JOB)
+        (outcome,) = harness.outcomes(1)
         assert (outcome.job, outcome.preview, outcome.error) == (JOB, True, None)
         assert outcome.pixels.shape == (2, 3, 4)
-        assert bench.painter.busy
-        bench.renderer.gate.set()
-        (outcome,) = bench.outcomes(1)
+        assert harness.painter.busy
+        harness.renderer.gate.set()
+        (outcome,) = harness.outcomes(1)
         assert (outcome.job, outcome.preview) == (JOB, False)
         assert outcome.pixels.shape == (48, 64, 4)
-        assert not bench.painter.busy
+        assert not harness.painter.busy
 
-    def test_edits_are_previewed_and_only_the_last_is_rendered(self, bench):
-        bench.start(JOB)
-        bench.outcomes(1)
+    def test_edits_are_previewed_and_only_the_last_is_rendered(self, harness):
+        harness.start(JOB)
+        harness.outcomes(1)
         for line in ("sp 1,0,0 2 255,0,0", "sp 2,0,0 2 255,0,0"):
             edited = replace(JOB, scene=scene(f"{TEXT}{line}\n"))
-            bench.painter.request(edited)
-            (outcome,) = bench.outcomes(1)
+            harness.painter.request(edited)
+            (outcome,) = harness.outcomes(1)
             assert (outcome.job, outcome.preview) == (edited, True)
-        bench.renderer.gate.set()
-        (outcome,) = bench.outcomes(1)
+        harness.renderer.gate.set()
+        (outcome,) = harness.outcomes(1)
         assert (outcome.job, outcome.preview) == (edited, False)
-        assert bench.renderer.rendered == [(64, 48)]
+        assert harness.renderer.rendered == [(64, 48)]
 
-    def test_a_kernel_that_is_soon_there_needs_no_preview(self, bench, monkeypatch):
-        monkeypatch.setattr(background_painter, "GRACE", HANG_LIMIT)
-        bench.painter.request(JOB)
-        (outcome,) = bench.outcomes(1)
+    def test_a_kernel_that_is_soon_ready_needs_no_preview(self, harness, monkeypatch):
+        monkeypatch.setattr(background_painter, "PREVIEW_DELAY", HANG_LIMIT)
+        harness.painter.request(JOB)
+        (outcome,) = harness.outcomes(1)
         assert not outcome.preview
-        assert not bench.painter.compiling
+        assert not harness.painter.compiling
 
-    def test_without_a_preview_the_picture_comes_all_the_same(self, bench):
-        bench.renderer.previews = False
-        bench.start(JOB)
-        until(lambda: bench.painter.compiling, "the word")
-        bench.renderer.gate.set()
-        assert not bench.outcomes(1)[0].preview
+    def test_without_a_preview_the_picture_still_follows(self, harness):
+        harness.renderer.previews = False
+        harness.start(JOB)
+        until(lambda: harness.painter.compiling, "the message about compiling")
+        harness.renderer.gate.set()
+        assert not harness.outcomes(1)[0].preview
 
-    def test_a_reason_why_there_is_no_kernel_is_an_outcome(self, bench, monkeypatch):
-        monkeypatch.setattr(background_painter, "GRACE", HANG_LIMIT)
-        bench.renderer.prepare_error = RenderError("no")
-        bench.painter.request(JOB)
-        outcomes = bench.outcomes(2)
-        assert [each.error for each in outcomes] == [bench.renderer.prepare_error, None]
+    def test_an_error_of_prepare_is_an_outcome(self, harness, monkeypatch):
+        monkeypatch.setattr(background_painter, "PREVIEW_DELAY", HANG_LIMIT)
+        harness.renderer.prepare_error = RenderError("no")
+        harness.painter.request(JOB)
+        outcomes = harness.outcomes(2)
+        assert [each.error for each in outcomes] == [harness.renderer.prepare_error, None]
         assert outcomes[1].preview
-        assert not bench.painter.busy
+        assert not harness.painter.busy
 
     @pytest.mark.parametrize("stops", [True, False])
-    def test_close_ends_what_can_be_ended(self, stops):
-        bench = Bench()
-        bench.renderer.ready, bench.renderer.stops = False, stops
-        bench.start(JOB)
-        until(lambda: bench.painter.compiling, "the word")
-        assert bench.painter.close(HANG_LIMIT if stops else 0.01) == stops
-        assert bench.renderer.gate.is_set() == stops  # else it would have been waited for
-        bench.renderer.gate.set()
-        assert bench.painter.close(HANG_LIMIT)
+    def test_close_ends_prepare_if_the_renderer_can_stop(self, stops):
+        harness = PainterHarness()
+        harness.renderer.ready, harness.renderer.stops = False, stops
+        harness.start(JOB)
+        until(lambda: harness.painter.compiling, "the message about compiling")
+        assert harness.painter.close(HANG_LIMIT if stops else 0.01) == stops
+        assert harness.renderer.gate.is_set() == stops  # otherwise close would have waited for it
+        harness.renderer.gate.set()
+        assert harness.painter.close(HANG_LIMIT)
 
 
-def test_close_stops_a_picture():
-    bench = Bench()
-    bench.start(JOB)
-    assert bench.painter.close(HANG_LIMIT)
-    assert Bench().painter.close(0)
+def test_close_cancels_a_picture():
+    harness = PainterHarness()
+    harness.start(JOB)
+    assert harness.painter.close(HANG_LIMIT)
+    assert PainterHarness().painter.close(0)
 
 
 REFINED = replace(JOB, samples=16, goal=16, base=np.full((48, 64, 4), colour_of(JOB.scene), np.uint8))
 
 
-def test_a_picture_is_refined_in_a_copy(bench):
-    bench.painter.request(REFINED)
-    (outcome,) = bench.outcomes(1)
+def test_a_picture_is_refined_in_a_copy(harness):
+    harness.painter.request(REFINED)
+    (outcome,) = harness.outcomes(1)
     assert (outcome.pixels[0, :16] == MARK).all()
     assert (outcome.pixels[1:] == colour_of(JOB.scene)).all()
     assert (REFINED.base == colour_of(JOB.scene)).all()
-    assert bench.renderer.refined == [16]
-    assert bench.renderer.rendered == []
+    assert harness.renderer.refined == [16]
+    assert harness.renderer.rendered == []
 
 
-def test_refining_is_cancelled_by_what_comes_next(bench):
-    bench.start(REFINED)
-    bench.painter.request(replace(JOB, urgent=True))
-    cancelled = bench.outcomes(1)[0]
+def test_refining_is_cancelled_by_the_next_request(harness):
+    harness.start(REFINED)
+    harness.painter.request(replace(JOB, urgent=True))
+    cancelled = harness.outcomes(1)[0]
     assert (cancelled.job, cancelled.pixels, cancelled.error) == (REFINED, None, None)
     assert (REFINED.base == colour_of(JOB.scene)).all()
-    bench.renderer.gate.set()
-    assert bench.outcomes(1)[0].job.samples == 1
+    harness.renderer.gate.set()
+    assert harness.outcomes(1)[0].job.samples == 1
 
 
-def test_a_request_just_before_the_renderer_can_be_cancelled_is_heard(bench):
-    renderer = bench.renderer
+def test_a_request_before_the_renderer_can_be_cancelled_still_cancels(harness):
+    renderer = harness.renderer
     refine = renderer.refine
 
     def late(*arguments, **keywords):
-        bench.painter.request(JOB)  # and its cancel comes too early
-        renderer.gate.clear()  # it would never end
+        harness.painter.request(JOB)  # its cancel comes too early
+        renderer.gate.clear()  # so that it would never end
         return refine(*arguments, **keywords)
 
     renderer.refine = late
-    bench.painter.request(REFINED)
-    assert bench.outcomes(1)[0].pixels is None
+    harness.painter.request(REFINED)
+    assert harness.outcomes(1)[0].pixels is None
     renderer.gate.set()
-    assert bench.outcomes(1)[0].job is JOB
+    assert harness.outcomes(1)[0].job is JOB
 
 
 @pytest.mark.parametrize(
     ("goal", "passes"), [(1, []), (2, [2]), (4, [4]), (8, [4, 8]), (16, [4, 16]), (64, [4, 16, 64])]
 )
-def test_the_passes(goal, passes):
-    job, made = replace(JOB, goal=goal, urgent=True), []
+def test_samples_grow_fourfold_per_pass_up_to_the_goal(goal, passes):
+    job, samples = replace(JOB, goal=goal, urgent=True), []
     pixels = np.zeros(JOB.shape, np.uint8)
-    while not job.is_last:
+    while not job.is_final:
         job = job.next(pixels)
-        made.append(job.samples)
+        samples.append(job.samples)
         assert job.base is pixels
         assert not job.urgent
-    assert made == passes
+    assert samples == passes
 
 
-def test_after_a_coarse_picture_comes_a_whole_one():
+def test_after_a_coarse_picture_follows_full_resolution():
     coarse = replace(JOB, divisor=3, goal=16, urgent=True)
-    assert not coarse.is_last
+    assert not coarse.is_final
     assert coarse.next(np.zeros(coarse.shape, np.uint8)) == replace(JOB, goal=16)
-
-
-class TestPace:
-    @staticmethod
-    def made(seconds: float, divisor: int = 1, pixels: bool = True, samples: int = 1, urgent: bool = False) -> Outcome:
-        job = Job(JOB.scene, 800, 600, divisor, urgent, samples)
-        return Outcome(job, colour_of(JOB.scene) if pixels else None, seconds=seconds)
-
-    def moving(self, pace: AdaptiveResolution, seconds: float, always: float = 0.0) -> int:
-        """Render a picture while something moves: a whole one takes that long, and each `always` of it."""
-        divisor = pace.divisor(800, 600)
-        pace.learn(self.made(always + (seconds - always) / divisor**2, divisor, urgent=True))
-        return divisor
-
-    @pytest.mark.parametrize(
-        ("longest", "divisor"),
-        [(0.5, 1), (0.99, 1), (1.1, 2), (3.9, 2), (4.1, 3), (8.9, 3), (9.1, 4), (16, 4), (17, 8), (1e6, 8)],
-    )
-    def test_as_coarse_as_needed(self, longest, divisor):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(longest * LONGEST))
-        assert pace.divisor(800, 600) == divisor
-        for _ in range(20):
-            assert self.moving(pace, longest * LONGEST) == divisor
-
-    def test_is_careful_while_nothing_is_known(self):
-        pace = AdaptiveResolution()
-        assert pace.divisor(800, 600) == 8
-        pace.learn(self.made(0.001, pixels=False))
-        assert pace.divisor(800, 600) == 8
-
-    def test_another_size_has_another_cost(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST * 4))
-        assert pace.divisor(400, 300) == 1
-
-    def test_a_cancelled_picture_took_at_least_that_long(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST / 2))
-        pace.learn(self.made(LONGEST / 4, pixels=False))  # which says nothing
-        for _ in range(2):
-            assert pace.divisor(800, 600) == 1
-            pace.learn(self.made(LONGEST * 3, pixels=False))
-        assert pace.divisor(800, 600) == 2
-
-    def test_refined_pictures_say_nothing(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST / 2))
-        for _ in range(3):
-            pace.learn(self.made(LONGEST * 9, samples=4))
-        assert pace.divisor(800, 600) == 1
-
-    def test_one_slow_picture_changes_nothing_and_two_do(self):
-        pace = AdaptiveResolution()
-        for _ in range(3):
-            pace.learn(self.made(LONGEST / 2))
-        pace.learn(self.made(LONGEST * 5, urgent=True))
-        assert pace.divisor(800, 600) == 1
-        pace.learn(self.made(LONGEST * 5, urgent=True))
-        assert pace.divisor(800, 600) == 3
-
-    def test_what_is_under_way_is_waited_for(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST * 3))
-        assert pace.divisor(800, 600) == 2
-        pace.learn(self.made(LONGEST * 30, urgent=True))  # of before
-        assert pace.divisor(800, 600) == 2
-
-    def test_a_whole_picture_that_was_not_waited_for_leaves_the_pace_as_it_was(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST * 3))
-        self.moving(pace, LONGEST * 3)
-        pace.learn(self.made(LONGEST / 100, pixels=False))
-        assert pace.divisor(800, 600) == 2
-
-    def test_near_the_limit_the_resolution_does_not_flicker(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST * 0.98))
-        used = [self.moving(pace, LONGEST * (1.02 if n // 3 % 2 else 0.98)) for n in range(200)]
-        assert set(used) == {1, 2}
-        assert sum(a != b for a, b in itertools.pairwise(used)) <= 5
-        used = [self.moving(pace, LONGEST * 0.7) for _ in range(5)]
-        assert used[-1] == 1  # with ease
-
-    def test_a_finer_picture_is_tried_where_coarse_ones_mislead(self):
-        """Each picture takes a tenth of the time, whatever its size."""
-        pace, always = AdaptiveResolution(), LONGEST / 10
-        pace.learn(self.made(LONGEST * 90))
-        assert self.moving(pace, LONGEST * 90, always) == 8  # somebody else had the processor
-        used = [self.moving(pace, LONGEST * 0.9, always) for _ in range(1000)]
-        assert used[-1] == 1
-        assert sum(a != b for a, b in itertools.pairwise(used)) <= 4
-
-    def test_trying_in_vain_becomes_rare(self):
-        pace = AdaptiveResolution()
-        pace.learn(self.made(LONGEST * 1.1))
-        used = [self.moving(pace, LONGEST * 1.1) for _ in range(1000)]
-        assert 1 <= used.count(1) <= 12
-
-    def test_what_showing_takes_is_not_left_for_rendering(self):
-        for showing, divisor in ((0.1, 1), (0.4, 2), (40, 2)):  # the last is the screen's fault
-            pace = AdaptiveResolution()
-            pace.learn_showing(LONGEST * showing)
-            pace.learn(self.made(LONGEST * 0.7))
-            assert pace.divisor(800, 600) == divisor

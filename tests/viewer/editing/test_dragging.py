@@ -1,4 +1,4 @@
-"""The pointer with a button held: what is under it stays there, and a drag is one thing to undo."""
+"""Drags of the pointer: the point under the pointer stays there, and a drag is one undo step."""
 
 from __future__ import annotations
 
@@ -9,63 +9,63 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from minirt.mlx import Key
-from minirt.rendering.queries.pick import place
+from minirt.rendering.queries.pick import surface_point
 from minirt.scene import Camera
-from minirt.viewer.editing.measure import middle_of
-from minirt.viewer.editing.projection import dot, projection
-from tests.viewer.app.test_session import Bench
+from minirt.viewer.editing.measure import scene_centre
+from minirt.viewer.editing.projection import dot, projection_of
 from tests.viewer.fake import played, scene
+from tests.viewer.session_harness import SessionHarness
 
 WIDTH, HEIGHT = 64, 48
 FROM, TO = (33, 23), (45, 15)  # on the sphere; beside it
 DRAG = "drag 33,23 45,15"
-SEEN = projection(scene().camera, WIDTH, HEIGHT)
-HALF = 0.5  # the middle of a pixel
+PROJECTION = projection_of(scene().camera, WIDTH, HEIGHT)
+HALF = 0.5  # pixel: offset of its centre
 
 numbers = st.floats(-1, 1, allow_nan=False)
 
 
 @given(numbers, numbers, st.floats(0.01, 1), st.floats(1, 150), st.floats(-180, 180), st.tuples(numbers, numbers))
-def test_places_and_pixels_are_each_others_inverse(x, y, z, fov, roll, at):
-    seen = projection(Camera((x, y, z), (x, y, z), fov, roll), 640, 360)
+def test_projecting_to_pixels_and_back_is_the_identity(x, y, z, fov, roll, at):
+    projection = projection_of(Camera((x, y, z), (x, y, z), fov, roll), 640, 360)
     pixel = 640 * (at[0] + 1) / 2, 360 * (at[1] + 1) / 2
-    point = seen.at_depth(*pixel, 7.0)
-    assert seen.depth(point) == pytest.approx(7)
-    assert seen.pixel(point) == pytest.approx(pixel, abs=1e-6)
-    assert seen.pixel(seen.at_depth(*pixel, -7.0)) is None
+    point = projection.point_at_depth(*pixel, 7.0)
+    assert projection.depth(point) == pytest.approx(7)
+    assert projection.pixel(point) == pytest.approx(pixel, abs=1e-6)
+    assert projection.pixel(projection.point_at_depth(*pixel, -7.0)) is None
 
 
-def held(shape, x, y):
-    """The place on a shape under a pixel."""
-    return place(shape, scene().camera, WIDTH, HEIGHT, x, y)
+def point_under_pixel(shape, x, y):
+    """The point on a shape under a pixel."""
+    return surface_point(shape, scene().camera, WIDTH, HEIGHT, x, y)
 
 
-def test_what_is_under_the_pointer_stays_there():
+def test_the_point_under_the_pointer_stays_there():
     session = played(DRAG)
     (old,), (new,) = scene().spheres, session.state.scene.spheres
     assert session.state.element is new
-    way = [b - a for a, b in zip(old.centre, new.centre, strict=True)]
-    assert dot(way, SEEN.forward) == pytest.approx(0, abs=1e-9)
-    moved = tuple(a + b for a, b in zip(held(old, *FROM), way, strict=True))
-    assert SEEN.pixel(moved) == pytest.approx([each + HALF for each in TO], abs=1e-3)
+    offset = [b - a for a, b in zip(old.centre, new.centre, strict=True)]
+    assert dot(offset, PROJECTION.forward) == pytest.approx(0, abs=1e-9)
+    moved = tuple(a + b for a, b in zip(point_under_pixel(old, *FROM), offset, strict=True))
+    assert PROJECTION.pixel(moved) == pytest.approx([each + HALF for each in TO], abs=1e-3)
 
 
 @pytest.mark.parametrize(("presses", "axis"), [(1, 0), (2, 1), (3, 2)])
-def test_along_an_axis_nothing_else_changes(presses, axis):
+def test_a_drag_along_an_axis_changes_one_coordinate(presses, axis):
     text = "A 0 0,0,0\nC 5,4,10 -0.5,-0.4,-1 60\nsp 0,0,0 2 9,9,9\n"
     session = played(*["press X"] * presses, "drag 32,24 40,20", text=text)
     centre = session.state.scene.spheres[0].centre
     assert [i for i in range(3) if centre[i] != 0] == [axis]
-    # No other place of the axis is nearer to the pointer's ray.
-    seen = projection(session.state.scene.camera, WIDTH, HEIGHT)
+    # No other point of the axis is nearer to the pointer's ray.
+    projection = projection_of(session.state.scene.camera, WIDTH, HEIGHT)
     (ball,) = scene(text).spheres
-    start = place(ball, scene(text).camera, WIDTH, HEIGHT, 32, 24)
+    start = surface_point(ball, scene(text).camera, WIDTH, HEIGHT, 32, 24)
 
     def distance(step):
         point = [a + (centre[axis] + step) * (i == axis) for i, a in enumerate(start)]
-        way = [a - b for a, b in zip(point, seen.eye, strict=True)]
-        along = dot(way, seen.ray(40.5, 20.5))
-        return dist(way, [along * each for each in seen.ray(40.5, 20.5)])
+        offset = [a - b for a, b in zip(point, projection.eye, strict=True)]
+        along = dot(offset, projection.ray(40.5, 20.5))
+        return dist(offset, [along * each for each in projection.ray(40.5, 20.5)])
 
     assert distance(0) < min(distance(0.02), distance(-0.02))
 
@@ -76,11 +76,13 @@ def test_a_drag_on_nothing_looks_around():
     assert session.state.scene.spheres == scene().spheres
     camera = session.state.scene.camera
     assert camera.position == scene().camera.position
-    assert degrees(acos(-camera.direction[2])) == pytest.approx(90 * 17.5 / 64, rel=0.02)  # far things follow
+    assert degrees(acos(-camera.direction[2])) == pytest.approx(
+        90 * 17.5 / 64, rel=0.02
+    )  # distant objects follow the pointer
     assert camera.direction[0] < 0 < camera.direction[1]
 
 
-def test_with_shift_it_turns():
+def test_a_drag_with_shift_turns_the_element():
     session = played("down Shift", "drag 41,24 53,24", "up Shift")  # the cylinder, about the view's up: its own axis
     assert session.state.element.title == "cylinder"
     assert session.state.scene.cylinders == scene().cylinders
@@ -93,66 +95,66 @@ def test_with_shift_it_turns():
 
 
 @pytest.mark.parametrize("lines", [(), ("click 33,23",), ("press Tab",), ("press Ctrl+D",)])
-def test_the_camera_goes_round_what_is_selected(lines):
+def test_the_camera_orbits_the_selected_element(lines):
     before = played(*lines)
     after = played(*lines, "drag 10,10 22,16 right")
     state = before.state
-    pivot = {"sphere": (0, 0, 0), "light": (5, 5, 5)}.get(state.element.title, middle_of(state.scene))
+    pivot = {"sphere": (0, 0, 0), "light": (5, 5, 5)}.get(state.element.title, scene_centre(state.scene))
     old, new = state.scene.camera, after.state.scene.camera
     assert new != old
     assert dist(new.position, pivot) == pytest.approx(dist(old.position, pivot), rel=1e-5)
-    pixels = [projection(camera, WIDTH, HEIGHT).pixel(pivot) for camera in (old, new)]
+    pixels = [projection_of(camera, WIDTH, HEIGHT).pixel(pivot) for camera in (old, new)]
     assert pixels[0] == pytest.approx(pixels[1], abs=1e-3)
     assert after.state.element.title == state.element.title
 
 
-def test_going_round_stops_above():
+def test_orbiting_stops_straight_above():
     camera = played("drag 10,0 10,47 right").state.scene.camera
     assert camera.direction[1] == pytest.approx(-1)
 
 
-def test_the_camera_slides():
+def test_the_camera_pans():
     session = played("drag 33,23 45,15 middle")
     camera = session.state.scene.camera
-    point = held(scene().spheres[0], *FROM)
-    assert projection(camera, WIDTH, HEIGHT).pixel(point) == pytest.approx([each + HALF for each in TO], abs=1e-3)
+    point = point_under_pixel(scene().spheres[0], *FROM)
+    assert projection_of(camera, WIDTH, HEIGHT).pixel(point) == pytest.approx([each + HALF for each in TO], abs=1e-3)
     assert camera.direction == scene().camera.direction
     assert played("drag 5,3 9,3 middle").state.scene.camera.position[0] < 0
 
 
 class TestUndo:
     @pytest.mark.parametrize("line", [DRAG, f"{DRAG} right", f"{DRAG} middle", "drag 5,3 20,12"])
-    def test_a_drag_is_one_thing(self, line):
+    def test_a_drag_is_one_step(self, line):
         session = played(line)
-        assert len(session.state.past) == 1
+        assert len(session.state.undo_stack) == 1
         assert played(line, "press Ctrl+Z").state.scene.items == scene().items
         assert played(line, "press Ctrl+Z", "press Ctrl+Y").state.scene.items == session.state.scene.items
 
-    def test_two_drags_are_two(self):
-        assert len(played(DRAG, "drag 45,15 33,23").state.past) == 2
-        assert len(played("press Tab", "press Tab", "press d", DRAG, "press d").state.past) == 3
+    def test_two_drags_are_two_steps(self):
+        assert len(played(DRAG, "drag 45,15 33,23").state.undo_stack) == 2
+        assert len(played("press Tab", "press Tab", "press d", DRAG, "press d").state.undo_stack) == 3
 
-    def test_whatever_the_way(self):
+    def test_the_path_of_the_pointer_does_not_matter(self):
         there_and_back = played("drag 33,23 60,40", "press Ctrl+Z", DRAG)
         assert there_and_back.state.scene.items == played(DRAG).state.scene.items
 
-    def test_a_pause_is_no_end(self):
-        bench = dragging()
-        bench.memory.wait(3)
-        bench.memory.motion(*TO)
-        bench.memory.play()
-        assert len(bench.session.state.past) == 1
+    def test_a_pause_does_not_end_a_drag(self):
+        harness = dragging()
+        harness.memory.wait(3)
+        harness.memory.motion(*TO)
+        harness.memory.play()
+        assert len(harness.session.state.undo_stack) == 1
 
 
-def dragging() -> Bench:
-    """Half way through a drag of the sphere."""
-    bench = Bench()
-    bench.session.pick = lambda scene, *_: scene.spheres[0]
-    bench.memory.button_press(1, *FROM)
-    bench.memory.motion(40, 20)
-    bench.memory.play()
-    assert len(bench.session.state.past) == 1
-    return bench
+def dragging() -> SessionHarness:
+    """A session in the middle of a drag of the sphere."""
+    harness = SessionHarness()
+    harness.session.pick = lambda scene, *_: scene.spheres[0]
+    harness.memory.button_press(1, *FROM)
+    harness.memory.motion(40, 20)
+    harness.memory.play()
+    assert len(harness.session.state.undo_stack) == 1
+    return harness
 
 
 @pytest.mark.parametrize(
@@ -166,25 +168,25 @@ def dragging() -> Bench:
         lambda memory: memory.button_press(3, 1, 1),
     ],
 )
-def test_what_ends_a_drag(end):
-    bench = dragging()
-    end(bench.memory)
-    bench.memory.play()
-    after = bench.session.state.scene
-    bench.memory.motion(*TO)
-    bench.memory.play()
-    assert bench.session.state.scene is after or bench.session.mouse._press
+def test_these_actions_end_a_drag(end):
+    harness = dragging()
+    end(harness.memory)
+    harness.memory.play()
+    after = harness.session.state.scene
+    harness.memory.motion(*TO)
+    harness.memory.play()
+    assert harness.session.state.scene is after or harness.session.pressed
 
 
-def test_a_click_moves_nothing_although_the_hand_trembles():
-    bench = Bench()
-    bench.session.pick = lambda scene, *_: scene.spheres[0]
-    bench.memory.button_press(1, *FROM)
-    bench.memory.motion(FROM[0] + 3, FROM[1] - 3)
-    bench.memory.button_release(1, FROM[0] + 3, FROM[1] - 3)
-    bench.memory.play()
-    assert bench.session.state.element.title == "sphere"
-    assert bench.session.state.past == ()
+def test_a_click_with_a_small_movement_moves_nothing():
+    harness = SessionHarness()
+    harness.session.pick = lambda scene, *_: scene.spheres[0]
+    harness.memory.button_press(1, *FROM)
+    harness.memory.motion(FROM[0] + 3, FROM[1] - 3)
+    harness.memory.button_release(1, FROM[0] + 3, FROM[1] - 3)
+    harness.memory.play()
+    assert harness.session.state.element.title == "sphere"
+    assert harness.session.state.undo_stack == ()
 
 
 def test_a_right_click_selects_the_camera_and_a_right_drag_does_not():

@@ -1,4 +1,4 @@
-"""What actions make of a scene, with answers worked out by hand."""
+"""Effects of editing actions on a scene, with results computed by hand."""
 
 from __future__ import annotations
 
@@ -11,30 +11,32 @@ from minirt.scene import Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from minirt.viewer.editing.editor import ANGLE, EDITS, apply
-from minirt.viewer.editing.motion import looked, turned
-from minirt.viewer.editing.state import STRIDE, State, opened
+from minirt.viewer.editing.editor import EDITS, TURN_STEP, apply
+from minirt.viewer.editing.motion import rotate_direction, turn_camera
+from minirt.viewer.editing.state import STEP_SHARE, State, initial_state
 from tests.viewer.fake import scene
 
 RED = (255, 0, 0)
-U = 2.0**-53
+U = 2.0**-53  # unit roundoff of float64
 MILLION = 1_000_000
 
 
 def selecting(kind: type, text: str | None = None) -> State:
-    """The state with the first element of a kind selected; the stride of a step is 1."""
-    state = opened(scene(text) if text else scene())
+    """The state with the first element of a kind selected, in which a step of a movement has length 1."""
+    state = initial_state(scene(text) if text else scene())
     index = next(index for index, each in enumerate(state.scene.elements) if type(each) is kind)
-    return State(state.scene, index, state.home, 1 / STRIDE)
+    return State(state.scene, index, state.file_camera, 1 / STEP_SHARE)
 
 
 def after(state: State, *actions: str, amount: float = 1.0) -> State:
+    """The state after some actions."""
     for action in actions:
         state = apply(state, action, amount)
     return state
 
 
-def axes(state: State, frame: str) -> State:
+def with_frame(state: State, frame: str) -> State:
+    """The state with another frame of movement."""
     while state.frame.name != frame:
         state = apply(state, "next frame")
     return state
@@ -53,37 +55,37 @@ def axes(state: State, frame: str) -> State:
 )
 def test_the_camera_moves_along_its_own_axes(action, moved):
     assert after(selecting(Camera), action).element.position == moved
-    assert after(axes(selecting(Camera), "X"), action).element.position == moved
+    assert after(with_frame(selecting(Camera), "X"), action).element.position == moved
 
 
-def test_the_camera_moves_where_it_looks():
-    state = after(selecting(Camera), "turn right", amount=90 / ANGLE)
+def test_the_camera_moves_in_the_direction_of_view():
+    state = after(selecting(Camera), "turn right", amount=90 / TURN_STEP)
     assert after(state, "forward").element.position == pytest.approx((1, 0, 10))
     assert after(state, "right").element.position == pytest.approx((0, 0, 11))
 
 
 @pytest.mark.parametrize(("kind", "name"), [(Light, "position"), (Sphere, "centre"), (Plane, "point")])
-def test_everything_with_a_place_moves_in_the_view_and_along_the_axes(kind, name):
+def test_every_element_with_a_position_moves_in_the_view_and_along_the_axes(kind, name):
     state = selecting(kind)
     x, y, z = getattr(state.element, name)
     assert getattr(after(state, "right", "right", "up").element, name) == (x + 2, y + 1, z)
     assert getattr(after(state, "forward").element, name) == (x, y, z - 1)
     for frame, expected in (("X", (x + 1, y, z)), ("Y", (x, y + 1, z)), ("Z", (x, y, z + 1))):
         for plus, minus in (("right", "left"), ("forward", "back"), ("up", "down")):
-            moved = after(axes(state, frame), plus)
+            moved = after(with_frame(state, frame), plus)
             assert getattr(moved.element, name) == expected
             assert getattr(after(moved, minus).element, name) == (x, y, z)
 
 
-def test_a_tenth_of_a_step():
+def test_an_element_moves_by_a_tenth_of_a_step():
     assert after(selecting(Sphere), "right", amount=0.1).element.centre == pytest.approx((0.1, 0, 0))
 
 
-def test_ambient_light_has_no_place():
+def test_ambient_light_has_no_position():
     state = selecting(type(scene().ambient))
     moved = after(state, "left")
     assert moved.scene is state.scene
-    assert "no place" in moved.message
+    assert "no position" in moved.message
 
 
 @pytest.mark.parametrize(
@@ -92,37 +94,37 @@ def test_ambient_light_has_no_place():
         ("turn right", (0, 1, 0)),  # about itself
         ("roll right", (1, 0, 0)),
         ("roll left", (-1, 0, 0)),
-        ("turn up", (0, 0, -1)),  # what faces the camera goes up, so the top goes away
+        ("turn up", (0, 0, -1)),  # the front goes up, so the top goes away from the camera
         ("turn down", (0, 0, 1)),
     ],
 )
 def test_a_cylinder_turns_in_the_view(action, axis):
-    turned = after(selecting(Cylinder), action, amount=90 / ANGLE)
+    turned = after(selecting(Cylinder), action, amount=90 / TURN_STEP)
     assert turned.element.axis == pytest.approx(axis, abs=1e-15)
 
 
 @pytest.mark.parametrize(("frame", "axis"), [("X", (0, 0, 1)), ("Y", (0, 1, 0)), ("Z", (-1, 0, 0))])
 def test_a_cylinder_turns_right_handed_about_an_axis(frame, axis):
     for action in ("turn right", "turn up", "roll right"):
-        turned = after(axes(selecting(Cylinder), frame), action, amount=90 / ANGLE)
+        turned = after(with_frame(selecting(Cylinder), frame), action, amount=90 / TURN_STEP)
         assert turned.element.axis == pytest.approx(axis, abs=1e-15)
 
 
 @pytest.mark.parametrize("kind", [Sphere, Light])
-def test_what_cannot_turn_says_so(kind):
+def test_a_message_says_that_an_element_cannot_turn(kind):
     state = selecting(kind)
     turned = after(state, "turn left")
     assert turned.scene is state.scene
     assert "same from all sides" in turned.message
 
 
-def test_a_plane_has_no_size_but_a_colour():
+def test_the_value_of_a_plane_is_its_colour():
     state = selecting(Plane)
     assert state.active.name == "colour"
     assert after(state, "shrink").element.colour == (0, 247, 0)
 
 
-def test_values_take_turns():
+def test_next_value_cycles_through_the_values():
     state = selecting(Cylinder)
     names = []
     for _ in range(7):
@@ -135,10 +137,10 @@ def test_values_take_turns():
     assert after(selecting(Light), "grow").element.brightness == pytest.approx(0.55)
 
 
-def test_what_has_no_value_says_so():
+def test_a_message_says_that_an_element_has_no_value():
     text = "R 320 200\nA 0.2 9,9,9\nC 0,0,0 0,0,1 60\n"
-    state = opened(scene(text))
-    state = State(state.scene, 0, state.home, 1.0)
+    state = initial_state(scene(text))
+    state = State(state.scene, 0, state.file_camera, 1.0)
     assert "no size" in after(state, "grow").message
     assert "no value" in after(state, "next value").message
 
@@ -164,60 +166,60 @@ def test_moving_stops_at_the_end_of_the_range():
 def test_a_million_turns_of_a_shape_keep_unit_length():
     axis, about = selecting(Cylinder).element.axis, (0.6, 0.0, 0.8)
     for _ in range(MILLION):
-        axis = turned(axis, about, 0.1)
+        axis = rotate_direction(axis, about, 0.1)
         assert abs(hypot(*axis) - 1) <= 4 * U
     # 100,000 degrees are 277 whole turns and 280 degrees.
-    assert axis == pytest.approx(turned(selecting(Cylinder).element.axis, about, 280), abs=1e-9)
+    assert axis == pytest.approx(rotate_direction(selecting(Cylinder).element.axis, about, 280), abs=1e-9)
 
 
 @pytest.mark.slow
 def test_a_million_turns_of_the_camera_keep_unit_length():
     camera = selecting(Cylinder).scene.camera
     for _ in range(MILLION):
-        camera = looked(camera, 0.1, 0.0)
+        camera = turn_camera(camera, 0.1, 0.0)
         assert abs(hypot(*camera.direction) - 1) <= 4 * U
     assert camera.direction == pytest.approx((sin(radians(280)), 0, -cos(radians(280))), abs=1e-9)
 
 
 class TestStraightUp:
-    def test_is_reached_and_left_again(self):
+    def test_it_is_reached_and_left_again(self):
         for action, back, y in (("turn up", "turn down", 1.0), ("turn down", "turn up", -1.0)):
             start = after(selecting(Camera), "turn right", amount=7)
             end = after(start, action, amount=100)
             assert end.element.direction[1] == y
             assert hypot(*end.element.direction) == 1
             assert after(end, action).scene is end.scene
-            returned = after(end, back, amount=90 / ANGLE)
+            returned = after(end, back, amount=90 / TURN_STEP)
             assert returned.element.direction == pytest.approx(start.element.direction, abs=1e-15)
 
     def test_the_heading_turns_there(self):
-        up = after(selecting(Camera), "turn up", "turn right", amount=90 / ANGLE)
+        up = after(selecting(Camera), "turn up", "turn right", amount=90 / TURN_STEP)
         assert up.element.direction[1] == 1
-        assert after(up, "turn down", amount=90 / ANGLE).element.direction == pytest.approx((1, 0, 0), abs=1e-15)
+        assert after(up, "turn down", amount=90 / TURN_STEP).element.direction == pytest.approx((1, 0, 0), abs=1e-15)
 
     @pytest.mark.parametrize("y", [1, -1])
-    def test_of_a_file_is_left_without_a_jump(self, y):
+    def test_a_camera_of_a_file_leaves_it_without_a_jump(self, y):
         state = selecting(Camera, f"A 0 0,0,0\nC 0,0,0 0,{y},0 60\n")
-        left = after(state, "turn down" if y > 0 else "turn up", amount=90 / ANGLE)
+        left = after(state, "turn down" if y > 0 else "turn up", amount=90 / TURN_STEP)
         # The top of the picture is +z looking up and -z looking down; the way out leads down or up in the picture.
         assert left.element.direction == pytest.approx((0, 0, -1), abs=1e-15)
 
 
 def test_roll_turns_the_camera_about_its_direction():
     state = after(selecting(Camera), "roll right")
-    assert (state.element.roll, state.element.direction) == (ANGLE, (0, 0, -1))
+    assert (state.element.roll, state.element.direction) == (TURN_STEP, (0, 0, -1))
     assert after(state, "roll left").element.roll == 0
-    assert after(selecting(Camera), "roll right", amount=359 / ANGLE).element.roll == 359
+    assert after(selecting(Camera), "roll right", amount=359 / TURN_STEP).element.roll == 359
     assert abs(after(selecting(Camera), "roll right", amount=1e6).element.roll) <= 360
 
 
-def test_reset_brings_the_camera_back():
+def test_reset_restores_the_camera_of_the_file():
     state = after(selecting(Camera), "right", "turn up", "roll left", "grow", "reset camera")
     assert state.scene.camera == scene().camera
     assert after(state, "reset camera").scene is state.scene
 
 
-def test_look_at_puts_the_element_in_the_middle():
+def test_look_at_centres_the_element():
     state = after(selecting(Cylinder), "look at")
     x, y, z = state.scene.camera.position
     assert (x, y) == (3, 0)
@@ -227,7 +229,7 @@ def test_look_at_puts_the_element_in_the_middle():
 
 
 class TestSelection:
-    def test_goes_round(self):
+    def test_it_is_cyclic(self):
         state = selecting(Camera)
         titles = []
         for _ in range(6):
@@ -236,11 +238,11 @@ class TestSelection:
         assert titles == ["light", "sphere", "plane", "cylinder", "ambient light", "camera"]
         assert after(state, "select previous").element.title == "ambient light"
 
-    def test_leaves_out_what_cannot_be_edited(self):
+    def test_it_skips_elements_that_cannot_be_edited(self):
         state = selecting(Camera, "R 320 200\nA 0.2 9,9,9\nC 0,0,0 0,0,1 60\n")
         assert after(state, "select next").element.title == "ambient light"
 
-    def test_lights(self):
+    def test_it_cycles_through_the_lights(self):
         text = "A 0 0,0,0\nC 0,0,0 0,0,1 60\nL 1,1,1 1\nl 2,2,2 1\n"
         state = selecting(Camera, text)
         places = []
@@ -253,7 +255,7 @@ class TestSelection:
 
 
 class TestStructure:
-    def test_a_copy_stands_behind_and_is_selected(self):
+    def test_a_copy_follows_its_original_and_is_selected(self):
         state = after(selecting(Sphere), "duplicate")
         assert [each.title for each in state.scene.elements[3:6]] == ["sphere", "sphere", "plane"]
         assert state.selected == 4
@@ -266,28 +268,28 @@ class TestStructure:
         assert state.element.position == (5, 5, 5)
 
     @pytest.mark.parametrize("kind", [Camera, type(scene().ambient)])
-    def test_what_is_there_once_stays_so(self, kind):
+    def test_a_unique_element_is_neither_copied_nor_deleted(self, kind):
         state = selecting(kind)
         assert after(state, "duplicate").scene is state.scene
         assert after(state, "delete").scene is state.scene
 
-    def test_delete(self):
+    def test_a_deleted_element_is_restored_by_undo(self):
         state = after(selecting(Sphere), "delete")
         assert state.scene.spheres == ()
         assert state.element is state.scene.camera
         back = after(state, "undo")
         assert back.element == Sphere((0, 0, 0), 2, RED)
 
-    def test_comments_stay(self):
+    def test_comments_are_kept(self):
         state = after(selecting(Sphere), "duplicate", "delete")
         assert [item for item in state.scene.items if isinstance(item, str)] == ["# a comment", "", ""]
 
 
 def test_every_action_gives_a_scene_for_every_element():
     for text in (None, "A 0 0,0,0\nC 0,0,0 0,1,0 0 roll:3\nL 1e15,0,0 1\n", "A 1 1,1,1\nC 1e15,0,0 0,-1,0 180\n"):
-        start = opened(scene(text) if text else scene())
+        start = initial_state(scene(text) if text else scene())
         for index in range(len(start.scene.elements)):
             for action in EDITS:
-                state = after(State(start.scene, index, start.home, start.size), action, action)
+                state = after(State(start.scene, index, start.file_camera, start.size), action, action)
                 assert isinstance(state.scene, Scene)
                 assert 0 <= state.selected < len(state.scene.elements)

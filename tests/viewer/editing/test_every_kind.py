@@ -1,5 +1,7 @@
-"""Whatever a scene file can hold can be added, selected, moved, turned, resized, given attributes and saved: asked of
-every kind in the registry and of every field in its table, so that none is forgotten."""
+"""Every kind of element can be added, selected, moved, turned, resized, given attributes and saved.
+
+The tests take all kinds from the registry and all fields from their tables, so that none is forgotten.
+"""
 
 from __future__ import annotations
 
@@ -20,16 +22,16 @@ from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
-from minirt.viewer.editing.adding import kinds, made
+from minirt.viewer.editing.adding import addable_kinds, default_record
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.projection import projection
-from minirt.viewer.editing.state import State, index_of, named, opened, place_of
+from minirt.viewer.editing.projection import projection_of
+from minirt.viewer.editing.state import State, field_names, index_of, initial_state, position_of
 from minirt.viewer.editing.values import values
 from tests.viewer.fake import played
 
 BARE = "A 0.2 255,255,255\nC 0,2,-20 0.1,-0.1,1 60\n"
 EDITABLE = [kind for kind in ELEMENTS.values() if kind is not Resolution]
-ADDED = [*kinds(parse(BARE).scene), Mesh]
+ADDED = [*addable_kinds(parse(BARE).scene), Mesh]
 KEYED = [(kind, field.name) for kind in EDITABLE for field in fields_of(kind) if field.keyed and field.default is None]
 SIZE = (64, 48)  # of the window of `played`
 
@@ -50,37 +52,37 @@ def path(tmp_path: Path) -> Path:
 
 
 def holding(kind: type[Element], path: Path) -> State:
-    """A state with an element of that kind selected."""
-    state = opened(load(path).scene)
-    found = [each for each in state.scene.elements if type(each) is kind]
-    if found:
-        return state.select(index_of(state.scene, found[0]))
+    """A state with an element of this kind selected."""
+    state = initial_state(load(path).scene)
+    existing = [each for each in state.scene.elements if type(each) is kind]
+    if existing:
+        return state.select(index_of(state.scene, existing[0]))
     for _ in ADDED:
         state = apply(state, "add")
         if type(state.element) is kind:
-            return state.cut()
+            return state.end_merging()
     raise AssertionError(f"{kind.title} cannot be added")
 
 
-def fine(state: State) -> State:
-    """The same, when what would be saved is read as the same scene."""
+def checked(state: State) -> State:
+    """Return the state after a check that its saved scene is read back as the same scene."""
     again = parse(dump(state.scene), state.scene.file).scene
     assert again.items == state.scene.items
     return state
 
 
-def test_nothing_is_left_out() -> None:
+def test_all_kinds_and_attributes_are_covered() -> None:
     assert {*ADDED, *(type(each) for each in parse(BARE).scene.elements)} == set(EDITABLE)
     assert len(EDITABLE) > 15
     assert {name for _, name in KEYED} >= {"specular", "mirror", "glass", "checker", "texture", "bump", "normal_map"}
 
 
 @pytest.mark.parametrize("kind", ADDED[:-1], ids=lambda kind: kind.code)
-def test_it_is_added_by_keys_seen_clicked_moved_and_saved(kind: type[Element], path: Path) -> None:
+def test_an_element_is_added_by_keys_clicked_moved_and_saved(kind: type[Element], path: Path) -> None:
     add = ["press N"] * (ADDED.index(kind) + 1)
     session = played(*add, text=BARE, path=path)
     assert type(session.state.element) is kind
-    pixel = spot(session.state)
+    pixel = visible_pixel(session.state)
     for select in ["press Tab", *([f"click {pixel[0]},{pixel[1]}"] if pixel else [])]:
         found = played(*add, "press C", "press G", select, text=BARE, path=path).state
         assert found.element == session.state.element
@@ -94,52 +96,52 @@ def test_it_is_added_by_keys_seen_clicked_moved_and_saved(kind: type[Element], p
     assert load(path).scene.items == saved.state.scene.items
 
 
-def spot(state: State) -> tuple[int, int] | None:
-    """A pixel that shows the selected element: its surface or its icon; None where it has no place."""
+def visible_pixel(state: State) -> tuple[int, int] | None:
+    """A pixel that shows the selected element, by its surface or icon; None if it has no position."""
     element, camera = state.element, state.scene.camera
     x, y = (each.ravel() for each in np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1])))
     if isinstance(element, Shape):
-        (seen,) = np.nonzero(covers(element, camera, *SIZE, x, y))
-        assert len(seen) > 10
-        middle = seen[len(seen) // 2]
+        (indices,) = np.nonzero(covers(element, camera, *SIZE, x, y))
+        assert len(indices) > 10
+        middle = indices[len(indices) // 2]
         return int(x[middle]), int(y[middle])
-    place = place_of(element)
-    at = projection(camera, *SIZE).pixel(place) if place else None
+    place = position_of(element)
+    at = projection_of(camera, *SIZE).pixel(place) if place else None
     return (round(at[0]), round(at[1])) if at else None
 
 
 @pytest.mark.parametrize("kind", EDITABLE, ids=lambda kind: kind.code)
-def test_it_moves_and_turns(kind: type[Element], path: Path) -> None:
+def test_an_element_moves_and_turns(kind: type[Element], path: Path) -> None:
     state = holding(kind, path)
     axes = dict(zip(("right", "up", "forward"), camera_frame(state.scene.camera), strict=True))
     for action, axis in axes.items():
-        moved = fine(apply(state, action))
-        for name in named(kind, Point):
+        moved = checked(apply(state, action))
+        for name in field_names(kind, Point):
             there = linear_combination(1.0, getattr(state.element, name), state.stride, axis)
             assert getattr(moved.element, name) == pytest.approx(there, abs=1e-4 * state.stride)
-        assert bool(named(kind, Point)) == (moved.element != state.element) == (not moved.message)
+        assert bool(field_names(kind, Point)) == (moved.element != state.element) == (not moved.message)
     for action in ("turn right", "turn up"):
-        turned = fine(apply(state, action))
-        places = [getattr(turned.element, name) for name in named(kind, Point)]
-        can = bool(named(kind, Direction)) or len(places) > 1
+        turned = checked(apply(state, action))
+        places = [getattr(turned.element, name) for name in field_names(kind, Point)]
+        can = bool(field_names(kind, Direction)) or len(places) > 1
         assert can == (turned.element != state.element) == (not turned.message)
         assert not can or apply(turned, "undo").scene.items == state.scene.items
 
 
 def changes(state: State) -> Iterator[tuple[str, State]]:
-    """The state after the active value grew, or shrank, for every value of the selected element."""
+    """Yield each value of the selected element with the states after it was increased and decreased."""
     for _ in values(state.element):
-        yield state.active.name, fine(apply(state, "grow"))
-        yield state.active.name, fine(apply(state, "shrink"))
+        yield state.active.name, checked(apply(state, "grow"))
+        yield state.active.name, checked(apply(state, "shrink"))
         state = apply(state, "next value")
 
 
 @pytest.mark.parametrize("kind", EDITABLE, ids=lambda kind: kind.code)
-def test_every_number_and_colour_is_a_value(kind: type[Element], path: Path) -> None:
+def test_every_number_and_colour_can_be_changed(kind: type[Element], path: Path) -> None:
     state = holding(kind, path)
     active = {value.field.name for value in values(state.element)}
     given = {each.name for each in fields_of(kind) if getattr(state.element, each.name) is not None}
-    assert active == given - {*named(kind, Point), *named(kind, Direction)}
+    assert active == given - {*field_names(kind, Point), *field_names(kind, Direction)}
     for name, after in changes(state):
         field = next(value.field for value in values(state.element) if value.name == name)
         others = {each.name for each in fields_of(kind)} - {field.name}
@@ -150,51 +152,51 @@ def test_every_number_and_colour_is_a_value(kind: type[Element], path: Path) -> 
 
 
 @pytest.mark.parametrize(("kind", "name"), KEYED, ids=lambda part: getattr(part, "code", part))
-def test_every_attribute_is_given_changed_and_taken(kind: type[Element], name: str, path: Path) -> None:
+def test_every_attribute_is_added_changed_and_removed(kind: type[Element], name: str, path: Path) -> None:
     start = state = holding(kind, path)
     names = [each for of, each in KEYED if of is kind]
     for _ in range(names.index(name) + 1):
-        state = fine(apply(state, "give attribute"))
+        state = checked(apply(state, "add attribute"))
     assert getattr(state.element, name) is not None
     assert [each for each in names if getattr(state.element, each) is not None] == [name]
     assert state.active.field.name == name
-    assert len(state.past) == len(start.past) + 1
+    assert len(state.undo_stack) == len(start.undo_stack) + 1
 
-    own = [value for value in values(state.element) if value.field.name == name and value.colour is None]
+    own = [value for value in values(state.element) if value.field.name == name and value.channel is None]
     field = own[0].field
     assert len(own) == (len(fields_of(field.record)) if isinstance(field, Compound) else 1)
     for value in own:
-        at = replace(state, value=values(state.element).index(value)).cut()
-        outcomes = [fine(apply(at, action)).element for action in ("grow", "shrink")]
+        at = replace(state, value_index=values(state.element).index(value)).end_merging()
+        outcomes = [checked(apply(at, action)).element for action in ("grow", "shrink")]
         assert any(each != state.element for each in outcomes), value.name
         assert all(getattr(each, other) is None for each in outcomes for other in names if other != name)
         if isinstance(value.inner or field, Picture):
-            assert [value.of(each) for each in (state.element, *outcomes)] == ["a.png", "more/b.png", "more/b.png"]
+            assert [value.get(each) for each in (state.element, *outcomes)] == ["a.png", "more/b.png", "more/b.png"]
 
-    taken = fine(apply(state, "take attribute"))
-    assert taken.element == start.element
-    assert apply(taken, "undo").element == state.element
-    assert apply(apply(taken, "undo"), "undo").element == start.element
+    removed = checked(apply(state, "remove attribute"))
+    assert removed.element == start.element
+    assert apply(removed, "undo").element == state.element
+    assert apply(apply(removed, "undo"), "undo").element == start.element
 
 
 @pytest.mark.parametrize("kind", [kind for kind in EDITABLE if issubclass(kind, Shape)], ids=lambda kind: kind.code)
-def test_all_attributes_at_once(kind: type[Element], path: Path) -> None:
+def test_all_attributes_can_be_combined(kind: type[Element], path: Path) -> None:
     state = holding(kind, path)
     for number, _ in enumerate(name for of, name in KEYED if of is kind):
-        state = fine(apply(state, "give attribute", now=10.0 * number)).cut()
+        state = checked(apply(state, "add attribute", now=10.0 * number)).end_merging()
     assert all(getattr(state.element, name) is not None for of, name in KEYED if of is kind)
-    assert "no attribute that can be added" in apply(state, "give attribute").message
+    assert "no attribute that can be added" in apply(state, "add attribute").message
     for _ in values(state.element):
-        state = fine(apply(state, "grow")).cut()
+        state = checked(apply(state, "grow")).end_merging()
         state = apply(state, "next value")
 
 
-def test_without_a_picture_beside_the_scene_none_is_offered(tmp_path: Path) -> None:
+def test_attributes_with_pictures_need_a_picture_beside_the_scene(tmp_path: Path) -> None:
     scene = parse(BARE + "sp 0,0,0 1 9,9,9\n").scene
-    state = opened(Scene((*scene.elements, Background("sky.png")), tmp_path / "scene.rt")).select(2)
+    state = initial_state(Scene((*scene.elements, Background("sky.png")), tmp_path / "scene.rt")).select(2)
     names = set()
     for _ in range(6):
-        state = apply(state, "give attribute")
+        state = apply(state, "add attribute")
         names.add(state.active.field.name)
     assert names == {"specular", "mirror", "glass", "checker"}
     sky = apply(state.select(3), "grow")
@@ -202,22 +204,22 @@ def test_without_a_picture_beside_the_scene_none_is_offered(tmp_path: Path) -> N
     assert sky.scene is state.scene
 
 
-def test_again_is_only_what_follows_at_once() -> None:
-    state = opened(parse(BARE + "sp 0,0,0 1 9,9,9\n").scene)
+def test_repeating_replaces_an_attribute_only_directly_after_adding_it() -> None:
+    state = initial_state(parse(BARE + "sp 0,0,0 1 9,9,9\n").scene)
     state = apply(state, "select next")
-    shiny = apply(apply(state, "give attribute"), "grow")
-    both = apply(shiny, "give attribute")
+    shiny = apply(apply(state, "add attribute"), "grow")
+    both = apply(shiny, "add attribute")
     assert (both.element.specular, both.element.mirror) == (shiny.element.specular, 0.3)
     assert shiny.element.specular.share == pytest.approx(0.55)
-    assert "no attribute" in apply(shiny.select(0), "take attribute").message
-    assert apply(both, "take attribute").element == shiny.element
+    assert "no attribute" in apply(shiny.select(0), "remove attribute").message
+    assert apply(both, "remove attribute").element == shiny.element
 
 
-def test_what_can_be_made_needs_no_more_than_the_table() -> None:
-    state = opened(parse(BARE).scene)
+def test_every_kind_is_made_from_its_table_alone() -> None:
+    state = initial_state(parse(BARE).scene)
     for kind in ADDED:
         if kind is Mesh:
             with pytest.raises(LookupError, match="no mesh beside"):
-                made(kind, state)
+                default_record(kind, state)
             continue
-        assert type(made(kind, state)) is kind
+        assert type(default_record(kind, state)) is kind

@@ -1,18 +1,19 @@
-"""Undo, redo and what is merged."""
+"""Undo, redo, and the merging of changes."""
 
 from __future__ import annotations
 
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.state import State, opened
+from minirt.viewer.editing.state import State, initial_state
 from tests.viewer.fake import scene
 
 
 def fov(state: State) -> float:
+    """Field of view of the camera, in degrees."""
     return state.scene.camera.fov
 
 
-def test_nudges_within_half_a_second_are_undone_together():
-    state = opened(scene())
+def test_changes_within_half_a_second_are_undone_together():
+    state = initial_state(scene())
     for now in (0.0, 0.4, 0.9, 1.3):
         state = apply(state, "grow", now=now)
     assert fov(state) == 98
@@ -20,8 +21,8 @@ def test_nudges_within_half_a_second_are_undone_together():
     assert fov(apply(apply(state, "undo"), "redo")) == 98
 
 
-def test_redo_ends():
-    state = apply(apply(opened(scene()), "grow"), "right")
+def test_redo_stops_at_the_last_change():
+    state = apply(apply(initial_state(scene()), "grow"), "right")
     for action in ("undo", "undo", "redo", "redo"):
         state = apply(state, action)
     assert (fov(state), state.scene.camera.position[0] > 0) == (92, True)
@@ -29,13 +30,13 @@ def test_redo_ends():
     assert apply(state, "redo").scene is state.scene
 
 
-def test_a_pause_separates():
-    state = apply(apply(opened(scene()), "grow", now=0.0), "grow", now=0.6)
+def test_a_pause_separates_changes():
+    state = apply(apply(initial_state(scene()), "grow", now=0.0), "grow", now=0.6)
     assert fov(apply(state, "undo")) == 92
 
 
-def test_another_change_separates():
-    state = opened(scene())
+def test_changes_of_different_kinds_are_undone_separately():
+    state = initial_state(scene())
     for action in ("grow", "right", "grow", "turn left"):
         state = apply(state, action, now=0.0)
     assert fov(state) == 94
@@ -46,34 +47,34 @@ def test_another_change_separates():
     assert positions == [(94, True), (92, True), (92, False), (90, False)]
 
 
-def test_another_selection_or_value_separates():
+def test_another_selection_or_value_separates_changes():
     for between in (["select next", "select camera"], ["next value", "next value"]):
-        state = opened(scene())
+        state = initial_state(scene())
         for action in ("grow", *between, "grow"):
             state = apply(state, action, now=0.0)
         assert fov(state) == 94
         assert fov(apply(state, "undo")) == 92
 
 
-def test_redo_is_lost_by_a_change():
-    state = apply(apply(apply(opened(scene()), "grow"), "undo"), "right")
+def test_a_change_clears_the_redo_stack():
+    state = apply(apply(apply(initial_state(scene()), "grow"), "undo"), "right")
     assert apply(state, "redo").message == "nothing to redo"
-    assert apply(opened(scene()), "undo").message == "nothing to undo"
+    assert apply(initial_state(scene()), "undo").message == "nothing to undo"
 
 
-def test_undo_selects_what_was_changed():
-    state = opened(scene())
+def test_undo_selects_the_changed_element():
+    state = initial_state(scene())
     while state.element.title != "sphere":
         state = apply(state, "select next")
     state = apply(apply(apply(state, "grow"), "select camera"), "undo")
     assert (state.element.title, state.element.diameter) == ("sphere", 2)
 
 
-def test_all_the_way_back_is_the_scene_of_the_file():
-    start = opened(scene())
+def test_undoing_everything_restores_the_scene_of_the_file():
+    start = initial_state(scene())
     state = start
     for step, action in enumerate(("right", "turn up", "duplicate", "select next", "grow", "delete", "look at") * 5):
         state = apply(state, action, now=float(step))
-    while state.past:
+    while state.undo_stack:
         state = apply(state, "undo")
     assert state.scene is start.scene

@@ -1,4 +1,4 @@
-"""A mesh in the window: added by keys, selected, moved, resized, undone, saved; and other files beside the scene."""
+"""Meshes in the viewer: added, selected, moved, resized, undone, saved, and replaced by other files."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from minirt.scene import Camera, load
 from minirt.shapes.mesh import Mesh
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.outline import rims
-from minirt.viewer.editing.adding import kinds
+from minirt.viewer.display.outline import outline_pixels
+from minirt.viewer.editing.adding import addable_kinds
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.state import opened
+from minirt.viewer.editing.state import initial_state
 from tests.meshes.examples import named
-from tests.viewer.display.test_marks import HEIGHT, WIDTH, drawn, edges
+from tests.viewer.display.test_marks import HEIGHT, WIDTH, edges
 from tests.viewer.fake import FakeRenderer
 
 BARE = "A 0.2 255,255,255\nC 0,2,-20 0,0,1 60\n"
@@ -40,7 +40,7 @@ def played(path: Path, *lines: str) -> Session:
     return play(load(path).scene, lines, renderer=FakeRenderer(), size=(64, 48), path=path)
 
 
-def test_a_mesh_is_one_stop_of_tab_and_one_line(path: Path) -> None:
+def test_a_mesh_is_one_selectable_element_and_one_line(path: Path) -> None:
     session = played(path, "press Tab")
     assert type(session.state.element) is Mesh
     moved = played(path, "press Tab", "press d", "press +", "press Ctrl+S")
@@ -51,8 +51,8 @@ def test_a_mesh_is_one_stop_of_tab_and_one_line(path: Path) -> None:
     assert load(path).scene.items == moved.state.scene.items
 
 
-def test_all_of_it_is_undone(path: Path) -> None:
-    state = opened(load(path).scene)
+def test_all_changes_of_a_mesh_are_undone(path: Path) -> None:
+    state = initial_state(load(path).scene)
     start = state = state.select(len(state.scene.elements) - 1)
     for number, action in enumerate(("left", "grow", "next value", "grow")):
         state = apply(state, action, now=10.0 * number)
@@ -63,8 +63,8 @@ def test_all_of_it_is_undone(path: Path) -> None:
     assert state.scene.shapes[0].parts == 4
 
 
-def test_the_size_comes_before_the_file_and_the_file_can_be_another(path: Path) -> None:
-    state = opened(load(path).scene)
+def test_the_size_comes_before_the_file_and_the_file_can_be_changed(path: Path) -> None:
+    state = initial_state(load(path).scene)
     state = state.select(len(state.scene.elements) - 1)
     names = []
     for _ in range(3):
@@ -79,31 +79,31 @@ def test_the_size_comes_before_the_file_and_the_file_can_be_another(path: Path) 
     assert state.element.bounds()[1][0] != 4
 
 
-def test_where_there_is_one_mesh_there_is_no_other(path: Path) -> None:
+def test_a_single_mesh_file_cannot_be_changed(path: Path) -> None:
     (path.parent / "more" / "b.obj").unlink()
-    state = opened(load(path).scene)
+    state = initial_state(load(path).scene)
     state = state.select(len(state.scene.elements) - 1)
     while state.active.field.name != "file":
         state = apply(state, "next value")
     assert "no other mesh" in apply(state, "grow").message
 
 
-def test_a_mesh_is_added_where_there_is_one(path: Path) -> None:
+def test_a_mesh_can_be_added_if_there_is_a_mesh_file(path: Path) -> None:
     scene = load(path).scene
-    count = len(kinds(scene))
-    assert kinds(scene)[-1] is Mesh
+    count = len(addable_kinds(scene))
+    assert addable_kinds(scene)[-1] is Mesh
     session = played(path, *["press N"] * count)
     assert type(session.state.element) is Mesh
     assert len(session.state.scene.meshes) == 2
     for each in path.parent.rglob("*.obj"):
         each.unlink()
-    assert Mesh not in kinds(scene)
-    assert len(kinds(scene)) == count - 1
+    assert Mesh not in addable_kinds(scene)
+    assert len(addable_kinds(scene)) == count - 1
 
 
 @pytest.mark.parametrize("name", ["icosahedron", "knot"])
-def test_its_outline_is_where_it_ends(name: str) -> None:
+def test_the_outline_of_a_mesh_is_its_silhouette(name: str) -> None:
     shape, camera = named(name, (0.5, 0.2, 0), 2.0), Camera((1, 2, -6), (-0.1, -0.3, 0.9), 70)
-    for found, known in zip(rims(shape, camera, WIDTH, HEIGHT, 100), edges(shape, camera), strict=True):
-        assert np.array_equal(drawn(found), known)
-        assert known.sum() > 50
+    for outline, expected in zip(outline_pixels(shape, camera, WIDTH, HEIGHT, 100), edges(shape, camera), strict=True):
+        assert np.array_equal(mask_of(outline), expected)
+        assert expected.sum() > 50

@@ -1,4 +1,4 @@
-"""Edited numbers are short, and what was not edited stays as it is."""
+"""Edited numbers are short, and numbers that were not edited keep their digits."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from minirt.scene import describe, dump, load
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.number_format import decimals, nice
-from minirt.viewer.editing.state import index_of, opened
+from minirt.viewer.editing.number_format import leading_decimal, nice_number
+from minirt.viewer.editing.state import index_of, initial_state
 from tests.paths import ROOT
 from tests.viewer.fake import TEXT, played, scene
 
@@ -23,17 +23,17 @@ WILDS = (WILD, WILD.replace("\n", "\r\n"), f"\ufeff{WILD}\n\n\n")
 
 
 @given(st.floats(1e-11, 1e17))
-def test_a_nice_length_is_round_and_hardly_smaller(length):
-    found = nice(length)
-    assert found <= length * (1 + 1e-8)
-    assert length < found * 2.5 * (1 + 1e-8)
-    assert f"{found:.0e}" in (f"{digit}e{-decimals(found):+03d}" for digit in (1, 2, 5))
+def test_a_nice_number_is_round_and_at_most_2_5_times_smaller(length):
+    nice = nice_number(length)
+    assert nice <= length * (1 + 1e-8)
+    assert length < nice * 2.5 * (1 + 1e-8)
+    assert f"{nice:.0e}" in (f"{digit}e{-leading_decimal(nice):+03d}" for digit in (1, 2, 5))
 
 
 @pytest.mark.parametrize("action", ["right", "up", "forward", "grow", "turn left"])
-def test_steps_there_and_back_lead_where_they_began(action):
+def test_steps_there_and_back_return_to_the_start(action):
     back = {"right": "left", "up": "down", "forward": "back", "grow": "shrink", "turn left": "turn right"}[action]
-    state = opened(scene())
+    state = initial_state(scene())
     for start in (state, apply(state, "select next"), apply(apply(state, "select next"), "select next")):
         there = start
         for _ in range(7):
@@ -46,10 +46,10 @@ def test_steps_there_and_back_lead_where_they_began(action):
             assert describe(there.element) == describe(start.element)
 
 
-def test_no_number_is_longer_than_it_has_to_be():
+def test_edited_numbers_have_at_most_nine_digits():
     actions = ["right", "up", "forward", "grow", "grow", "shrink", "next value", "grow", "next value", "grow"]
     for first in range(6):
-        state = opened(scene())
+        state = initial_state(scene())
         for _ in range(first):
             state = apply(state, "select next")
         for amount in (1.0, 0.1, 0.1333333):
@@ -74,16 +74,16 @@ def test_saving_after_an_edit_of_one_element_changes_one_line(tmp_path, drag, wi
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_each_shape_of_each_scene_is_moved_in_one_line(path):
-    found = load(path, lenient=True).scene
+def test_moving_a_shape_of_any_scene_changes_one_line(path):
+    scene = load(path, lenient=True).scene
     old = path.read_bytes().decode().split("\n")
-    for shape in found.shapes[:: max(1, len(found.shapes) // 20)]:
-        state = apply(opened(found).select(index_of(found, shape)), "right")
+    for shape in scene.shapes[:: max(1, len(scene.shapes) // 20)]:
+        state = apply(initial_state(scene).select(index_of(scene, shape)), "right")
         new = dump(state.scene).split("\n")
         assert sum(a != b for a, b in zip(old, new, strict=True)) == 1
 
 
-def test_an_edited_attribute_is_one_word_of_its_line(tmp_path):
+def test_editing_an_attribute_changes_one_word_of_its_line(tmp_path):
     path = tmp_path / "wild.rt"
     path.write_bytes(WILDS[1].encode())
     keys = ["press Tab", "press Tab", "press Tab", *["press V"] * 2, "press +", "press M", "press Shift+M"]
@@ -93,9 +93,9 @@ def test_an_edited_attribute_is_one_word_of_its_line(tmp_path):
     assert before.replace("spc:.50,3e1", "spc:0.55,30") == after
 
 
-def test_what_did_not_move_keeps_all_its_digits():
+def test_unchanged_coordinates_keep_all_their_digits():
     text = TEXT.replace("sp 0,0,0 2", "sp 0.1234567890123,0.98765432109876,0 2.0000000001")
-    state = apply(apply(opened(scene(text)), "select next"), "select next")
+    state = apply(apply(initial_state(scene(text)), "select next"), "select next")
     while state.frame.name != "X":
         state = apply(state, "next frame")
     x, y, z = apply(state, "right").element.centre

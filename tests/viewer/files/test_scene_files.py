@@ -1,4 +1,4 @@
-"""What is written and read beside the scene: saving, copies, reloading, pictures, recovery."""
+"""Files of a session: saving, copies, reloading, screenshots, recovery."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from minirt.scene import load
-from minirt.viewer.files.scene_files import differ, recover
+from minirt.viewer.files.scene_files import contents_differ, save_recovery
 from tests.viewer.fake import TEXT, colour_of, played, scene
 
 SELECT_SPHERE = ("press Tab", "press Tab")
@@ -28,11 +28,11 @@ def test_save_changes_one_line(path):
     assert [(old, new) for old, new in zip(before, after, strict=True) if old != new] == [
         ("sp 0,0,0 2 255,0,0", "sp 0,0,0 2 247,0,0")
     ]
-    assert not differ(session.state.scene, session.saved)
+    assert not contents_differ(session.state.scene, session.saved)
     assert str(path) in session.state.message
 
 
-def test_save_where_that_is_not_possible_is_a_message(tmp_path):
+def test_a_save_that_fails_gives_a_message(tmp_path):
     session = played("press d", "press Ctrl+S", path=tmp_path / "none" / "scene.rt")
     assert "cannot be written" in session.state.message
     assert session.saved is not session.state.scene
@@ -54,25 +54,25 @@ def test_the_picture_is_saved_without_the_hud(path):
     assert (second == colour_of(session.state.scene)[2::-1]).all()
 
 
-def test_a_picture_that_cannot_be_written_is_a_message(tmp_path):
+def test_a_screenshot_that_cannot_be_written_gives_a_message(tmp_path):
     assert "cannot write" in played("press P", path=tmp_path / "none" / "scene.rt").state.message
 
 
 class TestReload:
-    def test_takes_what_the_file_holds(self, path):
+    def test_shows_the_scene_of_the_file(self, path):
         path.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 7"))
         session = played(*SELECT_SPHERE, "press d", "press F5", path=path)
         assert session.state.scene.spheres[0].diameter == 7
         assert session.state.element.title == "sphere"
         assert (session.picture == colour_of(session.state.scene)).all()
-        assert not differ(session.state.scene, session.saved)
+        assert not contents_differ(session.state.scene, session.saved)
 
     def test_can_be_undone(self, path):
         session = played(*SELECT_SPHERE, "press -", "press Ctrl+R", "press Ctrl+Z", path=path)
         assert session.state.scene.spheres[0].diameter < 2
-        assert differ(session.state.scene, session.saved)
+        assert contents_differ(session.state.scene, session.saved)
 
-    def test_of_a_broken_file_keeps_the_picture_and_says_why(self, path):
+    def test_of_a_broken_file_keeps_the_picture_and_shows_the_error(self, path):
         path.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -2").replace("cy 3", "cy x"))
         session = played("press d", "press F5", path=path)
         assert f"{path}:5:10: sphere diameter must be > 0" in session.state.message
@@ -81,7 +81,7 @@ class TestReload:
         assert (session.picture == colour_of(session.state.scene)).all()
         assert not np.array_equal(session.screen.frame, played("press d", path=path).screen.frame)
 
-    def test_of_a_file_with_fewer_elements(self, path):
+    def test_of_a_file_with_fewer_elements_selects_the_camera(self, path):
         path.write_text("A 0 0,0,0\nC 0,0,0 0,0,1 60\n")
         assert played("press Shift+Tab", "press Shift+Tab", "press F5", path=path).state.element.title == "camera"
 
@@ -89,18 +89,18 @@ class TestReload:
 class TestRecovery:
     def test_is_written_beside_the_file(self, path):
         changed = played(*SELECT_SPHERE, "press Delete", path=path).state.scene
-        copy = recover(changed, path)
+        copy = save_recovery(changed, path)
         assert copy == path.with_name("scene.recovered.rt")
         assert load(copy).scene.items == changed.items
 
     @pytest.mark.skipif(os.name == "nt", reason="a folder that does not exist is the same everywhere else")
-    def test_goes_elsewhere_where_that_is_not_possible(self, tmp_path):
-        copy = recover(scene(), tmp_path / "none" / "scene.rt")
+    def test_goes_to_a_temporary_folder_if_that_fails(self, tmp_path):
+        copy = save_recovery(scene(), tmp_path / "none" / "scene.rt")
         assert copy.name == "scene.recovered.rt"
         assert load(copy).scene.items == scene().items
         copy.unlink()
         copy.parent.rmdir()
 
-    def test_looking_around_is_nothing_to_lose(self):
-        assert not differ(played("press d", "press Left").state.scene, scene())
-        assert differ(played("press Tab", "press d").state.scene, scene())
+    def test_a_moved_camera_is_no_unsaved_change(self):
+        assert not contents_differ(played("press d", "press Left").state.scene, scene())
+        assert contents_differ(played("press Tab", "press d").state.scene, scene())

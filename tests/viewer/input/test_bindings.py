@@ -1,4 +1,4 @@
-"""The one table of keys, and what is made from it."""
+"""The table of bindings, and the texts and keymaps that are made from it."""
 
 from __future__ import annotations
 
@@ -11,44 +11,44 @@ from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.editing.dragging import DRAGS
 from minirt.viewer.editing.editor import EDITS
 from minirt.viewer.input.bindings import BINDINGS, keys_markdown, keys_text
-from minirt.viewer.input.chords import Chord, chord, shown
-from minirt.viewer.input.keymap import Keymap, chords
-from minirt.viewer.input.layouts import LAYOUTS, detect
+from minirt.viewer.input.chords import Chord, parse_chord, platform_spelling
+from minirt.viewer.input.keymap import Keymap, chords_of
+from minirt.viewer.input.layouts import LAYOUTS, resolve_layout
 
 ACTIONS = [binding.action for binding in BINDINGS]
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_no_key_is_bound_twice(layout):
-    counts = Counter(each for binding in BINDINGS for each in chords(binding, layout))
+    counts = Counter(each for binding in BINDINGS for each in chords_of(binding, layout))
     assert [each for each, count in counts.items() if count > 1] == []
 
 
-def test_every_row_does_something_and_everything_has_a_row():
-    known = {*EDITS, *COMMANDS, *DRAGS, "select at pointer"}
-    assert set(ACTIONS) == known
+def test_every_binding_has_an_action_and_every_action_a_binding():
+    actions = {*EDITS, *COMMANDS, *DRAGS, "select at pointer"}
+    assert set(ACTIONS) == actions
     assert len(ACTIONS) == len(set(ACTIONS))
     assert not set(EDITS) & set(COMMANDS)
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_every_key_of_the_table_is_found(layout):
+def test_every_chord_of_the_table_is_found(layout):
     keymap = Keymap(layout)
     for binding in BINDINGS:
         for spelling in binding.spellings(keymap.layout):
-            assert keymap.find(*chord(spelling)) is binding
+            assert keymap.find(*parse_chord(spelling)) is binding
 
 
 @pytest.mark.parametrize("layout", ["qwerty", "azerty"])
-def test_texts_have_every_row(layout):
+def test_texts_list_every_binding(layout):
     text, table = keys_text(layout), keys_markdown()
     for binding in BINDINGS:
-        keys = " / ".join(map(shown, binding.spellings(layout)))
+        keys = " / ".join(map(platform_spelling, binding.spellings(layout)))
         assert any(line.split("  ")[1:2] == [keys] and line.endswith(binding.help) for line in text.splitlines())
         assert f"| {binding.help} | {' '.join(f'`{key}`' for key in binding.keys)} |" in table
 
 
-def test_shift_makes_motions_fine_and_nothing_else():
+def test_shift_is_ignored_by_fine_bindings_only():
     keymap = Keymap()
     assert keymap.find(Key.D, Modifier.SHIFT).action == "right"
     assert keymap.find(Button.WHEEL_UP, Modifier.SHIFT).action == "grow"
@@ -56,7 +56,7 @@ def test_shift_makes_motions_fine_and_nothing_else():
     assert keymap.find(Key.TAB, Modifier.SHIFT).action == "select previous"
 
 
-def test_escape_is_found_with_anything_held():
+def test_escape_is_found_with_any_modifiers():
     everything = Modifier.SHIFT | Modifier.CTRL | Modifier.ALT
     assert Keymap().find(Key.ESCAPE, everything).action == "quit"
     assert Keymap().find(Key.C, Modifier.ALT) is None
@@ -73,12 +73,12 @@ def test_azerty_moves_with_the_same_fingers():
 @pytest.mark.parametrize(("name", "layout"), [("fr_FR", "azerty"), ("de_DE", "qwerty"), (None, "qwerty")])
 def test_auto_follows_the_locale(monkeypatch, name, layout):
     monkeypatch.setattr("locale.getlocale", lambda: (name, "UTF-8"))
-    assert detect("auto") == layout
-    assert detect("qwertz") == "qwertz"
+    assert resolve_layout("auto") == layout
+    assert resolve_layout("qwertz") == "qwertz"
 
 
 @pytest.mark.parametrize(
-    ("spelling", "meant"),
+    ("spelling", "expected"),
     [
         ("Tab", Chord(Key.TAB)),
         ("a", Chord(Key.A)),
@@ -90,11 +90,11 @@ def test_auto_follows_the_locale(monkeypatch, name, layout):
         ("wheel up", Chord(Button.WHEEL_UP)),
     ],
 )
-def test_spellings(spelling, meant):
-    assert chord(spelling) == meant
+def test_spellings_are_parsed(spelling, expected):
+    assert parse_chord(spelling) == expected
 
 
 @pytest.mark.parametrize("spelling", ["Tabb", "Hyper+A", "Ctrl+?", "", "Ctrl+", "é"])
-def test_unknown_spellings(spelling):
-    with pytest.raises(ValueError):  # noqa: PT011 - the message is the part that is unknown
-        chord(spelling)
+def test_unknown_spellings_raise(spelling):
+    with pytest.raises(ValueError):  # noqa: PT011 - the message is the unknown part
+        parse_chord(spelling)

@@ -1,4 +1,4 @@
-"""Held keys: as far as the time says, whatever the number of pictures."""
+"""Steps of held keys are proportional to time and independent of the frame rate."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from minirt.viewer.input.key_repeat import RATE, KeyRepeat
 
 
 def total(seconds: float, ticks: int) -> float:
-    held = KeyRepeat()
-    held.press(97, "left", 10.0)
+    """Steps of a key that is held for some seconds, in which the frame is drawn `ticks` times."""
+    keys = KeyRepeat()
+    keys.press(97, "left", 10.0)
     steps = 1.0  # with the press
     for tick in range(1, ticks + 1):
-        steps += sum(amount for _, amount in held.advance(10.0 + seconds * tick / ticks))
-    return steps + sum(amount for _, amount in held.release(97, 10.0 + seconds))
+        steps += sum(amount for _, amount in keys.advance(10.0 + seconds * tick / ticks))
+    return steps + sum(amount for _, amount in keys.release(97, 10.0 + seconds))
 
 
 @pytest.mark.parametrize("ticks", [0, 1, 7, 144])
@@ -28,12 +29,12 @@ def test_a_tap_is_one_step(ticks):
 
 
 def test_keys_are_independent():
-    held = KeyRepeat()
-    held.press(97, "left", 0.0)
-    held.press(119, "forward", 1.0)
-    assert held.advance(1.0) == [("left", RATE - 1), ("forward", 0.0)]
-    assert held.release(97, 1.0) == [("left", 0.0)]
-    assert held
-    assert held.release(42, 1.0) == []
-    held.release(119, 1.0)
-    assert not held
+    keys = KeyRepeat()
+    keys.press(97, "left", 0.0)
+    keys.press(119, "forward", 1.0)
+    assert keys.advance(1.0) == [("left", RATE - 1), ("forward", 0.0)]
+    assert keys.release(97, 1.0) == [("left", 0.0)]
+    assert keys
+    assert keys.release(42, 1.0) == []
+    keys.release(119, 1.0)
+    assert not keys

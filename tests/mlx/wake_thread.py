@@ -1,4 +1,4 @@
-"""Another thread that wakes the loop of a program on `Memory`, once that sleeps."""
+"""A thread that wakes the loop of a program on `Memory` when the loop sleeps."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
     from minirt.mlx.display import Display
 
 
-def waker(m: Mlx, mlx: Display) -> threading.Thread:
-    """A thread to start, which calls `mlx_wake` when the script of the main thread has come to wait for that."""
+def wake_thread(m: Mlx, mlx: Display) -> threading.Thread:
+    """Make a thread that calls `mlx_wake` as soon as the script in the main thread waits for it."""
 
     def wake() -> None:
-        until(_awaits, "the step of the script that waits for mlx_wake")
+        until(_main_thread_waits, "the step of the script that waits for mlx_wake")
         m.mlx_wake(mlx)
 
     return threading.Thread(target=wake)
 
 
-def _awaits() -> bool:
-    """Whether the main thread stands in `Memory._await_wake`, in the wait itself."""
+def _main_thread_waits() -> bool:
+    """Whether the main thread is in the wait of `Memory._await_wake`."""
     frame: FrameType | None = sys._current_frames()[threading.main_thread().ident or 0]
     names = []
     while frame is not None:

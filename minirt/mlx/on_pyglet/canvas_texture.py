@@ -1,4 +1,4 @@
-"""A canvas on the screen: a texture, copied into the window's framebuffer."""
+"""CanvasTexture: a canvas as an OpenGL texture, blitted into the frame buffer of a window."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ if TYPE_CHECKING:
     from minirt.mlx.canvas import Box, Canvas
 
 
-class Picture:
-    """To be made and drawn while the window's context is the current one.
+class CanvasTexture:
+    """A texture with the canvas's pixels. Create and draw it while the window's OpenGL context is current.
 
-    The texture takes the canvas as it is, and is blitted, not drawn: where graphics are software's work that is one
-    copy of memory, a third of the time of a triangle that a shader fills. It stays one as long as no format is asked
-    for but the canvas's own, blue first, and rows are turned over twice: they go down in the canvas and up on the
-    screen, which software keeps downwards.
+    The texture is blitted, not drawn: with software rendering that is one copy of memory, which takes a third of the
+    time of a triangle filled by a shader. It stays a plain copy as long as the texture has the canvas's format (BGRA)
+    and the blit flips the rows: they run down in the canvas and up in OpenGL, and software renderers store the frame
+    buffer downwards, which is a second flip.
     """
 
     def __init__(self) -> None:
-        self._texture, self._source = gl.GLuint(), gl.GLuint()
+        self._texture, self._framebuffer = gl.GLuint(), gl.GLuint()
         gl.glGenTextures(1, ctypes.byref(self._texture))
-        gl.glGenFramebuffers(1, ctypes.byref(self._source))
+        gl.glGenFramebuffers(1, ctypes.byref(self._framebuffer))
         self._size = (0, 0)
 
     def draw(self, canvas: Canvas, width: int, height: int) -> None:
-        """Bring what changed to the graphics card and fill the framebuffer, which is width by height pixels."""
+        """Upload the changes of the canvas and blit it into the frame buffer of width by height pixels."""
         gl.glActiveTexture(gl.GL_TEXTURE0)
         gl.glBindTexture(gl.GL_TEXTURE_2D, self._texture)
-        gl.glBindFramebuffer(gl.GL_READ_FRAMEBUFFER, self._source)
+        gl.glBindFramebuffer(gl.GL_READ_FRAMEBUFFER, self._framebuffer)
         changes = canvas.take_changes()
         if (canvas.width, canvas.height) != self._size:
             self._allocate(canvas.width, canvas.height)
@@ -43,6 +43,7 @@ class Picture:
         )  # fmt: skip
 
     def _allocate(self, width: int, height: int) -> None:
+        """Allocate the texture and attach it to the frame buffer that the blit reads."""
         gl.glTexImage2D(
             gl.GL_TEXTURE_2D, 0, gl.GL_RGBA, width, height, 0, gl.GL_BGRA, gl.GL_UNSIGNED_BYTE, None
         )  # fmt: skip
@@ -55,7 +56,7 @@ class Picture:
 
 
 def _upload(canvas: Canvas, box: Box) -> None:
-    """Straight from the canvas's memory, without a copy."""
+    """Upload a box of the canvas straight from its memory, without a copy."""
     left, top, right, bottom = box
     address = canvas.pixels[top:bottom, left:right].ctypes.data
     gl.glPixelStorei(gl.GL_UNPACK_ROW_LENGTH, canvas.width)

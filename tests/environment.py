@@ -1,6 +1,6 @@
-"""The environment variables that tests need, set where the user's own surroundings do not do.
+"""Set the environment variables that tests need and the user's environment lacks.
 
-They are set before the compiler is imported, which reads them once, and hold for all programs that tests start.
+They are set before the compiler is imported, which reads them once, and are inherited by all programs that tests start.
 """
 
 from __future__ import annotations
@@ -11,24 +11,24 @@ from pathlib import Path
 
 from tests.paths import ROOT
 
-KERNELS = ROOT / "out" / "cache"  # where kernels are kept if the user's own folder cannot be written
+FALLBACK_CACHE = ROOT / "out" / "cache"  # cache of compiled kernels if the user's cache folder cannot be written
 
-# numba takes the features of the processor at hand for any name but `generic`: what the named one does not have must
-# be left out by hand, or `haswell` would still be AVX-512.
+# For any name but `generic` numba takes the features of the actual processor. Those of the named processor have to be
+# listed here, otherwise `haswell` would still have AVX-512.
 FEATURES = {"haswell": "+avx,+avx2,+bmi,+bmi2,+f16c,+fma,+lzcnt,+movbe,+popcnt,+sse4.2"}
 
 
 def prepare() -> None:
-    """Set what is missing."""
+    """Set missing environment variables."""
     name = os.environ.get("NUMBA_CPU_NAME", "")
     if name in FEATURES:
         os.environ.setdefault("NUMBA_CPU_FEATURES", FEATURES[name])
     if not is_writable(user_cache()):
-        os.environ["XDG_CACHE_HOME"] = str(KERNELS)
+        os.environ["XDG_CACHE_HOME"] = str(FALLBACK_CACHE)
 
 
 def user_cache() -> Path | None:
-    """The folder in which this user's programs keep what they can make again; None for a user without a home."""
+    """Return the user's cache folder; None for a user without a home folder."""
     try:
         return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     except RuntimeError:
@@ -36,7 +36,7 @@ def user_cache() -> Path | None:
 
 
 def is_writable(folder: Path | None) -> bool:
-    """Whether files can be made in a folder, or in it once it is made itself."""
+    """Whether files can be created in a folder, which is created if necessary."""
     try:
         if folder:
             folder.mkdir(parents=True, exist_ok=True)

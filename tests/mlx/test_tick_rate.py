@@ -1,4 +1,4 @@
-"""The pace of the loop hook on the screen, by a simulated clock; that of `Memory` is in test_memory."""
+"""Rate of the loop hook on the screen, by a simulated clock; test_memory tests that of `Memory`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.window
 
-# Time goes by where the loop would wait for it, and nowhere else but in the hook's eleventh call, which is slow.
+# Time advances in the waits of the loop, and in the eleventh call of the hook, which is slow.
 PROGRAM = """
 import json
 from minirt.mlx import Mlx

@@ -1,21 +1,21 @@
-"""Whether the program in a window sleeps, but for the thread that looks at the scene's file now and then."""
+"""Waits until the program in a window is idle, except for the thread that watches the scene's file."""
 
 from __future__ import annotations
 
 from itertools import count
 
 from tests.idle import Thread, threads, until_idle
-from tests.viewer.family import state
+from tests.viewer.process_tree import state
 from tests.waiting import until
 
 
 def until_at_rest(process: int, looks: int = 2) -> None:
-    """Wait for a stretch in which the test looks at the program so often and none of its threads runs."""
+    """Wait until none of the program's threads has run during `looks` checks in a row."""
     until_idle(process, count().__next__, looks)
 
 
 def until_events_are_done(process: int) -> None:
-    """Wait until the main thread sleeps: what the user did is not in a queue any more. Pictures may still be made."""
+    """Wait until the main thread sleeps, so that all input events are handled; pictures may still be rendered."""
     before: Thread | None = None
 
     def asleep() -> bool:
@@ -23,19 +23,19 @@ def until_events_are_done(process: int) -> None:
         last, before = before, threads(process)[process]
         return has_ended(process) or (before.asleep and before == last)
 
-    until(asleep, f"the end of what process {process} was told")
+    until(asleep, f"the end of the input events of process {process}")
 
 
 def has_ended(process: int) -> bool:
-    """Whether the program runs no more; nobody needs to wait for what it does, then."""
+    """Whether the program has ended."""
     return state(process)[0] in "ZX"
 
 
 def until_only_one_runs(process: int, times: int) -> None:
-    """Wait for a stretch in which one thread ran so many times, which is not the main one, and no other ran at all."""
+    """Wait until one thread, not the main one, has run `times` times while no other thread ran."""
     before: dict[int, Thread] = {}
 
-    def alone() -> bool:
+    def one_runs() -> bool:
         nonlocal before
         now = threads(process)
         ran = [number for number in now if now[number] != before.get(number) or not now[number].asleep]
@@ -43,4 +43,4 @@ def until_only_one_runs(process: int, times: int) -> None:
             before = now
         return any(now[number].switches - before[number].switches >= times for number in ran)
 
-    until(alone, f"a stretch in which only one thread of process {process} runs, {times} times")
+    until(one_runs, f"a stretch in which only one thread of process {process} runs, {times} times")

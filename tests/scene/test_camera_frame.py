@@ -1,4 +1,4 @@
-"""The picture's axes, with answers worked out by hand from the format's definition."""
+"""The camera frame: right, up and forward, compared with values derived by hand from the format's definition."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ ROOT = sqrt(0.5)
         ((0, ROOT, -ROOT), (1, 0, 0), (0, ROOT, ROOT)),
     ],
 )
-def test_axes(direction, right, up):
+def test_the_axes_of_the_camera_frame(direction, right, up):
     got_right, got_up, got_forward = camera_frame(Camera((0, 0, 0), direction, 60))
     assert got_right == pytest.approx(right, abs=1e-15)
     assert got_up == pytest.approx(up, abs=1e-15)
     assert got_forward == pytest.approx(direction, abs=1e-15)
 
 
-def test_a_roll_is_clockwise_as_the_camera_sees_it():
+def test_a_roll_is_clockwise_from_the_camera():
     right, up, _ = camera_frame(Camera((0, 0, 0), (0, 0, -1), 60, roll=90))
     assert up == pytest.approx((1, 0, 0), abs=1e-15)
     assert right == pytest.approx((0, -1, 0), abs=1e-15)
@@ -45,7 +45,7 @@ component = st.floats(-1, 1)
 
 
 @given(st.tuples(component, component, component).filter(any), st.floats(-360, 360))
-def test_orthonormal_and_right_handed(direction, roll):
+def test_the_camera_frame_is_orthonormal_and_right_handed(direction, roll):
     right, up, forward = camera_frame(Camera((0, 0, 0), direction, 60, roll=roll))
     for one in (right, up, forward):
         assert hypot(*one) == pytest.approx(1, abs=1e-14)

@@ -1,4 +1,4 @@
-"""The tests run alike in all surroundings: where nothing can be written, on other processors, without Ctrl+C."""
+"""The tests run alike in every environment: in a read-only home, for other processors, with Ctrl+C ignored."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests import conftest, scheduling, surroundings
+from tests import conftest, environment, scheduling
 from tests.paths import ROOT
 from tests.processes import run, started
 
@@ -19,26 +19,28 @@ CHILD = [sys.executable, "-c", "import signal; signal.pause()"]
 PARENT = f"""
 import signal, subprocess
 child = subprocess.Popen({CHILD}, close_fds=False)
-print("both are there", flush=True)
+print("both run", flush=True)
 signal.pause()
 """
 
 
-def prepared(monkeypatch: pytest.MonkeyPatch, **environment: str) -> dict[str, str]:
-    """What `prepare` makes of these environment variables."""
-    monkeypatch.setattr(os, "environ", environment)
-    surroundings.prepare()
-    return environment
+def prepared(monkeypatch: pytest.MonkeyPatch, **variables: str) -> dict[str, str]:
+    """Return these environment variables as `prepare` completes them."""
+    monkeypatch.setattr(os, "environ", variables)
+    environment.prepare()
+    return variables
 
 
-def test_kernels_are_kept_where_the_user_keeps_them(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_kernels_are_cached_in_the_folder_of_the_user(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     assert prepared(monkeypatch, XDG_CACHE_HOME=str(tmp_path)) == {"XDG_CACHE_HOME": str(tmp_path)}
     monkeypatch.setattr(Path, "home", lambda: tmp_path / "me")
     assert prepared(monkeypatch) == {}
     assert list(tmp_path.iterdir()) == [tmp_path / "me"]
 
 
-def test_or_beside_the_sources_where_that_cannot_be_written(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_kernels_are_cached_beside_the_sources_if_that_folder_cannot_be_written(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     (tmp_path / "file").touch()
     instead = {"XDG_CACHE_HOME": str(ROOT / "out" / "cache")}
     assert prepared(monkeypatch, XDG_CACHE_HOME=str(tmp_path / "file")) == instead
@@ -51,23 +53,23 @@ def test_or_beside_the_sources_where_that_cannot_be_written(monkeypatch: pytest.
 
 
 def test_haswell_has_no_avx_512(monkeypatch: pytest.MonkeyPatch) -> None:
-    environment = dict(os.environ)
+    variables = dict(os.environ)
     for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"):
-        environment.pop(name, None)
+        variables.pop(name, None)
     with monkeypatch.context() as patch:
-        named = prepared(patch, **environment, NUMBA_CPU_NAME="haswell")
-        chosen = prepared(patch, **environment, NUMBA_CPU_NAME="haswell", NUMBA_CPU_FEATURES="+avx")
+        named = prepared(patch, **variables, NUMBA_CPU_NAME="haswell")
+        chosen = prepared(patch, **variables, NUMBA_CPU_NAME="haswell", NUMBA_CPU_FEATURES="+avx")
     assert chosen["NUMBA_CPU_FEATURES"] == "+avx"
     done = run([sys.executable, "-c", FEATURES], env=named, text=True)
     assert "+avx2" in done.stdout.strip().split(",")
     assert "512" not in done.stdout
 
 
-def test_ctrl_c_reaches_the_tests_where_the_caller_ignores_it() -> None:
+def test_ctrl_c_reaches_the_tests_if_the_caller_ignores_it() -> None:
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         conftest.pytest_configure()
-        with started([sys.executable, "-c", "import sys; print('there', flush=True); sys.stdin.read()"],
+        with started([sys.executable, "-c", "import sys; print('ready', flush=True); sys.stdin.read()"],
                      stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:  # fmt: skip
             process.stdout.readline()
             process.send_signal(signal.SIGINT)
@@ -77,29 +79,27 @@ def test_ctrl_c_reaches_the_tests_where_the_caller_ignores_it() -> None:
         signal.signal(signal.SIGINT, before)
 
 
-def test_a_program_that_is_left_early_leaves_nothing_running() -> None:
-    """Each of the two holds the end of a pipe, whose other end is told when nobody does any more."""
+def test_a_program_whose_block_fails_leaves_nothing_running() -> None:
+    """Parent and child hold one end of a pipe; the other end sees when both are gone."""
     reader, writer = os.pipe()
 
-    def left_early() -> None:
+    def failing_block() -> None:
         with started([sys.executable, "-c", PARENT], stdout=subprocess.PIPE, pass_fds=(writer,)) as parent:
             parent.stdout.readline()
             os.close(writer)
             raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        left_early()
+        failing_block()
     with os.fdopen(reader, "rb") as file:
         assert file.read() == b""
 
 
-def test_windows_and_scenes_are_pieces_of_work_and_every_other_file_is_one() -> None:
+def test_windows_and_scenes_are_groups_and_every_other_file_is_its_own() -> None:
     walk, file = "tests/viewer/app/test_walk.py::test_a_walk", Path(__file__).relative_to(ROOT).as_posix()
-    assert (
-        scheduling.piece_of_work(walk) == scheduling.piece_of_work("tests/mlx/test_window.py::test_x[a]") == "windows"
-    )
-    assert {scheduling.piece_of_work(f"{each}::test_y") for each in scheduling.OF_SCENES} == {"scenes"}
-    assert all((ROOT / each).is_file() for each in scheduling.OF_SCENES | scheduling.SLOW)
-    assert scheduling.piece_of_work(f"{file}::test_z[b::c]") == file
+    assert scheduling.work_group(walk) == scheduling.work_group("tests/mlx/test_window.py::test_x[a]") == "windows"
+    assert {scheduling.work_group(f"{each}::test_y") for each in scheduling.SCENE_TESTS} == {"scenes"}
+    assert all((ROOT / each).is_file() for each in scheduling.SCENE_TESTS | scheduling.SLOW)
+    assert scheduling.work_group(f"{file}::test_z[b::c]") == file
     tests = [f"{file}::test_z", "tests/test_goldens.py::test_y", walk]
     assert sorted(tests, key=scheduling.order) == tests[::-1]

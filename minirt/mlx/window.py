@@ -1,0 +1,152 @@
+"""Window: its size, canvas, keyboard and hooks, and the events that a back end reports to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol
+
+from minirt.mlx.canvas import Canvas
+from minirt.mlx.events import Button, Event
+from minirt.mlx.keyboard import Keyboard
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from minirt.mlx.hooks import BoundHook
+
+
+class WindowControls(Protocol):
+    """Requests about one window that the back end carries out; `minirt.mlx.backend.Backend` describes them."""
+
+    def set_title(self, window: Window) -> None: ...
+
+    def set_fullscreen(self, window: Window, on: bool) -> None: ...
+
+    def move_pointer(self, window: Window, x: int, y: int) -> None: ...
+
+    def clipboard(self, window: Window) -> str: ...
+
+    def set_clipboard(self, window: Window, text: str) -> None: ...
+
+
+class WindowHost(Protocol):
+    """The part of a display that its windows use."""
+
+    @property
+    def backend(self) -> WindowControls: ...
+
+    def call(self, hook: BoundHook | None, *arguments: object) -> None: ...
+
+
+@dataclass(eq=False)
+class Window:
+    """An open window. The size of a resizable window is that of its frame buffer.
+
+    A window of fixed size keeps the requested size: if the platform shows it larger, its picture is stretched
+    and mouse positions are scaled back to that size.
+    """
+
+    display: WindowHost
+    width: int  # the size of the surface for the next drawing call; the canvas follows then
+    height: int
+    title: str
+    resizable: bool
+    hooks: dict[int, BoundHook] = field(default_factory=dict)
+    text_hook: BoundHook | None = None
+    resize_hook: BoundHook | None = None
+    drop_hook: BoundHook | None = None
+    is_open: bool = True
+    pointer: tuple[int, int] = (0, 0)
+    scale: float = 1.0  # of its screen: 2 where dots are half as large as usual
+
+    # Between the window and its back end:
+    visible: bool = True
+    stale: bool = True  # the screen does not show the canvas any more
+    resized: bool = False  # a resize is not reported to the program yet
+    announced: bool = False  # the first MAP_NOTIFY was delivered
+
+    def __post_init__(self) -> None:
+        self._canvas = Canvas(self.width, self.height)
+        self.keyboard = Keyboard(self.deliver)
+
+    @property
+    def shown(self) -> Canvas:
+        """The canvas as it was last drawn on; after a resize it keeps its old size and is shown stretched."""
+        return self._canvas
+
+    @property
+    def canvas(self) -> Canvas:
+        """The canvas to draw on: of the window's size, black where it is new."""
+        if (self._canvas.width, self._canvas.height) != (self.width, self.height):
+            self._canvas = Canvas(self.width, self.height)
+        return self._canvas
+
+    def deliver(self, event: Event, *arguments: int) -> None:
+        """Call the hook on `event`, if there is one."""
+        if self.is_open:
+            self.display.call(self.hooks.get(event), *arguments)
+
+    # --- events, as back ends report them; keys go to `keyboard` ---
+
+    def on_text(self, text: str) -> None:
+        """Report typed text; control characters are ignored."""
+        if self.is_open and text.isprintable():
+            self.display.call(self.text_hook, text)
+
+    def on_drop(self, files: Iterable[str]) -> None:
+        """Report files that were dropped on the window, one by one."""
+        for file in files:
+            if self.is_open:
+                self.display.call(self.drop_hook, file)
+
+    def place_pointer(self, x: int, y: int) -> None:
+        """Note the pointer's position from the top left corner, clamped to the window, without an event."""
+        self.pointer = min(max(x, 0), self.width - 1), min(max(y, 0), self.height - 1)
+
+    def on_button(self, event: Event, button: int, x: int, y: int) -> None:
+        """Report a button that was pressed or released at x, y."""
+        self.place_pointer(x, y)
+        self.deliver(event, button, *self.pointer)
+
+    def on_motion(self, x: int, y: int) -> None:
+        """Report that the pointer moved to x, y."""
+        self.place_pointer(x, y)
+        self.deliver(Event.MOTION_NOTIFY, *self.pointer)
+
+    def on_scroll(self, right: int, up: int, x: int, y: int) -> None:
+        """Report steps of the wheel as presses and releases of its buttons; negative steps go left and down."""
+        steps = [Button.WHEEL_UP if up > 0 else Button.WHEEL_DOWN] * abs(up)
+        steps += [Button.WHEEL_RIGHT if right > 0 else Button.WHEEL_LEFT] * abs(right)
+        for step in steps:
+            self.on_button(Event.BUTTON_PRESS, step, x, y)
+            self.on_button(Event.BUTTON_RELEASE, step, x, y)
+
+    def on_focus(self, focused: bool) -> None:
+        """Report that the window got or lost the focus; held keys are released when it is lost."""
+        if not focused:
+            self.keyboard.release_all()
+        self.deliver(Event.FOCUS_IN if focused else Event.FOCUS_OUT)
+
+    def on_resize(self, width: int, height: int) -> None:
+        """Note the new size of the frame buffer. The next turn reports the latest size to the program."""
+        self.stale = True
+        if self.resizable and (width, height) != (self.width, self.height):
+            self.width, self.height = width, height
+            self.resized = True
+
+    def on_expose(self) -> None:
+        """Report that the window has to be drawn again."""
+        self.stale = True
+        self.deliver(Event.EXPOSE)
+
+    def on_visibility(self, visible: bool) -> None:
+        """Report that the window was hidden or shown. A hidden window is not drawn; everything else goes on."""
+        if visible != self.visible:
+            self.visible = visible
+            self.stale = True
+            self.deliver(Event.MAP_NOTIFY if visible else Event.UNMAP_NOTIFY)
+
+    def on_close_button(self) -> None:
+        """Report a click on the close button."""
+        self.deliver(Event.DESTROY_NOTIFY)
+        self.deliver(Event.CLIENT_MESSAGE)

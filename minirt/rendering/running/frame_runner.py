@@ -1,0 +1,52 @@
+"""Runs the kernel on all threads, which share the rows of a frame."""
+
+from __future__ import annotations
+
+from functools import cached_property, partial
+
+import numpy as np
+
+from minirt.kernel.frame import CANCELLED
+from minirt.rendering.frame_arguments import Frame, sum_buffer, thread_memory
+from minirt.rendering.running.kernels import Kernels
+from minirt.rendering.running.thread_pool import ThreadPool
+
+
+class FrameRunner:
+    """Renders frames on its threads until they are done or cancelled."""
+
+    def __init__(self, threads: int, kernels: Kernels) -> None:
+        self.threads = threads
+        self.kernels = kernels
+        self.next_row = np.zeros(1, np.int64)  # counters of the frames that are being rendered
+        self.cancellations = 0
+        self.not_finite = 0  # rays since it was last set to 0 whose light was infinite or NaN, and is 0 in the picture
+
+    @cached_property
+    def pool(self) -> ThreadPool:
+        """The threads that render."""
+        return ThreadPool(self.threads)
+
+    def new_counters(self, frames: int) -> np.ndarray:
+        """Return a counter of rows for each of some frames; `cancel` ends these frames from now on."""
+        self.next_row = np.zeros(frames, np.int64)
+        return self.next_row
+
+    def run(self, frames: list[Frame], threads: int) -> None:
+        """Render frames, each on so many threads, which share its rows; an error of any thread is raised.
+
+        The caller's thread only waits, so that Ctrl+C reaches it.
+        """
+        kernel = self.kernels.jit.kernel_for(frames[0].scene)
+        arguments = [
+            frame._replace(memory=thread_memory(frame.scene), sums=sum_buffer(frame.scene))
+            for frame in frames
+            for _ in range(threads)
+        ]
+        self.pool.run([partial(kernel, *each) for each in arguments], self.cancel)
+        self.not_finite += int(sum(each.memory[-1, 1] for each in arguments))
+
+    def cancel(self) -> None:
+        """From any thread: end the frames that are being rendered soon, half-made."""
+        self.cancellations += 1  # for a picture between two frames
+        self.next_row[:] = CANCELLED

@@ -1,0 +1,121 @@
+"""Event dispatch: the hooks of a window call the session, the editor, the commands and the mouse."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from minirt.mlx import Event
+from minirt.viewer.app import file_sync
+from minirt.viewer.app.commands import COMMANDS
+from minirt.viewer.app.mouse import Mouse
+from minirt.viewer.app.session import Session
+from minirt.viewer.editing.editor import EDITS, apply
+from minirt.viewer.input.bindings import Binding
+
+
+class EventDispatcher:
+    """Handlers for the events of a session's window."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.mouse = Mouse(session, self.perform)
+
+    def connect(self) -> None:
+        """Install the handlers as hooks of the window."""
+        session = self.session
+        mlx, window = session.mlx, session.window
+        handlers: dict[Event, Callable[..., None]] = {
+            Event.EXPOSE: session.update,
+            Event.KEY_PRESS: self.on_press,
+            Event.KEY_RELEASE: self.on_release,
+            Event.BUTTON_PRESS: self.mouse.on_press,
+            Event.BUTTON_RELEASE: lambda button, _x, _y: self.mouse.on_release(button),
+            Event.MOTION_NOTIFY: self.mouse.on_motion,
+            Event.FOCUS_OUT: session.release_button,
+            Event.DESTROY_NOTIFY: session.quit,
+        }
+        for event, handler in handlers.items():
+            mlx.mlx_hook(window, event, 0, drop_parameter(handler), None)
+        mlx.mlx_text_hook(window, drop_parameter(self.on_press))
+        mlx.mlx_drop_hook(window, drop_parameter(self.on_drop))
+        mlx.mlx_resize_hook(window, drop_parameter(self.on_resize))
+        mlx.mlx_wake_hook(session.display, drop_parameter(self.on_wake))
+
+    def on_press(self, code: int | str) -> None:
+        """A key goes down, or a character was typed."""
+        session = self.session
+        if isinstance(code, str):  # one or more characters; Shift may be part of typing them
+            for binding in filter(None, map(session.keymap.find, code)):
+                self.perform(binding, 1.0)
+            return
+        pressed = session.keymap.find(code, session.modifiers)
+        if pressed:
+            self.perform(pressed, session.step)
+            if pressed.held:
+                session.key_repeat.press(code, pressed.action, session.now)
+                self.set_tick_hook()
+
+    def on_release(self, code: int) -> None:
+        """A key goes up: its last steps are done, and a still picture is requested."""
+        session = self.session
+        self.apply_advances(session.key_repeat.release(code, session.now))
+        self.set_tick_hook()
+        session.update()
+
+    def on_tick(self) -> None:
+        """A sixtieth of a second passed while a key is held."""
+        self.apply_advances(self.session.key_repeat.advance(self.session.now))
+
+    def on_wake(self) -> None:
+        """Another thread woke the event loop: the painter has a result, or the file has changed."""
+        session = self.session
+        if session.file_changed.is_set():
+            session.file_changed.clear()
+            file_sync.follow_change(session)
+        for error in session.refinement.collect():
+            session.show_error(error)
+        session.attempt(Session.take_screenshot)
+        session.draw()
+        session.update()
+
+    def on_resize(self, _width: int, _height: int) -> None:
+        """The window has another size: the pointer is over another part of the picture, so a drag ends."""
+        self.session.release_button()
+        self.session.update()
+
+    def on_drop(self, file: str) -> None:
+        """A file was dropped on the window."""
+        self.session.attempt(lambda session: file_sync.open_another(session, Path(file)))
+        self.session.show(self.session.state)
+
+    def perform(self, binding: Binding, step: float) -> None:
+        """Perform the action of a key binding: an edit of the scene, or a command."""
+        session = self.session
+        session.release_button()
+        if binding.action in EDITS:
+            session.show(apply(session.state, binding.action, step if binding.fine else 1.0, session.now))
+            return
+        session.state = session.state.with_message("")
+        session.attempt(COMMANDS[binding.action])
+        session.show(session.state)
+
+    def apply_advances(self, advances: list[tuple[str, float]]) -> None:
+        """Continue the actions of held keys, each by a number of steps."""
+        session = self.session
+        state = session.state
+        for action, amount in advances:
+            if amount:
+                state = apply(state, action, amount * session.step, session.now)
+        if state is not session.state:
+            session.show(state)
+
+    def set_tick_hook(self) -> None:
+        """Let the event loop tick while a key is held, and sleep until the next event otherwise."""
+        session = self.session
+        session.mlx.mlx_loop_hook(session.display, drop_parameter(self.on_tick) if session.key_repeat else None, None)
+
+
+def drop_parameter(handler: Callable[..., object]) -> Callable[..., object]:
+    """Wrap a handler as a hook of MiniLibX, whose last argument is a parameter that the handler does not need."""
+    return lambda *arguments: handler(*arguments[:-1])

@@ -1,0 +1,79 @@
+"""Simulated clock, which advances by rendered packets alone, so that timings are the same on every machine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+
+import numpy as np
+import pytest
+
+from minirt import bench, timing
+from minirt.kernel.frame import PACKET_HEIGHT
+from minirt.rendering import renderer
+from minirt.rendering.frame_arguments import Frame
+from minirt.rendering.running import to_error
+from minirt.rendering.running.frame_runner import FrameRunner
+from minirt.rendering.sampling import auto
+from minirt.report.measurements import formula_errors, picture_errors
+from minirt.timing import Run
+
+PACKET_SECONDS = 1e-6  # for a packet of rays
+FORMULA_SECONDS = 1e-3  # for all rays of the first formula; the second takes twice as long, ...
+# Processor time by wall time: different enough from 1 to be told apart, but not counted as a disturbed measurement.
+PROCESSOR_SHARE = 0.95
+
+
+class Clock:
+    """Simulated seconds and the number of rendered packets of rays."""
+
+    def __init__(self) -> None:
+        self.packets = 0
+        self.slowness = 1.0  # factor on the time of a packet
+        self.wall = 0.0
+
+    def rendered(self, packets: int) -> None:
+        """Advance by the time of a number of packets."""
+        self.packets += packets
+        self.wall += packets * self.slowness * PACKET_SECONDS
+
+    def cpu(self) -> float:
+        """Processor time in seconds."""
+        return PROCESSOR_SHARE * self.wall
+
+
+def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
+    """Replace the machine's clock wherever pictures or formulas are timed."""
+    clock, run = Clock(), FrameRunner.run
+
+    def counted(self: FrameRunner, frames: list[Frame], threads: int) -> None:
+        run(self, frames, threads)
+        clock.rendered(sum(map(packets_of, frames)))
+
+    patch.setattr(FrameRunner, "run", counted)
+    for module in (timing, auto, to_error, renderer, picture_errors, bench):
+        patch.setattr(module, "perf_counter", lambda: clock.wall)
+    patch.setattr(timing, "process_time", clock.cpu)
+    patch.setattr(formula_errors, "in_turn", in_turn)
+    return clock
+
+
+def packets_of(frame: Frame) -> int:
+    """Count the packets of rays of a frame: one for each sample in each wanted packet of pixels."""
+    height, width = frame.pixels.shape
+    samples, numbers = frame.rays.shape
+    wanted = np.count_nonzero(frame.wanted) if len(frame.wanted) else packets(width, height, numbers // 3)
+    return samples * int(wanted)
+
+
+def packets(width: int, height: int, rays: int = 16) -> int:
+    """Count the packets of `rays` rays that cover a picture."""
+    return -(-height // PACKET_HEIGHT) * -(-width // (rays // PACKET_HEIGHT))
+
+
+def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[Run, ...]]:
+    """Replace `minirt.timing.in_turn` for formulas: run each once, and report every second turn ten times as slow."""
+    for work in works:
+        work()
+    slowness = [10.0 if turn % 2 else 1.0 for turn in range(times)]
+    seconds = [FORMULA_SECONDS * number for number in range(1, len(works) + 1)]
+    return [tuple(Run(slow * each, PROCESSOR_SHARE * slow * each) for slow in slowness) for each in seconds]

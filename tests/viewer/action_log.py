@@ -1,0 +1,35 @@
+"""The viewer as a program that logs the actions of its key bindings to a file, one per line.
+
+python -m tests.viewer.action_log LAYOUT LOG SCENE...      # one scene after the other
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from minirt.scene import load
+from minirt.viewer.app.desktop import run
+from minirt.viewer.app.events import EventDispatcher
+from minirt.viewer.input.bindings import Binding
+from tests.viewer.fake import FakeRenderer
+
+
+def main(layout: str, log: str, *scenes: str) -> int:
+    """Show the scenes; return the first exit status that is not 0, or 0."""
+    perform = EventDispatcher.perform
+
+    def perform_and_log(dispatcher: EventDispatcher, binding: Binding, step: float) -> None:
+        perform(dispatcher, binding, step)
+        with Path(log).open("a") as lines:
+            lines.write(f"{binding.action}\n")
+
+    EventDispatcher.perform = perform_and_log  # type: ignore[method-assign]
+    statuses = (
+        run(load(scene).scene, path=scene, size=(320, 240), keys=layout, renderer=FakeRenderer()) for scene in scenes
+    )
+    return next((status for status in statuses if status), 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,184 @@
+"""Progressive refinement: which pictures a session requests while something moves, and when nothing does."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from minirt.errors import RenderError
+from minirt.mlx import Key
+from minirt.mlx.memory import Memory
+from minirt.viewer.display.adaptive_resolution import FRAME_TIME
+from minirt.viewer.display.background_painter import BackgroundPainter
+from minirt.viewer.display.painter import Job, Outcome
+from tests.viewer.fake import MARK, FakeRenderer, colour_of, scene
+from tests.viewer.session_harness import SIZE, SessionHarness
+from tests.waiting import HANG_LIMIT, until
+
+
+def test_the_first_picture_has_full_resolution_and_is_rendered_once():
+    harness = SessionHarness()
+    assert harness.painter.requests == [Job(harness.session.state.scene, *SIZE)]
+    harness.finish(10.0)
+    harness.memory.wait(2)
+    harness.memory.expose()
+    harness.memory.motion(5, 5)
+    harness.memory.minimise(True)
+    harness.memory.minimise(False)
+    harness.tap(Key.I)
+    harness.tap(Key.H)
+    harness.tap(Key.TAB)
+    assert len(harness.painter.requests) == 1
+
+
+def test_slow_pictures_are_coarse_only_while_a_key_is_held():
+    harness = SessionHarness()
+    harness.finish(FRAME_TIME * 3)
+    harness.memory.press(Key.D)
+    for _ in range(2):
+        harness.memory.wait(0.5)
+        harness.memory.play()
+        harness.finish(FRAME_TIME * 3 / 4)
+        assert not harness.painter.busy
+    assert set(harness.painter.divisors[1:]) == {2}
+    assert all(job.urgent for job in harness.painter.requests[1:])
+    harness.memory.release(Key.D)
+    harness.memory.play()
+    assert harness.painter.requests[-1] == Job(harness.session.state.scene, *SIZE)
+    harness.finish(FRAME_TIME * 3)
+    harness.memory.wait(1)
+    harness.memory.play()
+    assert not harness.painter.busy
+    assert harness.session.refinement.latest.job == Job(harness.session.state.scene, *SIZE)
+
+
+def test_a_key_press_is_shown_coarse_first_if_that_is_faster():
+    harness = SessionHarness()
+    harness.finish(FRAME_TIME * 3)
+    harness.tap(Key.D)
+    harness.finish(FRAME_TIME)
+    harness.finish(FRAME_TIME * 3)
+    assert harness.painter.divisors == [1, 2, 1]
+    assert not harness.painter.busy
+
+
+def test_fast_pictures_keep_full_resolution():
+    harness = SessionHarness()
+    harness.finish(FRAME_TIME / 2)
+    harness.memory.press(Key.D)
+    harness.memory.wait(0.5)
+    harness.memory.release(Key.D)
+    harness.memory.play()
+    harness.finish(FRAME_TIME / 2)
+    assert set(harness.painter.divisors) == {1}
+
+
+def test_a_still_picture_is_refined_pass_by_pass_until_it_is_final():
+    harness = SessionHarness(samples=16)
+    harness.hide_overlay()
+    for marked in (0, 4, 16):
+        harness.finish(0.001)
+        shown = harness.memory.screenshot()
+        assert (shown[0, :marked] == MARK).all()
+        assert (shown[0, marked:] == colour_of(scene())).all()
+        assert (shown[1:] == colour_of(scene())).all()
+    harness.memory.wait(2)
+    harness.memory.expose()
+    harness.tap(Key.H)
+    harness.tap(Key.TAB)
+    assert harness.painter.samples == [1, 4, 16]
+    assert harness.painter.divisors == [1, 1, 1]
+    assert not harness.painter.busy
+    assert not harness.display.busy
+
+
+def test_a_new_movement_returns_to_one_sample_at_once():
+    harness = SessionHarness(samples=16)
+    harness.finish(0.001)
+    harness.finish(0.001)
+    harness.memory.press(Key.D)
+    harness.memory.play()
+    job = harness.painter.requests[-1]
+    assert (job.samples, job.base, job.urgent, job.divisor) == (1, None, True, 1)
+    harness.finish(0.001)
+    assert (harness.session.picture == colour_of(harness.session.state.scene)).all()
+    for _ in range(3):
+        harness.memory.wait(0.5)
+        harness.memory.play()
+        harness.finish(0.001)
+    assert set(harness.painter.samples[3:]) == {1}
+    harness.memory.release(Key.D)
+    harness.memory.play()
+    while harness.painter.busy:
+        harness.finish(0.001)
+    assert harness.painter.samples[-3:] == [1, 4, 16]
+
+
+def test_a_picture_goes_from_coarse_to_full_resolution_to_refined():
+    harness = SessionHarness(samples=4)
+    harness.finish(FRAME_TIME * 3)
+    harness.finish(FRAME_TIME * 10)
+    harness.tap(Key.D)
+    while harness.painter.busy:
+        harness.finish(FRAME_TIME / 2)
+    assert list(zip(harness.painter.divisors, harness.painter.samples, strict=True))[2:] == [(2, 1), (1, 1), (1, 4)]
+
+
+def test_nothing_is_rendered_after_an_error_in_a_pass():
+    harness = SessionHarness(samples=16)
+    harness.finish(0.001)
+    harness.painter.renderer.error = RenderError("no more")
+    harness.finish(0.001)
+    assert harness.session.state.message == "no more"
+    assert not harness.painter.busy
+    assert (harness.session.picture == colour_of(scene())).all()
+
+
+def test_a_cancelled_pass_is_never_shown():
+    renderer = FakeRenderer()
+    renderer.gate.clear()
+    harness = SessionHarness(partial(BackgroundPainter, renderer), samples=16)
+    harness.hide_overlay()
+    renderer.gate.set()
+    for n in range(1, 6):
+        until(lambda n=n: len(renderer.rendered) == n, "a picture")
+        renderer.gate.clear()
+
+        def half_refined(n=n) -> bool:
+            harness.memory.play()
+            return len(renderer.refined) == n
+
+        until(half_refined, "a pass")
+        whole = harness.memory.screenshot()
+        assert (whole == colour_of(harness.session.state.scene)).all()
+        harness.tap(Key.D)
+        renderer.gate.set()
+        until(lambda n=n: renderer.cancelled == n, "the end of the pass")
+        assert np.array_equal(harness.memory.screenshot(), whole)
+    assert harness.painter.close(HANG_LIMIT)
+
+
+class SlowScreen(Memory):
+    """A back end on which showing a picture takes four tenths of the frame time."""
+
+    def show(self, window) -> None:
+        super().show(window)
+        self._now += 0.4 * FRAME_TIME
+
+
+def test_a_slow_screen_leaves_less_time_for_rendering():
+    for memory, divisor in ((Memory(), 1), (SlowScreen(), 2)):
+        harness = SessionHarness(memory=memory)
+        harness.finish(FRAME_TIME * 0.7)
+        harness.tap(Key.D)
+        assert harness.painter.divisors == [1, divisor]
+
+
+def test_a_picture_cancelled_without_a_newer_request_is_requested_again():
+    harness = SessionHarness()
+    harness.painter.open.clear()
+    harness.painter.outcomes.append(Outcome(harness.painter.requests[0]))
+    harness.painter.notify()
+    harness.memory.play()
+    assert len(harness.painter.requests) == 2
