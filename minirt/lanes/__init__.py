@@ -1,18 +1,18 @@
-"""Numbers that a kernel computes with.
+"""SIMD lanes: numbers that stand for one ray or for a packet of rays, and the operations on them.
 
-A formula of a shape is written once, for one ray, with the operators of Python and the verbs of this package. What it
-computes with is decided by who calls it:
+A formula of a shape is written once, for one ray, with the operators of Python and the operations of this package. Its
+caller decides on the numbers:
 
 - a test passes a numpy float64 (a Python float that divides by zero as IEEE 754 says) and gets the plain formula;
-- interpreted, a kernel passes a numpy array of 16 float64 or 32 float32: one number for each ray of a packet;
-- compiled, a kernel passes the same numbers as one vector of the processor, `f64x16` or `f32x32`
-  (`minirt.lanes.compiled.types`).
+- an interpreted kernel passes a numpy array of 16 float64 or 32 float32, one number for each ray of a packet;
+- a compiled kernel passes the same numbers as one SIMD vector, `f64x16` or `f32x32` (`minirt.lanes.compiled.types`).
 
-So a number may stand for many, and a formula must not branch on one of them. `a < b` is a mask, one truth a ray;
-masks combine with `&`, `|` and `~`; `where(mask, a, b)` chooses for each ray; `if any(mask):` skips work that no ray
-needs. Nothing else in a formula shows that it runs on several rays at once.
+A number may stand for many, so a formula must not branch on it. `a < b` is a mask, a truth value for each ray; masks
+combine with `&`, `|` and `~`; `where(mask, a, b)` selects for each ray; `if any(mask):` skips work that no ray needs.
+Nothing else in a formula shows that it runs on several rays at once.
 
-This package is the interpreted half and imports no compiler; `minirt.lanes.compiled` teaches numba the same verbs.
+This package is the interpreted half and imports no compiler; `minirt.lanes.compiled` registers the same operations with
+numba.
 """
 
 from minirt.lanes.operations import (

@@ -1,4 +1,4 @@
-"""The size of a vector for bounds of rounding."""
+"""Maximum norm of a vector, for bounds of rounding errors."""
 
 from __future__ import annotations
 
@@ -7,5 +7,5 @@ from minirt.lanes.vec import Number, Vec
 
 
 def largest(v: Vec) -> Number:
-    """The largest coordinate, without its sign."""
+    """Return the largest absolute value of a coordinate."""
     return maximum(maximum(fabs(v.x), fabs(v.y)), fabs(v.z))

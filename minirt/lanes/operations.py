@@ -1,4 +1,4 @@
-"""The verbs of the formulas, interpreted: on numpy float64 and on arrays of them."""
+"""SIMD operations, interpreted: on numpy float64 and on arrays with one number for each ray."""
 
 from __future__ import annotations
 
@@ -8,142 +8,143 @@ import numpy as np
 
 from minirt.lanes.vec import Number, Vec, dot
 
-BYTES = 128  # of the lanes of a number: 16 float64 or 32 float32
-Mask = Any  # a numpy bool, an array of them, or a mask of the processor
+BYTES = 128  # size of all lanes of a number: 16 float64 or 32 float32
+Mask = Any  # a numpy bool, an array with one for each ray, or a SIMD mask
 
 
 def where(mask: Mask, a: Any, b: Any) -> Any:
-    """For each ray `a` where the mask is true and `b` where it is not; of two Vecs, each component so."""
+    """Select `a` for rays where the mask is true and `b` for the others; select Vecs component by component."""
     if isinstance(a, Vec):
         return Vec(where(mask, a.x, b.x), where(mask, a.y, b.y), where(mask, a.z, b.z))
     return np.where(mask, a, b)[()]
 
 
 def any(mask: Mask) -> bool:
-    """True if the mask is true for at least one ray."""
+    """Whether the mask is true for at least one ray."""
     return bool(np.any(mask))
 
 
 def rarely(mask: Mask) -> bool:
-    """`any`, where that is not expected: what follows if it is so may be slow."""
+    """Whether the mask is true for any ray; compiled, the branch is marked as unlikely."""
     return any(mask)
 
 
 def sqrt(x: Number) -> Number:
-    """The square root, NaN below 0."""
+    """Return the square root, NaN below 0."""
     return np.sqrt(x)
 
 
 def inverse_root(x: Number) -> Number:
-    """1 / sqrt(x) for a positive normal number; compiled, the last two bits may be others."""
+    """Return 1 / sqrt(x) for a positive normal number; compiled, the last two bits may differ."""
     return 1.0 / np.sqrt(x)
 
 
 def unit(v: Vec) -> Vec:
-    """The vector of length 1 in the direction of v."""
+    """Return the vector of length 1 in the direction of v."""
     return v * inverse_root(dot(v, v))
 
 
 def unit_roundoff(x: Number) -> float:
-    """The largest relative error of rounding to the precision of x: 2^-53, or 2^-24 for float32."""
+    """Return the largest relative error of rounding to the precision of x: 2^-53, or 2^-24 for float32."""
     return float(np.finfo(np.asarray(x).dtype).eps) / 2
 
 
 def fabs(x: Number) -> Number:
-    """The absolute value."""
+    """Return the absolute value."""
     return np.fabs(x)
 
 
 def floor(x: Number) -> Number:
-    """The greatest whole number not above x."""
+    """Return the greatest whole number not above x."""
     return np.floor(x)
 
 
 def exponent(x: Number) -> Number:
-    """The greatest whole number e with 2^e <= x, for x >= 0; for 0 and denormal numbers the one below all others."""
+    """Return the greatest whole number e with 2^e <= x, for x >= 0; for 0 and denormals, one below all others."""
     least = np.finfo(np.asarray(x).dtype).minexp
     return np.maximum(np.where(x > 0.0, np.frexp(x)[1] - 1, least - 1), least - 1).astype(np.asarray(x).dtype)[()]
 
 
 def two_to(x: Number) -> Number:
-    """2^x for whole numbers x up to the largest `exponent`; 0 where that is less than the least normal number."""
-    kind = np.asarray(x).dtype
-    return np.where(x < np.finfo(kind).minexp, 0.0, np.ldexp(kind.type(1), np.asarray(x).astype(int))).astype(kind)[()]
+    """Return 2^x for a whole number x up to the largest `exponent`; 0 where 2^x is below the least normal number."""
+    dtype = np.asarray(x).dtype
+    power = np.ldexp(dtype.type(1), np.asarray(x).astype(int))
+    return np.where(x < np.finfo(dtype).minexp, 0.0, power).astype(dtype)[()]
 
 
 def copysign(x: Number, sign: Number) -> Number:
-    """The absolute value of x with the sign of `sign`."""
+    """Return the absolute value of x with the sign of `sign`."""
     return np.copysign(x, sign)
 
 
 def rounded_product(a: Number, b: Number) -> Number:
-    """a * b, rounded here and not together with what follows."""
+    """Return a * b, rounded: never fused with a sum that follows."""
     return a * b
 
 
 def product_error(a: Number, b: Number) -> Number:
-    """What rounding drops from a * b, exactly; float64 must be between 1e-140 and 1e140, float32 1e-12 and 1e12."""
+    """Return the exact rounding error of a * b (Dekker 1971); float64 within 1e-140 to 1e140, float32 1e-12 to 1e12."""
     a_high, b_high = high_half(a), high_half(b)
     a_low, b_low = a - a_high, b - b_high
     return a_low * b_low - (((a * b - a_high * b_high) - a_low * b_high) - a_high * b_low)
 
 
 def high_half(x: Number) -> Number:
-    """x to half of its bits (Veltkamp), so that products of halves are exact."""
+    """Return x rounded to half of its bits (Veltkamp 1968), so that products of halves are exact."""
     shifted = x * (2.0 ** (27 if np.asarray(x).itemsize == 8 else 12) + 1.0)
     return shifted - (shifted - x)
 
 
 def minimum(a: Number, b: Number) -> Number:
-    """The lesser; b where one of the two is NaN."""
+    """Return the lesser number; b where one of the two is NaN."""
     return where(a < b, a, b)
 
 
 def maximum(a: Number, b: Number) -> Number:
-    """The greater; b where one of the two is NaN."""
+    """Return the greater number; b where one of the two is NaN."""
     return where(a > b, a, b)
 
 
 def width(values: Any) -> int:
-    """How many rays of their precision, float64 or float32, a kernel traces at once."""
+    """Return the count of lanes: how many rays a kernel traces at once in the precision of the values."""
     return BYTES // int(values.dtype.itemsize)
 
 
 def splat(x: float, like: Number) -> Number:
-    """The same number for each ray, in the precision of the lanes `like`; what is one for each ray stays."""
+    """Return the same number for each ray, in the precision of the lanes `like`; lanes stay as they are."""
     return np.full_like(like, x)[()]
 
 
 def load(values: Any, start: int) -> Number:
-    """A number for each ray: those of an array from index `start` on."""
+    """Load a number for each ray from an array, from index `start` on."""
     return values[start : start + width(values)].copy()
 
 
-def gather(values: Any, places: Number) -> Number:
-    """For each ray the number of an array at a whole-number place, in the precision of the places."""
-    return np.asarray(values[np.asarray(places).astype(np.int64)]).astype(np.asarray(places).dtype)[()]
+def gather(values: Any, indices: Number) -> Number:
+    """Load for each ray the number at its own whole-number index of an array, in the precision of the indices."""
+    return np.asarray(values[np.asarray(indices).astype(np.int64)]).astype(np.asarray(indices).dtype)[()]
 
 
 def save(x: Number, values: Any, start: int) -> None:
-    """Put the numbers of all rays into an array from index `start` on."""
+    """Store the numbers of all rays in an array, from index `start` on."""
     values[start : start + width(values)] = x
 
 
 def lane(x: Number, ray: int) -> float:
-    """The number of one ray."""
+    """Return the number of one ray."""
     return float(x[ray])
 
 
 def greatest(x: Number) -> float:
-    """The greatest number of all rays, -infinity where all are NaN."""
+    """Return the greatest number of all rays, -infinity if all are NaN."""
     return float(np.fmax.reduce(x, initial=-np.inf))
 
 
 def first(mask: Mask) -> int:
-    """The index of the first ray for which the mask is true; there must be one."""
+    """Return the index of the first ray for which the mask is true; there must be one."""
     return int(np.argmax(mask))
 
 
 def lowest(number: int) -> int:
-    """The lowest bit of a number that is not 0."""
+    """Return the index of the lowest bit that is set in a positive integer."""
     return (number & -number).bit_length() - 1

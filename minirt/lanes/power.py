@@ -1,4 +1,4 @@
-"""Powers, which a highlight takes, of the verbs of the formulas: in place of a library's, which knows no lanes."""
+"""Powers on SIMD lanes, for specular highlights: the pow of a library takes no lanes."""
 
 from __future__ import annotations
 
@@ -6,20 +6,23 @@ from minirt.lanes.operations import exponent, floor, maximum, two_to, where
 from minirt.lanes.vec import Number
 
 ROOT = 2.0**0.5
-LOWEST = -1100.0  # 2 to that is 0
+LOWEST = -1100.0  # 2^LOWEST is 0
 
 
 def power(x: Number, n: Number) -> Number:
-    """x^n for x in [0, 1] and n >= 1, by way of n log2(x).
+    """Return x^n = 2^(n log2(x)) for x in [0, 1] and n >= 1.
 
-    In float64 its relative error is below 1e-15 + 6e-16 n |ln x|; the second part is what two roundings of n ln x do.
+    In float64 its relative error is below 1e-15 + 6e-16 n |ln x|; the second term is from two roundings of n ln x.
     """
     return exp2(maximum(n * log2(x), LOWEST))
 
 
 def log2(x: Number) -> Number:
-    """The logarithm to base 2 of a positive number: that of its power of 2, and 2 artanh(s) / ln 2 of what is left,
-    m = (1 + s) / (1 - s) in [sqrt(1/2), sqrt(2)], as a series in s; for 0 some number below -126."""
+    """Return the logarithm to base 2 of a positive number; for 0 a number below -126.
+
+    It is the exponent of x plus log2(m) = 2 artanh(s) / ln 2, a series in s, where the mantissa m = (1 + s) / (1 - s)
+    is in [sqrt(1/2), sqrt(2)].
+    """
     whole = exponent(x)
     m = x * two_to(-whole)
     upper = m > ROOT
@@ -43,7 +46,7 @@ def log2(x: Number) -> Number:
 
 
 def exp2(y: Number) -> Number:
-    """2^y for y <= 0 and not below `LOWEST`: the power of the nearest whole number, and Taylor's series of the rest."""
+    """Return 2^y for y in [`LOWEST`, 0]: 2 to the nearest whole number, times the Taylor series of the remainder."""
     whole = floor(y + 0.5)
     x = 0.693147180559945309 * (y - whole)
     series = 1.0 + x / 14.0

@@ -1,10 +1,10 @@
-"""Three numbers with the operators of a vector space."""
+"""Vectors of three numbers, with the operators of a vector space."""
 
 from __future__ import annotations
 
 from typing import Any
 
-Number = Any  # a numpy float64, an array of them, or a vector of the processor
+Number = Any  # a numpy float64, an array with one for each ray, or a SIMD vector
 
 
 class Vec:
@@ -28,7 +28,7 @@ class Vec:
     __rmul__ = __mul__
 
     def __truediv__(self, divisor: Number) -> Vec:
-        """Times the inverse: one division instead of three, at the price of a second rounding."""
+        """Multiply by the inverse: one division instead of three, at the cost of a second rounding."""
         return self * (1.0 / divisor)
 
     def __neg__(self) -> Vec:
@@ -39,10 +39,10 @@ class Vec:
 
 
 def cross(a: Vec, b: Vec) -> Vec:
-    """The vector product."""
+    """Return the cross product."""
     return Vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 
 
 def dot(a: Vec, b: Vec) -> Number:
-    """The scalar product."""
+    """Return the dot product."""
     return a.x * b.x + a.y * b.y + a.z * b.z

@@ -1,4 +1,4 @@
-"""Numbers with which arithmetic goes wrong first, and how results are compared."""
+"""Edge cases of floating-point arithmetic, and a comparison bit for bit."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ PRECISIONS = pytest.mark.parametrize("dtype", DTYPES, ids=["f64x16", "f32x32"])
 
 
 def edges(dtype: Any) -> Any:
-    """Zero, denormal, tiny, ordinary, whole, large and infinite numbers of both signs, and NaN; whole packets."""
+    """Return zero, denormal, tiny, ordinary, whole, large and infinite numbers of both signs, and NaN, in packets."""
     kind = np.finfo(dtype)
     small, root = float(kind.tiny), float(kind.max) ** 0.5
     whole = 2.0 ** (kind.nmant - 1) + 0.5
@@ -23,13 +23,13 @@ def edges(dtype: Any) -> Any:
 
 
 def pairs(dtype: Any) -> tuple[Any, Any]:
-    """Every number with every other."""
+    """Return two arrays that pair every number with every other."""
     first, second = np.meshgrid(edges(dtype), edges(dtype), indexing="ij")
     return first.ravel(), second.ravel()
 
 
 def assert_same(actual: Any, expected: Any) -> None:
-    """Equal bit for bit, -0 and 0 apart; a NaN is any NaN."""
+    """Assert that numbers are equal bit for bit, also the sign of 0; any NaN equals any other."""
     actual, expected = np.broadcast_arrays(np.asarray(actual), np.asarray(expected))
     nan = np.isnan(expected)
     assert np.array_equal(np.isnan(actual), nan)

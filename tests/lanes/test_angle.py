@@ -1,4 +1,4 @@
-"""Angles against 60 digits and against numpy's for what is no ordinary number, on numbers and on lanes."""
+"""arctan2 on numbers and on lanes: against 60 digits, and against numpy for zeros, infinities and NaN."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
-from minirt.kernel.compiler.code_cache import FLAGS
+import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
+from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import load, save, width
 from minirt.lanes.angle import arctan2
 from tests.lanes.numbers import PRECISIONS, assert_same, pairs
@@ -35,55 +35,55 @@ def interpreted(y: np.ndarray, x: np.ndarray) -> np.ndarray:
         return arctan2(y, x)
 
 
-WAYS = pytest.mark.parametrize("way", [interpreted, compiled])
+BOTH = pytest.mark.parametrize("angles_of", [interpreted, compiled])
 
 
-def off(got: np.ndarray, y: np.ndarray, x: np.ndarray) -> float:
-    """The largest error in units in the last place of the right angle."""
+def largest_error(angles: np.ndarray, y: np.ndarray, x: np.ndarray) -> float:
+    """Return the largest error, in units in the last place of the exact angle."""
     with mpmath.workdps(60):
         right = [mpmath.atan2(mpmath.mpf(float(b)), mpmath.mpf(float(a))) for b, a in zip(y, x, strict=True)]
-        spacings = np.spacing(np.abs(np.array([float(each) for each in right])).astype(got.dtype))
-        steps = zip(got, right, spacings, strict=True)
-        return max(float(abs(mpmath.mpf(float(g)) - r) / float(step)) for g, r, step in steps)
+        spacings = np.spacing(np.abs(np.array([float(each) for each in right])).astype(angles.dtype))
+        steps = zip(angles, right, spacings, strict=True)
+        return max(float(abs(mpmath.mpf(float(a)) - r) / float(step)) for a, r, step in steps)
 
 
-@WAYS
+@BOTH
 @PRECISIONS
-def test_all_around_to_three_units_in_the_last_place(way: Any, dtype: Any) -> None:
+def test_angles_all_around_are_within_three_units_in_the_last_place(angles_of: Any, dtype: Any) -> None:
     random = np.random.default_rng(1)
     turns = random.uniform(-np.pi, np.pi, 3200)
     near = np.arange(-8, 9)[:, None] * (np.pi / 8) + 0.1 * 0.5 ** np.arange(64)  # and near the axes and diagonals
     turns = np.concatenate([turns, near.ravel()])
     sizes = 2.0 ** random.uniform(-30, 30, turns.size)
     y, x = (sizes * np.sin(turns)).astype(dtype), (sizes * np.cos(turns)).astype(dtype)
-    assert off(way(y, x), y, x) <= ULPS
+    assert largest_error(angles_of(y, x), y, x) <= ULPS
 
 
-@WAYS
+@BOTH
 @PRECISIONS
-def test_ratios_around_the_places_where_the_formula_changes(way: Any, dtype: Any) -> None:
+def test_ratios_at_which_the_formula_changes_are_as_precise(angles_of: Any, dtype: Any) -> None:
     eps = float(np.finfo(dtype).eps)
     ratios = [c * (1 + k * eps) for c in (0.25, 0.75, 1.0) for k in range(-16, 16)]
     y = np.array(ratios, dtype)
     x = np.ones_like(y)
     for a, b in ((y, x), (x, y), (-y, -x)):
-        assert off(way(a, b), a, b) <= ULPS
+        assert largest_error(angles_of(a, b), a, b) <= ULPS
 
 
-@WAYS
+@BOTH
 @PRECISIONS
-def test_zeros_infinities_and_nan_as_numpy_says(way: Any, dtype: Any) -> None:
+def test_zeros_infinities_and_nan_are_as_in_numpy(angles_of: Any, dtype: Any) -> None:
     y, x = pairs(dtype)
-    got, right = way(y, x), np.arctan2(y, x)
-    assert got.dtype == dtype
+    result, right = angles_of(y, x), np.arctan2(y, x)
+    assert result.dtype == dtype
     special = (y == 0) | (x == 0) | ~np.isfinite(y) | ~np.isfinite(x)
     assert special.sum() > 200
-    assert_same(got[special], right[special])
-    assert np.array_equal(np.signbit(got[~special]), np.signbit(right[~special]))
+    assert_same(result[special], right[special])
+    assert np.array_equal(np.signbit(result[~special]), np.signbit(right[~special]))
     tiny = float(np.finfo(dtype).smallest_subnormal)
-    assert (np.abs(got - right)[~special] <= 4 * np.finfo(dtype).eps * np.abs(right)[~special] + 2 * tiny).all()
+    assert (np.abs(result - right)[~special] <= 4 * np.finfo(dtype).eps * np.abs(right)[~special] + 2 * tiny).all()
 
 
-def test_single_numbers() -> None:
+def test_a_single_number_is_as_precise() -> None:
     assert arctan2(np.float64(1.0), np.float64(-1.0)) == 0.75 * np.pi
     assert arctan2(np.float64(-0.0), np.float64(-3.0)) == -np.pi

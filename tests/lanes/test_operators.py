@@ -1,4 +1,4 @@
-"""Every operator and verb on one and two numbers, compiled, against numpy bit for bit."""
+"""Operators and operations on one and two numbers, compiled and interpreted: as numpy, bit for bit."""
 
 from __future__ import annotations
 
@@ -30,54 +30,55 @@ TWO = {
 
 
 @register_jitable
-def put(out: Any, start: int, x: Any) -> None:
+def store(out: Any, start: int, x: Any) -> None:
+    """Store lanes in an array, lane by lane."""
     for ray in range(width(out)):
         out[start + ray] = lane(x, ray)
 
 
-def compiled(function: Function, *given: Any) -> Any:
-    """The function, compiled, on all lanes of arrays and on single numbers."""
+def compiled(function: Function, *arguments: Any) -> Any:
+    """Call a function, compiled, on lanes of arrays and on single numbers."""
     jitable = function if function in (*ARITHMETIC, *COMPARISONS, operator.neg) else register_jitable(function)
-    verdict = function in COMPARISONS
+    is_comparison = function in COMPARISONS
 
-    if len(given) == 1:
+    if len(arguments) == 1:
 
         def run(a: Any, out: Any) -> None:
             for i in range(0, out.size, width(out)):
-                put(out, i, jitable(load(a, i)))
-    elif np.ndim(given[1]) == 0:
+                store(out, i, jitable(load(a, i)))
+    elif np.ndim(arguments[1]) == 0:
 
         def run(a: Any, b: Any, out: Any) -> None:
             for i in range(0, out.size, width(out)):
                 x = jitable(load(a, i), b)
-                put(out, i, where(x, 1.0, 0.0) if verdict else x)
-    elif np.ndim(given[0]) == 0:
+                store(out, i, where(x, 1.0, 0.0) if is_comparison else x)
+    elif np.ndim(arguments[0]) == 0:
 
         def run(a: Any, b: Any, out: Any) -> None:
             for i in range(0, out.size, width(out)):
                 x = jitable(a, load(b, i))
-                put(out, i, where(x, 1.0, 0.0) if verdict else x)
+                store(out, i, where(x, 1.0, 0.0) if is_comparison else x)
     else:
 
         def run(a: Any, b: Any, out: Any) -> None:
             for i in range(0, out.size, width(out)):
                 x = jitable(load(a, i), load(b, i))
-                put(out, i, where(x, 1.0, 0.0) if verdict else x)
+                store(out, i, where(x, 1.0, 0.0) if is_comparison else x)
 
-    (array, *_) = (each for each in given if np.ndim(each))
+    (array, *_) = (each for each in arguments if np.ndim(each))
     out = np.empty_like(array)
-    njit(error_model="numpy")(run)(*given, out)
+    njit(error_model="numpy")(run)(*arguments, out)
     return out
 
 
-def on_numbers(function: Function, *given: Any) -> Any:
-    """The function, compiled for single numbers, on each of them."""
-    jitable = njit(error_model="numpy")(wrapped(function, len(given)))
-    return np.array([jitable(*each) for each in zip(*given, strict=True)])
+def on_numbers(function: Function, *arguments: Any) -> Any:
+    """Call a function, compiled for single numbers, on each number of arrays."""
+    jitable = njit(error_model="numpy")(wrapped(function, len(arguments)))
+    return np.array([jitable(*each) for each in zip(*arguments, strict=True)])
 
 
 def wrapped(function: Function, count: int) -> Function:
-    # numba compiles plain functions: one around the verb.
+    # numba compiles plain functions: one that calls the operation.
     return (lambda a: function(a)) if count == 1 else (lambda a, b: function(a, b))  # noqa: PLW0108
 
 
@@ -87,13 +88,14 @@ def name(function: Function) -> str:
 
 @pytest.fixture(autouse=True)
 def quiet() -> Any:
+    """Let numpy divide by zero and overflow without warnings."""
     with np.errstate(all="ignore"):
         yield
 
 
 @PRECISIONS
 @pytest.mark.parametrize("function", ONE, ids=name)
-def test_of_one_number(function: Function, dtype: Any) -> None:
+def test_functions_of_one_number(function: Function, dtype: Any) -> None:
     numbers = edges(dtype)
     expected = ONE[function](numbers)
     assert_same(compiled(function, numbers), expected)
@@ -106,7 +108,7 @@ def test_of_one_number(function: Function, dtype: Any) -> None:
 
 @PRECISIONS
 @pytest.mark.parametrize("function", TWO, ids=name)
-def test_of_two_numbers(function: Function, dtype: Any) -> None:
+def test_functions_of_two_numbers(function: Function, dtype: Any) -> None:
     first, second = pairs(dtype)
     expected = TWO[function](first, second)
     assert_same(compiled(function, first, second), expected)
@@ -119,8 +121,7 @@ def test_of_two_numbers(function: Function, dtype: Any) -> None:
 
 @PRECISIONS
 @pytest.mark.parametrize("function", TWO, ids=name)
-def test_of_lanes_and_a_single_number(function: Function, dtype: Any) -> None:
-    # A single number takes the precision of the lanes beside it.
+def test_a_single_number_takes_the_precision_of_the_lanes_beside_it(function: Function, dtype: Any) -> None:
     numbers = edges(dtype)
     for single in (3, 0.1):
         assert_same(compiled(function, numbers, single), TWO[function](numbers, dtype(single)))
@@ -129,7 +130,7 @@ def test_of_lanes_and_a_single_number(function: Function, dtype: Any) -> None:
 
 @PRECISIONS
 @pytest.mark.parametrize("function", COMPARISONS, ids=name)
-def test_comparisons(function: Function, dtype: Any) -> None:
+def test_comparisons_are_as_in_numpy(function: Function, dtype: Any) -> None:
     first, second = pairs(dtype)
     assert_same(compiled(function, first, second), function(first, second).astype(dtype))
     numbers = edges(dtype)
@@ -142,9 +143,9 @@ def test_splat_and_load_at_any_index(dtype: Any) -> None:
     @njit(error_model="numpy")
     def run(a: Any, start: int, out: Any) -> None:
         x = load(a, start)
-        put(out, 0, x)
-        put(out, width(out), splat(a[1], x))
-        put(out, 2 * width(out), splat(0.1, x))
+        store(out, 0, x)
+        store(out, width(out), splat(a[1], x))
+        store(out, 2 * width(out), splat(0.1, x))
 
     numbers = edges(dtype)
     count = width(numbers)
@@ -159,7 +160,7 @@ def test_splat_and_load_at_any_index(dtype: Any) -> None:
 
 
 @PRECISIONS
-def test_as_many_lanes_as_fill_two_registers(dtype: Any) -> None:
+def test_lanes_fill_two_registers(dtype: Any) -> None:
     @njit(error_model="numpy")
     def run(a: Any) -> Any:
         return width(a), width(load(a, 0)), unit_roundoff(load(a, 0)), unit_roundoff(a[0])
@@ -171,7 +172,7 @@ def test_as_many_lanes_as_fill_two_registers(dtype: Any) -> None:
     assert dtype(1) + dtype(roundoff) == 1 < dtype(1) + dtype(1.01 * roundoff)
 
 
-def test_what_is_loaded_does_not_change_with_the_array() -> None:
+def test_loaded_lanes_do_not_change_with_the_array() -> None:
     values = np.arange(16.0)
     loaded = load(values, 0)
     values[:] = 0

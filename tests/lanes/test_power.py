@@ -1,4 +1,4 @@
-"""Powers against 60 digits, on numbers and on lanes."""
+"""Powers, on numbers and on lanes: against 60 digits."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
-from minirt.kernel.compiler.code_cache import FLAGS
+import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
+from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import exponent, load, save, two_to
 from minirt.lanes.power import power as power_of
 
@@ -26,19 +26,19 @@ def on_lanes(x: Any, n: Any, out: Any) -> None:
 def compiled(bases: np.ndarray, n: float) -> np.ndarray:
     out = np.empty_like(bases)
     for start in range(0, len(bases), 16):
-        last = np.resize(bases[start : start + 16], 128 // bases.itemsize)
-        got = np.empty_like(last)
-        on_lanes(last, bases.dtype.type(n), got)
-        out[start : start + 16] = got[: len(bases[start : start + 16])]
+        packet = np.resize(bases[start : start + 16], 128 // bases.itemsize)
+        powers = np.empty_like(packet)
+        on_lanes(packet, bases.dtype.type(n), powers)
+        out[start : start + 16] = powers[: len(bases[start : start + 16])]
     return out
 
 
 @pytest.mark.parametrize("n", EXPONENTS)
-def test_powers_are_those_of_60_digits(n: float) -> None:
+def test_powers_of_float64_keep_the_promised_error(n: float) -> None:
     with mpmath.workdps(60):
         exact = [mpmath.mpf(x) ** mpmath.mpf(n) for x in BASES]
-        for got in (power_of(BASES, n), compiled(BASES, n)):
-            for x, right, value in zip(BASES, exact, got, strict=True):
+        for powers in (power_of(BASES, n), compiled(BASES, n)):
+            for x, right, value in zip(BASES, exact, powers, strict=True):
                 if right < 1e-307:
                     assert 0.0 <= value <= 1e-300
                 else:
@@ -47,16 +47,16 @@ def test_powers_are_those_of_60_digits(n: float) -> None:
 
 
 @pytest.mark.parametrize("n", EXPONENTS)
-def test_powers_of_float32(n: float) -> None:
+def test_powers_of_float32_keep_their_error(n: float) -> None:
     bases = BASES.astype(np.float32)
     exact = bases.astype(np.float64) ** n
-    for got in (power_of(bases, np.float32(n)), compiled(bases, n)):
-        assert got.dtype == np.float32
+    for powers in (power_of(bases, np.float32(n)), compiled(bases, n)):
+        assert powers.dtype == np.float32
         logarithms = np.abs(np.log(np.maximum(bases, 1e-30).astype(np.float64)))
-        assert (np.abs(got - exact) <= exact * (1e-6 + 2e-7 * n * logarithms) + 1e-37).all()
+        assert (np.abs(powers - exact) <= exact * (1e-6 + 2e-7 * n * logarithms) + 1e-37).all()
 
 
-def test_exponents_and_powers_of_two() -> None:
+def test_exponents_and_powers_of_two_are_exact() -> None:
     x = np.array([0.0, 5e-324, 2.0**-1022, 0.75, 1.0, 1.999, 2.0, 3e300])
     assert exponent(x).tolist() == [-1023, -1023, -1022, -1, 0, 0, 1, 998]
     assert two_to(np.array([-1100.0, -1023.0, -1022.0, -1.0, 0.0, 9.0])).tolist() == [0, 0, 2.0**-1022, 0.5, 1, 512]

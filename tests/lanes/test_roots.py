@@ -1,4 +1,4 @@
-"""The inverse square root: within two units in the last place, with the estimate of AVX-512 and without."""
+"""Inverse square root: within two units in the last place, with the estimate of AVX-512 and without."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from minirt.lanes import Vec, inverse_root, lane, load, unit, width
 from minirt.lanes.compiled.inverse_root import SERIES
 from tests.environment import FEATURES
 from tests.lanes.numbers import DTYPES, PRECISIONS
-from tests.lanes.test_operators import put
+from tests.lanes.test_operators import store
 from tests.processes import run
 
-NAMES = {np.float64: "double", np.float32: "float"}  # of the types in LLVM
+LLVM_NAMES = {np.float64: "double", np.float32: "float"}
 
 
 @njit(error_model="numpy")
 def inverse_roots(a: Any, out: Any) -> None:
     for i in range(0, a.size, width(a)):
-        put(out, i, inverse_root(load(a, i)))
+        store(out, i, inverse_root(load(a, i)))
 
 
 @njit(error_model="numpy")
@@ -36,8 +36,8 @@ def units(a: Any, out: Any) -> None:
         out[0, ray], out[1, ray], out[2, ray] = lane(v.x, ray), lane(v.y, ray), lane(v.z, ray)
 
 
-def off(dtype: Any) -> float:
-    """The largest error of `inverse_root`, in units in the last place, over many exponents."""
+def largest_error(dtype: Any) -> float:
+    """Return the largest error of `inverse_root`, in units in the last place, over many exponents."""
     kind = np.finfo(dtype)
     random = np.random.default_rng(3)
     exponents = random.uniform(kind.minexp * 0.9, kind.maxexp * 0.9, 32_000)
@@ -50,12 +50,12 @@ def off(dtype: Any) -> float:
 
 
 @PRECISIONS
-def test_within_two_units_in_the_last_place(dtype: Any) -> None:
-    assert off(dtype) <= 2
+def test_the_error_is_within_two_units_in_the_last_place(dtype: Any) -> None:
+    assert largest_error(dtype) <= 2
 
 
 def refined(x: Any, estimate: Any, bits: int, series: tuple[float, ...]) -> Any:
-    """1 / sqrt(x) from an estimate of it, by the steps of `minirt.lanes.compiled.inverse_root`, each rounded to so many bits."""
+    """Refine an estimate of 1 / sqrt(x) as `minirt.lanes.compiled.inverse_root` does, each step rounded to `bits`."""
 
     def rounded(value: Any) -> Any:
         return gmpy2.mpfr(value, bits)
@@ -71,9 +71,9 @@ def refined(x: Any, estimate: Any, bits: int, series: tuple[float, ...]) -> Any:
 
 
 @PRECISIONS
-@pytest.mark.parametrize(("off", "passes"), [(2.0**-14, True), (2.0**-7, False)])
-def test_the_steps_are_precise_whatever_estimate_a_processor_makes(dtype: Any, off: float, passes: bool) -> None:
-    """Processors differ in their estimates, which are only promised to be within 2^-14. A worse one does not pass."""
+@pytest.mark.parametrize(("error", "passes"), [(2.0**-14, True), (2.0**-7, False)])
+def test_the_series_is_precise_for_any_estimate_within_the_promise(dtype: Any, error: float, passes: bool) -> None:
+    """Processors differ in their estimates, which are only promised to be within 2^-14. A worse estimate fails."""
     kind = np.finfo(dtype)
     random = np.random.default_rng(6)
     errors = []
@@ -81,8 +81,10 @@ def test_the_steps_are_precise_whatever_estimate_a_processor_makes(dtype: Any, o
         with gmpy2.context(precision=500):
             exact = 1 / gmpy2.sqrt(gmpy2.mpfr(float(x)))
             for share in (-1, 1, random.uniform(-1, 1)):
-                found = refined(gmpy2.mpfr(float(x)), exact * (1 + share * off), kind.nmant + 1, SERIES[NAMES[dtype]])
-                errors.append(abs(float((found - exact) / float(np.spacing(dtype(float(exact)))))))
+                root = refined(
+                    gmpy2.mpfr(float(x)), exact * (1 + share * error), kind.nmant + 1, SERIES[LLVM_NAMES[dtype]]
+                )
+                errors.append(abs(float((root - exact) / float(np.spacing(dtype(float(exact)))))))
     assert (max(errors) <= 2) == passes
 
 
@@ -96,7 +98,7 @@ def test_a_power_of_four_changes_the_exponent_alone(dtype: Any) -> None:
 
 
 @PRECISIONS
-def test_unit_vectors(dtype: Any) -> None:
+def test_unit_vectors_are_precise(dtype: Any) -> None:
     n = 128 // np.dtype(dtype).itemsize
     v = np.random.default_rng(5).normal(size=(3, n)).astype(dtype)
     out = np.empty_like(v)
@@ -108,8 +110,8 @@ def test_unit_vectors(dtype: Any) -> None:
     assert interpreted.x.dtype == dtype
 
 
-def test_without_avx_512() -> None:
-    program = "from tests.lanes.test_roots import DTYPES, off; print(max(map(off, DTYPES)))"
+def test_the_error_is_smaller_without_avx_512() -> None:
+    program = "from tests.lanes.test_roots import DTYPES, largest_error; print(max(map(largest_error, DTYPES)))"
     haswell = {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": FEATURES["haswell"]}
     ended = run([sys.executable, "-c", program], env=os.environ | haswell, text=True)
     assert ended.returncode == 0, ended.stderr

@@ -1,4 +1,4 @@
-"""Vec: its operators on single numbers, on lanes and on a mix of them, interpreted and compiled."""
+"""Operators of Vec on single numbers, on lanes and on a mix of them, interpreted and compiled."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from numba import njit
 import minirt.lanes.compiled  # noqa: F401
 from minirt.lanes import Vec, dot, load, width
 from tests.lanes.numbers import PRECISIONS, assert_same, edges
-from tests.lanes.test_operators import put
+from tests.lanes.test_operators import store
 
 
 def table(dtype: Any, seed: int) -> Any:
-    """The components of as many vectors as there are lanes, one behind the other; and edges of numbers for seed 0."""
+    """Return the x of a vector for each lane, then the y, then the z: random numbers, or edge cases for seed 0."""
     count = 3 * 128 // np.dtype(dtype).itemsize
     numbers = np.resize(edges(dtype), count) if seed == 0 else np.random.default_rng(seed).normal(size=count)
     return numbers.astype(dtype)
@@ -29,13 +29,13 @@ def operators(a: Any, b: Any, out: Any) -> None:
     s = load(a, 4)
     results = (u + v, u - v, u * s, s * u, u / s, -u, u + w, w - u, u * b[1], b[1] * u, u / b[1], w * s, s * w, 2 * u)
     for k, r in enumerate(results):
-        put(out[k], 0, r.x)
-        put(out[k], n, r.y)
-        put(out[k], 2 * n, r.z)
+        store(out[k], 0, r.x)
+        store(out[k], n, r.y)
+        store(out[k], 2 * n, r.z)
 
 
 def expected(a: Any, b: Any) -> list[Any]:
-    """The same by numpy, component by component."""
+    """Compute the results of `operators` by numpy, component by component."""
     n = a.size // 3
     u, v, w = a.reshape(3, n), b.reshape(3, n), b.reshape(3, n)[:, :1]
     s, t = a[4 : 4 + n], b[1]
@@ -45,7 +45,7 @@ def expected(a: Any, b: Any) -> list[Any]:
 
 @PRECISIONS
 @pytest.mark.parametrize(("one", "other"), [(1, 2), (0, 2), (1, 0), (0, 0)])
-def test_operators_compiled(one: int, other: int, dtype: Any) -> None:
+def test_compiled_operators_are_those_of_the_components(one: int, other: int, dtype: Any) -> None:
     a, b = table(dtype, one), table(dtype, other)[:: -1 if one == other else 1].copy()
     out = np.empty((14, a.size), dtype)
     operators(a, b, out)
@@ -55,26 +55,26 @@ def test_operators_compiled(one: int, other: int, dtype: Any) -> None:
 
 
 @njit(error_model="numpy")
-def of_single_numbers(a: Any) -> Any:
+def on_single_numbers(a: Any) -> Any:
     u, v = Vec(a[0], a[1], a[2]), Vec(a[3], a[4], a[5])
     r, s = (u + v - v / a[6]), -u
     return r.x, r.y, r.z, s.x, s.y, s.z
 
 
 @PRECISIONS
-def test_single_numbers_compiled(dtype: Any) -> None:
+def test_compiled_vecs_may_be_of_single_numbers(dtype: Any) -> None:
     a = table(dtype, 1)
     u, v = a[:3], a[3:6]
-    assert_same(np.array(of_single_numbers(a), dtype), [*(u + v - v * (1 / a[6])), *-u])
+    assert_same(np.array(on_single_numbers(a), dtype), [*(u + v - v * (1 / a[6])), *-u])
 
 
 @PRECISIONS
-def test_operators_interpreted(dtype: Any) -> None:
+def test_interpreted_operators_are_those_of_the_components(dtype: Any) -> None:
     n = 128 // np.dtype(dtype).itemsize
     a, b = table(dtype, 1), table(dtype, 2)
     columns, w = a.reshape(3, n), b[:3, None]
     u, v, s = Vec(*columns), Vec(*b[:3]), a[4 : 4 + n]
-    for made, right in (
+    for actual, right in (
         (u + v, columns + w),
         (u - v, columns - w),
         (v - u, w - columns),
@@ -84,9 +84,9 @@ def test_operators_interpreted(dtype: Any) -> None:
         (dtype(2) * u, 2 * columns),
         (-u, -columns),
     ):
-        assert isinstance(made, Vec)
-        assert_same([made.x, made.y, made.z], right)
-        assert made.x.dtype == dtype
+        assert isinstance(actual, Vec)
+        assert_same([actual.x, actual.y, actual.z], right)
+        assert actual.x.dtype == dtype
 
 
 @njit(error_model="numpy")
@@ -94,13 +94,13 @@ def products(a: Any, b: Any, out: Any) -> None:
     n = width(a)
     u, v = Vec(load(a, 0), load(a, n), load(a, 2 * n)), Vec(load(b, 0), load(b, n), load(b, 2 * n))
     w = Vec(b[0], b[n], b[2 * n])
-    put(out[0], 0, dot(u, v))
-    put(out[1], 0, dot(u, w))
-    put(out[2], 0, dot(w, u))
+    store(out[0], 0, dot(u, v))
+    store(out[1], 0, dot(u, w))
+    store(out[2], 0, dot(w, u))
 
 
 @PRECISIONS
-def test_the_scalar_product(dtype: Any) -> None:
+def test_the_dot_product_is_the_sum_of_products(dtype: Any) -> None:
     n = 128 // np.dtype(dtype).itemsize
     a, b = table(dtype, 1), table(dtype, 2)
     u, v = a.reshape(3, n), b.reshape(3, n)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel import rows
-from minirt.kernel.compiler.code_cache import FLAGS
+from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, lane, load, where, width
 from minirt.rendering.packing.primitives import packed_rows
 from minirt.shapes import KINDS, Kind, Shape

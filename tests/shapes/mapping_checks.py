@@ -11,7 +11,7 @@ from numba import njit
 
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel import rows
-from minirt.kernel.compiler.code_cache import FLAGS
+from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, load, save, splat, width
 from minirt.shapes import Kind, Shape
 from minirt.shapes.paraboloid import Paraboloid

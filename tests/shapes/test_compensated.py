@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
-from minirt.kernel.compiler.code_cache import FLAGS
+from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, product_error, rounded_product
 from minirt.shapes.compensated import power_of_point, two_product, two_sum
 

@@ -10,7 +10,7 @@ import pytest
 from numba import njit
 
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
-from minirt.kernel.compiler.code_cache import FLAGS
+from minirt.kernel.compiler.options import FLAGS
 from minirt.shapes import KINDS, Kind
 from tests.shapes.execution_modes import Intersect
 from tests.stability import mutants

@@ -1,8 +1,8 @@
-"""Where compiled kernels are kept from one run to the next.
+"""Folder of compiled kernels, which later runs load.
 
-numba finds a kernel again by the file of the function that it was asked to compile, and by nothing else that went into
-it: after a change of a shape's formula the old machine code would be used. So the folder's name is a hash of all the
-sources that a kernel is made of, and of the versions of the compiler.
+numba identifies a kernel on disk by the file of the compiled function alone, not by the functions that it calls: after
+a change of a shape's formula it would load the old machine code. So the name of the folder is a hash of all sources of
+a kernel and of the versions of the compiler.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ if sys.platform != "win32":
     import fcntl
 
 PACKAGE = Path(__file__).parents[2]
-SOURCES = ("kernel", "lanes", "shapes")  # all that a kernel is made of
-KEPT = 8  # folders of other versions that stay, so that two of them can be used in turn
+SOURCES = ("kernel", "lanes", "shapes")  # folders of all sources of a kernel
+OTHER_VERSIONS = 8  # folders of other versions that are not deleted, so that versions can be used in turn
 
 
 def user_folder() -> Path:
-    """Where the system keeps files of this user that may be deleted at any time."""
+    """Return the folder for this user's files that may be deleted at any time."""
     if os.environ.get("XDG_CACHE_HOME"):
         return Path(os.environ["XDG_CACHE_HOME"])
     if sys.platform == "darwin":
@@ -41,7 +41,7 @@ def user_folder() -> Path:
 
 
 def fingerprint() -> str:
-    """A hash of the sources, of the compiler's versions and of the processor."""
+    """Return a hash of the sources, of the compiler's versions and of the name of the processor."""
     versions = sys.version, numba.__version__, llvmlite.__version__, get_host_cpu_name()
     digest = hashlib.sha256(" ".join(versions).encode())
     for folder in SOURCES:
@@ -51,36 +51,35 @@ def fingerprint() -> str:
 
 
 def folder() -> Path | None:
-    """The folder of the kernels of these sources, made where it does not exist; None where that is not possible."""
+    """Return the folder for kernels of these sources, made if need be; None, with a notice, if it cannot be written."""
     try:
-        place = user_folder() / "minirt" / f"kernels-{fingerprint()}"
-        place.mkdir(parents=True, exist_ok=True)
-        os.utime(place)
-        probe = place / f"probe-{os.getpid()}"
+        path = user_folder() / "minirt" / f"kernels-{fingerprint()}"
+        path.mkdir(parents=True, exist_ok=True)
+        os.utime(path)
+        probe = path / f"probe-{os.getpid()}"
         probe.touch()
         probe.unlink()
     except (OSError, RuntimeError) as error:  # RuntimeError: the user has no home
         logging.getLogger(__name__).warning("notice: every run compiles anew, kernels cannot be kept: %s", error)
         return None
     with suppress(OSError):
-        forget(place)
-    return place
+        delete_old_folders(path)
+    return path
 
 
-def forget(place: Path) -> None:
-    """Delete the folders of other sources, but for those used last."""
-    others = sorted(
-        (each for each in place.parent.glob("kernels-*") if each != place), key=lambda each: each.stat().st_mtime
-    )
-    for each in others[: max(0, len(others) - KEPT)]:
+def delete_old_folders(current: Path) -> None:
+    """Delete the folders of other sources, except the `OTHER_VERSIONS` that were used last."""
+    others = [each for each in current.parent.glob("kernels-*") if each != current]
+    others.sort(key=lambda each: each.stat().st_mtime)
+    for each in others[: max(0, len(others) - OTHER_VERSIONS)]:
         shutil.rmtree(each, ignore_errors=True)
 
 
 @contextmanager
-def numba_cache(place: Path | None) -> Iterator[None]:
-    """Functions that are decorated inside keep their machine code in `place`; numba's own setting is put back."""
+def numba_cache(path: Path | None) -> Iterator[None]:
+    """Let numba keep functions that are made in this block in a folder, and restore its setting afterwards."""
     before = config.CACHE_DIR
-    config.CACHE_DIR = str(place or before)
+    config.CACHE_DIR = str(path or before)
     try:
         yield
     finally:
@@ -88,16 +87,16 @@ def numba_cache(place: Path | None) -> Iterator[None]:
 
 
 @contextmanager
-def locked(place: Path) -> Iterator[None]:
-    """Hold the lock of a folder: no other process has it before the block ends.
+def locked(path: Path) -> Iterator[None]:
+    """Hold the lock of a folder during this block: other processes wait.
 
     numba reads a folder's index, adds an entry and writes it again: of two processes that do so at once one could be
-    given the machine code of the other. Without a lock where the system has none, as on Windows, or refuses it.
+    given the machine code of the other. There is no lock where the system has none, as on Windows, or refuses it.
     """
-    with ExitStack() as held:
+    with ExitStack() as stack:
         if sys.platform != "win32":
             with suppress(OSError):
-                folder = os.open(place, os.O_RDONLY)
-                held.callback(os.close, folder)
-                fcntl.flock(folder, fcntl.LOCK_EX)
+                descriptor = os.open(path, os.O_RDONLY)
+                stack.callback(os.close, descriptor)
+                fcntl.flock(descriptor, fcntl.LOCK_EX)
         yield

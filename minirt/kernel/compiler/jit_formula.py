@@ -1,4 +1,4 @@
-"""The formula of a kind of shape alone, compiled as it is for the kernel: for measuring it."""
+"""Compiled intersection formula of one kind of shape, for measurements of its error and its speed."""
 
 from __future__ import annotations
 
@@ -8,36 +8,35 @@ from math import inf
 from typing import Any
 
 from numba import njit
-from numba.extending import register_jitable
 
-from minirt.kernel.compiler.code_cache import FLAGS
-from minirt.kernel.compiler.jit import INNER, own_functions
+from minirt.kernel.compiler import kernel_functions  # noqa: F401  (registers the formulas of all kinds)
+from minirt.kernel.compiler.inlining import inline_functions_of
+from minirt.kernel.compiler.options import FLAGS
 from minirt.kernel.rows import read
 from minirt.lanes import Vec, load, save, where, width
 from minirt.shapes import ALL_KINDS
 
-KNOWN = {kind.intersect.__module__ for kind in ALL_KINDS}  # whose functions have a compiled form
+REGISTERED_MODULES = {kind.intersect.__module__ for kind in ALL_KINDS}
 
 
 @cache
 def probe(formula: Any) -> Any:
-    """`f(rows, each, origins, directions, distances, times)`: where rays meet shapes, by a formula like
-    `Kind.intersect`, worked out so many times.
+    """Compile `f(rows, rays_per_shape, origins, directions, distances, times)`, which intersects rays with shapes by a
+    formula like `Kind.intersect`, again and again for as many `times`.
 
-    Ray i of the m runs against the shape in row `i // each`; `each` is a multiple of a packet's rays. Origins and
+    Ray i of the m runs against the shape in row `i // rays_per_shape`, a multiple of a packet's rays. Origins and
     directions are (3, m); distances, (m,), become infinite where the ray misses. The precision is that of the arrays.
     """
-    if formula.__module__ not in KNOWN:
-        KNOWN.add(formula.__module__)
-        for each in own_functions(sys.modules[formula.__module__]):
-            register_jitable(**INNER)(each)
+    if formula.__module__ not in REGISTERED_MODULES:
+        REGISTERED_MODULES.add(formula.__module__)
+        inline_functions_of(sys.modules[formula.__module__])
 
-    def run(rows: Any, each: int, origins: Any, directions: Any, distances: Any, times: int) -> None:
+    def run(rows: Any, rays_per_shape: int, origins: Any, directions: Any, distances: Any, times: int) -> None:
         for _ in range(times):
             for i in range(0, distances.size, width(distances)):
                 origin = Vec(load(origins[0], i), load(origins[1], i), load(origins[2], i))
                 direction = Vec(load(directions[0], i), load(directions[1], i), load(directions[2], i))
-                hit, t = formula(read(rows, i // each), origin, direction)
+                hit, t = formula(read(rows, i // rays_per_shape), origin, direction)
                 save(where(hit, t, inf), distances, i)
 
     return njit(**FLAGS)(run)

@@ -1,143 +1,115 @@
-"""How numba compiles a function that only ever becomes a part of another.
+"""Lean compiler pipeline for functions that are always inlined into a kernel.
 
-A call of it is replaced by its body, so its own machine code would be made for nothing: left out, a kernel compiles in
-three quarters of the time. Of the steps that numba takes only those are taken that plain arithmetic, calls, branches
+A call of such a function is replaced by its body, so machine code of its own would be made for nothing: without it a
+kernel compiles in three quarters of the time. Of numba's passes only those run that plain arithmetic, calls, branches
 and loops need, which saves another fifth.
 """
 
 from __future__ import annotations
 
-import operator
 from typing import Any
 
-from numba import _dynfunc, types
-from numba.core import ir
-from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
-from numba.core.compiler_machinery import FunctionPass, PassManager, _pass_registry, register_pass
-from numba.core.ir_utils import get_definition, guard
-from numba.core.typed_passes import NativeLowering, NoPythonBackend, NopythonTypeInference, PreLowerStripPhis
-from numba.core.untyped_passes import DeadBranchPrune, FixupArgs, IRProcessing, ReconstructSSA, TranslateByteCode
+from numba.core.compiler_machinery import PassManager, register_pass
 
-
-class Part(JITCodeLibrary):
-    """LLVM code that is linked into that of others and becomes machine code only there."""
-
-    whole: Any = None  # with all that it calls
-
-    def finalize(self) -> None:
-        """The whole is optimised, and each part linked into it once."""
-        for function in self._final_module.functions:
-            if not function.is_declaration:
-                function.linkage = "linkonce_odr"  # the same in several parts is one in the whole
-        self._finalized = True
-
-    def _get_module_for_linking(self) -> Any:
-        """The part with all parts of it."""
-        if self.whole is None:
-            self.whole = self._final_module.clone()
-            for each in reversed(called(self, [])):  # linked is only what something refers to that is there already
-                module = each._final_module if isinstance(each, Part) else each._get_module_for_linking()
-                self.whole.link_in(module, preserve=True)
-        return self.whole
-
-
-def called(library: Any, found: list[Any]) -> list[Any]:
-    """What is found already and what a library calls, directly or not; callers come after all that they call."""
-    for each in library._linking_libraries:
-        if each not in found:
-            if isinstance(each, Part):
-                called(each, found)
-            found.append(each)
-    return found
-
-
-@register_pass(mutates_CFG=False, analysis_only=False)
-class Presence(FunctionPass):
-    """Decides `x is None` and `x.y is None` by the type of an argument x, for the next step to see."""
-
-    _name = "presence"
-
-    def __init__(self) -> None:
-        FunctionPass.__init__(self)
-
-    def run_pass(self, state: Any) -> bool:
-        for block in state.func_ir.blocks.values():
-            for found in block.find_insts(ir.Assign):
-                decided = decision(state, found.value)
-                if decided is not None:
-                    found.value = ir.Const(decided, found.loc)
-                    state.func_ir._definitions[found.target.name] = [found.value]
-        return False
-
-
-def decision(state: Any, asked: Any) -> bool | None:
-    """What the answer always is, or None where something else is asked or the answer is not known."""
-    if not (isinstance(asked, ir.Expr) and asked.op == "binop" and asked.fn in (operator.is_, operator.is_not)):
-        return None
-    left, right = (guard(get_definition, state.func_ir, side) for side in (asked.lhs, asked.rhs))
-    kind = kind_of(state, left)
-    if kind is None or not (isinstance(right, ir.Const) and right.value is None):
-        return None
-    return bool((kind == types.none) == (asked.fn is operator.is_))
-
-
-def kind_of(state: Any, definition: Any) -> Any:
-    """The type of an argument, or of a field of one; None for all else."""
-    if isinstance(definition, ir.Arg):
-        return state.args[definition.index]
-    if not (isinstance(definition, ir.Expr) and definition.op == "getattr"):
-        return None
-    owner = kind_of(state, guard(get_definition, state.func_ir, definition.value))
-    return owner and state.typingctx.resolve_getattr(owner, definition.attr)
-
-
-@register_pass(mutates_CFG=True, analysis_only=False)
-class PartLowering(NativeLowering):
-    """Makes a Part of a function whose types are known."""
-
-    _name = "part_lowering"
-
-    def run_pass(self, state: Any) -> bool:
-        state.library = part = Part(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.flags.no_compile = True
-        super().run_pass(state)
-        lowered = state.cr
-        # What numba knows a compiled function by; nobody calls it.
-        name = _dynfunc.make_function(lowered.fndesc.lookup_module(), lowered.fndesc.qualname, "", 0, lowered.env, part)
-        state.targetctx.insert_user_function(name, lowered.fndesc, [part])
-        state.cr = lowered._replace(cfunc=name)
-        return True
-
-
-STEPS = (
-    (TranslateByteCode, "what the function does"),
-    (FixupArgs, "its arguments"),
-    (IRProcessing, "where its variables live"),
-    (Presence, "what of its arguments is there"),
-    (DeadBranchPrune, "without what is never done then"),
-    (ReconstructSSA, "a variable for each value"),
-    (NopythonTypeInference, "the types of all"),
-    (PreLowerStripPhis, "one variable where ways meet"),
-    (PartLowering, "LLVM code"),
-    (NoPythonBackend, "the result"),
+from minirt.kernel.compiler.none_pruning import NoneChecks
+from minirt.kernel.compiler.numba_internals import (
+    CodeLibrary,
+    DeadBranchPrune,
+    FixupArgs,
+    IRProcessing,
+    NativeLowering,
+    NoPythonBackend,
+    NopythonTypeInference,
+    PreLowerStripPhis,
+    ReconstructSSA,
+    TranslateByteCode,
+    callees_of,
+    function_object,
+    module_to_link,
+    run_pass,
 )
 
 
-class Steps(PassManager):
-    """Takes the steps one after the other. numba's own manager goes through the code anew after each."""
+class InlinedCode(CodeLibrary):
+    """LLVM code of one function, which becomes machine code only as a part of the kernel that links it."""
+
+    linked: Any = None  # the module of this function and of all that it calls
+
+    def finalize(self) -> None:
+        """Finish without optimising: the kernel is optimised once, as a whole."""
+        for function in self.module.functions:
+            if not function.is_declaration:
+                function.linkage = "linkonce_odr"  # copies that come with several callers are merged
+        self.mark_finalized()
+
+    def linked_module(self) -> Any:
+        """Return the module of this function and of all that it calls."""
+        if self.linked is None:
+            self.linked = self.module.clone()
+            for each in reversed(all_callees(self, [])):  # LLVM links only what earlier code refers to
+                module = each.module if isinstance(each, InlinedCode) else module_to_link(each)
+                self.linked.link_in(module, preserve=True)
+        return self.linked
+
+
+def all_callees(library: Any, callees: list[Any]) -> list[Any]:
+    """Append to `callees` all libraries that a library calls, directly or not, callees before their callers."""
+    for each in callees_of(library):
+        if each not in callees:
+            if isinstance(each, InlinedCode):
+                all_callees(each, callees)
+            callees.append(each)
+    return callees
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class InlinedLowering(NativeLowering):
+    """Lower a typed function to `InlinedCode`."""
+
+    _name = "inlined_lowering"
+
+    def run_pass(self, state: Any) -> bool:
+        """Lower the function, without machine code."""
+        state.library = library = InlinedCode(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.flags.no_compile = True
+        super().run_pass(state)
+        function = function_object(state.cr, library)
+        state.targetctx.insert_user_function(function, state.cr.fndesc, [library])
+        state.cr = state.cr._replace(cfunc=function)
+        return True
+
+
+PASSES = (
+    (TranslateByteCode, "read the bytecode"),
+    (FixupArgs, "number the arguments"),
+    (IRProcessing, "find the lifetimes of variables"),
+    (NoneChecks, "decide checks for None"),
+    (DeadBranchPrune, "drop branches that are never taken"),
+    (ReconstructSSA, "static single assignment"),
+    (NopythonTypeInference, "infer types"),
+    (PreLowerStripPhis, "replace phi nodes by assignments"),
+    (InlinedLowering, "lower to LLVM code"),
+    (NoPythonBackend, "hand over the result"),
+)
+
+
+class LeanPassManager(PassManager):
+    """Runs passes one after the other. numba's own manager verifies and analyses the code anew after each."""
 
     def run(self, state: Any) -> None:
+        """Run all passes on a function."""
         for step, _ in self.passes:
-            _pass_registry.get(step).pass_inst.run_pass(state)
+            run_pass(step, state)
 
 
-class Inlined(CompilerBase):
-    """Compiles by these steps."""
+class InlinedCompiler(CompilerBase):
+    """Compiles a function by the lean pipeline."""
 
     def define_pipelines(self) -> list[PassManager]:
-        steps = Steps("inlined")
-        for step, what in STEPS:
-            steps.add_pass(step, what)
-        steps.finalize()
-        return [steps]
+        """Return the one pipeline that there is."""
+        manager = LeanPassManager("inlined")
+        for step, description in PASSES:
+            manager.add_pass(step, description)
+        manager.finalize()
+        return [manager]

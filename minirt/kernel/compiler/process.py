@@ -1,7 +1,7 @@
-"""Compiles a kernel in a process of its own, beside a window that must not wait: `python -m minirt.kernel.compiler.process`.
+"""Program that compiles a kernel into the cache on disk, so that a window need not wait.
 
-Standard input has the arguments that the kernel will be called with, pickled; it stays open for as long as somebody
-waits for the kernel. What is compiled is kept (`minirt.kernel.compiler.cache_folder`).
+`python -m minirt.kernel.compiler.process` reads the pickled arguments of the kernel from standard input, and ends when
+that is closed: then nobody waits for the kernel any more.
 """
 
 from __future__ import annotations
@@ -14,27 +14,28 @@ from importlib import import_module
 from subprocess import Popen
 from threading import Thread
 
-LISTS = [sys.executable, "-P", "-m", "minirt.kernel.compiler.process", "lists"]
+BINNING = "binning"  # argument: compile the binning of shapes instead of a kernel
+COMPILE_BINNING = [sys.executable, "-P", "-m", "minirt.kernel.compiler.process", BINNING]
 
 
 def main() -> None:
-    """Compile, or end as soon as nobody waits. Another process makes what makes the lists at the same time."""
-    gc.disable()  # a tenth less time
-    if sys.argv[1:] == LISTS[-1:]:
-        Thread(target=leave_at_end_of_input, daemon=True).start()
-        import_module("minirt.kernel.compiler.jit_binning")  # which compiles as it is imported
+    """Compile a kernel, and in a second process at the same time the binning of shapes."""
+    gc.disable()  # saves a tenth of the time
+    if sys.argv[1:] == [BINNING]:
+        Thread(target=exit_at_end_of_input, daemon=True).start()
+        import_module("minirt.kernel.compiler.jit_binning")  # compiles at import
         os._exit(0)
     arguments = pickle.load(sys.stdin.buffer)
-    Thread(target=leave_at_end_of_input, daemon=True).start()
-    with Popen(LISTS) as beside:
+    Thread(target=exit_at_end_of_input, daemon=True).start()
+    with Popen(COMPILE_BINNING) as second:
         from minirt.kernel.compiler import jit
 
         jit.compile(arguments)
-    os._exit(beside.returncode)  # to give back what the compiler took would need a tenth of the time
+    os._exit(second.returncode)  # freeing the compiler's memory would take a tenth of the time
 
 
-def leave_at_end_of_input() -> None:
-    """Whoever started this process closed the pipe, or was killed."""
+def exit_at_end_of_input() -> None:
+    """End this process when standard input is closed, as it is when the parent process ends."""
     os.read(sys.stdin.fileno(), 1)
     os._exit(1)
 

@@ -1,9 +1,8 @@
-"""The operators and verbs of the formulas, compiled.
+"""SIMD operations and operators, compiled: importing this module registers each with numba.
 
-Importing this module teaches numba what each of them becomes on float64, on lanes and on Vecs. An entry says for which
-types of arguments it holds, which type comes out, and which LLVM instructions do it.
+A registration says for which types of arguments it holds, which type results, and which LLVM instructions compute it.
 """
 
-from minirt.lanes.compiled import operations, operators, reductions, vec
+from minirt.lanes.compiled import float_bits, memory, operations, operators, reductions, vec
 
-__all__ = ["operations", "operators", "reductions", "vec"]
+__all__ = ["float_bits", "memory", "operations", "operators", "reductions", "vec"]

@@ -1,4 +1,4 @@
-"""The operators of Python, compiled, on lanes and masks."""
+"""Python's operators on lanes and masks, compiled."""
 
 from __future__ import annotations
 
@@ -15,39 +15,45 @@ from minirt.lanes.compiled.types import CONTRACT, Lanes, Mask, splat
 PAIRS = ((Lanes, Lanes), (Lanes, types.Number), (types.Number, Lanes))
 
 
-def two_lanes(a: types.Type, b: types.Type) -> types.Type | None:
-    """Lanes for two numbers of which one is lanes."""
+def lanes_type(a: types.Type, b: types.Type) -> types.Type | None:
+    """Return the type of arithmetic on two numbers of which at least one is lanes."""
     kind = two_numbers(a, b)
     return kind if isinstance(kind, Lanes) else None
 
 
-def a_mask(a: types.Type, b: types.Type) -> types.Type | None:
-    """A mask for two numbers of which one is lanes."""
-    kind = two_lanes(a, b)
+def mask_type(a: types.Type, b: types.Type) -> types.Type | None:
+    """Return the type of a comparison of two numbers of which at least one is lanes."""
+    kind = lanes_type(a, b)
     return kind and Mask(kind)
 
 
-def teach_arithmetic(function: Callable[..., Any], instruction: str) -> None:
-    @register(function, two_lanes, PAIRS)
+def register_arithmetic(function: Callable[..., Any], instruction: str) -> None:
+    """Register an arithmetic operator as one LLVM instruction."""
+
+    @register(function, lanes_type, PAIRS)
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         return getattr(builder, instruction)(*same_numbers(context, builder, sig, args), flags=CONTRACT)
 
 
-def teach_comparison(function: Callable[..., Any], symbol: str) -> None:
-    @register(function, a_mask, PAIRS)
+def register_comparison(function: Callable[..., Any], symbol: str) -> None:
+    """Register a comparison; with NaN all are false but `!=`."""
+
+    @register(function, mask_type, PAIRS)
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         compare = builder.fcmp_unordered if symbol == "!=" else builder.fcmp_ordered
         return compare(symbol, *same_numbers(context, builder, sig, args))
 
 
-def of_masks(a: types.Type, b: types.Type) -> types.Type | None:
-    """A mask for two masks, or for a mask and a truth that holds for all rays."""
+def logic_type(a: types.Type, b: types.Type) -> types.Type | None:
+    """Return the type of logic on two masks, or on a mask and one truth value for all lanes."""
     mask = next((kind for kind in (a, b) if isinstance(kind, Mask)), None)
     return mask if {a, b} <= {mask, types.boolean} else None
 
 
-def teach_logic(function: Callable[..., Any], instruction: str) -> None:
-    @register(function, of_masks, [(Mask, Mask), (Mask, types.Boolean), (types.Boolean, Mask)])
+def register_logic(function: Callable[..., Any], instruction: str) -> None:
+    """Register a logical operator as one LLVM instruction."""
+
+    @register(function, logic_type, [(Mask, Mask), (Mask, types.Boolean), (types.Boolean, Mask)])
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         masks = (
             value if isinstance(kind, Mask) else splat(builder, value, sig.return_type.lanes.count)
@@ -62,7 +68,7 @@ for _function, _instruction in (
     (operator.mul, "fmul"),
     (operator.truediv, "fdiv"),
 ):
-    teach_arithmetic(_function, _instruction)
+    register_arithmetic(_function, _instruction)
 for _function, _symbol in (
     (operator.lt, "<"),
     (operator.le, "<="),
@@ -71,9 +77,9 @@ for _function, _symbol in (
     (operator.eq, "=="),
     (operator.ne, "!="),
 ):
-    teach_comparison(_function, _symbol)
+    register_comparison(_function, _symbol)
 for _function, _instruction in ((operator.and_, "and_"), (operator.or_, "or_"), (operator.xor, "xor")):
-    teach_logic(_function, _instruction)
+    register_logic(_function, _instruction)
 
 
 @register(operator.neg, lambda a: a if isinstance(a, Lanes) else None, [(Lanes,)])

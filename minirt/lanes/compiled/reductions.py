@@ -1,4 +1,4 @@
-"""What is asked of all rays at once, compiled: verbs that make one answer of lanes or of a mask."""
+"""Reductions, compiled: operations that make one value of all lanes or of a mask."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ANY = types.Any
 
 
 def bits(builder: ir.IRBuilder, mask: Any) -> Any:
-    """A mask as a whole number with one bit a lane."""
+    """Return a mask as an integer with one bit for each lane."""
     return builder.bitcast(mask, ir.IntType(mask.type.count))
 
 
@@ -24,8 +24,8 @@ def bits(builder: ir.IRBuilder, mask: Any) -> Any:
 def _any(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     if sig.args[0] == types.boolean:
         return args[0]
-    whole = bits(builder, args[0])
-    return builder.icmp_unsigned("!=", whole, ir.Constant(whole.type, 0))
+    integer = bits(builder, args[0])
+    return builder.icmp_unsigned("!=", integer, ir.Constant(integer.type, 0))
 
 
 @register(operations.rarely, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
@@ -45,7 +45,7 @@ def _greatest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     best = constant(args[0], -inf)
     best = builder.select(builder.fcmp_ordered(">", args[0], best), args[0], best)
     count = best.type.count
-    while count > 1:  # the greater of each number and the one half a vector on
+    while count > 1:  # the greater of each lane and the lane half a vector further on
         count //= 2
         halves = (ir.Constant(ir.VectorType(I32, count), [*range(start, start + count)]) for start in (0, count))
         low, high = (builder.shuffle_vector(best, best, half) for half in halves)

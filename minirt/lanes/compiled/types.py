@@ -1,12 +1,9 @@
-"""Numbers of the processor's vector registers, as types of numba.
+"""SIMD lanes, masks and Vecs as types of numba.
 
-`numba` compiles a function once for each combination of argument types. Here it learns new types: `f64x16` and
-`f32x32`, sixteen or thirty-two floating-point numbers in one LLVM vector, and `i1x16` and `i1x32`, as many truths. LLVM
-does arithmetic on vectors as it does on single numbers and spreads a vector over as many registers of the processor as
-it takes (two of AVX-512, four of AVX2, eight of NEON), so an operator needs no more than the name of one LLVM
-instruction; a single number beside a vector is first copied to all of its lanes.
-
-`Vec` becomes a type here too: three numbers, each a single one or lanes.
+`f64x16` and `f32x32` are sixteen or thirty-two floating-point numbers in one LLVM vector, `i1x16` and `i1x32` as many
+truth values. LLVM does arithmetic on vectors as on single numbers and spreads a vector over as many registers as it
+takes (two of AVX-512, four of AVX2, eight of NEON): an operator is the name of one LLVM instruction. A single number
+beside a vector is first copied to all of its lanes. A Vec is three numbers, each a single one or lanes.
 """
 
 from __future__ import annotations
@@ -21,11 +18,11 @@ from numba.extending import make_attribute_wrapper, register_model
 
 from minirt.lanes.operations import BYTES
 
-CONTRACT = ("contract",)  # a * b + c may round once; nothing else is allowed to change a result
+CONTRACT = ("contract",)  # a * b + c may round once; nothing else may change a result
 
 
 class Lanes(types.Type):
-    """As many numbers of one type, float64 or float32, as there are rays in a packet of that precision."""
+    """A number for each ray of a packet, all float64 or all float32."""
 
     def __init__(self, number: types.Type) -> None:
         self.number = number
@@ -34,7 +31,7 @@ class Lanes(types.Type):
 
 
 class Mask(types.Type):
-    """A truth for each number of some lanes."""
+    """A truth value for each lane."""
 
     def __init__(self, lanes: Lanes) -> None:
         self.lanes = lanes
@@ -42,7 +39,7 @@ class Mask(types.Type):
 
 
 class VecType(types.Type):
-    """Three numbers of one type."""
+    """Three numbers of one type: x, y and z."""
 
     def __init__(self, number: types.Type) -> None:
         self.number = number
@@ -54,18 +51,24 @@ I32 = ir.IntType(32)
 
 @register_model(Lanes)
 class LanesModel(models.PrimitiveModel):
+    """Lanes are an LLVM vector of numbers."""
+
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, ir.VectorType(manager.lookup(kind.number).get_value_type(), kind.count))
 
 
 @register_model(Mask)
 class MaskModel(models.PrimitiveModel):
+    """A mask is an LLVM vector of bits."""
+
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, ir.VectorType(ir.IntType(1), kind.lanes.count))
 
 
 @register_model(VecType)
 class VecModel(models.StructModel):
+    """A Vec is an LLVM structure of three numbers."""
+
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, [(axis, kind.number) for axis in "xyz"])
 
@@ -75,12 +78,12 @@ for axis in "xyz":
 
 
 def is_number(kind: Any) -> bool:
-    """Whether a type stands for one number or for one number a lane."""
+    """Whether a type is a single number or lanes."""
     return isinstance(kind, (Lanes, types.Float, types.Integer))
 
 
 def common(*kinds: types.Type) -> types.Type:
-    """The type of a result of numbers of these types: that of the lanes where there are any."""
+    """Return the type that numbers of these types are converted to: lanes if one of them is lanes."""
     lanes = [kind for kind in kinds if isinstance(kind, Lanes)]
     if lanes:
         return lanes[0]
@@ -89,7 +92,7 @@ def common(*kinds: types.Type) -> types.Type:
 
 
 def widen(context: Any, builder: ir.IRBuilder, value: Any, kind: types.Type, target: types.Type) -> Any:
-    """`value` as the type `target`: a single number is rounded to its precision and copied to all lanes."""
+    """Convert a value to the type `target`: a single number is rounded to its precision and copied to all lanes."""
     if kind == target:
         return value
     if not isinstance(target, Lanes):
@@ -98,37 +101,37 @@ def widen(context: Any, builder: ir.IRBuilder, value: Any, kind: types.Type, tar
 
 
 def splat(builder: ir.IRBuilder, value: Any, count: int) -> Any:
-    """A value in each of so many lanes."""
-    nothing = ir.Constant(ir.VectorType(value.type, count), ir.Undefined)
-    one = builder.insert_element(nothing, value, ir.Constant(I32, 0))
-    return builder.shuffle_vector(one, nothing, ir.Constant(ir.VectorType(I32, count), [0] * count))
+    """Copy a value to each of `count` lanes."""
+    undefined = ir.Constant(ir.VectorType(value.type, count), ir.Undefined)
+    first = builder.insert_element(undefined, value, ir.Constant(I32, 0))
+    return builder.shuffle_vector(first, undefined, ir.Constant(ir.VectorType(I32, count), [0] * count))
 
 
 def constant(like: Any, value: float | int) -> ir.Constant:
-    """A number of the LLVM type of `like`, in each lane where that has lanes."""
+    """Return a constant of the LLVM type of `like`, the same in each lane."""
     return ir.Constant(like.type, [value] * like.type.count if isinstance(like.type, ir.VectorType) else value)
 
 
 def llvm(builder: ir.IRBuilder, name: str, *values: Any) -> Any:
-    """A call of the LLVM intrinsic `name` on numbers or on lanes."""
+    """Call the LLVM intrinsic `name` on single numbers or on lanes."""
     kind = values[0].type
-    lanes = isinstance(kind, ir.VectorType)
-    number = "f64" if (kind.element if lanes else kind) == ir.DoubleType() else "f32"
+    is_vector = isinstance(kind, ir.VectorType)
+    number = "f64" if (kind.element if is_vector else kind) == ir.DoubleType() else "f32"
     function = cgutils.get_or_insert_function(
         builder.module,
         ir.FunctionType(kind, [value.type for value in values]),
-        f"llvm.{name}.v{kind.count}{number}" if lanes else f"llvm.{name}.{number}",
+        f"llvm.{name}.v{kind.count}{number}" if is_vector else f"llvm.{name}.{number}",
     )
     return builder.call(function, values)
 
 
 def vec_parts(builder: ir.IRBuilder, value: Any) -> list[Any]:
-    """The three components of a Vec."""
+    """Return the three components of a Vec."""
     return [builder.extract_value(value, index) for index in range(3)]
 
 
 def vec_of(context: Any, builder: ir.IRBuilder, kind: VecType, parts: list[Any]) -> Any:
-    """The Vec of three components."""
-    made = cgutils.create_struct_proxy(kind)(context, builder)
-    made.x, made.y, made.z = parts
-    return made._getvalue()
+    """Return the Vec of three components."""
+    vec = cgutils.create_struct_proxy(kind)(context, builder)
+    vec.x, vec.y, vec.z = parts
+    return vec._getvalue()

@@ -1,4 +1,4 @@
-"""Vec and its operators, compiled: the same instruction on three components."""
+"""Vec and its operators, compiled: one instruction for each of the three components."""
 
 from __future__ import annotations
 
@@ -17,17 +17,18 @@ from minirt.lanes.compiled.types import CONTRACT, VecType, common, constant, is_
 ANY = types.Any
 
 
-def three_numbers(x: types.Type, y: types.Type, z: types.Type) -> types.Type | None:
+def vec_type(x: types.Type, y: types.Type, z: types.Type) -> types.Type | None:
+    """Return the type of a Vec of three numbers."""
     return VecType(common(x, y, z)) if all(map(is_number, (x, y, z))) else None
 
 
-@register(vec.Vec, three_numbers, [(ANY, ANY, ANY)])
+@register(vec.Vec, vec_type, [(ANY, ANY, ANY)])
 def _vec(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return vec_of(context, builder, sig.return_type, same_numbers(context, builder, sig, args))
 
 
 def components(context: Any, builder: ir.IRBuilder, sig: Any, args: Any, number: types.Type) -> list[list[Any]]:
-    """For each argument its three components as `number`; a single number counts as three equal ones."""
+    """Return the three components of each argument, converted to `number`; a single number is repeated."""
     table = []
     for value, kind in zip(args, sig.args, strict=True):
         if isinstance(kind, VecType):
@@ -38,22 +39,27 @@ def components(context: Any, builder: ir.IRBuilder, sig: Any, args: Any, number:
 
 
 def two_vecs(a: types.Type, b: types.Type) -> types.Type | None:
+    """Return the type of an operation on two Vecs."""
     return VecType(common(a.number, b.number)) if isinstance(a, VecType) and isinstance(b, VecType) else None
 
 
 def vec_and_number(a: types.Type, b: types.Type) -> types.Type | None:
+    """Return the type of an operation on a Vec and a number."""
     if isinstance(a, VecType) and is_number(b):
         return VecType(common(a.number, b))
     return None
 
 
 def number_and_vec(a: types.Type, b: types.Type) -> types.Type | None:
+    """Return the type of an operation on a number and a Vec."""
     return vec_and_number(b, a)
 
 
-def teach_by_component(
+def register_by_component(
     function: Callable[..., Any], instruction: str, result: Result, pattern: tuple[Any, ...]
 ) -> None:
+    """Register an operator as one LLVM instruction on each component."""
+
     @register(function, result, [pattern])
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         table = components(context, builder, sig, args, sig.return_type.number)
@@ -61,10 +67,10 @@ def teach_by_component(
         return vec_of(context, builder, sig.return_type, parts)
 
 
-teach_by_component(operator.add, "fadd", two_vecs, (VecType, VecType))
-teach_by_component(operator.sub, "fsub", two_vecs, (VecType, VecType))
-teach_by_component(operator.mul, "fmul", vec_and_number, (VecType, ANY))
-teach_by_component(operator.mul, "fmul", number_and_vec, (ANY, VecType))
+register_by_component(operator.add, "fadd", two_vecs, (VecType, VecType))
+register_by_component(operator.sub, "fsub", two_vecs, (VecType, VecType))
+register_by_component(operator.mul, "fmul", vec_and_number, (VecType, ANY))
+register_by_component(operator.mul, "fmul", number_and_vec, (ANY, VecType))
 
 
 @register(operator.truediv, vec_and_number, [(VecType, ANY)])
@@ -81,6 +87,7 @@ def _negate_vec(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any
 
 
 def scalar_product(builder: ir.IRBuilder, a: list[Any], b: list[Any]) -> Any:
+    """Return the sum of the products of three components."""
     x, y, z = (builder.fmul(*pair, flags=CONTRACT) for pair in zip(a, b, strict=True))
     return builder.fadd(builder.fadd(x, y, flags=CONTRACT), z, flags=CONTRACT)
 

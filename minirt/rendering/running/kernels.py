@@ -47,5 +47,5 @@ class Kernels:
         if scene.shapes and self.jit.CACHE:
             packing = Packing(binning, self.precision, self.depth)
             arguments = frame_arguments(packing.pack(minimal_scene(scene), 1, 1), pixels)
-            if not self.jit.is_kept(arguments):
+            if not self.jit.is_compiled(arguments):
                 self.compile_process.compile(arguments)

@@ -12,7 +12,7 @@ from numba import njit, typeof
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
 from minirt.kernel.bvh import queries
 from minirt.kernel.bvh.nodes import WIDTH
-from minirt.kernel.compiler.code_cache import FLAGS
+from minirt.kernel.compiler.options import FLAGS
 from minirt.kernel.scene_arrays import by_reference
 from minirt.lanes import Vec, lane, load, where
 from minirt.shapes import KINDS

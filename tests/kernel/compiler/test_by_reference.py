@@ -1,4 +1,4 @@
-"""What lies in memory and is passed by its address is read as if it were passed as it is."""
+"""Passing by reference: a compiled function reads and writes the same numbers as if arrays were passed by value."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ from numba import njit
 from numba.core.errors import TypingError
 from numba.extending import register_jitable
 
-import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
-from minirt.kernel.compiler.code_cache import FLAGS
-from minirt.kernel.compiler.jit import INNER
+import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
+from minirt.kernel.compiler.options import FLAGS, INLINED
 from minirt.kernel.scene_arrays import by_reference
 from minirt.kernel.trace import for_each_kind
 
@@ -42,14 +41,14 @@ def read(outer: Any, i: int, out: Array) -> None:
     outer = by_reference(outer)
     out[0] = outer.table[i, 3] + outer.table[2, i]
     out[1] = outer.deep[i, 2, 4]
-    out[2] = outer.deep[2, i][3]  # of a row
+    out[2] = outer.deep[2, i][3]  # an item of a row
     out[3] = outer.inner.line[i] * outer.inner.number
     out[4] = outer.table.shape[0] * 100 + outer.table.shape[1] * 10 + len(outer.parts)
-    out[5] = for_each_kind(weighed, outer.parts, 1.0, i)
+    out[5] = for_each_kind(weighted_sum, outer.parts, 1.0, i)
 
 
-@register_jitable(**INNER)
-def weighed(part: Inner, state: float, i: int) -> float:
+@register_jitable(**INLINED)
+def weighted_sum(part: Inner, state: float, i: int) -> float:
     return 10.0 * state + part.line[i] * part.number
 
 
@@ -59,8 +58,8 @@ def write(table: Any, i: int) -> None:
     table[1][i] = table[i, 2] + 1
 
 
-@register_jitable(**INNER)
-def asked(outer: Any) -> int:
+@register_jitable(**INLINED)
+def checked(outer: Any) -> int:
     if outer.absent is not None and outer.absent[0] > 1:
         return int(outer.absent.unknown)
     if outer.table is None:
@@ -68,12 +67,12 @@ def asked(outer: Any) -> int:
     return 7
 
 
-def ask(outer: Any) -> int:
-    return asked(by_reference(outer))
+def check(outer: Any) -> int:
+    return checked(by_reference(outer))
 
 
 @pytest.mark.parametrize("i", [0, 1])
-def test_parts_rows_and_numbers(i: int) -> None:
+def test_fields_rows_and_numbers_are_read(i: int) -> None:
     plain, compiled = np.zeros(6), np.zeros(6)
     read(example(), i, plain)
     njit(**FLAGS)(read)(example(), i, compiled)
@@ -82,7 +81,7 @@ def test_parts_rows_and_numbers(i: int) -> None:
 
 
 @pytest.mark.parametrize("i", [0, 2])
-def test_numbers_can_be_put_into_an_array(i: int) -> None:
+def test_numbers_are_written_into_an_array(i: int) -> None:
     plain, compiled = np.zeros((3, 4)), np.zeros((3, 4))
     write(plain, i)
     njit(**FLAGS)(write)(compiled, i)
@@ -91,17 +90,17 @@ def test_numbers_can_be_put_into_an_array(i: int) -> None:
     assert plain[1, i] == 42
 
 
-def test_arrays_whose_rows_do_not_follow_each_other_are_passed_as_they_are() -> None:
+def test_arrays_that_are_not_contiguous_are_passed_by_value() -> None:
     plain, compiled = np.zeros(6), np.zeros(6)
-    askew = example()._replace(table=np.arange(12.0).reshape(4, 3).T)
-    read(askew, 1, plain)
-    njit(**FLAGS)(read)(askew, 1, compiled)
+    transposed = example()._replace(table=np.arange(12.0).reshape(4, 3).T)
+    read(transposed, 1, plain)
+    njit(**FLAGS)(read)(transposed, 1, compiled)
     assert np.array_equal(compiled, plain)
     with pytest.raises(TypingError):
-        njit(**FLAGS)(write)(askew.table, 1)
+        njit(**FLAGS)(write)(transposed.table, 1)
 
 
-def test_nothing_is_compiled_for_a_part_that_is_absent() -> None:
-    assert njit(**FLAGS)(ask)(example()) == 7
+def test_no_code_is_compiled_for_a_field_that_is_none() -> None:
+    assert njit(**FLAGS)(check)(example()) == 7
     with pytest.raises(TypingError):
-        njit(**FLAGS)(ask)(example()._replace(absent=np.ones(1)))
+        njit(**FLAGS)(check)(example()._replace(absent=np.ones(1)))

@@ -1,10 +1,10 @@
-"""The options with which functions are compiled: read from the compiler, and from the sources."""
+"""Compiler options of the kernel and of its functions: NaN is kept, division follows IEEE 754."""
 
 from __future__ import annotations
 
 import ast
 
-from minirt.kernel.compiler import jit
+from minirt.kernel.compiler import jit, options
 from minirt.kernel.rows import row_type
 from minirt.shapes import KINDS
 from tests.paths import PACKAGE
@@ -21,43 +21,45 @@ def test_the_kernel_divides_as_ieee_754_says_and_keeps_nan() -> None:
     assert options[FASTMATH] == {"contract"}
 
 
-def test_what_the_kernel_calls_has_no_flags_of_its_own() -> None:
-    # It is compiled with those of its caller.
-    assert not {"error_model", FASTMATH} & set(jit.INNER)
+def test_inlined_functions_have_no_flags_of_their_own() -> None:
+    # They are compiled with the flags of their caller.
+    assert not {"error_model", FASTMATH} & set(options.INLINED)
 
 
 def calls(source: str) -> list[ast.Call]:
-    """All calls in a source."""
+    """Return all calls in a source."""
     return [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call)]
 
 
-def wrong(source: str) -> list[str]:
-    """What a source compiles without the project's flags."""
-    found = []
+def calls_with_other_flags(source: str) -> list[str]:
+    """Describe the calls of a source that compile without the project's flags."""
+    descriptions = []
     for call in calls(source):
         name = call.func.id if isinstance(call.func, ast.Name) else getattr(call.func, "attr", "")
         keywords = {each.arg: ast.unparse(each.value) for each in call.keywords}
         if keywords.get(FASTMATH, "{'contract'}") != "{'contract'}":
-            found.append(f"{name} with fastmath={keywords[FASTMATH]}")
+            descriptions.append(f"{name} with fastmath={keywords[FASTMATH]}")
         if name in COMPILERS and keywords.get("error_model") != "'numpy'" and keywords.get(None) != "FLAGS":
-            found.append(f"{name} without the error model of numpy")
-    return found
+            descriptions.append(f"{name} without the error model of numpy")
+    return descriptions
 
 
 def test_no_source_compiles_with_other_flags() -> None:
     sources = {path: path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py")}
-    assert {path.name: wrong(source) for path, source in sources.items() if wrong(source)} == {}
-    assert sum("njit(" in source for source in sources.values()) == 2
+    assert [call for source in sources.values() for call in calls_with_other_flags(source)] == []
+    assert sum("njit(" in source for source in sources.values()) == 3
 
 
-def test_other_flags_do_not_pass() -> None:
-    assert wrong("njit(fastmath=True, error_model='numpy')(f)") == ["njit with fastmath=True"]
-    assert wrong("@numba.njit(cache=True)\ndef f(): pass") == ["njit without the error model of numpy"]
-    assert wrong("njit(**FLAGS)(f)") == []
-    assert wrong("register_jitable(fastmath={'nnan'})(f)") == ["register_jitable with fastmath={'nnan'}"]
+def test_planted_flags_are_found() -> None:
+    assert calls_with_other_flags("njit(fastmath=True, error_model='numpy')(f)") == ["njit with fastmath=True"]
+    assert calls_with_other_flags("@numba.njit(cache=True)\ndef f(): pass") == ["njit without the error model of numpy"]
+    assert calls_with_other_flags("njit(**FLAGS)(f)") == []
+    assert calls_with_other_flags("register_jitable(fastmath={'nnan'})(f)") == [
+        "register_jitable with fastmath={'nnan'}"
+    ]
 
 
-def test_instructions_may_contract_and_nothing_else() -> None:
+def test_contraction_is_the_only_fast_math_of_instructions() -> None:
     compiled(*BENIGN[0])
     code = "\n".join(kernel().inspect_llvm().values())
     assert " contract " in code

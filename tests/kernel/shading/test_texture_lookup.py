@@ -10,7 +10,7 @@ import pytest
 from numba import njit
 
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
-from minirt.kernel.compiler.code_cache import FLAGS
+from minirt.kernel.compiler.options import FLAGS
 from minirt.kernel.shading import texture_lookup
 from minirt.lanes import load, save, width
 from minirt.rendering.packing.materials import TexturePool

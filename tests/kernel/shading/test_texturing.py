@@ -11,7 +11,7 @@ import pytest
 from numba import njit
 
 import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
-from minirt.kernel.compiler.code_cache import FLAGS
+from minirt.kernel.compiler.options import FLAGS
 from minirt.kernel.shading import texturing
 from minirt.kernel.shading.texture_lookup import height_gradient
 from minirt.kernel.shading.texturing import SurfaceMaps, bump_mapped, checkered, normal_mapped

@@ -21,7 +21,7 @@ from minirt.rendering.running.compile_process import CompileProcess
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Scene
 from minirt.shapes.sphere import Sphere
-from tests.kernel.compiler.copies import copied
+from tests.kernel.compiler.package_copies import copy_package
 from tests.paths import PACKAGE
 from tests.processes import run, started
 from tests.waiting import HANG_LIMIT, until
@@ -86,7 +86,7 @@ def test_another_process_compiles_and_the_next_program_finds_the_kernel(tmp_path
 
 
 def test_two_programs_may_compile_at_once(tmp_path: Path) -> None:
-    package = copied(tmp_path)
+    package = copy_package(tmp_path)
     with ThreadPoolExecutor(2) as pool:
         printed = list(pool.map(lambda _: prepared(tmp_path, tmp_path / "cache", package), range(2)))
     assert [each[1] for each in printed] == ["[30, 20, 10, 255]"] * 2

@@ -1,0 +1,56 @@
+"""Choice of formulas by the kind of a shape, at compile time: the type of a packed shape tells its kind.
+
+A kernel so holds code for the kinds of shapes that its scene has, and for no others.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba.extending import overload
+
+from minirt.kernel import rows, trace
+from minirt.kernel.compiler.options import INLINED
+from minirt.shapes import Kind
+
+# Parameters have no annotations: numba compares them with those of the implementation.
+
+
+@overload(rows.intersect, jit_options=INLINED, strict=False)
+def _intersect(shape, origin, direction):  # type: ignore[no-untyped-def]
+    return rows.kind_of_packed(shape.instance_class).intersect
+
+
+@overload(rows.surface, jit_options=INLINED, strict=False)
+def _surface(shape, point):  # type: ignore[no-untyped-def]
+    return rows.kind_of_packed(shape.instance_class).surface
+
+
+@overload(rows.shading, jit_options=INLINED, strict=False)
+def _shading(shape, point, normal):  # type: ignore[no-untyped-def]
+    return rows.kind_of_packed(shape.instance_class).shading
+
+
+@overload(rows.may_meet, jit_options=INLINED, strict=False)
+def _may_meet(shape, apex, start, direction, active):  # type: ignore[no-untyped-def]
+    return rows.kind_of_packed(shape.instance_class).may_meet
+
+
+@overload(rows.mapping, jit_options=INLINED, strict=False)
+def _mapping(shape, point, normal):  # type: ignore[no-untyped-def]
+    return rows.kind_of_packed(shape.instance_class).mapping
+
+
+@overload(trace.closest_of_kind, jit_options=INLINED, strict=False)
+def _closest_of_kind(group, state, arguments):  # type: ignore[no-untyped-def]
+    return trace.closest_batched if kind_of_group(group).batched else trace.closest_one_by_one
+
+
+@overload(trace.unoccluded_by_kind, jit_options=INLINED, strict=False)
+def _unoccluded_by_kind(group, visible, arguments):  # type: ignore[no-untyped-def]
+    return trace.unoccluded_batched if kind_of_group(group).batched else trace.unoccluded_one_by_one
+
+
+def kind_of_group(group: Any) -> Kind:
+    """Return the kind of the shapes of a group, by its type."""
+    return rows.kind_of(group.content[0].dtype.fields)
