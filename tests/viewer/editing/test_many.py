@@ -35,10 +35,10 @@ def test_an_action_reads_few_elements(many: Scene, action: str, selected: str) -
         visited.add(id(sphere))
         return object.__getattribute__(sphere, name)
 
-    state = apply(apply(opened(many), selected), "right")
-    with patch.object(Sphere, "__getattribute__", ask):
+    state = apply(apply(initial_state(many), selected), "right")
+    with patch.object(Sphere, "__getattribute__", visit):
         element_line(apply(state, action))
-        assert len(asked) <= 2 * ITEMS
+        assert len(visited) <= 2 * PAGE_LENGTH
 
 
 def test_undo_shares_all_but_a_page_of_each_scene(many: Scene) -> None:

@@ -12,6 +12,7 @@ from minirt.shapes.mesh import Mesh
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.outline import outline_pixels
+from minirt.viewer.editing.adding import addable_kinds
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state
 from tests.meshes.examples import named
