@@ -13,12 +13,13 @@ from minirt.kernel.shading import shade
 from minirt.lanes import splat
 from minirt.scene import FurtherLight, Scene
 from minirt.shapes.box import Box
+from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.square import Square
 from tests import reference
 from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, LAMP, SECOND, SHAPES, interpreted, linear
 
 SCENES = pytest.mark.parametrize("scene", [ALL, EVERY], ids=["some kinds", "every kind"])
-UPRIGHT = (Box, Square)  # their axis alone does not determine their orientation
+UPRIGHT = (Box, Ellipsoid, Square)  # their axis alone does not determine their orientation
 FREE = Scene(each for each in EVERY.elements if not isinstance(each, UPRIGHT))
 
 

@@ -38,7 +38,7 @@ Evaluate = Callable[[Shape, Array, Array], SurfaceMapping]
 
 def table(shape: Shape, number: Any = np.float64) -> Any:
     """The row of a shape."""
-    return execution_modes.packed_rows([shape]).astype(rows.row_type(execution_modes.kind_of(shape), number))
+    return execution_modes.shape_rows([shape]).astype(rows.row_type(execution_modes.kind_of(shape), number))
 
 
 def interpreted(shape: Shape, points: Array, normals: Array, formula: Any = None) -> SurfaceMapping:

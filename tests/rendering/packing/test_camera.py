@@ -162,7 +162,7 @@ def test_look_at_has_the_target_in_the_centre(roll: float) -> None:
 
 
 def test_look_at_needs_two_different_points() -> None:
-    with pytest.raises(ValueError, match="two places"):
+    with pytest.raises(ValueError, match="two different points"):
         Camera.look_at((1, 2, 3), (1, 2, 3))
 
 

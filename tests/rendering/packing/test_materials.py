@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from PIL import Image as pillow  # noqa: N813
 
+from minirt.element import fields_of
 from minirt.errors import FileError
-from minirt.materials import Bump, Checker, Glass, Specular
+from minirt.materials import Attributes, Bump, Checker, Compound, Glass, Specular
 from minirt.rendering.packing import materials
-from minirt.rendering.packing.features import features
+from minirt.rendering.packing.features import FEATURES, features
 from minirt.rendering.packing.materials import pack_environment, pack_materials
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
@@ -31,6 +32,14 @@ def folder(tmp_path: Path) -> Path:
 
 def scene_of(folder: Path, *shapes: Shape) -> Scene:
     return Scene((Camera((0, 0, -9), (0, 0, 1), 60), *shapes), folder / "scene.rt")
+
+
+def test_every_material_names_a_feature_that_is_packed() -> None:
+    for field in fields_of(Attributes):
+        feature = field.record.feature if isinstance(field, Compound) else field.feature
+        assert feature in FEATURES, f"{field.name} needs a feature in minirt/rendering/packing/features.py"
+        packed = {*materials.ROW_PACKERS, *materials.MAP_FEATURES}
+        assert feature in packed, f"{feature} needs a function in minirt/rendering/packing/materials.py"
 
 
 def test_plain_shapes_have_no_material_arrays(tmp_path: Path) -> None:
