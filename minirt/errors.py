@@ -68,6 +68,9 @@ class SceneError(MiniRTError):
         self.problems = problems
         super().__init__("\n".join(map(str, problems)))
 
+    def __reduce__(self) -> tuple[object, ...]:  # pickle would call the class with the message
+        return type(self), (self.problems,)
+
 
 class RenderError(MiniRTError):
     """A picture cannot be rendered or written."""
@@ -77,8 +80,12 @@ class FileError(MiniRTError):
     """A file cannot be used; `reason` is the message without the file's name."""
 
     def __init__(self, path: str | os.PathLike[str], reason: str) -> None:
+        self.path = os.fspath(path)
         self.reason = reason
-        super().__init__(f"{printable(os.fspath(path))}: {reason}")
+        super().__init__(f"{printable(self.path)}: {reason}")
+
+    def __reduce__(self) -> tuple[object, ...]:  # pickle would call the class with the message alone
+        return type(self), (self.path, self.reason)
 
 
 class ReplayError(MiniRTError):
