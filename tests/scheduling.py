@@ -45,6 +45,7 @@ SLOW = {
     "tests/stability/test_regimes.py",
     "tests/stability/test_reintersection.py",
     "tests/stability/test_surfaces.py",
+    "tests/test_fork_safety.py",
     "tests/test_random_materials.py",
     "tests/viewer/app/test_monkey.py",
     "tests/viewer/editing/test_every_kind.py",

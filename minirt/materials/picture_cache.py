@@ -7,13 +7,13 @@ import os
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from threading import Lock
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from minirt import regular_files
 from minirt.errors import FileError
+from minirt.fork_safety import ForkSafeLock
 
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
@@ -26,7 +26,7 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear red, gre
 Stamp = tuple[int, int, int]  # what changes when a file does
 
 entries: dict[tuple[Callable[[Path], np.ndarray], str], tuple[Stamp, np.ndarray]] = {}
-lock = Lock()
+lock = ForkSafeLock()
 
 
 def picture(path: str | os.PathLike[str]) -> np.ndarray:

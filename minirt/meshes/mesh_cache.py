@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from threading import Lock
 
 from minirt import regular_files
 from minirt.errors import FileError
+from minirt.fork_safety import ForkSafeLock
 from minirt.meshes.obj import ObjError, parse
 from minirt.meshes.triangles import Triangles
 
@@ -16,7 +16,7 @@ MAX_BYTES = 256 * 2**20  # 256 MiB
 Stamp = tuple[int, int, int]  # inode, size and modification time (ns) of a file
 
 cache: dict[str, tuple[Stamp, Triangles]] = {}
-lock = Lock()
+lock = ForkSafeLock()
 
 
 def load_mesh(path: str | os.PathLike[str]) -> Triangles:

@@ -12,6 +12,7 @@ from time import perf_counter
 import numpy as np
 
 from minirt.errors import RenderError
+from minirt.fork_safety import renew_after_fork
 from minirt.gc_pause import gc_paused
 from minirt.rendering.frame_arguments import NO_LINEAR
 from minirt.rendering.packing.features import DEPTH
@@ -43,6 +44,17 @@ class Renderer:
         self.busy = Lock()
         self.kernels = Kernels(precision, self.depth)
         self.runner = FrameRunner(self.threads, self.kernels)
+        renew_after_fork(self)
+
+    def after_fork(self) -> None:
+        """In a child process: replace the lock and drop the threads, which are the parent's.
+
+        The packed scene goes too, since a thread may have been packing it.
+        """
+        self.busy = Lock()
+        self.__dict__.pop("packing", None)
+        self.kernels.after_fork()
+        self.runner.after_fork()
 
     @cached_property
     def packing(self) -> Packing:

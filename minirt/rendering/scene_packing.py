@@ -11,6 +11,7 @@ import numpy as np
 
 from minirt.kernel.culling import binning
 from minirt.kernel.scene_arrays import Group, SceneArrays
+from minirt.rendering.compiler_modules import compiler_module
 from minirt.rendering.culling.light_frustum import dense_cluster
 from minirt.rendering.culling.planes import never_occludes
 from minirt.rendering.culling.visibility import (
@@ -64,7 +65,7 @@ class Packing:
 
     def pack_double(self, scene: Scene, width: int, height: int) -> SceneArrays:
         """Return the arrays in double precision, packed again even if the scene is the last one."""
-        self.kernel = self.kernel or import_module("minirt.kernel.compiler.jit_binning")
+        self.kernel = self.kernel or compiler_module("jit_binning")
         shapes = self.shape_arrays_for(scene.shapes)
         before, self.cache = self.cache, {}
 
@@ -117,9 +118,7 @@ class Packing:
     @cached_property
     def bvh_kernel(self) -> Any:
         """The functions that build a BVH: `minirt.kernel.compiler.jit_bvh`, or their interpreted form."""
-        return import_module(
-            "minirt.kernel.bvh.interpreted" if self.kernel is binning else "minirt.kernel.compiler.jit_bvh"
-        )
+        return import_module("minirt.kernel.bvh.interpreted") if self.kernel is binning else compiler_module("jit_bvh")
 
     @property
     def notes(self) -> list[str]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from numba import njit
 
-from minirt.kernel.compiler import cache_folder
+from minirt.kernel.compiler import cache_folder, fork_lock  # noqa: F401  (registers itself)
 from minirt.kernel.compiler.options import FAILED, FLAGS
 
 CACHE = None if FAILED else cache_folder.folder()  # None: kernels stay in memory

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from minirt.fork_safety import renew_after_fork
+from minirt.rendering.compiler_modules import compiler_module
 from minirt.rendering.running.cores import usable_cores
 from minirt.rendering.running.thread_pool import ThreadPool
 from minirt.scene import Scene
@@ -69,6 +71,17 @@ class Tracer:
     def __init__(self, threads: int | None) -> None:
         self.threads = threads or usable_cores()
         self.busy = Lock()
+        renew_after_fork(self)
+
+    def after_fork(self) -> None:
+        """In a child process: replace the lock and drop the threads, which are the parent's.
+
+        The BVH goes too, since a thread may have been building it.
+        """
+        self.busy = Lock()
+        self.shapes = None
+        for name in ("pool", "shape_arrays"):
+            self.__dict__.pop(name, None)
 
     @cached_property
     def pool(self) -> ThreadPool:
@@ -83,7 +96,7 @@ class Tracer:
     @cached_property
     def kernel(self) -> Any:
         """The module of the compiled queries. Importing it imports the compiler."""
-        return import_module("minirt.kernel.compiler.jit_bvh")
+        return compiler_module("jit_bvh")
 
     def trace(self, scene: Scene, origins: NDArray[np.float64], directions: NDArray[np.float64]) -> Hits:
         """Find the closest hits, as the function `trace` does, for arguments that were checked."""

@@ -22,6 +22,10 @@ class FrameRunner:
         self.cancellations = 0
         self.not_finite = 0  # rays since it was last set to 0 whose light was infinite or NaN, and is 0 in the picture
 
+    def after_fork(self) -> None:
+        """In a child process: drop the pool, whose threads are the parent's. The next picture starts new ones."""
+        self.__dict__.pop("pool", None)
+
     @cached_property
     def pool(self) -> ThreadPool:
         """The threads that render."""

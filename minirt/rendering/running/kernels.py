@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from functools import cached_property
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
 from minirt.kernel.culling import binning
+from minirt.rendering.compiler_modules import compiler_module
 from minirt.rendering.frame_arguments import frame_arguments
 from minirt.rendering.running.compile_process import CompileProcess
 from minirt.rendering.running.kernel_features import kernel_features, minimal_scene
@@ -26,10 +26,14 @@ class Kernels:
         self.ready: set[frozenset[Hashable]] = set()
         self.compile_process = CompileProcess()
 
+    def after_fork(self) -> None:
+        """In a child process: leave the compiling process, if there is one, to the parent."""
+        self.compile_process = CompileProcess()
+
     @cached_property
     def jit(self) -> Any:
         """The module of the compiled kernels. Importing it imports the compiler."""
-        return import_module("minirt.kernel.compiler.jit")
+        return compiler_module("jit")
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether the kernel for a scene was used before; a scene without shapes needs none."""

@@ -1,0 +1,182 @@
+"""Processes of users: after `os.fork()`, at any moment, a child process renders, traces and reads files.
+
+`os.fork()` copies one thread alone. Locks that others held, and pools of threads, are of no use in the child process.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from threading import Event, Lock, Thread
+from typing import Any
+from weakref import WeakSet
+
+import numpy as np
+import pytest
+
+from minirt import fork_safety
+from minirt.materials import picture_cache
+from minirt.meshes import mesh_cache
+from minirt.rendering import Renderer
+from minirt.rendering.queries.rays import Tracer
+from tests.cli.program import SCENE, environment
+from tests.kernel.pictures import ALL
+from tests.processes import run
+from tests.waiting import HANG_LIMIT
+
+pytestmark = [
+    pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork"),
+    pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning"),  # what Python 3.12 says of a fork
+]
+
+FORKED = """
+import os, threading, numpy, minirt
+scene = minirt.load("ball.rt")
+rays = [[0, 0, -5]], [[0, 0, 1]]
+before, hits = minirt.render(scene, 40, 30).array, minirt.trace(scene, *rays)
+child = os.fork()
+if not child:
+    same = numpy.array_equal(minirt.render(scene, 40, 30).array, before)
+    same &= minirt.trace(scene, *rays).distance == hits.distance
+    os._exit(0 if same else 1)
+assert os.waitpid(child, 0)[1] == 0
+assert numpy.array_equal(minirt.render(scene, 40, 30).array, before)  # the parent goes on, too
+"""
+
+FORKED_WHILE_RENDERING = """
+import os, threading, numpy, minirt
+from tests.waiting import until
+scene = minirt.load("ball.rt")
+before = minirt.render(scene, 40, 30).array
+renderer = minirt.renderer(None)
+def endless():
+    renderer.render(scene, numpy.zeros((2000, 4000, 4), numpy.uint8), 65536)
+thread = threading.Thread(target=endless)
+thread.start()
+until(lambda: renderer.runner.next_row.max() > 0 and renderer.busy.locked(), "the first row")
+child = os.fork()
+if not child:
+    os._exit(0 if numpy.array_equal(minirt.render(scene, 40, 30).array, before) else 1)
+status = os.waitpid(child, 0)[1]
+assert thread.is_alive()
+renderer.cancel()
+thread.join()
+assert status == 0
+"""
+
+POOL = """
+import multiprocessing, sys
+import numpy, minirt
+
+def picture(samples):
+    return minirt.render(minirt.load("ball.rt"), 40, 30, samples=samples).array
+
+if __name__ == "__main__":
+    expected = [picture(samples) for samples in (1, 2, 3)]
+    with multiprocessing.get_context(sys.argv[1]).Pool(2) as pool:
+        assert all(map(numpy.array_equal, pool.map(picture, (1, 2, 3)), expected))
+        try:
+            pool.apply(minirt.load, ("bad.rt",))
+        except minirt.SceneError as error:
+            assert error.problems[0].line == 1, error.problems
+        else:
+            raise AssertionError("no error")
+"""
+
+
+def run_script(folder: Path, source: str, *arguments: str) -> None:
+    """Run a program in a folder with a scene and a file that is no scene; it must end without errors."""
+    (folder / "ball.rt").write_text(SCENE)
+    (folder / "bad.rt").write_text("nonsense\n")
+    (folder / "program.py").write_text(source)
+    settings = environment() | {"PYTHONWARNINGS": "ignore::DeprecationWarning"}
+    ended = run([sys.executable, "program.py", *arguments], cwd=folder, env=settings, text=True)
+    assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def test_a_forked_child_renders_and_traces(tmp_path: Path) -> None:
+    run_script(tmp_path, FORKED)
+
+
+def test_a_child_renders_that_was_forked_while_another_thread_rendered(tmp_path: Path) -> None:
+    run_script(tmp_path, FORKED_WHILE_RENDERING)
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
+def test_a_pool_of_processes_renders_and_reports_errors(tmp_path: Path, method: str) -> None:
+    run_script(tmp_path, POOL, method)
+
+
+def holds_in_child(condition: Callable[[], bool]) -> bool:
+    """Fork, and return whether a condition holds in the child process."""
+    child = os.fork()
+    if not child:
+        status = 2
+        try:
+            status = 0 if condition() else 1
+        finally:
+            os._exit(status)
+    return os.waitpid(child, 0)[1] == 0
+
+
+def is_free(lock: Any) -> bool:
+    """Whether nobody holds a lock; it is taken by that."""
+    return bool(lock.acquire(blocking=False))
+
+
+RENDERER, TRACER = Renderer(1), Tracer(1)
+LOCKS: dict[str, Callable[[], Any]] = {
+    "renderer": lambda: RENDERER.busy,
+    "tracer": lambda: TRACER.busy,
+    "pictures": lambda: picture_cache.lock.lock,
+    "meshes": lambda: mesh_cache.lock.lock,
+}
+
+
+@pytest.mark.parametrize("owner", LOCKS)
+def test_locks_that_other_threads_hold_are_free_in_a_child(owner: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    lock_of = LOCKS[owner]
+    with lock_of():
+        assert holds_in_child(lambda: is_free(lock_of()))
+        assert lock_of().locked()  # in the parent process nothing changes
+        monkeypatch.setattr(fork_safety, "renewables", WeakSet())  # nothing is renewed: the check notices
+        assert not holds_in_child(lambda: is_free(lock_of()))
+
+
+def test_pools_of_threads_are_new_in_a_child(monkeypatch: pytest.MonkeyPatch) -> None:
+    renderer, tracer = Renderer(1), Tracer(1)
+    assert renderer.render(ALL, np.zeros((4, 4, 4), np.uint8))
+    pools = renderer.runner.pool, tracer.pool
+    are_new = lambda: renderer.runner.pool is not pools[0] and tracer.pool is not pools[1]  # noqa: E731
+    assert holds_in_child(are_new)
+    assert (renderer.runner.pool, tracer.pool) == pools
+    monkeypatch.setattr(fork_safety, "renewables", WeakSet())
+    assert not holds_in_child(are_new)
+
+
+def test_a_child_leaves_the_compiling_process_to_its_parent() -> None:
+    renderer = Renderer(1)
+    compiling = renderer.kernels.compile_process
+    assert holds_in_child(lambda: renderer.kernels.compile_process is not compiling)
+    assert renderer.kernels.compile_process is compiling
+
+
+def test_a_fork_waits_for_a_thread_that_compiles() -> None:
+    """A thread compiles until the fork is under way; the child process would never get its lock."""
+    from minirt.kernel.compiler import fork_lock
+
+    compiling, forking, ended = Event(), Event(), Lock()
+
+    def compile() -> None:
+        with fork_lock.global_compiler_lock, ended:
+            compiling.set()
+            forking.wait(HANG_LIMIT)
+
+    os.register_at_fork(before=forking.set)  # called before the hook of `fork_lock`, which was registered earlier
+    thread = Thread(target=compile)
+    thread.start()
+    compiling.wait(HANG_LIMIT)
+    assert holds_in_child(lambda: is_free(ended) and is_free(fork_lock.global_compiler_lock._lock))
+    thread.join()
