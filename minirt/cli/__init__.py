@@ -7,13 +7,13 @@ and `--version` come at once.
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TextIO
 
 from minirt.cli.arguments import Arguments, argument_parser
 from minirt.cli.exit_status import FAILED, INTERRUPTED, OK, USAGE
+from minirt.cli.output import hide_warnings, prepare_streams, say, tell
 from minirt.errors import MiniRTError
 
 if TYPE_CHECKING:
@@ -22,13 +22,15 @@ if TYPE_CHECKING:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the program and return its exit status."""
+    prepare_streams()
+    if argv is None:  # a program of its own
+        hide_warnings()
     try:
         return run(argument_parser(), argv)
     except MiniRTError as error:
-        print("Error", error, sep="\n", file=sys.stderr)
+        tell(f"Error\n{error}")
         return FAILED
     except BrokenPipeError:  # the reader of standard output has closed it
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except KeyboardInterrupt:
         return INTERRUPTED
@@ -38,7 +40,7 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
     """Parse the arguments and run the command that they select."""
     options = parser.parse_args(argv)
     if options.version or options.list_keys:
-        print(version() if options.version else keys())
+        say(version() if options.version else keys())
         return OK
     check_options(parser, options)
     from minirt.cli.commands import command_for
@@ -87,5 +89,5 @@ def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
 
     scene, notices = load(options.scene[0], options.lenient, options.left_handed)
     for notice in notices:
-        print(f"notice: {notice}", file=stream, flush=True)
+        tell(f"notice: {notice}", stream)
     return scene

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from typing import NoReturn
+import sys
+from typing import Any, NoReturn
 
 from minirt import DEFAULT_ERROR
 from minirt.cli.argument_values import positive_number, size, whole_number
 from minirt.cli.exit_status import USAGE
+from minirt.cli.output import say, tell
 
 SAMPLES, WINDOW_SAMPLES = 1, 16  # default samples a pixel: of a file, of the window
 DEPTH, MAX_DEPTH = 8, 32  # bounces of light: default and limit
@@ -19,6 +21,13 @@ class Arguments(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Exit with the status for wrong arguments; argparse calls this."""
         self.fail(message, USAGE)
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print a help text or an error; argparse calls this, and would not notice that it cannot be written."""
+        if file is sys.stdout:
+            say(message, end="")
+        else:
+            tell(message.rstrip("\n"))
 
     def fail(self, message: str, status: int) -> NoReturn:
         """Print the message and the usage to standard error, and exit with `status`."""

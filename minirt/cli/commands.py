@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from minirt.cli.exit_status import OK
+from minirt.cli.output import say
 from minirt.cli.picture import render_to_file
 from minirt.cli.turntable import render_turntable
 from minirt.cli.window import replay, show
@@ -35,7 +36,7 @@ def command_for(options: argparse.Namespace) -> Command:
 
 def check(scene: Scene, options: argparse.Namespace) -> int:
     """Print that the scene was read without errors, and the number of its shapes and lights."""
-    print(f"{options.scene[0]}: no errors, {len(scene.shapes)} shapes, {len(scene.lights)} lights")
+    say(f"{options.scene[0]}: no errors, {len(scene.shapes)} shapes, {len(scene.lights)} lights")
     return OK
 
 
@@ -44,7 +45,7 @@ def bench(scene: Scene, options: argparse.Namespace) -> int:
     from minirt.bench import measure, report
 
     measured = measure(options.scene[0], scene, options.size, options.threads, options.precision)
-    print(report(measured, options.json))
+    say(report(measured, options.json))
     return OK
 
 
@@ -54,5 +55,5 @@ def report(scene: Scene, options: argparse.Namespace) -> int:
     from minirt.report import report as write_report
 
     size = options.size or minirt.size_of(scene)
-    print(write_report(scene, options.scene[0], options.report, size, options.threads, options.quick))
+    say(write_report(scene, options.scene[0], options.report, size, options.threads, options.quick))
     return OK

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import TYPE_CHECKING
 
 from minirt.cli.arguments import SAMPLES
 from minirt.cli.exit_status import OK
+from minirt.cli.output import say_bytes, tell
 from minirt.gc_pause import gc_paused
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def render(scene: Scene, options: argparse.Namespace) -> Image:
     renderer = minirt.renderer(options.threads, options.precision, options.depth)
     if options.verbose:
         renderer.prepare(scene)
-        print(f"kernel ready after {perf_counter() - start:.2f} s", file=sys.stderr)
+        tell(f"kernel ready after {perf_counter() - start:.2f} s")
         start = perf_counter()
     samples = options.samples or SAMPLES
     image = minirt.render(
@@ -48,29 +48,27 @@ def render(scene: Scene, options: argparse.Namespace) -> Image:
         depth=options.depth,
     )
     if image.reached:
-        print(image.reached, file=sys.stderr)
+        tell(image.reached)
     if options.precision == "single":
         from minirt.report.measurements.stiffness import lost_in_single
 
         for stiff in lost_in_single(scene, renderer.packing, width, height):
-            print(f"notice: single precision cannot show {stiff}", file=sys.stderr)
+            tell(f"notice: single precision cannot show {stiff}")
     if options.verbose:
         sampling = "" if image.reached else f"{samples} samples a pixel, "
-        print(
+        tell(
             f"{width}x{height}, {sampling}{renderer.threads} threads, {renderer.precision} precision: "
-            f"{(perf_counter() - start) * 1e3:.1f} ms",
-            f"rays whose light is not finite: {renderer.not_finite}",
-            *renderer.packing.notes,
-            sep="\n",
-            file=sys.stderr,
+            f"{(perf_counter() - start) * 1e3:.1f} ms"
         )
+        tell(f"rays whose light is not finite: {renderer.not_finite}")
+        for note in renderer.packing.notes:
+            tell(note)
     return image
 
 
 def write(image: Image, output: str) -> None:
     """Write a picture to a file, or to standard output as PNG when `output` is `-`."""
     if output == "-":
-        sys.stdout.buffer.write(image.encode())
-        sys.stdout.buffer.flush()
+        say_bytes(image.encode())
         return
     image.save(output)

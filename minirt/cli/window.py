@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from minirt.cli.arguments import SAMPLES, WINDOW_SAMPLES
 from minirt.cli.exit_status import OK
+from minirt.cli.output import say
 from minirt.cli.picture import render, write
 from minirt.errors import MlxError, ReplayError
 
@@ -34,9 +35,9 @@ def show(scene: Scene, options: argparse.Namespace) -> int:
     except MlxError as error:
         if not options.fallback:
             raise
-        print(f"{error}\nNo window: rendering to {options.fallback} instead.")
+        say(f"{error}\nNo window: rendering to {options.fallback} instead.")
         write(render(scene, options), options.fallback)
-        print(f"The picture is in {os.path.abspath(options.fallback)}")  # noqa: PTH100
+        say(f"The picture is in {os.path.abspath(options.fallback)}")  # noqa: PTH100
         return OK
 
 

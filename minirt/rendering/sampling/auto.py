@@ -55,7 +55,7 @@ class AutoSampler:
         if not self.first_round():
             return None
         contrast, cost = self.contrast(), self.cost(self.doublings)
-        while (squared := self.halves.squared_error) > error**2:
+        while (squared := self.halves.squared_error) > error * error:  # infinite for a huge error
             now = perf_counter()
             left = start + seconds - now
             if left <= 0:

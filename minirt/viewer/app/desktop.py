@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
@@ -56,7 +57,8 @@ def run(
     finally:
         if contents_differ(session.state.scene, session.saved):
             copy = save_recovery(session.state.scene, session.path)
-            print(f"The changes that were not saved are in {copy}")
+            with suppress(OSError):  # standard output may be closed
+                print(f"The changes that were not saved are in {copy}")
     if not stopped:
         exit_at_once(status)
     return status
@@ -146,6 +148,7 @@ def fit_screen(mlx: Mlx, display: Display, size: tuple[int, int]) -> tuple[int, 
 
 def exit_at_once(status: int) -> NoReturn:
     """End the process without waiting for its threads."""
-    sys.stdout.flush()
-    sys.stderr.flush()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, AttributeError):  # full, or closed
+            stream.flush()
     os._exit(status)

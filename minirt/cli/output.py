@@ -1,0 +1,83 @@
+"""Writing to standard output and standard error, which may be closed, full, or in another encoding.
+
+What was asked for goes to standard output, and is an error if it cannot be written. Notices and measurements go to
+standard error, and are dropped if they cannot.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections.abc import Callable
+from contextlib import suppress
+from io import TextIOWrapper
+from typing import TextIO
+
+from minirt.errors import RenderError
+
+
+def prepare_streams() -> None:
+    """Open the standard streams that the caller has closed, and let all of them write every character.
+
+    An open stream keeps its number from the next file that is opened. Nothing can be written to it.
+    """
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            with suppress(OSError):
+                os.fstat(number)
+                continue
+            mode = "r" if name == "stdin" else "w"
+            unwritable = os.open(os.devnull, os.O_RDONLY)
+            setattr(sys, name, open(unwritable, mode, encoding="utf-8", closefd=False))  # noqa: SIM115
+    if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.errors == "strict":
+        sys.stdout.reconfigure(errors="backslashreplace")  # as standard error does
+
+
+def hide_warnings() -> None:
+    """Hide the warnings of libraries, which are for their developers, unless Python was asked for them."""
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")
+
+
+def say(text: object, end: str = "\n") -> None:
+    """Print to standard output; RenderError when that fails."""
+    written(lambda: print(text, end=end, flush=True))
+
+
+def say_bytes(data: bytes) -> None:
+    """Write data to standard output; RenderError when that fails."""
+
+    def write() -> None:
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+
+    written(write)
+
+
+def written(write: Callable[[], None]) -> None:
+    """Call a function that writes to standard output; RenderError when that fails."""
+    try:
+        write()
+    except OSError as error:
+        mute(sys.stdout)
+        if isinstance(error, BrokenPipeError):  # its reader knows
+            raise
+        raise RenderError(f"standard output: cannot write: {error.strerror or error}") from None
+
+
+def tell(text: object, stream: TextIO | None = None) -> None:
+    """Print to standard error, or to another stream; do nothing when that fails."""
+    stream = stream or sys.stderr
+    try:
+        print(text, file=stream, flush=True)
+    except OSError:
+        mute(stream)
+
+
+def mute(stream: TextIO) -> None:
+    """Discard what a stream still holds and will get, which Python would try to write at its end."""
+    with suppress(OSError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
