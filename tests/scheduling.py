@@ -20,6 +20,7 @@ SCENE_TESTS = {"tests/test_goldens.py", "tests/stability/test_pictures.py", "tes
 # Files that `make quick` skips: they take two thirds of the time of all tests that open no window.
 SLOW = {
     "tests/bench/yardstick/test_yardstick.py",
+    "tests/cli/test_streams.py",
     "tests/kernel/bvh/test_queries.py",
     "tests/kernel/compiler/test_cache_folder.py",
     "tests/kernel/compiler/test_documented_pipeline.py",
@@ -31,6 +32,7 @@ SLOW = {
     "tests/rendering/queries/test_preview.py",
     "tests/rendering/running/test_compile_process.py",
     "tests/rendering/sampling/test_auto.py",
+    "tests/rendering/test_extreme_scenes.py",
     "tests/rendering/test_meshes.py",
     "tests/report/measurements/test_formula_errors.py",
     "tests/report/measurements/test_operation_counts.py",

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import hypot
+from sys import float_info
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
@@ -22,6 +23,8 @@ from minirt.shapes.bounds import point_along
 from minirt.shapes.quadric import negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns
+
+SHORTEST = float_info.min  # semi-axis, in scene units: half of a subnormal size may be 0
 
 
 @dataclass(frozen=True)
@@ -41,7 +44,7 @@ class Ellipsoid(Shape):
 
     def semi_axes(self) -> Triple:
         width, height, depth = self.sizes
-        return width / 2, height / 2, depth / 2
+        return max(width / 2, SHORTEST), max(height / 2, SHORTEST), max(depth / 2, SHORTEST)
 
     def axes(self) -> list[tuple[float, Triple]]:
         """The semi-axes in ascending order, each with its unit direction."""

@@ -49,10 +49,10 @@ class Paraboloid(Shape):
         bulges = []
         for i, (w, s) in enumerate(zip(self.axis, disc_extents(self.axis), strict=True)):
             # The outermost point along x, y or z lies below the rim if the paraboloid is tilted far enough.
-            share = self.diameter / 2 * s / (2 * self.height * abs(w)) if w else 1.0
-            if share < 1:
+            radius, fall = self.diameter / 2 * s, 2 * self.height * abs(w)
+            if radius < fall:  # so `fall` is not 0, as it may be where the height is subnormal
                 bulge = list(self.vertex)
-                bulge[i] -= self.diameter / 4 * s * share * (1 if w > 0 else -1)
+                bulge[i] -= self.diameter / 4 * s * (radius / fall) * (1 if w > 0 else -1)
                 bulges.append((bulge[0], bulge[1], bulge[2]))
         return union_of_bounds((self.vertex, self.vertex), rim, *((bulge, bulge) for bulge in bulges))
 

@@ -68,13 +68,15 @@ def cell_runs(grid: Grid, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray, 
     edges = (np.arange(grid.down) + np.array([[-grid.margin], [1 + grid.margin]]) - grid.middle_y) / grid.scale_y
     slack = MARGIN * (1 + grid.middle_x / grid.scale_x + grid.middle_y / grid.scale_y)
     most = dots[:, 2] + np.maximum(dots[:, 1] * edges[0], dots[:, 1] * edges[1]) + slack
-    with np.errstate(divide="ignore", invalid="ignore"):
-        edge = -most / dots[:, 0]
     nowhere = (dots[:, 0] == 0) & (most <= 0)
-    low = np.where(dots[:, 0] > 0, edge, np.where(nowhere, np.inf, -np.inf))
-    high = np.where(dots[:, 0] < 0, edge, np.where(nowhere, -np.inf, np.inf))
-    begin = np.clip(np.floor(low * grid.scale_x + grid.middle_x - grid.margin), 0, grid.across).astype(np.int64)
-    end = np.clip(np.floor(high * grid.scale_x + grid.middle_x + grid.margin), -1, grid.across - 1).astype(np.int64) + 1
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # an edge beyond all cells may be infinite
+        edge = -most / dots[:, 0]
+        low = np.where(dots[:, 0] > 0, edge, np.where(nowhere, np.inf, -np.inf))
+        high = np.where(dots[:, 0] < 0, edge, np.where(nowhere, -np.inf, np.inf))
+        begin = np.floor(low * grid.scale_x + grid.middle_x - grid.margin)
+        end = np.floor(high * grid.scale_x + grid.middle_x + grid.margin) + 1
+    begin = np.clip(begin, 0, grid.across).astype(np.int64)
+    end = np.clip(end, 0, grid.across).astype(np.int64)
     nonempty = np.flatnonzero(end > begin)
     plane, row = np.divmod(nonempty, len(grid.frames) * grid.down)
     return plane, row * grid.across + begin.ravel()[nonempty], (end - begin).ravel()[nonempty]

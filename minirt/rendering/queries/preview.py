@@ -36,9 +36,9 @@ def preview(scene: Scene, width: int, height: int) -> np.ndarray | None:
 
 def render_interpreted(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the picture of a scene in that size, and its light, (h, w, 3)."""
-    arrays = without_culling(Packing(binning, depth=0).pack(scene, width, height))
     y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
     with np.errstate(all="ignore"):
+        arrays = without_culling(Packing(binning, depth=0).pack(scene, width, height))
         direction = unit(ray_direction(arrays.camera, x, y))
         colour = incoming_radiance(arrays, thread_memory(arrays), 0, Vec(*arrays.camera[:3]), direction)
     light = np.stack([colour.x, colour.y, colour.z], axis=-1).reshape(height, width, 3)

@@ -50,6 +50,7 @@ class Kernels:
         """
         if scene.shapes and self.jit.CACHE:
             packing = Packing(binning, self.precision, self.depth)
-            arguments = frame_arguments(packing.pack(minimal_scene(scene), 1, 1), pixels)
+            with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
+                arguments = frame_arguments(packing.pack(minimal_scene(scene), 1, 1), pixels)
             if not self.jit.is_compiled(arguments):
                 self.compile_process.compile(arguments)

@@ -49,10 +49,11 @@ def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> 
     """Yield the stiff shapes of a scene in a picture of the given size."""
     camera = camera_numbers(scene.camera, width, height)
     seen = shape_views(tables, camera)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         scale = np.minimum(seen.size, seen.distance)
         double, single = seen.double / scale, seen.single / scale
         pixels = seen.size / (seen.distance * 2 * np.linalg.norm(camera[3:6]) / width)
+        thinness = np.where(seen.ahead & (pixels > 0), 1 / pixels, 0.0)
     for index, element in worst(tables, np.maximum(double, single), VISIBLE):
         small = seen.size[index] <= seen.distance[index]
         yield Stiff(
@@ -65,7 +66,6 @@ def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> 
                 "single": float(single[index]),
             },
         )
-    thinness = np.where(seen.ahead & (pixels > 0), 1 / pixels, 0.0)
     for index, element in worst(tables, thinness, 1.0):
         yield Stiff(element, "thinner than a pixel, so samples may miss it", {"pixels": float(pixels[index])})
 
