@@ -26,7 +26,7 @@ MAY: dict[str, set[str]] = {
     "image": {"errors", "atomic_write"},
     "movie": {"errors", "atomic_write", "image"},
     "scene": {"errors", "fields", "element", "materials", "meshes", "shapes", "atomic_write", "regular_files"},
-    "kernel": {"lanes", "shapes"},
+    "kernel": {"lanes", "shapes", "atomic_write"},
     "rendering": LOW | {"gc_pause", "kernel", "scene"},
     "mlx": {"errors"},
     "viewer": {
