@@ -173,9 +173,8 @@ def test_pictures_are_right_whatever_is_in_the_files_of_kernels(tmp_path: Path) 
     package, cache = copy_package(tmp_path).parent, tmp_path / "cache"
     name, *_, pixel = render_in_new_process(package, cache)
     kernels = sorted((cache / "minirt" / name).glob("*.kernel"))
-    for damage in (truncate, flip_a_bit_of_the_code, plant_a_pickle):
-        for path in kernels:
-            damage(path)
-        assert render_in_new_process(package, cache, "notice: a kernel in ") == [name, "0", "1", pixel]
-        assert render_in_new_process(package, cache) == [name, "1", "0", pixel]
+    for path, damage in zip(kernels, (truncate, flip_a_bit_of_the_code, plant_a_pickle), strict=True):
+        damage(path)
+    assert render_in_new_process(package, cache, "notice: a kernel in ") == [name, "0", "1", pixel]
+    assert render_in_new_process(package, cache) == [name, "1", "0", pixel]
     assert not (cache / "minirt" / name / "marker").exists()

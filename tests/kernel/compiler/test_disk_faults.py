@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from minirt.kernel.compiler import cache_folder, private_files
+from tests.kernel.compiler.package_copies import copy_package
 from tests.kernel.compiler.small_kernels import double, file_of, is_found, square
 from tests.processes import run
 
@@ -83,7 +84,8 @@ def test_a_kernel_that_can_be_neither_read_nor_deleted_is_compiled(
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no such limit")
 def test_a_picture_is_rendered_where_no_file_can_grow(tmp_path: Path) -> None:
     (tmp_path / "ball.rt").write_text(SCENE)
-    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path / "cache"), "PYTHONDONTWRITEBYTECODE": "1"}
+    variables = {"XDG_CACHE_HOME": str(tmp_path / "cache"), "PYTHONPATH": str(copy_package(tmp_path).parent)}
+    environment = os.environ | variables | {"PYTHONDONTWRITEBYTECODE": "1"}
     ended = run([sys.executable, "-c", FULL], cwd=tmp_path, env=environment, text=True)
     assert ended.returncode == 0, ended.stderr
     assert ended.stdout == "[10, 20, 30]\n"
