@@ -59,8 +59,8 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     add_line(
         package / "rendering/packing/materials.py",
-        "            gloss[i] = shape.specular.share, shape.specular.exponent, shape.specular.blinn",
-        "        if shape.sheen:\n            gloss[i] = shape.sheen.share, 1.0, False",
+        "            rows[i] = shape.specular.share, shape.specular.exponent, shape.specular.blinn",
+        "        if shape.sheen:\n            rows[i] = shape.sheen.share, 1.0, False",
     )
     return root
 

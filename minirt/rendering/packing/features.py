@@ -1,4 +1,5 @@
-"""What a scene asks of the kernel: kinds of shapes, and features that are compiled only where they are used."""
+"""Features of a scene: kinds of shapes, materials and lights, for which the kernel has code only where they are
+used."""
 
 from __future__ import annotations
 
@@ -11,7 +12,7 @@ from minirt.materials import Attributes
 from minirt.scene import Background, Lamp, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes import Shape
 
-# In words, each with the fields of `minirt.kernel.scene_arrays` or `minirt.kernel.shading.texturing` that it stands for.
+# By fields of `minirt.kernel.scene_arrays.SceneArrays` and `minirt.kernel.shading.texturing.SurfaceMaps`, in words.
 FEATURES = {
     "specular": "highlights",
     "reflective": "mirrors and glass",
@@ -23,34 +24,34 @@ FEATURES = {
     "background": "a coloured background",
     "environment": "a picture as background",
 }
-DEPTH = 8  # how often light is mirrored or refracted on its way, at most
-MATERIALS = tuple((field.name, field) for field in fields_of(Attributes))
-ATTRIBUTES = attrgetter(*(name for name, _ in MATERIALS))
-PLAIN = (None,) * len(MATERIALS)
+DEPTH = 8  # reflections and refractions along a path, at most
+MATERIALS = fields_of(Attributes)  # of every shape
+ATTRIBUTES = attrgetter(*(field.name for field in MATERIALS))  # the values of these fields of a shape
+PLAIN = (None,) * len(MATERIALS)  # the values of a shape without materials
 
 
 def features(scene: Scene) -> frozenset[Hashable]:
-    """The kinds of shapes in the scene, "parallel" where a lamp is, and the keys of `FEATURES` that it uses."""
+    """The kinds of shapes in the scene, the keys of `FEATURES` that it uses, and "parallel" if a light is."""
     return frozenset().union(*(page.ask(features_of_items) for page in scene.pages))
 
 
 def primitive_count(scene: Scene) -> int:
-    """How many things the kernel knows: shapes, of meshes the triangles."""
+    """Number of primitives in the kernel: shapes, and the triangles of meshes."""
     return sum(page.ask(primitive_count_of_items) for page in scene.pages)
 
 
 def primitive_count_of_items(items: Iterable[Element | str]) -> int:
-    """Those of some elements."""
+    """Number of primitives of some elements."""
     return sum(item.parts for item in items if isinstance(item, Shape))
 
 
 def features_of_items(items: Iterable[Element | str]) -> frozenset[Hashable]:
-    """Those of some elements."""
+    """The features of some elements."""
     return frozenset().union(*map(features_of, items))
 
 
 def features_of(item: Element | str) -> Iterable[Hashable]:
-    """Those of an element."""
+    """The features of one element."""
     if isinstance(item, Shape):
         kind: Any = type(item)
         return (kind,) if ATTRIBUTES(item) == PLAIN else (kind, *material_features(item))
@@ -67,4 +68,4 @@ def features_of(item: Element | str) -> Iterable[Hashable]:
 def material_features(shape: Shape) -> Iterable[str]:
     """The features that the materials of a shape need."""
     values = zip(MATERIALS, ATTRIBUTES(shape), strict=True)
-    return dict.fromkeys(filter(None, (field.feature_of(value) for (_, field), value in values if value is not None)))
+    return dict.fromkeys(filter(None, (field.feature_of(value) for field, value in values if value is not None)))

@@ -1,4 +1,4 @@
-"""What the surfaces of a scene are made of, as the tables of the kernel; those that no shape needs are None."""
+"""Packing of materials into the arrays of the kernel; an array that no shape needs is None."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
-Worn = list[tuple[int, Shape]]  # the shapes that have attributes, with their numbers
+Dressed = list[tuple[int, Shape]]  # the shapes that have materials, with their indices
 MAPS = {"checks", "textures", "bumps", "normals"}  # features that `surface_maps_of` packs
 Reader = Callable[[Path], np.ndarray]
 
 
 class Materials(NamedTuple):
-    """Fields of `minirt.kernel.scene_arrays.SceneArrays`."""
+    """The fields of `minirt.kernel.scene_arrays.SceneArrays` that hold materials."""
 
     specular: Any
     reflective: Any
@@ -31,9 +31,9 @@ class Materials(NamedTuple):
 def materials_of(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
     """Pack the materials of a scene that uses these features of `minirt.rendering.packing.features`.
 
-    `owner` (n,) tells for each primitive of the kernel to which shape it belongs.
+    `owner` (n,) is for each primitive of the kernel the index of its shape.
     """
-    if not used & {*ROWS, *MAPS}:  # not even a look at each of a million shapes
+    if not used & {*ROWS, *MAPS}:  # spares a loop over a million shapes
         return Materials(None, None, None)
     shapes = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     count = len(scene.shapes)
@@ -41,24 +41,27 @@ def materials_of(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materi
     return Materials(**rows, surface_maps=surface_maps_of(scene, shapes, owner, used) if used & MAPS else None)
 
 
-def specular_of(worn: Worn, count: int) -> np.ndarray:
-    """See `minirt.kernel.shading.specular`."""
-    gloss = np.zeros((count, 3))
-    for i, shape in worn:
+def specular_of(shapes: Dressed, count: int) -> np.ndarray:
+    """Specular highlights as `minirt.kernel.shading.specular` reads them, one row a shape."""
+    rows = np.zeros((count, 3))
+    for i, shape in shapes:
         if shape.specular:
-            gloss[i] = shape.specular.share, shape.specular.exponent, shape.specular.blinn
-    return gloss
+            rows[i] = shape.specular.share, shape.specular.exponent, shape.specular.blinn
+    return rows
 
 
-def reflective_of(worn: Worn, count: int) -> np.ndarray:
-    """See `minirt.kernel.shading.whitted`. Shares that are more than all together are made smaller alike."""
-    bounces = np.tile([0.0, 0.0, 1.0], (count, 1))
-    for i, shape in worn:
-        through, ior = (shape.glass.share, shape.glass.ior) if shape.glass else (0.0, 1.0)
-        back = shape.mirror or 0.0
-        whole = max(1.0, back + through)
-        bounces[i] = back / whole, through / whole, ior
-    return bounces
+def reflective_of(shapes: Dressed, count: int) -> np.ndarray:
+    """Mirrors and glass as `minirt.kernel.shading.whitted` reads them, one row a shape.
+
+    Shares that add up to more than 1 are scaled down alike.
+    """
+    rows = np.tile([0.0, 0.0, 1.0], (count, 1))
+    for i, shape in shapes:
+        refracted, ior = (shape.glass.share, shape.glass.ior) if shape.glass else (0.0, 1.0)
+        mirrored = shape.mirror or 0.0
+        total = max(1.0, mirrored + refracted)
+        rows[i] = mirrored / total, refracted / total, ior
+    return rows
 
 
 ROWS = {
@@ -67,13 +70,13 @@ ROWS = {
 }  # by feature: fields of `Materials`
 
 
-def surface_maps_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hashable]) -> SurfaceMaps:
-    """See `minirt.kernel.shading.texturing`."""
+def surface_maps_of(scene: Scene, shapes: Dressed, owner: np.ndarray, used: Set[Hashable]) -> SurfaceMaps:
+    """Checkerboards, textures, bump and normal maps as `minirt.kernel.shading.texturing` reads them."""
     count, album = len(scene.shapes), Album(scene)
     checks = np.zeros((count, 4))
     textures, normals, mark = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count, np.int64)
     bumps = np.zeros((count, 2))
-    for i, shape in worn:
+    for i, shape in shapes:
         if shape.checker:
             checks[i] = shape.checker.size, *np.divide(shape.checker.colour, 255)
         if shape.texture:
@@ -89,39 +92,44 @@ def surface_maps_of(scene: Scene, worn: Worn, owner: np.ndarray, used: Set[Hasha
         bumps=bumps[owner] if "bumps" in used else None,
         normals=normals[owner] if "normals" in used else None,
         used=mark[owner],
-        **album.bound(),
+        **album.packed(),
     )
 
 
 def environment_of(scene: Scene, file: str) -> Environment:
-    """The picture of a background."""
+    """Pack the picture of a background."""
     album = Album(scene)
     album.number(file, picture_cache.picture)
-    return Environment(**album.bound())
+    return Environment(**album.packed())
 
 
 class Album:
-    """The pictures that a scene names, each once."""
+    """Collects the pictures that a scene names, each once."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self.numbers: dict[tuple[Reader, str], int] = {}
-        self.pages: list[np.ndarray] = []
+        self.pictures: list[np.ndarray] = []
 
     def number(self, file: str, read: Reader) -> int:
-        """The number of a picture, from 1 on. FileError where there is none that can be read."""
+        """The number of a picture, from 1 on. FileError if it cannot be read."""
         if (read, file) not in self.numbers:
-            self.pages.append(read(self.scene.beside(file)))
-            self.numbers[read, file] = len(self.pages)
+            self.pictures.append(read(self.scene.beside(file)))
+            self.numbers[read, file] = len(self.pictures)
         return self.numbers[read, file]
 
-    def bound(self) -> dict[str, np.ndarray]:
-        """`texels` and `pictures` of `SurfaceMaps`."""
-        ends = np.cumsum([page.size for page in self.pages])
-        texels = [page.ravel() * np.float32(1 / 255 if page.dtype == np.uint8 else 1) for page in self.pages]
+    def packed(self) -> dict[str, np.ndarray]:
+        """Pack all pictures: the fields `texels` and `pictures` of `SurfaceMaps`."""
+        ends = np.cumsum([image.size for image in self.pictures])
+        texels = [image.ravel() * np.float32(1 / 255 if image.dtype == np.uint8 else 1) for image in self.pictures]
         rows = [
-            (end - page.size, page.shape[1], page.shape[0], page.size // (page.shape[0] * page.shape[1]))
-            for end, page in zip(ends, self.pages, strict=True)
+            (
+                end - image.size,
+                image.shape[1],
+                image.shape[0],
+                image.size // (image.shape[0] * image.shape[1]),
+            )
+            for end, image in zip(ends, self.pictures, strict=True)
         ]
         return {
             "texels": np.concatenate(texels) if texels else np.zeros(0, np.float32),

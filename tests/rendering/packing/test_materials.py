@@ -65,20 +65,20 @@ def test_rows_of_shapes(tmp_path: Path) -> None:
         BALL.replace(mirror=0.5, glass=Glass(1.25)),
     )
     shown = scene(tmp_path, *shapes)
-    gloss, bounces, skins = materials_of(shown, np.arange(4), features(shown))
-    assert np.array_equal(gloss, [[0, 0, 0], [0.5, 20, 1], [0, 0, 0], [0, 0, 0]])
-    assert np.allclose(bounces, [[0, 0, 1], [0, 0, 1], [0.25, 0.5, 1.5], [1 / 3, 2 / 3, 1.25]])
-    assert np.allclose(skins.checks, [[0] * 4, [0.25, 1, 0, 0.2], [0] * 4, [0] * 4])
-    assert np.array_equal(skins.used, [0, 1, 0, 0])
-    assert (skins.textures, skins.bumps, skins.normals) == (None, None, None)
+    specular, reflective, maps = materials_of(shown, np.arange(4), features(shown))
+    assert np.array_equal(specular, [[0, 0, 0], [0.5, 20, 1], [0, 0, 0], [0, 0, 0]])
+    assert np.allclose(reflective, [[0, 0, 1], [0, 0, 1], [0.25, 0.5, 1.5], [1 / 3, 2 / 3, 1.25]])
+    assert np.allclose(maps.checks, [[0] * 4, [0.25, 1, 0, 0.2], [0] * 4, [0] * 4])
+    assert np.array_equal(maps.used, [0, 1, 0, 0])
+    assert (maps.textures, maps.bumps, maps.normals) == (None, None, None)
 
 
 def test_the_parts_of_a_shape_have_its_rows(tmp_path: Path) -> None:
     shown = scene(tmp_path, BALL, BALL.replace(mirror=0.5, checker=Checker(0.5)))
-    _, bounces, skins = materials_of(shown, np.array([0, 1, 1, 1]), features(shown))
-    assert np.array_equal(bounces[:, 0], [0, 0.5, 0.5, 0.5])
-    assert np.array_equal(skins.checks[:, 0], [0, 0.5, 0.5, 0.5])
-    assert np.array_equal(skins.used, [0, 1, 1, 1])
+    _, reflective, maps = materials_of(shown, np.array([0, 1, 1, 1]), features(shown))
+    assert np.array_equal(reflective[:, 0], [0, 0.5, 0.5, 0.5])
+    assert np.array_equal(maps.checks[:, 0], [0, 0.5, 0.5, 0.5])
+    assert np.array_equal(maps.used, [0, 1, 1, 1])
 
 
 def test_pictures_are_kept_once(folder: Path) -> None:
@@ -88,19 +88,19 @@ def test_pictures_are_kept_once(folder: Path) -> None:
         BALL,
         BALL.replace(texture="a.png", normal_map="a.png", bump=Bump("b.png", 0.0)),
     )
-    skins = materials_of(shown, np.arange(3), features(shown)).surface_maps
-    assert np.array_equal(skins.textures, [1, 0, 1])
-    assert np.array_equal(skins.bumps, [[2, 0.5], [0, 0], [0, 0]])
-    assert np.array_equal(skins.normals, [0, 0, 1])
-    assert np.array_equal(skins.used, [1, 0, 1])
-    assert np.array_equal(skins.pictures, [[0, 3, 2, 3], [18, 2, 1, 1]])
-    assert np.allclose(skins.texels, [*(np.arange(18) / 255), 0, 1], atol=1e-7)
+    maps = materials_of(shown, np.arange(3), features(shown)).surface_maps
+    assert np.array_equal(maps.textures, [1, 0, 1])
+    assert np.array_equal(maps.bumps, [[2, 0.5], [0, 0], [0, 0]])
+    assert np.array_equal(maps.normals, [0, 0, 1])
+    assert np.array_equal(maps.used, [1, 0, 1])
+    assert np.array_equal(maps.pictures, [[0, 3, 2, 3], [18, 2, 1, 1]])
+    assert np.allclose(maps.texels, [*(np.arange(18) / 255), 0, 1], atol=1e-7)
 
 
 def test_a_picture_as_background(folder: Path) -> None:
-    dome = environment_of(scene(folder), "a.png")
-    assert np.array_equal(dome.pictures, [[0, 3, 2, 3]])
-    assert len(dome.texels) == 18
+    environment = environment_of(scene(folder), "a.png")
+    assert np.array_equal(environment.pictures, [[0, 3, 2, 3]])
+    assert len(environment.texels) == 18
 
 
 def test_a_picture_that_is_gone_is_named(tmp_path: Path) -> None:
