@@ -49,21 +49,21 @@ ANY: dict[str, tuple[Intersect, tuple[str, ...]]] = {
 }
 OWN: dict[str, tuple[Intersect, tuple[str, ...]]] = {
     "sphere": (
-        mutants.way(mutants.from_the_origin),
+        mutants.with_formula(mutants.naive_sphere),
         ("a million sizes away", "a size of 1e-6, seen from 1e6", "from 0.001 above a diameter of 1e9"),
     ),
     "cylinder": (
-        mutants.way(mutants.piece_by_piece),
+        mutants.with_formula(mutants.naive_cylinder),
         ("a million sizes away", "a size of 1e-6, seen from 1e6", "at the rim"),
     ),
     "cone": (
-        mutants.way(textbook.meets_cone),
+        mutants.with_formula(textbook.meets_cone),
         ("a million sizes away", "at the apex", "along a generator", "a half-angle of 89.94 degrees"),
     ),
     "paraboloid": (
-        mutants.way(textbook.meets_paraboloid),
+        mutants.with_formula(textbook.meets_paraboloid),
         ("a million sizes away", "along the axis", "at the vertex"),
     ),
-    "hyperboloid": (mutants.way(textbook.meets_hyperboloid), ("a million sizes away", "along an asymptote")),
-    "plane": (mutants.way(mutants.hits_behind), ("usual", "at a slope of 1e-6 to 0.01")),
+    "hyperboloid": (mutants.with_formula(textbook.meets_hyperboloid), ("a million sizes away", "along an asymptote")),
+    "plane": (mutants.with_formula(mutants.hits_behind), ("usual", "at a slope of 1e-6 to 0.01")),
 }
