@@ -57,10 +57,10 @@ def material_scene(seed: int) -> Scene:
         Hyperboloid(place(), way(), 0.8, 0.8 + size(), 2 * size(), colour()),
         Torus(place(), way(), 2 + size(), 1.2, colour()),
         Box(place(), way(), (size(), size(), size()), colour()),
-        Ellipsoid(place(), way(), (size(), size(), size()), colour()),
         Square(place(), way(), 2 * size(), colour()),
         Disc(place(), way(), 2 * size(), colour()),
         Triangle(place(), place(), place(), colour()),
+        Ellipsoid(place(), way(), (size(), size(), size()), colour()),
     ]
     materials = [
         {"specular": Specular(random.random(), 1 + 40 * random.random(), blinn=random.random() < 0.5)},

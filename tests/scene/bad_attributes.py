@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from minirt.element import fields_of
+from minirt.shapes import Sphere
 from tests.scene.examples import SPHERE
 
 Case = tuple[str, int, str]
 
 COLUMN = len(SPHERE) + 2  # of the first attribute
 NUMBER = "must be a number, got"
-OWN = "sphere has specular, mirror, glass, checker, texture, bump, normal"
+OWN = f"sphere has {', '.join(field.keys[0] for field in fields_of(Sphere) if field.keyed)}"
 MISSING = "cannot be read: no such file or directory"
 
 
