@@ -58,9 +58,7 @@ def colour_and_normal(scene: Scene, shape: Shape, points: Array, normal: Array) 
         over_v = high * (bilinear(pixels, at.u, at.v + 0.5 / high) - bilinear(pixels, at.u, at.v - 0.5 / high))
         # The tangents of the raised surface are P_u + h_u n and P_v + h_v n; their cross product, without products of
         # small quantities, is its normal (Blinn 1978).
-        rise = (
-            shape.bump.strength * length(at.along_u)[..., None] * normal
-        )  # height of white
+        rise = shape.bump.strength * length(at.along_u)[..., None] * normal  # height of white
         raise_u, raise_v = rise * over_u, rise * over_v
         raised = np.cross(at.along_u, at.along_v) + np.cross(raise_u, at.along_v) + np.cross(at.along_u, raise_v)
         raised *= np.sign(dot(np.cross(at.along_u, at.along_v), normal))[..., None]
