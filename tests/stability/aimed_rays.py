@@ -1,4 +1,4 @@
-"""Rays aimed at places of shapes that are hard, or along directions that are."""
+"""Rays aimed at hard points of shapes, or along hard directions."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from tests.shapes.regimes import RAYS, Array, Random, Rays, log_uniform, random_
 from tests.stability.common import COUNT
 
 Make = Callable[[Random], Shape]
-Spot = Callable[[Random, Shape], Array]  # (RAYS, 3): places on a shape, or directions
+Spot = Callable[[Random, Shape], Array]  # (RAYS, 3): points of a shape, or directions
 
 
 def at(seed: int, make: Make, spot: Spot, off: tuple[float, float] = (1e-16, 1e-6), count: int = COUNT) -> Rays:
-    """From everywhere at places of shapes, but for a distance in `off`."""
+    """Rays from everywhere at points of shapes, missing them by a distance in `off`."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, count, RAYS, 3))
     for i in range(count):
@@ -29,7 +29,7 @@ def at(seed: int, make: Make, spot: Spot, off: tuple[float, float] = (1e-16, 1e-
 
 
 def along(seed: int, make: Make, way: Spot, off: tuple[float, float] | None = None, offset: float = 0.0) -> Rays:
-    """Along directions, or off them by an angle (radians) in `off`, at places in and around shapes."""
+    """Rays along directions, or off them by an angle (radians) in `off`, at points in and around shapes."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
@@ -52,5 +52,5 @@ def axis_of(shape: Shape) -> Array:
 
 
 def edge(middle: Array, shape: Shape, radius: float, random: Random) -> Array:
-    """Places of the circle about a point of the axis of a shape."""
+    """Random points of a circle about a point of the axis of a shape."""
     return middle + radius * random_perpendiculars(random, axis_of(shape), RAYS)

@@ -1,4 +1,4 @@
-"""Where a box is hard."""
+"""Rays that are hard for a box."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Regimes of every shape, made from the table of its fields. Lengths are in sizes of the shape."""
+"""Regimes of every kind of shape, made from its declared fields. Lengths are in sizes of the shape."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def towards(
     offset: float = 0.0,
     count: int = COUNT,
 ) -> Rays:
-    """From `far` sizes away at places in and around shapes of a `size`, in a scene at `offset`."""
+    """Rays from `far` sizes away at points in and around shapes of a `size`, in a scene at `offset`."""
     random = np.random.default_rng(seed)
     shapes = [example(kind, random, size, offset) for _ in range(count)]
     middles = places(shapes)
@@ -33,7 +33,7 @@ def towards(
 
 
 def touching(kind: Kind, seed: int) -> Rays:
-    """Along the surface, from 1e-16 to 1e-4 sizes above and below it."""
+    """Rays along the surface, 1e-16 to 1e-4 sizes above or below it."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
@@ -48,7 +48,7 @@ def touching(kind: Kind, seed: int) -> Rays:
 
 
 def leaving(kind: Kind, seed: int, height: tuple[float, float] = (1e-12, 1e-3)) -> Rays:
-    """From closely above the surface and below it, in all directions."""
+    """Rays from closely above and below the surface, in all directions."""
     random = np.random.default_rng(seed)
     shapes, origins = [], np.empty((COUNT, RAYS, 3))
     for i in range(COUNT):
@@ -64,7 +64,7 @@ def places(shapes: list[Shape]) -> Array:
 
 
 def common(kind: Kind) -> list[Regime]:
-    """Of a kind of shape."""
+    """The regimes that every kind of shape has."""
     made = partial(towards, kind)
     solid = body(example(kind, np.random.default_rng(1))).solid
     regimes = [

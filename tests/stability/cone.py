@@ -1,4 +1,4 @@
-"""Where a cone is hard."""
+"""Rays that are hard for a cone."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.stability.regime import Regime
 
 
 def make(random: Random, angle: tuple[float, float] = (20.0, 60.0)) -> Cone:
-    """A cone of about size 1 with a half-angle of so many degrees."""
+    """A cone of about size 1 with this half-angle in degrees."""
     slope = np.tan(np.radians(random.uniform(*angle)))
     height = random.uniform(0.5, 2) / max(1.0, slope)
     return Cone(
@@ -36,13 +36,13 @@ def generator(random: Random, cone: Cone) -> Array:
 
 
 def anywhere(random: Random, cone: Cone) -> Array:
-    """Places on the side."""
+    """Random points on the side."""
     share = random.uniform(0.05, 0.95, (RAYS, 1))
     return np.array(cone.apex) + share * (rim(random, cone) - cone.apex)
 
 
 def at_the_mirror_image(seed: int) -> Rays:
-    """At the other nappe, and past the apex on that side."""
+    """Rays at the other nappe, and past the apex on that side."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):

@@ -1,4 +1,4 @@
-"""Where a cylinder is hard."""
+"""Rays that are hard for a cylinder."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tests.stability.regime import Regime
 
 
 def flat(seed: int, height: float) -> Rays:
-    """At cylinders that are next to flat, from above and below."""
+    """Rays at cylinders that are nearly flat, from above and below."""
     return given.disc(seed, height, COUNT)
 
 
 def needle(seed: int) -> Rays:
-    """At needles: a height of 1e9 and a diameter of 1e-3."""
+    """Rays at needles: a height of 1e9 and a diameter of 1e-3."""
     random = np.random.default_rng(seed)
     shapes = [
         Cylinder(tuple(random_directions(random)), tuple(random_directions(random).clip(-1, 1)), 1e-3, 1e9, GREY)

@@ -1,4 +1,4 @@
-"""The ways in which the formulas run: those of `tests.shapes.execution_modes`, and `minirt.trace`."""
+"""The execution modes of formulas: those of `tests.shapes.execution_modes`, and `minirt.trace`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def few_on_numbers(shapes: list[Shape], origins: Array, directions: Array) -> Ar
 
 
 def traced(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """By the library, each shape in a scene of its own."""
+    """t of rays by `minirt.trace`, each shape in a scene of its own."""
     eye = Camera((0, 0, 0), (0, 0, 1), 60)
     rays = zip(shapes, origins, directions, strict=True)
     return np.stack([minirt.trace(Scene((eye, shape)), o, d).distance for shape, o, d in rays])

@@ -1,4 +1,4 @@
-"""Where a hyperboloid is hard."""
+"""Rays that are hard for a hyperboloid."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from tests.stability.regime import Regime
 
 
 def make(random: Random, waist: float = 0.5) -> Hyperboloid:
-    """A hyperboloid of about size 1 whose waist is such a share of its diameter."""
+    """A hyperboloid of about size 1 whose waist is this share of its diameter."""
     diameter = random.uniform(0.5, 2)
     point, axis = tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1))
     return Hyperboloid(point, axis, waist * diameter, diameter, random.uniform(0.5, 2), GREY)
 
 
 def slope(hyperboloid: Hyperboloid) -> float:
-    """How far the side goes outwards for each step along the axis, far away."""
+    """Slope of the asymptotic cone: radius by height."""
     return float(np.sqrt(hyperboloid.diameter**2 - hyperboloid.waist**2)) / hyperboloid.height
 
 
@@ -41,7 +41,7 @@ def asymptote(random: Random, hyperboloid: Hyperboloid) -> Array:
 
 
 def beside_rulings(seed: int, off: tuple[float, float]) -> object:
-    """Along the straight lines in the surface, a distance in `off` beside them."""
+    """Rays along the rulings, the straight lines in the surface, at a distance in `off` beside them."""
     rays = along(seed, make, asymptote)
     random = np.random.default_rng(seed)
     for shape, origins, directions in zip(rays.shapes, rays.origins, rays.directions, strict=True):

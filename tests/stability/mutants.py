@@ -1,4 +1,4 @@
-"""Ways to intersect that look right and are not: the checks of the real ones must reject them."""
+"""Wrong ways to intersect that look right: the checks of the real ones must reject them."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from tests.shapes.execution_modes import Array, Intersect, kind_of, on_arrays, v
 
 
 def from_1e_4_on(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """Hits nearer than a fixed distance do not count: a remedy against acne that knows no scale."""
+    """Ignore hits nearer than a fixed distance: a remedy against shadow acne that knows no scale."""
     t = on_arrays(shapes, origins, directions)
     return np.where(t > 1e-4, t, np.inf)
 
 
 def moved_on_by_1e_4(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """Rays start a fixed distance further on: another."""
+    """Start rays a fixed distance further on: another remedy that knows no scale."""
     return on_arrays(shapes, origins + 1e-4 * directions, directions) + 1e-4
 
 
 def in_single_precision(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """The real formulas on float32."""
+    """The real formulas in float32."""
     t = np.full(origins.shape[:2], np.inf)
     for i, shape in enumerate(shapes):
         rays = (vec(part[i].astype(np.float32)) for part in (origins, directions))

@@ -1,4 +1,4 @@
-"""Rays that are hard in one way, the right answers, and which answers are near enough."""
+"""Regimes: rays that are hard in one respect, their exact answers, and the tolerance of answers."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ U = 2.0**-53
 
 
 class Regime(NamedTuple):
-    """A recipe for rays, and what an answer may be off by.
+    """A recipe for rays, and the tolerance of their answers.
 
     An answer passes that is exact within the relative `tolerance`. Where the surface ends or turns away from the ray an
     exact answer is of no use, as rounding the ray's own numbers changes it: there it passes if it lies between those
@@ -44,7 +44,7 @@ class Regime(NamedTuple):
 
 
 class Right:
-    """The rays of a regime and the exact answers, the first of which is found when it is asked for."""
+    """The rays of a regime and their exact answers, computed on demand."""
 
     def __init__(self, regime: Regime, rays: Rays) -> None:
         self.regime, self.rays = regime, rays
@@ -69,7 +69,7 @@ class Right:
         return float(np.linalg.norm(self.rays.origins[i, j] - points(self.rays.shapes[i])[0]))
 
     def sheet_error(self, i: int, j: int, t: float) -> float:
-        """What a hit of a sheet at t may be off by."""
+        """The tolerance of a hit of a sheet at t."""
         slope = float(abs(oracle.dot(self.normal(i), self.rays.directions[i, j])))
         return 4 * U * (t + self.away(i, j) + lever(self.rays.shapes[i])) / slope
 
@@ -79,11 +79,11 @@ class Right:
         return inside(body(self.rays.shapes[i], mpfr(self.swell(i, j))), point)
 
     def wrong(self, t: Array, every: int = 1) -> list[str]:
-        """What is wrong with the answers t for every n-th ray of a shape, infinity for a miss."""
+        """Complaints about the answers t for every n-th ray of a shape; infinity is a miss."""
         return list(self.errors(t, every))
 
     def errors(self, t: Array, every: int = 1) -> Iterator[str]:
-        """The same, one after the other: each takes its time."""
+        """The complaints of `wrong`, one after the other: each is slow to find."""
         right = self.t[:, ::every]
         with np.errstate(invalid="ignore"):
             near = np.isfinite(right) & (np.abs(t - right) <= self.regime.tolerance * right)
@@ -92,7 +92,7 @@ class Right:
         return (each for each in found if each)
 
     def verdict(self, i: int, j: int, t: float) -> str:
-        """What is wrong with an answer that is not exact; empty if it is near enough."""
+        """A complaint about an answer that is not exact; empty if it is near enough."""
         if not self.solid and abs(t - self.t[i, j]) < self.sheet_error(i, j, self.t[i, j]):  # not inf < inf
             return ""
         sides = [self.t[i, j], *self.around(i, j)]
@@ -113,7 +113,7 @@ class Right:
 
 @cache
 def posed(regime: Regime) -> Right:
-    """The rays of a regime and the right answers, found once."""
+    """The rays of a regime and the exact answers, computed once."""
     return Right(regime, regime.make())
 
 
@@ -123,8 +123,11 @@ def points(shape: Shape) -> list[Array]:
 
 
 def lever(shape: Shape) -> float:
-    """What a hit's place in a triangle is known to some roundings of: it is the mean of the corners by areas, which are
-    known to roundings of the square of the longest edge. Of a sliver that is much, and along the sliver."""
+    """Length of which a hit of a triangle is known to some roundings; 0 for other shapes.
+
+    A hit is the mean of the corners by areas, which are known to roundings of the square of the longest edge: for a
+    sliver that is a large error along it.
+    """
     if not isinstance(shape, Triangle):
         return 0.0
     longest = max(float(np.linalg.norm(edge)) for edge in shape.edges())
@@ -133,7 +136,7 @@ def lever(shape: Shape) -> float:
 
 
 def size(shape: Shape) -> float:
-    """The lengths that a shape is given by, in all, and the distances between its points."""
+    """The sum of the lengths that a shape is given by and of the distances between its points."""
     lengths = [np.sum(getattr(shape, e.name)) for e in fields_of(type(shape)) if isinstance(e, (Length, Lengths))]
     first, *others = points(shape)
     return float(sum(lengths) + sum(np.linalg.norm(other - first) for other in others))

@@ -1,4 +1,4 @@
-"""Where a sphere is hard."""
+"""Rays that are hard for a sphere."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What looks right and is not does not pass."""
+"""Wrong formulas that look right do not pass."""
 
 from __future__ import annotations
 

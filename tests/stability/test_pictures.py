@@ -1,4 +1,4 @@
-"""Whole pictures where light or camera are hard; the answers are known."""
+"""Pictures of scenes with hard lights or cameras, against known answers."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def test_the_terminator_has_no_specks(scale: float, offset: float, side: tuple[f
 
 
 def ball(scale: float, side: tuple[float, float, float], offset: float = 0.0) -> Scene:
-    """A ball that fills the picture and a lamp to a side of it, all of them at `offset` sizes along each axis."""
+    """A scene of a ball that fills the picture and a light beside it, moved by `offset` sizes along each axis."""
     centre = np.full(3, offset * scale)
     eye = Camera(tuple(centre - [0, 0, 4 * scale]), (0, 0, 1), 30)
     lamp = Light(tuple(centre + 1e3 * scale * np.array(side)), 1.0)
@@ -110,7 +110,7 @@ def test_light_is_finite(seed: int, size: float, offset: float | None) -> None:
 
 
 def stiff(seed: int, size: float, offset: float) -> Scene:
-    """Shapes of every kind in one another, lamps and the eye among them and often exactly where a shape is."""
+    """A scene of overlapping shapes of every kind, with lights and the eye among them, often exactly at a shape."""
     random = np.random.default_rng(seed)
     middle = offset * random_directions(random)
     shapes = []

@@ -1,4 +1,4 @@
-"""Whatever the size of a shape, the distance of the eye and the place of the scene."""
+"""Properties of hits for all sizes of shapes, distances of the eye and places of the scene."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every formula in every regime, against 60 digits."""
+"""Every formula in every regime, against answers to 60 digits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Rays that start on a surface as `minirt.kernel.shading.shade` starts them do not hit it again, and do not leave a solid."""
+"""Rays that start on a surface as `minirt.kernel.shading.shade` starts them do not hit it again, and do not leave a
+solid."""
 
 from __future__ import annotations
 
@@ -31,7 +32,7 @@ class Seen(NamedTuple):
 
 @cache
 def seen(kind: Kind, seed: int, count: int = 1000, size: float | None = None) -> Seen:
-    """Shapes of a size, or of 1e-8 to 1e8, half of them up to 1e8 sizes from the origin of the scene."""
+    """Hits of shapes of a size, or of 1e-8 to 1e8, half of them up to 1e8 sizes from the origin of the scene."""
     random = np.random.default_rng(seed)
     sizes = log_uniform(random, 1e-8, 1e8, count) if size is None else np.full(count, size)
     away = sizes * log_uniform(random, 1.0, 1e8, count) * random.integers(0, 2, count)
@@ -64,14 +65,14 @@ def away_from(random: Random, normals: Array) -> Array:
 
 
 def shot(found: Seen, side: float, offset: Offset) -> Rays:
-    """Rays to the outer side (1) or the inner one (-1)."""
+    """t of rays to the outer side (1) or the inner one (-1)."""
     out = side * found.normals
     starts = found.points + offset(found.points, found.shapes) * out
     return Rays(found.shapes, np.repeat(starts, DIRECTIONS, axis=1), away_from(np.random.default_rng(2), out))
 
 
 def acne(found: Seen, offset: Offset) -> int:
-    """How many rays to the outside hit again where there is nothing to hit; at most 500."""
+    """Number of rays to the outside, at most 500, that hit again where there is nothing to hit: shadow acne."""
     rays = shot(found, 1.0, offset)
     t, slack = compiled(*rays), 2 * shadow_offsets(found.points, found.shapes)
     count = 0

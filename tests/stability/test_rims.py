@@ -1,6 +1,8 @@
-"""Which part of a solid a ray meets that nearly meets a rim: the verdict is right, but for rays closer to it than
-64 roundings of t, of the way from the origin to the shape and of the shape's size. Of these one may miss the rim and
-meet the shape far behind it, as a hyperboloid's other end."""
+"""Rays close to the rim of a solid hit the right part of it, unless they pass the rim within 64 roundings.
+
+The roundings are those of t, of the distance from the origin to the shape and of the shape's size. A ray that close may
+miss the rim and hit the shape far behind it, such as the other end of a hyperboloid.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,7 @@ AT_THE_RIM = {kind.element.title: regime for kind, regime in REGIMES if regime.n
 
 
 def beside_rim(shape: Any, point: str, share: float, origin: Any, direction: Any) -> mpfr:
-    """How far a ray passes from a rim: from the rim's tangent where the ray crosses its plane, to first order."""
+    """Distance of a ray from a rim, to first order: from the rim's tangent where the ray crosses its plane."""
     axis, d = unit(shape.axis), exact(direction)
     p = minus(exact(origin), exact(getattr(shape, point)))
     s = (mpfr(share) * mpfr(shape.height) - dot(p, axis)) / dot(d, axis)
@@ -45,7 +47,7 @@ def beside(shape: Shape, origin: Any, direction: Any) -> float:
 
 
 def wrong(title: str, intersect: Intersect) -> int:
-    """How many rays get another answer though they pass the rims farther away."""
+    """Number of rays with a wrong answer that pass all rims farther away than that."""
     right = posed(AT_THE_RIM[title])
     shapes, origins, directions = right.rays
     t = intersect(*right.rays)

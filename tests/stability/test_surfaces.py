@@ -1,4 +1,4 @@
-"""Where `minirt.trace` says that rays hit, and how the surface lies there."""
+"""Hit points and normals of `minirt.trace` and of the formulas, against the oracle."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ REGIMES = [(kind, regime) for kind in KINDS for regime in common(kind)]
 
 
 def least(shape: Shape) -> float:
-    """The least length of a shape, to which a normal's turn over its surface is in proportion."""
+    """The least length of a shape: a normal turns over the surface in inverse proportion to it."""
     lengths = [np.min(getattr(shape, e.name)) for e in fields_of(type(shape)) if isinstance(e, (Length, Lengths))]
     return min(lengths, default=np.inf)
 
 
 def off(shape: Shape, point: Array, normal: Array) -> tuple[float, float]:
-    """How far a hit is from the wall that its normal fits best, and the error of the normal."""
+    """Distance of a hit from the wall that its normal fits best, and the error of the normal."""
     found = normals(body(shape), list(point))
     errors = [float(np.linalg.norm(np.array(out, float) - normal)) for _, out in found]
     best = int(np.argmin(errors))
@@ -39,14 +39,14 @@ def off(shape: Shape, point: Array, normal: Array) -> tuple[float, float]:
 
 
 def interpreted(shape: Shape, origins: Array, directions: Array) -> tuple[Array, Array, Array]:
-    """Distances, points and normals of rays, by the formulas as they stand."""
+    """Distances, points and normals of rays, by the interpreted formulas."""
     t = on_arrays([shape], origins[None], directions[None])[0]
     on, out = surfaces([shape], (origins + np.where(np.isfinite(t), t, 0.0)[:, None] * directions)[None])
     return t, on[0], out[0]
 
 
 def traced(shape: Shape, origins: Array, directions: Array) -> tuple[Array, Array, Array]:
-    """The same, by the library."""
+    """Distances, points and normals of rays, by `minirt.trace`."""
     hits = minirt.trace(Scene((EYE, shape)), origins, directions)
     return hits.distance, hits.point, hits.normal
 
