@@ -1,4 +1,4 @@
-"""Regimes of the sphere: rays that start just inside, just above or on the surface; the horizon; the centre."""
+"""Rays that are hard for a sphere."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tests.stability.regime import Regime
 
 
 def just_inside(seed: int) -> Rays:
-    """Rays from at most a millionth of the radius below the surface of a sphere of diameter 1e9."""
+    """From a millionth of the radius, or less, under the surface of a sphere of diameter 1e9."""
     random = np.random.default_rng(seed)
     out = random_directions(random, COUNT, RAYS)
     shapes = [Sphere((0, 0, 0), 1e9, GREY)] * COUNT
@@ -34,7 +34,7 @@ def just_inside(seed: int) -> Rays:
 
 
 def near_the_surface(seed: int) -> Rays:
-    """Rays downwards from a billionth of the radius to a whole radius above the surface, and as far below it."""
+    """From a billionth of the radius to all of it above the surface, downwards, and as far below it."""
     random = np.random.default_rng(seed)
     count = 4 * COUNT
     out = random_directions(random, count, RAYS)
@@ -46,10 +46,8 @@ def near_the_surface(seed: int) -> Rays:
 
 
 def on_the_surface(seed: int) -> Rays:
-    """Rays away from the centre, from points inside by less than a rounding: each of them hits at once.
-
-    Rounding may take these points for points outside.
-    """
+    """From points that are inside by less than a rounding, and outside by as much as rounding can make of that, away
+    from the centre: each of these rays hits at once."""
     random = np.random.default_rng(seed)
     shapes = [Sphere(tuple(10.0**e * random_directions(random)), 10.0**e, GREY) for e in np.linspace(-12, 12, COUNT)]
     origins, directions = np.empty((2, COUNT, RAYS, 3))
@@ -65,14 +63,14 @@ def on_the_surface(seed: int) -> Rays:
 
 
 def above(points: Array, centre: Array, radius: Any) -> Array:
-    """Return the power of points with respect to a sphere."""
+    """The power of points with respect to a sphere."""
     f = points - centre
     height: Array = (f * f).sum(axis=-1) - radius * radius
     return height
 
 
 def to_the_horizon(seed: int, above: tuple[float, float], dips: tuple[float, ...]) -> Rays:
-    """Rays from above a sphere of diameter 1e9, at given fractions of the dip of its horizon."""
+    """From so far above a sphere of diameter 1e9, at such parts of the dip of its horizon."""
     random = np.random.default_rng(seed)
     up = random_directions(random, COUNT, RAYS)
     height = log_uniform(random, *above, COUNT, RAYS, 1)
@@ -82,7 +80,7 @@ def to_the_horizon(seed: int, above: tuple[float, float], dips: tuple[float, ...
 
 
 def in_the_centre(seed: int) -> Rays:
-    """Rays from the centre of spheres of all sizes."""
+    """From the centre of spheres of all sizes."""
     random = np.random.default_rng(seed)
     shapes = [
         Sphere(tuple(random_directions(random)), 10.0**exponent, GREY) for exponent in np.linspace(-15, 15, COUNT)
@@ -99,7 +97,7 @@ REGIMES = [
     Regime("from inside a diameter of 1e9", partial(just_inside, 12), 1e-9, 0.0),
     Regime("from 1e-9 to 1 radius off the surface", partial(near_the_surface, 14), 3e-14, 0.0),
     Regime("from less than a rounding inside", partial(on_the_surface, 17), 1e-13, 0.0),
-    # The angle below the horizon is 1e-8 there, and the direction is exact to 2^-53.
+    # There the angle below the horizon is 1e-8 of a direction that is exact to 2^-53.
     Regime(
         "to the horizon of a diameter of 1e9",
         partial(to_the_horizon, 15, (1e-3, 2.0), (0.5, 0.99, 1.01, 1.1, 3.0)),
