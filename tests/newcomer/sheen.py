@@ -13,7 +13,7 @@ from minirt.materials.material import Material
 
 @dataclass(frozen=True)
 class Sheen(Material):
-    """What `sheen:` says."""
+    """The value of the attribute `sheen:`."""
 
     title, feature = "sheen", "specular"
     share: float = declare(Real, "share of the light", low=0.0, high=1.0, step=0.05, initial=0.4)

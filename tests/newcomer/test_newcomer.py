@@ -66,7 +66,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def answers(copy: Path, *command: str) -> str:
-    """What a Python program prints that runs in the copy, and imports from there alone."""
+    """Run a Python program in the copy, with imports from there alone; return its output."""
     environment = {**os.environ, "PYTHONPATH": str(copy), "XDG_CACHE_HOME": str(copy / "cache")}
     done = run([sys.executable, *command], cwd=copy, env=environment, text=True)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -24,7 +24,7 @@ from tests.stability.regime import Regime
 
 
 def just_inside(seed: int) -> Rays:
-    """From a millionth of the radius, or less, under the surface of a sphere of diameter 1e9."""
+    """Rays from at most a millionth of the radius below the surface of a sphere of diameter 1e9."""
     random = np.random.default_rng(seed)
     out = random_directions(random, COUNT, RAYS)
     shapes = [Sphere((0, 0, 0), 1e9, GREY)] * COUNT
@@ -34,7 +34,7 @@ def just_inside(seed: int) -> Rays:
 
 
 def near_the_surface(seed: int) -> Rays:
-    """From a billionth of the radius to all of it above the surface, downwards, and as far below it."""
+    """Rays downwards from a billionth of the radius to a whole radius above the surface, and as far below it."""
     random = np.random.default_rng(seed)
     count = 4 * COUNT
     out = random_directions(random, count, RAYS)
@@ -46,8 +46,10 @@ def near_the_surface(seed: int) -> Rays:
 
 
 def on_the_surface(seed: int) -> Rays:
-    """From points that are inside by less than a rounding, and outside by as much as rounding can make of that, away
-    from the centre: each of these rays hits at once."""
+    """Rays away from the centre, from points inside by less than a rounding: each of them hits at once.
+
+    Rounding may take these points for points outside.
+    """
     random = np.random.default_rng(seed)
     shapes = [Sphere(tuple(10.0**e * random_directions(random)), 10.0**e, GREY) for e in np.linspace(-12, 12, COUNT)]
     origins, directions = np.empty((2, COUNT, RAYS, 3))
@@ -70,7 +72,7 @@ def above(points: Array, centre: Array, radius: Any) -> Array:
 
 
 def to_the_horizon(seed: int, above: tuple[float, float], dips: tuple[float, ...]) -> Rays:
-    """From so far above a sphere of diameter 1e9, at such parts of the dip of its horizon."""
+    """Rays from above a sphere of diameter 1e9, at given fractions of the dip of its horizon."""
     random = np.random.default_rng(seed)
     up = random_directions(random, COUNT, RAYS)
     height = log_uniform(random, *above, COUNT, RAYS, 1)
@@ -80,7 +82,7 @@ def to_the_horizon(seed: int, above: tuple[float, float], dips: tuple[float, ...
 
 
 def in_the_centre(seed: int) -> Rays:
-    """From the centre of spheres of all sizes."""
+    """Rays from the centre of spheres of all sizes."""
     random = np.random.default_rng(seed)
     shapes = [
         Sphere(tuple(random_directions(random)), 10.0**exponent, GREY) for exponent in np.linspace(-15, 15, COUNT)
