@@ -39,7 +39,7 @@ class Gate(Shape):
 
 
 class PackedGate(NamedTuple):
-    """What the kernel keeps of a gate."""
+    """Packed form of a gate."""
 
     centre: Position
     half: float  # of the side
