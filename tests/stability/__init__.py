@@ -1,4 +1,4 @@
-"""Tests of numerical stability: near edges, far away, for very small and very large shapes.
+"""What must hold where numbers are hard: near edges, far away, very small, very large.
 
 A regime (`regime.Regime`) is a recipe for shapes and rays that are hard in one way, and says how exact the answers must
 be nonetheless. `table.REGIMES` lists them for every shape: `common` ones are made from the table of a shape's fields,

@@ -139,7 +139,7 @@ def put(module: ModuleType, change: Change) -> None:
 
 
 def users_of(module: ModuleType, name: str) -> list[ModuleType]:
-    """Modules of the package that have imported a constant of this module, and the module itself."""
+    """Those of the package that have a constant of one of its modules, and it itself."""
     imports = f"from {module.__name__} import "
     found = [each for each in sys.modules.values() if each.__name__.startswith("minirt.") and hasattr(each, name)]
     return [each for each in found if each is module or imports in Path(str(each.__file__)).read_text()]

@@ -52,7 +52,7 @@ def changes(source: str) -> Iterator[Change]:
 
 
 def variants(node: ast.expr) -> Iterator[ast.expr]:
-    """Expressions that may replace an expression."""
+    """What may stand in the place of an expression."""
     match node:
         case ast.BinOp(left, operator, right):
             if type(operator) in OPERATORS:
