@@ -128,7 +128,7 @@ class Field(ABC):
 
     @property
     def notation(self) -> str:
-        """How the field appears in the format of its line."""
+        """The field in the format of its line."""
         return f"{self.keys[0]}:{self.placeholder or self.unit or 'value'}" if self.keyed else self.name
 
     @property

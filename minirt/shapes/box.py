@@ -35,7 +35,7 @@ class Box(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def axes(self) -> tuple[Vec, Vec, Vec]:
-        """Its own x, y and z axes."""
+        """The own x, y and z axes of the box."""
         z, x, y = basis(self.axis)
         return x, y, z
 

@@ -26,8 +26,8 @@ LEAST = 2.0**-10  # share of the light of a pixel up to which rays are not follo
 def render(scene: Scene, width: int, height: int, depth: int = DEPTH) -> Array:
     """Render a scene: linear light, (height, width, 3), not clamped. The field of view must be between 0 and 180."""
     origins, directions = camera_rays(scene.camera, width, height)
-    seen = light_along(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), np.ones(width * height), depth)
-    return seen.reshape(height, width, 3)
+    radiance = light_along(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), np.ones(width * height), depth)
+    return radiance.reshape(height, width, 3)
 
 
 def to_bytes(linear: Array) -> NDArray[np.uint8]:
@@ -72,7 +72,7 @@ def light_along(scene: Scene, origins: Array, directions: Array, weights: Array,
         light[rays] += weight[:, None] * shaded(scene, shape, points, facing, bent, colour, direction, far)
         through = shape.glass.share if shape.glass else 0.0
         back = shape.mirror or 0.0
-        whole = max(1.0, back + through)
+        sum_of_shares = max(1.0, back + through)
         if depth == 0 or back + through == 0:
             continue
         leaving = points + far[:, None] * facing, points - far[:, None] * facing
@@ -85,16 +85,16 @@ def light_along(scene: Scene, origins: Array, directions: Array, weights: Array,
         ratio = np.where(outside, 1 / shape.glass.ior, shape.glass.ior) if shape.glass else np.ones(len(direction))
         sine = ratio[:, None] * (direction + cosine * tilted)  # Snell's law: the component along the surface
         squared = dot(sine, sine)
-        total = squared > 1
+        total = squared > 1  # total internal reflection
         refracted = sine - np.sqrt(np.maximum(0, 1 - squared))[:, None] * tilted
         shares = (
-            (leaving[0], mirrored, weight * (back + np.where(total, through, 0)) / whole),
-            (leaving[1], refracted, weight * np.where(total, 0, through) / whole),
+            (leaving[0], mirrored, weight * (back + np.where(total, through, 0)) / sum_of_shares),
+            (leaving[1], refracted, weight * np.where(total, 0, through) / sum_of_shares),
         )
-        for starts, ways, share in shares:
-            asked = share > LEAST
+        for starts, towards, share in shares:
+            followed = share > LEAST
             part = np.zeros_like(points)
-            part[asked] = light_along(scene, starts[asked], ways[asked], share[asked], depth - 1)
+            part[followed] = light_along(scene, starts[followed], towards[followed], share[followed], depth - 1)
             light[rays] += part
     return light
 

@@ -197,7 +197,7 @@ def to_plane(point: Array, normal: Array, origins: Array, directions: Array) -> 
 
 
 def slab(along: Array, slope: Array, half: float) -> tuple[Array, Array]:
-    """Distances at which lines enter and leave the slab between two planes whose middle is `along` away."""
+    """The t at which lines enter and leave the slab between two planes whose middle is `along` away."""
     with np.errstate(divide="ignore", invalid="ignore"):
         middle, across = along / slope, half / np.abs(slope)
     level = slope == 0

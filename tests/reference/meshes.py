@@ -31,10 +31,10 @@ def _(mesh: Mesh, origins: Array, directions: Array) -> list[Array]:
     nearest = np.full(len(directions), np.inf)
     corners, balls = corners_and_balls(mesh)
     lines = np.flatnonzero(passes(origins, directions, ball_of(balls)))
-    starts, ways = origins[lines], directions[lines]
+    starts, towards = origins[lines], directions[lines]
     for (a, b, c), ball in zip(corners, balls, strict=True):
-        near = np.flatnonzero(passes(starts, ways, ball))
-        t, u, v = intersect_triangle(starts[near], ways[near], a, b, c)
+        near = np.flatnonzero(passes(starts, towards, ball))
+        t, u, v = intersect_triangle(starts[near], towards[near], a, b, c)
         hit = (np.minimum(np.minimum(u, v), 1 - u - v) >= -EDGE) & (t > 0)
         nearest[lines[near[hit]]] = np.minimum(nearest[lines[near[hit]]], t[hit])
     return [np.where(np.isfinite(nearest), nearest, np.nan).reshape(shape)]
@@ -84,13 +84,13 @@ def _(mesh: Mesh, points: Array) -> Array:
 
 @shading.register
 def _(mesh: Mesh, points: Array, normal: Array) -> Array:
-    given = mesh.triangles.normals
-    if given is None:
+    corner_normals = mesh.triangles.normals
+    if corner_normals is None:
         return normal
     owner = triangle_of(mesh, points)
     a, b, c = corners_and_balls(mesh)[0][owner].transpose(1, 0, 2)
-    whole = dot(np.cross(b - a, c - a), normal)
-    of_b = dot(np.cross(points - a, c - a), normal) / whole
-    of_c = dot(np.cross(b - a, points - a), normal) / whole
-    mean = np.einsum("ij,ijk->ik", np.stack([1 - of_b - of_c, of_b, of_c], axis=1), given[owner])
-    return mean / length(mean)[:, None]
+    area = dot(np.cross(b - a, c - a), normal)
+    of_b = dot(np.cross(points - a, c - a), normal) / area
+    of_c = dot(np.cross(b - a, points - a), normal) / area
+    blended = np.einsum("ij,ijk->ik", np.stack([1 - of_b - of_c, of_b, of_c], axis=1), corner_normals[owner])
+    return blended / length(blended)[:, None]

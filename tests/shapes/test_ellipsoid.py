@@ -78,7 +78,7 @@ def test_its_box_and_its_balls() -> None:
 
 
 def from_the_origin(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec) -> object:
-    """Its formula, counted from the origin of the ray instead of its closest approach."""
+    """The formula with t counted from the origin of the ray instead of its closest approach."""
     p = module.scaled(
         module.to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, origin - ellipsoid.centre), ellipsoid.scale
     )

@@ -157,7 +157,7 @@ def test_a_mesh_must_not_reach_too_far() -> None:
         named("icosahedron", scale=1e15, position=(9e14, 0, 0))
 
 
-def mapped(packed: mesh.PackedMeshTriangle, points: np.ndarray, normals: np.ndarray) -> list[np.ndarray]:
+def surface_mapping(packed: mesh.PackedMeshTriangle, points: np.ndarray, normals: np.ndarray) -> list[np.ndarray]:
     u, v, along_u, along_v = mesh.mapping(packed, Vec(*points.T), Vec(*normals.T))
     return [u, v, *(np.stack([each.x, each.y, each.z], axis=1) for each in (along_u, along_v))]
 
@@ -168,11 +168,11 @@ def test_texture_coordinates_are_those_of_the_file_and_tangents_their_derivative
     shares = random.dirichlet((2, 2, 2), made.parts)
     rows = made.rows()
     points = np.einsum("ij,ijk->ik", shares, rows[:, :9].reshape(-1, 3, 3))
-    u, v, along_u, along_v = mapped(made.pack(), points, rows[:, 9:12])
+    u, v, along_u, along_v = surface_mapping(made.pack(), points, rows[:, 9:12])
     assert np.allclose(np.stack([u, v], axis=1), np.einsum("ij,ijk->ik", shares, made.triangles.uvs), atol=1e-12)
     for step in (1e-4, -1e-4):  # a step along a tangent changes its own coordinate and not the other
         for along, change in ((along_u, (step, 0)), (along_v, (0, step))):
-            later = mapped(made.pack(), points + step * along, rows[:, 9:12])
+            later = surface_mapping(made.pack(), points + step * along, rows[:, 9:12])
             inside = np.minimum(*np.sort(shares, axis=1).T[:2]) > 0.02
             assert np.abs(later[0] - u - change[0])[inside].max() < 1e-9
             assert np.abs(later[1] - v - change[1])[inside].max() < 1e-9
@@ -184,7 +184,7 @@ def test_tangents_are_perpendicular_to_the_interpolated_normal() -> None:
     points = rows[:, :9].reshape(-1, 3, 3).mean(axis=1)
     smooth = mesh.shading(packed, Vec(*points.T), packed.normal)
     normals = np.stack([smooth.x, smooth.y, smooth.z], axis=1)
-    _, _, along_u, along_v = mapped(packed, points, normals)
+    _, _, along_u, along_v = surface_mapping(packed, points, normals)
     out = unit(np.cross(along_u, along_v))
     assert np.abs(np.abs(np.einsum("ij,ij->i", out, normals)) - 1).max() < 1e-12
     assert np.abs(np.einsum("ij,ij->i", out, rows[:, 9:12])).min() < 1 - 1e-5
@@ -195,7 +195,7 @@ def test_tangents_without_texture_coordinates_in_the_file() -> None:
     rows = made.rows()
     points = rows[:, :9].reshape(-1, 3, 3).mean(axis=1)
     with np.errstate(all="raise"):
-        found = mapped(made.pack(), points, rows[:, 9:12])
+        found = surface_mapping(made.pack(), points, rows[:, 9:12])
     assert all(np.isfinite(each).all() for each in found)
     assert np.allclose(found[:2], 1 / 3)  # half a picture on each triangle
     a, b, c = rows[:, :9].reshape(-1, 3, 3).swapaxes(0, 1)
@@ -209,15 +209,15 @@ def test_skewed_and_constant_texture_coordinates() -> None:
     rows, packed = made.rows(), made.pack()
     points = rows[:, :9].reshape(-1, 3, 3).mean(axis=1)
     skew = packed._replace(**dict(zip(packed._fields[7:], random.uniform(-1, 1, (6, 50)), strict=True)))
-    before = mapped(skew, points, rows[:, 9:12])
+    before = surface_mapping(skew, points, rows[:, 9:12])
     for i, along in enumerate(before[2:]):
         step = 1e-3 / (1 + np.linalg.norm(along, axis=1, keepdims=True))
-        later = mapped(skew, points + step * along, rows[:, 9:12])
+        later = surface_mapping(skew, points + step * along, rows[:, 9:12])
         assert np.abs(later[i] - before[i] - step[:, 0]).max() < 1e-9
         assert np.abs(later[1 - i] - before[1 - i]).max() < 1e-9
     one = packed._replace(**dict.fromkeys(packed._fields[7:], np.full(50, 0.3)))
     for flat in (one, one._replace(u_b=skew.u_b), one._replace(v_c=skew.v_c)):
-        assert not np.any(mapped(flat, points, rows[:, 9:12])[2:])
+        assert not np.any(surface_mapping(flat, points, rows[:, 9:12])[2:])
 
 
 def test_points_are_projected_onto_the_plane_of_the_triangle() -> None:

@@ -146,11 +146,11 @@ def test_only_rays_near_the_torus_are_solved(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_the_surface_is_the_nearest_point_and_the_normal_points_outwards() -> None:
     points = np.array([[0, 1, 0.9], [0, 1, 3.01], [3, 2.01, 5], [0, 0.01, 8], [0.1, 1, 2], [0, 1, 5]])
-    intersect, normal = surfaces([RING], points[None])
-    assert np.abs(intersect[0, :4] - [[0, 1, 1], [0, 1, 3], [3, 2, 5], [0, 0, 8]]).max() <= 8 * U * 5
+    on, normal = surfaces([RING], points[None])
+    assert np.abs(on[0, :4] - [[0, 1, 1], [0, 1, 3], [3, 2, 5], [0, 0, 8]]).max() <= 8 * U * 5
     assert np.abs(normal[0, :4] - [[0, 0, -1], [0, 0, 1], [0, 1, 0], [0, -1, 0]]).max() <= 4 * U
-    # From the axis, where all ways are as short, it takes one of them.
-    assert np.abs(np.linalg.norm(intersect[0, 5] - [0, 1, 5]) - 2) <= 8 * U * 5
+    # A point on the axis, where every point of the ring is as near, moves to one of them.
+    assert np.abs(np.linalg.norm(on[0, 5] - [0, 1, 5]) - 2) <= 8 * U * 5
     assert normal[0, 5, 1] == 0
 
 
