@@ -101,7 +101,7 @@ def part_of(module: str) -> str:
 
 
 def wrong(part: str, source: str) -> set[str]:
-    """What a source of a part imports of ours and may not."""
+    """The parts that a source of a part imports but may not."""
     ours = {part_of(module) for module in imports(source) if module.split(".")[0] == "minirt"}
     return ours - MAY[part] - {part}
 
@@ -162,7 +162,7 @@ def module_of(path: str) -> str:
 
 
 def folders(modules: dict[str, set[str]]) -> dict[str, set[str]]:
-    """The same graph between folders; a module beside sub-folders counts as a folder of its own."""
+    """The graph of imports between folders; a module beside sub-folders counts as a folder of its own."""
     inner = {name for name in modules if any(other.startswith(f"{name}.") for other in modules)}
 
     def folder(name: str) -> str:
