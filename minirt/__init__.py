@@ -38,10 +38,10 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.viewer import view as view
 
 __version__ = "0.1.0"
-DEFAULT_ERROR = 0.002  # half a level of 255: what a picture of bytes can show
-DEFAULT_SIZE = (1280, 720)  # pixels; of a scene that does not name a size
+DEFAULT_ERROR = 0.002  # half a level of 255: the least that a picture of bytes can show
+DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
 
-# What is imported only when it is used, so that `miniRT --help` need not wait for it.
+# Names that are imported on first use, so that `miniRT --help` need not wait for them.
 HOMES = {
     **dict.fromkeys(("MiniRTError", "MlxError", "RenderError", "ReplayError", "SceneError"), "minirt.errors"),
     "Image": "minirt.image",
@@ -53,7 +53,7 @@ HOMES = {
     "save_movie": "minirt.movie",
     "view": "minirt.viewer",
 }
-REGISTRIES = ("minirt.shapes", "minirt.materials")  # all that is in `PUBLIC` of these is public here, too
+REGISTRIES = ("minirt.shapes", "minirt.materials")  # the names in their `PUBLIC` are public here, too
 
 
 def __getattr__(name: str) -> Any:
@@ -61,7 +61,7 @@ def __getattr__(name: str) -> Any:
         return getattr(import_module(HOMES[name]), name)
     if name == "__all__":
         return sorted((*HOMES, *registered(), "load", "render", "size_of"))
-    if name[:1].isupper() and name in registered():  # modules, which an import asks for here, begin with a small letter
+    if name[:1].isupper() and name in registered():  # modules, which imports look up here, are lower case
         return registered()[name]
     raise AttributeError(f"module 'minirt' has no attribute '{name}'")
 
@@ -77,10 +77,10 @@ def registered() -> dict[str, type]:
 
 
 def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Scene:
-    """Read a scene file. SceneError, with all of its problems, where the file is not a scene.
+    """Read a scene file. SceneError, with all of its problems, if the file is not a valid scene.
 
-    `lenient` reads what older files have: several `L`, blanks around commas, colours with decimals and the like.
-    `left_handed` mirrors its pictures, as programs do whose coordinates are left-handed.
+    `lenient` accepts older spellings: several `L`, blanks around commas, colours with decimals and the like.
+    `left_handed` mirrors pictures of the scene, as renderers with left-handed coordinates do.
     """
     from minirt.scene import load as read
 
@@ -88,7 +88,7 @@ def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool 
 
 
 def size_of(scene: Scene) -> tuple[int, int]:
-    """Width and height that a scene asks for, in pixels, or the default."""
+    """Width and height in pixels that a scene asks for, or the default."""
     return (scene.resolution.width, scene.resolution.height) if scene.resolution else DEFAULT_SIZE
 
 
@@ -104,16 +104,16 @@ def render(
     precision: str = "double",
     depth: int | None = None,
 ) -> Image:
-    """Make the picture of a scene, `width` by `height` pixels with the mean of `samples` rays in each.
+    """Render a scene: `width` by `height` pixels, each the mean of `samples` rays.
 
-    Without a size the scene's own is used. Safe to call from several threads; the first call for a combination of
-    shapes compiles for some seconds, later ones and later programs do not. `precision` "single" computes in float32
-    relative to the eye, about twice as fast. Light is mirrored or refracted `depth` times at most, of itself 8.
+    Without a size the scene's own is used. Safe to call from several threads. The first call for a combination of kinds
+    of shapes compiles for some seconds; later calls and later programs do not. `precision` "single" computes in float32
+    relative to the eye, about twice as fast. Light is mirrored or refracted at most `depth` times, by default 8.
     RenderError for a size or a number of samples below 1.
 
-    With `samples` "auto" each part of the picture gets as many as it needs, until the estimated error is at most
-    `error` (DEFAULT_ERROR where neither is given) or `time` seconds have passed, not counting those of compiling;
-    `.reached` of the picture tells which. Errors are those of `minirt.rendering.sampling.outcome`.
+    With `samples` "auto" each part of the picture gets as many samples as it needs, until the estimated error is at
+    most `error` (DEFAULT_ERROR if neither is given) or `time` seconds have passed, compilation not counted; `.reached`
+    of the picture tells which. Errors are defined in `minirt.rendering.sampling.outcome`.
     """
     import numpy as np
 
@@ -138,7 +138,7 @@ def render(
 
 
 def goal(error: float | None, time: float | None) -> tuple[float, float]:
-    """The error and the time that end a picture, where one of them or neither is given; RenderError unless > 0."""
+    """The error and the time that end a picture, if one of them or neither is given; RenderError unless > 0."""
     for name, value in (("error", error), ("time", time)):
         if value is not None and not value > 0:
             raise RenderError(f"{name} must be > 0, got {value}")
@@ -149,7 +149,7 @@ def goal(error: float | None, time: float | None) -> tuple[float, float]:
 
 @cache
 def renderer(threads: int | None, precision: str = "double", depth: int | None = None) -> Renderer:
-    """The renderer with that many threads, that precision and depth, kept for the next picture."""
+    """A renderer with these threads, precision and depth, cached for the next picture."""
     from minirt.rendering import Renderer
 
     return Renderer(threads, precision, depth)

@@ -7,19 +7,22 @@ import os
 import secrets
 import stat
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 
-def write(path: str | os.PathLike[str], data: bytes) -> None:
+def write(path: str | os.PathLike[str], data: bytes, permissions: int | None = None) -> None:
     """Replace the contents of a file by `data` in one step; OSError when that fails, and nothing is left behind.
 
-    A symbolic link stays, and its target is replaced; an existing file keeps its permissions.
+    A symbolic link stays, and its target is replaced; an existing file keeps its permissions, unless others are asked
+    for: then the file never has more than these.
     """
     target = Path(os.path.realpath(path))
-    mode = mode_of_existing(target)
+    existing = mode_of_existing(target)
+    mode = existing if permissions is None else permissions
     temporary = target.with_name(f".minirt-{secrets.token_hex(8)}.tmp")
     try:
-        with temporary.open("xb") as file:
+        with open(temporary, "xb", opener=partial(os.open, mode=0o666 if permissions is None else permissions)) as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())

@@ -29,8 +29,9 @@ def prepare() -> None:
 
 def user_cache() -> Path | None:
     """Return the user's cache folder; None for a user without a home folder."""
+    named = Path(os.environ.get("XDG_CACHE_HOME", ""))
     try:
-        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        return named if named.is_absolute() else Path.home() / ".cache"
     except RuntimeError:
         return None
 

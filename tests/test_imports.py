@@ -27,7 +27,7 @@ MAY: dict[str, set[str]] = {
     "image": {"errors", "atomic_write"},
     "movie": {"errors", "atomic_write", "image"},
     "scene": {"errors", "fields", "element", "materials", "meshes", "shapes", "atomic_write", "regular_files"},
-    "kernel": {"lanes", "shapes"},
+    "kernel": {"lanes", "shapes", "atomic_write"},
     "rendering": LOW | {"fork_safety", "gc_pause", "kernel", "scene"},
     "mlx": {"errors"},
     "viewer": {
@@ -102,7 +102,7 @@ def part_of(module: str) -> str:
 
 
 def wrong(part: str, source: str) -> set[str]:
-    """What a source of a part imports of ours and may not."""
+    """The parts that a source of a part imports but may not."""
     ours = {part_of(module) for module in imports(source) if module.split(".")[0] == "minirt"}
     return ours - MAY[part] - {part}
 
@@ -163,7 +163,7 @@ def module_of(path: str) -> str:
 
 
 def folders(modules: dict[str, set[str]]) -> dict[str, set[str]]:
-    """The same graph between folders; a module beside sub-folders counts as a folder of its own."""
+    """The graph of imports between folders; a module beside sub-folders counts as a folder of its own."""
     inner = {name for name in modules if any(other.startswith(f"{name}.") for other in modules)}
 
     def folder(name: str) -> str:

@@ -1,5 +1,5 @@
-"""What the elements of a scene are made of: each field is declared once, and the parser, the writer, the editor and
-the documentation are made from the declaration.
+"""Fields of the elements of a scene: each is declared once, and the parser, the writer, the editor and the
+documentation derive from the declaration.
 """
 
 from minirt.errors import FieldError

@@ -1,10 +1,10 @@
-"""A field, and how an element declares one.
+"""Base class of fields, and `declare`, by which an element declares one.
 
-A field has its place in a line, or it is an attribute: it stands behind the others with its key, `mirror:0.3`, and may
-be left out, at its default or absent (None).
+A field is positional, or it is an attribute: attributes follow the other fields with a key, `mirror:0.3`, and may be
+left out; then they have their default or are absent (None).
 
-A field knows how its value is spelled in a scene file (`parse`, `format`; `column` for many at once), what it may be
-(`check`), what a lenient reader makes of a wrong spelling (`repair`) and how a key press changes it (`nudge`). Errors
+A field defines how its value is spelled in a scene file (`parse`, `format`; `column` for many at once), its range
+(`check`), which wrong spellings a lenient reader accepts (`repair`) and how a key press changes it (`nudge`). Errors
 are `FieldError`s that say what was expected, without the name of the field.
 """
 
@@ -19,15 +19,15 @@ from minirt.errors import FieldError
 
 
 class PictureFile(NamedTuple):
-    """A picture file that a value names, as it is written there."""
+    """A picture file that a value names, as written there."""
 
     name: str
     heights: bool = False  # whether it is read as a height map
-    part: int | None = None  # which component of the value it is, from 0
+    part: int | None = None  # index of the component of the value that names it
 
 
 class Repair(NamedTuple):
-    """Another spelling of a field that a lenient reader takes, and what that does: "rounds it to 1,2,3"."""
+    """A correct spelling that a lenient reader takes instead, and what that does: "rounds it to 1,2,3"."""
 
     text: str
     deed: str
@@ -38,19 +38,19 @@ class Field(ABC):
     """One field of an element; `name` and `default` are those of the dataclass attribute that declares it."""
 
     width: ClassVar[int] = 1  # components, with commas between them
-    plain: ClassVar[str] = ""  # regular expression of spellings that `column` reads; empty where it reads none
+    plain: ClassVar[str] = ""  # regular expression of the spellings that `column` reads; empty if it reads none
 
     doc: str
     unit: str = ""
     step: float = 1.0  # what one key press changes, in `unit`, or as a factor for a length
-    keyed: bool = False  # an attribute, written as `key:value` behind the other fields, and left out at its default
-    key: str = ""  # of an attribute; the name where it is empty
+    keyed: bool = False  # an attribute: `key:value` behind the other fields, left out at its default
+    key: str = ""  # of an attribute; the field's name if empty
     aliases: tuple[str, ...] = ()  # keys that mean the same
-    bare: str = ""  # the value that the key alone stands for, where it may stand alone
-    sort: str = ""  # of an attribute that all elements of a sort have: what those are called
-    placeholder: str = ""  # what stands for the value of an attribute in the pattern of a line; its unit where empty
+    bare: str = ""  # the value that the key alone stands for, if it may stand alone
+    sort: str = ""  # of an attribute that all elements of a sort have: the name of the sort
+    placeholder: str = ""  # of an attribute: stands for its value in the format of a line; the unit if empty
     feature: str = ""  # of an attribute of shapes: the feature of the kernel that draws it
-    initial: Any = None  # what an editor begins with; of a length in the scene, how many times the usual one
+    initial: Any = None  # the editor's first value; of a length in the scene, as a factor of the usual one
     name: str = ""
     default: Any = None  # None: the field must be given, or as an attribute is absent
 
@@ -63,15 +63,15 @@ class Field(ABC):
         return str(value)
 
     def check(self, value: Any) -> Any:
-        """`value` in its normal form (a direction has unit length); FieldError where it is out of range."""
+        """`value` in its normal form, such as a direction of unit length; FieldError if it is out of range."""
         return value
 
     def remark(self, value: Any) -> str:
-        """What the reader of a file should be told of a value that is in range, or nothing."""
+        """A notice about a value that is in range but unusual; empty if there is none."""
         return ""
 
     def column(self, texts: Sequence[str]) -> Sequence[Any]:
-        """The checked values of many spellings that match `plain`; None for what is wrong or calls for a remark."""
+        """The checked values of many spellings that match `plain`; None for a value that is wrong or has a remark."""
         try:
             values = self.check_all(self.parse_all(texts))
         except ValueError:
@@ -79,15 +79,15 @@ class Field(ABC):
         return [self.quiet(text) for text in texts] if values is None else values
 
     def parse_all(self, texts: Sequence[str]) -> Sequence[Any]:
-        """The values of many spellings that match `plain`, not yet checked; ValueError where one is wrong."""
+        """The values of many spellings that match `plain`, not yet checked; ValueError if one is wrong."""
         return [self.parse(text) for text in texts]
 
     def check_all(self, values: Sequence[Any]) -> Sequence[Any] | None:
-        """Many values in their normal form. None or FieldError where that is not all that there is to say."""
+        """Many values in their normal form; None or FieldError if each must be checked by itself."""
         return None
 
     def quiet(self, text: str) -> Any:
-        """The checked value spelled by `text`; None where it is wrong or calls for a remark."""
+        """The checked value spelled by `text`; None if it is wrong or has a remark."""
         try:
             value = self.parse(text)
             checked = self.check(value)
@@ -96,11 +96,11 @@ class Field(ABC):
         return None if self.remark(value) else checked
 
     def repair(self, text: str) -> Repair | None:
-        """What a lenient reader takes for the wrong spelling `text`, if anything."""
+        """The spelling that a lenient reader takes instead of the wrong `text`; None if there is none."""
         return None
 
     def nudge(self, value: Any, steps: float) -> Any:
-        """`value` after `steps` key presses, kept within its range."""
+        """`value` after `steps` key presses, clamped to its range."""
         return value
 
     def pictures(self, value: Any) -> Iterator[PictureFile]:
@@ -108,38 +108,38 @@ class Field(ABC):
         return iter(())
 
     def feature_of(self, value: Any) -> str:
-        """The feature that the kernel needs to draw `value`; empty where it has no effect."""
+        """The feature that the kernel needs to draw `value`; empty if it has no effect."""
         return self.feature if value else ""
 
     @property
     def required(self) -> bool:
-        """Whether it must be given."""
+        """Whether the field must be given."""
         return self.default is None and not self.keyed
 
     @property
     def title(self) -> str:
-        """What it is called in messages."""
+        """The field's name in messages."""
         return self.name.replace("_", " ")
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """The spellings of an attribute's key, the usual one first."""
+        """The keys of an attribute, the usual one first."""
         return (self.key or self.name, *self.aliases)
 
     @property
     def notation(self) -> str:
-        """The field's place in the pattern of its line."""
+        """The field in the format of its line."""
         return f"{self.keys[0]}:{self.placeholder or self.unit or 'value'}" if self.keyed else self.name
 
     @property
     def range(self) -> str:
-        """The range in words, for messages and documentation."""
+        """The range as text, for messages and documentation."""
         return ""
 
 
 def declare(kind: Callable[..., Field], doc: str, **how: Any) -> Any:
-    """A dataclass attribute that is a field of a scene element: `diameter: float = declare(Length, "...")`."""
+    """Declare a dataclass attribute as a field of a scene element: `diameter: float = declare(Length, "...")`."""
     default = how.get("default")
     metadata = {"field": kind(doc=doc, **how)}
-    given = default is None and not how.get("keyed")
-    return field(metadata=metadata) if given else field(default=default, metadata=metadata)
+    required = default is None and not how.get("keyed")
+    return field(metadata=metadata) if required else field(default=default, metadata=metadata)

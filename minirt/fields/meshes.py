@@ -1,4 +1,4 @@
-"""The field that names a mesh file. Such a file lies beside the scene file, or where a path from there leads."""
+"""The field that names a mesh file, by a path that begins at the folder of the scene file."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from minirt.fields.pictures import file_name
 
 @dataclass(frozen=True)
 class MeshFile:
-    """The name of a mesh file as it is written, and what was read from it."""
+    """The name of a mesh file as written, and the triangles read from it."""
 
     name: str
-    triangles: Any = None  # `minirt.meshes.Triangles`; None for lines of no file, for which nobody looks
+    triangles: Any = None  # `minirt.meshes.Triangles`; None if it has not been read, as for lines without a scene file
 
 
 @dataclass(frozen=True, kw_only=True)
 class MeshField(Field):
-    """A mesh file, kept as it is written."""
+    """A mesh file, its name kept as written."""
 
     def parse(self, text: str) -> MeshFile:
         return MeshFile(file_name(text, sort="mesh"))

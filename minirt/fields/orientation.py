@@ -1,4 +1,4 @@
-"""What is right and what is up for somebody who looks in a direction."""
+"""Right and up vectors of a view direction."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from minirt.fields.triples import Triple
 
 
 def upright(x: float, y: float, z: float) -> tuple[Triple, Triple]:
-    """Right and up, as unit vectors, of a picture whose middle lies along the unit vector x, y, z.
+    """Right and up, as unit vectors, for a view along the unit vector x, y, z.
 
-    Right is that vector x (0,1,0). Straight up and straight down, where this is zero, right is +x, which makes up +z
-    and -z.
+    Right is the cross product of that vector and (0,1,0). For a view straight up or down, where this is zero, right is
+    +x, and up is +z or -z.
     """
     largest = max(abs(x), abs(z))
     if not largest:
         return (1.0, 0.0, 0.0), (0.0, 0.0, y)
-    # The horizontal part is scaled first, so that not even 1e-300 of it loses its direction.
+    # Scale the horizontal part first, so that its direction is kept even if its length is 1e-300.
     a, b = x / largest, z / largest
     length = hypot(a, b)
     a, b = a / length, b / length

@@ -1,4 +1,4 @@
-"""Fields that name picture files. Such a file lies beside the scene file, or where a path from there leads."""
+"""Fields that name picture files, by a path that begins at the folder of the scene file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ FORBIDDEN = " \t\r\n\0#"  # a line is cut at blanks, and `#` begins a comment
 
 
 def file_name(text: str, also: str = "", sort: str = "picture") -> str:
-    """A name as it can stand in a line; FieldError where it cannot, also because of the characters of `also`."""
+    """Check the name of a file: FieldError if it cannot stand in a line, or has one of the characters in `also`."""
     if not isinstance(text, str) or not text or any(character in text for character in FORBIDDEN + also):
         commas = ", commas" if "," in also else ""
         raise FieldError(f"must be the name of a {sort} file, without blanks{commas} and #, got {text!r}")
@@ -22,7 +22,8 @@ def file_name(text: str, also: str = "", sort: str = "picture") -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Picture(Field):
-    """A picture file, kept as it is written; `heights`: read as a height map, `also`: what its name must not have."""
+    """A picture file, its name kept as written; `heights`: read as a height map, `also`: characters it must not
+    have."""
 
     placeholder: str = "file"
     heights: bool = False
@@ -40,7 +41,7 @@ class Picture(Field):
 
 @dataclass(frozen=True, kw_only=True)
 class Paint(Colour):
-    """A colour, or a picture file: a word with a comma is a colour."""
+    """A colour or a picture file; a word with a comma is a colour."""
 
     def parse(self, text: str) -> Triple | str:  # type: ignore[override]
         return super().parse(text) if "," in text else file_name(text, ",")

@@ -1,4 +1,4 @@
-"""Fields of one number: ratios, angles, lengths, sizes in pixels; and of one word."""
+"""Fields of one number: ratios, angles, lengths, sizes in pixels; and flags, which are one word."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field
 from minirt.fields.numerals import PLAIN, number, numbers, spelled, whole, wholes
 
-FARTHEST = 1e15  # scene units; beyond it neighbouring float64 are an eighth of a unit apart
+FARTHEST = 1e15  # scene units; beyond it neighbouring float64 numbers are an eighth of a unit apart
 LEAST_LENGTH = 1e-9  # scene units; editing never makes a length smaller
 
 
 def clamp(value: float, low: float, high: float) -> float:
-    """`value`, moved to the nearest end of [low, high] where it lies outside."""
+    """`value`, or the nearest end of [low, high] if it lies outside."""
     return min(max(value, low), high)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Scalar(Field):
-    """One number of an interval."""
+    """One number in an interval."""
 
     plain = PLAIN
 
@@ -38,7 +38,7 @@ class Real(Scalar):
 
     low: float = -FARTHEST
     high: float = FARTHEST
-    ends: str = ""  # what becomes of `low` and `high` themselves, where that is worth a word
+    ends: str = ""  # notice about the values `low` and `high` themselves, if there is one
 
     def parse(self, text: str) -> float:
         return number(text)
@@ -94,7 +94,7 @@ class Length(Scalar):
 
 @dataclass(frozen=True, kw_only=True)
 class Factor(Real):
-    """A number in [low, high], above 0; a key press multiplies it by `step`."""
+    """A number above 0 in [low, high]; a key press multiplies it by `step`."""
 
     low: float = 1.0
     step: float = 1.1
@@ -128,7 +128,7 @@ class Whole(Scalar):
 
 @dataclass(frozen=True, kw_only=True)
 class Flag(Field):
-    """Whether a word, which is its name, is there."""
+    """A flag: true if the word that is its name is there."""
 
     default: bool = False
 

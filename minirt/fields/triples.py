@@ -14,12 +14,12 @@ from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, clamp
 
 Triple = tuple[float, float, float]
 
-SLACK = 1e-3  # how far a direction may be off unit length without a word
+SLACK = 1e-3  # by which the length of a direction may differ from 1 without a notice
 
 
 @dataclass(frozen=True, kw_only=True)
 class Three(Field):
-    """Three components with commas between them; `names` are what they are called in messages."""
+    """Three components with commas between them, called `names` in messages."""
 
     width = 3
     plain = ",".join([PLAIN] * width)
@@ -55,14 +55,14 @@ class Three(Field):
         return values
 
     def components(self, texts: Sequence[str]) -> Sequence[float]:
-        """What `component` gives for each; ValueError where one is wrong."""
+        """`component` of many texts at once; ValueError if one is wrong."""
         return numbers(texts)
 
     def format(self, value: Triple) -> str:
         return ",".join(map(spelled, value))
 
     def within(self, value: Triple, low: float, high: float) -> None:
-        """FieldError where `value` is not three numbers in [low, high]."""
+        """Raise FieldError unless `value` is three numbers in [low, high]."""
         try:
             x, y, z = value
             if low <= x <= high and low <= y <= high and low <= z <= high:
@@ -81,7 +81,7 @@ class Three(Field):
 
 @dataclass(frozen=True, kw_only=True)
 class Point(Three):
-    """A place in the scene."""
+    """A point in the scene."""
 
     unit: str = "scene unit"
 
@@ -134,7 +134,7 @@ class Lengths(Three):
 class Direction(Three):
     """A direction with components in [-1, 1]; kept at unit length."""
 
-    instead: Triple = (0.0, 1.0, 0.0)  # what a lenient reader takes for 0,0,0
+    instead: Triple = (0.0, 1.0, 0.0)  # the direction that a lenient reader takes for 0,0,0
 
     def check(self, value: Triple) -> Triple:
         self.within(value, -1.0, 1.0)
@@ -219,11 +219,11 @@ def reads(parse: Callable[[str], Any], text: str) -> bool:
 
 
 def unit(vector: Triple) -> Triple:
-    """`vector` at length 1, also where its squares would underflow or overflow.
+    """Scale `vector` to length 1, even if its squares would underflow or overflow.
 
-    A vector that has length 1 within rounding is returned as it is, so that saving and loading change nothing, unless
-    one of its components is beyond 1, which no file may have. The quotient below is off by at most 2u in length and
-    `hypot` by 2u more (u = 2^-53): one step is enough for that.
+    A vector of length 1 within rounding is returned unchanged, so that saving and loading change nothing, unless a
+    component is beyond 1, which no file may have. The quotient below is off by at most 2u in length and `hypot` by 2u
+    more (u = 2^-53), so that scaling once is enough.
     """
     x, y, z = vector
     largest = max(abs(x), abs(y), abs(z))

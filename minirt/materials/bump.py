@@ -1,10 +1,10 @@
-"""Bumps: `bump:file[,strength]`, in short `bum:`.
+"""Bump map: `bump:file[,strength]`, in short `bum:`.
 
-A picture as a relief: the surface stays as it is, but is lit as if its normals were those of one that is higher where
-the picture is lighter (Blinn 1978, Simulation of Wrinkled Surfaces). The picture lies on the surface as a texture does;
-of a coloured one the luminance counts. White is higher than black by `strength` times the width of the picture as it
-lies on the surface there; less than 0 turns heights into depths. The slope at a place is the difference over a pixel
-around it. What is mirrored and refracted goes by it, too, unless the surface would throw light below itself.
+Bump mapping (Blinn 1978, Simulation of Wrinkled Surfaces): the picture is a height map, and the surface is lit as if it
+were higher where the picture is lighter; its shape stays as it is. The picture lies on the surface as a texture does;
+of a coloured one the luminance counts. White is higher than black by `strength` times the width of the picture on the
+surface; a negative strength turns heights into depths. The slope at a point is the difference over one pixel around it.
+Mirrored and refracted rays follow the bumped normal, too, unless they would leave on the wrong side of the surface.
 
     sp 0,0,20 8 200,120,80 bump:textures/bricks-height.png,0.02
 """
@@ -20,7 +20,7 @@ from minirt.materials.material import Material
 
 @dataclass(frozen=True)
 class Bump(Material):
-    """What `bump:` says."""
+    """The values of `bump:`."""
 
     title, feature = "bump", "bumps"
     file: str = declare(partial(Picture, also=","), "the heights", heights=True)

@@ -1,4 +1,4 @@
-"""An attribute of several values with commas between them: `specular:0.5,30,blinn`."""
+"""The field of a material with several values, separated by commas: `specular:0.5,30,blinn`."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from minirt.materials.material import Material
 
 @dataclass(frozen=True, kw_only=True)
 class Compound(Field):
-    """A record, whose fields follow each other; those at the end may be left out where they have a default."""
+    """A material, its values in the order of its fields; the last ones may be left out where they have a default."""
 
     record: type[Material]
 
     def parse(self, text: str) -> Material:
         words, start, values = text.split(","), 0, {}
         for field in fields_of(self.record):
-            mine = words[start : start + field.width]
-            if not mine and not field.required:
+            own_words = words[start : start + field.width]
+            if not own_words and not field.required:
                 break
-            if len(mine) < field.width:
+            if len(own_words) < field.width:
                 raise FieldError(f"must be {self.pattern}, got {quoted(text)}")
             try:
-                values[field.name] = field.check(field.parse(",".join(mine)))
+                values[field.name] = field.check(field.parse(",".join(own_words)))
             except FieldError as error:
                 raise FieldError(f"{field.title} {error}", start + (error.part or 0)) from None
             start += field.width
@@ -60,11 +60,11 @@ class Compound(Field):
 
     @property
     def pattern(self) -> str:
-        """How its value is written: `share,exponent[,blinn]`."""
+        """The format of the value: `share,exponent[,blinn]`."""
         fields = fields_of(self.record)
         first, *rest = (field.placeholder or field.notation for field in fields)
         optional = [not field.required for field in fields[1:]]
-        return first + "".join(f"[,{each}]" if left else f",{each}" for each, left in zip(rest, optional, strict=True))
+        return first + "".join(f"[,{each}]" if last else f",{each}" for each, last in zip(rest, optional, strict=True))
 
     @property
     def notation(self) -> str:

@@ -1,9 +1,9 @@
 """Glass: `glass:ior[,share]`, in short `ref:`.
 
-`share` of what is seen at a point, all of it when left out, comes through the surface: refracted by Snell's law, with
-the index of refraction `ior` inside and 1 outside, or mirrored where the angle is too flat to leave (total reflection),
-after Whitted 1980, An Improved Illumination Model for Shaded Display. Where there is no inside, as with a plane, what
-is behind it, seen from the tip of the normal, counts as inside. Water has 1.33, glass 1.5, diamond 2.42; with 1 light
+`share` of the light seen at a point, all of it when left out, comes through the surface (Whitted 1980, An Improved
+Illumination Model for Shaded Display). It is refracted by Snell's law, with the index of refraction `ior` inside and 1
+outside, or mirrored where the angle is too flat to leave (total internal reflection). A shape without inside, such as a
+plane, counts the side that its normal points away from as inside. Water has 1.33, glass 1.5, diamond 2.42; with 1 light
 goes straight on.
 
     sp 0,0,20 8 255,255,255 glass:1.5,0.9
@@ -19,7 +19,7 @@ from minirt.materials.material import Material
 
 @dataclass(frozen=True)
 class Glass(Material):
-    """What `glass:` says."""
+    """The values of `glass:`."""
 
     title, feature = "glass", "reflective"
     ior: float = declare(Real, "index of refraction", low=1.0, high=10.0, step=0.02, initial=1.5)

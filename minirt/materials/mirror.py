@@ -1,9 +1,9 @@
 """Mirror: `mirror:share`, in short `mir:`.
 
-`share` of what is seen at a point is what the mirrored ray meets (Whitted 1980, An Improved Illumination Model for
-Shaded Display). The rest is the surface's own colour; highlights come on top of both. Rays are followed to the depth
-of `--depth`, and not where their share of a pixel is 1/1024 or less. Where mirror and glass have more than all of the
-light together, both get less alike.
+`share` of the light seen at a point is that along the mirrored ray (Whitted 1980, An Improved Illumination Model for
+Shaded Display). The rest is the surface's own colour; highlights are added to both. Rays are followed up to `--depth`
+reflections, and not where their share of a pixel is 1/1024 or less. If the shares of mirror and glass add up to more
+than 1, both are scaled down alike.
 
     pl 0,-1,0 0,1,0 200,200,200 mirror:0.3
 """

@@ -1,4 +1,4 @@
-"""The pixels of picture files. Each file is decoded once, and again when it has changed."""
+"""Cache of decoded picture files: each file is decoded once, and again when it has changed."""
 
 from __future__ import annotations
 
@@ -20,30 +20,31 @@ if TYPE_CHECKING:
 
 LARGEST = 256 * 2**20  # bytes of a file
 SIDE = 8192  # pixels
-FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TIFF", "PPM", "TGA", "WEBP", "XPM")  # of pixels alone: no programs, no fonts
+FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TIFF", "PPM", "TGA", "WEBP", "XPM")  # raster formats: no programs, no fonts
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear red, green and blue (ITU-R BT.709)
 
-Stamp = tuple[int, int, int]  # what changes when a file does
+Stamp = tuple[int, int, int]  # inode, size and time of change of a file
 
 entries: dict[tuple[Callable[[Path], np.ndarray], str], tuple[Stamp, np.ndarray]] = {}
 lock = ForkSafeLock()
 
 
 def picture(path: str | os.PathLike[str]) -> np.ndarray:
-    """Red, green and blue of a picture file, uint8 (h, w, 3), the upper row first; not to be written to. FileError."""
+    """Red, green and blue of a picture file, uint8 (h, w, 3), the upper row first; read-only. FileError if
+    unreadable."""
     return cached(colours, path)
 
 
 def heights(path: str | os.PathLike[str]) -> np.ndarray:
-    """The same as heights from 0 to 1, float32 (h, w): its brightness, in all of the 16 bits that it may have."""
+    """A picture file as a height map, float32 (h, w): its luminance from 0 to 1, with up to 16 bits; read-only."""
     return cached(brightness, path)
 
 
 def cached(read: Callable[[Path], np.ndarray], path: str | os.PathLike[str]) -> np.ndarray:
-    """What `read` makes of a file, made anew where the file is another than before."""
+    """The array that `read` makes from a file, read again only if the file has changed."""
     path = Path(path)
-    found = regular_files.status(path, LARGEST)
-    stamp = (found.st_ino, found.st_size, found.st_mtime_ns)
+    status = regular_files.status(path, LARGEST)
+    stamp = (status.st_ino, status.st_size, status.st_mtime_ns)
     key = read, os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
     with lock:
         if key not in entries or entries[key][0] != stamp:
@@ -63,7 +64,7 @@ def colours(path: Path) -> np.ndarray:
 
 
 def brightness(path: Path) -> np.ndarray:
-    """Its heights, float32 (h, w)."""
+    """Luminance of a file from 0 to 1, float32 (h, w)."""
     pixels = decode(path)
     grey = pixels.astype(np.float32)
     if pixels.ndim == 3:
@@ -72,7 +73,7 @@ def brightness(path: Path) -> np.ndarray:
 
 
 def decode(path: Path) -> np.ndarray:
-    """The pixels of a file: uint8 (h, w, 3), or of a grey one uint16 (h, w). FileError where it holds no picture."""
+    """Decode a file: uint8 (h, w, 3), or uint16 (h, w) for 16-bit grey. FileError if it holds no picture."""
     from PIL import Image as pillow  # noqa: N813
     from PIL import UnidentifiedImageError
 
@@ -96,7 +97,7 @@ def decode(path: Path) -> np.ndarray:
 
 
 def shown_pixels(image: PillowImage) -> np.ndarray:
-    """The pixels of an image, as they are shown."""
+    """The pixels of a decoded image: 16-bit grey, or 8-bit red, green and blue."""
     if image.mode.startswith("I"):
         grey: np.ndarray = np.clip(np.asarray(image), 0, 65535).astype(np.uint16)
         return grey

@@ -1,11 +1,10 @@
-"""Highlight: `specular:share,exponent[,blinn]`, in short `spc:`.
+"""Specular highlight: `specular:share,exponent[,blinn]`, in short `spc:`.
 
-The image of a lamp in a surface that is not quite smooth. Every lamp that reaches a point adds `share` of its light
-times cos(a)^`exponent`, whatever the colour of the surface. `a` is the angle between the mirrored direction of the
-light and that to the eye (Phong 1975, Illumination for Computer Generated Pictures), or with `blinn` that between the
-normal and the direction half-way from the lamp to the eye (Blinn 1977, Models of Light Reflection for Computer
-Synthesized Pictures). The greater the exponent, the smaller the highlight; with `blinn` one of the same size takes
-about four times the exponent.
+Every light that reaches a point adds `share` of its intensity times cos(a)^`exponent`, whatever the colour of the
+surface. `a` is the angle between the mirrored direction of the light and the direction to the eye (Phong 1975,
+Illumination for Computer Generated Pictures), or with `blinn` the angle between the normal and the direction half-way
+between light and eye (Blinn 1977, Models of Light Reflection for Computer Synthesized Pictures). The greater the
+exponent, the smaller the highlight; with `blinn` a highlight of the same size takes about four times the exponent.
 
     sp 0,0,20 8 200,30,30 specular:0.6,50
 """
@@ -17,12 +16,12 @@ from dataclasses import dataclass
 from minirt.fields import Factor, Flag, Real, declare
 from minirt.materials.material import Material
 
-GREATEST = 1e6  # an exponent whose highlight is a tenth of a degree wide
+GREATEST = 1e6  # exponent: its highlight is a tenth of a degree wide
 
 
 @dataclass(frozen=True)
 class Specular(Material):
-    """What `specular:` says."""
+    """The values of `specular:`."""
 
     title, feature = "specular", "specular"
     share: float = declare(Real, "share of the light", low=0.0, high=1.0, step=0.05, initial=0.5)

@@ -1,8 +1,8 @@
 """Texture: `texture:file`, in short `txm:`.
 
-The colours of a picture in the place of the surface's own: the picture lies on the surface's coordinates u, from left
-to right, and v, from its lower to its upper border, and is repeated beyond them. PNG, JPEG and other files of pixels
-will do; the path begins at the folder of the scene file, and has no blanks and no `#` in it.
+A picture that gives the surface its colours. It lies on the surface's coordinates u, from its left to its right border,
+and v, from its lower to its upper border, and is repeated beyond them. PNG, JPEG and other raster formats are read; the
+path begins at the folder of the scene file, and must not contain blanks or `#`.
 
     sp 0,0,20 8 255,255,255 texture:textures/planet.png
 """

@@ -87,7 +87,7 @@ class Renderer:
             self.render(scene, pixels)
 
     def stop(self) -> None:
-        """From any thread: `prepare` need not go on."""
+        """Stop `prepare`; callable from any thread."""
         self.kernels.compile_process.stop()
 
     def preview(self, scene: Scene, width: int, height: int) -> np.ndarray | None:
@@ -183,5 +183,5 @@ class Renderer:
         return pick.pick(scene, width, height, x, y)
 
     def cancel(self) -> None:
-        """From any thread: the picture that is being made ends soon, half-made."""
+        """End the picture that is being rendered, soon and incomplete; callable from any thread."""
         self.runner.cancel()

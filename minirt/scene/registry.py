@@ -1,4 +1,4 @@
-"""Every element that a scene file may hold, by its identifier."""
+"""Registry of all elements that a scene file may hold, by identifier."""
 
 from __future__ import annotations
 
@@ -15,5 +15,5 @@ KNOWN: tuple[type[Element], ...] = (
 
 ELEMENTS = {element.code: element for element in KNOWN}
 
-# The same by every word that a line may begin with.
+# By every identifier that a line may begin with, aliases included.
 SPELLINGS = {**ELEMENTS, **{alias: element for element in KNOWN for alias in element.aliases}}

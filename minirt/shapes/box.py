@@ -35,7 +35,7 @@ class Box(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def axes(self) -> tuple[Vec, Vec, Vec]:
-        """Its own x, y and z axes."""
+        """The own x, y and z axes of the box."""
         z, x, y = basis(self.axis)
         return x, y, z
 
@@ -109,7 +109,7 @@ def surface(box: PackedBox, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(box: PackedBox, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """From 0 to 1 across each face; v runs along the box's y axis on the four standing faces."""
+    """u and v from 0 to 1 across each face; v runs along the box's y axis on the four standing faces."""
     p = to_basis(box.u, box.v, box.w, point - box.centre)
     out = to_basis(box.u, box.v, box.w, normal)
     by_x, by_y = fabs(out.x) > 0.5, fabs(out.y) > 0.5

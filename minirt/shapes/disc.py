@@ -69,7 +69,7 @@ def surface(disc: PackedDisc, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(disc: PackedDisc, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """From 0 to 1 across the square around the disc."""
+    """u and v from 0 to 1 across the square around the disc."""
     p = point - disc.centre
     across = 2.0 * disc.radius
     per_diameter = 1.0 / across

@@ -18,7 +18,7 @@ BEHIND = 4  # roundings of the coordinates by which a start may seem to lie behi
 def may_meet(
     corners: tuple[Vec, Vec, Vec], normal: Vec, apex: Vec, start: Vec | None, direction: Vec, active: Mask
 ) -> Mask:
-    """Which of the `active` rays may hit the triangle, whatever the rounding.
+    """Cull the `active` rays that cannot hit the triangle, whatever the rounding: a mask of the others.
 
     Without a `start` rays leave the apex. With one they lead to the apex, and those that start in front of the
     triangle, as seen from the apex, cannot hit it.

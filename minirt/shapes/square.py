@@ -77,7 +77,7 @@ def surface(square: PackedSquare, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(square: PackedSquare, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """From 0 to 1 from edge to edge."""
+    """u and v from 0 to 1 from edge to edge."""
     p = point - square.centre
     side = 2.0 * square.half
     per_side = 1.0 / side

@@ -41,8 +41,8 @@ def test_a_turntable_needs_a_number_and_a_file(run: Run, wrong: tuple[str, ...])
 
 def test_a_replay_can_be_a_gif(run: Run, folder: Path) -> None:
     (folder / "keys.txt").write_text("press I\npress I\nhold d 1\nwait 0.2\n")
-    assert run("ball.rt", "--replay", "keys.txt", "-o", "film.gif", "--size", "32x18").status == 0
-    with pillow.open(folder / "film.gif") as movie:
+    assert run("ball.rt", "--replay", "keys.txt", "-o", "movie.gif", "--size", "32x18").status == 0
+    with pillow.open(folder / "movie.gif") as movie:
         assert movie.n_frames > 8
 
 

@@ -1,4 +1,4 @@
-"""Picture files: what is read of them, what is refused and why, and that each is decoded once."""
+"""Picture files: their pixels, reasons for refusing them, and that each is decoded once."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ COLOURS = np.array([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [10, 20, 30]], [[2
 
 
 def refusal(path: Path) -> str:
-    """Why both ways of reading refuse a file."""
+    """The reason for which a file is refused, both as colours and as heights."""
     reasons = set()
     for read in (picture, heights):
         with pytest.raises(FileError) as caught:
@@ -41,7 +41,7 @@ def test_the_pixels_are_those_of_the_file_its_upper_row_first(tmp_path: Path, na
 
 
 @pytest.mark.parametrize("mode", ["P", "RGBA", "L", "LA", "1", "CMYK"])
-def test_every_sort_of_pixels_becomes_red_green_and_blue(tmp_path: Path, mode: str) -> None:
+def test_every_pixel_format_becomes_red_green_and_blue(tmp_path: Path, mode: str) -> None:
     path = tmp_path / ("a.tiff" if mode == "CMYK" else "a.png")
     image = Image.fromarray(COLOURS).convert(mode)
     image.save(path)
@@ -58,7 +58,7 @@ def test_heights_are_the_luminance_from_0_to_1(tmp_path: Path) -> None:
     assert read.max() <= 1
 
 
-def test_16_bits_of_height_are_kept_and_as_colours_rounded(tmp_path: Path) -> None:
+def test_heights_keep_16_bits_and_colours_are_rounded_to_8(tmp_path: Path) -> None:
     path = tmp_path / "a.png"
     levels = np.array([[0, 1, 256, 257, 32768, 65535]], np.uint16)
     Image.fromarray(levels).save(path)
@@ -88,14 +88,14 @@ def test_a_file_is_decoded_once_and_again_when_it_changes(tmp_path: Path, monkey
     assert "no such file" in refusal(path)
 
 
-def test_what_is_read_is_not_written_to(tmp_path: Path) -> None:
+def test_cached_pixels_are_read_only(tmp_path: Path) -> None:
     Image.fromarray(COLOURS).save(tmp_path / "a.png")
     for read in (picture, heights):
         with pytest.raises(ValueError, match="read-only"):
             read(tmp_path / "a.png")[0] = 0
 
 
-def test_files_that_are_no_pictures(tmp_path: Path) -> None:
+def test_files_without_a_picture_are_refused(tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     os.mkfifo(tmp_path / "fifo")
     (tmp_path / "empty").touch()
@@ -111,7 +111,7 @@ def test_files_that_are_no_pictures(tmp_path: Path) -> None:
     assert refusal(tmp_path / "program.eps") == "is not a picture"  # nobody runs programs that a scene names
 
 
-def test_every_beginning_of_a_picture_is_refused(tmp_path: Path) -> None:
+def test_every_truncated_picture_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.png"
     random = np.random.default_rng(1)
     Image.fromarray(random.integers(0, 256, (8, 8, 3), np.uint8)).save(path)
@@ -123,7 +123,7 @@ def test_every_beginning_of_a_picture_is_refused(tmp_path: Path) -> None:
 
 
 def png(width: int, height: int) -> bytes:
-    """A picture file that says it has that size, and has no pixels."""
+    """A picture file whose header claims this size, without pixels."""
 
     def chunk(name: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))

@@ -1,4 +1,4 @@
-"""The pictures of scenes/textures come from their script."""
+"""The pictures in scenes/textures are those that their script draws."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ NAMES = sorted(path.name for path in FOLDER.iterdir())
 
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder in which they were drawn anew."""
+    """A folder into which the script has drawn the pictures."""
     folder: Path = tmp_path_factory.mktemp("textures")
     runpy.run_path(str(ROOT / "assets" / "make_textures.py"))["main"](folder)
     return folder
 
 
-def test_the_same_pictures_come_out_again(drawn: Path) -> None:
+def test_the_script_draws_the_same_pictures_again(drawn: Path) -> None:
     assert sorted(path.name for path in drawn.iterdir()) == NAMES
     for name in NAMES:
         assert np.array_equal(picture(drawn / name), picture(FOLDER / name)), name
 
 
-def test_they_are_small() -> None:
+def test_textures_are_small() -> None:
     assert sum(path.stat().st_size for path in FOLDER.iterdir()) < 700_000
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_they_have_no_seam(name: str) -> None:
+def test_textures_have_no_seam(name: str) -> None:
     # Across the border neighbours differ no more than elsewhere; tiles fit to themselves from top to bottom, too.
     pixels = np.asarray(Image.open(FOLDER / name).convert("RGB"), float)
     for axis in (0, 1) if pixels.shape[0] == pixels.shape[1] else (1,):

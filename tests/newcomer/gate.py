@@ -39,7 +39,7 @@ class Gate(Shape):
 
 
 class PackedGate(NamedTuple):
-    """What the kernel keeps of a gate."""
+    """Packed form of a gate."""
 
     centre: Position
     half: float  # of the side
@@ -60,7 +60,7 @@ def surface(gate: PackedGate, point: Vec) -> tuple[Vec, Vec]:
 
 
 def mapping(gate: PackedGate, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:
-    """From 0 to 1 along x and along y."""
+    """u and v from 0 to 1 along x and along y."""
     side = 2.0 * gate.half
     p = point - gate.centre
     return 0.5 + p.x / side, 0.5 + p.y / side, Vec(side, 0.0, 0.0), Vec(0.0, side, 0.0)

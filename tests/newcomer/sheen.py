@@ -1,6 +1,8 @@
-"""Sheen: `sheen:share`, a made-up material: a highlight as wide as can be.
+"""Sheen: `sheen:share`.
 
-sp 0,0,20 8 200,120,80 sheen:0.4
+A made-up material: a highlight as wide as can be.
+
+    sp 0,0,20 8 200,120,80 sheen:0.4
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from minirt.materials.material import Material
 
 @dataclass(frozen=True)
 class Sheen(Material):
-    """What `sheen:` says."""
+    """The values of `sheen:`."""
 
     title, feature = "sheen", "specular"
     share: float = declare(Real, "share of the light", low=0.0, high=1.0, step=0.05, initial=0.4)

@@ -1,6 +1,6 @@
-"""A shape and a material that are added as `minirt/README.md` says pass the questions that are asked of every kind.
+"""A made-up shape and material, added as `minirt/README.md` says, pass the questions asked of every kind.
 
-They are added to a copy of the package: of the shape its file, a line in the registry and its oracle; of the material
+They are added to a copy of the project: for the shape its file, a line in the registry and its oracle; for the material
 its file, an import and a field in the registry, and the lines that pack it.
 """
 
@@ -66,7 +66,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def answers(copy: Path, *command: str) -> str:
-    """What a Python program prints that runs in the copy, and imports from there alone."""
+    """Run a Python program in the copy, with imports from there, and return what it prints; it must succeed."""
     environment = {**os.environ, "PYTHONPATH": str(copy), "XDG_CACHE_HOME": str(copy / "cache")}
     done = run([sys.executable, *command], cwd=copy, env=environment, text=True)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -1,11 +1,11 @@
-"""Where a ray meets a shape and how the shape lies there, to 60 digits, by other means than the program's.
+"""The oracle: hits and normals of all shapes to 60 digits, computed differently from the program.
 
-A shape is given here by implicit functions: polynomials of the coordinates of a point in the scene, which are <= 0
-inside (`Body`). Along a ray each is a polynomial in t, which is expanded by calling the function with the ray's
-coordinates, and its roots are found between its turning points. No formula is solved for t by hand.
+A shape is given here by implicit functions: polynomials of the coordinates of a point, which are <= 0 inside (`Body`).
+Along a ray each is a polynomial in t, which is expanded by calling the function with the ray's coordinates; its roots
+are found between its turning points. No formula is solved for t by hand.
 
-The numbers of scene, ray and shape are taken as they are, to the last bit; only axes and normals, which a scene means
-to have unit length, are scaled to it. t counts in lengths of `direction`, which may be any but 0.
+The numbers of scene, ray and shape are taken as they are, to the last bit; only axes and normals are scaled to exact
+unit length, as a scene intends. t is in lengths of `direction`, which may be any but 0.
 
 For another shape add a file beside these, named as the shape's own and as short as `sphere.py`: the function it
 registers with `body` takes the shape and a `swell` by which its surface is moved outwards, of a sheet its edges, and
@@ -39,18 +39,17 @@ __all__ = ["Body", "body", "dot", "exact", "inside", "nearest", "normal"]
 def nearest(shape: Shape, origin: Sequence[Any], direction: Sequence[Any], swell: Any = 0) -> mpfr | None:
     """The least t > 0 at which origin + t direction lies on the surface, or None.
 
-    What a formula may answer lies between the answers for a shape a little larger (`swell` > 0) and one a little
-    smaller.
+    A right answer in fewer digits lies between those for a shape a little larger (`swell` > 0) and a little smaller.
     """
-    found = crossings(body(shape, mpfr(swell)), list(origin), list(direction))
-    return next((t for t in found if t > 0), None)
+    hits = crossings(body(shape, mpfr(swell)), list(origin), list(direction))
+    return next((t for t in hits if t > 0), None)
 
 
 def normal(shape: Shape, point: Sequence[Any]) -> Vector:
-    """The outward unit normal at a point of the surface, or of the wall to which a point beside it is nearest."""
+    """The outward unit normal at a point of the surface, or that of the wall nearest to a point beside it."""
     return normals(body(shape), list(point))[0][1]
 
 
 def inside(shape: Shape, point: Sequence[Any]) -> bool:
-    """Whether a point is inside of a solid."""
+    """Whether a point is inside a solid."""
     return inside_of(body(shape), list(point))

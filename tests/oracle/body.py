@@ -1,4 +1,4 @@
-"""Shapes as sets of points, and what a ray sees of them."""
+"""Bodies: shapes as implicit functions, and their intersections with rays."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ Implicit = Callable[[Vector], Any]  # a polynomial of the coordinates of a point
 
 
 class Body(NamedTuple):
-    """What an implicit surface F = 0 encloses or is.
+    """A solid or a sheet, bounded by implicit surfaces F = 0.
 
-    A solid is where all `walls` are <= 0, and its surface is where one of them is 0. A sheet, which has no inside, is
-    where its one wall is 0. Both are cut off where one of the `clips` is > 0, which leaves no surface there. Outwards
-    is where the wall grows.
+    A solid is where all `walls` are <= 0; its surface is where one of them is 0. A sheet, which has no inside, is where
+    its one wall is 0. Both are cut off, without a surface there, where one of the `clips` is > 0. The normal points to
+    where the wall grows.
     """
 
     walls: tuple[Implicit, ...]
@@ -45,28 +45,28 @@ def crossings(each: Body, origin: Vector, direction: Vector) -> list[mpfr]:
     ray = [Polynomial(o, d) for o, d in zip(exact(origin), exact(direction), strict=True)]
     walls = [as_polynomial(wall(ray)) for wall in each.walls]
     clips = [as_polynomial(clip(ray)) for clip in each.clips]
-    found = []
+    hits: list[mpfr] = []
     for wall in walls:
         others = [*clips, *(other for other in walls if other is not wall and each.solid)]
-        found += [t for t in wall.roots() if all(other(t) <= 0 for other in others)]
-    return sorted(found)
+        hits += [t for t in wall.roots() if all(other(t) <= 0 for other in others)]
+    return sorted(hits)
 
 
 def inside(each: Body, point: Vector) -> bool:
-    """Whether a point is inside; the surface and what is cut off are not, and a sheet has no inside."""
+    """Whether a point is inside, not on the surface and not cut off; a sheet has no inside."""
     p = exact(point)
     return each.solid and all(wall(p) < 0 for wall in each.walls) and all(clip(p) <= 0 for clip in each.clips)
 
 
 def normals(each: Body, point: Vector) -> list[tuple[mpfr, Vector]]:
-    """The distance of a point from each wall, to first order, and the outward unit normal there; the nearest first."""
+    """The distance of a point to each wall, to first order, and its outward unit normal there; the nearest first."""
     p = exact(point)
     slopes = [(abs(wall(p)), gradient(wall, p)) for wall in each.walls]
     return sorted(((height / sqrt(dot(slope, slope)), unit(slope)) for height, slope in slopes), key=lambda w: w[0])
 
 
 def gradient(wall: Implicit, point: Vector) -> Vector:
-    """The slope of a wall along each axis: the coefficient of t of the polynomial along it."""
+    """The gradient of a wall: its slope along an axis is the coefficient of t of the polynomial along that axis."""
     axes = ([Polynomial(x, int(i == axis)) for i, x in enumerate(point)] for axis in range(3))
     return [([*as_polynomial(wall(line)).coefficients, mpfr(0)])[1] for line in axes]
 

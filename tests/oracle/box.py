@@ -1,4 +1,4 @@
-"""Between three pairs of planes, at right angles to the box's own axes."""
+"""Box: between three pairs of planes, perpendicular to its own axes."""
 
 from typing import Any
 

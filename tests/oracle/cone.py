@@ -1,4 +1,4 @@
-"""|p x axis|^2 <= slope^2 (p . axis)^2 for points p from the apex on the side of the base, and below that."""
+"""Cone: |p x axis|^2 <= slope^2 (p . axis)^2 for points p from the apex on the side of the base, and below that."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""|(p - centre) x axis|^2 <= radius^2, between two planes across the axis."""
+"""Cylinder: |(p - centre) x axis|^2 <= radius^2, between two planes across the axis."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""(p - centre) . normal = 0 within a radius: a sheet."""
+"""Disc: (p - centre) . normal = 0 within a radius; a sheet."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""(p . x / a)^2 + (p . y / b)^2 + (p . z / c)^2 <= 1 for points p from the centre, by the ellipsoid's own axes."""
+"""Ellipsoid: (p . x / a)^2 + (p . y / b)^2 + (p . z / c)^2 <= 1 for points p from the centre, and its own axes."""
 
 from typing import Any
 

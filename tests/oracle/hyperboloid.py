@@ -1,4 +1,5 @@
-"""|p x axis|^2 <= waist^2 + slope^2 (p . axis)^2 for points p from the centre, between two planes across the axis."""
+"""Hyperboloid: |p x axis|^2 <= waist^2 + slope^2 (p . axis)^2 for points p from the centre, between two planes across
+the axis."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""|p x axis|^2 height <= radius^2 (p . axis) for points p from the vertex, and below the rim."""
+"""Paraboloid: |p x axis|^2 height <= radius^2 (p . axis) for points p from the vertex, and below the rim."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""(p - point) . normal = 0: a sheet without an edge."""
+"""Plane: (p - point) . normal = 0; a sheet without an edge."""
 
 from typing import Any
 

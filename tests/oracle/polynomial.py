@@ -1,4 +1,4 @@
-"""Polynomials in one variable, with coefficients of many digits, and their real roots."""
+"""Polynomials in one variable with multiple-precision coefficients, and their real roots."""
 
 from __future__ import annotations
 
@@ -9,13 +9,16 @@ from gmpy2 import mpfr, sqrt
 
 from tests.oracle.vectors import BITS
 
-EPS = mpfr(2) ** (1 - BITS)  # by which a number is told from 1
-STEPS = 1000  # at most, towards a root; most take less than ten
+EPS = mpfr(2) ** (1 - BITS)  # distance from 1 to the next number
+STEPS = 1000  # of Newton's method at most; most roots take less than ten
 
 
 class Polynomial:
-    """c0 + c1 t + c2 t^2 + ...: it adds to and multiplies with others and numbers, so that a function that is written
-    for numbers is expanded by calling it."""
+    """The polynomial c0 + c1 t + c2 t^2 + ...
+
+    It can be added to and multiplied with polynomials and numbers, so that a function written for numbers is expanded
+    by calling it with polynomials.
+    """
 
     def __init__(self, *coefficients: Any) -> None:
         self.coefficients = [c if isinstance(c, mpfr) else mpfr(c) for c in coefficients]
@@ -58,7 +61,7 @@ class Polynomial:
         return Polynomial(*(k * c for k, c in enumerate(self.coefficients) if k))
 
     def roots(self) -> list[mpfr]:
-        """The t at which it is 0, in ascending order, a multiple one once; none for a constant.
+        """The real roots in ascending order, multiple roots once; none for a constant.
 
         Between two turning points, which are the roots of the derivative, it is monotone: there is one root where the
         signs at both ends differ.
@@ -80,14 +83,14 @@ class Polynomial:
         return sorted(found)
 
     def beside(self, turn: mpfr, side: int) -> mpfr:
-        """The root, to one side of a turning point, of the parabola that it looks like there."""
+        """First guess of a root beside a turning point: the root of the parabola that fits the polynomial there."""
         bend = self.derivative().derivative()(turn)
         square = -2 * self(turn) / bend if bend else mpfr(0)
         return turn + side * sqrt(square) if square > 0 else turn
 
     def root(self, low: mpfr, high: mpfr, t: mpfr) -> mpfr:
-        """The root between places with different signs: by Newton's steps from t, by halves where these lead out or do
-        not shrink."""
+        """The root between two t with different signs: Newton's method from t, and bisection where a step leaves the
+        interval or does not shrink."""
         slope, below = self.derivative(), self(low)
         if low < 0 < high and self.coefficients[0] == 0:
             return mpfr(0)
@@ -107,5 +110,5 @@ class Polynomial:
 
 
 def coefficients_of(other: Any) -> list[mpfr]:
-    """Those of a polynomial; a number is the only one."""
+    """The coefficients of a polynomial, or of a number as a constant polynomial."""
     return other.coefficients if isinstance(other, Polynomial) else [mpfr(other)]

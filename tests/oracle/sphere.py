@@ -1,4 +1,4 @@
-"""|p - centre|^2 <= radius^2."""
+"""Sphere: |p - centre|^2 <= radius^2."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""(p - centre) . normal = 0 within half a side of two planes through the centre: a sheet."""
+"""Square: (p - centre) . normal = 0 within half a side of two planes through the centre; a sheet."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The oracle itself, where the answer is known by hand."""
+"""The oracle itself, against answers known by hand."""
 
 from __future__ import annotations
 
@@ -45,13 +45,13 @@ def test_the_roots_of_a_polynomial(roots: list[mpfr], factor: float) -> None:
         assert abs(one - other) <= abs(other) * mpfr("1e-35")
 
 
-def test_the_last_two_steps_may_be_of_one_size() -> None:
+def test_newtons_method_ends_though_the_last_two_steps_are_of_one_size() -> None:
     roots = [mpfr(x) for x in (-935875.23, 0, 0.79, 456628.801, 480168.5)]
     found = product(roots, mpfr(7e20)).roots()
     assert max(abs(x - y) for x, y in zip(found, roots, strict=True)) < mpfr("1e-45")
 
 
-def test_roots_that_are_hard() -> None:
+def test_close_multiple_and_missing_roots() -> None:
     close = [mpfr(1), 1 + mpfr("1e-20"), mpfr(5)]
     assert max(abs(x - y) for x, y in zip(product(close, mpfr(1)).roots(), close, strict=True)) < mpfr("1e-38")
     assert Polynomial(4, -4, 1).roots() == [2]  # a double root
@@ -105,7 +105,7 @@ def test_many_walls_and_many_roots() -> None:
     assert crossings(PIPE, [-3, 4.5, 0], [0.75, -0.75, 0]) == pytest.approx([16 / 3])  # over the rim, at the far wall
 
 
-def test_what_is_thicker_by_a_little_is_hit_a_little_earlier() -> None:
+def test_a_thicker_shape_is_hit_earlier() -> None:
     for shape, way in ((BALL, (0, 0, 1)), (TUBE, (0, 0, 1)), (TUBE, (0, 1, 0))):
         origin = [c - 9 * d for c, d in zip(shape.centre, way, strict=True)]
         plain, thick = oracle.nearest(shape, origin, way), oracle.nearest(shape, origin, way, 1e-20)
@@ -137,5 +137,5 @@ def test_normals_point_outwards() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
-def test_it_knows_every_shape(kind: object) -> None:
+def test_the_oracle_knows_every_shape(kind: object) -> None:
     assert kind.element in body.registry

@@ -1,4 +1,4 @@
-"""(|p|^2 + ring^2 - tube^2)^2 <= 4 ring^2 |p x axis|^2 for points p from the centre."""
+"""Torus: (|p|^2 + ring^2 - tube^2)^2 <= 4 ring^2 |p x axis|^2 for points p from the centre."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""(p - a) . normal = 0, on the inner side of the three edges: a sheet."""
+"""Triangle: (p - a) . normal = 0, on the inner side of the three edges; a sheet."""
 
 from typing import Any
 

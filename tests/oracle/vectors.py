@@ -1,4 +1,4 @@
-"""Vectors whose components are numbers of many digits, or polynomials."""
+"""Vectors whose components are multiple-precision numbers or polynomials."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from gmpy2 import get_context, mpfr, sqrt
 
 Vector = list[Any]
 
-BITS = 203  # of the numbers: 60 digits, by GMP's library MPFR, in a seventh of the time that Python takes for them
+BITS = 203  # of precision, 60 digits: MPFR, in a seventh of the time of Python's decimal
 get_context().precision = BITS
 
 
 def exact(numbers: Iterable[Any]) -> Vector:
-    """Floating-point numbers as they are, to the last bit."""
+    """Convert floating-point numbers exactly."""
     return [number if isinstance(number, mpfr) else mpfr(float(number)) for number in numbers]
 
 
 def unit(numbers: Iterable[Any]) -> Vector:
-    """Of a direction, which a scene means to have length 1."""
+    """Scale a direction, which is of unit length but for rounding, to length 1."""
     v = exact(numbers)
     length = sqrt(dot(v, v))
     return [x / length for x in v]

@@ -1,9 +1,9 @@
-"""A second, independent renderer, which the tests compare the program with.
+"""The reference renderer: a second, independent renderer that the tests compare the program with.
 
-It draws all shapes and materials, all lamps with hard shadows, mirrors, glass and skies, one ray a pixel, in plain
-numpy float64, as the manual pages of the program say. It shares no code with the program beyond the scene's
-dataclasses, and its geometry is written another way: a shape is where a line goes through its surface, and the first
-such place in front of the origin is what is seen.
+It draws all shapes, materials, lights with hard shadows, mirrors, glass and backgrounds, one ray a pixel, in plain
+numpy float64, following the manual pages of the program. It shares no code with the program except the scene's
+dataclasses, and its geometry is written differently: all crossings of a line and a surface are computed, and the first
+one in front of the origin is the hit.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from tests.reference.normals import normals
 from tests.reference.texturing import bilinear, colour_and_normal, picture
 from tests.reference.vectors import Array, dot, length, rgb, right_and_up
 
-DEPTH = 8  # how often light is mirrored or refracted on its way to the eye, at most
-LEAST = 2.0**-10  # rays are not followed for a share of the light of a pixel that is no more than this
+DEPTH = 8  # reflections and refractions along a path, at most
+LEAST = 2.0**-10  # share of the light of a pixel up to which rays are not followed
 
 
 def render(scene: Scene, width: int, height: int, depth: int = DEPTH) -> Array:
-    """The linear picture, (height, width, 3), not clamped; the camera's field of view lies between 0 and 180."""
+    """Render a scene: linear light, (height, width, 3), not clamped. The field of view must be between 0 and 180."""
     origins, directions = camera_rays(scene.camera, width, height)
-    seen = light_along(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), np.ones(width * height), depth)
-    return seen.reshape(height, width, 3)
+    radiance = light_along(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), np.ones(width * height), depth)
+    return radiance.reshape(height, width, 3)
 
 
 def to_bytes(linear: Array) -> NDArray[np.uint8]:
-    """The picture as it is shown: clamped to [0, 1] and rounded to the nearest of 256 steps, halves upwards."""
+    """Quantise linear light to bytes: clamped to [0, 1] and rounded to the nearest of 256 steps, halves upwards."""
     return np.floor(np.clip(linear, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
 
 
@@ -47,7 +47,7 @@ def camera_rays(camera: Camera, width: int, height: int) -> tuple[Array, Array]:
 
 
 def camera_frame(camera: Camera) -> tuple[Array, Array, Array]:
-    """What the camera calls right, up and forward: unit vectors."""
+    """Right, up and forward of the camera: unit vectors."""
     forward = np.array(camera.direction)
     right, up = right_and_up(forward)
     turn = np.radians(camera.roll)
@@ -55,7 +55,7 @@ def camera_frame(camera: Camera) -> tuple[Array, Array, Array]:
 
 
 def light_along(scene: Scene, origins: Array, directions: Array, weights: Array, depth: int) -> Array:
-    """The light, times weights, that n rays bring back, (n, 3): after Whitted 1980."""
+    """The radiance along n rays times their weights, (n, 3), by recursive ray tracing (Whitted 1980)."""
     distances, owners = first_hits(scene.shapes, origins, directions)
     light = np.zeros_like(origins)
     missed = owners < 0
@@ -72,41 +72,41 @@ def light_along(scene: Scene, origins: Array, directions: Array, weights: Array,
         light[rays] += weight[:, None] * shaded(scene, shape, points, facing, bent, colour, direction, far)
         through = shape.glass.share if shape.glass else 0.0
         back = shape.mirror or 0.0
-        whole = max(1.0, back + through)
+        sum_of_shares = max(1.0, back + through)
         if depth == 0 or back + through == 0:
             continue
         leaving = points + far[:, None] * facing, points - far[:, None] * facing
-        # The relief counts, unless the light would come through the surface.
+        # The bumped normal counts, unless the mirrored ray would go through the surface.
         mirrored = direction - 2 * dot(bent, direction)[:, None] * bent
         sound = (dot(bent, direction) < 0) & (dot(mirrored, facing) > 0)
         tilted = np.where(sound[:, None], bent, facing)
         cosine = -dot(tilted, direction)[:, None]
         mirrored = direction + 2 * cosine * tilted
         ratio = np.where(outside, 1 / shape.glass.ior, shape.glass.ior) if shape.glass else np.ones(len(direction))
-        sine = ratio[:, None] * (direction + cosine * tilted)  # Snell's law: what is along the surface
+        sine = ratio[:, None] * (direction + cosine * tilted)  # Snell's law: the component along the surface
         squared = dot(sine, sine)
-        total = squared > 1
+        total = squared > 1  # total internal reflection
         refracted = sine - np.sqrt(np.maximum(0, 1 - squared))[:, None] * tilted
         shares = (
-            (leaving[0], mirrored, weight * (back + np.where(total, through, 0)) / whole),
-            (leaving[1], refracted, weight * np.where(total, 0, through) / whole),
+            (leaving[0], mirrored, weight * (back + np.where(total, through, 0)) / sum_of_shares),
+            (leaving[1], refracted, weight * np.where(total, 0, through) / sum_of_shares),
         )
-        for starts, ways, share in shares:
-            asked = share > LEAST
+        for starts, towards, share in shares:
+            followed = share > LEAST
             part = np.zeros_like(points)
-            part[asked] = light_along(scene, starts[asked], ways[asked], share[asked], depth - 1)
+            part[followed] = light_along(scene, starts[followed], towards[followed], share[followed], depth - 1)
             light[rays] += part
     return light
 
 
 def sky(scene: Scene, directions: Array) -> Array:
-    """What is seen in directions in which there is nothing."""
+    """The background in directions in which no shape is hit."""
     if scene.background is None:
         return np.zeros_like(directions)
     if not isinstance(scene.background.paint, str):
         return np.broadcast_to(rgb(scene.background.paint), directions.shape)
     pixels = picture(scene.beside(scene.background.paint))
     x, y, z = np.moveaxis(directions, -1, 0)
-    edge = 0.5 / len(pixels)  # nothing is above the upper row of pixels
+    edge = 0.5 / len(pixels)  # no interpolation beyond the upper and lower rows of pixels
     v = np.clip(0.5 + np.arcsin(np.clip(y, -1, 1)) / np.pi, edge, 1 - edge)
     return bilinear(pixels, 0.5 + np.arctan2(-x, z) / (2 * np.pi), v)

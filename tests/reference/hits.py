@@ -1,4 +1,4 @@
-"""Where rays meet shapes."""
+"""Intersections of rays and shapes, for the reference renderer."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ SAME_SURFACE = 1e-10  # relative difference of distances below which two surface
 
 
 def first_hits(shapes: Iterable[Shape], origins: Array, directions: Array) -> tuple[Array, NDArray[np.int64]]:
-    """For each ray the distance to what it meets first and the index of that shape, or infinity and -1.
+    """The distance of each ray's first hit and the index of the shape that is hit, or infinity and -1.
 
-    Of coincident surfaces the earlier one is met.
+    Of coincident surfaces the earlier one is hit.
     """
     nearest = np.full(directions.shape[:-1], np.inf)
     owners = np.full(nearest.shape, -1)
@@ -44,14 +44,14 @@ def first_hits(shapes: Iterable[Shape], origins: Array, directions: Array) -> tu
 
 
 def first_in_front(shape: Shape, origins: Array, directions: Array) -> Array:
-    """The least distance > 0 at which a shape is met, or infinity."""
+    """The least distance > 0 at which a shape is hit, or infinity."""
     with np.errstate(invalid="ignore"):
         return np.min([np.where(t > 0, t, np.inf) for t in crossings(shape, origins, directions)], axis=0)
 
 
 @singledispatch
 def crossings(shape: Shape, origins: Array, directions: Array) -> list[Array]:
-    """Distances at which lines along unit directions go through the surface of a shape, NaN where they do not."""
+    """All distances at which lines along unit directions cross the surface of a shape, NaN for none."""
     raise TypeError(f"the reference renderer knows no {shape.title}")
 
 
@@ -82,10 +82,10 @@ def _(ellipsoid: Ellipsoid, origins: Array, directions: Array) -> list[Array]:
 def _(cylinder: Cylinder, origins: Array, directions: Array) -> list[Array]:
     axis, radius = np.array(cylinder.axis), cylinder.diameter / 2
     to_centre = np.array(cylinder.centre) - origins
-    # What the ray does along the axis: the slab between the caps.
+    # Along the axis: the slab between the caps.
     along, slope = dot(to_centre, axis), dot(directions, axis)
     slab_enter, slab_leave = slab(along, slope, cylinder.height / 2)
-    # What it does across the axis: a circle in the plane, at the speed |across|.
+    # Across the axis: a circle in the plane, at the speed |across|.
     across, centre_across = directions - slope[..., None] * axis, to_centre - along[..., None] * axis
     speed = length(across)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -113,9 +113,9 @@ def _(box: Box, origins: Array, directions: Array) -> list[Array]:
 @crossings.register(Paraboloid)
 @crossings.register(Hyperboloid)
 def _(shape: Cone | Paraboloid | Hyperboloid, origins: Array, directions: Array) -> list[Array]:
-    # Along the ray the height and the square of the distance from the axis are polynomials.
+    # Along the ray the height and the squared distance from the axis are polynomials.
     form = profile(shape)
-    start = dot(form.origin - origins, directions)[..., None]  # where it is nearest to the origin
+    start = dot(form.origin - origins, directions)[..., None]  # where the ray is nearest to the origin of the profile
     p = origins + start * directions - form.origin
     height, slope = dot(p, form.axis), dot(directions, form.axis)
     a = 1 - slope**2 - form.two * slope**2
@@ -190,14 +190,14 @@ def _(triangle: Triangle, origins: Array, directions: Array) -> list[Array]:
 
 
 def to_plane(point: Array, normal: Array, origins: Array, directions: Array) -> Array:
-    """The distance to a plane, NaN along it."""
+    """The distance to a plane, NaN for a parallel ray."""
     above, rise = dot(origins - point, normal), dot(directions, normal)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(rise == 0, np.nan, -above / rise)
 
 
 def slab(along: Array, slope: Array, half: float) -> tuple[Array, Array]:
-    """Where lines enter and leave the space between two planes, whose middle is `along` away."""
+    """The t at which lines enter and leave the slab between two planes whose middle is `along` away."""
     with np.errstate(divide="ignore", invalid="ignore"):
         middle, across = along / slope, half / np.abs(slope)
     level = slope == 0
@@ -206,18 +206,18 @@ def slab(along: Array, slope: Array, half: float) -> tuple[Array, Array]:
 
 
 def chord(enter: Array, leave: Array) -> list[Array]:
-    """The ends of the part of a line that lies in a convex solid; NaN where there is none."""
+    """The crossings of a line that is in a convex solid from `enter` to `leave`; NaN for an empty interval."""
     with np.errstate(invalid="ignore"):
         there = enter <= leave
     return [np.where(there, enter, np.nan), np.where(there, leave, np.nan)]
 
 
 def half_chord(radius: float, off_centre: Array) -> Array:
-    """Half of the length of a circle's chord that passes the centre at a distance; NaN where it is no chord."""
+    """Half the length of the chord of a circle at a distance from its centre; NaN beyond the circle."""
     with np.errstate(invalid="ignore"):
         return np.sqrt((radius - off_centre) * (radius + off_centre))
 
 
 def around(middle: Array, half: Array) -> tuple[Array, Array]:
-    """The two ends of a chord."""
+    """The interval with this middle and half length."""
     return middle - half, middle + half

@@ -1,4 +1,4 @@
-"""The light that reaches surfaces from lamps."""
+"""Direct lighting of the reference renderer: lights, shadows and highlights."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from minirt.shapes.shape import Shape
 from tests.reference.hits import first_in_front
 from tests.reference.vectors import Array, dot, length, rgb, unit
 
-OFF_SURFACE = 1e-10  # where a ray starts that leaves a surface, relative to the coordinates
+OFF_SURFACE = 1e-10  # offset from a surface at which rays start, relative to the coordinates
 
 
 def from_lamp(lamp: Lamp, points: Array) -> tuple[Array, Array, Array]:
-    """The unit directions from points towards a lamp, its distance, and the share of its light that goes there."""
+    """Unit directions from points towards a light, its distance, and the share of its intensity that reaches there."""
     if isinstance(lamp, ParallelLight):
         towards = np.broadcast_to(-np.array(lamp.direction), points.shape)
         return towards, np.full(points.shape[:-1], np.inf), np.ones(points.shape[:-1])
@@ -37,8 +37,10 @@ def from_lamp(lamp: Lamp, points: Array) -> tuple[Array, Array, Array]:
 def shaded(
     scene: Scene, shape: Shape, points: Array, normal: Array, bent: Array, colour: Array, direction: Array, far: Array
 ) -> Array:
-    """The light of their own that points send back against `direction`, and that of their highlights: those of a
-    `shape`, with a `normal` towards the viewer, lit as if it were `bent`. Rays to lamps start `far` above."""
+    """Diffuse light and highlights that points of a `shape` send back against `direction`.
+
+    `normal` points towards the viewer, and `bent` is the bumped normal. Shadow rays start `far` above the surface.
+    """
     through = shape.glass.share if shape.glass else 0.0
     own = 1 - min(1.0, (shape.mirror or 0.0) + through)
     total = np.zeros_like(points)

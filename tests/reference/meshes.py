@@ -1,5 +1,5 @@
-"""Meshes for the reference renderer, a triangle at a time: Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle
-Intersection, 1997."""
+"""Meshes of the reference renderer, a triangle at a time (Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle
+Intersection, 1997)."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from tests.reference.hits import crossings
 from tests.reference.normals import normals, shading
 from tests.reference.vectors import Array, dot, length
 
-EDGE = 1e-12  # shares of a triangle by which a hit may be beside it: neighbours have no gap
+EDGE = 1e-12  # tolerance of barycentric coordinates, so that neighbours have no gap
 
 
 @lru_cache(4)
-def placed(mesh: Mesh) -> tuple[Array, Array]:
-    """Corners of the triangles, (m, 3, 3), and a ball around each, (m, 4)."""
+def corners_and_balls(mesh: Mesh) -> tuple[Array, Array]:
+    """Corners of the triangles, (m, 3, 3), and a bounding ball of each, (m, 4)."""
     corners = np.array(mesh.position) + mesh.scale * mesh.triangles.points[mesh.triangles.corners]
     middles = corners.mean(axis=1)
     radii = length(corners - middles[:, None]).max(axis=1)
@@ -29,19 +29,19 @@ def _(mesh: Mesh, origins: Array, directions: Array) -> list[Array]:
     shape = directions.shape[:-1]
     origins, directions = np.broadcast_to(origins, directions.shape).reshape(-1, 3), directions.reshape(-1, 3)
     nearest = np.full(len(directions), np.inf)
-    corners, balls = placed(mesh)
+    corners, balls = corners_and_balls(mesh)
     lines = np.flatnonzero(passes(origins, directions, ball_of(balls)))
-    starts, ways = origins[lines], directions[lines]
+    starts, towards = origins[lines], directions[lines]
     for (a, b, c), ball in zip(corners, balls, strict=True):
-        near = np.flatnonzero(passes(starts, ways, ball))
-        t, u, v = met(starts[near], ways[near], a, b, c)
+        near = np.flatnonzero(passes(starts, towards, ball))
+        t, u, v = intersect_triangle(starts[near], towards[near], a, b, c)
         hit = (np.minimum(np.minimum(u, v), 1 - u - v) >= -EDGE) & (t > 0)
         nearest[lines[near[hit]]] = np.minimum(nearest[lines[near[hit]]], t[hit])
     return [np.where(np.isfinite(nearest), nearest, np.nan).reshape(shape)]
 
 
 def ball_of(balls: Array) -> Array:
-    """A ball around balls."""
+    """A bounding ball of balls."""
     middle = balls[:, :3].mean(axis=0)
     return np.array([*middle, (length(balls[:, :3] - middle) + balls[:, 3]).max()])
 
@@ -52,22 +52,22 @@ def passes(origins: Array, directions: Array, ball: Array) -> np.ndarray:
     return np.asarray(dot(to, to) - dot(to, directions) ** 2 <= ball[3] ** 2 * (1 + 1e-9))
 
 
-def met(origins: Array, directions: Array, a: Array, b: Array, c: Array) -> tuple[Array, Array, Array]:
-    """Where lines meet the plane of a triangle: distances, and shares of b and c."""
+def intersect_triangle(origins: Array, directions: Array, a: Array, b: Array, c: Array) -> tuple[Array, Array, Array]:
+    """Intersect lines with the plane of a triangle: distances, and barycentric coordinates of b and c."""
     p, from_a = np.cross(directions, c - a), origins - a
     determinant, q = p @ (b - a), np.cross(from_a, b - a)
     with np.errstate(all="ignore"):
         return q @ (c - a) / determinant, dot(from_a, p) / determinant, dot(directions, q) / determinant
 
 
-def owners(mesh: Mesh, points: Array) -> np.ndarray:
-    """The triangle that each point of the surface is on."""
-    corners, balls = placed(mesh)
+def triangle_of(mesh: Mesh, points: Array) -> np.ndarray:
+    """The index of the triangle that each point of the surface lies on."""
+    corners, balls = corners_and_balls(mesh)
     best, owner = np.full(len(points), np.inf), np.zeros(len(points), np.int64)
     for i, ((a, b, c), ball) in enumerate(zip(corners, balls, strict=True)):
         near = np.flatnonzero(length(points - ball[:3]) <= ball[3])
         out = np.cross(b - a, c - a)
-        t, u, v = met(points[near], np.broadcast_to(out / length(out), (len(near), 3)), a, b, c)
+        t, u, v = intersect_triangle(points[near], np.broadcast_to(out / length(out), (len(near), 3)), a, b, c)
         outside = np.maximum(0, -np.minimum(np.minimum(u, v), 1 - u - v)) * ball[3]
         off = np.abs(t) + outside
         closer = off < best[near]
@@ -77,20 +77,20 @@ def owners(mesh: Mesh, points: Array) -> np.ndarray:
 
 @normals.register
 def _(mesh: Mesh, points: Array) -> Array:
-    a, b, c = placed(mesh)[0][owners(mesh, points)].transpose(1, 0, 2)
+    a, b, c = corners_and_balls(mesh)[0][triangle_of(mesh, points)].transpose(1, 0, 2)
     out = np.cross(b - a, c - a)
     return out / length(out)[:, None]
 
 
 @shading.register
 def _(mesh: Mesh, points: Array, normal: Array) -> Array:
-    given = mesh.triangles.normals
-    if given is None:
+    corner_normals = mesh.triangles.normals
+    if corner_normals is None:
         return normal
-    owner = owners(mesh, points)
-    a, b, c = placed(mesh)[0][owner].transpose(1, 0, 2)
-    whole = dot(np.cross(b - a, c - a), normal)
-    of_b = dot(np.cross(points - a, c - a), normal) / whole
-    of_c = dot(np.cross(b - a, points - a), normal) / whole
-    mean = np.einsum("ij,ijk->ik", np.stack([1 - of_b - of_c, of_b, of_c], axis=1), given[owner])
-    return mean / length(mean)[:, None]
+    owner = triangle_of(mesh, points)
+    a, b, c = corners_and_balls(mesh)[0][owner].transpose(1, 0, 2)
+    area = dot(np.cross(b - a, c - a), normal)
+    of_b = dot(np.cross(points - a, c - a), normal) / area
+    of_c = dot(np.cross(b - a, points - a), normal) / area
+    blended = np.einsum("ij,ijk->ik", np.stack([1 - of_b - of_c, of_b, of_c], axis=1), corner_normals[owner])
+    return blended / length(blended)[:, None]

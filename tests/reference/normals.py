@@ -1,4 +1,4 @@
-"""How surfaces lie: the unit normals at points on them, outward where there is an outside."""
+"""Unit normals of shapes for the reference renderer, outward where there is an outside."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def normals(shape: Shape, points: Array) -> Array:
 
 @singledispatch
 def shading(shape: Shape, points: Array, normal: Array) -> Array:
-    """The unit normals by which points are lit where nothing is painted; `normal` are those of the shape."""
+    """The unit normals by which points are lit without bump and normal maps; `normal` are those of the shape."""
     return normal
 
 
@@ -60,9 +60,10 @@ def _(ellipsoid: Ellipsoid, points: Array) -> Array:
 
 
 def scaled_axes(ellipsoid: Ellipsoid) -> Array:
-    """Its own x, y and z axes, each divided by its semi-axis, as the rows of a matrix (3, 3)."""
-    x, z = own_x_and_z(np.array(ellipsoid.axis))
-    return np.stack([x, np.cross(z, x), z]) / (np.array(ellipsoid.sizes)[:, None] / 2)
+    """The own x, y and z axes of an ellipsoid, each divided by its semi-axis, as the rows of a matrix (3, 3)."""
+    y = np.array(ellipsoid.axis)
+    _, z = own_x_and_z(y)
+    return np.stack([np.cross(y, z), y, z]) / (np.array(ellipsoid.sizes)[:, None] / 2)
 
 
 @normals.register(Box)
@@ -83,7 +84,7 @@ def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Array
     p = points - form.origin
     height = dot(p, form.axis)
     across = p - height[..., None] * form.axis
-    # Half of the gradient of radius^2 - profile; a cap is there where the side is farther away.
+    # Half of the gradient of radius^2 - profile; a point is on a cap where the side is farther away.
     gradient = across - (form.one / 2 + form.two * height)[..., None] * form.axis
     with np.errstate(divide="ignore", invalid="ignore"):
         off_side = np.abs(dot(across, across) - form.at(height)) / (2 * length(gradient))

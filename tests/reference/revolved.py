@@ -1,4 +1,4 @@
-"""Solids that turn about an axis: the square of their radius is a polynomial of the height."""
+"""Solids of revolution: their squared radius is a polynomial of the height."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from tests.reference.vectors import Array
 
 
 class Profile(NamedTuple):
-    """radius^2 = zero + one h + two h^2, from the height `low` to `high` above the origin along the axis."""
+    """The profile radius^2 = zero + one h + two h^2, from the height `low` to `high` above the origin along the
+    axis."""
 
     origin: Array
     axis: Array
@@ -26,13 +27,13 @@ class Profile(NamedTuple):
     two: float
 
     def at(self, height: Array | float) -> Array:
-        """The square of the radius."""
+        """The squared radius at a height."""
         return np.asarray(self.zero + self.one * height + self.two * height * height)
 
 
 @singledispatch
 def profile(shape: Cone | Cylinder | Paraboloid | Hyperboloid) -> Profile:
-    """The profile of a shape."""
+    """The profile of a solid of revolution."""
     raise TypeError(shape)
 
 

@@ -1,4 +1,4 @@
-"""What is painted on surfaces: their colour, and the normals by which they are lit."""
+"""Textures, checkerboards, bump maps and normal maps of the reference renderer."""
 
 from __future__ import annotations
 
@@ -17,19 +17,18 @@ from tests.reference.vectors import Array, dot, length, rgb, unit
 
 @cache
 def picture(path: Path) -> Array:
-    """Its pixels in [0, 1], the lowest row first, (h, w, 3)."""
+    """The pixels of a picture file in [0, 1], the lowest row first, (h, w, 3)."""
     return np.asarray(Image.open(path).convert("RGB"), float)[::-1] / 255
 
 
 @cache
 def heights(path: Path) -> Array:
-    """Its luminance, (h, w, 1)."""
+    """The luminance of a picture file, (h, w, 1)."""
     return picture(path) @ np.array([[0.2126], [0.7152], [0.0722]])
 
 
 def bilinear(pixels: Array, u: Array, v: Array) -> Array:
-    """What a picture that is repeated without end has at u, v: between the centres of its pixels along straight
-    lines."""
+    """Bilinear texture lookup at u, v, with repeat addressing."""
     high, wide, _ = pixels.shape
     x, y = u * wide - 0.5, v * high - 0.5
     i, j = np.floor(x).astype(int), np.floor(y).astype(int)
@@ -42,7 +41,7 @@ def bilinear(pixels: Array, u: Array, v: Array) -> Array:
 
 
 def colour_and_normal(scene: Scene, shape: Shape, points: Array, normal: Array) -> tuple[Array, Array]:
-    """The colours of points, and their normals as they count for light; `normal` are those of the shape."""
+    """The colours of points, and the normals by which they are lit; `normal` are those of the shape."""
     colour, normal = np.broadcast_to(rgb(shape.colour), points.shape), shading(shape, points, normal)
     if not (shape.checker or shape.texture or shape.bump or shape.normal_map):
         return colour, normal
@@ -57,9 +56,9 @@ def colour_and_normal(scene: Scene, shape: Shape, points: Array, normal: Array) 
         high, wide, _ = pixels.shape
         over_u = wide * (bilinear(pixels, at.u + 0.5 / wide, at.v) - bilinear(pixels, at.u - 0.5 / wide, at.v))
         over_v = high * (bilinear(pixels, at.u, at.v + 0.5 / high) - bilinear(pixels, at.u, at.v - 0.5 / high))
-        # The tangents of the raised surface are P_u + h_u n and P_v + h_v n, and what is normal to both is wanted; the
-        # products of small quantities are left out (Blinn 1978).
-        rise = shape.bump.strength * length(at.along_u)[..., None] * normal  # of white: a share of the picture's width
+        # The tangents of the raised surface are P_u + h_u n and P_v + h_v n; their cross product, without products of
+        # small quantities, is its normal (Blinn 1978).
+        rise = shape.bump.strength * length(at.along_u)[..., None] * normal  # height of white
         raise_u, raise_v = rise * over_u, rise * over_v
         raised = np.cross(at.along_u, at.along_v) + np.cross(raise_u, at.along_v) + np.cross(at.along_u, raise_v)
         raised *= np.sign(dot(np.cross(at.along_u, at.along_v), normal))[..., None]

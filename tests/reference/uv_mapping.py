@@ -1,4 +1,4 @@
-"""Where pictures lie on shapes: u to the right and v upwards, and how a point moves with them."""
+"""Texture coordinates and tangents of shapes for the reference renderer: u to the right, v upwards."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ from tests.reference.vectors import Array, dot, length, own_x_and_z, right_and_u
 
 
 class SurfacePoint(NamedTuple):
-    """A point on a picture."""
+    """Texture coordinates of points, and their tangents."""
 
     u: Array
     v: Array
-    along_u: Array  # by how much the point moves when u grows by 1
+    along_u: Array  # dP/du: the point's movement per unit of u
     along_v: Array
 
 
 @singledispatch
 def surface_point(shape: Shape, points: Array) -> SurfacePoint:
-    """Where points of the surface lie on its picture."""
+    """Texture coordinates and tangents at points of the surface of a shape."""
     raise TypeError(f"the reference renderer knows no {shape.title}")
 
 
 def flat_point(points: Array, corner: Array, right: Array, up: Array) -> SurfacePoint:
-    """On a picture with that lower left corner and these edges, perpendicular to each other."""
+    """Coordinates on a rectangular picture with this lower left corner and these edges, perpendicular to each other."""
     p = points - corner
     edges = [np.broadcast_to(edge, points.shape) for edge in (right, up)]
     return SurfacePoint(dot(p, right) / dot(right, right), dot(p, up) / dot(up, up), *edges)
@@ -77,21 +77,22 @@ def _(box: Box, points: Array) -> SurfacePoint:
     x = np.cross(y, z)
     wide, tall, deep = box.sizes
     normal = normals(box, points)
-    # For each face, by its normal: right and up of somebody who faces it.
+    # For each face its normal, right and up as seen by a viewer who faces it, width and height.
     faces = [(x, -z, y, deep, tall), (-x, z, y, deep, tall), (z, x, y, wide, tall), (-z, -x, y, wide, tall)]
     faces += [(y, x, -z, wide, deep), (-y, x, z, wide, deep)]
     found = SurfacePoint(*(np.zeros(points.shape[:-1] + rest) for rest in ((), (), (3,), (3,))))
     for out, to_right, upwards, across, high in faces:
-        mine = dot(normal, out) > 0.5
+        on_face = dot(normal, out) > 0.5
         right, up = across * to_right, high * upwards
         own = flat_point(points, np.array(box.centre) - (right + up) / 2, right, up)
         for part, value in zip(found, own, strict=True):
-            part[mine] = value[mine]
+            part[on_face] = value[on_face]
     return found
 
 
 def longitude(p: Array, up: Array, middle: Array) -> Array:
-    """From 0 to 1 about the axis `up`, counter-clockwise from its tip, with 1/2 in the direction `middle`."""
+    """The angle about the axis `up` from 0 to 1, counter-clockwise as seen from its tip, 1/2 in the direction
+    `middle`."""
     return np.asarray(0.5 + np.arctan2(dot(np.cross(middle, p), up), dot(middle, p)) / (2 * np.pi))
 
 
@@ -160,12 +161,12 @@ def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> Surfa
     out = normals(shape, points)
     capped, above = np.abs(dot(out, form.axis)) > 1 - 1e-9, dot(out, axis) > 0
     for is_above in (True, False):
-        mine = capped & (above == is_above)
-        if mine.any():
-            end = form.high if (dot(out[mine], form.axis) > 0).all() else form.low
+        on_cap = capped & (above == is_above)
+        if on_cap.any():
+            end = form.high if (dot(out[on_cap], form.axis) > 0).all() else form.low
             across = 2 * np.sqrt(form.at(end))
             right, up = across * across_axis, across * (-z if is_above else z)
             corner = form.origin + end * form.axis - (right + up) / 2
-            for part, value in zip(side, flat_point(points[mine], corner, right, up), strict=True):
-                part[mine] = value
+            for part, value in zip(side, flat_point(points[on_cap], corner, right, up), strict=True):
+                part[on_cap] = value
     return side

@@ -1,4 +1,4 @@
-"""Vectors, (..., 3), and frames."""
+"""Vectors as arrays (..., 3), and frames."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def length(a: Array) -> Array:
 
 
 def unit(a: Array) -> Array:
-    """At length 1; NaN where it has none."""
+    """Scale vectors to length 1; NaN for zero vectors."""
     with np.errstate(invalid="ignore"):
         return np.asarray(a / length(a)[..., None])
 
@@ -27,7 +27,7 @@ def rgb(colour: tuple[float, float, float]) -> Array:
 
 
 def right_and_up(forward: Array) -> tuple[Array, Array]:
-    """Right and up of somebody who looks along a unit vector, with the head upwards; looking down, towards -z."""
+    """Right and up of an upright view along a unit vector; for a view straight down up is -z."""
     x, _, z = forward
     level = np.hypot(x, z)
     right = np.array([-z, 0.0, x]) / level if level > 0 else np.array([1.0, 0.0, 0.0])  # forward cross +y
@@ -35,8 +35,8 @@ def right_and_up(forward: Array) -> tuple[Array, Array]:
 
 
 def own_x_and_z(axis: Array) -> tuple[Array, Array]:
-    """What becomes of the scene's x and z when y is turned, on the shortest way, to the axis or, where that points
-    down, to its opposite."""
+    """The scene's x and z after the smallest rotation that takes y to the axis or, if that points down, to its
+    opposite."""
     to = axis if axis[1] >= 0 else -axis
     y = np.array([0.0, 1.0, 0.0])
     about, cosine = np.cross(y, to), to[1]

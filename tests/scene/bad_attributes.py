@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from minirt.element import fields_of
+from minirt.shapes import Sphere
 from tests.scene.examples import SPHERE
 
 Case = tuple[str, int, str]  # a line, the column of its error, the message
 
 COLUMN = len(SPHERE) + 2  # column of the first attribute behind a sphere
 NUMBER = "must be a number, got"
-OWN = "sphere has specular, mirror, glass, checker, texture, bump, normal"
+OWN = f"sphere has {', '.join(field.keys[0] for field in fields_of(Sphere) if field.keyed)}"
 MISSING = "cannot be read: no such file or directory"
 
 

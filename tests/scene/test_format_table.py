@@ -32,7 +32,7 @@ def test_a_second_table_has_the_shared_attributes_of_shapes() -> None:
     head, rule, *rows = format_table().partition("\n\n")[2].splitlines()
     assert (head, rule) == ("| attribute | of | meaning |", "|---|---|---|")
     shared = [field for field in fields_of(ELEMENTS["sp"]) if field.sort]
-    assert len(shared) == len(rows) == 7
+    assert len(shared) == len(rows) >= 7
     for field, row in zip(shared, rows, strict=True):
         assert row.startswith(f"| `{field.notation}`")
         assert all(f"`{alias}:`" in row for alias in field.aliases)

@@ -1,6 +1,6 @@
-"""Where pictures lie, told from the manual pages: for each part of a shape the place of a u and v, and its normal.
+"""Charts of shapes, written from their manual pages: for each part of a shape the point and normal at given u and v.
 
-Written with sines, cosines and turned frames where the formulas have none of these.
+They use sines, cosines and rotations, where the formulas of the program use none of these.
 """
 
 from __future__ import annotations
@@ -32,8 +32,10 @@ X, Y, Z = np.eye(3)
 
 
 def own_frame(axis: Array) -> tuple[Array, Array, Array]:
-    """What becomes of x, y and z where y is turned to the axis on the shortest way (Rodrigues), or to the opposite of
-    one that points down, and then by half a turn about z."""
+    """The axes of a shape with this axis: the scene's, after the smallest rotation that takes y to it (Rodrigues).
+
+    For an axis that points down, y is taken to its opposite, and then half a turn about z is added.
+    """
     axis = np.asarray(axis)
     target = axis if axis[1] >= 0 else -axis
     sine = np.cross(Y, target)
@@ -44,7 +46,7 @@ def own_frame(axis: Array) -> tuple[Array, Array, Array]:
 
 
 def upright(normal: Array) -> tuple[Array, Array]:
-    """Right and up for who faces a flat shape."""
+    """Right and up as seen by a viewer who faces a flat shape."""
     normal = np.asarray(normal)
     if abs(normal[1]) == 1:
         return X, -normal[1] * Z
@@ -52,12 +54,13 @@ def upright(normal: Array) -> tuple[Array, Array]:
     return right, np.cross(right, -normal)
 
 
-def outer(weight: Array, way: Array) -> Array:
-    return np.asarray(weight)[..., None] * way
+def outer(weights: Array, vector: Array) -> Array:
+    """The vector times each of the weights, (..., 3)."""
+    return np.asarray(weights)[..., None] * vector
 
 
 def flat_chart(middle: Array, right: Array, up: Array, normal: Array, width: float, height: float) -> Chart:
-    """A picture on a rectangle."""
+    """Chart of a picture on a rectangle."""
 
     def chart(u: Array, v: Array) -> tuple[Array, Array]:
         point = middle + outer((u - 0.5) * width, right) + outer((v - 0.5) * height, up)
@@ -69,11 +72,14 @@ def flat_chart(middle: Array, right: Array, up: Array, normal: Array, width: flo
 def revolved_chart(
     base: Array, frame: tuple[Array, Array, Array], profile: Callable[[Array], tuple[Array, ...]]
 ) -> Chart:
-    """A picture around the y axis of a frame: at each v a radius, a height, and how the normal leans."""
+    """Chart of a solid of revolution about the y axis of a frame.
+
+    `profile` gives for each v the radius, the height, and the components of the normal outwards and upwards.
+    """
     x, y, z = frame
 
     def chart(u: Array, v: Array) -> tuple[Array, Array]:
-        # The middle is at -z, and for who looks from there what is right is at -x.
+        # The middle of the picture is at -z; seen from there, right is towards -x.
         angle = 2 * np.pi * (u - 0.5)
         out = outer(-np.sin(angle), x) + outer(-np.cos(angle), z)
         radius, height, outwards, upwards = profile(v)
@@ -83,14 +89,14 @@ def revolved_chart(
 
 
 def cap_charts(frame: tuple[Array, Array, Array], middle: Array, width: float, *sides: int) -> list[Chart]:
-    """Discs above (1) or below (-1), seen as a floor or a ceiling."""
+    """Charts of caps above (1) or below (-1), with pictures as on a floor or a ceiling."""
     x, y, z = frame
     return [flat_chart(middle, x, -side * z, side * y, width, width) for side in sides]
 
 
 @singledispatch
 def charts(shape: Shape) -> list[Chart]:
-    """One for each part of a shape that has a picture of its own."""
+    """The charts of a shape: one for each part that has a picture of its own."""
     pytest.skip(f"no chart of the {shape.title}: with one in {__file__} its pictures are compared with its manual page")
 
 
@@ -117,7 +123,7 @@ def _(disc: Disc) -> list[Chart]:
 @charts.register
 def _(box: Box) -> list[Chart]:
     (x, y, z), (w, h, d) = own_frame(box.axis), box.sizes
-    # right, up and outwards, and how wide, high and far
+    # right, up and normal; width, height and depth
     faces = [(x, y, z, w, h, d), (-x, y, -z, w, h, d), (-z, y, x, d, h, w), (z, y, -x, d, h, w)]
     faces += [(x, -z, y, w, d, h), (x, z, -y, w, d, h)]
     return [flat_chart(np.array(box.centre) + f / 2 * o, r, u, o, a, b) for r, u, o, a, b, f in faces]

@@ -1,4 +1,4 @@
-"""What must hold for the answers of a formula, against the oracle's."""
+"""Checks of the answers of `intersect` against those of the oracle."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ U = 2.0**-53
 
 
 class Answers(NamedTuple):
-    """t for each ray, infinity where it misses: for the shape, and for one `slack` thicker and one thinner."""
+    """t of each ray, infinity for a miss: for the shape, and for shapes thicker and thinner by a slack of roundings."""
 
     t: Array
     thicker: Array
@@ -27,7 +27,7 @@ class Answers(NamedTuple):
 
 @cache
 def solved(make: Callable[..., Rays], *how: object, **more: object) -> tuple[Rays, Answers]:
-    """The rays of a regime and the right answers."""
+    """The rays of a regime and the exact answers."""
     rays = make(*how, **more)
     return rays, answers(rays)
 
@@ -47,20 +47,20 @@ def answers(rays: Rays) -> Answers:
 
 
 def relative_errors(t: Array, right: Answers) -> Array:
-    """|t - exact| / exact of the rays that hit both the thicker and the thinner shape."""
+    """|t - exact| / exact for the rays that hit both the thicker and the thinner shape."""
     sure = np.isfinite(right.thicker) & np.isfinite(right.thinner) & np.isfinite(t)
     return np.abs(t[sure] - right.t[sure]) / right.t[sure]
 
 
 def assert_verdicts(t: Array, right: Answers) -> None:
-    """No false miss or hit, but where a shape thicker or thinner by the slack would say so."""
+    """Assert that there is no false miss or hit, unless the thicker or the thinner shape has the same verdict."""
     missed, hit = np.isinf(t), np.isfinite(t)
     assert not (missed & np.isfinite(right.thinner) & np.isfinite(right.thicker)).any(), "false miss"
     assert not (hit & np.isinf(right.thicker) & np.isinf(right.thinner)).any(), "false hit"
 
 
 def assert_near(t: Array, right: Answers, tolerance: float) -> None:
-    """The verdicts are right and t is exact within the relative `tolerance`."""
+    """Assert that the verdicts are right and t is exact within the relative `tolerance`."""
     assert_verdicts(t, right)
     errors = relative_errors(t, right)
     assert errors.size > 50, "too few of these rays hit"

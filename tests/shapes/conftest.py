@@ -1,4 +1,4 @@
-"""Tests of formulas run in each of the three ways."""
+"""Fixture that runs a test of formulas in each of the three execution modes."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ from tests.shapes.execution_modes import MODES, Intersect
 
 
 @pytest.fixture(params=MODES)
-def way(request: pytest.FixtureRequest) -> Intersect:
+def intersect(request: pytest.FixtureRequest) -> Intersect:
     """`intersect` on single numbers, on arrays, and compiled."""
     return MODES[request.param]

@@ -1,4 +1,4 @@
-"""Random shapes of any kind, made from the table of its fields; rays at them, and where these hit."""
+"""Random shapes of any kind, made from its declared fields; random rays at them, and their hits."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.shapes.regimes import RAYS, Array, Random, log_uniform, random_direct
 
 
 def random_value(field: Field, random: Random, size: float, middle: Array) -> object:
-    """A random value of a field, of a shape of about this size near a point."""
+    """A random value of a field, for a shape of about this size near a point."""
     if isinstance(field, Point):
         return tuple(middle + size * random.normal(size=3))
     if isinstance(field, Direction):
@@ -34,16 +34,16 @@ def random_value(field: Field, random: Random, size: float, middle: Array) -> ob
 
 
 def example(kind: Kind, random: Random, size: float = 1.0, offset: float = 0.0) -> Shape:
-    """A random shape of a kind, of about this size at this distance from the origin."""
+    """A random shape of a kind, of about this size and at this distance from the origin."""
     middle = offset * random_directions(random)
     placed = [each for each in fields_of(kind.element) if not each.keyed]
     while True:
-        with suppress(ElementError):  # of fields that do not go together
+        with suppress(ElementError):  # fields that contradict each other
             return kind.element(**{each.name: random_value(each, random, size, middle) for each in placed})
 
 
 def place(shape: Shape) -> Array:
-    """The middle of a shape, or a point of one without end."""
+    """The middle of a shape, or a point of an infinite one."""
     balls = shape.balls()
     if balls:
         return np.mean([centre for centre, _ in balls], axis=0)
@@ -52,9 +52,10 @@ def place(shape: Shape) -> Array:
 
 @cache
 def is_concave(kind: Kind) -> bool:
-    """Whether a ray straight out of the surface may meet the shape again: some of it lies beyond a tangent plane.
+    """Whether a shape is concave: a part of it lies beyond a tangent plane, so that rays along a normal may hit it
+    again.
 
-    By the oracle, on 3 shapes with 32 points each.
+    Measured by the oracle on 3 shapes with 32 points each.
     """
     random = np.random.default_rng(7)
     for shape in (example(kind, random) for _ in range(3)):
@@ -80,17 +81,17 @@ def on_surface(shape: Shape, random: Random, count: int = RAYS) -> tuple[Array, 
 
 
 class Hits(NamedTuple):
-    """What rays from everywhere see of m shapes, n rays for each."""
+    """Hits of random rays: m shapes, n rays for each."""
 
     shapes: list[Shape]
     points: Array  # (m, n, 3) on the surface
     normals: Array  # (m, n, 3) outward where there is an outside
-    facing: Array  # (m, n, 3) the same, on the side of the eye
+    facing: Array  # (m, n, 3) the normals, turned towards the eye
     hit: Array  # (m, n) whether the ray hit at all
 
 
 def hits(kind: Kind, seed: int, size: float, offset: float, shapes: int = 100, rays: int = 128) -> Hits:
-    """Random shapes, seen from within ten sizes around them."""
+    """Hits of rays from random points, up to ten sizes away, at random shapes."""
     random = np.random.default_rng(seed)
     made = [example(kind, random, size, offset) for _ in range(shapes)]
     middles = np.stack([place(shape) for shape in made])[:, None]
@@ -104,6 +105,6 @@ def hits(kind: Kind, seed: int, size: float, offset: float, shapes: int = 100, r
 
 
 def shadow_offsets(points: Array, shapes: list[Shape]) -> Array:
-    """How far from the surface `minirt.kernel.shading.shade` starts the way to a lamp, (m, n, 1)."""
+    """The offset from the surface at which `minirt.kernel.shading.shade` starts shadow rays, (m, n, 1)."""
     extents = np.array([extent(shape) for shape in shapes])[:, None]
     return (ROUNDING * 2.0**-53 * (np.abs(points).max(axis=-1) + extents))[..., None]

@@ -1,4 +1,4 @@
-"""The three ways in which a shape's formulas run: on single numbers, on arrays and compiled."""
+"""The three execution modes of a shape's formulas: on single numbers, on arrays, and compiled."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def kind_of(shape: Shape) -> Kind:
 
 
 def vec(points: Array) -> Vec:
-    """The vectors in the last axis of an array; a single one has numpy numbers, which divide as IEEE 754 says."""
+    """Vectors along the last axis of an array as a `Vec`; a single one has numpy numbers, whose division is IEEE
+    754."""
     return Vec(points[..., 0], points[..., 1], points[..., 2])
 
 
@@ -35,7 +36,7 @@ def array(v: Vec, like: Array) -> Array:
 
 
 def with_numpy_numbers(packed: Any) -> Any:
-    """A packed shape whose single numbers are numpy's."""
+    """A packed shape with numpy numbers instead of Python's."""
     parts = (Vec(*map(np.float64, (p.x, p.y, p.z))) if isinstance(p, Vec) else np.float64(p) for p in packed)
     return type(packed)(*parts)
 
@@ -53,7 +54,7 @@ def on_numbers(shapes: list[Shape], origins: Array, directions: Array, formula: 
 
 
 def on_arrays(shapes: list[Shape], origins: Array, directions: Array, formula: Any = None) -> Array:
-    """The same, all rays of a shape at once."""
+    """t of rays (m, n, 3) against m shapes, all rays of a shape at once."""
     t = np.full(origins.shape[:2], np.inf)
     for i, shape in enumerate(shapes):
         with np.errstate(all="ignore"):
@@ -65,13 +66,13 @@ def on_arrays(shapes: list[Shape], origins: Array, directions: Array, formula: A
 
 
 def shape_rows(shapes: list[Shape]) -> Any:
-    """The rows of shapes of one kind."""
+    """The rows of shapes of one kind, as the kernel reads them."""
     packed = np.ascontiguousarray(packed_rows([shape.pack() for shape in shapes]))
     return packed.view(rows.row_type(kind_of(shapes[0])))[:, 0]
 
 
 def component_arrays(points: Array) -> Array:
-    """Vectors (m, n, 3) as the kernel loads them: one array for each component."""
+    """Vectors (m, n, 3) as structure of arrays, as the kernel loads them: (3, m n)."""
     return np.ascontiguousarray(points.reshape(-1, 3).T, np.float64)
 
 
@@ -92,7 +93,7 @@ def kernel() -> Any:
 
 
 def compiled(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """The same, compiled; the number of rays of a shape is a multiple of those of a packet."""
+    """t of rays (m, n, 3) against m shapes, compiled; n is a multiple of the rays of a packet."""
     t = np.empty(origins.shape[:2])
     kernel()(
         shape_rows(shapes), origins.shape[1], component_arrays(origins), component_arrays(directions), t.reshape(-1)
@@ -101,7 +102,7 @@ def compiled(shapes: list[Shape], origins: Array, directions: Array) -> Array:
 
 
 def surfaces(shapes: list[Shape], points: Array) -> tuple[Array, Array]:
-    """`surface` for points (m, n, 3), interpreted: the points on the surface and the normals."""
+    """`surface` of points (m, n, 3), interpreted: points on the surface and normals."""
     on, out = np.empty_like(points), np.empty_like(points)
     for i, shape in enumerate(shapes):
         with np.errstate(all="ignore"):

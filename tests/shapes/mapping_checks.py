@@ -1,4 +1,4 @@
-"""`mapping` in the ways in which it runs, and what must hold for it."""
+"""Checks of `mapping`, interpreted and compiled, against charts."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ U = 2.0**-53
 
 
 class SurfaceMapping(NamedTuple):
-    """What `mapping` says of n points."""
+    """The results of `mapping` for n points."""
 
     u: Array
     v: Array
@@ -37,11 +37,12 @@ Evaluate = Callable[[Shape, Array, Array], SurfaceMapping]
 
 
 def table(shape: Shape, number: Any = np.float64) -> Any:
-    """The row of a shape."""
+    """The row of a shape, as the kernel reads it."""
     return execution_modes.shape_rows([shape]).astype(rows.row_type(execution_modes.kind_of(shape), number))
 
 
 def interpreted(shape: Shape, points: Array, normals: Array, formula: Any = None) -> SurfaceMapping:
+    """`mapping` of a shape, or another formula, interpreted."""
     formula = formula or execution_modes.kind_of(shape).mapping
     with np.errstate(all="ignore"):
         u, v, to_u, to_v = formula(rows.read(table(shape, points.dtype), 0), vec(points), vec(normals))
@@ -71,7 +72,7 @@ def kernel() -> Any:
 
 
 def compiled(shape: Shape, points: Array, normals: Array) -> SurfaceMapping:
-    """The number of points is a multiple of a packet's."""
+    """`mapping`, compiled; the number of points is a multiple of a packet's."""
     out = np.empty((8, len(points)), points.dtype)
     in_packets = (np.ascontiguousarray(each.T) for each in (points, normals))
     kernel()(table(shape, points.dtype), *in_packets, out)
@@ -82,13 +83,13 @@ MODES: dict[str, Evaluate] = {"interpreted": interpreted, "compiled": compiled}
 
 
 class Case(NamedTuple):
-    """A part of a shape, and 64 places of a picture on it."""
+    """A part of a shape, and 64 places u, v of a picture on it."""
 
     shape: Shape
     chart: Chart
     u: Array
     v: Array
-    coordinates: float  # the largest
+    coordinates: float  # largest coordinate of its points
 
 
 @cache
@@ -105,7 +106,7 @@ def cases(kind: Kind, size: float, offset: float) -> list[Case]:
 
 
 def inside_shape(kind: Kind, u: Array, v: Array) -> tuple[Array, Array]:
-    """The half of a picture that a triangle has."""
+    """Places u, v mirrored into the lower left half of the picture, which is all that a triangle shows."""
     beyond = (u + v > 1) & (kind.element.title == "triangle")
     return np.where(beyond, 1 - u, u), np.where(beyond, 1 - v, v)
 
@@ -115,10 +116,10 @@ def lengths(vectors: Array) -> Array:
     return found
 
 
-def check_places(case: Case, way: Evaluate, size: float) -> None:
-    """u and v are those of the chart, but for the rounding of the point."""
+def check_places(case: Case, evaluate: Evaluate, size: float) -> None:
+    """Assert that u and v are those of the chart, within the rounding of the point."""
     points, normals = case.chart(case.u, case.v)
-    got = way(case.shape, points, normals)
+    got = evaluate(case.shape, points, normals)
     over_u, over_v = got.u - case.u, got.v - case.v
     if case.shape.title in AROUND:
         over_u -= np.rint(over_u)
@@ -127,15 +128,15 @@ def check_places(case: Case, way: Evaluate, size: float) -> None:
 
 
 def steepness(shape: Shape) -> float:
-    """How much more than across v errs upwards, on a side where it follows from the distance to the axis."""
+    """Factor by which an error across the axis grows along a steep side whose v is the distance to the axis."""
     return np.hypot(1, 4 * shape.height / shape.diameter) if isinstance(shape, Paraboloid) else 1.0
 
 
-def check_tangents(case: Case, way: Evaluate, size: float) -> None:
-    """The tangents are the differences of the chart around its places, but for h^4 and for the rounding of points."""
+def check_tangents(case: Case, evaluate: Evaluate, size: float) -> None:
+    """Assert that the tangents are differences of the chart, within h^4 and the rounding of points."""
     h = 1e-3
     points, normals = case.chart(case.u, case.v)
-    got = way(case.shape, points, normals)
+    got = evaluate(case.shape, points, normals)
     for along, a, b in ((got.along_u, h, 0.0), (got.along_v, 0.0, h)):
         near, far = (
             case.chart(case.u + k * a, case.v + k * b)[0] - case.chart(case.u - k * a, case.v - k * b)[0]
@@ -145,10 +146,10 @@ def check_tangents(case: Case, way: Evaluate, size: float) -> None:
         assert lengths(along - right).max() <= 1e-6 * lengths(right).max() + 8 * U * case.coordinates / h
 
 
-def check_hand(case: Case, way: Evaluate, size: float) -> None:
-    """Seen from outside, v is counter-clockwise of u: a picture is not mirrored."""
+def check_hand(case: Case, evaluate: Evaluate, size: float) -> None:
+    """Assert that v is counter-clockwise of u as seen from outside: the picture is not mirrored."""
     points, normals = case.chart(case.u, case.v)
-    got = way(case.shape, points, normals)
+    got = evaluate(case.shape, points, normals)
     product = np.cross(got.along_u, got.along_v)
     assert (np.sum(product * normals, axis=-1) >= (1 - 1e-6) * lengths(product)).all()
     assert (lengths(product) > 0).all()

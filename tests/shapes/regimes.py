@@ -1,4 +1,4 @@
-"""Rays and shapes, at random, that are hard in one way each. Lengths are in units of the shape."""
+"""Regimes: random shapes and rays that are hard in one respect each. Lengths are in sizes of the shape."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ def unit(v: Array) -> Array:
 
 
 def random_directions(random: Random, *shape: int) -> Array:
-    """Random directions."""
+    """Random unit vectors."""
     return unit(random.normal(size=(*shape, 3)))
 
 
 def random_perpendiculars(random: Random, axis: Array, *shape: int) -> Array:
-    """Random directions perpendicular to `axis`."""
+    """Random unit vectors perpendicular to `axis`."""
     v = np.cross(random_directions(random, *shape), axis)
     return unit(v)
 
 
 def log_uniform(random: Random, low: float, high: float, *shape: int) -> Array:
-    """Random numbers whose logarithms are uniform."""
+    """Random numbers with uniform logarithms."""
     return np.exp(random.uniform(np.log(low), np.log(high), shape))
 
 
@@ -73,7 +73,7 @@ def aimed(
     offset: float = 0.0,
     count: int = 25,
 ) -> Rays:
-    """From `far` sizes away at places in and around the shape: some hit and some miss, few near the edge."""
+    """Rays from `far` sizes away at points in and around the shape: some hit and some miss, few near the edge."""
     random = np.random.default_rng(seed)
     shapes = [make(random, size, offset) for _ in range(count)]
     centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
@@ -83,7 +83,7 @@ def aimed(
 
 
 def inside(make: Make, seed: int, size: float = 1.0, offset: float = 0.0, count: int = 25) -> Rays:
-    """From inside of the shape, in all directions."""
+    """Rays from inside the shape, in all directions."""
     random = np.random.default_rng(seed)
     shapes = [make(random, size, offset) for _ in range(count)]
     centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
@@ -92,7 +92,7 @@ def inside(make: Make, seed: int, size: float = 1.0, offset: float = 0.0, count:
 
 
 def tangent(seed: int, count: int = 25) -> Rays:
-    """Past the edge of a sphere, from 1e-16 to 1e-4 of its radius inside and outside."""
+    """Rays past the edge of a sphere, 1e-16 to 1e-4 of its radius inside or outside."""
     random = np.random.default_rng(seed)
     shapes = [sphere(random, 1.0, 0.0) for _ in range(count)]
     aside, sign = random_directions(random, count, RAYS), random.choice([-1.0, 1.0], (count, RAYS, 1))
@@ -104,7 +104,7 @@ def tangent(seed: int, count: int = 25) -> Rays:
 
 
 def just_above(seed: int, height: float, count: int = 25) -> Rays:
-    """From a height above a sphere of diameter 1e9, in all directions that go down by a tenth or more."""
+    """Rays from a height above a sphere of diameter 1e9, downwards at a slope of a tenth or more."""
     random = np.random.default_rng(seed)
     shapes = [Sphere(tuple(random_directions(random)), 1e9, GREY) for _ in range(count)]
     centres = np.stack([centre_of(shape) for shape in shapes])[:, None]
@@ -115,7 +115,7 @@ def just_above(seed: int, height: float, count: int = 25) -> Rays:
 
 
 def tangent_to_side(seed: int, count: int = 25) -> Rays:
-    """Past the side of a cylinder, from 1e-16 to 1e-4 inside and outside."""
+    """Rays past the side of a cylinder, 1e-16 to 1e-4 inside or outside."""
     random = np.random.default_rng(seed)
     shapes = [cylinder(random, 1.0, 0.0) for _ in range(count)]
     origins, directions = np.empty((2, count, RAYS, 3))
@@ -131,7 +131,7 @@ def tangent_to_side(seed: int, count: int = 25) -> Rays:
 
 
 def rim(seed: int, count: int = 25) -> Rays:
-    """At the edge between cap and side, from 1e-16 to 1e-6 beside it, from everywhere."""
+    """Rays from everywhere at the edge between cap and side, 1e-16 to 1e-6 beside it."""
     random = np.random.default_rng(seed)
     shapes = [cylinder(random, 1.0, 0.0) for _ in range(count)]
     origins, directions = np.empty((2, count, RAYS, 3))
@@ -147,7 +147,7 @@ def rim(seed: int, count: int = 25) -> Rays:
 
 
 def along_axis(seed: int, off: tuple[float, float] | None, offset: float = 0.0, count: int = 25) -> Rays:
-    """Along the axis of a cylinder, or off it by an angle (radians) in `off`, at its cap and beside it."""
+    """Rays along the axis of a cylinder, or off it by an angle (radians) in `off`, at its cap and beside it."""
     random = np.random.default_rng(seed)
     shapes = [cylinder(random, 1.0, offset) for _ in range(count)]
     origins, directions = np.empty((2, count, RAYS, 3))
@@ -161,7 +161,7 @@ def along_axis(seed: int, off: tuple[float, float] | None, offset: float = 0.0, 
 
 
 def inside_tube(seed: int, height: float = 1e9, count: int = 25) -> Rays:
-    """In the middle of a very long tube, looking 1e-8 to 1e-2 off its axis."""
+    """Rays from the middle of a very long cylinder, 1e-8 to 1e-2 radians off its axis."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, count, RAYS, 3))
     for i in range(count):
@@ -177,7 +177,8 @@ def inside_tube(seed: int, height: float = 1e9, count: int = 25) -> Rays:
 
 
 def from_the_wall(seed: int, count: int = 25) -> Rays:
-    """Across a tube, from just inside of its wall: the closest approach to the centre is 1e-13 to 1e-6 off the wall."""
+    """Rays across a long cylinder from just inside its side: the closest approach to the centre is 1e-13 to 1e-6 off
+    it."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, count, RAYS, 3))
     for i in range(count):
@@ -194,6 +195,6 @@ def from_the_wall(seed: int, count: int = 25) -> Rays:
 
 
 def disc(seed: int, height: float = 1e-9, count: int = 25) -> Rays:
-    """At a cylinder that is next to flat."""
+    """Rays at a cylinder that is nearly flat."""
     rays = aimed(cylinder, seed, count=count)
     return rays._replace(shapes=[shape.replace(height=height) for shape in rays.shapes])

@@ -1,4 +1,4 @@
-"""The frames of shapes that have an axis."""
+"""Orthonormal frames of shapes that have an axis."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def assert_orthonormal(axis: tuple[float, float, float]) -> None:
     assert np.abs(turned - (w.x, w.y, w.z)).max() <= 8 * U
 
 
-def test_there_and_back() -> None:
+def test_transforming_there_and_back_changes_nothing() -> None:
     frame = basis(unit((0.3, -0.5, -0.8)))
     p = Vec(1.0, 2.0, 3.0)
     q = from_basis(*frame, to_basis(*frame, p))

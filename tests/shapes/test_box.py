@@ -1,4 +1,4 @@
-"""The box's formulas, against answers known by hand; where they are hard is in `tests.stability`."""
+"""The box's formulas, against answers known by hand; rays that are hard for them are in `tests.stability`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.shapes.test_sphere import shoot
 BLOCK = Box((0, 1, 5), (0, 1, 0), (2, 4, 6), GREY)  # from -1, -1, 2 to 1, 3, 8
 
 
-def test_answers_known_by_hand(way: Intersect) -> None:
+def test_answers_known_by_hand(intersect: Intersect) -> None:
     rays = [
         ((0, 0, 0), (0, 0, 1)),
         ((0, 0, 0), (0, 0, -1)),  # behind
@@ -36,8 +36,8 @@ def test_answers_known_by_hand(way: Intersect) -> None:
         ((-2, 2, 5), (0.5**0.5, 0.5**0.5, 0)),  # at the very edge
     ]
     expected = [2, np.inf, 1, 6, 8, 1, 2, 3, 2] + [np.inf] * 6 + [2.5, 2**0.5]
-    assert shoot(way, BLOCK, *rays) == pytest.approx(expected, rel=1e-15)
-    assert shoot(way, BLOCK.replace(axis=(0, -1, 0)), *rays) == pytest.approx(expected, rel=1e-15)
+    assert shoot(intersect, BLOCK, *rays) == pytest.approx(expected, rel=1e-15)
+    assert shoot(intersect, BLOCK.replace(axis=(0, -1, 0)), *rays) == pytest.approx(expected, rel=1e-15)
 
 
 def test_its_axes_are_those_of_the_scene_until_it_is_turned() -> None:
@@ -51,14 +51,14 @@ def test_its_axes_are_those_of_the_scene_until_it_is_turned() -> None:
     assert axes[3] == [(0.8, -0.6, 0), (0.6, 0.8, 0), (0, 0, 1)]
 
 
-def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(way: Intersect) -> None:
+def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(intersect: Intersect) -> None:
     rays = [((0, 0, 2), (0, 0, 1)), ((0, 0, 2), (0, 0, -1)), ((0, 3, 5), (0, -1, 0)), ((0, 3, 5), (0, 1, 0))]
-    assert shoot(way, BLOCK, *rays) == [6, np.inf, 4, np.inf]
+    assert shoot(intersect, BLOCK, *rays) == [6, np.inf, 4, np.inf]
 
 
-def test_nan_is_a_miss(way: Intersect) -> None:
+def test_nan_is_a_miss(intersect: Intersect) -> None:
     rays = [((np.nan, 0, 0), (0, 0, 1)), ((0, np.nan, 0), (0, 0, 1)), ((0, 0, 0), (np.nan, 0, 1))]
-    assert shoot(way, BLOCK, *rays) == [np.inf] * 3
+    assert shoot(intersect, BLOCK, *rays) == [np.inf] * 3
 
 
 def test_the_surface_is_the_nearest_face_and_the_normal_points_outwards() -> None:

@@ -1,4 +1,4 @@
-"""Sums that keep what rounding drops, against rational numbers."""
+"""Compensated sums and products, against rational numbers."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_a_product_and_its_error_are_exact() -> None:
         assert Fraction(product) + Fraction(low) == Fraction(a) * Fraction(b)
 
 
-def test_compiled_they_are_the_same() -> None:
+def test_compiled_sums_and_products_are_the_same() -> None:
     @njit(**FLAGS)
     def parts(a: float, b: float) -> tuple[float, float, float]:
         product = rounded_product(a, b)
@@ -46,7 +46,7 @@ def test_compiled_a_product_that_is_used_once_is_not_fused_with_the_sum() -> Non
     assert all(rest(a, b, a * b) == 0 for a, b in PAIRS)
 
 
-def test_the_power_of_a_point_keeps_what_is_left_of_it() -> None:
+def test_the_power_of_a_point_is_exact_near_the_surface() -> None:
     for exponent in range(-6, 4):
         x, y, z = RANDOM.normal(size=3)
         point = np.array([x, y, z]) + np.array([0.6, 0.8, 0.0]) * (5e8 + 10.0**exponent)

@@ -1,4 +1,4 @@
-"""The cone's formulas, against answers known by hand; where they are hard is in `tests.stability`."""
+"""The cone's formulas, against answers known by hand; rays that are hard for them are in `tests.stability`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.shapes.test_sphere import shoot
 TENT = Cone((0, 4, 5), (0, -1, 0), 6, 4, GREY)  # radius 3 at y = 0: its sides are the long ones of 3-4-5 triangles
 
 
-def test_answers_known_by_hand(way: Intersect) -> None:
+def test_answers_known_by_hand(intersect: Intersect) -> None:
     rays = [
         ((0, 2, 0), (0, 0, 1)),  # the side, half-way up
         ((0, 2, 0), (0, 0, -1)),  # behind
@@ -31,23 +31,23 @@ def test_answers_known_by_hand(way: Intersect) -> None:
         ((-3, 0.5, 5), (0.8, 0.6, 0)),  # in, from beside it
     ]
     expected = [3.5, np.inf, 5, 7, 1, np.inf, 1, 3, 2.25, np.inf, np.inf, np.inf, 0.375 / 0.35]
-    assert shoot(way, TENT, *rays) == pytest.approx(expected, rel=1e-15)
+    assert shoot(intersect, TENT, *rays) == pytest.approx(expected, rel=1e-15)
 
 
-def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(way: Intersect) -> None:
+def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(intersect: Intersect) -> None:
     rays = [((0, 2, 3.5), (0, 0, 1)), ((0, 2, 3.5), (0, 0, -1)), ((0, 0, 5), (0, 1, 0)), ((0, 0, 5), (0, -1, 0))]
-    assert shoot(way, TENT, *rays) == [3, np.inf, 4, np.inf]
+    assert shoot(intersect, TENT, *rays) == [3, np.inf, 4, np.inf]
 
 
-def test_rays_along_its_lines_and_at_its_apex(way: Intersect) -> None:
+def test_rays_along_its_lines_and_at_its_apex(intersect: Intersect) -> None:
     right = Cone((0, 0, 5), (0, -1, 0), 8, 4, GREY)  # its lines go down as far as they go aside
     rays = [((-2, 2, 5), (1, -1, 0)), ((-2, 2, 6), (1, -1, 0)), ((-4, 2, 5), (2, -1, 0))]
-    assert shoot(way, right, *rays) == [2, np.inf, 2]  # along one, beside it, at the apex and nowhere else
+    assert shoot(intersect, right, *rays) == [2, np.inf, 2]  # along one, beside it, at the apex and nowhere else
 
 
-def test_nan_is_a_miss(way: Intersect) -> None:
+def test_nan_is_a_miss(intersect: Intersect) -> None:
     rays = [((np.nan, 2, 0), (0, 0, 1)), ((0, np.nan, 0), (0, 0, 1)), ((0, 2, 0), (np.nan, 0, 1))]
-    assert shoot(way, TENT, *rays) == [np.inf] * 3
+    assert shoot(intersect, TENT, *rays) == [np.inf] * 3
 
 
 def test_the_surface_is_the_side_or_the_base_and_the_normal_points_outwards() -> None:

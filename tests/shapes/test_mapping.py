@@ -1,4 +1,4 @@
-"""How pictures lie on shapes: u, v and tangents against charts told from the manual pages."""
+"""Texture coordinates and tangents of all shapes, against charts written from the manual pages."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ TITLED = partial(pytest.mark.parametrize, ids=lambda each: each.title if isinsta
 SIZES = [(1.0, 0.0), (1e-6, 0.0), (1e6, 0.0), (1.0, 1e6), (1e-6, 1.0)]
 CHECKS = (check_places, check_tangents, check_hand)
 ALL = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
-EITHER = pytest.mark.parametrize("way", MODES.values(), ids=MODES)
+EITHER = pytest.mark.parametrize("evaluate", MODES.values(), ids=MODES)
 ORIGIN, UP, DOWN = (0, 0, 0), (0, 1, 0), (0, -1, 0)
 
 
@@ -50,11 +50,13 @@ ORIGIN, UP, DOWN = (0, 0, 0), (0, 1, 0), (0, -1, 0)
 @EITHER
 @pytest.mark.parametrize(("size", "offset"), SIZES)
 @pytest.mark.parametrize("check", CHECKS)
-def test_of_random_shapes(kind: Kind, way: Evaluate, size: float, offset: float, check: Any) -> None:
+def test_random_shapes_agree_with_their_charts(
+    kind: Kind, evaluate: Evaluate, size: float, offset: float, check: Any
+) -> None:
     if check is check_tangents and offset > size:
         offset = 1e3 * size  # differences of points farther off are mere rounding
     for case in cases(kind, size, offset):
-        check(case, way, size)
+        check(case, evaluate, size)
 
 
 KNOWN: list[tuple[Shape, tuple[float, ...], tuple[float, ...], tuple[float, float]]] = [
@@ -98,9 +100,9 @@ KNOWN: list[tuple[Shape, tuple[float, ...], tuple[float, ...], tuple[float, floa
 
 @EITHER
 @TITLED(("shape", "point", "normal", "right"), KNOWN)
-def test_known_places(shape: Shape, point: Any, normal: Any, right: Any, way: Evaluate) -> None:
+def test_known_places(shape: Shape, point: Any, normal: Any, right: Any, evaluate: Evaluate) -> None:
     points, normals = np.tile(np.array(point, float), (16, 1)), np.tile(np.array(normal, float), (16, 1))
-    got = way(shape, points, normals)
+    got = evaluate(shape, points, normals)
     assert np.allclose([got.u[0], got.v[0]], right, rtol=0, atol=1e-15)
 
 
@@ -127,18 +129,20 @@ TIPS: list[tuple[Shape, tuple[float, ...], tuple[float, ...]]] = [
 @EITHER
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 @TITLED(("shape", "point", "normal"), TIPS)
-def test_at_poles_and_apexes_all_is_finite(shape: Shape, point: Any, normal: Any, dtype: Any, way: Evaluate) -> None:
+def test_at_poles_and_apexes_all_is_finite(
+    shape: Shape, point: Any, normal: Any, dtype: Any, evaluate: Evaluate
+) -> None:
     # The tip itself and places a little or next to nothing aside.
     aside = np.zeros((32, 3))
     aside[1:16, 0], aside[16:, 2] = 10.0 ** -np.arange(15), 10.0 ** -np.arange(16.0)
     points, normals = np.array(point) + aside, np.tile(np.array(normal, float), (32, 1))
-    got = way(shape, points.astype(dtype), normals.astype(dtype))
+    got = evaluate(shape, points.astype(dtype), normals.astype(dtype))
     for each in got:
         assert np.isfinite(each).all()
 
 
 @ALL
-def test_from_inside_and_from_outside(kind: Kind) -> None:
+def test_hits_from_inside_and_outside_have_right_handed_tangents(kind: Kind) -> None:
     # Whatever a ray hits, from within ten sizes around and from within, gets what the chart says of that place.
     for size, offset in SIZES:
         seen = hits(kind, 1, size, offset, shapes=8, rays=64)
@@ -163,7 +167,7 @@ def test_compiled_and_interpreted_agree(kind: Kind, dtype: Any, tolerance: float
 
 
 @ALL
-def test_in_single_precision_they_are_nearly_as_in_double(kind: Kind) -> None:
+def test_single_precision_agrees_with_double(kind: Kind) -> None:
     for case in cases(kind, 1.0, 0.0):
         points, normals = case.chart(case.u, case.v)
         got = compiled(case.shape, points.astype(np.float32), normals.astype(np.float32))
@@ -202,7 +206,7 @@ def test_a_shape_that_is_tilted_a_little_keeps_its_picture(title: str) -> None:
 
 
 @ALL
-def test_tangents_tell_how_u_and_v_change(kind: Kind) -> None:
+def test_tangents_are_the_derivatives_of_points_by_u_and_v(kind: Kind) -> None:
     # A small step along both tangents, put back onto the surface. A few steps cross an edge or a seam or meet a pole.
     seen = hits(kind, 5, 1.0, 0.0, shapes=8, rays=64)
     right = steps = 0
@@ -232,7 +236,7 @@ WRONG: dict[str, Any] = {
 
 
 def fails(cases: list[Case], formula: Any) -> bool:
-    """Whether a check finds something in a formula."""
+    """Whether a check rejects a formula."""
     for case in cases:
         try:
             for check in CHECKS:
@@ -244,12 +248,12 @@ def fails(cases: list[Case], formula: Any) -> bool:
 
 @ALL
 @pytest.mark.parametrize("name", WRONG)
-def test_a_wrong_one_does_not_pass(kind: Kind, name: str) -> None:
+def test_a_wrong_mapping_does_not_pass(kind: Kind, name: str) -> None:
     assert not fails(cases(kind, 1.0, 0.0), kind.mapping)
     assert fails(cases(kind, 1.0, 0.0), lambda *given: WRONG[name](*kind.mapping(*given)))
 
 
 @pytest.mark.parametrize("title", ["box", "cylinder", "cone", "paraboloid", "hyperboloid"])
-def test_sides_are_told_by_the_normal(title: str) -> None:
+def test_sides_and_caps_are_distinguished_by_the_normal(title: str) -> None:
     kind = next(kind for kind in KINDS if kind.element.title == title)
     assert fails(cases(kind, 1.0, 0.0), lambda shape, point, normal: kind.mapping(shape, point, point - point))

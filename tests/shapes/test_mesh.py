@@ -46,7 +46,7 @@ def test_a_row_is_a_packed_triangle() -> None:
 
 
 def test_a_mesh_is_its_triangles() -> None:
-    """Normal, place and verdict of every triangle are those of the same triangle as a shape of its own."""
+    """Verdicts, hits and normals of every triangle are those of a triangle shape with these corners."""
     random = np.random.default_rng(1)
     made = soup(random, 40).replace(position=(1.0, -2.0, 0.5), scale=3.0)
     rows = made.rows()
@@ -81,16 +81,16 @@ def test_balls_and_boxes_are_around_the_triangles() -> None:
     assert np.array_equal([hull.min(axis=0), hull.max(axis=0)], [low, high])
 
 
-def test_corners_that_are_the_same_in_the_file_are_the_same_in_the_scene() -> None:
+def test_equal_corners_of_the_file_are_equal_in_the_scene() -> None:
     made = named("icosphere", (1e3, 1 / 3, -7e5), 0.1)
     corners = made.rows()[:, :9].reshape(-1, 3)
     which = made.triangles.corners.ravel()
     assert len(np.unique(corners, axis=0)) == len(np.unique(which))
 
 
-def test_the_normal_between_the_corners_of_a_sphere_is_nearly_the_spheres() -> None:
-    """Of a chord of angle e the mean of the end's normals points to its middle; in between it is off by less than
-    e^3 / 16, and the mean over a triangle by no more than its longest edge makes it."""
+def test_interpolated_normals_of_a_mesh_of_a_sphere_are_nearly_those_of_the_sphere() -> None:
+    """On a chord of angle e the mean of the normals at both ends is that of the sphere in the middle, and off by less
+    than e^3 / 16 elsewhere; on a triangle the error is at most that of its longest edge."""
     random = np.random.default_rng(2)
     triangles = ball(3)
     shape = Mesh(MeshFile("ball.obj", triangles), (3, 4, 5), 2.0, GREY)
@@ -107,7 +107,7 @@ def test_the_normal_between_the_corners_of_a_sphere_is_nearly_the_spheres() -> N
     assert np.linalg.norm(flat - outward, axis=1).max() > 0.05
 
 
-def test_shares_are_those_of_the_point() -> None:
+def test_barycentric_coordinates_are_those_of_the_point() -> None:
     random = np.random.default_rng(3)
     made = soup(random, 100)
     wanted = random.dirichlet((1, 1, 1), 100)
@@ -115,7 +115,7 @@ def test_shares_are_those_of_the_point() -> None:
     assert np.allclose(np.stack(mesh.barycentric_coordinates(made.pack(), Vec(*points.T)), axis=1), wanted, atol=1e-12)
 
 
-def test_shares_beyond_a_triangle_or_of_none_stay_shares() -> None:
+def test_barycentric_coordinates_stay_within_0_and_1_outside_the_triangle() -> None:
     random = np.random.default_rng(4)
     far = 100 * random.normal(size=(100, 3))
     with np.errstate(all="ignore"):
@@ -126,7 +126,7 @@ def test_shares_beyond_a_triangle_or_of_none_stay_shares() -> None:
             assert np.abs(found.sum(axis=1) - 1).max() < 1e-15
 
 
-def test_normals_that_cancel_give_that_of_the_triangle() -> None:
+def test_corner_normals_that_cancel_give_the_normal_of_the_triangle() -> None:
     points, up = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([0.0, 0, 1])
     triangles = Triangles(points, np.array([[0, 1, 2]]), np.array([[[1.0, 0, 0], [-1, 0, 0], up]]))
     packed = Mesh(MeshFile("x.obj", triangles), (0, 0, 0), 1.0, GREY).pack()
@@ -151,51 +151,51 @@ def test_it_is_made_with_a_name_in_python(tmp_path: Path, monkeypatch: pytest.Mo
     assert minirt.Mesh is Mesh
 
 
-def test_it_must_not_reach_too_far() -> None:
+def test_a_mesh_must_not_reach_too_far() -> None:
     assert named("icosahedron", scale=1e15).bounds()[1][0] == pytest.approx(0.85065e15)
     with pytest.raises(ElementError, match="scale must not be so large that the mesh reaches beyond 1e"):
         named("icosahedron", scale=1e15, position=(9e14, 0, 0))
 
 
-def mapped(packed: mesh.PackedMeshTriangle, points: np.ndarray, normals: np.ndarray) -> list[np.ndarray]:
+def surface_mapping(packed: mesh.PackedMeshTriangle, points: np.ndarray, normals: np.ndarray) -> list[np.ndarray]:
     u, v, along_u, along_v = mesh.mapping(packed, Vec(*points.T), Vec(*normals.T))
     return [u, v, *(np.stack([each.x, each.y, each.z], axis=1) for each in (along_u, along_v))]
 
 
-def test_coordinates_are_those_of_the_file_and_their_directions_what_changes_them() -> None:
+def test_texture_coordinates_are_those_of_the_file_and_tangents_their_derivatives() -> None:
     random = np.random.default_rng(5)
     made = named("knot", (1, 2, 3), 2.0)
     shares = random.dirichlet((2, 2, 2), made.parts)
     rows = made.rows()
     points = np.einsum("ij,ijk->ik", shares, rows[:, :9].reshape(-1, 3, 3))
-    u, v, along_u, along_v = mapped(made.pack(), points, rows[:, 9:12])
+    u, v, along_u, along_v = surface_mapping(made.pack(), points, rows[:, 9:12])
     assert np.allclose(np.stack([u, v], axis=1), np.einsum("ij,ijk->ik", shares, made.triangles.uvs), atol=1e-12)
-    for step in (1e-4, -1e-4):  # a way along one of them changes that coordinate and not the other
+    for step in (1e-4, -1e-4):  # a step along a tangent changes its own coordinate and not the other
         for along, change in ((along_u, (step, 0)), (along_v, (0, step))):
-            later = mapped(made.pack(), points + step * along, rows[:, 9:12])
+            later = surface_mapping(made.pack(), points + step * along, rows[:, 9:12])
             inside = np.minimum(*np.sort(shares, axis=1).T[:2]) > 0.02
             assert np.abs(later[0] - u - change[0])[inside].max() < 1e-9
             assert np.abs(later[1] - v - change[1])[inside].max() < 1e-9
 
 
-def test_what_is_raised_is_raised_from_the_round_surface() -> None:
+def test_tangents_are_perpendicular_to_the_interpolated_normal() -> None:
     made = named("knot")
     packed, rows = made.pack(), made.rows()
     points = rows[:, :9].reshape(-1, 3, 3).mean(axis=1)
     smooth = mesh.shading(packed, Vec(*points.T), packed.normal)
     normals = np.stack([smooth.x, smooth.y, smooth.z], axis=1)
-    _, _, along_u, along_v = mapped(packed, points, normals)
+    _, _, along_u, along_v = surface_mapping(packed, points, normals)
     out = unit(np.cross(along_u, along_v))
     assert np.abs(np.abs(np.einsum("ij,ij->i", out, normals)) - 1).max() < 1e-12
     assert np.abs(np.einsum("ij,ij->i", out, rows[:, 9:12])).min() < 1 - 1e-5
 
 
-def test_without_coordinates_there_are_no_directions_or_those_of_the_triangle() -> None:
+def test_tangents_without_texture_coordinates_in_the_file() -> None:
     made = named("icosahedron")
     rows = made.rows()
     points = rows[:, :9].reshape(-1, 3, 3).mean(axis=1)
     with np.errstate(all="raise"):
-        found = mapped(made.pack(), points, rows[:, 9:12])
+        found = surface_mapping(made.pack(), points, rows[:, 9:12])
     assert all(np.isfinite(each).all() for each in found)
     assert np.allclose(found[:2], 1 / 3)  # half a picture on each triangle
     a, b, c = rows[:, :9].reshape(-1, 3, 3).swapaxes(0, 1)
@@ -203,24 +203,24 @@ def test_without_coordinates_there_are_no_directions_or_those_of_the_triangle() 
     assert np.allclose(found[3], c - a)
 
 
-def test_coordinates_that_are_askew_and_those_that_are_all_the_same() -> None:
+def test_skewed_and_constant_texture_coordinates() -> None:
     random = np.random.default_rng(7)
     made = soup(random, 50)
     rows, packed = made.rows(), made.pack()
     points = rows[:, :9].reshape(-1, 3, 3).mean(axis=1)
     skew = packed._replace(**dict(zip(packed._fields[7:], random.uniform(-1, 1, (6, 50)), strict=True)))
-    before = mapped(skew, points, rows[:, 9:12])
+    before = surface_mapping(skew, points, rows[:, 9:12])
     for i, along in enumerate(before[2:]):
         step = 1e-3 / (1 + np.linalg.norm(along, axis=1, keepdims=True))
-        later = mapped(skew, points + step * along, rows[:, 9:12])
+        later = surface_mapping(skew, points + step * along, rows[:, 9:12])
         assert np.abs(later[i] - before[i] - step[:, 0]).max() < 1e-9
         assert np.abs(later[1 - i] - before[1 - i]).max() < 1e-9
     one = packed._replace(**dict.fromkeys(packed._fields[7:], np.full(50, 0.3)))
     for flat in (one, one._replace(u_b=skew.u_b), one._replace(v_c=skew.v_c)):
-        assert not np.any(mapped(flat, points, rows[:, 9:12])[2:])
+        assert not np.any(surface_mapping(flat, points, rows[:, 9:12])[2:])
 
 
-def test_points_are_put_onto_the_plane_of_the_triangle() -> None:
+def test_points_are_projected_onto_the_plane_of_the_triangle() -> None:
     made = named("knot", (1, 2, 3), 2.0)
     rows, random = made.rows(), np.random.default_rng(6)
     points = np.einsum("ij,ijk->ik", random.dirichlet((1, 1, 1), made.parts), rows[:, :9].reshape(-1, 3, 3))

@@ -1,4 +1,4 @@
-"""The paraboloid's formulas, against answers known by hand; where they are hard is in `tests.stability`."""
+"""The paraboloid's formulas, against answers known by hand; rays that are hard for them are in `tests.stability`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.shapes.test_sphere import shoot
 BOWL = Paraboloid((0, -1, 5), (0, 1, 0), 4, 4, GREY)  # x^2 + (z - 5)^2 = y + 1, from y = -1 to y = 3
 
 
-def test_answers_known_by_hand(way: Intersect) -> None:
+def test_answers_known_by_hand(intersect: Intersect) -> None:
     rays = [
         ((0, 0, 0), (0, 0, 1)),  # the side
         ((0, 0, 0), (0, 0, -1)),  # behind
@@ -32,17 +32,17 @@ def test_answers_known_by_hand(way: Intersect) -> None:
     ]
     slanted = (1.1 + (1.21 + 4 * 0.36 * 0.6875) ** 0.5) / 0.72
     expected = [4, np.inf, 2, 3, 6, np.inf, 3, 1, 1.5, np.inf, np.inf, 2, slanted]
-    assert shoot(way, BOWL, *rays) == pytest.approx(expected, rel=2e-15)
+    assert shoot(intersect, BOWL, *rays) == pytest.approx(expected, rel=2e-15)
 
 
-def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(way: Intersect) -> None:
+def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(intersect: Intersect) -> None:
     rays = [((0, 0, 4), (0, 0, 1)), ((0, 0, 4), (0, 0, -1)), ((0, 3, 5), (0, -1, 0)), ((0, 3, 5), (0, 1, 0))]
-    assert shoot(way, BOWL, *rays) == [2, np.inf, 4, np.inf]
+    assert shoot(intersect, BOWL, *rays) == [2, np.inf, 4, np.inf]
 
 
-def test_nan_is_a_miss(way: Intersect) -> None:
+def test_nan_is_a_miss(intersect: Intersect) -> None:
     rays = [((np.nan, 0, 0), (0, 0, 1)), ((0, np.nan, 0), (0, 0, 1)), ((0, 0, 0), (np.nan, 0, 1))]
-    assert shoot(way, BOWL, *rays) == [np.inf] * 3
+    assert shoot(intersect, BOWL, *rays) == [np.inf] * 3
 
 
 def test_the_surface_is_the_side_or_the_cap_and_the_normal_points_outwards() -> None:
@@ -54,14 +54,14 @@ def test_the_surface_is_the_side_or_the_cap_and_the_normal_points_outwards() -> 
     assert np.abs(normal[0] - slopes).max() <= 4 * U
 
 
-def test_points_go_across_the_axis_where_the_side_is_steep() -> None:
+def test_points_move_across_the_axis_where_the_side_is_steep() -> None:
     on, normal = surfaces([BOWL], np.array([[[0.76, -0.4375, 5], [0.6, -1.01, 5]]]))
     assert np.abs(on[0, 0] - [0.75, -0.4375, 5]).max() <= 8 * U * 5
     assert np.abs(normal[0, 0] - np.array([1.5, -1, 0]) / 3.25**0.5).max() <= 4 * U
     assert np.abs(normal[0, 1] - [0, -1, 0]).max() <= 4 * U  # below the vertex
 
 
-def test_near_the_rim_it_is_the_nearer_wall_that_counts() -> None:
+def test_near_the_rim_points_move_to_the_nearer_wall() -> None:
     over = 1e-4  # and this far, times (1 + 17^0.5) / 4, beside the rim both walls are as near
     points = np.array([[2 + aside * over, 3 + over, 5] for aside in (1.275, 1.287)])
     _, normal = surfaces([BOWL], points[None])

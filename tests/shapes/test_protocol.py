@@ -1,4 +1,4 @@
-"""What every entry of the registry of shapes must have, and what its formulas must agree on."""
+"""Questions asked of every kind of shape in the registry: its declarations, and properties of its formulas."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_it_packs_into_a_row_and_back(kind: Kind) -> None:
 
 
 @pytest.mark.parametrize(("size", "offset"), SIZES)
-def test_its_surface_is_a_unit_normal_and_stays_where_it_is(kind: Kind, size: float, offset: float) -> None:
+def test_normals_have_unit_length_and_points_of_the_surface_stay(kind: Kind, size: float, offset: float) -> None:
     seen = hits(kind, 1, size, offset)
     normals, points = seen.normals[seen.hit], seen.points[seen.hit]
     assert len(points) > 1000
@@ -83,7 +83,7 @@ def test_its_surface_is_a_unit_normal_and_stays_where_it_is(kind: Kind, size: fl
 @pytest.mark.parametrize(("size", "offset"), SIZES)
 def test_its_normals_point_outwards(kind: Kind, size: float, offset: float) -> None:
     seen = hits(kind, 2, size, offset)
-    # One step out of the surface: from there the way on never hits it, and where that is so the way back at once.
+    # One step out of the surface along the normal: a ray onwards never hits it again, and a ray back hits at once.
     step = 1e-2 * size * np.ones((*seen.hit.shape, 1))
     outside = seen.points + step * seen.normals
     back, on = (MODES["compiled"](seen.shapes, outside, sign * seen.normals)[seen.hit] for sign in (-1, 1))
@@ -107,24 +107,24 @@ def test_its_bounds_contain_its_surface_and_touch_it(kind: Kind, size: float, of
 
 
 @pytest.mark.parametrize(("size", "offset"), SIZES)
-def test_nothing_sticks_out_of_the_hull_of_its_balls(kind: Kind, size: float, offset: float) -> None:
+def test_the_hull_of_its_balls_contains_it(kind: Kind, size: float, offset: float) -> None:
     seen = hits(kind, 4, size, offset, shapes=20, rays=1024)
     directions = random_directions(np.random.default_rng(4), 500)
     for shape, points, hit in zip(seen.shapes, seen.points, seen.hit, strict=True):
         balls = shape.balls()
         assert (shape.bounds() is None) == (not balls)
-        if balls:  # in no direction does a point reach farther than the farthest ball
+        if balls:  # no point lies farther in any direction than the farthest ball
             reach = np.max([directions @ np.array(centre) + radius for centre, radius in balls], axis=0)
             assert ((points[hit] @ directions.T).max(axis=0) <= reach + 64 * U * (10 * size + offset)).all()
             assert len(balls) == len(seen.shapes[0].balls())
 
 
-def test_the_three_ways_agree(kind: Kind) -> None:
+def test_the_three_modes_agree(kind: Kind) -> None:
     random = np.random.default_rng(5)
     shapes = [example(kind, random) for _ in range(20)]
     origins, aside = random.normal(size=(2, 20, 16, 3)) * [[[[5.0]]], [[[0.5]]]]
     directions = unit(np.stack([place(shape) for shape in shapes])[:, None] + aside - origins)
-    numbers, arrays, compiled = (way(shapes, origins, directions) for way in MODES.values())
+    numbers, arrays, compiled = (mode(shapes, origins, directions) for mode in MODES.values())
     assert np.array_equal(numbers, arrays)
     assert np.array_equal(np.isinf(numbers), np.isinf(compiled))
     seen = np.isfinite(numbers)

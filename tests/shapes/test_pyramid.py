@@ -1,4 +1,4 @@
-"""Pyramids over triangles: no ray that hits is left out, and few others are tried."""
+"""Culling of triangles by pyramids: no ray that hits is culled, and most others are."""
 
 from __future__ import annotations
 
@@ -42,7 +42,8 @@ def vec(points: Any, number: type) -> Vec:
 
 
 def seen_from(corners: Any, apex: Any, share: float) -> tuple[Any, Any]:
-    """Corners and apex where 0 is as many times as far from the apex as the middle of an edge is, and behind that."""
+    """Corners and apex, moved so that the origin lies behind the middle of an edge, `far` times as far from the
+    apex."""
     start = apex + share * (corners[:2].mean(0) - apex)
     return corners - start, apex - start
 
@@ -50,7 +51,7 @@ def seen_from(corners: Any, apex: Any, share: float) -> tuple[Any, Any]:
 def drawn(
     seed: int, size: float, offset: float, distance: float, number: type, place: str = "as drawn"
 ) -> tuple[Any, ...]:
-    """A triangle, a point away from it, and points of the triangle: also of its edges, and its corners."""
+    """A triangle, an apex away from it, and points inside the triangle, on its edges and at its corners."""
     random = np.random.default_rng(seed)
     middle = offset * random.normal(size=3)
     given = middle + size * random.normal(size=(3, 3)), middle + distance * random.normal(size=3)
@@ -65,7 +66,7 @@ def drawn(
 
 @pytest.mark.parametrize(("regime", "place", "number"), CASES)
 @pytest.mark.parametrize("seed", range(8))
-def test_all_rays_that_hit_are_tried(seed: int, regime: tuple[float, float, float], place: str, number: type) -> None:
+def test_no_ray_that_hits_is_culled(seed: int, regime: tuple[float, float, float], place: str, number: type) -> None:
     corners, apex, normal, points, random = drawn(seed, *regime, number, place)
     a, b, c = (vec(each, number) for each in corners)
     origin, up, everything = vec(apex, number), vec(normal, number), np.ones(COUNT, bool)
@@ -89,7 +90,7 @@ def test_all_rays_that_hit_are_tried(seed: int, regime: tuple[float, float, floa
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_rays_beside_it_are_not_tried(seed: int) -> None:
+def test_rays_beside_the_triangle_are_culled(seed: int) -> None:
     corners, apex, normal, _, random = drawn(seed, 1.0, 10.0, 5.0, np.float64)
     outside = random.dirichlet(np.ones(3), COUNT)
     outside[:, 0] = -(10.0 ** random.uniform(-6, 2, COUNT))
@@ -102,7 +103,7 @@ def test_rays_beside_it_are_not_tried(seed: int) -> None:
 
 @pytest.mark.parametrize("number", [np.float64, np.float32])
 @pytest.mark.parametrize("seed", range(20))
-def test_a_surface_does_not_try_itself(seed: int, number: type) -> None:
+def test_rays_that_leave_a_triangle_are_culled_for_it(seed: int, number: type) -> None:
     corners, apex, normal, points, _ = drawn(seed, 1.0, 10.0, 50.0, number)
     a, b, c = (vec(each, number) for each in corners)
     normal = normal * np.sign(normal @ (apex - corners[0]))
@@ -117,7 +118,7 @@ def test_a_surface_does_not_try_itself(seed: int, number: type) -> None:
         assert not tried.any()
 
 
-def test_only_what_is_asked_for() -> None:
+def test_inactive_rays_stay_inactive() -> None:
     corners, apex, normal, points, _ = drawn(3, 1.0, 0.0, 5.0, np.float64)
     aim = points - apex
     direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), np.float64)

@@ -1,4 +1,4 @@
-"""The quadratic, at its special cases."""
+"""Roots of quadratic equations, in the special cases."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_where_a_quadratic_is_below_zero(coefficients: tuple[float, ...], expect
         assert np.isnan(above)
 
 
-def test_several_at_once() -> None:
+def test_many_quadratics_at_once() -> None:
     with np.errstate(all="ignore"):
         met, below, above = solved(*np.array([coefficients for coefficients, _ in CASES], float).T)
     assert met.tolist() == [expected[0] for _, expected in CASES]

@@ -1,4 +1,4 @@
-"""The torus' formulas, against answers known by hand; where they are hard is in `tests.stability`."""
+"""The torus' formulas, against answers known by hand; rays that are hard for them are in `tests.stability`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.shapes.test_sphere import shoot
 RING = Torus((0, 1, 5), (0, 1, 0), 6, 2, GREY)  # radii 3 and 1
 
 
-def test_answers_known_by_hand(way: Intersect) -> None:
+def test_answers_known_by_hand(intersect: Intersect) -> None:
     rays = [
         ((0, 1, 0), (0, 0, 1)),  # the outer side
         ((0, 1, 0), (0, 0, -1)),  # behind
@@ -40,41 +40,41 @@ def test_answers_known_by_hand(way: Intersect) -> None:
         ((0, 1, 5), (0.6, 0, 0.8)),
     ]
     expected = [1, np.inf, 1, 1, 2, 1, 1, np.inf, np.inf, 7, 7, np.inf, 8 - 0.75**0.5, np.inf, np.inf, 2]
-    assert shoot(way, RING, *rays) == pytest.approx(expected, rel=1e-15)
-    assert shoot(way, RING.replace(axis=(0, -1, 0)), *rays) == pytest.approx(expected, rel=1e-15)
+    assert shoot(intersect, RING, *rays) == pytest.approx(expected, rel=1e-15)
+    assert shoot(intersect, RING.replace(axis=(0, -1, 0)), *rays) == pytest.approx(expected, rel=1e-15)
 
 
-def test_each_of_four_crossings_is_hit_from_before_it(way: Intersect) -> None:
+def test_each_of_four_crossings_is_hit_from_before_it(intersect: Intersect) -> None:
     rays = [((0, 1, z), (0, 0, 1)) for z in (-4, 1.5, 3.5, 6.5, 7.5, 9.5)]
-    assert shoot(way, RING, *rays) == pytest.approx([5, 1.5, 3.5, 0.5, 1.5, np.inf], rel=1e-15)
+    assert shoot(intersect, RING, *rays) == pytest.approx([5, 1.5, 3.5, 0.5, 1.5, np.inf], rel=1e-15)
 
 
-def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(way: Intersect) -> None:
+def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(intersect: Intersect) -> None:
     rays = [((0, 1, 1), (0, 0, 1)), ((0, 1, 1), (0, 0, -1)), ((0, 2, 2), (0, 1, 0)), ((0, 2, 2), (0, -1, 0))]
-    assert shoot(way, RING, *rays) == pytest.approx([2, np.inf, np.inf, 2], rel=1e-15)
+    assert shoot(intersect, RING, *rays) == pytest.approx([2, np.inf, np.inf, 2], rel=1e-15)
 
 
-def test_without_a_hole_its_centre_is_a_point(way: Intersect) -> None:
+def test_without_a_hole_its_centre_is_a_point(intersect: Intersect) -> None:
     full = RING.replace(tube=6)  # radii 3 and 3
     rays = [((0, 9, 5.5), (0, -1, 0)), ((0, 1, -5), (0, 0, 1)), ((0, 9, 8), (0, -1, 0))]
-    assert shoot(way, full, *rays) == pytest.approx([8 - (9 - 2.5**2) ** 0.5, 4, 5], rel=1e-15)
+    assert shoot(intersect, full, *rays) == pytest.approx([8 - (9 - 2.5**2) ** 0.5, 4, 5], rel=1e-15)
 
 
-def test_nan_is_a_miss(way: Intersect) -> None:
+def test_nan_is_a_miss(intersect: Intersect) -> None:
     rays = [((np.nan, 1, 0), (0, 0, 1)), ((0, np.nan, 0), (0, 0, 1)), ((0, 1, 0), (np.nan, 0, 1))]
-    assert shoot(way, RING, *rays) == [np.inf] * 3
+    assert shoot(intersect, RING, *rays) == [np.inf] * 3
 
 
 @pytest.mark.parametrize("tube", [2, 6])
-@pytest.mark.parametrize("on", [on_arrays, compiled])
-def test_no_ray_depends_on_those_beside_it(on: Intersect, tube: float) -> None:
+@pytest.mark.parametrize("intersect", [on_arrays, compiled])
+def test_no_ray_depends_on_its_neighbours_in_a_packet(intersect: Intersect, tube: float) -> None:
     torus, random = RING.replace(tube=tube), np.random.default_rng(3)
     # Many of such rays are in a plane through the axis or across it, and leave nothing but rounding.
     targets, origins = np.array(torus.centre) + random.integers(-8, 9, (2, 200 * RAYS, 3)) / 2
     directions = unit(targets + (targets == origins).all(axis=1, keepdims=True) - origins)
     order = random.permutation(200 * RAYS)
-    t = on([torus], origins[None], directions[None])[0]
-    packets = on(200 * [torus], *(part[order].reshape(200, RAYS, 3) for part in (origins, directions)))
+    t = intersect([torus], origins[None], directions[None])[0]
+    packets = intersect(200 * [torus], *(part[order].reshape(200, RAYS, 3) for part in (origins, directions)))
     assert np.isfinite(t).sum() > 500
     assert np.array_equal(packets.reshape(-1), t[order])
 
@@ -100,7 +100,7 @@ def test_most_roots_take_less_than_ten_steps(monkeypatch: pytest.MonkeyPatch) ->
         (3, (1.5, 0.5, 0), (-5, -7, 0), 36),  # what height is left is rounding, of either sign
     ],
 )
-def test_steps_end(
+def test_newtons_method_ends(
     tube: float, origin: tuple[float, ...], target: tuple[float, ...], most: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     looks: list[bool] = []
@@ -114,7 +114,7 @@ def test_steps_end(
     assert len(looks) <= most
 
 
-def test_only_rays_that_come_near_it_are_looked_into(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_rays_near_the_torus_are_solved(monkeypatch: pytest.MonkeyPatch) -> None:
     rays = np.array(
         [
             ((0, 1, 0), (0, 0, 1)),  # hits
@@ -149,7 +149,7 @@ def test_the_surface_is_the_nearest_point_and_the_normal_points_outwards() -> No
     on, normal = surfaces([RING], points[None])
     assert np.abs(on[0, :4] - [[0, 1, 1], [0, 1, 3], [3, 2, 5], [0, 0, 8]]).max() <= 8 * U * 5
     assert np.abs(normal[0, :4] - [[0, 0, -1], [0, 0, 1], [0, 1, 0], [0, -1, 0]]).max() <= 4 * U
-    # From the axis, where all ways are as short, it takes one of them.
+    # A point on the axis, where every point of the ring is as near, moves to one of them.
     assert np.abs(np.linalg.norm(on[0, 5] - [0, 1, 5]) - 2) <= 8 * U * 5
     assert normal[0, 5, 1] == 0
 
@@ -173,7 +173,7 @@ def test_a_tube_wider_than_the_ring_is_refused() -> None:
     assert RING.replace(tube=6).tube == 6
 
 
-def test_a_step_that_leads_out_of_where_the_surface_is_crossed_is_not_taken(way: Intersect) -> None:
+def test_a_newton_step_out_of_the_bracket_is_not_taken(intersect: Intersect) -> None:
     tube = 0.034751787197153904
     origin = np.array([1.0217727611113592, -0.23003780827641834, -0.035576964714855296])
     direction = np.array([-0.9962543729509578, -0.08488865002048886, 0.01646637403295192])
@@ -189,30 +189,30 @@ def test_a_step_that_leads_out_of_where_the_surface_is_crossed_is_not_taken(way:
         middle = (low + high) / 2
         low, high = (middle, high) if height(middle) > 0 else (low, middle)
     thin = Torus((0, 0, 0), (0, 0, 1), 2, 2 * tube, GREY)
-    assert shoot(way, thin, (tuple(origin), tuple(direction))) == pytest.approx([low], rel=1e-9)
+    assert shoot(intersect, thin, (tuple(origin), tuple(direction))) == pytest.approx([low], rel=1e-9)
 
 
-@pytest.mark.parametrize("on", [on_arrays, compiled])
-def test_from_its_inner_side_the_other_one_is_seen(on: Intersect) -> None:
+@pytest.mark.parametrize("intersect", [on_arrays, compiled])
+def test_a_ray_from_the_inner_side_of_the_ring_hits_the_opposite_side(intersect: Intersect) -> None:
     random = np.random.default_rng(5)
     turns = random.uniform(0, 2 * np.pi, 500 * RAYS)
     out = np.stack([np.cos(turns), 0 * turns, np.sin(turns)], axis=1)
     origins = np.array(RING.centre) + 2 * out  # within rounding of the tube, on either side of it
     targets = np.array(RING.centre) - 2 * out + random.uniform(-0.5, 0.5, out.shape)
     directions = unit(targets - origins)
-    t, beyond = (on([RING], (origins + start * directions)[None], directions[None]) for start in (0, 1e-3))
+    t, beyond = (intersect([RING], (origins + start * directions)[None], directions[None]) for start in (0, 1e-3))
     inside = t < 1e-9  # a rounding inside of the tube, it leaves that first
     assert 0.05 < np.mean(inside) < 0.95
     assert np.abs(t - 1e-3 - beyond)[~inside].max() < 1e-12
 
 
-@pytest.mark.parametrize("on", [on_arrays, compiled])
-def test_through_the_middle_of_the_tube_the_far_wall_is_seen(on: Intersect) -> None:
+@pytest.mark.parametrize("intersect", [on_arrays, compiled])
+def test_through_the_middle_of_the_tube_the_far_wall_is_seen(intersect: Intersect) -> None:
     turns, tilts = np.random.default_rng(6).uniform(0, 2 * np.pi, (2, 2000 * RAYS))
     circle = np.stack([np.cos(turns), 0 * turns, np.sin(turns)], axis=1)
     normals = np.cos(tilts)[:, None] * circle + np.sin(tilts)[:, None] * np.array(RING.axis)
     origins = np.array(RING.centre) + 3 * circle + normals
-    t = on([RING], origins[None], -normals[None])
+    t = intersect([RING], origins[None], -normals[None])
     near = t < 1e-9  # a rounding outside of the tube, it meets that first
     assert 0.05 < np.mean(near) < 0.95
     assert np.abs(t - 2)[~near].max() < 1e-12

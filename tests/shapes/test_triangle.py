@@ -1,4 +1,4 @@
-"""The triangle's formulas, against answers known by hand; where they are hard is in `tests.stability`."""
+"""The triangle's formulas, against answers known by hand; rays that are hard for them are in `tests.stability`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.stability.mutants import in_single_precision
 SAIL = Triangle((-2, 0, 5), (2, 0, 5), (0, 3, 8), GREY)
 
 
-def test_answers_known_by_hand(way: Intersect) -> None:
+def test_answers_known_by_hand(intersect: Intersect) -> None:
     rays = [
         ((0, 1, 0), (0, 0, 1)),  # z = 5 + y
         ((0, 1, 0), (0, 0, -1)),  # behind
@@ -37,31 +37,31 @@ def test_answers_known_by_hand(way: Intersect) -> None:
     ]
     expected = [6, np.inf, 2, 8, np.inf, 6, np.inf, 6, np.inf, np.inf, np.inf, np.inf, np.inf]
     for corners in permutations((SAIL.a, SAIL.b, SAIL.c)):
-        t = shoot(way, Triangle(*corners, GREY), *rays)
+        t = shoot(intersect, Triangle(*corners, GREY), *rays)
         assert t[:4] + t[5:] == pytest.approx(expected[:4] + expected[5:], rel=1e-15)
 
 
 @pytest.mark.parametrize("turn", range(3))
 @pytest.mark.parametrize("sign", [1, -1])
-def test_whatever_axis_it_is_seen_along(way: Intersect, turn: int, sign: int) -> None:
+def test_it_is_hit_along_every_axis(intersect: Intersect, turn: int, sign: int) -> None:
     def turned(p: tuple[float, ...]) -> tuple[float, ...]:
         return tuple(np.roll(np.array(p) * [1, 1, sign], turn))
 
     other = Triangle(turned(SAIL.a), turned(SAIL.b), turned(SAIL.c), GREY)
     rays = [((0.3, 0.1, 0), (-0.05, 0.1, 0.9)), ((0.3, 0.5, 9), (0.1, 0.2, -0.9)), ((0.3, 1, 0), (-0.5, 0.2, 0.9))]
     rays += [((0.3, 1, 9), (0, 0, -1)), ((0.3, 1, 0), (0, 0, 1))]
-    plain = shoot(way, SAIL, *rays)
+    plain = shoot(intersect, SAIL, *rays)
     assert np.isfinite(plain).tolist() == [True, True, False, True, True]
-    assert shoot(way, other, *[(turned(o), turned(d)) for o, d in rays]) == pytest.approx(plain, rel=4e-16)
+    assert shoot(intersect, other, *[(turned(o), turned(d)) for o, d in rays]) == pytest.approx(plain, rel=4e-16)
 
 
-def test_nan_is_a_miss(way: Intersect) -> None:
+def test_nan_is_a_miss(intersect: Intersect) -> None:
     rays = [((np.nan, 1, 0), (0, 0, 1)), ((0, np.nan, 0), (0, 0, 1)), ((0, 1, 0), (0, np.nan, 1))]
-    assert shoot(way, SAIL, *rays) == [np.inf] * 3
+    assert shoot(intersect, SAIL, *rays) == [np.inf] * 3
 
 
 def fan(random: Random) -> tuple[Array, list[Triangle]]:
-    """Triangles without a gap around a point, and that point: the middle of a bowl of seven corners."""
+    """A closed fan of triangles around a point, and that point: the middle of a bowl of seven corners."""
     turns = np.sort(random.uniform(0, 2 * np.pi, 7)) + np.arange(7) * 1e-3
     rim = np.stack([np.cos(turns), np.sin(turns), random.uniform(-0.2, 0.2, 7)], axis=-1)
     scale, middle = log_uniform(random, 1e-3, 1e3), 10 * random.normal(size=3)
@@ -77,7 +77,7 @@ def fan(random: Random) -> tuple[Array, list[Triangle]]:
 
 
 def gaps(intersect: Intersect) -> int:
-    """How many rays towards edges and corners between triangles pass between them."""
+    """Number of rays towards shared edges and corners that pass between the triangles."""
     random = np.random.default_rng(5)
     missed = 0
     for _ in range(60):
@@ -101,11 +101,11 @@ def gaps(intersect: Intersect) -> int:
     return missed
 
 
-def test_no_ray_passes_between_triangles(way: Intersect) -> None:
-    assert gaps(way) == 0
+def test_no_ray_passes_between_triangles(intersect: Intersect) -> None:
+    assert gaps(intersect) == 0
 
 
-def test_nor_in_single_precision() -> None:
+def test_no_ray_passes_between_triangles_in_single_precision() -> None:
     assert gaps(in_single_precision) == 0
 
 
@@ -115,7 +115,7 @@ def test_the_surface_is_the_nearest_point_of_its_plane() -> None:
     assert np.abs(normal[0] - np.array([0, -1, 1]) / 2**0.5).max() <= 2 * U
 
 
-def test_one_that_is_too_thin_is_refused() -> None:
+def test_a_triangle_that_is_too_thin_is_refused() -> None:
     # Its longest edge is 4 and its largest coordinate 8: it must be higher than 16 roundings of 8.
     limit = 16 * U * 8
     with pytest.raises(ElementError, match="must not lie on a line with a and b"):
@@ -123,7 +123,7 @@ def test_one_that_is_too_thin_is_refused() -> None:
     assert Triangle((4, 0, 0), (8, 0, 0), (6, np.nextafter(limit, 1), 0), GREY).normal() == (0, 0, 1)
 
 
-def test_the_normal_of_a_sliver_is_upright_on_its_longest_edge() -> None:
+def test_the_normal_of_a_sliver_is_perpendicular_to_its_longest_edge() -> None:
     random = np.random.default_rng(7)
     for height in log_uniform(random, 1e-12, 1, 200):
         a, edge, aside = random.normal(size=(3, 3)) * [[1], [random.uniform(0.5, 4)], [height]]

@@ -1,4 +1,4 @@
-"""Rays aimed at hard places of shapes, or along hard directions."""
+"""Rays aimed at hard points of shapes, or along hard directions."""
 
 from __future__ import annotations
 
@@ -52,5 +52,5 @@ def axis_of(shape: Shape) -> Array:
 
 
 def edge(middle: Array, shape: Shape, radius: float, random: Random) -> Array:
-    """Random points of a circle around the axis of a shape."""
+    """Random points of a circle about a point of the axis of a shape."""
     return middle + radius * random_perpendiculars(random, axis_of(shape), RAYS)

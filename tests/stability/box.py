@@ -1,4 +1,4 @@
-"""Regimes of the box: rays along its axes, at edges and at corners."""
+"""Rays that are hard for a box."""
 
 from __future__ import annotations
 

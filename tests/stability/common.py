@@ -1,4 +1,4 @@
-"""Regimes common to all shapes, made from their declared fields. Lengths are in units of the shape's size."""
+"""Regimes of every kind of shape, made from its declared fields. Lengths are in sizes of the shape."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.shapes.examples import example, on_surface, place
 from tests.shapes.regimes import RAYS, Array, Rays, log_uniform, random_directions, unit
 from tests.stability.regime import Regime
 
-COUNT = 8  # shapes per regime
+COUNT = 8  # shapes of a regime
 
 
 def towards(
@@ -33,7 +33,7 @@ def towards(
 
 
 def touching(kind: Kind, seed: int) -> Rays:
-    """Rays along the surface, 1e-16 to 1e-4 sizes above and below it."""
+    """Rays along the surface, 1e-16 to 1e-4 sizes above or below it."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
@@ -48,7 +48,7 @@ def touching(kind: Kind, seed: int) -> Rays:
 
 
 def leaving(kind: Kind, seed: int, height: tuple[float, float] = (1e-12, 1e-3)) -> Rays:
-    """Rays in all directions from just above and just below the surface."""
+    """Rays from closely above and below the surface, in all directions."""
     random = np.random.default_rng(seed)
     shapes, origins = [], np.empty((COUNT, RAYS, 3))
     for i in range(COUNT):
@@ -64,18 +64,18 @@ def places(shapes: list[Shape]) -> Array:
 
 
 def common(kind: Kind) -> list[Regime]:
-    """Return the common regimes of a shape type."""
-    rays = partial(towards, kind)
+    """The regimes that every kind of shape has."""
+    made = partial(towards, kind)
     solid = body(example(kind, np.random.default_rng(1))).solid
     regimes = [
-        Regime("usual", partial(rays, 1)),
-        Regime("a million sizes away", partial(rays, 2, (1e2, 1e6))),
-        Regime("a scene at 1e6", partial(rays, 10, offset=1e6)),
-        Regime("a scene at 1e8", partial(rays, 3, offset=1e8)),
-        Regime("a size of 1e-6, seen from 1e6", partial(rays, 4, (1e11, 1e12), 1e-6)),
-        Regime("a size of 1e-12", partial(rays, 5, size=1e-12)),
-        Regime("a size of 1e12", partial(rays, 6, size=1e12)),
-        Regime("from the middle", partial(rays, 7, (1e-9, 0.1))),
+        Regime("usual", partial(made, 1)),
+        Regime("a million sizes away", partial(made, 2, (1e2, 1e6))),
+        Regime("a scene at 1e6", partial(made, 10, offset=1e6)),
+        Regime("a scene at 1e8", partial(made, 3, offset=1e8)),
+        Regime("a size of 1e-6, seen from 1e6", partial(made, 4, (1e11, 1e12), 1e-6)),
+        Regime("a size of 1e-12", partial(made, 5, size=1e-12)),
+        Regime("a size of 1e12", partial(made, 6, size=1e12)),
+        Regime("from the middle", partial(made, 7, (1e-9, 0.1))),
     ]
     if solid:
         regimes += [

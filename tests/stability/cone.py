@@ -1,4 +1,4 @@
-"""Regimes of the cone: rays at apex and rim, along generators, at the mirrored nappe; steep and flat cones."""
+"""Rays that are hard for a cone."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.stability.regime import Regime
 
 
 def make(random: Random, angle: tuple[float, float] = (20.0, 60.0)) -> Cone:
-    """Make a cone of about size 1 with a half-angle in a range of degrees."""
+    """A cone of about size 1 with this half-angle in degrees."""
     slope = np.tan(np.radians(random.uniform(*angle)))
     height = random.uniform(0.5, 2) / max(1.0, slope)
     return Cone(
@@ -42,7 +42,7 @@ def anywhere(random: Random, cone: Cone) -> Array:
 
 
 def at_the_mirror_image(seed: int) -> Rays:
-    """Rays at the mirrored nappe, which is not part of the cone, and past the apex on that side."""
+    """Rays at the other nappe, and past the apex on that side."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):

@@ -1,4 +1,4 @@
-"""Regimes of the cylinder: rays along axis, side and rim; tubes, needles and discs."""
+"""Rays that are hard for a cylinder."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.stability.regime import Regime
 
 
 def flat(seed: int, height: float) -> Rays:
-    """Rays from above and below at cylinders that are nearly flat."""
+    """Rays at cylinders that are nearly flat, from above and below."""
     return given.disc(seed, height, COUNT)
 
 
@@ -32,7 +32,7 @@ def needle(seed: int) -> Rays:
 
 
 def short_axis(seed: int) -> Rays:
-    """Rays at cylinders whose axis is 6e-8 shorter than 1, as an axis written with seven digits is."""
+    """Rays at cylinders whose axis is written 6e-8 too short, as one with seven digits is."""
     rays = given.aimed(given.cylinder, seed, count=COUNT)
     shortened = [shape.replace(axis=tuple((1 - 6e-8) * x for x in shape.axis)) for shape in rays.shapes]
     return rays._replace(shapes=shortened)
@@ -45,7 +45,7 @@ REGIMES = [
     Regime("nearly along the axis, a scene at 1e8", partial(given.along_axis, 14, (1e-12, 1e-3), 1e8, COUNT)),
     Regime("at the rim", partial(given.rim, 15, 2 * COUNT), blur=1e-12),
     Regime("along the side", partial(given.tangent_to_side, 16, COUNT), blur=1e-6),
-    # At 1e-8 off the axis, an axis exact to 2^-53 leaves a relative error of 1e-8 in the angle, and so in t.
+    # 1e-8 off the axis, an axis that is exact to 2^-53 leaves 1e-8 of the angle, and so of t.
     Regime("inside a tube of height 1e9", partial(given.inside_tube, 17, 1e9, COUNT), 3e-8),
     Regime("across a tube from its wall", partial(given.from_the_wall, 18, COUNT)),
     Regime("an axis off unit length by 6e-8", partial(short_axis, 21)),

@@ -39,7 +39,7 @@ def directions(random: Random, ellipsoid: Ellipsoid) -> Array:
 
 
 def beside(seed: int, size: float, height: tuple[float, float]) -> Rays:
-    """From closely above and below the surface of large ellipsoids, in all directions."""
+    """Rays in all directions from just above and just below the surface of large ellipsoids."""
     random = np.random.default_rng(seed)
     shapes, origins = [make(random, size=size) for _ in range(COUNT)], np.empty((COUNT, RAYS, 3))
     for i, shape in enumerate(shapes):

@@ -1,4 +1,4 @@
-"""The ways to evaluate the formulas: those of `tests.shapes.execution_modes`, and `minirt.trace`."""
+"""The execution modes of formulas: those of `tests.shapes.execution_modes`, and `minirt.trace`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
 from tests.shapes.execution_modes import Array, Intersect, compiled, on_arrays, on_numbers
 
-EVERY = 4  # on single numbers only every n-th ray is tested, as it takes long
+EVERY = 4  # on single numbers only every n-th ray is tried, as they take long
 
 
 def few_on_numbers(shapes: list[Shape], origins: Array, directions: Array) -> Array:
@@ -17,7 +17,7 @@ def few_on_numbers(shapes: list[Shape], origins: Array, directions: Array) -> Ar
 
 
 def traced(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """Trace with the library, each shape in a scene of its own."""
+    """t of rays by `minirt.trace`, each shape in a scene of its own."""
     eye = Camera((0, 0, 0), (0, 0, 1), 60)
     rays = zip(shapes, origins, directions, strict=True)
     return np.stack([minirt.trace(Scene((eye, shape)), o, d).distance for shape, o, d in rays])

@@ -1,4 +1,4 @@
-"""Regimes of the hyperboloid: rays along asymptotes and rulings, at rim and waist; narrow and wide waists."""
+"""Rays that are hard for a hyperboloid."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from tests.stability.regime import Regime
 
 
 def make(random: Random, waist: float = 0.5) -> Hyperboloid:
-    """Make a hyperboloid of about size 1; its waist is a share of its diameter."""
+    """A hyperboloid of about size 1 whose waist is this share of its diameter."""
     diameter = random.uniform(0.5, 2)
     point, axis = tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1))
     return Hyperboloid(point, axis, waist * diameter, diameter, random.uniform(0.5, 2), GREY)
 
 
 def slope(hyperboloid: Hyperboloid) -> float:
-    """Return the slope of the asymptotic cone: steps outwards per step along the axis."""
+    """Slope of the asymptotic cone: radius by height."""
     return float(np.sqrt(hyperboloid.diameter**2 - hyperboloid.waist**2)) / hyperboloid.height
 
 
@@ -46,7 +46,7 @@ def beside_rulings(seed: int, off: tuple[float, float]) -> object:
     random = np.random.default_rng(seed)
     for shape, origins, directions in zip(rays.shapes, rays.origins, rays.directions, strict=True):
         axis = axis_of(shape)
-        aside = unit(np.cross(directions, axis))  # a ruling crosses the waist perpendicular to the radius there
+        aside = unit(np.cross(directions, axis))  # such a line leaves the waist at a right angle to its way out
         start = np.array(shape.centre) + shape.waist / 2 * aside
         apart = np.exp(random.uniform(*np.log(off), (RAYS, 1))) * random.choice([-1.0, 1.0], (RAYS, 1))
         origins[:] = start + apart * aside - 5 * directions

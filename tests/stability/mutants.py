@@ -1,4 +1,4 @@
-"""Mutants: intersection formulas that look right but are wrong, which the checks must reject."""
+"""Wrong ways to intersect that look right: the checks of the real ones must reject them."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from tests.shapes.execution_modes import Array, Intersect, kind_of, on_arrays, v
 
 
 def from_1e_4_on(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """Ignore hits nearer than a fixed distance: a remedy against shadow acne that ignores the scene's scale."""
+    """Ignore hits nearer than a fixed distance: a remedy against shadow acne that knows no scale."""
     t = on_arrays(shapes, origins, directions)
     return np.where(t > 1e-4, t, np.inf)
 
 
 def moved_on_by_1e_4(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """Start rays a fixed distance further on: another remedy that ignores the scene's scale."""
+    """Start rays a fixed distance further on: another remedy that knows no scale."""
     return on_arrays(shapes, origins + 1e-4 * directions, directions) + 1e-4
 
 
 def in_single_precision(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """Run the real formulas in float32."""
+    """The real formulas in float32."""
     t = np.full(origins.shape[:2], np.inf)
     for i, shape in enumerate(shapes):
         rays = (vec(part[i].astype(np.float32)) for part in (origins, directions))
@@ -36,12 +36,12 @@ def in_single_precision(shapes: list[Shape], origins: Array, directions: Array) 
 
 
 def single(packed: Any) -> Any:
-    """Convert the numbers of a packed shape to float32."""
+    """A packed shape whose numbers are float32."""
     parts = (Vec(*map(np.float32, (p.x, p.y, p.z))) if isinstance(p, Vec) else np.float32(p) for p in packed)
     return type(packed)(*parts)
 
 
-# Each mutant with regimes in which it must fail; in easy regimes it passes.
+# For each mutant regimes that it must fail; it passes those that are easy for it.
 ANY: dict[str, tuple[Intersect, tuple[str, ...]]] = {
     "from 1e-4 on": (from_1e_4_on, ("a size of 1e-12",)),
     "moved on by 1e-4": (moved_on_by_1e_4, ("a size of 1e-12", "a scene at 1e8")),
@@ -49,21 +49,21 @@ ANY: dict[str, tuple[Intersect, tuple[str, ...]]] = {
 }
 OWN: dict[str, tuple[Intersect, tuple[str, ...]]] = {
     "sphere": (
-        mutants.way(mutants.from_the_origin),
+        mutants.with_formula(mutants.naive_sphere),
         ("a million sizes away", "a size of 1e-6, seen from 1e6", "from 0.001 above a diameter of 1e9"),
     ),
     "cylinder": (
-        mutants.way(mutants.piece_by_piece),
+        mutants.with_formula(mutants.naive_cylinder),
         ("a million sizes away", "a size of 1e-6, seen from 1e6", "at the rim"),
     ),
     "cone": (
-        mutants.way(textbook.meets_cone),
+        mutants.with_formula(textbook.meets_cone),
         ("a million sizes away", "at the apex", "along a generator", "a half-angle of 89.94 degrees"),
     ),
     "paraboloid": (
-        mutants.way(textbook.meets_paraboloid),
+        mutants.with_formula(textbook.meets_paraboloid),
         ("a million sizes away", "along the axis", "at the vertex"),
     ),
-    "hyperboloid": (mutants.way(textbook.meets_hyperboloid), ("a million sizes away", "along an asymptote")),
-    "plane": (mutants.way(mutants.hits_behind), ("usual", "at a slope of 1e-6 to 0.01")),
+    "hyperboloid": (mutants.with_formula(textbook.meets_hyperboloid), ("a million sizes away", "along an asymptote")),
+    "plane": (mutants.with_formula(mutants.hits_behind), ("usual", "at a slope of 1e-6 to 0.01")),
 }

@@ -1,4 +1,4 @@
-"""Regimes of the paraboloid: rays at vertex and rim and along the axis; high paraboloids."""
+"""Rays that are hard for a paraboloid."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.stability.regime import Regime
 
 
 def make(random: Random, height: float = 1.0) -> Paraboloid:
-    """Make a paraboloid of about size 1, times `height` along the axis."""
+    """A paraboloid of about size 1, its height multiplied by a factor."""
     point, axis = tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1))
     return Paraboloid(point, axis, random.uniform(0.5, 2), height * random.uniform(0.5, 2), GREY)
 

@@ -1,4 +1,4 @@
-"""Regimes of the plane: rays at grazing angles."""
+"""Rays that are hard for a plane."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.stability.regime import Regime
 
 
 def grazing(seed: int, slope: tuple[float, float], offset: float = 0.0) -> Rays:
-    """Rays at slopes in `slope`, from 1 to 20 beside planes; half of the rays point away."""
+    """Rays at slopes in `slope`, from 1 to 20 above planes; half of the rays lead away."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):

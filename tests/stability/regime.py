@@ -1,4 +1,4 @@
-"""A regime: rays that are hard in one way, the exact answers, and the accuracy that is asked."""
+"""Regimes: rays that are hard in one respect, their exact answers, and the tolerance of answers."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ U = 2.0**-53
 
 
 class Regime(NamedTuple):
-    """A recipe for rays, and the error that an answer may have.
+    """A recipe for rays, and the tolerance of their answers.
 
-    An answer passes if its relative error is at most `tolerance`. Where the surface ends or turns away from the ray,
-    rounding the ray's own numbers changes the exact answer. There an answer passes if it lies between those for a shape
-    thicker and a shape thinner by `slack` roundings of t, of the distance between origin and shape and of the shape's
-    size; if all three hit, it must agree with one within `blur`. If the ray misses the thinner shape, and it
-    is a solid, any hit in the thicker one passes: along a straight side its ends may be far away.
+    An answer passes that is exact within the relative `tolerance`. Where the surface ends or turns away from the ray an
+    exact answer is of no use, as rounding the ray's own numbers changes it: there it passes if it lies between those
+    for a shape thicker and one thinner by `slack` roundings of t, of the distance between origin and shape and of the
+    shape's size, and, where all three hit, if it is one of those within `blur`. Where the thinner one is missed, and
+    it is a solid, any hit in the thicker one passes: along a straight side the ends of that may be far away.
 
-    Flat shapes are made larger and smaller instead of thicker and thinner, and have no chosen tolerance: for a ray at a
-    slope s, the error of t is at most 4 roundings of t, of the distance from origin to shape and of its `lever`,
-    divided by s. The exact answer changes by as much when the origin moves by these roundings.
+    A sheet is larger and smaller instead of thicker and thinner, and no tolerance is chosen for it: of a ray at a slope
+    s to it, t may be off by 4 roundings of t, of the way from the origin to the sheet and of its `lever`, by s. So much
+    changes when the origin moves by these roundings.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Regime(NamedTuple):
 
 
 class Right:
-    """The rays of a regime and the exact answers, computed on demand."""
+    """The rays of a regime and their exact answers, computed on demand."""
 
     def __init__(self, regime: Regime, rays: Rays) -> None:
         self.regime, self.rays = regime, rays
@@ -69,7 +69,7 @@ class Right:
         return float(np.linalg.norm(self.rays.origins[i, j] - points(self.rays.shapes[i])[0]))
 
     def sheet_error(self, i: int, j: int, t: float) -> float:
-        """Return the allowed error of a hit at t on a flat shape."""
+        """The tolerance of a hit of a sheet at t."""
         slope = float(abs(oracle.dot(self.normal(i), self.rays.directions[i, j])))
         return 4 * U * (t + self.away(i, j) + lever(self.rays.shapes[i])) / slope
 
@@ -79,11 +79,11 @@ class Right:
         return inside(body(self.rays.shapes[i], mpfr(self.swell(i, j))), point)
 
     def wrong(self, t: Array, every: int = 1) -> list[str]:
-        """List the errors in the answers t for every n-th ray of a shape; infinity is a miss."""
+        """Complaints about the answers t for every n-th ray of a shape; infinity is a miss."""
         return list(self.errors(t, every))
 
     def errors(self, t: Array, every: int = 1) -> Iterator[str]:
-        """Yield the errors of `wrong` one by one, as each takes some time to find."""
+        """The complaints of `wrong`, one after the other: each is slow to find."""
         right = self.t[:, ::every]
         with np.errstate(invalid="ignore"):
             near = np.isfinite(right) & (np.abs(t - right) <= self.regime.tolerance * right)
@@ -92,7 +92,7 @@ class Right:
         return (each for each in found if each)
 
     def verdict(self, i: int, j: int, t: float) -> str:
-        """Describe the error of an answer; empty if the answer is accurate enough."""
+        """A complaint about an answer that is not exact; empty if it is near enough."""
         if not self.solid and abs(t - self.t[i, j]) < self.sheet_error(i, j, self.t[i, j]):  # not inf < inf
             return ""
         sides = [self.t[i, j], *self.around(i, j)]
@@ -113,20 +113,20 @@ class Right:
 
 @cache
 def posed(regime: Regime) -> Right:
-    """Return the rays of a regime with their exact answers, computed once."""
+    """The rays of a regime and the exact answers, computed once."""
     return Right(regime, regime.make())
 
 
 def points(shape: Shape) -> list[Array]:
-    """Return the points that define a shape."""
+    """The points that a shape is given by."""
     return [np.array(getattr(shape, each.name)) for each in fields_of(type(shape)) if isinstance(each, Point)]
 
 
 def lever(shape: Shape) -> float:
-    """Return the length of which a hit's position in a triangle is known up to roundings.
+    """Length of which a hit of a triangle is known to some roundings; 0 for other shapes.
 
-    The position is the mean of the corners weighted by areas, which are known up to roundings of the square of the
-    longest edge. For a sliver that error is large, and along the sliver.
+    A hit is the mean of the corners by areas, which are known to roundings of the square of the longest edge: for a
+    sliver that is a large error along it.
     """
     if not isinstance(shape, Triangle):
         return 0.0
@@ -136,7 +136,7 @@ def lever(shape: Shape) -> float:
 
 
 def size(shape: Shape) -> float:
-    """Return the sum of the lengths that define a shape, and of the distances between its points."""
+    """The sum of the lengths that a shape is given by and of the distances between its points."""
     lengths = [np.sum(getattr(shape, e.name)) for e in fields_of(type(shape)) if isinstance(e, (Length, Lengths))]
     first, *others = points(shape)
     return float(sum(lengths) + sum(np.linalg.norm(other - first) for other in others))

@@ -1,4 +1,4 @@
-"""Regimes of square and disc: rays at the border and at grazing angles."""
+"""Rays that are hard for a square and a disc."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def rim(random: Random, disc: Disc) -> Array:
 
 
 def grazing(seed: int, make: Callable[[Random], Sheet], slope: tuple[float, float]) -> Rays:
-    """Rays at slopes in `slope`, at points around the centre, from both sides."""
+    """Rays at slopes in `slope` to the sheet, at points around its centre, from both sides."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):

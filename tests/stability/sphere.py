@@ -1,4 +1,4 @@
-"""Regimes of the sphere: rays that start just inside, just above or on the surface; the horizon; the centre."""
+"""Rays that are hard for a sphere."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def on_the_surface(seed: int) -> Rays:
 
 
 def above(points: Array, centre: Array, radius: Any) -> Array:
-    """Return the power of points with respect to a sphere."""
+    """The power of points with respect to a sphere."""
     f = points - centre
     height: Array = (f * f).sum(axis=-1) - radius * radius
     return height
@@ -99,7 +99,7 @@ REGIMES = [
     Regime("from inside a diameter of 1e9", partial(just_inside, 12), 1e-9, 0.0),
     Regime("from 1e-9 to 1 radius off the surface", partial(near_the_surface, 14), 3e-14, 0.0),
     Regime("from less than a rounding inside", partial(on_the_surface, 17), 1e-13, 0.0),
-    # The angle below the horizon is 1e-8 there, and the direction is exact to 2^-53.
+    # There the angle below the horizon is 1e-8 of a direction that is exact to 2^-53.
     Regime(
         "to the horizon of a diameter of 1e9",
         partial(to_the_horizon, 15, (1e-3, 2.0), (0.5, 0.99, 1.01, 1.1, 3.0)),

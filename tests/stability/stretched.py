@@ -1,4 +1,4 @@
-"""Regimes of stretched solids: one length a billion times larger or smaller than usual."""
+"""Solids a billion times longer, wider, shorter or thinner than usual, along one of their lengths."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from tests.shapes.examples import example
 from tests.shapes.regimes import RAYS, Array, Random, Rays, random_directions
 from tests.stability.regime import Regime
 
-COUNT = 4  # shapes per regime
+COUNT = 4  # shapes of a regime
 
 
 def stretched(shape: Shape, name: str, factor: float) -> Shape:
-    """Multiply a length of a shape by a factor; of three lengths, only the second."""
+    """A shape with one length multiplied by a factor; of three lengths the second."""
     value = getattr(shape, name)
     new = (value[0], factor * value[1], value[2]) if isinstance(value, tuple) else factor * value
     return shape.replace(**{name: new})
 
 
 def seen(kind: Kind, seed: int, name: str, factor: float) -> Rays:
-    """Rays from points inside, and from 3 to 20 away at points inside; the points are mostly far from the middle."""
+    """Rays from inside, and from 3 to 20 away at points inside; both mostly far from the middle."""
     random = np.random.default_rng(seed)
     shapes: list[Shape] = []
     while len(shapes) < COUNT:
@@ -39,7 +39,7 @@ def seen(kind: Kind, seed: int, name: str, factor: float) -> Rays:
 
 
 def within(shape: Shape, random: Random) -> Array:
-    """Return random points in the convex hull of a shape's balls, (RAYS, 3)."""
+    """Random points in the hull of a shape's balls, (RAYS, 3)."""
     centres = np.array([centre for centre, _ in shape.balls()])
     radii = np.array([radius for _, radius in shape.balls()])
     shares = random.dirichlet(np.ones(len(centres)), RAYS)
@@ -49,7 +49,7 @@ def within(shape: Shape, random: Random) -> Array:
 
 
 def regimes(kind: Kind) -> list[Regime]:
-    """Return the stretched regimes of a solid; an answer must lie between those for a thicker and a thinner shape."""
+    """The regimes of a kind of solid; an answer must lie between those for a thicker and a thinner shape."""
     found = []
     for field in fields_of(kind.element):
         if field.keyed or not isinstance(field, (Length, Lengths)):

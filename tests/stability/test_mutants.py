@@ -1,4 +1,4 @@
-"""Formulas that look right but are wrong fail the checks."""
+"""Wrong formulas that look right do not pass."""
 
 from __future__ import annotations
 
@@ -46,10 +46,8 @@ def test_no_naive_formula_passes(title: str) -> None:
 
 
 def guards(D: float, t: float) -> tuple[bool, bool, bool, float]:
-    """Evaluate the guards that formulas and renderer rely on.
-
-    NaN is no hit, infinity is no nearer hit, and radiance that is NaN or infinite ends in [0, 1].
-    """
+    """The guards that formulas and renderer rely on: NaN is no hit, infinity is no nearer hit, and light that is NaN or
+    infinite ends in [0, 1]."""
     hit = D >= 0.0
     nearer = t < np.inf
     light = t if t > 0.0 else 0.0
@@ -57,7 +55,7 @@ def guards(D: float, t: float) -> tuple[bool, bool, bool, float]:
 
 
 def guarded(flags: dict[str, Any]) -> bool:
-    """Test whether the guards hold when they are compiled with the given flags."""
+    """Whether the guards hold when they are compiled with these flags."""
     compiled = njit(**flags)(guards)
     cases = [(np.nan, np.inf), (np.nan, np.nan), (np.inf, np.inf), (-1.0, -np.inf), (0.0, 0.5)]
     return all(compiled(*case) == guards(*case) for case in cases)

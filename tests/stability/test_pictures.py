@@ -1,4 +1,4 @@
-"""Whole pictures with hard lights or cameras, whose answers are known."""
+"""Pictures of scenes with hard lights or cameras, against known answers."""
 
 from __future__ import annotations
 
@@ -50,9 +50,7 @@ def test_a_lamp_at_the_eye_that_fades_and_its_highlight() -> None:
     _, directions = reference.camera_rays(ABOVE, 24, 16)
     cosine = -directions[..., 1]
     strength = np.maximum(0, 1 - 3 / cosine / 8)
-    shine = (
-        0.4 * np.maximum(0, 2 * cosine**2 - 1) ** 3
-    )  # the mirrored ray leaves the eye's direction by twice the angle
+    shine = 0.4 * np.maximum(0, 2 * cosine**2 - 1) ** 3  # the mirrored ray leads away from the eye by twice the angle
     assert np.abs(linear(scene)[..., 0] - strength * (cosine + shine)).max() <= 1e-14
 
 
@@ -67,7 +65,7 @@ def test_a_lamp_at_the_end_of_the_world_lights_all_in_one_direction(place: tuple
 @pytest.mark.parametrize("scale", [2.0**-30, 1e-4, 1.0, 1e6])
 @pytest.mark.parametrize("side", [(1, 0, 0), (0.6, 0.8, 0), (1, 0, 1e-3), (0, 0, 1)])
 def test_the_terminator_has_no_specks(scale: float, offset: float, side: tuple[float, float, float]) -> None:
-    # A ball is lit wherever the light is above the horizon, to the last pixel: it casts no shadow onto itself.
+    # A ball is lit where the lamp is above its horizon, to the last pixel: it casts no shadow onto itself.
     found, right = linear(ball(scale, side, offset), 120, 120), reference.render(ball(scale, side), 120, 120)
     wrong = np.abs(found - right).max(axis=-1) > (1e-5 if offset else 1e-9)
     assert not (wrong & ~edges(reference.to_bytes(right))).any()
@@ -75,7 +73,7 @@ def test_the_terminator_has_no_specks(scale: float, offset: float, side: tuple[f
 
 
 def ball(scale: float, side: tuple[float, float, float], offset: float = 0.0) -> Scene:
-    """A ball that fills the picture and a light beside it, all shifted by `offset` sizes along each axis."""
+    """A scene of a ball that fills the picture and a light beside it, moved by `offset` sizes along each axis."""
     centre = np.full(3, offset * scale)
     eye = Camera(tuple(centre - [0, 0, 4 * scale]), (0, 0, 1), 30)
     lamp = Light(tuple(centre + 1e3 * scale * np.array(side)), 1.0)
@@ -112,7 +110,7 @@ def test_light_is_finite(seed: int, size: float, offset: float | None) -> None:
 
 
 def stiff(seed: int, size: float, offset: float) -> Scene:
-    """Shapes of every type that overlap, with lights and eye among them and often exactly on a shape."""
+    """A scene of overlapping shapes of every kind, with lights and the eye among them, often exactly at a shape."""
     random = np.random.default_rng(seed)
     middle = offset * random_directions(random)
     shapes = []

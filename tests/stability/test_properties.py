@@ -1,4 +1,4 @@
-"""Properties of all formulas, for any size of the shape, distance of the eye and position of the scene."""
+"""Properties of hits for all sizes of shapes, distances of the eye and places of the scene."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_the_length_of_a_direction_does_not_matter(kind: Kind, seed: int, power:
 @fixed(max_examples=30)
 @given(SEED, powers(-14, 0))
 def test_rays_that_are_close_to_an_axis_of_the_scene(kind: Kind, seed: int, angle: float) -> None:
-    # Such rays put products with 0 and nearly 0 into every formula, and hit shapes of the same axis along it.
+    # There products with 0 and next to 0 are in every formula, and shapes whose axis is that axis are hit along it.
     random = np.random.default_rng(seed)
     axis = np.eye(3)[random.integers(3)] * random.choice([-1, 1])
     shape = example(kind, random)

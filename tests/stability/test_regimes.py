@@ -1,4 +1,4 @@
-"""Every formula in every regime, against exact answers."""
+"""Every formula in every regime, against answers to 60 digits."""
 
 from __future__ import annotations
 

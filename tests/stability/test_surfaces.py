@@ -1,4 +1,4 @@
-"""Hit points and normals of `minirt.trace`: points are on the surface, normals point outwards."""
+"""Hit points and normals of `minirt.trace` and of the formulas, against the oracle."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ REGIMES = [(kind, regime) for kind in KINDS for regime in common(kind)]
 
 
 def least(shape: Shape) -> float:
-    """Return the least length of a shape: normals turn over its surface in inverse proportion to it."""
+    """The least length of a shape: a normal turns over the surface in inverse proportion to it."""
     lengths = [np.min(getattr(shape, e.name)) for e in fields_of(type(shape)) if isinstance(e, (Length, Lengths))]
     return min(lengths, default=np.inf)
 
 
 def off(shape: Shape, point: Array, normal: Array) -> tuple[float, float]:
-    """Return the distance of a hit from the face that its normal fits best, and the error of the normal."""
+    """Distance of a hit from the wall that its normal fits best, and the error of the normal."""
     found = normals(body(shape), list(point))
     errors = [float(np.linalg.norm(np.array(out, float) - normal)) for _, out in found]
     best = int(np.argmin(errors))
@@ -39,14 +39,14 @@ def off(shape: Shape, point: Array, normal: Array) -> tuple[float, float]:
 
 
 def interpreted(shape: Shape, origins: Array, directions: Array) -> tuple[Array, Array, Array]:
-    """Return distances, points and normals of rays by the interpreted formulas."""
+    """Distances, points and normals of rays, by the interpreted formulas."""
     t = on_arrays([shape], origins[None], directions[None])[0]
     on, out = surfaces([shape], (origins + np.where(np.isfinite(t), t, 0.0)[:, None] * directions)[None])
     return t, on[0], out[0]
 
 
 def traced(shape: Shape, origins: Array, directions: Array) -> tuple[Array, Array, Array]:
-    """Return distances, points and normals of rays by the library."""
+    """Distances, points and normals of rays, by `minirt.trace`."""
     hits = minirt.trace(Scene((EYE, shape)), origins, directions)
     return hits.distance, hits.point, hits.normal
 
@@ -62,7 +62,7 @@ def test_hits_are_on_the_surface_and_normals_point_outwards(kind: Kind, regime: 
         for i in np.flatnonzero(np.isfinite(distances))[::3]:
             coordinates = np.abs(points[i]).max() + extent(shape)
             distance, error = off(shape, points[i], found[i])
-            # Secondary rays start ROUNDING roundings above the point, which must be above the surface.
+            # Rays leave from ROUNDING roundings above the point, which must be above the surface.
             assert distance <= ROUNDING / 2 * U * coordinates
             assert error <= 16 * U * (1 + coordinates / least(shape))
             moved = np.linalg.norm(points[i] - origins[i] - distances[i] * directions[i])

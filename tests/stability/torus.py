@@ -1,4 +1,4 @@
-"""Regimes of the torus: rays along its symmetries and tangents; thin tubes."""
+"""Rays that are hard for a torus."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tests.stability.regime import Regime
 
 
 def make(random: Random, tube: float = 0.4) -> Torus:
-    """Make a torus of about size 1; its tube is a share of its diameter."""
+    """A torus of about size 1 whose tube is this share of its diameter."""
     diameter = random.uniform(0.5, 2)
     return Torus(
         tuple(random.normal(size=3)), tuple(random_directions(random).clip(-1, 1)), diameter, tube * diameter, GREY
@@ -32,22 +32,22 @@ def make(random: Random, tube: float = 0.4) -> Torus:
 
 
 def ring(random: Random, torus: Torus) -> Array:
-    """Random points of the centre circle of the tube."""
+    """Random points of the circle in the middle of the tube."""
     return np.array(torus.centre) + torus.diameter / 2 * random_perpendiculars(random, axis_of(torus), RAYS)
 
 
 def inside(random: Random, torus: Torus) -> Array:
-    """Random points inside the tube."""
+    """Random points in the tube."""
     return ring(random, torus) + torus.tube / 2 * random.random((RAYS, 1)) * random_directions(random, RAYS)
 
 
 def top(random: Random, torus: Torus) -> Array:
-    """Random points of the circle along which a plane touches the top."""
+    """Random points of the circle along which a plane touches it."""
     return ring(random, torus) + torus.tube / 2 * axis_of(torus)
 
 
 def inner(random: Random, torus: Torus) -> Array:
-    """Random points of the inner equator, where the surface is saddle-shaped."""
+    """Random points of the inner equator, where it is curved like a saddle."""
     middle = np.array(torus.centre)
     return middle + (1 - torus.tube / torus.diameter) * (ring(random, torus) - middle)
 
@@ -65,14 +65,14 @@ def level(random: Random, torus: Torus) -> Array:
 
 
 def from_inside(seed: int, tube: float = 0.4) -> Rays:
-    """Rays from inside the tube in all directions."""
+    """Rays from within the tube, in all directions."""
     random = np.random.default_rng(seed)
     shapes = [make(random, tube) for _ in range(COUNT)]
     return Rays(shapes, np.stack([inside(random, shape) for shape in shapes]), random_directions(random, COUNT, RAYS))
 
 
 def over_the_top(seed: int) -> Rays:
-    """Rays in the plane that touches the top, or 1e-14 to 1e-4 off it: up to four hits lie close together."""
+    """Rays in the plane that touches it, or 1e-14 to 1e-4 off: up to four hits are close together."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
@@ -86,7 +86,7 @@ def over_the_top(seed: int) -> Rays:
 
 
 def touching_twice(seed: int, off: tuple[float, float]) -> Rays:
-    """Rays through the centre in the doubly tangent plane, which cuts the torus in two circles (Villarceau)."""
+    """Rays through the centre in a plane that touches it on both sides and cuts it in two circles (Villarceau)."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
@@ -99,7 +99,7 @@ def touching_twice(seed: int, off: tuple[float, float]) -> Rays:
     return Rays(shapes, origins, directions)
 
 
-# A tangent ray hits within the square root of a rounding of the point where it is nearest to the tube.
+# Where the tube is touched a hit is the square root of a rounding away from where the ray is nearest to it.
 REGIMES = [
     Regime("at the tube", partial(at, 11, make, inside)),
     Regime("from inside", partial(from_inside, 12)),

@@ -1,4 +1,4 @@
-"""Regimes of the triangle: rays at edges and corners, at grazing angles; slivers."""
+"""Rays that are hard for a triangle."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tests.stability.regime import Regime
 
 
 def make(random: Random, height: float = 1.0) -> Triangle:
-    """Make a triangle of about size 1; its last corner is `height` from the opposite edge."""
+    """A triangle of about size 1, its last corner at this distance from the opposite edge."""
     a, along = random.normal(size=3), random_directions(random)
     c = a + random.uniform(0, 1) * along + height * random_perpendiculars(random, along)
     return Triangle(tuple(a), tuple(a + along), tuple(c), GREY)
@@ -48,7 +48,7 @@ def corner(random: Random, triangle: Triangle) -> Array:
 
 
 def grazing(seed: int, slope: tuple[float, float]) -> Rays:
-    """Rays at slopes in `slope`, from both sides."""
+    """Rays at slopes in `slope` to the triangle, from both sides."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):

@@ -1,8 +1,7 @@
 """Folder of compiled kernels, which later runs load.
 
-numba identifies a kernel on disk by the file of the compiled function alone, not by the functions that it calls: after
-a change of a shape's formula it would load the old machine code. So the name of the folder is a hash of all sources of
-a kernel and of the versions of the compiler.
+The name of the folder is a hash of all sources of a kernel and of the versions of the compiler: after a change of a
+shape's formula the old machine code is not found. The folder is closed to other users, since what is in it is run.
 """
 
 from __future__ import annotations
@@ -12,27 +11,28 @@ import logging
 import os
 import shutil
 import sys
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 
 import llvmlite
 import numba
 from llvmlite.binding import get_host_cpu_name
-from numba.core import config
 
-if sys.platform != "win32":
-    import fcntl
+from minirt.kernel.compiler.private_files import PRIVATE_FOLDER, make_private_folder
 
 PACKAGE = Path(__file__).parents[2]
 SOURCES = ("kernel", "lanes", "shapes")  # folders of all sources of a kernel
 OTHER_VERSIONS = 8  # folders of other versions that are not deleted, so that versions can be used in turn
+TOLD: set[str] = set()  # notices that were given
 
 
 def user_folder() -> Path:
-    """Return the folder for this user's files that may be deleted at any time."""
-    if os.environ.get("XDG_CACHE_HOME"):
-        return Path(os.environ["XDG_CACHE_HOME"])
+    """Return the folder for this user's files that may be deleted at any time.
+
+    The XDG Base Directory Specification tells programs to ignore an XDG_CACHE_HOME that is relative."""
+    named = Path(os.environ.get("XDG_CACHE_HOME", ""))
+    if named.is_absolute():
+        return named
     if sys.platform == "darwin":
         return Path.home() / "Library" / "Caches"
     if sys.platform == "win32" and os.environ.get("LOCALAPPDATA"):
@@ -51,20 +51,31 @@ def fingerprint() -> str:
 
 
 def folder() -> Path | None:
-    """Return the folder for kernels of these sources, made if need be; None, with a notice, if it cannot be written."""
+    """Return the folder for kernels of these sources, made if need be.
+
+    None, with a notice, if it cannot be written, or if others could have written to it."""
     try:
         path = user_folder() / "minirt" / f"kernels-{fingerprint()}"
-        path.mkdir(parents=True, exist_ok=True)
+        path.parents[1].mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)
+        for each in (path.parent, path):
+            make_private_folder(each)
         os.utime(path)
         probe = path / f"probe-{os.getpid()}"
         probe.touch()
         probe.unlink()
     except (OSError, RuntimeError) as error:  # RuntimeError: the user has no home
-        logging.getLogger(__name__).warning("notice: every run compiles anew, kernels cannot be kept: %s", error)
+        notice("every run compiles anew, kernels cannot be kept: %s", error)
         return None
     with suppress(OSError):
         delete_old_folders(path)
     return path
+
+
+def notice(message: str, *values: object) -> None:
+    """Tell the user something once, with values in the places that are marked by %s."""
+    if message not in TOLD:
+        TOLD.add(message)
+        logging.getLogger(__name__).warning(f"notice: {message}", *values)
 
 
 def delete_old_folders(current: Path) -> None:
@@ -73,30 +84,3 @@ def delete_old_folders(current: Path) -> None:
     others.sort(key=lambda each: each.stat().st_mtime)
     for each in others[: max(0, len(others) - OTHER_VERSIONS)]:
         shutil.rmtree(each, ignore_errors=True)
-
-
-@contextmanager
-def numba_cache(path: Path | None) -> Iterator[None]:
-    """Let numba keep functions that are made in this block in a folder, and restore its setting afterwards."""
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(path or before)
-    try:
-        yield
-    finally:
-        config.CACHE_DIR = before
-
-
-@contextmanager
-def locked(path: Path) -> Iterator[None]:
-    """Hold the lock of a folder during this block: other processes wait.
-
-    numba reads a folder's index, adds an entry and writes it again: of two processes that do so at once one could be
-    given the machine code of the other. There is no lock where the system has none, as on Windows, or refuses it.
-    """
-    with ExitStack() as stack:
-        if sys.platform != "win32":
-            with suppress(OSError):
-                descriptor = os.open(path, os.O_RDONLY)
-                stack.callback(os.close, descriptor)
-                fcntl.flock(descriptor, fcntl.LOCK_EX)
-        yield

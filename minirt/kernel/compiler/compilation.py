@@ -22,8 +22,7 @@ def compiled(function: Callable[..., Any], folder: Path | None, *signatures: Any
     """
     dispatcher = njit(no_cfunc_wrapper=True, **FLAGS)(function)
     if folder:
-        with cache_folder.numba_cache(folder):
-            cache = import_module("minirt.kernel.compiler.code_cache").CodeCache(function)
+        cache = import_module("minirt.kernel.compiler.code_cache").CodeCache(function, folder)
         internals().set_cache(dispatcher, cache)
     for signature in signatures:
         dispatcher.compile(signature)

@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numba import typeof
 
-from minirt.kernel import frame, rows
+from minirt.kernel import frame
 from minirt.kernel.compiler import compilation, kernel_functions  # noqa: F401  (registers what a frame calls)
 from minirt.kernel.compiler.compilation import CACHE, compiled
 from minirt.kernel.scene_arrays import SceneArrays
@@ -29,14 +29,10 @@ SURFACE_MAPS = ("checks", "textures", "bumps", "normals")
 def kernel_of(features: tuple[str, ...], *row_types: np.dtype[Any]) -> Any:
     """Return the kernel for shapes in rows of these types and for `features` of a scene. It is compiled or loaded when
     it is first called.
-
-    Each kernel has a folder of its own: numba's index of a folder does not survive two programs that write it at once.
     """
     if "bvh" in features:
         import_module("minirt.kernel.compiler.jit_bvh")
-    titles = (rows.kind_of(each.names).element.title for each in row_types)
-    folder = CACHE and CACHE / "-".join([*titles, *features, str(row_types[0][0].base)])
-    return compiled(frame.frame, folder)
+    return compiled(frame.frame, CACHE)
 
 
 def kernel_for(scene: SceneArrays) -> Any:

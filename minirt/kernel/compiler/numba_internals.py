@@ -6,24 +6,27 @@ numba promises none of them from one release to the next, so the package uses th
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from typing import Any
 
 import llvmlite.binding
 from llvmlite import ir
-from numba import _dynfunc, njit
-from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
+from numba import _dynfunc, njit, types
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
-from numba.core.compiler import Flags
+from numba.core.compiler import CompileResult, Flags
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.compiler_machinery import PassManager, _pass_registry
-from numba.core.registry import cpu_target
+from numba.core.environment import Environment
+from numba.core.funcdesc import PythonFunctionDescriptor
+from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.typed_passes import NativeLowering, NoPythonBackend, NopythonTypeInference, PreLowerStripPhis
+from numba.core.typing import signature
 from numba.core.untyped_passes import DeadBranchPrune, FixupArgs, IRProcessing, ReconstructSSA, TranslateByteCode
 
 __all__ = [
     "CodeLibrary",
     "DeadBranchPrune",
-    "DiskCache",
     "FixupArgs",
     "IRProcessing",
     "NativeLowering",
@@ -31,17 +34,18 @@ __all__ = [
     "NopythonTypeInference",
     "PreLowerStripPhis",
     "ReconstructSSA",
-    "Serializer",
     "TranslateByteCode",
     "cache_of",
     "callees_of",
     "failed_assumption",
     "function_object",
-    "keep_names_only",
+    "is_plain",
     "module_to_link",
+    "names_and_code",
+    "processor_of",
+    "rebuilt",
     "run_pass",
     "set_cache",
-    "with_own_engine",
 ]
 
 PASSES = (
@@ -104,51 +108,86 @@ def module_to_link(library: Any) -> Any:
     return library._get_module_for_linking()
 
 
-def keep_names_only(library: Any) -> None:
-    """Replace the LLVM code that numba would write beside the machine code of a library by empty functions.
+# Machine code of kernels as plain data.
 
-    An engine finds only functions that are declared to it, so the names have to stay.
-    """
-    names = library.codegen._create_empty_module(library.name)
-    for each in library.get_defined_functions():
-        function = ir.Function(names, ir.FunctionType(ir.VoidType(), ()), each.name)
+
+def is_plain(compiled: Any) -> bool:
+    """Whether the machine code of a function refers to nothing but itself: no Python objects, loops or addresses."""
+    library = compiled.library
+    return not (compiled.objectmode or compiled.lifted or library.has_dynamic_globals or compiled.environment.consts)
+
+
+def names_and_code(compiled: Any) -> tuple[dict[str, Any], bytes]:
+    """Return the names by which numba finds a compiled function in its object code, and that code."""
+    library, place = compiled.library, compiled.fndesc
+    defined = [each.name for each in library.get_defined_functions()]
+    names = {"function": place.mangled_name, "environment": place.env_name, "defined": defined}
+    return names, library._get_compiled_object()
+
+
+def rebuilt(
+    function: Callable[..., Any],
+    target: Any,
+    arguments: tuple[Any, ...],
+    result: Any,
+    names: dict[str, Any],
+    code: bytes,
+) -> Any:
+    """Return the compiled function for arguments of these types, from what `names_and_code` returned.
+
+    Its code lives in an engine of its own, and is freed with it. Only Python can call it, for which numba does not need
+    the type of the result: `result` may be None."""
+    result = result or types.pyobject
+    target = target.subtarget(_internal_codegen=JITCPUCodegen("kernel"))
+    written = (function.__qualname__, "object", (code, module_of_names(target.codegen(), names["defined"])))
+    place = PythonFunctionDescriptor(
+        native=True,
+        modname=function.__module__,
+        qualname=function.__qualname__,
+        unique_name=function.__qualname__,
+        doc="",
+        typemap=None,
+        restype=result,
+        calltypes=None,
+        args=function.__code__.co_varnames[: function.__code__.co_argcount],
+        kws=(),
+        mangler=lambda *_, **__: names["function"],
+        argtypes=arguments,
+        env_name=names["environment"],
+    )
+    environment, kind = Environment.from_fndesc(place), signature(result, *arguments)
+    return CompileResult._rebuild(target, written, place, environment, kind, False, (), "", [], ())
+
+
+def module_of_names(codegen: Any, names: list[str]) -> Any:
+    """Return the LLVM code of empty functions: an engine finds only functions that are declared to it."""
+    module = codegen._create_empty_module("names")
+    for name in names:
+        function = ir.Function(module, ir.FunctionType(ir.VoidType(), ()), name)
         ir.IRBuilder(function.append_basic_block()).ret_void()
-    library._shared_module = llvmlite.binding.parse_assembly(str(names))
+    return llvmlite.binding.parse_assembly(str(module)).as_bitcode()
 
 
-def with_own_engine(target: Any) -> Any:
-    """Return a target context whose code lives in an engine of its own, and is freed with it."""
-    return target.subtarget(_internal_codegen=JITCPUCodegen("kernel"))
+def processor_of(target: Any) -> list[str]:
+    """Return what the machine code for a target depends on: platform, processor and its features."""
+    return list(target.codegen().magic_tuple())
 
 
-# The cache on disk.
+# The cache of a jitted function.
 
 
-class Serializer(CompileResultCacheImpl):
-    """Turns a compiled function into bytes and back, by `reduce` and `rebuild`."""
+class CachedDispatcher(CPUDispatcher):
+    """A jitted function of which one process at a time compiles a form, while others wait and then load it."""
+
+    def compile(self, signature: Any) -> Any:
+        """Load or compile the function for arguments of these types."""
+        with global_compiler_lock, self._cache.compiling_once(signature, self.targetctx):
+            return super().compile(signature)
 
 
-class DiskCache(FunctionCache):
-    """Compiled forms of one function on disk."""
-
-    serializer: type[Serializer] = Serializer
-
-    @property
-    def _impl_class(self) -> type[Serializer]:
-        return self.serializer
-
-    def load_overload(self, signature: Any, target: Any) -> Any:
-        """Return the function for arguments of these types, or None, without numba's preparations for compiling."""
-        with self._guard_against_spurious_io_errors():
-            return self._load_overload(signature, target)
-
-    def contains(self, signature: Any, target: Any) -> bool:
-        """Whether the function for arguments of these types is on disk."""
-        return self._index_key(signature, target.codegen()) in self._cache_file._load_index()
-
-
-def set_cache(dispatcher: Any, cache: DiskCache) -> None:
+def set_cache(dispatcher: Any, cache: Any) -> None:
     """Let a jitted function load and save its machine code by a cache."""
+    dispatcher.__class__ = CachedDispatcher
     dispatcher._cache = cache
 
 
@@ -177,6 +216,7 @@ def pass_manager() -> PassManager:
     return manager
 
 
+DESCRIPTION = {"native", "modname", "qualname", "restype", "args", "mangler", "argtypes", "env_name"}
 ASSUMPTIONS: dict[str, Callable[[], bool]] = {
     "the registry of passes": lambda: all(has(_pass_registry.get(each).pass_inst, "run_pass") for each in PASSES),
     "the list of passes of a pass manager": lambda: pass_manager().passes == [(IRProcessing, "description")],
@@ -186,15 +226,14 @@ ASSUMPTIONS: dict[str, Callable[[], bool]] = {
     "empty modules": lambda: has(JITCPUCodegen, "_create_empty_module"),
     "the module of a code library": lambda: has(library(), "_final_module", "_finalized", "_linking_libraries"),
     "linking of code libraries": lambda: has(JITCodeLibrary, "_get_module_for_linking", "finalize"),
-    "the module that is written with machine code": lambda: has(library(), "_shared_module", "get_defined_functions"),
+    "object code": lambda: has(JITCodeLibrary, "_get_compiled_object", "get_defined_functions", "has_dynamic_globals"),
     "engines of a target": lambda: has(cpu_target.target_context, "_internal_codegen", "subtarget"),
-    "the implementation of a cache": lambda: has(FunctionCache, "_impl_class", "load_overload", "save_overload"),
-    "serialization of compiled functions": lambda: has(CompileResultCacheImpl, "reduce", "rebuild"),
-    "loading from a cache": lambda: has(
-        FunctionCache, "_load_overload", "_guard_against_spurious_io_errors", "cache_path"
-    ),
-    "the index of a cache": lambda: has(FunctionCache, "_index_key") and has(IndexDataCacheFile, "_load_index"),
+    "the name of the processor": lambda: has(JITCPUCodegen, "magic_tuple"),
+    "loading of object code": lambda: has(CompileResult, "_rebuild") and has(JITCPUCodegen, "unserialize_library"),
+    "environments of functions": lambda: has(Environment, "from_fndesc"),
+    "descriptions of functions": lambda: set(inspect.signature(PythonFunctionDescriptor).parameters) >= DESCRIPTION,
     "the cache of a jitted function": lambda: has(njit(error_model="numpy")(lambda: None), "_cache"),
+    "the class of a jitted function": lambda: type(njit(error_model="numpy")(lambda: None)) is CPUDispatcher,
 }
 
 

@@ -48,6 +48,6 @@ class CompileProcess:
             raise RenderError(f"the kernel cannot be compiled: {reason}")
 
     def stop(self) -> None:
-        """From any thread: kill the process, if there is one."""
+        """Kill the process, if there is one; callable from any thread."""
         if self.process:
             self.process.kill()

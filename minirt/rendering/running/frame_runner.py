@@ -51,6 +51,6 @@ class FrameRunner:
         self.not_finite += int(sum(each.memory[-1, 1] for each in arguments))
 
     def cancel(self) -> None:
-        """From any thread: end the frames that are being rendered soon, half-made."""
+        """End the frames that are being rendered, soon and incomplete; callable from any thread."""
         self.cancellations += 1  # for a picture between two frames
         self.next_row[:] = CANCELLED

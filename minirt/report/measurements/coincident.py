@@ -46,14 +46,14 @@ def coincident(scene: Scene, tables: ShapeArrays) -> Iterator[Stiff]:
     close &= tables.owner[pair[0]] != tables.owner[pair[1]]  # parts of a mesh have edges in common
     pairs = Counter(zip(*np.sort(pair[:, close], axis=0).tolist(), strict=True))
     for (one, other), count in pairs.items():
-        mine = close & (pair.min(axis=0) == one) & (pair.max(axis=0) == other)
-        ties = {"double": float(np.median(double[mine])), "single": float(np.median(single[mine]))}
+        selected = close & (pair.min(axis=0) == one) & (pair.max(axis=0) == other)
+        ties = {"double": float(np.median(double[selected])), "single": float(np.median(single[selected]))}
         shared = " and ".join(precision for precision, gaps in ties.items() if gaps <= 1)
         if count >= LEAST:
             yield Stiff(
                 f"{shape_name(tables, one)} and {shape_name(tables, other)}",
                 f"taken for one surface in {shared} precision: the first is shown" if shared else "nearly coincide",
-                {"share of the picture": count / t.shape[1], "gap": float(np.median(gap[mine]))}
+                {"share of the picture": count / t.shape[1], "gap": float(np.median(gap[selected]))}
                 | {f"in roundings, {precision}": gaps for precision, gaps in ties.items()},
             )
 

@@ -60,9 +60,9 @@ def half_reference(
     for start in range(0, len(places), PASS):
         some = places[start : start + PASS]
         traced = renderer.packing.pack(scene, width, height)
-        given = frame_arguments(traced, pixels, linear=linear)._replace(rays=packet_rays(traced.camera, some))
-        renderer.runner.next_row = given.next_row  # so that it can be cancelled
-        renderer.runner.run([given], renderer.threads)
+        arguments = frame_arguments(traced, pixels, linear=linear)._replace(rays=packet_rays(traced.camera, some))
+        renderer.runner.next_row = arguments.next_row  # so that it can be cancelled
+        renderer.runner.run([arguments], renderer.threads)
         total += linear * len(some)
         step()
     return total / len(places)

@@ -94,15 +94,15 @@ def shape_views(tables: ShapeArrays, camera: np.ndarray) -> ShapeViews:
     eye, forward = camera[:3], camera[9:]
     nearest, size = np.zeros((len(tables.owner), 3)), np.full(len(tables.owner), np.inf)
     for group, packed in enumerate(tables.rows):
-        mine = np.flatnonzero(tables.slots[:, 0] == group)
+        selected = np.flatnonzero(tables.slots[:, 0] == group)
         with np.errstate(all="ignore"):
             on, _ = kind_of(packed.dtype.names).surface(packed_columns(packed), Vec(*eye))
-        nearest[mine] = np.stack([np.broadcast_to(part, len(mine)) for part in (on.x, on.y, on.z)], axis=-1)
+        nearest[selected] = np.stack([np.broadcast_to(part, len(selected)) for part in (on.x, on.y, on.z)], axis=-1)
         if not tables.is_plane[group]:  # a bounded shape lies within its box, not everywhere on its surface's extension
-            middle, half = tables.boxes[mine, :3], tables.boxes[mine, 3:]
-            nearest[mine] = np.clip(nearest[mine], middle - half, middle + half)
-        owners, part_of = np.unique(tables.owner[mine], return_inverse=True)
-        size[mine] = sizes([tables.shapes[i] for i in owners]).min(axis=1, initial=np.inf)[part_of]
+            middle, half = tables.boxes[selected, :3], tables.boxes[selected, 3:]
+            nearest[selected] = np.clip(nearest[selected], middle - half, middle + half)
+        owners, part_of = np.unique(tables.owner[selected], return_inverse=True)
+        size[selected] = sizes([tables.shapes[i] for i in owners]).min(axis=1, initial=np.inf)[part_of]
     nearest = np.where(np.isfinite(nearest), nearest, tables.boxes[:, :3])  # at the exact centre no point is nearest
     way = nearest - eye
     reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]  # of the shape, seen from the eye

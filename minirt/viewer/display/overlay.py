@@ -23,7 +23,7 @@ LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
 
 
 class HudLevel(IntEnum):
-    """How much the heads-up display shows."""
+    """Amount of information in the heads-up display."""
 
     NOTHING = 0
     LINE = 1

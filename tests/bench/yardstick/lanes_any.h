@@ -1,4 +1,4 @@
-// Eight floats in vectors of the compiler's own (GCC, Clang), whatever the processor has for them.
+// Eight floats in the compiler's vector types (GCC, Clang), for any processor.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -56,7 +56,7 @@ inline bool any(Mask m) {
 
 inline Lanes where(Mask m, Lanes a, Lanes b) { return m.all ? a.v : b.v; }
 
-// Of a NaN and a number, the second operand.
+// If one operand is NaN, the result is the second operand.
 inline Lanes min(Lanes a, Lanes b) { return a.v < b.v ? a.v : b.v; }
 inline Lanes max(Lanes a, Lanes b) { return a.v > b.v ? a.v : b.v; }
 inline Lanes reciprocal(Lanes a) { return 1.0f / a.v; }
@@ -92,7 +92,7 @@ inline float largest(Mask m, Lanes a) {
     return most;
 }
 
-// Whole numbers below 2^24 as 0xff......, an opaque pixel each.
+// Converts integers below 2^24 to opaque pixels, 0xff......
 inline void store_pixels(uint32_t* to, Lanes a) {
     Ints words = __builtin_convertvector(a.v, Ints) | int32_t(0xff000000u);
     memcpy(to, &words, sizeof words);

@@ -1,4 +1,4 @@
-// Sixteen floats in a register of AVX-512; which of them are meant is told by a register of bits.
+// Sixteen floats in an AVX-512 register, with bit masks in mask registers.
 #pragma once
 #include <cstdint>
 #include <immintrin.h>
@@ -31,13 +31,13 @@ inline bool any(Mask m) { return m.bits != 0; }
 inline unsigned bits(Mask m) { return m.bits; }
 inline Lanes where(Mask m, Lanes a, Lanes b) { return _mm512_mask_blend_ps(m.bits, b.v, a.v); }
 
-// Of a NaN and a number, the second operand.
+// If one operand is NaN, the result is the second operand.
 inline Lanes min(Lanes a, Lanes b) { return _mm512_min_ps(a.v, b.v); }
 inline Lanes max(Lanes a, Lanes b) { return _mm512_max_ps(a.v, b.v); }
 inline Lanes floor(Lanes a) { return _mm512_roundscale_ps(a.v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC); }
 inline Lanes sqrt(Lanes a) { return _mm512_sqrt_ps(a.v); }
 
-// Fourteen bits from the processor, and a step of Newton's method: 1.5 times as fast as to divide.
+// Estimate of 14 bits and one Newton step: 1.5 times as fast as a division.
 inline Lanes reciprocal(Lanes a) {
     Lanes y = _mm512_rcp14_ps(a.v);
     return y * (2.0f - a * y);
@@ -52,7 +52,7 @@ inline Lanes load(const float* from) { return _mm512_loadu_ps(from); }
 inline void store(float* to, Lanes a) { _mm512_storeu_ps(to, a.v); }
 inline float largest(Mask m, Lanes a) { return _mm512_mask_reduce_max_ps(m.bits, a.v); }
 
-// Whole numbers below 2^24 as 0xff......, an opaque pixel each.
+// Converts integers below 2^24 to opaque pixels, 0xff......
 inline void store_pixels(uint32_t* to, Lanes a) {
     _mm512_storeu_si512(to, _mm512_or_si512(_mm512_cvtps_epi32(a.v), _mm512_set1_epi32(int(0xff000000u))));
 }

@@ -4,7 +4,7 @@
 
 namespace {
 
-// The slopes at which the tangents of a disc of that radius about (x, z) touch it.
+// Slopes of the tangents from the origin to a disc of a radius around (x, z).
 std::pair<float, float> tangents(float x, float z, float radius) {
     float below = z * z - radius * radius;
     float spread = radius * std::sqrt(x * x + below);
@@ -52,7 +52,7 @@ std::vector<int> nearest_first(const std::vector<Seen>& shapes) {
     return indices;
 }
 
-// Counts the members of each cell, then puts them into their places: a counting sort.
+// Counting sort: counts the members of each cell, then writes them in place.
 void fill(Lists& lists, const std::vector<Cells>& covered, int across, int cells) {
     auto& start = lists.start;
     start.assign(cells + 1, 0);

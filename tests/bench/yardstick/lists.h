@@ -1,5 +1,4 @@
-// Which shapes lie in which direction: for every cell of a grid over a view, the shapes that may be met in it, the
-// nearest first.
+// Culling by direction: for every cell of a grid over a view, the shapes that rays through it may hit, nearest first.
 #pragma once
 #include "seen.h"
 

@@ -1,5 +1,5 @@
-// The yardstick: how fast a miniRT can be that is written by hand for the vector registers of a processor. It renders
-// planes, spheres, cylinders and point lights in float32, in the same way as the program does, and nothing else.
+// The yardstick: a miniRT written by hand with SIMD intrinsics, to show how fast one can be. It renders planes, spheres,
+// cylinders and point lights in float32, by the same method as the program, and nothing else.
 //
 //     yardstick scene.rt [--size WxH] [--threads N] [--seconds S] [--ppm picture.ppm]
 //

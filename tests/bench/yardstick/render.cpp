@@ -83,7 +83,7 @@ void Renderer::render(Picture& picture) {
                 }
 }
 
-// The pixels 0xRRGGBB as numbers. Directions keep the length that makes their depth 1.
+// Pixels as numbers 0xRRGGBB. Directions are not normalised: their depth is 1.
 inline Lanes Renderer::packet(int tile, int left, int top) const {
     Lanes x = (column + float(left)) * (2 * slope_x / float(width)) - slope_x;
     Lanes y = slope_y - (row + float(top)) * (2 * slope_y / float(height));
@@ -123,7 +123,7 @@ inline Rays Renderer::light_at(const Rays& point, const Rays& normal, Mask hit) 
         Mask lit = hit & (Lanes(0) < cosine);
         if (!any(lit)) continue;
         Lanes per_length = inverse_sqrt(squared);
-        lit = each.unhidden(lit, way, squared, per_length * per_length);
+        lit = each.unoccluded(lit, way, squared, per_length * per_length);
         light = light + where(lit, cosine * per_length, 0) * all(each.lamp.light);
     }
     return light;

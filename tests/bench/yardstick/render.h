@@ -12,10 +12,10 @@ struct Picture {
 
 class Renderer {
 public:
-    // Throws std::runtime_error where the eye or a lamp is inside of a shape.
+    // Throws std::runtime_error if the eye or a light is inside a shape.
     Renderer(const Scene& scene, int width, int height);
 
-    // The lists of the eye are worked out for each frame, those of the lamps but once.
+    // The eye's lists are built for each frame, those of the lights only once.
     void render(Picture& picture);
 
 private:

@@ -6,7 +6,7 @@
 
 namespace {
 
-// The numbers of a line, which blanks and commas separate.
+// Numbers of a line, separated by blanks and commas.
 std::vector<float> numbers(const char* text) {
     std::vector<float> found;
     for (;;) {

@@ -1,4 +1,4 @@
-// What the yardstick knows of a scene file: one camera, ambient light, lamps, planes, spheres and cylinders.
+// Scene of the yardstick: one camera, ambient light, point lights, planes, spheres and cylinders.
 #pragma once
 #include "vec.h"
 #include <string>
@@ -29,5 +29,5 @@ struct Scene {
     std::vector<Shape> shapes;
 };
 
-// Throws std::runtime_error for what it cannot read.
+// Throws std::runtime_error for a file that it cannot read.
 Scene read_scene(const std::string& path);

@@ -1,5 +1,4 @@
-// Shapes as they are seen from a point that many rays start from, the eye or a lamp: what is alike for all of these
-// rays is worked out once.
+// Shapes seen from a common origin of many rays, the eye or a light: values that all these rays share, computed once.
 #pragma once
 #include "scene.h"
 
@@ -30,7 +29,7 @@ inline bool is_inside(const Seen& seen) {
     return seen.power <= 0 && (!seen.is_cylinder || std::fabs(seen.along) <= seen.half);
 }
 
-// Where rays enter a shape: t along `direction`, whose squared length is `squared`.
+// Entry distances of rays into a shape: t along `direction`, whose squared length is `squared`.
 struct Entry {
     Mask hit;
     Lanes t;

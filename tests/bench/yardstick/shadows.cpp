@@ -8,7 +8,7 @@ namespace {
 constexpr float WIDEST = 50;                                  // slope that a grid may reach to
 constexpr float CELLS = 2.56f, FEWEST_ACROSS = 64, MOST_ACROSS = 1024; // along an edge, for each sqrt(shape)
 
-// The lamp, looking at the middle of all shapes.
+// View from the light to the middle of all shapes.
 View towards(Point at, const std::vector<Shape>& shapes) {
     Point sum{};
     for (const Shape& shape : shapes) sum = sum + (shape.centre - at);
@@ -31,7 +31,7 @@ Shadows::Shadows(const Scene& scene, const Lamp& lamp) : lamp(lamp) {
     if (across == 1) lists.members = nearest_first(lists.shapes);
 }
 
-// A lamp among the shapes has no direction from which it sees all of them in front: it stays with a single cell.
+// A light among the shapes cannot have all of them in front: its light buffer stays a single cell.
 void Shadows::make_grid(const std::vector<Shape>& shapes) {
     view = towards(lamp.at, shapes);
     std::vector<Rectangle> rectangles;
@@ -72,7 +72,7 @@ inline Mask Shadows::past(const int* first, const int* last, Mask asked, const R
     return asked;
 }
 
-Mask Shadows::unhidden(Mask asked, const Rays& way, Lanes squared, Lanes per_squared) const {
+Mask Shadows::unoccluded(Mask asked, const Rays& way, Lanes squared, Lanes per_squared) const {
     asked = beyond_planes(asked, way);
     if (!any(asked)) return asked;
     const int* members = lists.members.data();

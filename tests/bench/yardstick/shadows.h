@@ -1,6 +1,5 @@
-// What a lamp lights. Shadow rays run from the lamp to the points that are shaded, so that they have an origin in
-// common: t is 1 at the point. A grid of lists over what the lamp sees (a light buffer: Haines and Greenberg, 1986)
-// tells which shapes may be in the way.
+// Shadow rays of a light. They run from the light to the shaded points, so that they share an origin; t is 1 at the
+// point. A light buffer (Haines and Greenberg, 1986) lists the shapes that may be in the way.
 #pragma once
 #include "lists.h"
 
@@ -9,11 +8,11 @@ constexpr float BEFORE = 1 - 1e-4f; // t up to which something is in the way
 
 class Shadows {
 public:
-    // Works out the lists; throws std::runtime_error for a lamp inside of a shape.
+    // Builds the lists; throws std::runtime_error if the light is inside a shape.
     Shadows(const Scene& scene, const Lamp& lamp);
 
-    // Those of the rays `way`, from the lamp to points, that meet nothing.
-    Mask unhidden(Mask asked, const Rays& way, Lanes squared, Lanes per_squared) const;
+    // Mask of the rays `way`, from the light to points, that hit nothing.
+    Mask unoccluded(Mask asked, const Rays& way, Lanes squared, Lanes per_squared) const;
 
     Lamp lamp;
 

@@ -58,7 +58,7 @@ def test_the_next_process_loads_the_kernel_and_edited_sources_compile_it_anew(co
     name, hits, misses, pixel = render_in_new_process(copy, tmp_path)
     assert (hits, misses, pixel) == ("0", "1", "[10, 20, 30]")
     kept = modification_times(tmp_path)
-    assert len(kept) == 6  # index and machine code of the kernel and of two functions of binning
+    assert sum(path.endswith(".kernel") for path in kept) == 3  # the kernel and two functions of binning
     assert render_in_new_process(copy, tmp_path) == [name, "1", "0", pixel]
     assert modification_times(tmp_path) == kept
 
@@ -125,10 +125,41 @@ def test_without_a_writable_folder_the_picture_is_the_same_with_a_notice(copy: P
     assert render_in_new_process(copy, blocked, "notice: every run compiles anew") == ["None", "0", "1", "[10, 20, 30]"]
 
 
-def test_numbas_own_setting_is_restored(tmp_path: Path) -> None:
-    from numba.core import config
+def test_a_relative_cache_folder_is_ignored(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """As the XDG Base Directory Specification says."""
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    default = cache_folder.user_folder()
+    for relative in ("", "cache", "./cache", "../cache"):
+        monkeypatch.setenv("XDG_CACHE_HOME", relative)
+        assert cache_folder.user_folder() == default
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert cache_folder.user_folder() == tmp_path
 
-    before = config.CACHE_DIR
-    with cache_folder.numba_cache(tmp_path):
-        assert str(tmp_path) == config.CACHE_DIR
-    assert before == config.CACHE_DIR
+
+@pytest.mark.skipif(sys.platform == "win32", reason="folders have no modes there")
+@pytest.mark.parametrize("name", [".", "kernels"])
+def test_nothing_is_kept_in_a_folder_that_others_may_write(copy: Path, tmp_path: Path, name: str) -> None:
+    """Neither in minirt nor in the folder of kernels in it."""
+    first = render_in_new_process(copy, tmp_path)
+    unsafe = tmp_path / "minirt" / (first[0] if name == "kernels" else name)
+    unsafe.chmod(0o777)
+    kept = modification_times(tmp_path)
+    printed = render_in_new_process(copy, tmp_path, "notice: every run compiles anew, kernels cannot be kept: other")
+    assert printed == ["None", "0", "1", "[10, 20, 30]"]
+    assert modification_times(tmp_path) == kept
+    unsafe.chmod(0o700)
+    assert render_in_new_process(copy, tmp_path) == [first[0], "1", "0", "[10, 20, 30]"]
+
+
+def test_nothing_is_kept_in_a_folder_of_another_user(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(cache_folder, "TOLD", set())
+    assert cache_folder.folder() is not None
+    user = os.geteuid()
+    monkeypatch.setattr(os, "geteuid", lambda: user + 1)
+    assert cache_folder.folder() is None
+    assert cache_folder.folder() is None
+    (told,) = caplog.messages
+    assert "belongs to another user" in told

@@ -31,13 +31,13 @@ def test_scenes_without_lights() -> None:
 def test_every_tile_and_every_light_has_every_shape() -> None:
     traced = BruteForce().pack(ALL, WIDTH, HEIGHT)
     for kind, group in enumerate(traced.groups):
-        mine = np.flatnonzero(traced.slots[:, 0] == kind).tolist()
+        expected = np.flatnonzero(traced.slots[:, 0] == kind).tolist()
         assert len(group.tile_starts) == 15 + 1
         for a, b in zip(group.tile_starts, group.tile_starts[1:], strict=False):
-            assert sorted(traced.tile_shapes[a:b]) == mine
+            assert sorted(traced.tile_shapes[a:b]) == expected
         assert len(group.light_starts) == 2
         for a, b in group.light_starts:
-            assert sorted(traced.light_shapes[a:b]) == mine
+            assert sorted(traced.light_shapes[a:b]) == expected
     assert traced.light_buffer_cells == 1
     assert (traced.cones == [0, 0, 0, -2, 0]).all()  # no cone and no distance keeps a shape from being tried
     assert (traced.light_cones == [0, 0, 0, -2, 0]).all()

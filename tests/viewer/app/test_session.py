@@ -1,4 +1,4 @@
-"""When a session renders and draws, and when it does not, on a window in memory."""
+"""A session renders and draws when needed and not otherwise, on a window in memory."""
 
 from __future__ import annotations
 

@@ -195,10 +195,11 @@ def test_attributes_with_pictures_need_a_picture_beside_the_scene(tmp_path: Path
     scene = parse(BARE + "sp 0,0,0 1 9,9,9\n").scene
     state = initial_state(Scene((*scene.elements, Background("sky.png")), tmp_path / "scene.rt")).select(2)
     names = set()
-    for _ in range(6):
+    for _ in KEYED:
         state = apply(state, "add attribute")
         names.add(state.active.field.name)
-    assert names == {"specular", "mirror", "glass", "checker"}
+    with_picture = {"texture", "bump", "normal_map"}
+    assert names == {name for kind, name in KEYED if kind is ELEMENTS["sp"]} - with_picture
     sky = apply(state.select(3), "grow")
     assert "no other picture" in sky.message
     assert sky.scene is state.scene
