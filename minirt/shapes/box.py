@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
+from math import inf
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
@@ -72,21 +73,27 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number
     """Whether and where a ray meets the box.
 
     Slab test: the ray is between each pair of faces for an interval of t, and in the box where all three overlap (Kay
-    and Kajiya, Ray Tracing Complex Scenes, 1986).
+    and Kajiya, Ray Tracing Complex Scenes, 1986). For a ray exactly in the plane of a face 0 times infinity is NaN: in
+    that of x = half, y = half or z = half the ray passes between this pair of faces, in that of -half it passes beside
+    them. So one of two boxes that share a face is hit by the rays in it. `maximum` and `minimum` ignore NaN in their
+    first argument alone.
     """
     p = to_basis(box.u, box.v, box.w, origin - box.centre)
     d = to_basis(box.u, box.v, box.w, direction)
     enter_x, leave_x = slab_interval(p.x, d.x, box.half.x)
     enter_y, leave_y = slab_interval(p.y, d.y, box.half.y)
     enter_z, leave_z = slab_interval(p.z, d.z, box.half.z)
-    enter = maximum(maximum(enter_x, enter_y), enter_z)
-    leave = minimum(minimum(leave_x, leave_y), leave_z)
+    enter = maximum(enter_z, maximum(enter_y, maximum(enter_x, -inf)))
+    leave = minimum(leave_z, minimum(leave_y, minimum(leave_x, inf)))
     t = where(enter > 0.0, enter, leave)
     return (enter <= leave) & (t > 0.0), t
 
 
 def slab_interval(p: Number, d: Number, half: Number) -> tuple[Number, Number]:
-    """The interval of t in which the coordinate p + t d lies between -half and half."""
+    """The interval of t in which the coordinate p + t d lies between -half and half.
+
+    For d = 0 and p = half both ends are NaN; for d = 0 and p = -half both are the same infinity.
+    """
     per_step = 1.0 / d
     one = (-half - p) * per_step
     other = (half - p) * per_step

@@ -7,8 +7,9 @@ from functools import partial
 import numpy as np
 
 from minirt.shapes.box import Box
-from tests.shapes.regimes import GREY, RAYS, Array, Random, random_directions
+from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, random_directions, unit
 from tests.stability.aimed_rays import along, at
+from tests.stability.common import COUNT
 from tests.stability.regime import Regime
 
 
@@ -33,10 +34,31 @@ def axes(random: Random, box: Box) -> Array:
     return own[random.integers(3, size=RAYS)] * random.choice([-1.0, 1.0], (RAYS, 1))
 
 
+def in_a_face(seed: int) -> Rays:
+    """Rays exactly in the plane of a face of upright boxes, parallel to an edge or not."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
+    for i in range(COUNT):
+        box = make(random).replace(centre=(0, 0, 0), axis=(0, 1, 0))
+        half = np.array(box.sizes) / 2
+        origin = half * random.uniform(-4, 4, (RAYS, 3))
+        target = half * random.uniform(-1.5, 1.5, (RAYS, 3))
+        along = random.random((RAYS, 3)) < 0.2  # of these coordinates nothing changes along the ray
+        target = np.where(along, origin, target)
+        rays, axis = np.arange(RAYS), random.integers(3, size=RAYS)
+        in_plane = half[axis] * random.choice([-1.0, 1.0], RAYS)
+        origin[rays, axis] = target[rays, axis] = in_plane
+        origins[i], directions[i] = origin, target - origin
+        shapes.append(box)
+    directions[~directions.any(axis=-1)] = 1, 1, 1
+    return Rays(shapes, origins, unit(directions) * np.where(directions == 0, random.choice([-1.0, 1.0]), 1.0))
+
+
 REGIMES = [
     Regime("along an axis", partial(along, 11, make, axes)),
     Regime("nearly along an axis", partial(along, 12, make, axes, (1e-14, 1e-3))),
     Regime("along an axis, a scene at 1e8", partial(along, 13, make, axes, None, 1e8)),
+    Regime("in the plane of a face", partial(in_a_face, 16)),
     Regime("at an edge", partial(at, 14, make, edge), blur=1e-12),
     Regime("at a corner", partial(at, 15, make, corner), blur=1e-12),
 ]
