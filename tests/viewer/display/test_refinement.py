@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from functools import partial
 
 import numpy as np
@@ -137,6 +138,7 @@ def test_nothing_is_rendered_after_an_error_in_a_pass():
 
 def test_a_cancelled_pass_is_never_shown():
     renderer = FakeRenderer()
+    renderer.pass_gate = threading.Event()  # stays closed: no pass is finished before it is cancelled
     renderer.gate.clear()
     harness = SessionHarness(partial(BackgroundPainter, renderer), samples=16)
     harness.hide_overlay()
