@@ -126,7 +126,7 @@ def test_without_a_writable_folder_the_picture_is_the_same_with_a_notice(copy: P
 
 
 def test_a_relative_cache_folder_is_ignored(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """As the XDG Base Directory Specification says."""
+    """The XDG Base Directory Specification asks to ignore relative paths."""
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
     default = cache_folder.user_folder()
     for relative in ("", "cache", "./cache", "../cache"):
