@@ -29,8 +29,6 @@ from tests.compare import off
 from tests.paths import SCENES
 from tests.reference import render, to_bytes
 
-FIRST = 200  # seed; others have normal maps mirrored near a horizon, where roundings change whole pixels
-
 
 def material_scene(seed: int) -> Scene:
     """Make the scene of a seed."""
@@ -62,7 +60,6 @@ def material_scene(seed: int) -> Scene:
         Square(point(), direction(), 2 * size(), colour()),
         Disc(point(), direction(), 2 * size(), colour()),
         Triangle(point(), point(), point(), colour()),
-        Ellipsoid(point(), direction(), (size(), size(), size()), colour()),
     ]
     materials = [
         {"specular": Specular(random.random(), 1 + 40 * random.random(), blinn=random.random() < 0.5)},
@@ -86,6 +83,11 @@ def material_scene(seed: int) -> Scene:
         )
         for index, shape in enumerate(shapes)
     ]
+    own = np.random.default_rng([seed, 1])
+    ellipsoid = Ellipsoid(
+        tuple(4 * own.normal(size=3)), (0, 1, 0), tuple(np.exp(own.normal(size=3))), tuple(own.integers(30, 256, 3))
+    )
+    with_materials.append(ellipsoid.replace(**materials[own.integers(len(materials))]))
     eye = np.array(point(9))
     lights: list[Element] = [
         Light(point(7), 0.4, colour()),
@@ -102,7 +104,7 @@ def material_scene(seed: int) -> Scene:
 @pytest.mark.parametrize("batch", range(4))
 def test_random_scenes_with_all_features_equal_the_reference(batch: int) -> None:
     wrong = total = 0
-    for seed in range(FIRST + batch * 8, FIRST + batch * 8 + 8):
+    for seed in range(batch * 8, batch * 8 + 8):
         scene = material_scene(seed)
         bad = off(minirt.render(scene, 64, 40).array, to_bytes(render(scene, 64, 40)))
         assert bad.mean() < 0.003, f"seed {seed}"

@@ -16,6 +16,7 @@ from tests.oracle.body import body
 from tests.shapes.examples import example, hits, place, shadow_offsets
 from tests.shapes.execution_modes import compiled, surfaces
 from tests.shapes.regimes import RAYS, Array, Random, Rays, log_uniform, random_directions, random_perpendiculars, unit
+from tests.skipping import skip_incomplete
 
 KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
 DIRECTIONS = 1008  # a multiple of those of a packet
@@ -124,7 +125,7 @@ def none(points: Array, shapes: list[Shape]) -> Array:
 def test_other_offsets_do_not_pass(kind: Kind) -> None:
     without = acne(seen(kind, 1, 100), none)
     if not without:
-        pytest.skip(f"points of a {kind.element.title} lie exactly on it: rays need no offset")
+        skip_incomplete(f"points of a {kind.element.title} lie exactly on it: rays need no offset")
     assert without > 100  # of 500
     assert acne(seen(kind, 1, 100, 1e13), fixed) > 100
     assert closeness(kind, 1e-4, fixed) > 0.01
