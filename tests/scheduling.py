@@ -22,7 +22,7 @@ SLOW = {
     "tests/bench/yardstick/test_yardstick.py",
     "tests/cli/test_streams.py",
     "tests/kernel/bvh/test_queries.py",
-    "tests/kernel/compiler/test_cache_folder.py",
+    "tests/kernel/machine_code/test_cache_folder.py",
     "tests/kernel/compiler/test_documented_pipeline.py",
     "tests/kernel/compiler/test_specialisation.py",
     "tests/kernel/shading/test_texturing.py",

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from functools import cached_property
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from minirt.kernel.culling import binning
+from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import Group, SceneArrays
-from minirt.rendering.compiler_modules import compiler_module
 from minirt.rendering.culling.light_frustum import dense_cluster
 from minirt.rendering.culling.planes import never_occludes
 from minirt.rendering.culling.visibility import (
@@ -36,10 +33,10 @@ from minirt.shapes import Shape
 class Packing:
     """Packs scene after scene, in "double" precision or, where a scene allows it, in "single".
 
-    Given `minirt.kernel.culling.binning` as the kernel, it does without the compiler.
+    With `minirt.kernel.interpreted` as the kernel it does without compiled functions.
     """
 
-    def __init__(self, kernel: Any = None, precision: str = "double", depth: int = DEPTH) -> None:
+    def __init__(self, kernel: Any = functions, precision: str = "double", depth: int = DEPTH) -> None:
         self.kernel = kernel
         self.precision = precision
         self.depth = depth  # bounces at most
@@ -65,7 +62,6 @@ class Packing:
 
     def pack_double(self, scene: Scene, width: int, height: int) -> SceneArrays:
         """Return the arrays in double precision, packed again even if the scene is the last one."""
-        self.kernel = self.kernel or compiler_module("jit_binning")
         shapes = self.shape_arrays_for(scene.shapes)
         before, self.cache = self.cache, {}
 
@@ -111,14 +107,9 @@ class Packing:
             environment=cached(("environment", paint), pack_environment, scene, paint)
             if "environment" in used
             else None,
-            bvh=cached("bvh", build_bvh, shapes, self.bvh_kernel) if needs_bvh else None,
+            bvh=cached("bvh", build_bvh, shapes, self.kernel) if needs_bvh else None,
             **materials._asdict(),
         )
-
-    @cached_property
-    def bvh_kernel(self) -> Any:
-        """The functions that build a BVH: `minirt.kernel.compiler.jit_bvh`, or their interpreted form."""
-        return import_module("minirt.kernel.bvh.interpreted") if self.kernel is binning else compiler_module("jit_bvh")
 
     @property
     def notes(self) -> list[str]:

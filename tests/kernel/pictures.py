@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.kernel import frame
-from minirt.kernel.culling import binning
+from minirt.kernel import interpreted as interpreted_functions
 from minirt.rendering import Renderer
 from minirt.rendering.frame_arguments import ALL_PACKETS, sample_positions, sum_buffer, thread_memory
 from minirt.rendering.packing.camera import packet_rays
@@ -79,7 +79,7 @@ def interpreted(
 ) -> tuple[Any, Array]:
     """Render a scene by the interpreted kernel: pixels and linear light, as `picture` returns them."""
     words, light = np.zeros((height, width), np.uint32), np.full((height, width, 3), np.nan)
-    traced = Packing(binning, precision, depth).pack(scene, width, height)
+    traced = Packing(interpreted_functions, precision, depth).pack(scene, width, height)
     with np.errstate(all="ignore"):
         rays = packet_rays(traced.camera, sample_positions(samples))
         frame.frame(

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.kernel import frame
-from minirt.kernel.culling import binning
+from minirt.kernel import frame, interpreted
 from minirt.kernel.frame import CANCELLED, TILE
 from minirt.lanes import Vec
 from minirt.rendering.frame_arguments import frame_arguments
@@ -43,7 +42,7 @@ def packets_after(reads: float, monkeypatch: pytest.MonkeyPatch) -> tuple[int, i
         return packet(*arguments)
 
     monkeypatch.setattr(frame, "packet_radiance", counting_packet)
-    traced = Packing(binning).pack(ALL, WIDTH, HEIGHT)
+    traced = Packing(interpreted).pack(ALL, WIDTH, HEIGHT)
     arguments = frame_arguments(traced, np.zeros((HEIGHT, WIDTH, 4), np.uint8), SAMPLES)
     with np.errstate(all="ignore"):
         frame.frame(*arguments._replace(next_row=counter))

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
+import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel import rows
 from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, lane, load, where, width

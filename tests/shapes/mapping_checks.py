@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
+import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel import rows
 from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, load, save, splat, width

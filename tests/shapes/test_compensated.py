@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 from numba import njit
 
-import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
+import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, product_error, rounded_product
 from minirt.shapes.compensated import power_of_point, two_product, two_sum

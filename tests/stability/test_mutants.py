@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-import minirt.kernel.compiler.jit  # noqa: F401  (attaches the compiler)
+import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel.compiler.options import FLAGS
 from minirt.shapes import KINDS, Kind
 from tests.shapes.execution_modes import Intersect

@@ -1,4 +1,4 @@
-"""Registration of all functions that the kernel of a frame calls.
+"""Registration of all functions that the kernel of a frame, and that of binning, call.
 
 Outside this folder they are plain Python and call each other as they stand; numba finds the compiled form of each.
 """
@@ -14,7 +14,7 @@ from minirt.kernel import atomic_counter, frame, trace
 from minirt.kernel.compiler import frame_operations, kind_dispatch, packed_shapes, unrolled_loop  # noqa: F401
 from minirt.kernel.compiler.inlining import inline_functions_of
 from minirt.kernel.compiler.options import INLINED
-from minirt.kernel.culling import light_buffer
+from minirt.kernel.culling import binning, light_buffer
 from minirt.kernel.shading import environment, lights, shade, specular, surfaces, texture_lookup, texturing, whitted
 from minirt.lanes import angle, largest, power, vec
 from minirt.shapes import ALL_KINDS, basis, compensated, pyramid, quadric, shape, uv_mapping
@@ -27,6 +27,8 @@ REGISTERED = (
     atomic_counter.fetch_add,
     frame.store_block,
     frame.frame,
+    binning.project_all,
+    binning.fill_bins,
 )
 register_jitable(**INLINED)(vec.cross)
 for _module in (
@@ -39,6 +41,7 @@ for _module in (
     uv_mapping,
     pyramid,
     shape,
+    binning,
     light_buffer,
     trace,
     specular,

@@ -2,7 +2,7 @@
 
 `FLAGS` are for a kernel, `INLINED` for the functions that it calls. Importing this module checks numba's private
 interfaces (`minirt.kernel.compiler.numba_internals`). Where one has changed, numba's documented means are used instead:
-kernels take about twice as long to compile and stay in memory alone; pictures are the same.
+kernels take about twice as long to compile; pictures are the same.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ TESTED = "numba<0.69"
 FAILED = failed_assumption()
 if FAILED:
     logging.getLogger(__name__).warning(
-        "notice: every run compiles anew and for twice as long, as numba %s differs from what was tested (%s); "
+        "notice: kernels take twice as long to compile, as numba %s differs from what was tested (%s); "
         "pip install '%s' mends that",
         numba.__version__,
         FAILED,

@@ -1,37 +1,38 @@
-"""Program that compiles a kernel into the cache on disk, so that a window need not wait.
+"""Program that compiles kernels, so that a window need not wait and Python programs need not import the compiler.
 
-`python -m minirt.kernel.compiler.process` reads the pickled arguments of the kernel from standard input, and ends when
-that is closed: then nobody waits for the kernel any more.
+`python -m minirt.kernel.compiler.process` reads a line from standard input, a JSON list of identities of kernels as
+`minirt.kernel.machine_code.library.identity_of` makes them, and writes a container for each to standard output. It ends
+when standard input is closed: then nobody waits for the kernels any more.
 """
 
 from __future__ import annotations
 
 import gc
+import json
 import os
-import pickle
 import sys
-from importlib import import_module
-from subprocess import Popen
 from threading import Thread
 
-BINNING = "binning"  # argument: compile the binning of shapes instead of a kernel
-COMPILE_BINNING = [sys.executable, "-P", "-m", "minirt.kernel.compiler.process", BINNING]
+from minirt.kernel.machine_code import container
+
+LOWEST_PRIORITY = 19
+NO_KEY = b""
 
 
 def main() -> None:
-    """Compile a kernel, and in a second process at the same time the binning of shapes."""
+    """Compile kernels. With `--patient` the process gives way to all others."""
     gc.disable()  # saves a tenth of the time
-    if sys.argv[1:] == [BINNING]:
-        Thread(target=exit_at_end_of_input, daemon=True).start()
-        import_module("minirt.kernel.compiler.jit_binning")  # compiles at import
-        os._exit(0)
-    arguments = pickle.load(sys.stdin.buffer)
+    if "--patient" in sys.argv and hasattr(os, "nice"):
+        os.nice(LOWEST_PRIORITY)
+    requests = json.loads(sys.stdin.buffer.readline())
     Thread(target=exit_at_end_of_input, daemon=True).start()
-    with Popen(COMPILE_BINNING) as second:
-        from minirt.kernel.compiler import jit
+    from minirt.kernel.compiler.object_code import object_code
 
-        jit.compile(arguments)
-    os._exit(second.returncode)  # freeing the compiler's memory would take a tenth of the time
+    for identity in requests:
+        function, signatures, _ = json.loads(identity)
+        sys.stdout.buffer.write(container.pack(NO_KEY, identity, *object_code(function, signatures)))
+        sys.stdout.buffer.flush()
+    os._exit(0)  # freeing the compiler's memory would take a tenth of the time
 
 
 def exit_at_end_of_input() -> None:

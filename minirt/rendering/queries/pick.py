@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from minirt.fields import Triple
-from minirt.kernel.culling import binning
+from minirt.kernel import interpreted
 from minirt.kernel.frame import TILE, ray_direction, tile_count
 from minirt.kernel.rows import kind_of
 from minirt.kernel.trace import COINCIDENT, closest_hit
@@ -45,7 +45,7 @@ def pick(
             )
             for each in owners
         ]
-        packing = Packing(binning)
+        packing = Packing(interpreted)
         arrays = packing.pack(Scene((scene.camera, *parts), scene.file), width, height)
         rays = Vec(*(splat(part, camera) for part in (direction.x, direction.y, direction.z)))
         _, owner, _ = closest_hit(arrays, y // TILE * tile_count(width) + x // TILE, origin, rays)

@@ -9,7 +9,7 @@ from math import ceil
 
 import numpy as np
 
-from minirt.kernel.culling import binning
+from minirt.kernel import interpreted
 from minirt.kernel.frame import ray_direction, to_byte_range
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.whitted import incoming_radiance
@@ -38,7 +38,7 @@ def render_interpreted(scene: Scene, width: int, height: int) -> tuple[np.ndarra
     """Return the picture of a scene in that size, and its light, (h, w, 3)."""
     y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
     with np.errstate(all="ignore"):
-        arrays = without_culling(Packing(binning, depth=0).pack(scene, width, height))
+        arrays = without_culling(Packing(interpreted, depth=0).pack(scene, width, height))
         direction = unit(ray_direction(arrays.camera, x, y))
         colour = incoming_radiance(arrays, thread_memory(arrays), 0, Vec(*arrays.camera[:3]), direction)
     light = np.stack([colour.x, colour.y, colour.z], axis=-1).reshape(height, width, 3)

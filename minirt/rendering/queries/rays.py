@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from minirt.fork_safety import renew_after_fork
-from minirt.rendering.compiler_modules import compiler_module
+from minirt.kernel.machine_code import functions
+from minirt.kernel.machine_code.argument_block import words_of
+from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering.running.cores import usable_cores
 from minirt.rendering.running.thread_pool import ThreadPool
 from minirt.scene import Scene
@@ -93,11 +95,6 @@ class Tracer:
         """The packed shapes of the last scene."""
         return import_module("minirt.rendering.packing.shape_arrays").ShapeArrays()
 
-    @cached_property
-    def kernel(self) -> Any:
-        """The module of the compiled queries. Importing it imports the compiler."""
-        return compiler_module("jit_bvh")
-
     def trace(self, scene: Scene, origins: NDArray[np.float64], directions: NDArray[np.float64]) -> Hits:
         """Find the closest hits, as the function `trace` does, for arguments that were checked."""
         count = len(origins)
@@ -110,7 +107,8 @@ class Tracer:
                     self.build_bvh(scene.shapes)
                 # The caller's thread only waits, so that Ctrl+C reaches it.
                 counter = np.zeros(1, np.int64)
-                job = partial(self.kernel.trace_rays, counter, self.bvh, origins, directions, *hits)
+                arguments = counter, self.bvh, origins, directions, *hits
+                job = partial(LIBRARY.get(functions.trace_rays.call(*arguments)).run, words_of(arguments))
                 self.pool.run([job] * self.threads, partial(counter.fill, count))
                 is_hit = hits.owner >= 0
                 hits.owner[is_hit] = self.shape_arrays.owner[hits.owner[is_hit]]
@@ -120,7 +118,7 @@ class Tracer:
         """Build the BVH over the shapes of a scene."""
         self.shapes = None
         self.shape_arrays.update(shapes)
-        self.bvh = import_module("minirt.rendering.packing.bvh").build_bvh(self.shape_arrays, self.kernel)
+        self.bvh = import_module("minirt.rendering.packing.bvh").build_bvh(self.shape_arrays, functions)
         self.shapes = shapes
 
 

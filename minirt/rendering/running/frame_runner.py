@@ -7,6 +7,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from minirt.kernel.frame import CANCELLED
+from minirt.kernel.machine_code.argument_block import words_of
 from minirt.rendering.frame_arguments import Frame, sum_buffer, thread_memory
 from minirt.rendering.running.kernels import Kernels
 from minirt.rendering.running.thread_pool import ThreadPool
@@ -41,13 +42,14 @@ class FrameRunner:
 
         The caller's thread only waits, so that Ctrl+C reaches it.
         """
-        kernel = self.kernels.jit.kernel_for(frames[0].scene)
+        kernel = self.kernels.choose(frames[0])
+        scene = words_of(frames[0].scene)  # the same for all frames
         arguments = [
             frame._replace(memory=thread_memory(frame.scene), sums=sum_buffer(frame.scene))
             for frame in frames
             for _ in range(threads)
         ]
-        self.pool.run([partial(kernel, *each) for each in arguments], self.cancel)
+        self.pool.run([partial(kernel.run, words_of(each[:-1]) + scene) for each in arguments], self.cancel)
         self.not_finite += int(sum(each.memory[-1, 1] for each in arguments))
 
     def cancel(self) -> None:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-from functools import cached_property
+from collections.abc import Callable, Hashable
 from typing import Any
 
 import numpy as np
 
-from minirt.kernel.culling import binning
-from minirt.rendering.compiler_modules import compiler_module
-from minirt.rendering.frame_arguments import frame_arguments
-from minirt.rendering.running.compile_process import CompileProcess
+from minirt.kernel import interpreted
+from minirt.kernel.machine_code import functions
+from minirt.kernel.machine_code.compile_process import CompileProcess
+from minirt.kernel.machine_code.entry import Entry
+from minirt.kernel.machine_code.library import LIBRARY, Call
+from minirt.rendering.frame_arguments import Frame, frame_arguments
 from minirt.rendering.running.kernel_features import kernel_features, minimal_scene
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
@@ -30,10 +31,9 @@ class Kernels:
         """In a child process: leave the compiling process, if there is one, to the parent."""
         self.compile_process = CompileProcess()
 
-    @cached_property
-    def jit(self) -> Any:
-        """The module of the compiled kernels. Importing it imports the compiler."""
-        return compiler_module("jit")
+    def choose(self, frame: Frame) -> Entry:
+        """Return the kernel for a frame, compiled if need be."""
+        return LIBRARY.get(functions.frame.call(*frame))
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether the kernel for a scene was used before; a scene without shapes needs none."""
@@ -44,13 +44,30 @@ class Kernels:
         self.ready.add(kernel_features(scene))
 
     def compile(self, scene: Scene, pixels: np.ndarray) -> None:
-        """Compile the kernel for a scene in another process, unless the cache on disk has it.
+        """Compile the kernels for a scene that are not on disk. RenderError where compiling fails."""
+        if scene.shapes:
+            LIBRARY.compile(calls_for(scene, pixels, self.precision, self.depth), self.compile_process)
 
-        Without such a cache do nothing: the first picture compiles. RenderError where compiling fails.
-        """
-        if scene.shapes and self.jit.CACHE:
-            packing = Packing(binning, self.precision, self.depth)
-            with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
-                arguments = frame_arguments(packing.pack(minimal_scene(scene), 1, 1), pixels)
-            if not self.jit.is_compiled(arguments):
-                self.compile_process.compile(arguments)
+
+def calls_for(scene: Scene, pixels: np.ndarray, precision: str, depth: int) -> list[Call]:
+    """Return calls of the kernels that a scene needs: of those that pack it, and of the one that renders it."""
+    recorder = CallRecorder()
+    with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
+        arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1)
+    return [*recorder.calls.values(), functions.frame.call(*frame_arguments(arrays, pixels))]
+
+
+class CallRecorder:
+    """The functions that pack a scene, interpreted; their calls are recorded."""
+
+    def __init__(self) -> None:
+        self.calls: dict[str, Call] = {}
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        compiled, function = getattr(functions, name), getattr(interpreted, name)
+
+        def run(*arguments: Any) -> Any:
+            self.calls[name] = compiled.call(*arguments)
+            return function(*arguments)
+
+        return run

@@ -9,7 +9,7 @@ import pytest
 
 from minirt.kernel.bvh import collapse, nodes, queries, traversal
 from minirt.kernel.bvh.nodes import LEVELS, MARGIN, MEMORY, NODE, STACK, STACK_LEVEL, WIDTH, Tree, reference_of
-from minirt.kernel.compiler import jit_bvh
+from minirt.kernel.machine_code import functions
 from minirt.lanes import Vec
 from minirt.rendering.packing.bvh import wide_nodes
 from minirt.shapes import Shape
@@ -62,7 +62,7 @@ def check_tree(scene: Tree, shapes: list[Shape]) -> int:
 
 
 @pytest.mark.parametrize("count", [1, 2, WIDTH, WIDTH + 1, 100, 1000])
-@pytest.mark.parametrize("kernel", [Interpreted, jit_bvh], ids=["interpreted", "compiled"])
+@pytest.mark.parametrize("kernel", [Interpreted, functions], ids=["interpreted", "compiled"])
 def test_every_shape_is_in_the_tree_once_and_every_box_encloses_its_subtree(count: int, kernel: Any) -> None:
     shapes = random_shapes(np.random.default_rng(count), count)
     check_tree(build_tree(shapes, kernel), shapes)
@@ -92,7 +92,7 @@ def test_the_traversal_stack_holds_the_deepest_tree() -> None:
     # Each box is half as large and as far as the one before: the cheapest splits separate one box at a time.
     far = 2.0 ** np.arange(-450, 450)[:, None]
     boxes = np.hstack([np.repeat(far, 6, axis=1) * [-1, -1, -1, 1.5, 1.5, 1.5], np.zeros((900, 2))])
-    nodes, leaves = wide_nodes(np.repeat(boxes, WIDTH, axis=0), jit_bvh)
+    nodes, leaves = wide_nodes(np.repeat(boxes, WIDTH, axis=0), functions)
     children = nodes.reshape(-1, 7, WIDTH)[:, 6].astype(int) // NODE
     deepest = np.ones(len(children), int)
     for node in range(len(children) - 1, -1, -1):  # a child comes behind its parent

@@ -11,7 +11,7 @@ from minirt.element import fields_of
 from minirt.fields import Point
 from minirt.kernel.bvh import build, collapse
 from minirt.kernel.bvh.nodes import WIDTH, Group, Tree
-from minirt.kernel.compiler import jit_bvh
+from minirt.kernel.machine_code import functions
 from minirt.rendering.packing.bvh import aligned, block_type, build_bvh
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import KINDS, Shape
@@ -27,7 +27,7 @@ class Interpreted:
     collapse = staticmethod(collapse.collapse)
 
 
-def build_tree(shapes: list[Shape], kernel: Any = jit_bvh) -> Tree:
+def build_tree(shapes: list[Shape], kernel: Any = functions) -> Tree:
     """Build the BVH over shapes."""
     with np.errstate(all="ignore"):
         return build_bvh(shape_arrays(shapes), kernel)
@@ -53,7 +53,7 @@ def shape_arrays(shapes: list[Shape]) -> ShapeArrays:
 
 
 def trace(
-    scene: Tree, origins: Array, directions: Array, run: Callable[..., None] = jit_bvh.trace_rays
+    scene: Tree, origins: Array, directions: Array, run: Callable[..., None] = functions.trace_rays
 ) -> tuple[Array, Array, Array, Array]:
     """Trace rays: distances, owners, points and normals of their closest hits."""
     n = len(origins)

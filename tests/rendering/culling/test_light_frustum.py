@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from minirt.fields import MeshFile
-from minirt.kernel.compiler import jit_binning
 from minirt.kernel.culling import binning
 from minirt.kernel.culling.light_buffer import SCALE, TOLERANCE, light_buffer_cell
+from minirt.kernel.machine_code import functions
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.culling import light_frustum, visibility
@@ -138,7 +138,7 @@ def test_the_margin_is_the_reach_of_close_directions(light: Any) -> None:
     assert 0.85 * grid.margin < reach < grid.margin
 
 
-@pytest.mark.parametrize("kernel", [binning, jit_binning], ids=["interpreted", "compiled"])
+@pytest.mark.parametrize("kernel", [binning, functions], ids=["interpreted", "compiled"])
 def test_shapes_that_reach_out_of_the_frustum_are_listed_elsewhere_too(kernel: Any) -> None:
     grid = frustum((0, 0, -10))
     x, y, z = grid.frames[0]

@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from minirt.kernel.compiler import jit_binning
 from minirt.kernel.culling import binning
 from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR, SCALE, TOLERANCE, light_buffer_cell
 from minirt.kernel.frame import TILE, ray_direction, tile_count
+from minirt.kernel.machine_code import functions
 from minirt.kernel.rows import kind_of, read
 from minirt.kernel.trace import COINCIDENT, in_cone
 from minirt.lanes import Vec, unit
@@ -95,7 +95,7 @@ def hard_scene(seed: int) -> Scene:
 
 
 SCENES = [*((random_scene, seed) for seed in range(12)), *((hard_scene, seed) for seed in range(40))]
-KERNELS = pytest.mark.parametrize("kernel", [binning, jit_binning], ids=["interpreted", "compiled"])
+KERNELS = pytest.mark.parametrize("kernel", [binning, functions], ids=["interpreted", "compiled"])
 
 
 @KERNELS

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from minirt.kernel.compiler import cache_folder, container, private_files
-from tests.kernel.compiler.package_copies import copy_package
-from tests.kernel.compiler.small_kernels import double, file_of, is_found, square
-from tests.kernel.compiler.test_cache_folder import render_in_new_process
+from minirt.kernel.machine_code import cache_folder, container, private_files
+from tests.kernel.machine_code.package_copies import copy_package
+from tests.kernel.machine_code.small_kernels import double, file_of, is_found, square
+from tests.kernel.machine_code.test_cache_folder import render_in_new_process
 
 NOTICE = "is deleted and compiled anew"
 

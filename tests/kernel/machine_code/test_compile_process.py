@@ -13,15 +13,15 @@ from threading import Thread
 
 import numpy as np
 import pytest
+from minirt.rendering.running.compile_process import CompileProcess
 
 from minirt.errors import RenderError
 from minirt.rendering.frame_arguments import frame_arguments
 from minirt.rendering.running import compile_process
-from minirt.rendering.running.compile_process import CompileProcess
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Scene
 from minirt.shapes.sphere import Sphere
-from tests.kernel.compiler.package_copies import copy_package
+from tests.kernel.machine_code.package_copies import copy_package
 from tests.paths import PACKAGE
 from tests.processes import run, started
 from tests.waiting import HANG_LIMIT, until

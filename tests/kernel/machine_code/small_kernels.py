@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from minirt.kernel.compiler.compilation import compiled
 from numba import float64
 
-from minirt.kernel.compiler.compilation import compiled
 from minirt.kernel.compiler.numba_internals import cache_of
 
 ARGUMENT = 1.5

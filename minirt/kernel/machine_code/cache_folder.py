@@ -1,7 +1,7 @@
 """Folder of compiled kernels, which later runs load.
 
-The name of the folder is a hash of all sources of a kernel and of the versions of the compiler: after a change of a
-shape's formula the old machine code is not found. The folder is closed to other users, since what is in it is run.
+The name of the folder is a hash of all sources of a kernel and of the processor: after a change of a shape's formula
+the old machine code is not found. The folder is closed to other users, since what is in it is run.
 """
 
 from __future__ import annotations
@@ -12,13 +12,11 @@ import os
 import shutil
 import sys
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
-import llvmlite
-import numba
-from llvmlite.binding import get_host_cpu_name
-
-from minirt.kernel.compiler.private_files import PRIVATE_FOLDER, make_private_folder
+from minirt.kernel.machine_code.private_files import PRIVATE_FOLDER, make_private_folder
+from minirt.kernel.machine_code.processor import description
 
 PACKAGE = Path(__file__).parents[2]
 SOURCES = ("kernel", "lanes", "shapes")  # folders of all sources of a kernel
@@ -40,14 +38,19 @@ def user_folder() -> Path:
     return Path.home() / ".cache"
 
 
-def fingerprint() -> str:
-    """Return a hash of the sources, of the compiler's versions and of the name of the processor."""
-    versions = sys.version, numba.__version__, llvmlite.__version__, get_host_cpu_name()
-    digest = hashlib.sha256(" ".join(versions).encode())
+@cache
+def fingerprint_of(processor: str) -> str:
+    """Return a hash of the sources and of a processor, as `minirt.kernel.machine_code.processor.description` has it."""
+    digest = hashlib.sha256(processor.encode())
     for folder in SOURCES:
         for source in sorted((PACKAGE / folder).rglob("*.py")):
             digest.update(source.relative_to(PACKAGE).as_posix().encode() + b"\0" + source.read_bytes())
     return digest.hexdigest()[:16]
+
+
+def fingerprint() -> str:
+    """Return the hash of the sources and of the processor that is compiled for."""
+    return fingerprint_of(description())
 
 
 def folder() -> Path | None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from minirt.kernel.compiler import container
-from minirt.kernel.compiler.container import HEADER, DamagedError, pack, unpack
+from minirt.kernel.machine_code import container
+from minirt.kernel.machine_code.container import HEADER, DamagedError, pack, unpack
 
 KEY, OTHER_KEY = bytes(range(32)), bytes(32)
 NAMES = {"function": "f", "defined": ["f", "g"]}

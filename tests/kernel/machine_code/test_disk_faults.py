@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from minirt.kernel.compiler import cache_folder, private_files
-from tests.kernel.compiler.package_copies import copy_package
-from tests.kernel.compiler.small_kernels import double, file_of, is_found, square
+from minirt.kernel.machine_code import cache_folder, private_files
+from tests.kernel.machine_code.package_copies import copy_package
+from tests.kernel.machine_code.small_kernels import double, file_of, is_found, square
 from tests.processes import run
 
 FAULTS = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS, errno.EACCES)

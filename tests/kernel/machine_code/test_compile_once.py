@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from minirt.kernel.compiler.private_files import locked
-from tests.kernel.compiler.package_copies import copy_package
-from tests.kernel.compiler.small_kernels import double, file_of, is_found
-from tests.kernel.compiler.test_cache_folder import render_in_new_process
+from minirt.kernel.machine_code.private_files import locked
+from tests.kernel.machine_code.package_copies import copy_package
+from tests.kernel.machine_code.small_kernels import double, file_of, is_found
+from tests.kernel.machine_code.test_cache_folder import render_in_new_process
 from tests.paths import ROOT
 from tests.processes import started
 from tests.waiting import HANG_LIMIT
@@ -25,8 +25,8 @@ PROGRAMS = 4
 WAITING = """
 import sys
 from pathlib import Path
-from minirt.kernel.compiler import private_files
-from tests.kernel.compiler.small_kernels import double, is_found
+from minirt.kernel.machine_code import private_files
+from tests.kernel.machine_code.small_kernels import double, is_found
 
 def wait(descriptor, lock=private_files.wait_for_lock):
     print("waiting", flush=True)
@@ -39,7 +39,7 @@ print(is_found(double, Path(sys.argv[1])))
 
 WITHOUT_LOCK = """
 from contextlib import nullcontext
-from minirt.kernel.compiler.code_cache import CodeCache
+from minirt.kernel.machine_code.code_cache import CodeCache
 CodeCache.compiling_once = lambda *_: nullcontext()
 """
 

@@ -16,7 +16,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from minirt import atomic_write
-from minirt.kernel.compiler.container import KEY_SIZE
+from minirt.kernel.machine_code.container import KEY_SIZE
 
 if sys.platform != "win32":
     import fcntl

@@ -52,3 +52,10 @@ def digest(key: bytes, identity: str, content: bytes) -> bytes:
     whose = identity.encode()
     prefix = struct.pack("<IQ", VERSION, len(whose))
     return blake2b(prefix + whose + content, key=key, digest_size=DIGEST_SIZE).digest()
+
+
+def size(data: bytes) -> int:
+    """Return the bytes of the container at the beginning of some data; DamagedError where there is none."""
+    if len(data) < HEADER.size:
+        raise DamagedError("it is too short")
+    return HEADER.size + int(HEADER.unpack_from(data)[2])

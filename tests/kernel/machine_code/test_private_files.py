@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from minirt.kernel.compiler import private_files
-from minirt.kernel.compiler.private_files import key_of, locked, make_private_folder, read, write
+from minirt.kernel.machine_code import private_files
+from minirt.kernel.machine_code.private_files import key_of, locked, make_private_folder, read, write
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="files have no modes there")
 

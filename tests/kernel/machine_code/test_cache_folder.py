@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from minirt.kernel.compiler import cache_folder
-from tests.kernel.compiler.package_copies import copy_package, replace_once
+from minirt.kernel.machine_code import cache_folder
+from tests.kernel.machine_code.package_copies import copy_package, replace_once
 from tests.paths import PACKAGE
 from tests.processes import run
 

@@ -1,0 +1,88 @@
+"""Compiles kernels in other processes, so that this one neither waits nor imports the compiler."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from contextlib import suppress
+from typing import Any, TypeAlias
+
+from minirt.errors import RenderError
+from minirt.kernel.machine_code import container
+from minirt.kernel.machine_code.cache_folder import notice
+from minirt.kernel.machine_code.code_cache import ObjectCode
+from minirt.kernel.machine_code.processor import NATIVE, V3, V4, processor
+
+# With -P nothing is imported from the current folder.
+COMMAND = (sys.executable, "-P", "-m", "minirt.kernel.compiler.process")
+FEATURES = {V4: "+avx512f", V3: ""}  # what NUMBA_CPU_FEATURES adds to those that a level has
+NO_KEY = b""  # of the containers that come through a pipe
+
+Request: TypeAlias = str  # the identity of a kernel: JSON of the function, its signature and the fingerprint
+
+
+class CompileProcess:
+    """Compiles one list of kernels at a time."""
+
+    def __init__(self, patient: bool = False) -> None:
+        """`patient`: with the lowest priority, while this process renders."""
+        self.patient = patient
+        self.process: subprocess.Popen[bytes] | None = None
+
+    def compile(self, requests: list[Request], target: str | None = None) -> list[ObjectCode]:
+        """Return the object code of kernels for a processor, by default the one that is compiled for.
+
+        RenderError with the reason where compiling fails, or where `stop` ended it."""
+        try:
+            self.process = process = subprocess.Popen(
+                (*COMMAND, *["--patient"] * self.patient),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                env=environment(target or processor()),
+                creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+            )
+        except OSError as error:
+            raise RenderError(f"the compiler cannot be started: {error}") from error
+        assert process.stdin is not None
+        assert process.stdout is not None
+        assert process.stderr is not None
+        with process:
+            with suppress(BrokenPipeError):
+                process.stdin.write(json.dumps(requests).encode() + b"\n")
+                process.stdin.flush()
+            output = process.stdout.read()
+            messages = process.stderr.read().decode(errors="replace").strip().splitlines()
+        if process.returncode:
+            reason = messages[-1] if messages else f"the compiler ended with status {process.returncode}"
+            raise RenderError(f"the kernel cannot be compiled: {reason}")
+        for message in messages:
+            if message.startswith("notice: "):
+                notice("%s", message.removeprefix("notice: "))
+        return unpacked(requests, output)
+
+    def stop(self) -> None:
+        """Kill the process, if there is one; callable from any thread."""
+        if self.process:
+            self.process.kill()
+
+
+def environment(target: str) -> dict[str, str]:
+    """Return the environment of a process that compiles for a processor, free of settings for other uses of numba."""
+    inherited = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
+    chosen = {"NUMBA_DISABLE_JIT": "0", "PYTHONPATH": os.pathsep.join(each or os.curdir for each in sys.path)}
+    if target != NATIVE:
+        chosen |= {"NUMBA_CPU_NAME": target, "NUMBA_CPU_FEATURES": FEATURES.get(target, "")}
+    return inherited | chosen
+
+
+def unpacked(requests: list[Request], output: bytes) -> list[ObjectCode]:
+    """Return the kernels in the output of the process: one container after the other."""
+    codes: list[Any] = []
+    for request in requests:
+        size = container.size(output)
+        codes.append(container.unpack(NO_KEY, request, output[:size]))
+        output = output[size:]
+    return codes

@@ -1,0 +1,34 @@
+"""Compiled forms of the functions that Python calls, under their own names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from minirt.kernel.bvh import build, queries
+from minirt.kernel.bvh import collapse as collapsing
+from minirt.kernel.culling import binning
+from minirt.kernel.frame import frame as interpreted_frame
+from minirt.kernel.machine_code.library import LIBRARY, Call
+
+
+class CompiledFunction:
+    """A function that is loaded or compiled, for the types of its arguments, when it is called."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.name = f"{function.__module__}:{function.__qualname__}"
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the compiled form. RenderError where it cannot be compiled."""
+        return LIBRARY.get((self.name, arguments))(*arguments)
+
+    def call(self, *arguments: Any) -> Call:
+        """Return the call with some arguments, to look for its kernel."""
+        return self.name, arguments
+
+
+project_all, fill_bins = CompiledFunction(binning.project_all), CompiledFunction(binning.fill_bins)
+divide, weigh = CompiledFunction(build.divide), CompiledFunction(collapsing.weigh)
+collapse = CompiledFunction(collapsing.collapse)
+trace_rays = CompiledFunction(queries.trace_rays)
+frame = CompiledFunction(interpreted_frame)

@@ -1,0 +1,107 @@
+"""Library of kernels: finds the machine code of a function for a signature, or has it compiled.
+
+A kernel is looked for in memory, among those that came with the package, and in this user's cache on disk.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Hashable, Iterable
+from contextlib import ExitStack
+from functools import cached_property
+from threading import Lock
+from typing import Any, TypeAlias
+
+from minirt.kernel.machine_code import cache_folder, loader, shipped_code
+from minirt.kernel.machine_code.code_cache import CodeCache, ObjectCode
+from minirt.kernel.machine_code.compile_process import CompileProcess
+from minirt.kernel.machine_code.entry import Entry
+from minirt.kernel.machine_code.signature import key_of, signature_of
+
+Call: TypeAlias = tuple[str, tuple[Any, ...]]  # the name of a function, "module:name", and arguments
+
+IN_MEMORY = 24  # kernels; one that was dropped is loaded from disk again
+
+
+class Library:
+    """Kernels in memory, and where others are."""
+
+    def __init__(self) -> None:
+        self.identities: dict[Hashable, str] = {}
+        self.entries: dict[str, Entry] = {}  # by identity, the one that was used last at the end
+        self.lock = Lock()
+        if hasattr(os, "register_at_fork"):  # a child process finds the lock free; Windows has no fork
+            release = self.lock.release
+            os.register_at_fork(before=self.lock.acquire, after_in_parent=release, after_in_child=release)
+
+    @cached_property
+    def cache(self) -> CodeCache | None:
+        """The cache on disk; None where kernels cannot be kept."""
+        folder = cache_folder.folder()
+        return CodeCache(folder) if folder else None
+
+    def identity(self, call: Call) -> str:
+        """Return a text that two calls share only where they need the same kernel."""
+        key = call[0], key_of(call[1])
+        found = self.identities.get(key)
+        if found is None:
+            found = self.identities[key] = identity_of(*call, cache_folder.fingerprint())
+        return found
+
+    def find(self, call: Call) -> Entry | None:
+        """Return the kernel for a call; None where it must be compiled."""
+        identity = self.identity(call)
+        with self.lock:
+            entry = self.entries.pop(identity, None) or self.loaded(identity)
+            if entry:
+                self.keep(identity, entry)
+            return entry
+
+    def loaded(self, identity: str) -> Entry | None:
+        """Return a kernel from the package or the disk."""
+        code = shipped_code.read(identity) or (self.cache and self.cache.read(identity))
+        return loader.load(*code) if code else None
+
+    def keep(self, identity: str, entry: Entry) -> None:
+        """Keep a kernel in memory, and drop those that were not used for longest if they can be loaded again."""
+        self.entries[identity] = entry
+        if self.cache:
+            for each in list(self.entries)[:-IN_MEMORY]:
+                del self.entries[each]
+
+    def compile(self, calls: Iterable[Call], process: CompileProcess) -> None:
+        """Compile the kernels for some calls that cannot be found, in one process. RenderError where that fails."""
+        missing = [self.identity(each) for each in calls if not self.find(each)]
+        with ExitStack() as stack:
+            if self.cache:
+                for identity in missing:
+                    stack.enter_context(self.cache.compiling_once(identity))
+                missing = [each for each in missing if not self.cache.read(each)]  # another process has compiled it
+            for identity, code in zip(missing, process.compile(missing) if missing else [], strict=True):
+                self.add(identity, code)
+
+    def add(self, identity: str, code: ObjectCode) -> None:
+        """Add a kernel that was compiled."""
+        if self.cache:
+            self.cache.write(identity, code)
+        entry = loader.load(*code)
+        with self.lock:
+            self.keep(identity, entry)
+
+    def get(self, call: Call) -> Entry:
+        """Return the kernel for a call, compiled if need be, which takes seconds. RenderError where that fails."""
+        entry = self.find(call)
+        if not entry:
+            self.compile([call], CompileProcess())
+            entry = self.find(call)
+        assert entry, "compiled and not found"
+        return entry
+
+
+def identity_of(function: str, arguments: tuple[Any, ...], fingerprint: str) -> str:
+    """Return the identity of a kernel: JSON of the function, its signature and the fingerprint."""
+    return json.dumps([function, [signature_of(each) for each in arguments], fingerprint])
+
+
+LIBRARY = Library()

@@ -1,0 +1,63 @@
+"""The processor that kernels are compiled for: a level of x86-64, whose code many processors can run, or this one.
+
+Code for level v4, which has AVX-512, was measured to be as fast as code for the very processor; level v3 has AVX2 and
+FMA. The levels are those of the x86-64 psABI.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+from functools import cache
+from pathlib import Path
+
+V4, V3, NATIVE = "x86-64-v4", "x86-64-v3", "native"
+# Flags in /proc/cpuinfo; bmi1, f16c and others come with these.
+NEEDED = {
+    V4: {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"},
+    V3: {"avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe"},
+}
+CPUINFO = Path("/proc/cpuinfo")
+
+
+def processor() -> str:
+    """Return the name of the processor to compile for: NUMBA_CPU_NAME, or a level, or NATIVE where there is none."""
+    return os.environ.get("NUMBA_CPU_NAME") or level()
+
+
+def description() -> str:
+    """Return a text that differs for machines that need different machine code."""
+    name = processor()
+    if name == NATIVE:
+        name = f"{platform.machine()} {platform.processor()} {cpu_information('model name')}"
+    return f"{sys.platform} {name}"
+
+
+@cache
+def level() -> str:
+    """Return the highest level of x86-64 that this machine has; NATIVE on others."""
+    if sys.platform != "linux" or platform.machine() != "x86_64":
+        return NATIVE
+    return level_of(cpu_flags())
+
+
+def level_of(flags: set[str]) -> str:
+    """Return the highest level that a processor with these flags has."""
+    if not NEEDED[V3] <= flags:
+        return NATIVE
+    return V4 if NEEDED[V4] <= flags else V3
+
+
+def cpu_flags() -> set[str]:
+    """Return the flags of the processor; none where they are not known."""
+    return set(cpu_information("flags").split())
+
+
+def cpu_information(label: str) -> str:
+    """Return what /proc/cpuinfo says of the first processor; nothing where it cannot be read."""
+    try:
+        with CPUINFO.open(encoding="ascii", errors="replace") as lines:
+            return next((line.partition(":")[2].strip() for line in lines if line.startswith(label)), "")
+    except OSError:
+        return ""
