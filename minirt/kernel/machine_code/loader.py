@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 from minirt.kernel.machine_code.entry import Entry
@@ -18,9 +17,8 @@ def load(names: dict[str, Any], code: bytes) -> Entry:
     return Entry(engine.get_function_address(names["entry"]), names["results"], engine)
 
 
-@cache
 def target_machine() -> Any:
-    """Return the description of this machine, which is made once."""
+    """Return a description of this machine, which the engine that gets it owns."""
     from llvmlite import binding
 
     binding.initialize_native_target()

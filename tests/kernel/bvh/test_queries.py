@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numba import njit, typeof
 
-import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
+import minirt.kernel.compiler.bvh_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel.bvh import queries
 from minirt.kernel.bvh.nodes import WIDTH
 from minirt.kernel.compiler.options import FLAGS
