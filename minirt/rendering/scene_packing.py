@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from functools import cached_property
 from importlib import import_module
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -104,7 +105,7 @@ class Packing:
             light_buffers=light_buffers,
             light_shapes=light_shapes,
             light_cones=light_cones,
-            groups=tuple(map(Group, shapes.rows, eye.starts, light_starts)),
+            groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count())),
             spots=spot_parameters(sources) if "spots" in used else None,
             depth=self.depth,
             background=np.divide(paint, 255) if "background" in used else None,
