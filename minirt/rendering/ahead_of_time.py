@@ -23,19 +23,16 @@ from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.packing.widening import FULL_DOUBLE, WIDE_KERNELS, empty_arrays
 from minirt.rendering.running.cores import usable_cores
 from minirt.rendering.running.needed_kernels import calls_for, wide_call
-from minirt.scene import Camera, ParallelLight, Scene
-from minirt.shapes.sphere import Sphere
+from minirt.scene import parse
 
-WHITE = (255, 255, 255)
-EYE, SUN = Camera((0, 0, -9), (0, 0, 1), 60), ParallelLight((0, -1, 0), 1, WHITE)
-SPHERES = tuple(Sphere((0, 0, z), 1, WHITE) for z in range(9))  # so many that parallel light needs a BVH
-EXAMPLE = Scene((EYE, SUN, *SPHERES))
+# With so many shapes parallel light needs a BVH.
+EXAMPLE = "C 0,0,-9 0,0,1 60\ndl 0,-1,0 1\n" + "sp 0,0,0 1 255,255,255\n" * 9
 
 
 def calls() -> list[list[Call]]:
     """Return calls of the kernels to compile, in groups for one process each; the groups take about as long."""
     full, plain, *single = map(wide_call, sorted(WIDE_KERNELS, key=lambda each: (each.precision, each.name)))
-    *packing, _ = calls_for(EXAMPLE, "double", DEPTH)
+    *packing, _ = calls_for(parse(EXAMPLE).scene, "double", DEPTH)
     return [[full], [*packing, plain, ray_query()], *([each] for each in single)]
 
 
