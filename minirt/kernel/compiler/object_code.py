@@ -38,9 +38,12 @@ def object_code(function: str, signatures: list[Signature]) -> tuple[dict[str, A
 
 
 def result_count(compiled: Any, kinds: Any) -> int:
-    """Return the number of integers that a function returns."""
+    """Return the number of integers that a function returns; TypeError where it returns anything else."""
     result = compiled.get_call_template(tuple(kinds), {})[0].cases[0].return_type
-    return len(result) if isinstance(result, types.BaseTuple) else int(result != types.none)
+    results = list(result) if isinstance(result, types.BaseTuple) else [result] * (result != types.none)
+    if any(each != types.int64 for each in results):
+        raise TypeError(f"a kernel returns integers of 64 bits or nothing, not {result}")
+    return len(results)
 
 
 def entry_point(compiled: Callable[..., Any], kinds: Any, results: int) -> Callable[[Any], None]:

@@ -72,7 +72,8 @@ class Library:
 
     def compile(self, calls: Iterable[Call], process: CompileProcess) -> None:
         """Compile the kernels for some calls that cannot be found, in one process. RenderError where that fails."""
-        missing = [self.identity(each) for each in calls if not self.find(each)]
+        # Each once and in one order: programs that wait for each other's locks would wait for ever.
+        missing = sorted({self.identity(each) for each in calls if not self.find(each)})
         with ExitStack() as stack:
             if self.cache:
                 for identity in missing:
@@ -85,9 +86,8 @@ class Library:
         """Add a kernel that was compiled."""
         if self.cache:
             self.cache.write(identity, code)
-        entry = loader.load(*code)
-        with self.lock:
-            self.keep(identity, entry)
+        with self.lock:  # no process is forked while LLVM, whose lock it would inherit, loads
+            self.keep(identity, loader.load(*code))
 
     def get(self, call: Call) -> Entry:
         """Return the kernel for a call, compiled if need be, which takes seconds. RenderError where that fails."""
