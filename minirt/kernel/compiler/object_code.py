@@ -41,7 +41,7 @@ def result_count(compiled: Any, kinds: Any) -> int:
     """Return the number of integers that a function returns; TypeError where it returns anything else."""
     result = compiled.get_call_template(tuple(kinds), {})[0].cases[0].return_type
     results = list(result) if isinstance(result, types.BaseTuple) else [result] * (result != types.none)
-    if any(each != types.int64 for each in results):
+    if any(types.unliteral(each) != types.int64 for each in results):
         raise TypeError(f"a kernel returns integers of 64 bits or nothing, not {result}")
     return len(results)
 
