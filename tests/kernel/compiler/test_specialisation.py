@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from minirt.kernel.compiler.compilation import compiled
 
 from minirt.kernel.compiler import jit
-from minirt.kernel.compiler.compilation import compiled
 from minirt.lanes.angle import ATAN_HALF
 from minirt.materials import Checker
 from minirt.rendering import Renderer
