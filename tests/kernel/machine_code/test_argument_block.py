@@ -85,7 +85,7 @@ def test_the_words_of_each_argument() -> None:
 @pytest.mark.parametrize("array", [np.zeros((3, 4)).T, np.zeros(6)[::2], np.zeros((2, 4))[:, :3], np.zeros(3)[::-1]])
 def test_arrays_that_are_not_contiguous_are_refused(array: Any) -> None:
     for value in (array, (array,), Inner(array, 1)):
-        with pytest.raises(ValueError, match="^an array for a kernel must be C-contiguous$"):
+        with pytest.raises(ValueError, match=r"^an array for a kernel must be C-contiguous$"):
             words_of(value)
     assert words_of(array.copy())
 
@@ -109,7 +109,7 @@ def test_a_kernel_returns_nothing_an_integer_or_several() -> None:
 
 
 def test_a_result_that_is_no_integer_is_refused() -> None:
-    with pytest.raises(TypeError, match="^a kernel returns integers of 64 bits or nothing, not float64$"):
+    with pytest.raises(TypeError, match=r"^a kernel returns integers of 64 bits or nothing, not float64$"):
         loaded(half, np.zeros(3))
 
 

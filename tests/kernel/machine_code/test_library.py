@@ -128,7 +128,7 @@ def test_threads_that_need_the_same_kernel_compile_it_once(tmp_path: Path) -> No
 @pytest.mark.parametrize("folder", [True, False])
 def test_a_failure_is_reported_and_leaves_nothing_behind(tmp_path: Path, folder: bool) -> None:
     kernels = library(tmp_path if folder else None)
-    with pytest.raises(RenderError, match="^no room$"):
+    with pytest.raises(RenderError, match=r"^no room$"):
         kernels.compile([DOUBLE], Failing())
     assert kernels.find(DOUBLE) is None
     assert not list(tmp_path.glob("*.kernel"))
