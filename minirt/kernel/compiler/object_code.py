@@ -21,6 +21,7 @@ from minirt.kernel.compiler.options import FAILED, FLAGS
 from minirt.kernel.machine_code.signature import Signature
 
 WORD = 8  # bytes
+ENTRY_FLAGS = {name: value for name, value in FLAGS.items() if name != "nogil"}  # code for C never holds Python's lock
 WITHOUT_WRAPPERS = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
@@ -31,9 +32,7 @@ def object_code(function: str, signatures: list[Signature]) -> tuple[dict[str, A
     kinds = types.Tuple([type_of(each) for each in signatures])
     compiled = njit(**WITHOUT_WRAPPERS, **FLAGS)(plain)
     results = result_count(compiled, kinds)
-    entry = cfunc(types.void(types.voidptr), **{key: value for key, value in FLAGS.items() if key != "nogil"})(
-        entry_point(compiled, kinds, results)
-    )
+    entry = cfunc(types.void(types.voidptr), **ENTRY_FLAGS)(entry_point(compiled, kinds, results))
     return {"entry": entry.native_name, "results": results}, machine_code(entry)
 
 

@@ -49,6 +49,11 @@ def half(x: Any) -> float:
     return 0.5 * x[0]
 
 
+def quotients(x: Any, y: Any) -> None:
+    for i in range(len(x)):
+        y[i] = x[i] / y[i]
+
+
 def sine(x: Any) -> None:
     x[0] = np.sin(x[0])
 
