@@ -21,7 +21,7 @@ from minirt.kernel.compiler.argument_types import type_of
 from minirt.kernel.compiler.options import FAILED, FLAGS, INLINED
 from minirt.kernel.machine_code.signature import Signature
 
-C_FLAGS = {name: value for name, value in FLAGS.items() if name != "nogil"}  # C code holds no interpreter's lock
+C_FLAGS = {name: value for name, value in FLAGS.items() if name != "nogil"}  # code for C never holds Python's lock
 
 
 def object_code(function: str, signatures: list[Signature]) -> tuple[dict[str, Any], bytes]:
@@ -68,7 +68,10 @@ class EntryPoint:
 
     def store_result(self, _typing: Any, address: Any, result: Any) -> Any:
         """Store the result: typing and code of an operation."""
-        self.results = len(result) if isinstance(result, types.BaseTuple) else int(result != types.none)
+        results = list(result) if isinstance(result, types.BaseTuple) else [result] * (result != types.none)
+        if any(types.unliteral(each) != types.int64 for each in results):
+            raise TypeError(f"a kernel returns integers of 64 bits or nothing, not {result}")
+        self.results = len(results)
 
         def store(context: Any, builder: ir.IRBuilder, _signature: Any, args: Any) -> Any:
             if self.results:

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from contextlib import suppress
+from threading import Thread
 from typing import Any, TypeAlias
 
 from minirt.errors import RenderError
@@ -48,20 +49,28 @@ class CompileProcess:
             raise RenderError(f"the compiler cannot be started: {error}") from error
         assert process.stdin is not None
         assert process.stdout is not None
-        assert process.stderr is not None
+        errors = process.stderr
+        assert errors is not None
         with process:
             with suppress(BrokenPipeError):
                 process.stdin.write(json.dumps(requests).encode() + b"\n")
                 process.stdin.flush()
+            written: list[bytes] = []
+            reader = Thread(target=lambda: written.append(errors.read()))  # else the process waits with a full pipe
+            reader.start()
             output = process.stdout.read()
-            messages = process.stderr.read().decode(errors="replace").strip().splitlines()
+            reader.join()
+        messages = written[0].decode(errors="replace").strip().splitlines()
         if process.returncode:
             reason = messages[-1] if messages else f"the compiler ended with status {process.returncode}"
             raise RenderError(f"the kernel cannot be compiled: {reason}")
         for message in messages:
             if message.startswith("notice: "):
                 notice("%s", message.removeprefix("notice: "))
-        return unpacked(requests, output)
+        try:
+            return unpacked(requests, output)
+        except container.DamagedError as error:
+            raise RenderError(f"the kernel cannot be compiled: what the compiler wrote is damaged, {error}") from error
 
     def stop(self) -> None:
         """Kill the process, if there is one; callable from any thread."""

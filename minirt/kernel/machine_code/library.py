@@ -76,7 +76,8 @@ class Library:
 
     def compile(self, identities: Iterable[str], process: CompileProcess) -> None:
         """Compile those of some kernels that are missing, in one process. RenderError where that fails."""
-        missing = [each for each in identities if not self.find(each)]
+        # Each once and in one order: programs that wait for each other's locks would wait for ever.
+        missing = sorted({each for each in identities if not self.find(each)})
         with ExitStack() as stack:
             if self.cache:
                 for identity in missing:
@@ -88,10 +89,9 @@ class Library:
                 if self.cache:
                     self.cache.write(identity, codes[identity])
         for identity, code in codes.items():
-            entry = loader.load(*code)
-            with self.lock:
+            with self.lock:  # no process is forked while LLVM, whose lock it would inherit, loads
                 self.missing.discard(identity)
-                self.keep(identity, entry)
+                self.keep(identity, loader.load(*code))
 
     def on_disk(self, identities: Iterable[str]) -> dict[str, ObjectCode]:
         """Return those of some kernels that the cache on disk has."""

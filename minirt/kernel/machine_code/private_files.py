@@ -100,6 +100,8 @@ def locked(path: Path) -> Iterator[None]:
                 descriptor = os.open(path, os.O_RDWR | os.O_CREAT, PRIVATE_FILE)
                 stack.callback(os.close, descriptor)
                 wait_for_lock(descriptor)
+                # Closing it frees the lock only where no process was forked meanwhile, which has the file open, too.
+                stack.callback(fcntl.flock, descriptor, fcntl.LOCK_UN)
         yield
 
 

@@ -16,11 +16,14 @@ from minirt.scene import parse
 from tests.processes import run
 
 BALL = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0 2 255,60,60\n"
-CHANGE = "import numba.core.compiler; del numba.core.compiler.CompileResult._rebuild"
-RENDER = """
-from minirt.rendering.running.compile_process import CompileProcess
+CHANGE = "from numba.core.ccallback import CFunc; CFunc.inspect_llvm = lambda f, inspect=CFunc.inspect_llvm: inspect(f)"
+COMPILE = f"{CHANGE}; from minirt.kernel.compiler.process import main; main()"
+RENDER = f"""
+import sys
+from minirt.kernel.machine_code import compile_process
 from tests.kernel.compiler.test_documented_pipeline import fingerprints
-del CompileProcess.compile
+
+compile_process.COMMAND = sys.executable, "-c", {COMPILE!r}
 print(*fingerprints())
 """
 
@@ -37,22 +40,27 @@ def fingerprints() -> list[str]:
     return [hashlib.sha256(np.ascontiguousarray(each).tobytes()).hexdigest() for each in (pixels, light, *hits)]
 
 
-def test_pictures_and_rays_are_the_same_bit_by_bit(tmp_path: Path) -> None:
-    program = run(
-        [sys.executable, "-c", CHANGE + RENDER], env=os.environ | {"XDG_CACHE_HOME": str(tmp_path)}, text=True
-    )
-    assert program.returncode == 0, program.stderr
-    assert program.stdout.split() == fingerprints()
-    (notice,) = program.stderr.splitlines()
-    assert notice.startswith("notice: every run compiles anew")
-    assert "(loading of object code)" in notice
-    assert list(tmp_path.iterdir()) == []
+def rendered(cache: Path, program: str) -> tuple[list[str], str]:
+    """Return what a program prints that keeps its kernels in a folder: hashes, and its notices."""
+    ended = run([sys.executable, "-c", program], env=os.environ | {"XDG_CACHE_HOME": str(cache)}, text=True)
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout.split(), ended.stderr
+
+
+def test_pictures_and_rays_are_the_same_bit_by_bit_and_kernels_are_kept(tmp_path: Path) -> None:
+    printed, told = rendered(tmp_path, RENDER)
+    assert printed == fingerprints()
+    (notice,) = told.splitlines()
+    assert notice.startswith("notice: kernels take twice as long to compile")
+    assert "(object code)" in notice
+    without_a_compiler = RENDER.replace(repr(COMPILE), repr("raise SystemExit('not kept')"))
+    assert rendered(tmp_path, without_a_compiler) == (printed, "")
 
 
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        ("import numba.core.codegen; del numba.core.codegen.JITCPUCodegen", "cannot import name 'JITCPUCodegen'"),
+        ("import numba.core.codegen; del numba.core.codegen.JITCodeLibrary", "cannot import name 'JITCodeLibrary'"),
         ("import numba, sys; sys.modules['numba._dynfunc'] = None; del numba._dynfunc", "_dynfunc"),
     ],
 )

@@ -7,13 +7,17 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import pytest
+from numba import njit
 
-from minirt.kernel.compiler import jit
-from minirt.kernel.compiler.compilation import compiled
+import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
+from minirt.kernel.compiler.argument_types import type_of
+from minirt.kernel.compiler.options import FLAGS
+from minirt.kernel.frame import frame
+from minirt.kernel.machine_code.signature import signature_of
 from minirt.lanes.angle import ATAN_HALF
 from minirt.materials import Checker
-from minirt.rendering import Renderer
+from minirt.rendering.frame_arguments import frame_arguments
+from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -32,11 +36,10 @@ def scene_of(*kinds: type[Any]) -> Scene:
 @cache
 def code(scene: Scene) -> str:
     """Return the LLVM code of the kernel of a scene, compiled anew: a kernel from the cache shows none."""
-    kernel = compiled(jit.frame.frame, None)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(jit, "kernel_for", lambda traced: kernel)
-        Renderer(1).render(scene, np.zeros((8, 8, 4), np.uint8))
-    (signature,) = kernel.signatures
+    arguments = frame_arguments(Packing().pack(scene, 8, 8), np.zeros((8, 8, 4), np.uint8))
+    kernel = njit(**FLAGS)(frame)
+    signature = tuple(type_of(signature_of(each)) for each in arguments)
+    kernel.compile(signature)
     return str(kernel.inspect_llvm(signature))
 
 

@@ -1,37 +1,119 @@
-"""Two functions that compile in a moment, kept in a folder as kernels are."""
+"""Small functions that compile in a moment, and a compiler of them in this process: kernels as libraries keep them."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from minirt.kernel.compiler.compilation import compiled
-from numba import float64
+import numpy as np
 
-from minirt.kernel.compiler.numba_internals import cache_of
+from minirt.kernel.machine_code.code_cache import CodeCache, ObjectCode
+from minirt.kernel.machine_code.compile_process import CompileProcess
+from minirt.kernel.machine_code.library import Call, Library
 
 ARGUMENT = 1.5
-TYPES = (float64,)
 
 
-def double(x: Any) -> Any:
-    return x + x
+class Inner(NamedTuple):
+    line: Any
+    number: int
 
 
-def square(x: Any) -> Any:
-    return x * x
+class Outer(NamedTuple):
+    table: Any
+    deep: Any
+    inner: Inner
+    absent: Any = None
 
 
-def is_found(function: Any, folder: Path) -> bool:
-    """Compile or load a small kernel and return whether it was loaded. Its result is always right."""
-    kernel = compiled(function, folder, TYPES)
-    assert kernel(ARGUMENT) == function(ARGUMENT)
-    return sum(kernel.stats.cache_hits.values()) == 1
+def double(x: Any) -> None:
+    x[0] = x[0] + x[0]
 
 
-def file_of(function: Any, folder: Path) -> Path:
+def square(x: Any) -> None:
+    x[0] = x[0] * x[0]
+
+
+def count(x: Any) -> int:
+    return len(x) + 40
+
+
+def both(x: Any, n: int) -> tuple[int, int]:
+    return len(x), -n
+
+
+def half(x: Any) -> float:
+    return 0.5 * x[0]
+
+
+def quotients(x: Any, y: Any) -> None:
+    for i in range(len(x)):
+        y[i] = x[i] / y[i]
+
+
+def sine(x: Any) -> None:
+    x[0] = np.sin(x[0])
+
+
+def read_back(number: int, outer: Outer, factor: float, records: Any, nothing: None, out: Any) -> int:
+    """Store a number of each argument and of each part of one."""
+    out[0], out[1] = outer.table[1, 2], outer.deep[1, 2, 3]
+    out[2], out[3] = outer.inner.line[1], outer.inner.number
+    out[4], out[5] = number, factor
+    out[6], out[7] = records[1]["height"], records[0]["centre"][2]
+    out[8], out[9] = outer.table.shape[0], outer.deep.shape[2]
+    out[10] = outer.absent is None and nothing is None
+    return number
+
+
+class Compiler(CompileProcess):
+    """Compiles small kernels in this process, and counts them."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.compiled: list[str] = []
+
+    def compile(self, requests: list[str], target: str | None = None) -> list[ObjectCode]:
+        self.compiled += requests
+        return [object_code_of(*json.loads(each)[:1], json.dumps(json.loads(each)[1])) for each in requests]
+
+
+@cache
+def object_code_of(name: str, signatures: str) -> ObjectCode:
+    """Return the names and the object code of a function for signatures in JSON."""
+    from minirt.kernel.compiler.object_code import object_code
+
+    return object_code(name, json.loads(signatures))
+
+
+def call(function: Callable[..., Any], *arguments: Any) -> Call:
+    """Return a call of a small kernel."""
+    return f"{function.__module__}:{function.__name__}", arguments or (np.array([ARGUMENT]),)
+
+
+def library(folder: Path | None) -> Library:
+    """Return a library that keeps its kernels in a folder, or in memory alone."""
+    made = Library()
+    made.cache = CodeCache(folder) if folder else None
+    return made
+
+
+def is_found(function: Callable[..., Any], folder: Path) -> bool:
+    """Load a small kernel, or compile it, by a new library; return whether it was loaded. Its result is right."""
+    kernels, compiler = library(folder), Compiler()
+    kernels.compile([call(function)], compiler)
+    expected, found = np.array([ARGUMENT]), np.array([ARGUMENT])
+    function(expected)
+    entry = kernels.find(call(function))
+    assert entry
+    entry(found)
+    assert found == expected
+    return not compiler.compiled
+
+
+def file_of(function: Callable[..., Any], folder: Path) -> Path:
     """Return the path of the file of a small kernel."""
-    dispatcher = compiled(function, folder)
-    cache = cache_of(dispatcher)
-    path: Path = cache.file_of(cache.identity(TYPES, dispatcher.targetctx))
-    return path
+    return CodeCache(folder).file_of(Library().identity(call(function)))

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from minirt.kernel.machine_code import cache_folder
+from minirt.kernel.machine_code.processor import description
 from tests.kernel.machine_code.package_copies import copy_package, replace_once
 from tests.paths import PACKAGE
 from tests.processes import run
@@ -18,20 +19,29 @@ NOW = 1.7e9  # any time in the past
 SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\nsp 0,0,5 4 10,20,30\n"
 RENDER = """
 import minirt
-from minirt.kernel.compiler import jit
-from minirt.rendering.scene_packing import Packing
+from minirt.kernel.machine_code.compile_process import CompileProcess
+from minirt.kernel.machine_code.library import LIBRARY
+
+compiled = []
+
+def count(process, requests, compile=CompileProcess.compile):
+    compiled.extend(requests)
+    return compile(process, requests)
+
+CompileProcess.compile = count
 scene = minirt.load("ball.rt")
+minirt.renderer(None).prepare(scene)  # compiles all kernels in one process
 image = minirt.render(scene, 8, 8)
-stats = jit.kernel_for(Packing().pack(scene, 8, 8)).stats
-print(jit.CACHE and jit.CACHE.name, sum(stats.cache_hits.values()),
-      sum(stats.cache_misses.values()), image.array[4, 4].tolist())
+print(LIBRARY.cache and LIBRARY.cache.folder.name, len(LIBRARY.entries) - len(compiled), len(compiled),
+      image.array[4, 4].tolist())
 """
+KERNELS = "3"  # that of the frame and two functions of binning
 
 
 def render_in_new_process(folder: Path, cache: Path, notice: str = "") -> list[str]:
     """Render by the package in `folder`, with its kernels under `cache`. Standard error must begin with `notice`.
 
-    Return the name of the folder of kernels, how often the kernel was found and not found, and a pixel.
+    Return the name of the folder of kernels, how many kernels were loaded and compiled, and a pixel.
     """
     (folder / "ball.rt").write_text(SCENE)
     variables = {"XDG_CACHE_HOME": str(cache), "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
@@ -42,6 +52,11 @@ def render_in_new_process(folder: Path, cache: Path, notice: str = "") -> list[s
     assert len(ended.stderr.splitlines()) == bool(notice)
     fields: list[str] = ended.stdout.strip().split(" ", 3)
     return fields
+
+
+def fingerprint() -> str:
+    """Return the fingerprint of the sources as they are now, as a new process does."""
+    return cache_folder.fingerprint_of.__wrapped__(description())
 
 
 def modification_times(folder: Path) -> dict[str, int]:
@@ -55,21 +70,21 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_next_process_loads_the_kernel_and_edited_sources_compile_it_anew(copy: Path, tmp_path: Path) -> None:
-    name, hits, misses, pixel = render_in_new_process(copy, tmp_path)
-    assert (hits, misses, pixel) == ("0", "1", "[10, 20, 30]")
+    name, loaded, compiled, pixel = render_in_new_process(copy, tmp_path)
+    assert (loaded, compiled, pixel) == ("0", KERNELS, "[10, 20, 30]")
     kept = modification_times(tmp_path)
-    assert sum(path.endswith(".kernel") for path in kept) == 3  # the kernel and two functions of binning
-    assert render_in_new_process(copy, tmp_path) == [name, "1", "0", pixel]
+    assert sum(path.endswith(".kernel") for path in kept) == int(KERNELS)
+    assert render_in_new_process(copy, tmp_path) == [name, KERNELS, "0", pixel]
     assert modification_times(tmp_path) == kept
 
     shade = copy / "minirt" / "kernel" / "shading" / "shade.py"
     source = shade.read_text()
     replace_once(shade, "light.y * colour.y", "2.0 * light.y * colour.y")
-    edited, hits, misses, pixel = render_in_new_process(copy, tmp_path)
+    edited, loaded, compiled, pixel = render_in_new_process(copy, tmp_path)
     assert edited != name
-    assert (hits, misses, pixel) == ("0", "1", "[10, 40, 30]")
+    assert (loaded, compiled, pixel) == ("0", KERNELS, "[10, 40, 30]")
     shade.write_text(source)
-    assert render_in_new_process(copy, tmp_path) == [name, "1", "0", "[10, 20, 30]"]
+    assert render_in_new_process(copy, tmp_path) == [name, KERNELS, "0", "[10, 20, 30]"]
 
 
 @pytest.mark.parametrize("source", ["kernel/frame.py", "lanes/vec.py", "shapes/quadric.py", "shapes/new.py"])
@@ -78,19 +93,19 @@ def test_each_source_of_a_kernel_changes_the_fingerprint(
 ) -> None:
     package = shutil.copytree(copy / "minirt", tmp_path / "minirt")
     monkeypatch.setattr(cache_folder, "PACKAGE", package)
-    before = cache_folder.fingerprint()
-    assert cache_folder.fingerprint() == before
+    before = fingerprint()
+    assert fingerprint() == before
     with (package / source).open("a") as file:
         file.write("\n")
-    assert cache_folder.fingerprint() != before
+    assert fingerprint() != before
 
 
 def test_other_sources_do_not_change_the_fingerprint(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    before = cache_folder.fingerprint()
+    before = fingerprint()
     package = shutil.copytree(PACKAGE, tmp_path / "elsewhere", ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.setattr(cache_folder, "PACKAGE", package)
     (package / "cli/__init__.py").write_text("")
-    assert cache_folder.fingerprint() == before
+    assert fingerprint() == before
 
 
 def test_old_folders_are_deleted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -122,7 +137,8 @@ def test_the_folder_in_use_is_not_deleted(monkeypatch: pytest.MonkeyPatch, tmp_p
 def test_without_a_writable_folder_the_picture_is_the_same_with_a_notice(copy: Path, tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.touch()
-    assert render_in_new_process(copy, blocked, "notice: every run compiles anew") == ["None", "0", "1", "[10, 20, 30]"]
+    printed = render_in_new_process(copy, blocked, "notice: every run compiles anew")
+    assert printed == ["None", "0", KERNELS, "[10, 20, 30]"]
 
 
 def test_a_relative_cache_folder_is_ignored(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -145,10 +161,10 @@ def test_nothing_is_kept_in_a_folder_that_others_may_write(copy: Path, tmp_path:
     unsafe.chmod(0o777)
     kept = modification_times(tmp_path)
     printed = render_in_new_process(copy, tmp_path, "notice: every run compiles anew, kernels cannot be kept: other")
-    assert printed == ["None", "0", "1", "[10, 20, 30]"]
+    assert printed == ["None", "0", KERNELS, "[10, 20, 30]"]
     assert modification_times(tmp_path) == kept
     unsafe.chmod(0o700)
-    assert render_in_new_process(copy, tmp_path) == [first[0], "1", "0", "[10, 20, 30]"]
+    assert render_in_new_process(copy, tmp_path) == [first[0], KERNELS, "0", "[10, 20, 30]"]
 
 
 def test_nothing_is_kept_in_a_folder_of_another_user(

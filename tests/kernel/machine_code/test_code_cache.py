@@ -1,78 +1,74 @@
-"""Cache of machine code: the files on disk, and the memory of kernels."""
+"""Cache of machine code: what is in the files on disk, and when the memory of a kernel is freed."""
 
 from __future__ import annotations
 
 import gc
 import weakref
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from numba import typeof
 
-from minirt.kernel.compiler import jit, numba_internals
-from minirt.kernel.compiler.numba_internals import cache_of
+from minirt.kernel.machine_code import functions
+from minirt.kernel.machine_code.library import LIBRARY, Call
 from minirt.rendering import Renderer
 from minirt.rendering.frame_arguments import frame_arguments
 from minirt.rendering.scene_packing import Packing
-from minirt.scene import Scene, parse
+from minirt.scene import parse
+from tests.kernel.machine_code.small_kernels import Compiler, call, double, library
 
 BALL = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0 2 255,60,60\n"
-FLOOR = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\npl 0,-1,0 0,1,0 9,9,99\n"
-
-pytestmark = pytest.mark.skipif(jit.CACHE is None, reason="kernels cannot be kept here")
 
 
-def picture(scene: Scene) -> bytes:
-    """Render a scene into the bytes of its pixels."""
-    renderer, pixels = Renderer(threads=1), np.zeros((30, 40, 4), np.uint8)
+def kernel_call() -> Call:
+    """Render a scene and return the call of its kernel."""
+    scene, renderer, pixels = parse(BALL).scene, Renderer(threads=1), np.zeros((30, 40, 4), np.uint8)
     renderer.prepare(scene)
     renderer.render(scene, pixels)
-    return pixels.tobytes()
+    return functions.frame.call(*frame_arguments(Packing().pack(scene, 40, 30), pixels))
 
 
-def kernel(scene: Scene) -> object:
-    """Return the kernel for a scene."""
-    return jit.kernel_for(Packing().pack(scene, 40, 30))
-
-
+@pytest.mark.skipif(LIBRARY.cache is None, reason="kernels cannot be kept here")
 def test_files_hold_machine_code_and_hardly_more() -> None:
-    scene = parse(BALL).scene
-    picture(scene)
-    arguments = frame_arguments(Packing().pack(scene, 40, 30), np.zeros((30, 40, 4), np.uint8))
-    assert jit.is_compiled(arguments)
-    dispatcher = jit.kernel_for(arguments[-1])
-    cache = cache_of(dispatcher)
-    identity = cache.identity(tuple(map(typeof, arguments)), dispatcher.targetctx)
-    names, machine_code = cache.read(identity)
+    identity = LIBRARY.identity(kernel_call())
+    assert LIBRARY.cache is not None
+    found = LIBRARY.cache.read(identity)
+    assert found is not None
+    names, machine_code = found
     assert len(machine_code) > 10_000
-    assert cache.file_of(identity).stat().st_size < 1.2 * len(machine_code)
-    assert names["function"] in names["defined"]
+    assert LIBRARY.cache.file_of(identity).stat().st_size < 1.2 * len(machine_code)
+    assert set(names) == {"entry", "results"}
+    assert names["results"] == 0
+    assert names["entry"].encode() in machine_code
 
 
-def test_the_memory_of_a_kernel_is_freed_with_its_last_reference(monkeypatch: pytest.MonkeyPatch) -> None:
-    ball, floor = parse(BALL).scene, parse(FLOOR).scene
-    picture(ball)  # objects of the first kernel that stay, such as the binning, are out of the count
-    engines = []
-
-    class Codegen(numba_internals.JITCPUCodegen):  # type: ignore[misc]
-        def __init__(self, name: str) -> None:
-            super().__init__(name)
-            engines.append(weakref.ref(self._engine._ee))
-
-    monkeypatch.setattr(numba_internals, "JITCPUCodegen", Codegen)
-    jit.kernel_of.cache_clear()
-    before = picture(floor)
-    assert len(engines) == 1
+def is_freed_with_its_last_reference(kernels: Any) -> bool:
+    """Whether the machine code of a kernel lives as long as it may be called, and no longer."""
+    kernels.compile([call(double)], Compiler())
+    entry = kernels.find(call(double))
+    code = weakref.ref(entry.code)
+    kernels.entries.clear()
     gc.collect()
-    assert engines[0]() is not None, "as long as it may be called"
-    jit.kernel_of.cache_clear()
+    values = np.array([1.5])
+    entry(values)
+    assert values == [3.0]
+    assert code() is not None
+    del entry
     gc.collect()
-    assert engines[0]() is None
-    assert picture(floor) == before
-    assert len(engines) == 2
+    return code() is None
 
 
-def test_the_kernels_in_memory_are_limited() -> None:
-    assert jit.kernel_of.cache_info().maxsize == jit.KERNELS_IN_MEMORY
-    first = kernel(parse(BALL).scene)
-    assert kernel(parse(BALL).scene) is first
+def test_the_memory_of_a_kernel_is_freed_with_its_last_reference(tmp_path: Path) -> None:
+    kernels = library(tmp_path)
+    assert is_freed_with_its_last_reference(kernels)
+    assert is_freed_with_its_last_reference(kernels), "loaded from disk"
+
+
+def test_a_library_that_keeps_what_it_should_not_would_be_found_here(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kernels, kept = library(tmp_path), []
+    keep = kernels.keep
+    monkeypatch.setattr(kernels, "keep", lambda identity, entry: kept.append(entry) or keep(identity, entry))
+    assert not is_freed_with_its_last_reference(kernels)

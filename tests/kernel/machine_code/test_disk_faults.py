@@ -20,7 +20,9 @@ FULL = """
 import resource
 resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))  # every write to a file fails, as on a full disk
 import minirt
-print(minirt.render(minirt.load("ball.rt"), 8, 8).array[4, 4].tolist())
+scene = minirt.load("ball.rt")
+minirt.renderer(None).prepare(scene)
+print(minirt.render(scene, 8, 8).array[4, 4].tolist())
 """
 SCENE = "A 1 255,255,255\nC 0,0,0 0,0,1 60\nsp 0,0,5 4 10,20,30\n"
 

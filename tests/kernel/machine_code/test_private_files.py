@@ -112,3 +112,33 @@ def test_a_lock_that_is_held_for_too_long_is_passed_over(tmp_path: Path, monkeyp
 def test_without_a_lock_file_work_goes_on(tmp_path: Path) -> None:
     with locked(tmp_path / "missing" / "lock"):
         pass
+
+
+def is_free(path: Path, monkeypatch: pytest.MonkeyPatch) -> bool:
+    """Whether nobody holds the lock of a file."""
+    monkeypatch.setattr(private_files, "PATIENCE", 0.0)
+    with path.open("w") as file:
+        try:
+            private_files.wait_for_lock(file.fileno())
+        except BlockingIOError:
+            return False
+    return True
+
+
+@pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning")
+def test_a_lock_is_free_although_a_forked_process_has_its_file_open(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "lock"
+    reader, writer = os.pipe()
+    with locked(path):
+        child = os.fork()
+        if not child:
+            os.close(writer)
+            os.read(reader, 1)  # until the parent process closes the other end
+            os._exit(0)
+        assert not is_free(path, monkeypatch)
+    assert is_free(path, monkeypatch)
+    os.close(writer)
+    assert os.waitpid(child, 0)[1] == 0
+    os.close(reader)
