@@ -42,7 +42,7 @@ class Group(NamedTuple):
     rows: Any  # a row for each shape
     blocks: Any  # a block has `WIDTH` lanes for each number of a packed shape; lanes to spare repeat the last shape
     labels: Any  # (blocks, WIDTH, 2) index in the scene and extent of the shape in each lane of a block
-    unbounded: Any  # (k,) indices in the scene of the shapes without a bounding box, such as planes
+    unbounded: Any  # (k,) indices in the scene of shapes without a bounding box; None for a kind that is not infinite
     number: int  # of the group in `Tree.slots`; -1 without rows
 
 
