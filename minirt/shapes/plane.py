@@ -27,7 +27,7 @@ PARALLEL = 4  # error of the scalar product of two unit vectors, in unit roundof
 class Plane(Shape):
     """A line `pl` of a scene file."""
 
-    code, title, plural = "pl", "plane", "planes"
+    code, title, plural, infinite = "pl", "plane", "planes", True
     point: Triple = declare(Point, "a point of the plane")
     normal: Triple = declare(Direction, "normal")
     colour: Triple = declare(Colour, "colour")

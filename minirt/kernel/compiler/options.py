@@ -42,7 +42,7 @@ if FAILED:
     )
 
 # error_model: x / 0 is infinite or NaN, as in IEEE 754. fastmath: a * b + c may round once, and nothing else.
-FLAGS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True}
+FLAGS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 if not FAILED:
     FLAGS["_nrt"] = False  # The kernel allocates nothing: no reference counting.
 
