@@ -29,7 +29,7 @@ def measure(
     width, height = size or minirt.size_of(scene)
     renderer = Renderer(threads, precision)
     start = perf_counter()
-    renderer.prepare(scene)
+    renderer.specialise(scene)
     compile_s = perf_counter() - start
     pixels = np.empty((height, width, 4), np.uint8)
     renderer.render(scene, pixels)

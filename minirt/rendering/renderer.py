@@ -13,6 +13,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.fork_safety import renew_after_fork
 from minirt.rendering.frame_arguments import NO_LINEAR
+from minirt.rendering.notes import kernel_notes
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.queries import pick, preview
 from minirt.rendering.running import fixed_samples, to_error
@@ -68,19 +69,40 @@ class Renderer:
     def about(self) -> list[str]:
         """Sentences about how the last picture was rendered and what its kernel lacks."""
         with self.busy:
-            return [f"{self.threads} threads, {self.precision} precision", *self.packing.notes]
+            return [f"{self.threads} threads, {self.precision} precision", *self.notes]
+
+    @property
+    def notes(self) -> list[str]:
+        """Sentences about the kernel of the last picture, and about its tiles, light buffers and lights."""
+        choice, last = self.runner.choice, self.packing.last
+        if not choice or not last:
+            return []
+        compiling = self.kernels.background.busy
+        return [*kernel_notes(last[0], choice.wide, compiling), *self.packing.notes]
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether there is a kernel, narrow or wide, that can draw this scene."""
         return self.kernels.is_ready(scene)
 
     def prepare(self, scene: Scene) -> None:
-        """Load the narrow kernel for this scene, or compile it, which takes seconds.
+        """Load a kernel that can draw this scene. Where there is none, another process compiles the narrow one, which
+        takes seconds. RenderError where that fails.
+        """
+        if not self.is_ready(scene):
+            self.kernels.compile(scene)
+        self.render(scene, np.zeros((1, 1, 4), np.uint8))
 
-        Another process compiles. RenderError where that fails.
+    def specialise(self, scene: Scene) -> None:
+        """Load or compile the narrow kernel for this scene, so that measurements are those of this kernel alone.
+
+        RenderError where compiling fails.
         """
         self.kernels.compile(scene)
-        self.render(scene, np.zeros((1, 1, 4), np.uint8))
+        self.prepare(scene)
+
+    def specialise_early(self) -> None:
+        """Have narrow kernels compiled as soon as a wide one has drawn a picture: for windows, which stay open."""
+        self.kernels.narrow_after = 0.0
 
     def stop(self) -> None:
         """Stop compiling; callable from any thread."""
