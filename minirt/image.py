@@ -22,9 +22,11 @@ if TYPE_CHECKING:
 
 def format_of(path: str | os.PathLike[str]) -> str:
     """Return Pillow's name of the format of a file extension; RenderError when Pillow cannot write it."""
+    suffix = Path(path).suffix.lower()
+    if suffix == ".png":
+        return "PNG"
     from PIL import Image as pillow  # noqa: N813
 
-    suffix = Path(path).suffix.lower()
     name = pillow.registered_extensions().get(suffix, "")
     if name not in pillow.SAVE:
         raise RenderError(f"{os.fspath(path)}: cannot write pictures with the extension '{suffix}', try .png")
@@ -53,6 +55,8 @@ class Image:
 
     def encode(self, name: str = "PNG") -> bytes:
         """Return the bytes of a file in a format of Pillow; RenderError when the format cannot hold the picture."""
+        if name == "PNG":
+            import PIL.PngImagePlugin  # noqa: F401  # else `save` loads the plug-ins of all formats: 20 ms
         buffer = io.BytesIO()
         try:
             self.pil.save(buffer, name)

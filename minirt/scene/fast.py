@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Sequence
+from functools import cache
 
 from minirt.element import Element, fields_of
 from minirt.scene.registry import ELEMENTS
@@ -27,15 +28,19 @@ def line_pattern(kind: type[Element]) -> str:
     return f"(?P<{kind.code}>(?:{'|'.join((kind.code, *kind.aliases))}){fields})"
 
 
-LINE = re.compile(rf"[ \t]*(?:{'|'.join(map(line_pattern, KINDS.values()))})[ \t]*(?:#[^\r\n\0]*)?\r?")
+@cache
+def plain_line() -> re.Pattern[str]:
+    """Return the pattern of all plain lines; to compile it takes as long as to diagnose 100 lines."""
+    return re.compile(rf"[ \t]*(?:{'|'.join(map(line_pattern, KINDS.values()))})[ \t]*(?:#[^\r\n\0]*)?\r?")
 
 
 def read(sources: Sequence[str]) -> Sequence[Element | None]:
     """Parse lines as they stand in a file; None for each line that is left to the diagnosing reader."""
     indices: dict[str, list[int]] = defaultdict(list)
     texts: dict[str, list[str]] = defaultdict(list)
+    match = plain_line().fullmatch
     for index, source in enumerate(sources):
-        line = LINE.fullmatch(source)
+        line = match(source)
         if line:
             code = line.lastgroup or ""
             indices[code].append(index)
