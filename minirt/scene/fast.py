@@ -14,12 +14,15 @@ from functools import cache
 from minirt.element import Element, fields_of
 from minirt.scene.registry import ELEMENTS
 
-# Kinds that a scene may have many of: for the others the fast path does not pay.
-KINDS = {
-    code: kind
-    for code, kind in ELEMENTS.items()
-    if not kind.once and all(field.plain for field in fields_of(kind) if not field.keyed)
-}
+
+@cache
+def frequent_kinds() -> dict[str, type[Element]]:
+    """Return the kinds that a scene may have many of, by identifier: for the others the fast path does not pay."""
+    return {
+        code: kind
+        for code, kind in ELEMENTS.items()
+        if not kind.once and all(field.plain for field in fields_of(kind) if not field.keyed)
+    }
 
 
 def line_pattern(kind: type[Element]) -> str:
@@ -31,7 +34,7 @@ def line_pattern(kind: type[Element]) -> str:
 @cache
 def plain_line() -> re.Pattern[str]:
     """Return the pattern of all plain lines; to compile it takes as long as to diagnose 100 lines."""
-    return re.compile(rf"[ \t]*(?:{'|'.join(map(line_pattern, KINDS.values()))})[ \t]*(?:#[^\r\n\0]*)?\r?")
+    return re.compile(rf"[ \t]*(?:{'|'.join(map(line_pattern, frequent_kinds().values()))})[ \t]*(?:#[^\r\n\0]*)?\r?")
 
 
 def read(sources: Sequence[str]) -> Sequence[Element | None]:
@@ -47,7 +50,7 @@ def read(sources: Sequence[str]) -> Sequence[Element | None]:
             texts[code].append(line[code])
     elements: list[Element | None] = [None] * len(sources)
     for code, lines in indices.items():
-        parsed = read_kind(KINDS[code], texts[code], [sources[index] for index in lines])
+        parsed = read_kind(frequent_kinds()[code], texts[code], [sources[index] for index in lines])
         for index, element in zip(lines, parsed, strict=True):
             elements[index] = element
     return elements

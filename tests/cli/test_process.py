@@ -75,7 +75,8 @@ VERSION = "from minirt.cli import main\nimport sys\nsys.argv = ['miniRT', '--ver
 
 @pytest.mark.parametrize(("asked", "found"), [("", "1"), ("os.environ['OPENBLAS_NUM_THREADS'] = '3'\n", "3")])
 def test_numpy_starts_no_threads_of_its_own_unless_asked(folder: Path, asked: str, found: str) -> None:
-    program = f"import os\nos.environ.pop('OPENBLAS_NUM_THREADS', None)\n{asked}{VERSION}print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
+    start = f"import os\nos.environ.pop('OPENBLAS_NUM_THREADS', None)\n{asked}{VERSION}"
+    program = f"{start}print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
     assert printed(program, folder)[-2:] == [found, "False"]
 
 
