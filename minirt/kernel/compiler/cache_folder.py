@@ -19,6 +19,7 @@ import numba
 from llvmlite.binding import get_host_cpu_name
 
 from minirt.kernel.compiler.private_files import PRIVATE_FOLDER, make_private_folder
+from minirt.kernel.compiler.source_files import source_files
 
 PACKAGE = Path(__file__).parents[2]
 SOURCES = ("kernel", "lanes", "shapes")  # folders of all sources of a kernel
@@ -45,8 +46,8 @@ def fingerprint() -> str:
     versions = sys.version, numba.__version__, llvmlite.__version__, get_host_cpu_name()
     digest = hashlib.sha256(" ".join(versions).encode())
     for folder in SOURCES:
-        for source in sorted((PACKAGE / folder).rglob("*.py")):
-            digest.update(source.relative_to(PACKAGE).as_posix().encode() + b"\0" + source.read_bytes())
+        for name, source in source_files(PACKAGE / folder, folder):
+            digest.update(name.encode() + b"\0" + source)
     return digest.hexdigest()[:16]
 
 
