@@ -1,7 +1,8 @@
 """Immutable records: frozen dataclasses that share their methods.
 
-`dataclass(frozen=True)` writes six methods of each class as text and compiles them, which takes 0.6 ms a class. Records
-inherit these methods, which takes 0.02 ms a class: the fifty classes of a scene load in a twentieth of the time.
+`dataclass(frozen=True)` writes six methods of each class as text and compiles them. Records inherit these methods: a
+class is made in a 28th of the time, 0.04 instead of 1.13 ms, and the program has fifty. An object is made in 1.5 times
+the time, 6 us.
 """
 
 from __future__ import annotations
@@ -75,10 +76,13 @@ class Immutable:
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return bool(compared_values(self) == compared_values(other))
+        kind: Any = type(self)
+        values = compared_values(kind)
+        return bool(values(self) == values(other))
 
     def __hash__(self) -> int:
-        return hash(compared_values(self))
+        kind: Any = type(self)
+        return hash(compared_values(kind)(self))
 
     def __repr__(self) -> str:
         shown: Any = fields(self)  # type: ignore[arg-type]  # subclasses are dataclasses
@@ -88,19 +92,13 @@ class Immutable:
 
 @cache
 def parameters(kind: type[Any]) -> tuple[tuple[str, ...], dict[str, Any]]:
-    """Names of the fields that need no keyword, and the defaults of all fields, MISSING where there is none."""
+    """Return the fields that need no keyword, and the defaults of all fields, MISSING where there is none."""
     return tuple(each.name for each in fields(kind) if not each.kw_only), {
         each.name: each.default for each in fields(kind)
     }
 
 
-def compared_values(each: Immutable) -> Any:
-    """The values by which a record is compared."""
-    kind: Any = type(each)
-    return getter(kind)(each)
-
-
 @cache
-def getter(kind: type[Any]) -> Callable[[object], Any]:
-    """Function that returns the compared values of records of a kind."""
+def compared_values(kind: type[Any]) -> Callable[[object], Any]:
+    """Return a function that returns the values by which records of a kind are compared."""
     return attrgetter(*(each.name for each in fields(kind) if each.compare), "__class__")
