@@ -10,7 +10,10 @@ from typing import Any
 
 import pytest
 
+from minirt.element import Record
+from minirt.fields import Field, Length
 from minirt.records import Immutable, record
+from minirt.shapes import Sphere
 
 
 @record()
@@ -132,3 +135,17 @@ def test_tools_for_dataclasses_work(kind: Any, peer: Any) -> None:
     changed = replace(kind(1), second=7)
     assert (changed.first, changed.second) == (1, 7)
     assert vars(pickle.loads(pickle.dumps(changed))) == vars(changed)
+
+
+def below(kind: type[Any]) -> set[type[Any]]:
+    """A class of the program and all of its subclasses."""
+    return {kind}.union(*(below(each) for each in kind.__subclasses__() if each.__module__.startswith("minirt.")))
+
+
+def test_elements_and_fields_write_no_methods_of_their_own() -> None:
+    """Each method that a decorator writes would be compiled at every start."""
+    kinds = below(Record) | below(Field)
+    assert {Sphere, Length} < kinds
+    written = {"__init__", "__eq__", "__hash__", "__repr__", "__setattr__", "__delattr__"}
+    assert {kind: written & vars(kind).keys() for kind in kinds if written & vars(kind).keys()} == {}
+    assert written & vars(SmallPeer).keys() == written
