@@ -26,6 +26,7 @@ $(NAME): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) install --quiet --upgrade 'pip>=25.1'
 	$(call INSTALL,.)
+	$(VENV)/bin/python -m compileall -q minirt  # also where PYTHONDONTWRITEBYTECODE would have each start compile it
 	touch $@
 
 bonus: all  ## the same: what the subject calls the bonus is part of the program

@@ -15,7 +15,6 @@ from minirt.fork_safety import renew_after_fork
 from minirt.rendering.frame_arguments import NO_LINEAR
 from minirt.rendering.notes import kernel_notes
 from minirt.rendering.packing.features import DEPTH
-from minirt.rendering.queries import pick, preview
 from minirt.rendering.running import fixed_samples, to_error
 from minirt.rendering.running.cores import usable_cores
 from minirt.rendering.running.frame_runner import FrameRunner
@@ -110,6 +109,8 @@ class Renderer:
 
     def preview(self, scene: Scene, width: int, height: int) -> np.ndarray | None:
         """Return a coarse picture of a scene without using a kernel; see `minirt.rendering.queries.preview`."""
+        from minirt.rendering.queries import preview
+
         return preview.preview(scene, width, height)
 
     def render(
@@ -159,7 +160,7 @@ class Renderer:
         self.runner.not_finite = 0
         light = NO_LINEAR if linear is None else linear
         if not scene.shapes or not pixels.size:
-            preview.draw_background(scene, pixels, light)
+            draw_background(scene, pixels, light)
             return True
         return fixed_samples.render(
             self.runner, self.packing, scene, pixels, light, samples, is_wanted, edges_only=edges_only
@@ -181,7 +182,7 @@ class Renderer:
             self.runner.not_finite = 0
             light = NO_LINEAR if linear is None else linear
             if not scene.shapes or not pixels.size:
-                preview.draw_background(scene, pixels, light)
+                draw_background(scene, pixels, light)
                 return Outcome(1.0, 1, 0.0, perf_counter() - start)
             return to_error.reach(self.runner, self.packing, scene, pixels, light, error, seconds)
 
@@ -191,6 +192,8 @@ class Renderer:
         A picture that is being made is cancelled. Where something else keeps the renderer busy, such as the compiler,
         this packs the scene anew instead of using the packed shapes.
         """
+        from minirt.rendering.queries import pick
+
         for _ in range(TRIES):
             if self.busy.acquire(timeout=PATIENCE):
                 try:
@@ -203,3 +206,10 @@ class Renderer:
     def cancel(self) -> None:
         """End the picture that is being rendered, soon and incomplete; callable from any thread."""
         self.runner.cancel()
+
+
+def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray) -> None:
+    """Draw a scene without shapes, see `minirt.rendering.queries.preview`."""
+    from minirt.rendering.queries import preview
+
+    preview.draw_background(scene, pixels, linear)

@@ -1,6 +1,6 @@
 """The interface of shapes: what each shape's file defines.
 
-The file of a shape holds its manual page, its line in a scene file (a frozen dataclass), its packed form for the kernel
+The file of a shape holds its manual page, its line in a scene file (a record), its packed form for the kernel
 (a NamedTuple of numbers and Vecs, made by `pack`) and three functions on packed shapes:
 
     intersect(shape, origin, direction)   whether a ray hits the shape, and the distance t along the unit `direction` at
@@ -29,7 +29,6 @@ from __future__ import annotations
 import sys
 from abc import abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NewType, get_type_hints
 
 import numpy as np
@@ -38,13 +37,14 @@ from minirt.fields import Triple
 from minirt.lanes import Vec
 from minirt.lanes.operations import Mask
 from minirt.materials import Attributes
+from minirt.records import record
 
 Bounds = tuple[Triple, Triple]  # axis-aligned bounding box: least and greatest corner
 Ball = tuple[Triple, float]  # centre and radius
 Position = NewType("Position", Vec)  # a point in a packed shape; other Vecs there are directions
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Shape(Attributes):
     """A surface that rays can hit, with its materials. The last field of every shape is its colour."""
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.rendering import pick
+from minirt.rendering.queries.pick import pick
 from minirt.scene import Scene, dump, parse
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session

@@ -89,7 +89,7 @@ class Kernels:
 
     @cached_property
     def for_all_scenes(self) -> list[str]:
-        """The identities of kernels that are enough for all scenes, some of which cannot be drawn in single precision."""
+        """The identities of kernels that are enough for all scenes, some of which single precision cannot draw."""
         wide = [each for each in WIDE_KERNELS if each.name == "full" and each.precision in ("double", self.precision)]
         return [*map(LIBRARY.identity, packing_calls()), *map(wide_identity, wide)]
 
