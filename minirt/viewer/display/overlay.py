@@ -17,7 +17,6 @@ TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACK
 MARGIN, PADDING = 10, 4  # pixels
 TEXT_SIZE, MIN_TEXT_SIZE = 16, 8  # pixels: on a screen of scale 1, and the least that can be read
 COLUMNS, ROWS = 40, 18  # letters for which a window must have room; if it has not, they become smaller
-COMPILING = "Compiling kernels (first run only)"
 
 LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
 

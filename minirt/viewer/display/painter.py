@@ -118,8 +118,6 @@ class Painter:
     All pixels get all samples, as in a picture that is rendered without a window.
     """
 
-    compiling = False  # whether the first picture waits for its kernel
-
     def __init__(self, renderer: Renderer, notify: Callable[[], object]) -> None:
         """`notify` is called when there are outcomes to take."""
         self.renderer = renderer
