@@ -101,7 +101,10 @@ class Job:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """The result of a job: a picture, or an error, or neither if it was cancelled."""
+    """The result of a job: a picture, or an error, or neither if it was cancelled.
+
+    Notes without a picture replace those of the latest picture: the renderer has changed, and the pixels would not.
+    """
 
     job: Job
     pixels: Pixels | None = None
