@@ -7,7 +7,7 @@ import numpy as np
 from minirt.mlx import Image, Mlx, Window
 from minirt.mlx.canvas import stretch
 from minirt.viewer.display.marks import Marks
-from minirt.viewer.display.overlay import TEXT_SIZE, HudLevel, draw_help, draw_hud, draw_message, text_size
+from minirt.viewer.display.overlay import HudLevel, draw_help, draw_hud, draw_message, text_size
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import State
 
@@ -24,7 +24,6 @@ class Screen:
         self.banner = ""  # a message that stays until its reason is gone
         self.marks = Marks()
         self.image = mlx.mlx_new_image(window.display, 1, 1)
-        draw_message(self.frame, "miniRT", 0, TEXT_SIZE)  # loads the font, which takes 50 ms, while nobody waits
         self._drawn: tuple[object, ...] = ()  # the contents of the window
 
     @property
