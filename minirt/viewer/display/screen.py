@@ -50,7 +50,7 @@ class Screen:
         if self.help:
             draw_help(self.frame, self.layout, size)
         elif self.level:
-            if picture:
+            if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
                 self.marks.draw(self.frame, state, picture.job.scene, scale, moving=picture.job.urgent)
             bottom = draw_hud(self.frame, state, picture, self.level, rate, size)
         draw_message(self.frame, message, bottom, size)

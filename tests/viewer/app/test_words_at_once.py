@@ -173,6 +173,18 @@ def test_the_outline_stays_on_an_edited_shape_and_waits_for_a_new_one(harness: S
     assert golden(harness.memory.screenshot()).any()
 
 
+def test_a_picture_stretched_to_another_size_has_no_outline(harness: SessionHarness) -> None:
+    harness.memory.resize(WIDTH, HEIGHT - 40)
+    harness.memory.tap(Key.X)
+    harness.memory.wait(MOMENT)
+    harness.memory.play()
+    frame = harness.memory.screenshot()
+    assert frame.shape == (HEIGHT - 40, WIDTH, 4)
+    assert not golden(frame).any()
+    harness.finish(0.001)
+    assert golden(harness.memory.screenshot()).any()
+
+
 def test_words_and_picture_that_come_together_are_one_frame(harness: SessionHarness) -> None:
     frames = []
     show = harness.memory.show
