@@ -20,6 +20,7 @@ class EventDispatcher:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.mouse = Mouse(session, self.perform)
+        self._tick_hook = self.as_hook(self.on_tick)
 
     def connect(self) -> None:
         """Install the handlers as hooks of the window."""
@@ -36,11 +37,11 @@ class EventDispatcher:
             Event.DESTROY_NOTIFY: session.quit,
         }
         for event, handler in handlers.items():
-            mlx.mlx_hook(window, event, 0, drop_parameter(handler), None)
-        mlx.mlx_text_hook(window, drop_parameter(self.on_press))
-        mlx.mlx_drop_hook(window, drop_parameter(self.on_drop))
-        mlx.mlx_resize_hook(window, drop_parameter(self.on_resize))
-        mlx.mlx_wake_hook(session.display, drop_parameter(self.on_wake))
+            mlx.mlx_hook(window, event, 0, self.as_hook(handler), None)
+        mlx.mlx_text_hook(window, self.as_hook(self.on_press))
+        mlx.mlx_drop_hook(window, self.as_hook(self.on_drop))
+        mlx.mlx_resize_hook(window, self.as_hook(self.on_resize))
+        mlx.mlx_wake_hook(session.display, self.as_hook(self.on_wake))
 
     def on_press(self, code: int | str) -> None:
         """A key goes down, or a character was typed."""
@@ -54,18 +55,20 @@ class EventDispatcher:
             self.perform(pressed, session.step)
             if pressed.held:
                 session.key_repeat.press(code, pressed.action, session.now)
-                self.set_tick_hook()
 
     def on_release(self, code: int) -> None:
         """A key goes up: its last steps are done, and a still picture is requested."""
         session = self.session
         self.apply_advances(session.key_repeat.release(code, session.now))
-        self.set_tick_hook()
         session.update()
 
     def on_tick(self) -> None:
-        """A sixtieth of a second passed while a key is held."""
-        self.apply_advances(self.session.key_repeat.advance(self.session.now))
+        """A sixtieth of a second passed while a key is held or words wait for their picture."""
+        session = self.session
+        waited = session.words_wait
+        self.apply_advances(session.key_repeat.advance(session.now))
+        if waited:
+            session.draw_late_words()
 
     def on_wake(self) -> None:
         """Another thread woke the event loop: the painter has a result, or the file has changed."""
@@ -76,7 +79,7 @@ class EventDispatcher:
         for error in session.refinement.collect():
             session.show_error(error)
         session.attempt(Session.take_screenshot)
-        session.draw()
+        session.refresh()
         session.update()
 
     def on_resize(self, _width: int, _height: int) -> None:
@@ -110,12 +113,16 @@ class EventDispatcher:
         if state is not session.state:
             session.show(state)
 
-    def set_tick_hook(self) -> None:
-        """Let the event loop tick while a key is held, and sleep until the next event otherwise."""
-        session = self.session
-        session.mlx.mlx_loop_hook(session.display, drop_parameter(self.on_tick) if session.key_repeat else None, None)
+    def as_hook(self, handler: Callable[..., object]) -> Callable[..., object]:
+        """Wrap a handler as a hook of MiniLibX, whose last argument is a parameter that the handler does not need.
 
+        After it, the event loop ticks while a key is held or words wait, and sleeps until the next event otherwise.
+        """
 
-def drop_parameter(handler: Callable[..., object]) -> Callable[..., object]:
-    """Wrap a handler as a hook of MiniLibX, whose last argument is a parameter that the handler does not need."""
-    return lambda *arguments: handler(*arguments[:-1])
+        def hook(*arguments: object) -> None:
+            handler(*arguments[:-1])
+            session = self.session
+            ticks = session.key_repeat or session.words_wait
+            session.mlx.mlx_loop_hook(session.display, self._tick_hook if ticks else None, None)
+
+        return hook

@@ -104,9 +104,7 @@ class BackgroundPainter(Painter):
                 self._changed.wait_for(lambda: not self._preparing or self._closed, PREVIEW_DELAY)
             if not self._preparing:
                 return self.renderer.is_ready(job.scene)
-            self.compiling = True
             self._previewed = None if self._waiting else job
-        self._notify()
         return False
 
     def _prepare(self, job: Job) -> None:
@@ -117,7 +115,7 @@ class BackgroundPainter(Painter):
         except Exception as reason:
             error = reason
         with self._changed:
-            self._preparing = self.compiling = False
+            self._preparing = False
             if error:
                 self.outcomes.append(Outcome(job, error=error))
             elif not self._waiting:

