@@ -1,8 +1,8 @@
 """Mitsuba 3 from the package `mitsuba`, with its LLVM back end, whose rays Embree traces.
 
-Its own integrators shade lights by other formulas, so a frame is a kernel of a few lines around its rays: Dr.Jit compiles
-it once for a scene, to vector code that runs on all threads. Its time is that of the whole frame, without building trees
-and compiling.
+Its own integrators light surfaces by other formulas, so a frame is a kernel of a few lines around its rays. Dr.Jit
+compiles it once for a scene, to vector code that runs on all threads. Its time is that of the whole frame, without
+building trees and compiling.
 """
 
 from __future__ import annotations

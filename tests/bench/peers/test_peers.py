@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from subprocess import CompletedProcess
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from tests.bench import meshes
-from tests.bench.peers import povray, tachyon
+from tests.bench.peers import mitsuba, povray, tachyon
 from tests.bench.peers.command import Command
 from tests.bench.peers.embree import Embree
 from tests.bench.peers.mitsuba import Mitsuba
@@ -156,3 +157,18 @@ def test_another_scene_is_found(text: str, wrong: str, scene: Scene, path: Path)
     assert shows_the_same(ours, ours, 0)
     path.write_text(LINES.replace(text, wrong))
     assert not shows_the_same(minirt.render(minirt.load(path), WIDTH, HEIGHT).array, ours, 12)
+
+
+def test_an_llvm_that_mitsuba_cannot_use_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Dr.Jit ends the program where LLVM is too old, so another program tries it."""
+    failed = CompletedProcess([], -6, "", "LLVM ERROR: Cannot select: fminimum\n  in a function")
+    monkeypatch.setattr(mitsuba, "find_spec", lambda name: object())
+    monkeypatch.setattr(mitsuba, "run", lambda command, **options: failed)
+    with pytest.raises(MissingError, match=r"Mitsuba 3: .* LLVM ERROR: Cannot select: fminimum$"):
+        Mitsuba(Setting(WIDTH, HEIGHT, 1, tmp_path))
+
+
+def test_mitsuba_may_be_missing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(mitsuba, "find_spec", lambda name: None)
+    with pytest.raises(MissingError, match="Mitsuba 3: mitsuba is not installed"):
+        Mitsuba(Setting(WIDTH, HEIGHT, 1, tmp_path))

@@ -30,5 +30,8 @@ class Yardstick(System):
         printed: dict[str, float] = json.loads(ran.stdout)
         return printed
 
+    def renders(self, path: Path) -> bool:
+        return "\nob " not in path.read_text(encoding="utf-8")
+
     def frame_times(self, path: Path, seconds: float) -> list[float]:
         return [self.run(path, "--seconds", str(seconds))["ms_median"]]
