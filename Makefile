@@ -63,8 +63,9 @@ bench: $(NAME)  ## time frames beside other programs: make bench BENCH=--quick f
 	$(VENV)/bin/python -m tests.bench $(BENCH)
 
 bench-peers: $(NAME)  ## install what `make bench` compares with and draws with (Debian, Ubuntu)
-	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox
-	$(call INSTALL,'.[report]' embreex)
+	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox xvfb
+	-$(SUDO) apt-get install -y --no-install-recommends libllvm19  # for Mitsuba; older systems lack it
+	$(call INSTALL,'.[report]' embreex mitsuba)
 
 REPORTED := demo figure-v4-everything eval-shadows-many
 
