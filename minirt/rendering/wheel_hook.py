@@ -14,7 +14,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 TAG = "py3-none-manylinux_2_17_x86_64"  # the kernels need no library at all
 
 
-class WideKernels(BuildHookInterface):  # type: ignore[type-arg]
+class WideKernels(BuildHookInterface):  # type: ignore[misc]
     """Compiles before the files of a wheel are collected; `artifacts` in pyproject.toml names the results."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
