@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 from enum import IntEnum
+from math import ceil
 
 from minirt.element import fields_of
 from minirt.mlx.text import draw_text, measure
@@ -129,12 +130,15 @@ def draw_help(pixels: Pixels, layout: str, max_size: int) -> None:
     listed = [*key_groups(layout), ("", [FINE_NOTE])]
     columns = [listed[:2], listed[2:]]
     height, width = pixels.shape[:2]
-    for size in range(max_size, MIN_TEXT_SIZE - 2, -1):
-        texts_of_columns = [column_texts(column) for column in columns]
+    texts_of_columns = [column_texts(column) for column in columns]
+    size = max_size
+    while True:
         widths = [[measure(text, size)[0] + size for text in texts] for texts in texts_of_columns]
         heights = [measure(texts[0], size)[1] for texts in texts_of_columns]
-        if sum(map(sum, widths)) + 2 * MARGIN <= width and max(heights) + 2 * MARGIN <= height:
+        excess = max((sum(map(sum, widths)) + 2 * MARGIN) / width, (max(heights) + 2 * MARGIN) / height)
+        if excess <= 1 or size < MIN_TEXT_SIZE:
             break
+        size = max(MIN_TEXT_SIZE - 1, min(size - 1, ceil(size / excess)))  # widths are nearly proportional to the size
     x = MARGIN
     for texts, text_widths in zip(texts_of_columns, widths, strict=True):
         for text, text_width, colour in zip(texts, text_widths, (MESSAGE_COLOUR, TEXT_COLOUR), strict=True):
