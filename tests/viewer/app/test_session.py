@@ -107,7 +107,7 @@ def test_a_render_error_is_a_message_over_the_picture():
     assert (harness.memory.screenshot() != before).any()
     harness.memory.wait(1)
     harness.memory.play()
-    assert len(harness.painter.requests) == 2  # and it is not requested again
+    assert len(harness.painter.requests) == 3  # two with the tap; and it is not requested again
 
 
 def test_an_error_of_picking_is_a_message_over_the_picture() -> None:
