@@ -87,6 +87,25 @@ def test_a_picture_that_is_not_urgent_is_cancelled(harness):
     assert harness.outcomes(1)[0].job.divisor == 2
 
 
+def wakes_before_the_next(harness: PainterHarness) -> bool:
+    """Whether a picture that makes room for the next is notified, although it has nothing to show."""
+    harness.start(JOB)
+    harness.renderer.started.clear()
+    harness.painter.request(replace(JOB, divisor=2))
+    assert harness.renderer.started.wait(HANG_LIMIT)
+    woken = harness.notifications.acquire(blocking=False)
+    harness.renderer.gate.set()
+    assert harness.notifications.acquire(timeout=HANG_LIMIT)
+    assert [each.job.divisor for each in harness.outcomes(1)][-1] == 2
+    return woken
+
+
+def test_a_picture_that_made_room_for_the_next_wakes_nobody(harness, monkeypatch):
+    assert not wakes_before_the_next(harness)
+    monkeypatch.setattr(background_painter, "is_news", lambda _: True)
+    assert wakes_before_the_next(harness)
+
+
 def test_a_picture_of_another_size_is_cancelled(harness):
     harness.start(replace(JOB, urgent=True))
     harness.painter.request(replace(JOB, width=10, urgent=True))
