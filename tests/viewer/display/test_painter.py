@@ -11,7 +11,7 @@ import pytest
 from minirt.errors import RenderError
 from minirt.viewer.display import background_painter
 from minirt.viewer.display.background_painter import BackgroundPainter
-from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.painter import Job, Outcome, paint
 from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
 from tests.waiting import HANG_LIMIT, until
 
@@ -239,6 +239,12 @@ def test_refining_is_cancelled_by_the_next_request(harness):
     assert (REFINED.base == colour_of(JOB.scene)).all()
     harness.renderer.gate.set()
     assert harness.outcomes(1)[0].job.samples == 1
+
+
+def test_a_picture_is_dropped_if_it_becomes_unwanted_while_its_error_is_estimated():
+    answers = iter([True, False])  # to the renderer, and to the estimate
+    outcome = paint(FakeRenderer(), REFINED, REFINED.base, lambda: next(answers))
+    assert (outcome.pixels, outcome.error) == (None, None)
 
 
 def test_a_request_before_the_renderer_can_be_cancelled_still_cancels(harness):
