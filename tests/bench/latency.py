@@ -32,10 +32,10 @@ from minirt.scene import Scene
 from minirt.viewer.app import desktop
 from minirt.viewer.app.session import Session
 
-TAPS = 20
-TAP_DELAYS = 0.05, 0.8  # seconds of refining before a tap: least and most
+TAPS = 12
+TAP_DELAYS = 0.05, 0.5  # seconds of refining before a tap: least and most
 PAUSE = 0.3  # seconds before a key is held and before a drag, in which a picture is refined
-HOLD = 1.5  # seconds that a key is held, and that a drag takes
+HOLD = 1.0  # seconds that a key is held, and that a drag takes
 MOTION_INTERVAL = 0.008  # seconds between two motions of a mouse
 KEYS = Key.D, Key.A, Key.RIGHT, Key.LEFT
 

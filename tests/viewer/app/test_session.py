@@ -57,7 +57,7 @@ def test_an_unchanged_frame_is_not_drawn_again():
 
 def test_a_coarse_picture_is_stretched_over_the_window():
     harness = SessionHarness()
-    harness.finish(FRAME_TIME * 100)
+    harness.finish(FRAME_TIME * 64)
     harness.hide_overlay()
     harness.tap(Key.D)
     harness.finish(FRAME_TIME)
