@@ -23,6 +23,7 @@ class BackgroundPainter(Painter):
 
     def __init__(self, renderer: Renderer, notify: Callable[[], object]) -> None:
         super().__init__(renderer, notify)
+        renderer.give_way()
         self._changed = threading.Condition()
         self._waiting: Job | None = None
         self._running: Job | None = None

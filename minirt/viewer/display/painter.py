@@ -50,6 +50,9 @@ class Renderer(Protocol):
     def refine(self, scene: Scene, pixels: Pixels, samples: int, *, is_wanted: IsWanted = ...) -> bool:
         """Render the edges in `pixels` with more samples; return False as `render` does."""
 
+    def give_way(self) -> None:
+        """Let the event loop go before the threads that render, from now on."""
+
     def cancel(self) -> None:
         """Let a running `render` or `refine` return False soon; callable from any thread."""
 

@@ -63,6 +63,10 @@ def test_a_finished_picture_is_notified(harness):
     assert not harness.painter.busy
 
 
+def test_rendering_gives_way_to_the_event_loop(harness):
+    assert harness.renderer.gives_way
+
+
 def test_a_coarser_picture_covers_the_window(harness):
     harness.painter.request(Job(JOB.scene, 65, 48, divisor=4))
     assert harness.outcomes(1)[0].pixels.shape == (12, 17, 4)
