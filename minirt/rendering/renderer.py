@@ -203,6 +203,10 @@ class Renderer:
             self.cancel()
         return pick.pick(scene, width, height, x, y)
 
+    def give_way(self) -> None:
+        """Let the other threads of this process, such as an event loop, go before those that render, from now on."""
+        self.runner.pool.give_way()
+
     def cancel(self) -> None:
         """End the picture that is being rendered, soon and incomplete; callable from any thread."""
         self.runner.cancel()

@@ -53,6 +53,9 @@ class Renderer(Protocol):
     def refine(self, scene: Scene, pixels: Pixels, samples: int, *, is_wanted: IsWanted = ...) -> bool:
         """Render the edges in `pixels` with more samples; return False as `render` does."""
 
+    def give_way(self) -> None:
+        """Let the event loop go before the threads that render, from now on."""
+
     def cancel(self) -> None:
         """Let a running `render` or `refine` return False soon; callable from any thread."""
 
@@ -163,8 +166,10 @@ def paint(renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: I
     if not done:
         return Outcome(job)
     about = () if job.urgent else tuple(renderer.about)
-    estimate = None if base is None else estimated_error(base, pixels, job.base_samples, job.samples)
-    return Outcome(job, pixels, error_estimate=estimate, about=about)
+    if base is None:
+        return Outcome(job, pixels, about=about)
+    estimate = estimated_error(base, pixels, job.base_samples, job.samples, is_wanted)
+    return Outcome(job) if estimate is None else Outcome(job, pixels, error_estimate=estimate, about=about)
 
 
 def preview(renderer: Renderer, job: Job) -> Outcome:
