@@ -7,7 +7,7 @@ from typing import Any
 
 from minirt.kernel.atomic_counter import fetch_add
 from minirt.kernel.scene_arrays import SceneArrays, by_reference
-from minirt.kernel.shading.environment import background_light
+from minirt.kernel.shading.environment import background_light, has_environment
 from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.kernel.trace import is_empty
 from minirt.lanes import Vec, lane, load, minimum, rarely, save, splat, unit, where, width
@@ -107,7 +107,7 @@ def render_tiles(
             return
         for left in range(0, across, TILE):
             tile = top // TILE * tile_count(across) + left // TILE
-            empty = scene.environment is None and is_empty(scene, tile)
+            empty = not has_environment(scene) and is_empty(scene, tile)
             # All packets for each sample, not all samples for each packet: a sum kept in registers through the loop
             # over samples took a seventh more time, since tracing then lacks those registers.
             for sample in range(samples):

@@ -10,11 +10,13 @@ class Group(NamedTuple):
 
     Shapes of this kind in tile c: `tile_shapes[tile_starts[c]:tile_starts[c + 1]]` of the scene. Shapes of this kind in
     cell c of light i: `light_shapes[light_starts[i, c]:light_starts[i, c + 1]]`.
+    A kind that the scene lacks has no rows.
     """
 
     rows: Any  # a row for each shape
     tile_starts: Any  # (tiles + 1,)
     light_starts: Any  # (m, cells + 1)
+    number: int  # of the group in `SceneArrays.slots`; -1 without rows
 
 
 class SceneArrays(NamedTuple):
@@ -36,7 +38,8 @@ class SceneArrays(NamedTuple):
     light_shapes: Any  # shapes of all cells of all light buffers, those of a cell and kind sorted by distance
     light_cones: Any  # (m, n, 5) bounding cones as seen from each light
     groups: Any  # a tuple of Group: one for each kind of shape in the scene
-    # Features that most scenes lack: a field that is None adds no code to the kernel.
+    # Features that most scenes lack. A field that is None adds no code to the kernel; an array without rows belongs to
+    # a feature that the kernel has and the scene lacks.
     spots: Any = None  # (m, 7) spot, parallel and fading lights, see `minirt.kernel.shading.lights`
     specular: Any = None  # (n, 3) specular highlights, see `minirt.kernel.shading.specular`
     reflective: Any = None  # (n, 3) mirrors and glass, see `minirt.kernel.shading.whitted`
@@ -45,6 +48,11 @@ class SceneArrays(NamedTuple):
     background: Any = None  # (3,) radiance along rays that hit nothing
     environment: Any = None  # `minirt.kernel.shading.environment.Environment`
     bvh: Any = None  # `minirt.kernel.bvh.nodes.Tree` of the shapes, for incoherent rays
+
+
+def has_rows(table: Any) -> bool:
+    """Whether an array of a feature, or the rows of a kind of shape, show that the scene has it."""
+    return bool(table.shape[0] > 0)
 
 
 def by_reference(arrays: Any) -> Any:

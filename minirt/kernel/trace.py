@@ -12,7 +12,7 @@ from typing import Any
 
 from minirt.kernel.culling.light_buffer import is_close, remember_cell
 from minirt.kernel.rows import intersect, is_batched, may_meet, read, surface
-from minirt.kernel.scene_arrays import Group, SceneArrays
+from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows
 from minirt.lanes import (
     Vec,
     any,
@@ -56,7 +56,22 @@ def is_empty(scene: SceneArrays, tile: int) -> bool:
 
 def count_kind(group: Group, count: int, tile: int) -> int:
     """Add the number of shapes of one kind in a tile to `count`."""
-    return count + int(group.tile_starts[tile + 1] - group.tile_starts[tile])
+    start, end = range_in_tile(group, tile)
+    return count + end - start
+
+
+def range_in_tile(group: Group, tile: int) -> tuple[int, int]:
+    """Return the range in `SceneArrays.tile_shapes` of the shapes of one kind in a tile."""
+    if not has_rows(group.rows):
+        return 0, 0
+    return int(group.tile_starts[tile]), int(group.tile_starts[tile + 1])
+
+
+def range_in_cell(group: Group, light: int, cell: int) -> tuple[int, int]:
+    """Return the range in `SceneArrays.light_shapes` of the shapes of one kind in a light-buffer cell."""
+    if not has_rows(group.rows):
+        return 0, 0
+    return int(group.light_starts[light, cell]), int(group.light_starts[light, cell + 1])
 
 
 def closest_hit(scene: SceneArrays, tile: int, origin: Vec, direction: Vec) -> tuple[Number, Number, Number]:
@@ -82,7 +97,8 @@ def closest_one_by_one(
 ) -> tuple[Number, Number, Number]:
     """Continue `closest_hit` over the shapes of one kind, one shape after the other."""
     scene, tile, origin, direction = arguments
-    for i in range(group.tile_starts[tile], group.tile_starts[tile + 1]):
+    start, end = range_in_tile(group, tile)
+    for i in range(start, end):
         index = scene.tile_shapes[i]
         cone = scene.cones[index]
         if not any(state[0] > cone[4]):
@@ -101,7 +117,7 @@ def closest_batched(
 ) -> tuple[Number, Number, Number]:
     """Continue `closest_hit` over the shapes of one kind, testing the bounding cones of a whole batch first."""
     scene, tile, origin, direction = arguments
-    start, end = int(group.tile_starts[tile]), int(group.tile_starts[tile + 1])
+    start, end = range_in_tile(group, tile)
     while start < end:
         farthest = greatest(state[0])
         candidates = 0  # a bit for each shape of the batch
@@ -210,7 +226,8 @@ def unoccluded_one_by_one(
     """Remove occluded shadow rays from `visible`, testing the shapes of one kind one after the other."""
     scene, light, cell, in_cell, origin, direction, distance = arguments
     position = Vec(scene.lights[light, 0], scene.lights[light, 1], scene.lights[light, 2])
-    for i in range(group.light_starts[light, cell], group.light_starts[light, cell + 1]):
+    start, end = range_in_cell(group, light, cell)
+    for i in range(start, end):
         index = scene.light_shapes[i]
         cone = scene.light_cones[light, index]
         if not any(visible & in_cell & (distance > cone[4])):
@@ -230,7 +247,7 @@ def unoccluded_batched(
     """Remove occluded shadow rays from `visible`, testing the bounding cones of a whole batch of shapes first."""
     scene, light, cell, in_cell, origin, direction, distance = arguments
     position = Vec(scene.lights[light, 0], scene.lights[light, 1], scene.lights[light, 2])
-    start, end = int(group.light_starts[light, cell]), int(group.light_starts[light, cell + 1])
+    start, end = range_in_cell(group, light, cell)
     while start < end:
         farthest = greatest(where(visible & in_cell, distance, -inf))
         candidates = 0

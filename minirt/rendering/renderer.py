@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import nullcontext
 from functools import cached_property
 from math import inf
 from threading import Lock
@@ -13,7 +12,6 @@ import numpy as np
 
 from minirt.errors import RenderError
 from minirt.fork_safety import renew_after_fork
-from minirt.gc_pause import gc_paused
 from minirt.rendering.frame_arguments import NO_LINEAR
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.queries import pick, preview
@@ -73,22 +71,20 @@ class Renderer:
             return [f"{self.threads} threads, {self.precision} precision", *self.packing.notes]
 
     def is_ready(self, scene: Scene) -> bool:
-        """Whether the kernel for this scene is compiled and loaded."""
+        """Whether there is a kernel, narrow or wide, that can draw this scene."""
         return self.kernels.is_ready(scene)
 
     def prepare(self, scene: Scene) -> None:
-        """Load the kernel for this scene, or compile it, which takes seconds.
+        """Load the narrow kernel for this scene, or compile it, which takes seconds.
 
-        Another process compiles, provided that the result can be cached on disk. RenderError where that fails.
+        Another process compiles. RenderError where that fails.
         """
-        with gc_paused() if not self.kernels.ready else nullcontext():
-            pixels = np.zeros((1, 1, 4), np.uint8)
-            self.kernels.compile(scene, pixels)
-            self.render(scene, pixels)
+        self.kernels.compile(scene)
+        self.render(scene, np.zeros((1, 1, 4), np.uint8))
 
     def stop(self) -> None:
-        """Stop `prepare`; callable from any thread."""
-        self.kernels.compile_process.stop()
+        """Stop compiling; callable from any thread."""
+        self.kernels.stop()
 
     def preview(self, scene: Scene, width: int, height: int) -> np.ndarray | None:
         """Return a coarse picture of a scene without using a kernel; see `minirt.rendering.queries.preview`."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -100,7 +101,7 @@ class Packing:
             light_buffers=light_buffers,
             light_shapes=light_shapes,
             light_cones=light_cones,
-            groups=tuple(map(Group, shapes.rows, eye.starts, light_starts)),
+            groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count())),
             spots=spot_parameters(sources) if "spots" in used else None,
             depth=self.depth,
             background=np.divide(paint, 255) if "background" in used else None,

@@ -24,6 +24,7 @@ TINY = 2.0**-500  # replaces 0 in a direction, so that no ray is parallel to the
 NODE = 7 * WIDTH  # numbers in a node: the low x, y, z and high x, y, z of its children, and references to them
 REFERENCES = 6 * WIDTH  # offset of the references in a node
 LEVELS = 32  # levels of the tree, at most, down to `WIDTH` shapes or fewer
+GROUPS = 32  # groups that references to leaves can tell apart: more than there are kinds
 REFERENCE_BITS = 0xFFFFFFFF  # the bits of a float64 that hold a reference
 
 # Offsets in the memory of a packet. The first six have a row of lanes for each of x, y and z.
@@ -42,12 +43,14 @@ class Group(NamedTuple):
     blocks: Any  # a block has `WIDTH` lanes for each number of a packed shape; lanes to spare repeat the last shape
     labels: Any  # (blocks, WIDTH, 2) index in the scene and extent of the shape in each lane of a block
     unbounded: Any  # (k,) indices in the scene of the shapes without a bounding box, such as planes
+    number: int  # of the group in `Tree.slots`; -1 without rows
 
 
 class Tree(NamedTuple):
     """The BVH over the n shapes of a scene.
 
-    The reference to a node is its offset in `nodes`; the reference to leaf block b of group g is -1 - (b * groups + g).
+    The reference to a node is its offset in `nodes`; the reference to leaf block b of group g is -1 - (b * GROUPS + g).
+    Without nodes, it is the tree of a scene that needs none.
     """
 
     nodes: Any  # flat, `NODE` numbers for each node
@@ -123,7 +126,7 @@ def search_limit(distance: float) -> float:
 
 
 def leaf_number(reference: int) -> int:
-    """Return the number of a leaf, b * groups + g, from the reference to it."""
+    """Return the number of a leaf, b * GROUPS + g, from the reference to it."""
     return ~reference & REFERENCE_BITS >> 1  # so that the compiler knows that it is not negative
 
 

@@ -144,7 +144,7 @@ def trace_rays(
                 if index >= 0:
                     point = vec_at(memory, ORIGIN, ray)
                     group, row = tree.slots[index, 0], tree.slots[index, 1]
-                    on, normal, _ = for_each_kind(surface_of_kind, tree.groups, (point, point, 0), (group, row, point))
+                    on, normal = for_each_kind(surface_of_kind, tree.groups, (point, point), (group, row, point))
                     distances[first + ray], owners[first + ray] = memory[HIT + ray], index
                     store_vec(points, first + ray, on)
                     store_vec(normals, first + ray, normal)
@@ -166,10 +166,10 @@ def rescale(v: Vec) -> Vec:
     return Vec(v.x / size, v.y / size, v.z / size)
 
 
-def surface_of_kind(group: Group, state: tuple[Vec, Vec, int], arguments: tuple[int, int, Vec]) -> tuple[Vec, Vec, int]:
-    """Compute point and normal of a shape if it is of this kind; the last of the state counts the kinds."""
-    on, normal, number = state
-    group_number, row, point = arguments
-    if number == group_number:
+def surface_of_kind(group: Group, state: tuple[Vec, Vec], arguments: tuple[int, int, Vec]) -> tuple[Vec, Vec]:
+    """Compute point and normal of the shape in a row of group `number` if it is of this kind."""
+    on, normal = state
+    number, row, point = arguments
+    if number == group.number:
         on, normal = surface(read(group.rows, row), point)
-    return on, normal, number + 1
+    return on, normal

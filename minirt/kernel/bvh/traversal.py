@@ -13,6 +13,7 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.bvh.nodes import (
+    GROUPS,
     HIT,
     INVERSE,
     NEXT,
@@ -35,6 +36,7 @@ from minirt.kernel.bvh.nodes import (
     tag,
     vec_at,
 )
+from minirt.kernel.scene_arrays import has_rows
 from minirt.kernel.trace import for_each_kind
 from minirt.lanes import any, load, lowest, where
 
@@ -69,7 +71,7 @@ def traverse(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> 
             at_node = at_node | node << ray
             at_leaf = at_leaf | leaf << ray
             unfinished = unfinished ^ last << ray
-        for_each_kind(visit_leaves_of_kind, tree.groups, 0, (visit, at_leaf, tree, memory))
+        for_each_kind(visit_leaves_of_kind, tree.groups, at_leaf, (visit, tree, memory))
 
 
 def descend(nodes: Any, memory: Any, ray: int) -> int:
@@ -104,13 +106,14 @@ def advance(memory: Any, ray: int) -> tuple[int, int, int]:
     return int(in_reach & is_node), int(in_reach & (not is_node)), int(top < STACK)
 
 
-def visit_leaves_of_kind(group: Group, number: int, arguments: tuple[Callable[..., None], int, Tree, Any]) -> int:
-    """Visit the leaves of one kind of shape that rays are at; the state, `number`, counts the kinds."""
-    visit, remaining, tree, memory = arguments
+def visit_leaves_of_kind(group: Group, rays: int, arguments: tuple[Callable[..., None], Tree, Any]) -> int:
+    """Visit the leaves of one kind of shape that the `rays` are at, one bit for each; the state is not changed."""
+    visit, tree, memory = arguments
+    remaining = rays if has_rows(group.blocks) else 0
     while remaining != 0:
         ray = lowest(remaining)
         remaining = remaining & (remaining - 1)
         leaf = leaf_number(reference_of(memory[NEXT + ray]))
-        if leaf % len(tree.groups) == number:
-            visit(group, leaf // len(tree.groups), tree, memory, ray)
-    return number + 1
+        if leaf % GROUPS == group.number:
+            visit(group, leaf // GROUPS, tree, memory, ray)
+    return rays

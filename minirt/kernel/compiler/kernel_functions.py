@@ -10,7 +10,7 @@ import sys
 from numba.extending import register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (registers the operations of the formulas)
-from minirt.kernel import atomic_counter, frame, trace
+from minirt.kernel import atomic_counter, frame, scene_arrays, trace
 from minirt.kernel.compiler import frame_operations, kind_dispatch, packed_shapes, unrolled_loop  # noqa: F401
 from minirt.kernel.compiler.inlining import inline_functions_of
 from minirt.kernel.compiler.options import INLINED
@@ -29,6 +29,7 @@ REGISTERED = (
     frame.frame,
     binning.project_all,
     binning.fill_bins,
+    scene_arrays.by_reference,
 )
 register_jitable(**INLINED)(vec.cross)
 for _module in (
@@ -43,6 +44,7 @@ for _module in (
     shape,
     binning,
     light_buffer,
+    scene_arrays,
     trace,
     specular,
     lights,

@@ -16,7 +16,7 @@ from functools import cache
 from pathlib import Path
 
 from minirt.kernel.machine_code.private_files import PRIVATE_FOLDER, make_private_folder
-from minirt.kernel.machine_code.processor import description
+from minirt.kernel.machine_code.processor import described, processor
 
 PACKAGE = Path(__file__).parents[2]
 SOURCES = ("kernel", "lanes", "shapes")  # folders of all sources of a kernel
@@ -39,9 +39,9 @@ def user_folder() -> Path:
 
 
 @cache
-def fingerprint_of(processor: str) -> str:
-    """Return a hash of the sources and of a processor, as `minirt.kernel.machine_code.processor.description` has it."""
-    digest = hashlib.sha256(processor.encode())
+def fingerprint_of(name: str) -> str:
+    """Return a hash of the sources and of the processor of a name: see `minirt.kernel.machine_code.processor`."""
+    digest = hashlib.sha256(described(name).encode())
     for folder in SOURCES:
         for source in sorted((PACKAGE / folder).rglob("*.py")):
             digest.update(source.relative_to(PACKAGE).as_posix().encode() + b"\0" + source.read_bytes())
@@ -50,7 +50,7 @@ def fingerprint_of(processor: str) -> str:
 
 def fingerprint() -> str:
     """Return the hash of the sources and of the processor that is compiled for."""
-    return fingerprint_of(description())
+    return fingerprint_of(processor())
 
 
 def folder() -> Path | None:

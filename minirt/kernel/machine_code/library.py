@@ -30,6 +30,7 @@ class Library:
     def __init__(self) -> None:
         self.identities: dict[Hashable, str] = {}
         self.entries: dict[str, Entry] = {}  # by identity, the one that was used last at the end
+        self.missing: set[str] = set()  # identities of kernels that were not found
         self.lock = Lock()
         if hasattr(os, "register_at_fork"):  # a child process finds the lock free; Windows has no fork
             release = self.lock.release
@@ -49,9 +50,8 @@ class Library:
             found = self.identities[key] = identity_of(*call, cache_folder.fingerprint())
         return found
 
-    def find(self, call: Call) -> Entry | None:
-        """Return the kernel for a call; None where it must be compiled."""
-        identity = self.identity(call)
+    def find(self, identity: str) -> Entry | None:
+        """Return a kernel; None where it must be compiled. The disk is searched once."""
         with self.lock:
             entry = self.entries.pop(identity, None) or self.loaded(identity)
             if entry:
@@ -60,7 +60,11 @@ class Library:
 
     def loaded(self, identity: str) -> Entry | None:
         """Return a kernel from the package or the disk."""
+        if identity in self.missing:
+            return None
         code = shipped_code.read(identity) or (self.cache and self.cache.read(identity))
+        if not code:
+            self.missing.add(identity)
         return loader.load(*code) if code else None
 
     def keep(self, identity: str, entry: Entry) -> None:
@@ -70,31 +74,37 @@ class Library:
             for each in list(self.entries)[:-IN_MEMORY]:
                 del self.entries[each]
 
-    def compile(self, calls: Iterable[Call], process: CompileProcess) -> None:
-        """Compile the kernels for some calls that cannot be found, in one process. RenderError where that fails."""
+    def compile(self, identities: Iterable[str], process: CompileProcess) -> None:
+        """Compile those of some kernels that are missing, in one process. RenderError where that fails."""
         # Each once and in one order: programs that wait for each other's locks would wait for ever.
-        missing = sorted({self.identity(each) for each in calls if not self.find(each)})
+        missing = sorted({each for each in identities if not self.find(each)})
         with ExitStack() as stack:
             if self.cache:
                 for identity in missing:
                     stack.enter_context(self.cache.compiling_once(identity))
-                missing = [each for each in missing if not self.cache.read(each)]  # another process has compiled it
-            for identity, code in zip(missing, process.compile(missing) if missing else [], strict=True):
-                self.add(identity, code)
+            codes = self.on_disk(missing)  # another process may have been first
+            requests = [each for each in missing if each not in codes]
+            codes |= zip(requests, process.compile(requests) if requests else [], strict=True)
+            for identity in requests:
+                if self.cache:
+                    self.cache.write(identity, codes[identity])
+        for identity, code in codes.items():
+            with self.lock:  # no process is forked while LLVM, whose lock it would inherit, loads
+                self.missing.discard(identity)
+                self.keep(identity, loader.load(*code))
 
-    def add(self, identity: str, code: ObjectCode) -> None:
-        """Add a kernel that was compiled."""
-        if self.cache:
-            self.cache.write(identity, code)
-        with self.lock:  # no process is forked while LLVM, whose lock it would inherit, loads
-            self.keep(identity, loader.load(*code))
+    def on_disk(self, identities: Iterable[str]) -> dict[str, ObjectCode]:
+        """Return those of some kernels that the cache on disk has."""
+        found = {each: self.cache.read(each) for each in identities} if self.cache else {}
+        return {identity: code for identity, code in found.items() if code}
 
     def get(self, call: Call) -> Entry:
         """Return the kernel for a call, compiled if need be, which takes seconds. RenderError where that fails."""
-        entry = self.find(call)
+        identity = self.identity(call)
+        entry = self.find(identity)
         if not entry:
-            self.compile([call], CompileProcess())
-            entry = self.find(call)
+            self.compile([identity], CompileProcess())
+            entry = self.find(identity)
         assert entry, "compiled and not found"
         return entry
 

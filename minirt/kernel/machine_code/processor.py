@@ -26,9 +26,8 @@ def processor() -> str:
     return os.environ.get("NUMBA_CPU_NAME") or level()
 
 
-def description() -> str:
-    """Return a text that differs for machines that need different machine code."""
-    name = processor()
+def described(name: str) -> str:
+    """Return a text that differs for processors that need different machine code."""
     if name == NATIVE:
         name = f"{platform.machine()} {platform.processor()} {cpu_information('model name')}"
     return f"{sys.platform} {name}"

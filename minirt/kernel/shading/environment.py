@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi
 from typing import Any, NamedTuple
 
-from minirt.kernel.scene_arrays import SceneArrays
+from minirt.kernel.scene_arrays import SceneArrays, has_rows
 from minirt.kernel.shading.texture_lookup import texture_lookup
 from minirt.lanes import Vec, any, maximum, minimum, splat, sqrt, where
 from minirt.lanes.angle import arctan2
@@ -20,11 +20,16 @@ class Environment(NamedTuple):
     pictures: Any  # (1, 4) its layout, likewise
 
 
+def has_environment(scene: SceneArrays) -> bool:
+    """Whether a scene has an environment map."""
+    return scene.environment is not None and has_rows(scene.environment.pictures)
+
+
 def background_light(scene: SceneArrays, hit: Mask, radiance: Vec, direction: Vec) -> Vec:
     """Return `radiance` for rays that hit a shape, and the background's radiance for all other rays."""
     if scene.background is not None:
         radiance = where(hit, radiance, Vec(scene.background[0], scene.background[1], scene.background[2]))
-    if scene.environment is not None and any(~hit):
+    if scene.environment is not None and has_rows(scene.environment.pictures) and any(~hit):
         radiance = where(hit, radiance, environment_lookup(scene.environment, direction))
     return radiance
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
+from minirt.kernel.scene_arrays import has_rows
 from minirt.lanes import Vec, dot, inverse_root, maximum, minimum, splat, where
 from minirt.lanes.vec import Number
 
@@ -14,15 +15,15 @@ def incident_light(spots: Any, light: int, position: Vec, point: Vec) -> tuple[V
 
     `spots` (m, 7) has for each light: the direction in which it shines; the cosine of the angle from there to the edge
     of a spot's cone; one over the further increase of the cosine up to where the spot has its full strength; one over
-    the distance at which the light has faded to nothing (0: never); and 1 for parallel light. None: all lights shine
-    in all directions and do not fade.
+    the distance at which the light has faded to nothing (0: never); and 1 for parallel light. None or no rows: all
+    lights shine in all directions and do not fade.
     """
     offset = position - point
     squared = dot(offset, offset)
     per_length = inverse_root(squared)
     to_light = offset * per_length
     distance = squared * per_length
-    if spots is None:
+    if spots is None or not has_rows(spots):
         return to_light, distance, splat(1.0, distance)
     axis = Vec(spots[light, 0], spots[light, 1], spots[light, 2])
     parallel = spots[light, 6] > 0.5

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from minirt.kernel.bvh import queries
-from minirt.kernel.scene_arrays import SceneArrays
+from minirt.kernel.scene_arrays import SceneArrays, has_rows
 from minirt.kernel.shading.lights import incident_light
 from minirt.kernel.shading.specular import specular
 from minirt.kernel.shading.surfaces import Surface
@@ -53,7 +53,7 @@ def direct_light(
             reach = distance - 4.0 * (rounding + ROUNDING * u * largest(position))
             lit = trace_shadow_rays(scene, memory, i, start, to_light, reach, lit)
             total = total + where(lit, cosine, 0.0) * intensity
-            if scene.specular is not None:
+            if scene.specular is not None and has_rows(scene.specular):
                 share = specular(surface.specular, shading_normal, to_light, direction, lit)
                 highlight = highlight + share * strength * intensity
     return total, highlight
@@ -66,7 +66,9 @@ def trace_shadow_rays(
 
     Rays to a parallel light share no point: they traverse the BVH, if there is one, in place of a light buffer.
     """
-    if scene.spots is None or scene.bvh is None or scene.spots[light, 6] < 0.5:
+    if scene.spots is None or scene.bvh is None:
+        return unoccluded(scene, memory, light, start, to_light, reach, lit)
+    if not (has_rows(scene.spots) and has_rows(scene.bvh.nodes)) or scene.spots[light, 6] < 0.5:
         return unoccluded(scene, memory, light, start, to_light, reach, lit)
     return queries.unoccluded(scene.bvh, start, to_light, reach, lit)
 

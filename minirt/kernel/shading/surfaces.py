@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.kernel.rows import read, shading, surface
-from minirt.kernel.scene_arrays import Group, SceneArrays
+from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows
 from minirt.kernel.shading.texturing import apply_maps
 from minirt.kernel.trace import for_each_kind
 from minirt.lanes import Vec, any, first, lane, rarely, splat, where
@@ -56,33 +56,31 @@ def surfaces(scene: SceneArrays, memory: Any, owner: Number, point: Vec, hit: Ma
 def surface_at(scene: SceneArrays, index: int, point: Vec) -> Surface:
     """Compute the surface of one shape for all rays of the packet."""
     slot = scene.slots[index]
-    on, normal, shading_normal, _ = for_each_kind(
-        surface_of_kind, scene.groups, (point, point, point, 0), (slot[0], slot[1], point)
+    on, normal, shading_normal = for_each_kind(
+        surface_of_kind, scene.groups, (point, point, point), (slot[0], slot[1], point)
     )
     zero = splat(0.0, point.x)
     specular = reflective = Vec(zero, zero, zero)
     colour = row_of(scene.colours_and_extents, index, point.x)
     if scene.surface_maps is not None:
         shading_normal, colour = apply_maps(scene.surface_maps, scene.groups, index, slot, on, shading_normal, colour)
-    if scene.specular is not None:
+    if scene.specular is not None and has_rows(scene.specular):
         specular = row_of(scene.specular, index, point.x)
-    if scene.reflective is not None:
+    if scene.reflective is not None and has_rows(scene.reflective):
         reflective = row_of(scene.reflective, index, point.x)
     return Surface(on, normal, shading_normal, colour, specular, reflective)
 
 
-def surface_of_kind(
-    group: Group, state: tuple[Vec, Vec, Vec, int], arguments: tuple[int, int, Vec]
-) -> tuple[Vec, Vec, Vec, int]:
-    """Compute point and normals of the shape in row i if it is of this kind; the last of the state counts the kinds."""
-    on, normal, shading_normal, number = state
-    group_number, i, point = arguments
-    if number == group_number:
+def surface_of_kind(group: Group, state: tuple[Vec, Vec, Vec], arguments: tuple[int, int, Vec]) -> tuple[Vec, Vec, Vec]:
+    """Compute point and normals of the shape in row i of group `number` if it is of this kind."""
+    on, normal, shading_normal = state
+    number, i, point = arguments
+    if number == group.number:
         shape = read(group.rows, i)
         on, out = surface(shape, point)
         normal = Vec(splat(out.x, point.x), splat(out.y, point.x), splat(out.z, point.x))
         shading_normal = shading(shape, on, normal)
-    return on, normal, shading_normal, number + 1
+    return on, normal, shading_normal
 
 
 def row_of(table: Any, index: int, like: Number) -> Vec:

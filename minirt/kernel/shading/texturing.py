@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.kernel.rows import mapping, read
-from minirt.kernel.scene_arrays import Group
+from minirt.kernel.scene_arrays import Group, has_rows
 from minirt.kernel.shading.texture_lookup import height_gradient, texture_lookup
 from minirt.kernel.trace import for_each_kind
 from minirt.lanes import Vec, copysign, cross, dot, fabs, floor, inverse_root, splat, unit, where
@@ -13,7 +13,8 @@ from minirt.lanes.vec import Number
 
 
 class SurfaceMaps(NamedTuple):
-    """The maps of n shapes, and the pictures that they use. A kind of map that no shape has is None.
+    """The maps of n shapes, and the pictures that they use. A kind of map that no shape has is None, or has no
+    rows.
 
     Pictures are numbered from 1; a shape without the map has 0.
     """
@@ -27,17 +28,17 @@ class SurfaceMaps(NamedTuple):
     pictures: Any  # (k, 4) for each picture its first index in `texels`, its width, height and channels
 
 
-Mapped = tuple[Number, Number, Vec, Vec, int]  # u, v, the tangents along them, and a count of kinds
+Mapped = tuple[Number, Number, Vec, Vec]  # u, v and the tangents along them
 
 
 def apply_maps(
     maps: Any, groups: tuple[Group, ...], index: int, slot: Any, point: Vec, normal: Vec, colour: Vec
 ) -> tuple[Vec, Vec]:
     """Apply the maps of shape `index`, in `slot` (group, row), to its shading normals and colours at some points."""
-    if maps.used[index] != 0:
+    if has_rows(maps.used) and maps.used[index] != 0:
         zero = splat(0.0, point.x)
         arguments = slot[0], slot[1], point, normal
-        u, v, along_u, along_v, _ = for_each_kind(mapping_of_kind, groups, (zero, zero, point, point, 0), arguments)
+        u, v, along_u, along_v = for_each_kind(mapping_of_kind, groups, (zero, zero, point, point), arguments)
         colour = checkered(maps.checks, index, u, v, textured(maps.textures, maps, index, u, v, colour))
         normal = bump_mapped(maps.bumps, maps, index, u, v, along_u, along_v, normal)
         normal = normal_mapped(maps.normals, maps, index, u, v, along_u, along_v, normal)
@@ -45,19 +46,19 @@ def apply_maps(
 
 
 def mapping_of_kind(group: Group, state: Mapped, arguments: tuple[int, int, Vec, Vec]) -> Mapped:
-    """Compute u, v and tangents of the shape in row i if it is of this kind; the last of the state counts the kinds."""
-    u, v, along_u, along_v, number = state
-    group_number, i, point, normal = arguments
-    if number == group_number:
+    """Compute u, v and tangents of the shape in row i of group `number` if it is of this kind."""
+    u, v, along_u, along_v = state
+    number, i, point, normal = arguments
+    if number == group.number:
         u, v, dp_du, dp_dv = mapping(read(group.rows, i), point, normal)
         along_u = Vec(splat(dp_du.x, point.x), splat(dp_du.y, point.x), splat(dp_du.z, point.x))
         along_v = Vec(splat(dp_dv.x, point.x), splat(dp_dv.y, point.x), splat(dp_dv.z, point.x))
-    return u, v, along_u, along_v, number + 1
+    return u, v, along_u, along_v
 
 
 def checkered(checks: Any, index: int, u: Number, v: Number, colour: Vec) -> Vec:
     """Return the second colour of the checkerboard in every other square, and `colour` in all other squares."""
-    if checks is None:
+    if checks is None or not has_rows(checks):
         return colour
     size = checks[index, 0]
     if size == 0.0:
@@ -68,7 +69,7 @@ def checkered(checks: Any, index: int, u: Number, v: Number, colour: Vec) -> Vec
 
 def textured(textures: Any, maps: Any, index: int, u: Number, v: Number, colour: Vec) -> Vec:
     """Return the colour of the shape's texture at u, v, or `colour` if it has none."""
-    if textures is None:
+    if textures is None or not has_rows(textures):
         return colour
     if textures[index] == 0:
         return colour
@@ -83,7 +84,7 @@ def bump_mapped(
     Lengths are in widths of the picture on the surface. The surface gradient of the height is subtracted from the
     normal, which need not be that of the tangents (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
     """
-    if bumps is None:
+    if bumps is None or not has_rows(bumps):
         return normal
     if bumps[index, 0] == 0.0:
         return normal
@@ -103,7 +104,7 @@ def normal_mapped(
 
     Red, green and blue are its components along u, v and the normal before.
     """
-    if normals is None:
+    if normals is None or not has_rows(normals):
         return normal
     if normals[index] == 0:
         return normal

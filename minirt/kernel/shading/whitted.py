@@ -15,7 +15,7 @@ import numpy as np
 
 from minirt.kernel.bvh import queries
 from minirt.kernel.bvh.nodes import put, put_vec
-from minirt.kernel.scene_arrays import SceneArrays
+from minirt.kernel.scene_arrays import SceneArrays, has_rows
 from minirt.kernel.shading.environment import background_light, weighted_background
 from minirt.kernel.shading.shade import clearance, direct_light, tint
 from minirt.kernel.shading.surfaces import Surface, surfaces
@@ -58,7 +58,7 @@ def shade(
     radiance = tint(light, surface.colour)
     if scene.reflective is not None:
         radiance = radiance * maximum(1.0 - surface.reflective.x - surface.reflective.y, 0.0)
-    if scene.specular is not None:
+    if scene.specular is not None and has_rows(scene.specular):
         radiance = radiance + highlight
     return radiance, surface
 
@@ -79,7 +79,7 @@ def whitted(
             own, surface = shade(scene, memory, t, owner, extent, origin, direction, hit)
             point, normal, reflective = surface.point, surface.normal, surface.reflective
             radiance = where(hit, radiance + weight * own, radiance)  # `own` may be NaN for rays that do not hit
-            if level < scene.depth:
+            if level < scene.depth and has_rows(scene.reflective):
                 rounding = clearance(point, extent)
                 against = -dot(normal, direction)
                 facing = where(against < 0.0, -normal, normal)

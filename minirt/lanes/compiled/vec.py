@@ -12,7 +12,7 @@ from numba import types
 from minirt.lanes import operations, vec
 from minirt.lanes.compiled.inverse_root import inverse_root
 from minirt.lanes.compiled.registration import Result, register, same_numbers
-from minirt.lanes.compiled.types import CONTRACT, VecType, common, constant, is_number, vec_of, vec_parts, widen
+from minirt.lanes.compiled.types import CONTRACT, VecType, common, constant, is_number, llvm, vec_of, vec_parts, widen
 
 ANY = types.Any
 
@@ -87,9 +87,14 @@ def _negate_vec(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any
 
 
 def scalar_product(builder: ir.IRBuilder, a: list[Any], b: list[Any]) -> Any:
-    """Return the sum of the products of three components."""
-    x, y, z = (builder.fmul(*pair, flags=CONTRACT) for pair in zip(a, b, strict=True))
-    return builder.fadd(builder.fadd(x, y, flags=CONTRACT), z, flags=CONTRACT)
+    """Return the sum of the products of three components.
+
+    Which product is rounded by itself is said here, by `fmuladd`: left to the compiler, it depends on the code around,
+    and the same ray would get other last bits in another kernel.
+    """
+    (ax, ay, az), (bx, by, bz) = a, b
+    y = builder.fmul(ay, by, flags=CONTRACT)
+    return llvm(builder, "fmuladd", az, bz, llvm(builder, "fmuladd", ax, bx, y))
 
 
 @register(vec.dot, lambda a, b: getattr(two_vecs(a, b), "number", None), [(VecType, VecType)])

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from minirt.kernel.bvh.build import BINS, GROUP, INDEX, BinaryTree
-from minirt.kernel.bvh.nodes import NODE, WIDTH, Group, Tree
+from minirt.kernel.bvh.nodes import GROUPS, NODE, WIDTH, Group, Tree
 from minirt.kernel.rows import kind_of, row_type
 from minirt.rendering.packing.primitives import primitives_of
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -55,11 +55,11 @@ def build_bvh(shape_arrays: ShapeArrays, kernel: Any) -> Tree:
         members = boxes[np.minimum(start + np.arange(WIDTH), stop - 1), INDEX].astype(np.int64)
         group_blocks = as_blocks(rows, shape_arrays.slots[members, 1])
         labels = np.stack([members, extents[members]], axis=-1)
-        groups.append(Group(rows, group_blocks, labels, infinite[shape_arrays.slots[infinite, 0] == group]))
+        groups.append(Group(rows, group_blocks, labels, infinite[shape_arrays.slots[infinite, 0] == group], group))
     names = nodes.reshape(-1, 7, WIDTH)[:, 6]
     is_leaf = names < 0
     leaf = (-1 - names[is_leaf]).astype(np.int64)
-    names[is_leaf] = -1 - (blocks[leaf] * len(groups) + kinds[leaf])
+    names[is_leaf] = -1 - (blocks[leaf] * GROUPS + kinds[leaf])
     names[...] = names.astype(np.int32).view(np.uint32).astype(np.uint64).view(np.float64)
     return Tree(nodes, extents, shape_arrays.slots, tuple(groups))
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from minirt.kernel.culling.light_buffer import TOLERANCE
 from minirt.kernel.rows import kind_of, point_fields, row_type
-from minirt.kernel.scene_arrays import Group, SceneArrays
+from minirt.kernel.scene_arrays import SceneArrays
 
 MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
 
@@ -33,9 +33,7 @@ def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
         light_buffers=narrowed_light_buffers(arrays.light_buffers),
         light_shapes=arrays.light_shapes,
         light_cones=widened_cones(arrays.light_cones),
-        groups=tuple(
-            Group(rows_relative_to(group.rows, eye), group.tile_starts, group.light_starts) for group in arrays.groups
-        ),
+        groups=tuple(group._replace(rows=rows_relative_to(group.rows, eye)) for group in arrays.groups),
         spots=optional_single(arrays.spots),
         specular=optional_single(arrays.specular),
         surface_maps=arrays.surface_maps

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache, cached_property, partial
 from importlib import import_module
 from threading import Lock
@@ -11,9 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from minirt.fork_safety import renew_after_fork
+from minirt.kernel.bvh.nodes import Tree
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.argument_block import words_of
 from minirt.kernel.machine_code.library import LIBRARY
+from minirt.rendering.packing.widening import widened_tree
 from minirt.rendering.running.cores import usable_cores
 from minirt.rendering.running.thread_pool import ThreadPool
 from minirt.scene import Scene
@@ -107,8 +110,7 @@ class Tracer:
                     self.build_bvh(scene.shapes)
                 # The caller's thread only waits, so that Ctrl+C reaches it.
                 counter = np.zeros(1, np.int64)
-                arguments = counter, self.bvh, origins, directions, *hits
-                job = partial(LIBRARY.get(functions.trace_rays.call(*arguments)).run, words_of(arguments))
+                job = query(counter, self.bvh, origins, directions, hits)
                 self.pool.run([job] * self.threads, partial(counter.fill, count))
                 is_hit = hits.owner >= 0
                 hits.owner[is_hit] = self.shape_arrays.owner[hits.owner[is_hit]]
@@ -120,6 +122,18 @@ class Tracer:
         self.shape_arrays.update(shapes)
         self.bvh = import_module("minirt.rendering.packing.bvh").build_bvh(self.shape_arrays, functions)
         self.shapes = shapes
+
+
+def query(
+    counter: NDArray[np.int64], tree: Tree, origins: NDArray[np.float64], directions: NDArray[np.float64], hits: Hits
+) -> Callable[[], None]:
+    """Return a job that traces rays: by the narrowest kernel that is there, or by one that is compiled now."""
+    trees = tree, widened_tree(tree)
+    narrow, wide = (functions.trace_rays.call(counter, each, origins, directions, *hits) for each in trees)
+    for call in (narrow, wide):
+        if entry := LIBRARY.find(LIBRARY.identity(call)):
+            return partial(entry.run, words_of(call[1]))
+    return partial(LIBRARY.get(narrow).run, words_of(narrow[1]))
 
 
 @cache

@@ -38,5 +38,4 @@ def render(
         found = list(takewhile(lambda _: counter[0] < CANCELLED, strips))
         frame = frame._replace(wanted=np.concatenate(found) if found else ALL_PACKETS)
     runner.run([frame], runner.threads)
-    runner.kernels.add(scene)
     return bool(counter[0] < CANCELLED)

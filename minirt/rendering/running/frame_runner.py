@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from functools import cached_property, partial
+from time import perf_counter
 
 import numpy as np
 
 from minirt.kernel.frame import CANCELLED
 from minirt.kernel.machine_code.argument_block import words_of
 from minirt.rendering.frame_arguments import Frame, sum_buffer, thread_memory
-from minirt.rendering.running.kernels import Kernels
+from minirt.rendering.running.kernels import Choice, Kernels
 from minirt.rendering.running.thread_pool import ThreadPool
 
 
@@ -20,6 +21,7 @@ class FrameRunner:
         self.threads = threads
         self.kernels = kernels
         self.next_row = np.zeros(1, np.int64)  # counters of the frames that are being rendered
+        self.choice: Choice | None = None  # the kernel of the last frame
         self.cancellations = 0
         self.not_finite = 0  # rays since it was last set to 0 whose light was infinite or NaN, and is 0 in the picture
 
@@ -42,14 +44,16 @@ class FrameRunner:
 
         The caller's thread only waits, so that Ctrl+C reaches it.
         """
-        kernel = self.kernels.choose(frames[0])
-        scene = words_of(frames[0].scene)  # the same for all frames
+        self.choice = choice = self.kernels.choose(frames[0])
+        scene = words_of(choice.scene)  # the same for all frames
         arguments = [
             frame._replace(memory=thread_memory(frame.scene), sums=sum_buffer(frame.scene))
             for frame in frames
             for _ in range(threads)
         ]
-        self.pool.run([partial(kernel.run, words_of(each[:-1]) + scene) for each in arguments], self.cancel)
+        start = perf_counter()
+        self.pool.run([partial(choice.entry.run, words_of(each[:-1]) + scene) for each in arguments], self.cancel)
+        self.kernels.count(choice, perf_counter() - start)
         self.not_finite += int(sum(each.memory[-1, 1] for each in arguments))
 
     def cancel(self) -> None:

@@ -1,73 +1,92 @@
-"""Compiled kernels: which of them are ready, and compiling of those that are not."""
+"""Kernels of one renderer: chooses the one that draws a frame, and has narrow ones compiled."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
-from typing import Any
+from typing import NamedTuple
 
-import numpy as np
-
-from minirt.kernel import interpreted
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.entry import Entry
-from minirt.kernel.machine_code.library import LIBRARY, Call
-from minirt.rendering.frame_arguments import Frame, frame_arguments
-from minirt.rendering.running.kernel_features import kernel_features, minimal_scene
-from minirt.rendering.scene_packing import Packing
+from minirt.kernel.machine_code.library import LIBRARY
+from minirt.kernel.scene_arrays import SceneArrays
+from minirt.rendering.frame_arguments import Frame
+from minirt.rendering.packing.widening import WIDE_KERNELS, WideKernel, fitting, widened
+from minirt.rendering.running.background_compiler import BackgroundCompiler
+from minirt.rendering.running.needed_kernels import calls_for, wide_call
 from minirt.scene import Scene
+
+NARROW_AFTER = 0.5  # seconds of rendering with a wide kernel, after which a narrow one is worth compiling
+
+
+class Choice(NamedTuple):
+    """A kernel and the form of the scene that it takes."""
+
+    entry: Entry
+    scene: SceneArrays
+    wide: WideKernel | None  # None for the narrow kernel
+    narrow: str  # the identity of the narrow kernel
 
 
 class Kernels:
-    """The kernels that one renderer has used, for scenes in one precision and with one depth of reflection."""
+    """The kernels for scenes in one precision and with one depth of reflection.
+
+    The narrow kernel of a scene has code for the scene's kinds of shapes and features alone. Where it is missing a wide
+    kernel draws the same picture, and the narrow one is compiled in the background once that is worth its time.
+    """
 
     def __init__(self, precision: str, depth: int) -> None:
         self.precision = precision
         self.depth = depth
-        self.ready: set[frozenset[Hashable]] = set()
+        self.narrow_after = NARROW_AFTER
+        self.wide_seconds: dict[str, float] = {}  # of rendering with a wide kernel, by the identity of the narrow one
         self.compile_process = CompileProcess()
+        self.background = BackgroundCompiler()
 
     def after_fork(self) -> None:
-        """In a child process: leave the compiling process, if there is one, to the parent."""
+        """In a child process: leave the compiling processes, if there are any, to the parent."""
         self.compile_process = CompileProcess()
+        self.background = BackgroundCompiler()
 
-    def choose(self, frame: Frame) -> Entry:
-        """Return the kernel for a frame, compiled if need be."""
-        return LIBRARY.get(functions.frame.call(*frame))
+    def choose(self, frame: Frame) -> Choice:
+        """Return the narrowest kernel that is there for a frame; where there is none the narrow one is compiled."""
+        call = functions.frame.call(*frame)
+        narrow = LIBRARY.identity(call)
+        entry = LIBRARY.find(narrow)
+        if entry:
+            return Choice(entry, frame.scene, None, narrow)
+        for wide in fitting(frame.scene):
+            entry = LIBRARY.find(LIBRARY.identity(wide_call(wide)))
+            if entry:
+                return Choice(entry, widened(frame.scene, wide), wide, narrow)
+        return Choice(LIBRARY.get(call), frame.scene, None, narrow)
+
+    def count(self, choice: Choice, seconds: float) -> None:
+        """Count the time of rendering with a kernel; where a wide one took long have the narrow one compiled."""
+        if choice.wide:
+            total = self.wide_seconds[choice.narrow] = self.wide_seconds.get(choice.narrow, 0.0) + seconds
+            if total >= self.narrow_after:
+                self.background.compile(choice.narrow)
 
     def is_ready(self, scene: Scene) -> bool:
-        """Whether the kernel for a scene was used before; a scene without shapes needs none."""
-        return not scene.shapes or kernel_features(scene) in self.ready
+        """Whether there is a kernel that can draw a scene; a scene without shapes needs none."""
+        if not scene.shapes or all(LIBRARY.find(LIBRARY.identity(wide_call(wide))) for wide in self.wide_kernels()):
+            return True
+        return all(LIBRARY.find(identity) for identity in self.identities(scene))
 
-    def add(self, scene: Scene) -> None:
-        """Note that the kernel for a scene is ready."""
-        self.ready.add(kernel_features(scene))
+    def identities(self, scene: Scene) -> list[str]:
+        """Return the identities of the narrow kernels for a scene."""
+        return [LIBRARY.identity(call) for call in calls_for(scene, self.precision, self.depth)]
 
-    def compile(self, scene: Scene, pixels: np.ndarray) -> None:
-        """Compile the kernels for a scene that are not on disk. RenderError where compiling fails."""
+    def wide_kernels(self) -> list[WideKernel]:
+        """Return the wide kernels that are enough for all scenes, some of which cannot be single."""
+        return [each for each in WIDE_KERNELS if each.name == "full" and each.precision in ("double", self.precision)]
+
+    def compile(self, scene: Scene) -> None:
+        """Compile those narrow kernels for a scene that are missing. RenderError where compiling fails."""
         if scene.shapes:
-            LIBRARY.compile(calls_for(scene, pixels, self.precision, self.depth), self.compile_process)
+            LIBRARY.compile(self.identities(scene), self.compile_process)
 
-
-def calls_for(scene: Scene, pixels: np.ndarray, precision: str, depth: int) -> list[Call]:
-    """Return calls of the kernels that a scene needs: of those that pack it, and of the one that renders it."""
-    recorder = CallRecorder()
-    with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
-        arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1)
-    return [*recorder.calls.values(), functions.frame.call(*frame_arguments(arrays, pixels))]
-
-
-class CallRecorder:
-    """The functions that pack a scene, interpreted; their calls are recorded."""
-
-    def __init__(self) -> None:
-        self.calls: dict[str, Call] = {}
-
-    def __getattr__(self, name: str) -> Callable[..., Any]:
-        compiled, function = getattr(functions, name), getattr(interpreted, name)
-
-        def run(*arguments: Any) -> Any:
-            self.calls[name] = compiled.call(*arguments)
-            return function(*arguments)
-
-        return run
+    def stop(self) -> None:
+        """Stop compiling; callable from any thread."""
+        self.compile_process.stop()
+        self.background.stop()

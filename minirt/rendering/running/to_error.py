@@ -44,5 +44,4 @@ def reach(
     outcome = auto.reach(error, seconds - (perf_counter() - start))
     if outcome:
         auto.halves.finish(pixels, linear)
-        runner.kernels.add(scene)
     return outcome and outcome._replace(seconds=perf_counter() - start)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.kernel.bvh import collapse, nodes, queries, traversal
-from minirt.kernel.bvh.nodes import LEVELS, MARGIN, MEMORY, NODE, STACK, STACK_LEVEL, WIDTH, Tree, reference_of
+from minirt.kernel.bvh.nodes import GROUPS, LEVELS, MARGIN, MEMORY, NODE, STACK, STACK_LEVEL, WIDTH, Tree, reference_of
 from minirt.kernel.machine_code import functions
 from minirt.lanes import Vec
 from minirt.rendering.packing.bvh import wide_nodes
@@ -44,7 +44,7 @@ def check_tree(scene: Tree, shapes: list[Shape]) -> int:
                 references.append(reference // NODE)
                 todo.append((reference // NODE, box_low, box_high, level + 1))
                 continue
-            block, group = divmod(-1 - reference, len(scene.groups))
+            block, group = divmod(-1 - reference, GROUPS)
             labels = scene.groups[group].labels[block]
             owners = labels[:, 0].astype(int)
             owned += set(owners.tolist())

@@ -40,7 +40,8 @@ def brute_force(shapes: list[Shape]) -> Tree:
     groups = []
     for i, (kind, rows) in enumerate(zip(kinds, arrays.rows, strict=True)):
         labels = np.zeros((0, WIDTH, 2))
-        groups.append(Group(rows, aligned(0, block_type(kind)), labels, np.flatnonzero(arrays.slots[:, 0] == i)))
+        unbounded = np.flatnonzero(arrays.slots[:, 0] == i)
+        groups.append(Group(rows, aligned(0, block_type(kind)), labels, unbounded, i))
     root = np.repeat([np.inf, -np.inf, 0.0], [3 * WIDTH, 3 * WIDTH, WIDTH])
     return Tree(root, arrays.colours_and_extents[:, 3].copy(), arrays.slots, tuple(groups))
 

@@ -15,7 +15,7 @@ import pytest
 from minirt.kernel.machine_code import cache_folder, container, shipped_code
 from minirt.kernel.machine_code.code_cache import file_name
 from tests.kernel.machine_code.package_copies import copy_package, replace_once
-from tests.kernel.machine_code.small_kernels import Compiler, call, double, library, object_code_of, square
+from tests.kernel.machine_code.small_kernels import Compiler, call, compiled, double, library, object_code_of, square
 from tests.kernel.machine_code.test_cache_folder import KERNELS, SCENE, modification_times, render_in_new_process
 from tests.kernel.machine_code.test_signature import through_json
 from tests.processes import run
@@ -56,12 +56,8 @@ def ship(folder: Path, function: Callable[..., None], fingerprint: str | None = 
 
 def is_used(caplog: pytest.LogCaptureFixture) -> bool:
     """Whether the small kernel of the package is found; if it is not, it is compiled without a word. It is right."""
-    kernels, compiler = library(None), Compiler()
-    kernels.compile([call(double)], compiler)
-    values = np.array([1.5])
-    entry = kernels.find(call(double))
-    assert entry
-    entry(values)
+    compiler, values = Compiler(), np.array([1.5])
+    compiled(library(None), call(double), compiler)(values)
     assert values == [3.0]
     assert caplog.messages == []
     return not compiler.compiled

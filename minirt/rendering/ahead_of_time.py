@@ -1,0 +1,82 @@
+"""Compiles the wide kernels ahead of time: `python -m minirt.rendering.ahead_of_time`.
+
+They are written into a folder of the package, where `minirt.kernel.machine_code.shipped_code` finds them. Kernels that
+are there already are not compiled again.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from itertools import chain
+from pathlib import Path
+
+import numpy as np
+
+from minirt.errors import MiniRTError
+from minirt.kernel.machine_code import cache_folder, functions, shipped_code
+from minirt.kernel.machine_code.compile_process import CompileProcess
+from minirt.kernel.machine_code.library import Call, identity_of
+from minirt.kernel.machine_code.processor import processor
+from minirt.rendering.packing.features import DEPTH
+from minirt.rendering.packing.widening import FULL_DOUBLE, WIDE_KERNELS, empty_arrays
+from minirt.rendering.running.cores import usable_cores
+from minirt.rendering.running.needed_kernels import calls_for, wide_call
+from minirt.scene import Camera, ParallelLight, Scene
+from minirt.shapes.sphere import Sphere
+
+WHITE = (255, 255, 255)
+EYE, SUN = Camera((0, 0, -9), (0, 0, 1), 60), ParallelLight((0, -1, 0), 1, WHITE)
+SPHERES = tuple(Sphere((0, 0, z), 1, WHITE) for z in range(9))  # so many that parallel light needs a BVH
+EXAMPLE = Scene((EYE, SUN, *SPHERES))
+
+
+def calls() -> list[list[Call]]:
+    """Return calls of the kernels to compile, in groups for one process each; the groups take about as long."""
+    full, plain, *single = map(wide_call, sorted(WIDE_KERNELS, key=lambda each: (each.precision, each.name)))
+    *packing, _ = calls_for(EXAMPLE, "double", DEPTH)
+    return [[full], [*packing, plain, ray_query()], *([each] for each in single)]
+
+
+def ray_query() -> Call:
+    """Return a call of the query for single rays, for all kinds of shapes."""
+    vectors, numbers, integers = np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64)
+    tree = empty_arrays(FULL_DOUBLE).bvh
+    return functions.trace_rays.call(integers, tree, vectors, vectors, numbers, integers, vectors, vectors)
+
+
+def build(folder: Path, target: str) -> int:
+    """Compile the kernels for a processor that are not in a folder, and delete older ones; return the number of those
+    that were compiled. RenderError where compiling fails; OSError where the folder cannot be written."""
+    fingerprint = cache_folder.fingerprint_of(target)
+    groups = [[identity_of(*call, fingerprint) for call in group] for group in calls()]
+    missing = [[each for each in group if not shipped_code.read(each, folder)] for group in groups]
+
+    def compile(identities: list[str]) -> None:
+        for identity, code in zip(identities, CompileProcess().compile(identities, target), strict=True):
+            shipped_code.write(identity, code, folder)
+
+    with ThreadPoolExecutor(usable_cores()) as pool:
+        list(pool.map(compile, filter(None, missing)))
+    shipped_code.delete_others(chain.from_iterable(groups), folder)
+    return sum(map(len, missing))
+
+
+def main() -> int:
+    """Compile for this machine, or for the processors that are named."""
+    parser = argparse.ArgumentParser(description="Compile the wide kernels of miniRT ahead of time.")
+    parser.add_argument("processors", nargs="*", default=[processor()], help="such as x86-64-v3; default: this one")
+    parser.add_argument("--folder", type=Path, default=shipped_code.FOLDER, help="default: the one in the package")
+    chosen = parser.parse_args()
+    try:
+        for target in chosen.processors:
+            build(chosen.folder / target, target)
+    except (MiniRTError, OSError) as error:
+        print(f"Error\n{error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

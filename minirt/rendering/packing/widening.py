@@ -1,0 +1,145 @@
+"""Widens the packed arrays of a scene to the arguments of a wide kernel.
+
+A narrow kernel is compiled for the kinds of shapes and the features of one scene. A wide kernel is the same function,
+compiled for all kinds of shapes and for a fixed set of features, so that it can be compiled ahead of time: what a scene
+lacks is an array without rows, which the kernel skips. Its picture has the same bits as that of the narrow kernel.
+
+To draw a packed scene with a wide kernel: `wide = fitting(arrays)[0]`, then call the kernel that is compiled for the
+types of `empty_arrays(wide)` with `widened(arrays, wide)` in place of the scene. All scenes have the same types there.
+"""
+
+from __future__ import annotations
+
+from functools import cache, partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from minirt.kernel.bvh import nodes
+from minirt.kernel.bvh.nodes import WIDTH, Tree
+from minirt.kernel.rows import row_type
+from minirt.kernel.scene_arrays import Group, SceneArrays
+from minirt.kernel.shading.environment import Environment
+from minirt.kernel.shading.texturing import SurfaceMaps
+from minirt.rendering.packing.bvh import block_type
+from minirt.shapes import ALL_KINDS, Kind
+
+ABSENT = -1  # number of the group of a kind that a scene lacks
+NO_TEXELS, NO_PICTURES = np.zeros(0, np.float32), np.zeros((0, 4), np.int64)
+
+
+class WideKernel(NamedTuple):
+    """What a wide kernel is compiled for, beside all kinds of shapes."""
+
+    name: str
+    precision: str  # "double" or "single"
+    features: frozenset[str]  # fields of `SceneArrays` and `SurfaceMaps` that are not None
+
+
+OPTIONAL = tuple(name for name, default in SceneArrays._field_defaults.items() if default is None)
+MAPS = ("checks", "textures", "bumps", "normals")
+FULL = frozenset(OPTIONAL + MAPS)
+FULL_SINGLE = frozenset({"spots", "specular", "surface_maps", "background", "checks"})  # see `fits_single`
+
+FULL_DOUBLE = WideKernel("full", "double", FULL)
+# The narrowest first.
+WIDE_KERNELS = (
+    WideKernel("plain", "double", frozenset()),
+    FULL_DOUBLE,
+    WideKernel("plain", "single", frozenset()),
+    WideKernel("full", "single", FULL_SINGLE),
+)
+
+
+def fitting(arrays: SceneArrays) -> list[WideKernel]:
+    """Return the wide kernels that can draw a packed scene, the narrowest first."""
+    precision = precision_of(arrays)
+    used = {name for name in OPTIONAL if getattr(arrays, name) is not None}
+    used |= {name for name in MAPS if arrays.surface_maps and getattr(arrays.surface_maps, name) is not None}
+    return [wide for wide in WIDE_KERNELS if wide.precision == precision and used <= wide.features]
+
+
+def precision_of(arrays: SceneArrays) -> str:
+    """Return "single" for arrays of float32, and "double" for arrays of float64."""
+    return "single" if arrays.camera.dtype == np.float32 else "double"
+
+
+def widened(arrays: SceneArrays, wide: WideKernel) -> SceneArrays:
+    """Return a packed scene as the argument of a wide kernel that fits it. Its arrays are shared, not copied."""
+    empty = empty_arrays(wide)
+    whole: SceneArrays = filled(arrays, empty)
+    if empty.surface_maps is not None:
+        whole = whole._replace(surface_maps=filled(whole.surface_maps, empty.surface_maps))
+    if empty.bvh is not None:
+        whole = whole._replace(bvh=widened_tree(whole.bvh))
+    return whole._replace(groups=all_groups(arrays.groups, empty.groups))
+
+
+def widened_tree(tree: Tree) -> Tree:
+    """Return a BVH with a group for each kind of shape, those that a scene lacks without shapes."""
+    empty = empty_arrays(FULL_DOUBLE).bvh
+    return tree._replace(groups=all_groups(tree.groups, empty.groups))
+
+
+def filled(arrays: Any, empty: Any) -> Any:
+    """Return a NamedTuple of arrays, with the fields of `empty` in place of those that are None."""
+    return arrays._replace(**{name: getattr(empty, name) for name in arrays._fields if getattr(arrays, name) is None})
+
+
+def all_groups(groups: tuple[Any, ...], empty: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Return the groups of a scene in the order of the registry, with an `empty` one for each kind that it lacks."""
+    present = {group.rows.dtype.names: group for group in groups}
+    return tuple(present.get(group.rows.dtype.names, group) for group in empty)
+
+
+@cache
+def empty_arrays(wide: WideKernel) -> SceneArrays:
+    """Return the argument of a wide kernel for a scene without lights and shapes: its types are those of all scenes."""
+    number: Any = np.float32 if wide.precision == "single" else np.float64
+    numbers, integers, indices = (
+        partial(np.zeros, dtype=number),
+        partial(np.zeros, dtype=np.int64),
+        np.zeros(0, np.int32),
+    )
+    rows = [np.zeros(0, row_type(kind, number)) for kind in ALL_KINDS]
+    maps = SurfaceMaps(
+        checks=numbers((0, 4)),
+        textures=integers(0),
+        bumps=np.zeros((0, 2)),
+        normals=integers(0),
+        used=integers(0),
+        texels=NO_TEXELS,
+        pictures=NO_PICTURES,
+    )
+    whole = SceneArrays(
+        camera=numbers(12),
+        ambient=numbers(3),
+        lights=numbers((0, 6)),
+        colours_and_extents=numbers((0, 4)),
+        slots=integers((0, 2)),
+        tile_shapes=indices,
+        cones=numbers((0, 5)),
+        light_buffer_cells=1,
+        light_buffers=numbers((0, 11)),
+        light_shapes=indices,
+        light_cones=numbers((0, 0, 5)),
+        groups=tuple(Group(each, integers(0), integers((0, 0)), ABSENT) for each in rows),
+        spots=numbers((0, 7)),
+        specular=numbers((0, 3)),
+        reflective=numbers((0, 3)),
+        surface_maps=maps._replace(**without(MAPS, wide)),
+        background=numbers(3),
+        environment=Environment(NO_TEXELS, NO_PICTURES),
+        bvh=Tree(numbers(0), numbers(0), integers((0, 2)), tuple(map(empty_blocks, ALL_KINDS, rows))),
+    )
+    return whole._replace(**without(OPTIONAL, wide))
+
+
+def without(names: tuple[str, ...], wide: WideKernel) -> dict[str, Any]:
+    """Return None for each of the features that a wide kernel lacks."""
+    return dict.fromkeys(set(names) - wide.features)
+
+
+def empty_blocks(kind: Kind, rows: np.ndarray) -> nodes.Group:
+    """Return a group of a BVH for a kind without shapes."""
+    return nodes.Group(rows, np.zeros(0, block_type(kind)), np.zeros((0, WIDTH, 2)), np.zeros(0, np.int64), ABSENT)

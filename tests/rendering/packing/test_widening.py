@@ -1,0 +1,193 @@
+"""Wide kernels: they draw the same bits as the narrow kernel of each scene, and all scenes have the types of one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numba import typeof
+
+import minirt
+from minirt.kernel import frame
+from minirt.kernel.compiler import jit
+from minirt.kernel.culling import binning
+from minirt.kernel.scene_arrays import SceneArrays
+from minirt.materials import Checker, Specular
+from minirt.rendering.frame_arguments import frame_arguments
+from minirt.rendering.packing import widening
+from minirt.rendering.packing.widening import WIDE_KERNELS, WideKernel, empty_arrays, fitting, widened
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Background, Camera, ParallelLight, Scene, SpotLight
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, LAMP, WHITE
+from tests.make_goldens import SCENES
+from tests.meshes.examples import ball, named
+from tests.random_scenes import random_scene
+
+SIZE = (96, 72)
+PRECISIONS = ("double", "single")
+SUN = ParallelLight((0.3, -0.9, 0.2), 0.3)
+BALLS = tuple(Sphere((i - 5, 0.5 * (i % 3), i % 4), 1.5, (200, 20 * i, 90)) for i in range(12))
+FLOOR = Plane((0, -1, 0), (0, 1, 0), WHITE)
+
+
+def packed(scene: Scene, precision: str = "double", depth: int = 8, width: int = 96, height: int = 72) -> SceneArrays:
+    """Return the arrays of a scene for its narrow kernel."""
+    return Packing(precision=precision, depth=depth).pack(scene, width, height)
+
+
+def drawn(arrays: SceneArrays, samples: int = 1, width: int = 96, height: int = 72) -> tuple[np.ndarray, np.ndarray]:
+    """Return the pixels and the linear light that the kernel for the types of some arrays draws."""
+    pixels, light = np.zeros((height, width, 4), np.uint8), np.full((height, width, 3), np.nan)
+    arguments = frame_arguments(arrays, pixels, samples, light)
+    jit.kernel_for(arrays)(*arguments)
+    return pixels, light
+
+
+def same_bits(one: SceneArrays, other: SceneArrays, samples: int = 1) -> bool:
+    """Whether the kernels of two forms of a scene draw the same pixels and the same light, to the last bit."""
+    results = zip(drawn(one, samples), drawn(other, samples), strict=True)
+    return all(a.tobytes() == b.tobytes() for a, b in results)
+
+
+def types_of(arrays: SceneArrays) -> Any:
+    """Return the types for which the compiler compiles the kernel of some arrays."""
+    return typeof(arrays)
+
+
+def every_form(scene: Scene) -> list[tuple[SceneArrays, WideKernel]]:
+    """Return a packed scene in each precision, with each wide kernel that fits it."""
+    forms = {packed(scene, precision).camera.dtype: packed(scene, precision) for precision in PRECISIONS}
+    return [(arrays, wide) for arrays in forms.values() for wide in fitting(arrays)]
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+def test_wide_kernels_draw_the_same_bits_as_the_narrow_one(path: Path) -> None:
+    forms = every_form(minirt.load(path))
+    assert forms
+    for arrays, wide in forms:
+        assert same_bits(arrays, widened(arrays, wide)), wide
+
+
+@pytest.mark.parametrize("stem", ["demo", "shapes", "gallery-marbles"])
+def test_several_samples_have_the_same_bits(stem: str) -> None:
+    for arrays, wide in every_form(minirt.load(f"scenes/{stem}.rt")):
+        assert same_bits(arrays, widened(arrays, wide), samples=4), wide
+
+
+SPECIAL = {
+    "no lights": Scene((AMBIENT, EYE, *BALLS[:2], FLOOR)),
+    "no lights but mirrors": Scene((AMBIENT, EYE, BALLS[0].replace(mirror=0.5), FLOOR)),
+    "planes only": Scene((AMBIENT, EYE, LAMP, FLOOR, Plane((0, 0, 9), (0, 0.1, -1), WHITE))),
+    "a mesh of many triangles": Scene((AMBIENT, EYE, LAMP, named("icosphere", (0, 1, 0), 2.0), FLOOR)),
+    "parallel light and few shapes": Scene((AMBIENT, EYE, SUN, *BALLS[:2], FLOOR)),
+    "parallel light and a BVH": Scene((AMBIENT, EYE, SUN, LAMP, *BALLS, FLOOR)),
+    "parallel light, a BVH and mirrors": Scene((AMBIENT, EYE, SUN, LAMP, *BALLS, FLOOR.replace(mirror=0.4))),
+    "a background": Scene((AMBIENT, EYE, LAMP, Background((9, 40, 90)), *BALLS)),
+}
+
+
+@pytest.mark.parametrize("name", SPECIAL)
+def test_special_scenes_have_the_same_bits(name: str) -> None:
+    for arrays, wide in every_form(SPECIAL[name]):
+        assert same_bits(arrays, widened(arrays, wide)), wide
+
+
+@pytest.mark.parametrize("depth", [0, 1])
+def test_any_depth_has_the_same_bits(depth: int) -> None:
+    arrays = packed(SPECIAL["parallel light, a BVH and mirrors"], depth=depth)
+    assert same_bits(arrays, widened(arrays, fitting(arrays)[0]))
+
+
+def test_the_interpreted_kernel_draws_the_same_bits_too() -> None:
+    for scene in (ALL, SPECIAL["parallel light, a BVH and mirrors"]):
+        arrays = Packing(binning).pack(scene, 24, 16)
+        pictures = []
+        for each in (arrays, widened(arrays, fitting(arrays)[-1])):
+            light = np.full((16, 24, 3), np.nan)
+            with np.errstate(all="ignore"):
+                frame.frame(*frame_arguments(each, np.zeros((16, 24, 4), np.uint8), 1, light))
+            pictures.append(light)
+        assert np.array_equal(*pictures)
+
+
+def test_groups_with_wrong_numbers_are_noticed() -> None:
+    arrays = packed(EVERY)
+    wide = widened(arrays, fitting(arrays)[0])
+    first, second, *others = wide.groups
+    swapped = (first._replace(number=second.number), second._replace(number=first.number), *others)
+    assert same_bits(arrays, wide)
+    assert not same_bits(arrays, wide._replace(groups=swapped))
+
+
+def test_another_rounding_is_noticed() -> None:
+    arrays = packed(ALL)
+    wide = widened(arrays, fitting(arrays)[0])
+    other = wide.ambient.copy()
+    other[0] = np.nextafter(other[0], 1)
+    assert not same_bits(arrays, wide._replace(ambient=other))
+
+
+@pytest.mark.parametrize("scenes", ["files", "random", "special"])
+def test_all_scenes_have_the_types_of_the_empty_one(scenes: str) -> None:
+    several = {
+        "files": lambda: [minirt.load(path) for path in SCENES],
+        "random": lambda: [random_scene(seed) for seed in range(60)],
+        "special": lambda: list(SPECIAL.values()),
+    }[scenes]()
+    for scene in several:
+        for arrays, wide in every_form(scene):
+            assert types_of(widened(arrays, wide)) == types_of(empty_arrays(wide))
+
+
+def test_other_types_are_noticed() -> None:
+    for wide in WIDE_KERNELS:
+        empty = empty_arrays(wide)
+        assert types_of(empty._replace(tile_shapes=np.zeros(0, np.int64))) != types_of(empty)
+        assert types_of(empty._replace(camera=np.zeros(24, empty.camera.dtype)[::2])) != types_of(empty)
+    assert len({str(types_of(empty_arrays(wide))) for wide in WIDE_KERNELS}) == len(WIDE_KERNELS)
+
+
+def test_the_narrowest_kernel_comes_first() -> None:
+    def names(*changes: Any, precision: str = "double") -> list[str]:
+        return [wide.name for wide in fitting(packed(Scene((AMBIENT, EYE, LAMP, *changes)), precision))]
+
+    spot = SpotLight((0, 7, -3), (0, -1, 0.3), 50, 0.8)
+    for precision in PRECISIONS:
+        assert names(*BALLS, FLOOR, precision=precision) == ["plain", "full"]
+        for shape in (FLOOR.replace(checker=Checker(0.5)), FLOOR.replace(specular=Specular(0.5, 9))):
+            assert names(*BALLS, shape, precision=precision) == ["full"]
+        assert names(spot, *BALLS, precision=precision) == ["full"]
+        assert names(FLOOR.replace(mirror=0.5), precision=precision) == ["full"]
+    assert all(wide.precision == "single" for wide in fitting(packed(ALL, "single")))
+
+
+def test_widening_copies_nothing() -> None:
+    sphere = ball(6)
+    assert len(sphere.rows) > 10_000
+    for scene in (SPECIAL["a mesh of many triangles"], SPECIAL["parallel light, a BVH and mirrors"]):
+        arrays = packed(scene)
+        wide = widened(arrays, fitting(arrays)[-1])
+        for name in ("slots", "cones", "light_cones", "colours_and_extents", "tile_shapes", "light_shapes", "lights"):
+            assert getattr(wide, name) is getattr(arrays, name)
+        assert sum(len(group.rows) for group in wide.groups) == len(arrays.slots)
+        for group in arrays.groups:
+            assert any(each is group for each in wide.groups)
+        if arrays.bvh:
+            assert wide.bvh.nodes is arrays.bvh.nodes
+            assert {id(group) for group in arrays.bvh.groups} <= {id(group) for group in wide.bvh.groups}
+
+
+def test_kinds_are_in_the_order_of_the_registry() -> None:
+    for wide in WIDE_KERNELS:
+        names = [group.rows.dtype.names[0].split(".")[0] for group in empty_arrays(wide).groups]
+        assert names == [kind.element.title for kind in widening.ALL_KINDS]
+
+
+def test_each_feature_has_a_wide_kernel() -> None:
+    double = [wide for wide in WIDE_KERNELS if wide.precision == "double"]
+    assert double[-1].features == {*jit.OPTIONAL_FIELDS, *jit.SURFACE_MAPS}
+    assert isinstance(EYE, Camera)
