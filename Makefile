@@ -57,8 +57,8 @@ FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/
             tests/report/measurements/test_formula_errors.py tests/report/measurements/test_operation_counts.py
 
 processors: $(DEV)  ## run the tests of compiled formulas as on processors without AVX-512 and without AVX
-	NUMBA_CPU_NAME=haswell $(PYTEST) $(FORMULAS)
-	NUMBA_CPU_NAME=generic $(PYTEST) $(FORMULAS)
+	NUMBA_CPU_NAME=x86-64-v3 NUMBA_CPU_FEATURES= $(PYTEST) $(FORMULAS)
+	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(PYTEST) $(FORMULAS)
 
 check: $(DEV)  ## lint and check types
 	$(VENV)/bin/ruff check .

@@ -13,16 +13,11 @@ from tests.paths import ROOT
 
 FALLBACK_CACHE = ROOT / "out" / "cache"  # cache of compiled kernels if the user's cache folder cannot be written
 
-# For any name but `generic` numba takes the features of the actual processor. Those of the named processor have to be
-# listed here, otherwise `haswell` would still have AVX-512.
-FEATURES = {"haswell": "+avx,+avx2,+bmi,+bmi2,+f16c,+fma,+lzcnt,+movbe,+popcnt,+sse4.2"}
-
 
 def prepare() -> None:
     """Set missing environment variables."""
-    name = os.environ.get("NUMBA_CPU_NAME", "")
-    if name in FEATURES:
-        os.environ.setdefault("NUMBA_CPU_FEATURES", FEATURES[name])
+    if os.environ.get("NUMBA_CPU_NAME"):  # else numba adds the features of the actual processor, such as AVX-512
+        os.environ.setdefault("NUMBA_CPU_FEATURES", "")
     if not is_writable(user_cache()):
         os.environ["XDG_CACHE_HOME"] = str(FALLBACK_CACHE)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import platform
 import signal
 import subprocess
 import sys
@@ -10,11 +11,29 @@ from pathlib import Path
 
 import pytest
 
+from minirt.kernel.machine_code import compile_process
 from tests import conftest, environment, scheduling
 from tests.paths import ROOT
 from tests.processes import run, started
 
-FEATURES = "from numba.core.registry import cpu_target; print(cpu_target.target_context.codegen().magic_tuple()[2])"
+# Prints the kinds of vector registers that a compiled sum of lanes uses.
+REGISTERS = """
+import re
+import numpy as np
+from numba import njit
+from minirt.kernel.compiler import kernel_functions
+from minirt.kernel.compiler.options import FLAGS
+from minirt.lanes import load, save, width
+
+def double(x):
+    for i in range(0, len(x), width(x)):
+        save(load(x, i) + load(x, i), x, i)
+
+compiled = njit(**FLAGS)(double)
+compiled.compile("(float64[::1],)")
+(code,) = compiled.inspect_asm().values()
+print(*set(re.findall("%?([xyz]mm)[0-9]", code)))
+"""
 CHILD = [sys.executable, "-c", "import signal; signal.pause()"]
 PARENT = f"""
 import signal, subprocess
@@ -52,17 +71,24 @@ def test_kernels_are_cached_beside_the_sources_if_that_folder_cannot_be_written(
     assert prepared(monkeypatch) == instead
 
 
-def test_haswell_has_no_avx_512(monkeypatch: pytest.MonkeyPatch) -> None:
-    variables = dict(os.environ)
-    for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"):
-        variables.pop(name, None)
-    with monkeypatch.context() as patch:
-        named = prepared(patch, **variables, NUMBA_CPU_NAME="haswell")
-        chosen = prepared(patch, **variables, NUMBA_CPU_NAME="haswell", NUMBA_CPU_FEATURES="+avx")
-    assert chosen["NUMBA_CPU_FEATURES"] == "+avx"
-    done = run([sys.executable, "-c", FEATURES], env=named, text=True)
-    assert "+avx2" in done.stdout.strip().split(",")
-    assert "512" not in done.stdout
+@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="names processors of x86-64")
+def test_a_named_processor_has_its_own_features_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the code that tests compile, and in that of the process that compiles kernels."""
+    variables = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
+    for name, has, lacks in (("x86-64-v4", "zmm", "none"), ("x86-64-v3", "ymm", "zmm"), ("generic", "xmm", "ymm")):
+        with monkeypatch.context() as patch:
+            named = prepared(patch, **variables, NUMBA_CPU_NAME=name)
+        for settings in (named, compile_process.environment(name)):
+            done = run([sys.executable, "-c", REGISTERS], env=settings, text=True)
+            assert has in done.stdout.split(), (name, done.stderr)
+            assert lacks not in done.stdout.split()
+
+
+def test_features_that_the_environment_names_stay(monkeypatch: pytest.MonkeyPatch) -> None:
+    chosen = {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": "+avx"}
+    assert {**prepared(monkeypatch, **chosen), **chosen} == prepared(monkeypatch, **chosen)
+    assert "NUMBA_CPU_FEATURES" not in prepared(monkeypatch)
+    assert "NUMBA_CPU_FEATURES" not in prepared(monkeypatch, NUMBA_CPU_NAME="")
 
 
 def test_ctrl_c_reaches_the_tests_if_the_caller_ignores_it() -> None:

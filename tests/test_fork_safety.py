@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from threading import Event, Lock, Thread
 from typing import Any
@@ -17,11 +18,14 @@ import numpy as np
 import pytest
 
 from minirt import fork_safety
+from minirt.kernel.machine_code import loader
+from minirt.kernel.machine_code.library import Library
 from minirt.materials import picture_cache
 from minirt.meshes import mesh_cache
 from minirt.rendering import Renderer
 from minirt.rendering.queries.rays import Tracer
 from tests.cli.program import SCENE, environment
+from tests.kernel.machine_code.small_kernels import Compiler, call, double, is_found, library, object_code_of
 from tests.kernel.pictures import ALL
 from tests.processes import run
 from tests.waiting import HANG_LIMIT
@@ -156,27 +160,52 @@ def test_pools_of_threads_are_new_in_a_child(monkeypatch: pytest.MonkeyPatch) ->
     assert not holds_in_child(are_new)
 
 
-def test_a_child_leaves_the_compiling_process_to_its_parent() -> None:
+def test_a_child_leaves_the_compiling_processes_to_its_parent() -> None:
     renderer = Renderer(1)
-    compiling = renderer.kernels.compile_process
+    compiling, background = renderer.kernels.compile_process, renderer.kernels.background
     assert holds_in_child(lambda: renderer.kernels.compile_process is not compiling)
+    assert holds_in_child(lambda: renderer.kernels.background is not background)
     assert renderer.kernels.compile_process is compiling
+    assert renderer.kernels.background is background
 
 
-def test_a_fork_waits_for_a_thread_that_compiles() -> None:
-    """A thread compiles until the fork is under way; the child process would never get its lock."""
-    from minirt.kernel.compiler import fork_lock
+def forked_while_loading(kernels: Library, work: Callable[[], Any], monkeypatch: pytest.MonkeyPatch) -> bool:
+    """Fork while a thread loads a kernel, which goes on until the fork is under way; return whether the child process
+    finds the lock of the library free, and that LLVM loads nothing, as LLVM has a lock of its own."""
+    loading, forking, llvm = Event(), Event(), Lock()
 
-    compiling, forking, ended = Event(), Event(), Lock()
-
-    def compile() -> None:
-        with fork_lock.global_compiler_lock, ended:
-            compiling.set()
+    def load(names: Any, code: Any, load: Any = loader.load) -> Any:
+        with llvm:
+            loading.set()
             forking.wait(HANG_LIMIT)
+            return load(names, code)
 
-    os.register_at_fork(before=forking.set)  # called before the hook of `fork_lock`, which was registered earlier
-    thread = Thread(target=compile)
+    monkeypatch.setattr(loader, "load", load)
+    os.register_at_fork(before=forking.set)  # called before the hook of the library, which was registered earlier
+    thread = Thread(target=work)
     thread.start()
-    compiling.wait(HANG_LIMIT)
-    assert holds_in_child(lambda: is_free(ended) and is_free(fork_lock.global_compiler_lock._lock))
+    assert loading.wait(HANG_LIMIT)
+    free = holds_in_child(lambda: is_free(llvm) and is_free(kernels.lock))
     thread.join()
+    assert is_free(kernels.lock)
+    return free
+
+
+@pytest.mark.parametrize("kept", [True, False], ids=["found", "compiled"])
+def test_a_fork_waits_for_a_thread_that_loads_a_kernel(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kept: bool
+) -> None:
+    if kept:
+        is_found(double, tmp_path)
+    kernels, compiler = library(tmp_path), Compiler()
+    work = partial(kernels.compile, [kernels.identity(call(double))], compiler)
+    assert forked_while_loading(kernels, work, monkeypatch)
+    assert bool(compiler.compiled) != kept
+
+
+def test_a_library_that_loads_without_its_lock_would_be_found_here(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kernels = library(tmp_path)
+    code = object_code_of(call(double)[0], '[{"array": "<f8", "ndim": 1}]')
+    assert not forked_while_loading(kernels, lambda: loader.load(*code), monkeypatch)

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import ast
+import sys
 from functools import cache
+from pathlib import Path
 
 import pytest
 
+from minirt import load, renderer
+from tests.cli.program import SCENE, environment
 from tests.paths import PACKAGE
+from tests.processes import run
 
 LOW = {"errors", "records", "fields", "element", "lanes", "materials", "shapes"}
 
@@ -29,7 +34,7 @@ MAY: dict[str, set[str]] = {
     "image": {"errors", "atomic_write", "png"},
     "movie": {"errors", "atomic_write", "image"},
     "scene": LOW - {"lanes"} | {"meshes", "atomic_write", "regular_files"},
-    "kernel": {"lanes", "shapes", "atomic_write"},
+    "kernel": {"errors", "lanes", "shapes", "atomic_write"},
     "rendering": LOW | {"fork_safety", "gc_pause", "kernel", "scene"},
     "mlx": {"errors"},
     "viewer": {
@@ -68,6 +73,9 @@ MAY: dict[str, set[str]] = {
 }
 COMPILER = {"numba", "llvmlite"}
 COMPILED = {"lanes/compiled", "kernel/compiler"}  # the only folders that import the compiler
+LOADER = "kernel/machine_code/loader.py"  # imports, late, the part of it that loads machine code
+# The program that compiles and a measurement of the report: all others do without the compiler.
+COMPILING = {"kernel/compiler", "lanes/compiled", "report/measurements"}
 HEAVY = ("rendering", "viewer", "kernel", "mlx", "report")
 LATE = {"numba", "llvmlite", "pyglet", "PIL", *(f"minirt.{part}" for part in HEAVY)}
 
@@ -140,9 +148,62 @@ def test_the_rules_have_no_circle() -> None:
         order += free
 
 
+def importers(files: dict[str, str], wanted: set[str], late: bool = True) -> dict[str, set[str]]:
+    """The files that import some modules or parts of them, with those modules."""
+    found = {
+        path: {each for each in wanted if any(f"{name}.".startswith(f"{each}.") for name in imports(source, late=late))}
+        for path, source in files.items()
+    }
+    return {path: modules for path, modules in found.items() if modules}
+
+
 def test_the_compiler_is_imported_where_it_is_attached_and_nowhere_else() -> None:
-    importers = {path for path, source in sources().items() if {m.split(".")[0] for m in imports(source)} & COMPILER}
-    assert {path.rpartition("/")[0] for path in importers} == COMPILED
+    found = importers(sources(), COMPILER)
+    assert found.pop(LOADER) == {"llvmlite"}
+    assert {path.rpartition("/")[0] for path in found} == COMPILED
+    assert LOADER not in importers(sources(), COMPILER, late=False)
+
+
+def test_what_is_compiled_is_imported_by_the_compiling_process_alone() -> None:
+    found = importers(sources(), {"minirt.kernel.compiler", "minirt.lanes.compiled"})
+    assert {path.rpartition("/")[0] for path in found} == COMPILING
+    named = {path for path, source in sources().items() if "minirt.kernel.compiler.process" in source}
+    assert named == {"kernel/compiler/process.py", "kernel/machine_code/compile_process.py"}
+
+
+def test_a_planted_import_of_the_compiler_is_found() -> None:
+    planted = {
+        "kernel/a.py": "def f():\n    import numba.core",
+        "kernel/b.py": "from llvmlite import binding",
+        "rendering/c.py": "import_module('minirt.kernel.compiler.options')",
+        "rendering/d.py": "import numbat",
+    }
+    assert importers(planted, COMPILER) == {"kernel/a.py": {"numba"}, "kernel/b.py": {"llvmlite"}}
+    assert importers(planted, COMPILER, late=False) == {"kernel/b.py": {"llvmlite"}}
+    assert importers(planted, {"minirt.kernel.compiler"}) == {"rendering/c.py": {"minirt.kernel.compiler"}}
+
+
+def imported(*command: str, folder: Path) -> set[str]:
+    """The top-level modules that a run of Python imports."""
+    ended = run([sys.executable, "-X", "importtime", *command], cwd=folder, env=environment(), text=True)
+    assert ended.returncode == 0, ended.stderr
+    names = [line.rpartition("|")[2].strip() for line in ended.stderr.splitlines() if line.startswith("import time:")]
+    return {each.split(".")[0] for each in names}
+
+
+def test_a_picture_whose_kernels_are_on_disk_is_rendered_without_the_compiler(tmp_path: Path) -> None:
+    (tmp_path / "ball.rt").write_text(SCENE)
+    scene = load(tmp_path / "ball.rt")
+    renderer(None).prepare(scene)
+    for command in (
+        ("-m", "minirt", "ball.rt", "-o", "ball.png", "--size", "40x30"),
+        ("-c", "import minirt; minirt.render(minirt.load('ball.rt'), 40, 30)"),
+    ):
+        found = imported(*command, folder=tmp_path)
+        assert {"minirt", "numpy", "llvmlite"} <= found
+        assert "numba" not in found
+    assert (tmp_path / "ball.png").stat().st_size
+    assert "numba" in imported("-c", "import minirt.kernel.compiler.options", folder=tmp_path)
 
 
 def graph(files: dict[str, str]) -> dict[str, set[str]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from typing import Any
 
@@ -12,9 +11,10 @@ import pytest
 from numba import njit
 
 import minirt.lanes.compiled  # noqa: F401
+from minirt.kernel.machine_code.compile_process import environment
+from minirt.kernel.machine_code.processor import V3
 from minirt.lanes import Vec, inverse_root, lane, load, unit, width
 from minirt.lanes.compiled.inverse_root import SERIES
-from tests.environment import FEATURES
 from tests.lanes.numbers import DTYPES, PRECISIONS
 from tests.lanes.test_operators import store
 from tests.processes import run
@@ -112,8 +112,7 @@ def test_unit_vectors_are_precise(dtype: Any) -> None:
 
 def test_the_error_is_smaller_without_avx_512() -> None:
     program = "from tests.lanes.test_roots import DTYPES, largest_error; print(max(map(largest_error, DTYPES)))"
-    haswell = {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": FEATURES["haswell"]}
-    ended = run([sys.executable, "-c", program], env=os.environ | haswell, text=True)
+    ended = run([sys.executable, "-c", program], env=environment(V3), text=True)
     assert ended.returncode == 0, ended.stderr
     assert float(ended.stdout) <= 1.5  # a root and a division, each rounded
     assert len(DTYPES) == 2

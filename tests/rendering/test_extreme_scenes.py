@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from contextlib import suppress
 from itertools import product
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -50,10 +49,9 @@ def pack(scene: Scene) -> None:
 
 
 def prepare(scene: Scene) -> None:
-    """Pack a scene as for the process that compiles its kernel, which has nothing to do."""
-    kernels = Kernels("double", 8)
-    kernels.jit = SimpleNamespace(CACHE=True, is_compiled=lambda arguments: True)
-    kernels.compile(scene, np.zeros((1, 1, 4), np.uint8))
+    """Pack a scene as for the process that compiles its kernel, which is not started."""
+    for precision in RENDERERS:
+        assert Kernels(precision, 8).identities(scene)
 
 
 def pick_middle(scene: Scene) -> None:

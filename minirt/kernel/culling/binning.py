@@ -69,8 +69,9 @@ def project_all(
                 rectangles[used, 2] = columns
                 rectangles[used, 3] = rows
                 used += 1
-                for line in range(cell, cell + rows * grid.across, grid.across):
-                    for covered in range(line, line + columns):
+                for line in range(rows):
+                    start = cell + line * grid.across
+                    for covered in range(start, start + columns):
                         counts[covered] += 1
         if grid.elsewhere >= 0 and first[shape] < first[shape + 1] and not enclosed:
             cell = slots[shape, 0] * stride + grid.elsewhere
@@ -202,7 +203,8 @@ def fill_bins(rectangles: Any, order: Any, across: int, ends: Any, members: Any)
         shape = rectangles[rectangle, 0]
         cell = rectangles[rectangle, 1]
         columns = rectangles[rectangle, 2]
-        for line in range(cell, cell + rectangles[rectangle, 3] * across, across):
-            for covered in range(line, line + columns):
+        for line in range(rectangles[rectangle, 3]):
+            start = cell + line * across
+            for covered in range(start, start + columns):
                 ends[covered] -= 1
                 members[ends[covered]] = shape

@@ -12,6 +12,7 @@ import numpy as np
 
 from minirt.kernel.machine_code.code_cache import CodeCache, ObjectCode
 from minirt.kernel.machine_code.compile_process import CompileProcess
+from minirt.kernel.machine_code.entry import Entry
 from minirt.kernel.machine_code.library import Call, Library
 
 ARGUMENT = 1.5
@@ -52,6 +53,11 @@ def half(x: Any) -> float:
 def quotients(x: Any, y: Any) -> None:
     for i in range(len(x)):
         y[i] = x[i] / y[i]
+
+
+def step(x: Any, n: int) -> None:
+    for i in range(0, len(x), n):
+        x[i] = 1.0
 
 
 def sine(x: Any) -> None:
@@ -101,14 +107,21 @@ def library(folder: Path | None) -> Library:
     return made
 
 
+def compiled(kernels: Library, wanted: Call, compiler: CompileProcess) -> Entry:
+    """Return the kernel for a call, compiled if need be."""
+    identity = kernels.identity(wanted)
+    kernels.compile([identity], compiler)
+    entry = kernels.find(identity)
+    assert entry
+    return entry
+
+
 def is_found(function: Callable[..., Any], folder: Path) -> bool:
     """Load a small kernel, or compile it, by a new library; return whether it was loaded. Its result is right."""
     kernels, compiler = library(folder), Compiler()
-    kernels.compile([call(function)], compiler)
+    entry = compiled(kernels, call(function), compiler)
     expected, found = np.array([ARGUMENT]), np.array([ARGUMENT])
     function(expected)
-    entry = kernels.find(call(function))
-    assert entry
     entry(found)
     assert found == expected
     return not compiler.compiled

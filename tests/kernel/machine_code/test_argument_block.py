@@ -18,6 +18,7 @@ from tests.kernel.machine_code.small_kernels import (
     Outer,
     both,
     call,
+    compiled,
     count,
     double,
     half,
@@ -39,11 +40,7 @@ def arguments() -> tuple[Any, ...]:
 
 def loaded(function: Any, *values: Any) -> Entry:
     """Return a small kernel for some arguments, compiled in this process."""
-    kernels = library(None)
-    kernels.compile([call(function, *values)], Compiler())
-    kernel = kernels.find(call(function, *values))
-    assert kernel
-    return kernel
+    return compiled(library(None), call(function, *values), Compiler())
 
 
 def reads_all(kernel: Entry) -> bool:

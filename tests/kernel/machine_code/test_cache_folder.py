@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from minirt.kernel.machine_code import cache_folder
-from minirt.kernel.machine_code.processor import description
+from minirt.kernel.machine_code.processor import processor
 from tests.kernel.machine_code.package_copies import copy_package, replace_once
 from tests.paths import PACKAGE
 from tests.processes import run
@@ -56,7 +56,7 @@ def render_in_new_process(folder: Path, cache: Path, notice: str = "") -> list[s
 
 def fingerprint() -> str:
     """Return the fingerprint of the sources as they are now, as a new process does."""
-    return cache_folder.fingerprint_of.__wrapped__(description())
+    return cache_folder.fingerprint_of.__wrapped__(processor())
 
 
 def modification_times(folder: Path) -> dict[str, int]:

@@ -16,7 +16,7 @@ from minirt.rendering import Renderer
 from minirt.rendering.frame_arguments import frame_arguments
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import parse
-from tests.kernel.machine_code.small_kernels import Compiler, call, double, library
+from tests.kernel.machine_code.small_kernels import Compiler, call, compiled, double, library
 
 BALL = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0 2 255,60,60\n"
 
@@ -24,8 +24,7 @@ BALL = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0
 def kernel_call() -> Call:
     """Render a scene and return the call of its kernel."""
     scene, renderer, pixels = parse(BALL).scene, Renderer(threads=1), np.zeros((30, 40, 4), np.uint8)
-    renderer.prepare(scene)
-    renderer.render(scene, pixels)
+    renderer.kernels.compile(scene)
     return functions.frame.call(*frame_arguments(Packing().pack(scene, 40, 30), pixels))
 
 
@@ -45,8 +44,7 @@ def test_files_hold_machine_code_and_hardly_more() -> None:
 
 def is_freed_with_its_last_reference(kernels: Any) -> bool:
     """Whether the machine code of a kernel lives as long as it may be called, and no longer."""
-    kernels.compile([call(double)], Compiler())
-    entry = kernels.find(call(double))
+    entry = compiled(kernels, call(double), Compiler())
     code = weakref.ref(entry.code)
     kernels.entries.clear()
     gc.collect()

@@ -153,7 +153,7 @@ def test_the_reason_of_a_failure_is_reported(monkeypatch: pytest.MonkeyPatch, co
 def test_the_reason_why_a_function_cannot_be_compiled_is_reported() -> None:
     kernels = library(None)
     with pytest.raises(RenderError, match=r"^the kernel cannot be compiled: TypeError: a kernel returns integers"):
-        kernels.compile([call(half)], CompileProcess())
+        kernels.compile([kernels.identity(call(half))], CompileProcess())
 
 
 def test_a_compiler_that_cannot_be_started_is_an_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

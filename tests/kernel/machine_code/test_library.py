@@ -14,10 +14,16 @@ from minirt.errors import RenderError
 from minirt.kernel.machine_code import library as library_module
 from minirt.kernel.machine_code import private_files
 from minirt.kernel.machine_code.code_cache import CodeCache
-from minirt.kernel.machine_code.library import Library, identity_of
+from minirt.kernel.machine_code.entry import Entry
+from minirt.kernel.machine_code.library import Call, Library, identity_of
 from tests.kernel.machine_code.small_kernels import Compiler, both, call, count, double, library, square
 
 DOUBLE, SQUARE, COUNT = call(double), call(square), call(count)
+
+
+def found(kernels: Library, wanted: Call) -> Entry | None:
+    """Return the kernel for a call; None where it must be compiled."""
+    return kernels.find(kernels.identity(wanted))
 
 
 class Failing(Compiler):
@@ -29,17 +35,17 @@ class Failing(Compiler):
 
 def compiled_by(kernels: Library, *calls: Any) -> int:
     """Ask a library for some kernels; return how many were compiled."""
-    compiler = Compiler()
-    kernels.compile(calls, compiler)
-    assert all(kernels.find(each) for each in calls)
+    compiler, identities = Compiler(), list(map(kernels.identity, calls))
+    kernels.compile(identities, compiler)
+    assert all(map(kernels.find, identities))
     return len(compiler.compiled)
 
 
 def test_a_kernel_is_found_after_it_was_compiled_and_by_the_next_library(tmp_path: Path) -> None:
     kernels = library(tmp_path)
-    assert kernels.find(DOUBLE) is None
+    assert found(kernels, DOUBLE) is None
     assert compiled_by(kernels, DOUBLE) == 1
-    assert kernels.find(DOUBLE) is kernels.find(DOUBLE) is kernels.get(DOUBLE)
+    assert found(kernels, DOUBLE) is found(kernels, DOUBLE) is kernels.get(DOUBLE)
     assert compiled_by(kernels, DOUBLE) == 0
     assert compiled_by(library(tmp_path), DOUBLE) == 0
     assert compiled_by(library(None), DOUBLE) == 1
@@ -68,12 +74,12 @@ def test_kernels_in_memory_are_limited_to_those_that_were_used_last(
     monkeypatch.setattr(library_module, "IN_MEMORY", 2)
     kernels = library(tmp_path)
     assert compiled_by(kernels, DOUBLE) == compiled_by(kernels, SQUARE) == 1
-    double_entry, square_entry = kernels.find(DOUBLE), kernels.find(SQUARE)
-    assert kernels.find(DOUBLE) is double_entry  # so that the other one was not used for longest
+    double_entry, square_entry = found(kernels, DOUBLE), found(kernels, SQUARE)
+    assert found(kernels, DOUBLE) is double_entry  # so that the other one was not used for longest
     assert compiled_by(kernels, COUNT) == 1
     assert len(kernels.entries) == 2
-    assert kernels.find(DOUBLE) is double_entry
-    assert kernels.find(SQUARE) not in (None, square_entry), "loaded from disk again"
+    assert found(kernels, DOUBLE) is double_entry
+    assert found(kernels, SQUARE) not in (None, square_entry), "loaded from disk again"
     values = np.array([3.0])
     square_entry(values)
     assert values == [9.0], "whoever has a kernel may go on to call it"
@@ -97,7 +103,7 @@ def locked_in_turn(kernels: Library, calls: list[Any], monkeypatch: pytest.Monke
 
     with monkeypatch.context() as patch:
         patch.setattr(CodeCache, "compiling_once", lock)
-        kernels.compile(calls, Compiler())
+        kernels.compile(map(kernels.identity, calls), Compiler())
     return locked
 
 
@@ -117,7 +123,8 @@ def test_programs_that_compile_the_same_kernels_lock_them_in_the_same_order(
 
 def test_threads_that_need_the_same_kernel_compile_it_once(tmp_path: Path) -> None:
     kernels, compiler = library(tmp_path), Compiler()
-    threads = [Thread(target=kernels.compile, args=([DOUBLE, SQUARE], compiler)) for _ in range(4)]
+    identities = kernels.identity(DOUBLE), kernels.identity(SQUARE)
+    threads = [Thread(target=kernels.compile, args=(identities, compiler)) for _ in range(4)]
     for each in threads:
         each.start()
     for each in threads:
@@ -129,15 +136,15 @@ def test_threads_that_need_the_same_kernel_compile_it_once(tmp_path: Path) -> No
 def test_a_failure_is_reported_and_leaves_nothing_behind(tmp_path: Path, folder: bool) -> None:
     kernels = library(tmp_path if folder else None)
     with pytest.raises(RenderError, match=r"^no room$"):
-        kernels.compile([DOUBLE], Failing())
-    assert kernels.find(DOUBLE) is None
+        kernels.compile([kernels.identity(DOUBLE)], Failing())
+    assert found(kernels, DOUBLE) is None
     assert not list(tmp_path.glob("*.kernel"))
     assert compiled_by(kernels, DOUBLE) == 1, "nothing is locked"
 
 
 def test_a_call_that_no_kernel_can_take_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(TypeError, match="no kernel takes str"):
-        library(tmp_path).find((DOUBLE[0], ("text",)))
+        library(tmp_path).identity((DOUBLE[0], ("text",)))
 
 
 @pytest.mark.parametrize("fault", [private_files.read, None], ids=["unreadable", "none"])

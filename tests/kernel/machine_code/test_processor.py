@@ -10,7 +10,7 @@ import pytest
 from llvmlite import binding
 
 from minirt.kernel.machine_code import processor
-from minirt.kernel.machine_code.processor import NATIVE, NEEDED, V3, V4, cpu_flags, description, level, level_of
+from minirt.kernel.machine_code.processor import NATIVE, NEEDED, V3, V4, cpu_flags, described, level, level_of
 
 ALL_FLAGS = NEEDED[V3] | NEEDED[V4] | {"sse4_2", "popcnt", "avx512vnni"}
 IS_X86_LINUX = sys.platform == "linux" and platform.machine() == "x86_64"
@@ -84,15 +84,15 @@ def test_machines_that_need_different_code_have_different_descriptions(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """A level is the same on all machines; code for the very processor is of use on that processor alone."""
-    described = []
+    texts = []
     for name in (V3, V4):
         monkeypatch.setattr(processor, "level", lambda name=name: name)
-        described.append(description())
+        texts.append(described(processor.processor()))
     monkeypatch.setattr(processor, "level", lambda: NATIVE)
     monkeypatch.setattr(processor, "CPUINFO", tmp_path / "cpuinfo")
     for model in ("one", "another"):
         (tmp_path / "cpuinfo").write_text(f"model name\t: {model}\n")
-        described.append(description())
-        assert model in description()
-    assert len(set(described)) == 4
-    assert all(each.startswith(sys.platform) for each in described)
+        texts.append(described(processor.processor()))
+        assert model in texts[-1]
+    assert len(set(texts)) == 4
+    assert all(each.startswith(sys.platform) for each in texts)

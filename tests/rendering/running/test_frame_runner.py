@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from itertools import count
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -38,19 +36,20 @@ def test_cancelling_when_nothing_is_rendered_does_nothing() -> None:
 def test_an_error_in_one_thread_reaches_the_caller() -> None:
     renderer = Renderer(3)
     renderer.prepare(ALL)
-    kernel = renderer.kernels.jit
     turns, stopped = count(1), list[int]()
 
-    def rows(counter: Any, *rest: Any) -> None:
-        turn = next(turns)
-        if turn == 2:
-            raise ValueError("out of order")
-        until(lambda: counter[0] >= CANCELLED, "the end of the other threads")
-        stopped.append(turn)
+    class Rows:
+        def run(self, words: list[int]) -> None:
+            turn = next(turns)
+            if turn == 2:
+                raise ValueError("out of order")
+            until(lambda: renderer.runner.next_row[0] >= CANCELLED, "the end of the other threads")
+            stopped.append(turn)
 
-    renderer.kernels.jit = SimpleNamespace(frame=kernel.frame, kernel_for=lambda _scene: rows)
+    choose = renderer.kernels.choose
+    renderer.kernels.choose = lambda frame: choose(frame)._replace(entry=Rows())
     with pytest.raises(ValueError, match="out of order"):
         renderer.render(ALL, np.zeros((40, 40, 4), np.uint8))
     assert sorted(stopped) == [1, 3]
-    renderer.kernels.jit = kernel
+    renderer.kernels.choose = choose
     assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))

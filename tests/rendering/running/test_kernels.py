@@ -24,10 +24,9 @@ from minirt.scene import Scene, parse
 from tests.skipping import skip_incomplete
 from tests.waiting import until
 
-BALL = parse("A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0 2 255,60,60\n").scene
-SHINY = parse(
-    "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0 2 255,60,60 specular:0.5,20\n"
-).scene
+VIEW = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\n"
+BALL = parse(f"{VIEW}sp 0,0,0 2 255,60,60\n").scene
+SHINY = parse(f"{VIEW}sp 0,0,0 2 255,60,60 specular:0.5,20\n").scene
 
 
 def frame_of(scene: Scene, precision: str = "double") -> Frame:
