@@ -77,14 +77,12 @@ class Kernels:
     def compile_wide(self) -> None:
         """Compile the wide kernels that are missing, in the background, so that edits need not wait for narrow ones."""
         self.wants_wide = False
-        self.background.compile_later([each for each in self.for_all_scenes if not LIBRARY.find(each)])
+        self.background.compile_later([each for each in self.for_all_scenes if not LIBRARY.has(each)])
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether there are kernels that can draw a scene; a scene without shapes needs none."""
         return (
-            not scene.shapes
-            or all(map(LIBRARY.find, self.for_all_scenes))
-            or all(map(LIBRARY.find, self.narrow(scene)))
+            not scene.shapes or all(map(LIBRARY.has, self.for_all_scenes)) or all(map(LIBRARY.has, self.narrow(scene)))
         )
 
     @cached_property

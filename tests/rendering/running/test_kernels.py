@@ -46,6 +46,9 @@ class FakeLibrary:
     def find(self, identity: str) -> Any:
         return identity if identity in self.found else None
 
+    def has(self, identity: str) -> bool:
+        return identity in self.found
+
     def get(self, call: Any) -> Any:
         self.compiled.append(self.identity(call))
         return self.identity(call)
