@@ -19,13 +19,15 @@ class WideKernels(BuildHookInterface):  # type: ignore[misc]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Compile for both levels, unless the installation is editable: there `make all` compiles for the machine."""
+        if version == "editable":
+            return
         sys.path.insert(0, self.root)
         from minirt.errors import MiniRTError
         from minirt.kernel.machine_code import shipped_code
         from minirt.kernel.machine_code.processor import V3, V4, is_linux_on_x86_64
         from minirt.rendering.ahead_of_time import build
 
-        if version == "editable" or not is_linux_on_x86_64():
+        if not is_linux_on_x86_64():
             return
         try:
             for level in (V3, V4):
