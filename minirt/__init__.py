@@ -106,10 +106,10 @@ def render(
 ) -> Image:
     """Render a scene: `width` by `height` pixels, each the mean of `samples` rays.
 
-    Without a size the scene's own is used. Safe to call from several threads. The first call for a combination of kinds
-    of shapes compiles for some seconds; later calls and later programs do not. `precision` "single" computes in float32
-    relative to the eye, about twice as fast. Light is mirrored or refracted at most `depth` times, by default 8.
-    RenderError for a size or a number of samples below 1.
+    Without a size the scene's own is used. Safe to call from several threads. Where no kernel was compiled ahead of
+    time, the first call for a combination of kinds of shapes compiles for some seconds. `precision` "single" computes
+    in float32 relative to the eye, about twice as fast. Light is mirrored or refracted at most `depth` times, by
+    default 8. RenderError for a size or a number of samples below 1.
 
     With `samples` "auto" each part of the picture gets as many samples as it needs, until the estimated error is at
     most `error` (DEFAULT_ERROR if neither is given) or `time` seconds have passed, compilation not counted; `.reached`

@@ -38,8 +38,8 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
     `origins` and `directions` are (n, 3), in units of the scene; a direction may have any length but 0. A surface on
     which a ray starts may be hit again: start it a little off. Where surfaces coincide the shape that comes first in
     the scene is hit. The BVH of the last scene is kept, so that further rays through it start at once. Safe to call
-    from several threads. The first call for a combination of shapes compiles for some seconds; later calls and later
-    programs do not. ValueError, naming the argument, if an array has another shape, a number is infinite or NaN, or a
+    from several threads. Where no kernel was compiled ahead of time, the first call for a combination of shapes
+    compiles for some seconds. ValueError, naming the argument, if an array has another shape, a number is infinite or NaN, or a
     direction has length 0.
     """
     starts = checked_vectors(origins, "origins")
