@@ -76,7 +76,8 @@ def test_kernels_refer_to_nothing_outside_of_themselves() -> None:
             assert (name, undefined_symbols(found[1])) == (name, set())
             checked.add(name)
     assert checked == {name for name, each in vars(functions).items() if isinstance(each, functions.CompiledFunction)}
-    assert all(undefined_symbols(code_of(each)[1]) == set() for each in (double, quotients))
+    for each in (code_of(double), code_of(quotients, np.zeros(1), np.zeros(1))):
+        assert undefined_symbols(each[1]) == set()
 
 
 @ELF
