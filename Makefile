@@ -3,6 +3,7 @@
 VENV    := .venv
 NAME    := $(VENV)/bin/miniRT
 DEV     := $(VENV)/.dev
+KERNELS := $(VENV)/.kernels
 PYTHON  ?= python3
 PIP     := $(VENV)/bin/python -m pip --disable-pip-version-check
 WORKERS ?= auto
@@ -13,10 +14,10 @@ SUDO    ?= $(if $(filter 0,$(shell id -u)),,sudo)
 # The program is installed in editable mode, so only a change of its dependencies installs it again. The path to the
 # sources is relative: Python reads it in the encoding of the locale, and an absolute one with an umlaut would keep Python
 # from starting under LC_ALL=C.
-INSTALL  = $(PIP) install --quiet --editable $(1) && \
+INSTALL  = $(PIP) install --quiet --no-build-isolation --editable $(1) && \
            for file in $(VENV)/lib/python*/site-packages/*minirt*.pth; do echo ../../../.. >"$$file"; done
 
-all: $(NAME)  ## install the program as .venv/bin/miniRT
+all: $(NAME) $(KERNELS)  ## install the program as .venv/bin/miniRT, and compile its kernels for this machine
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z].*:.*## / { printf "make %-17s %s\n", $$1, $$2 }' Makefile
@@ -24,8 +25,14 @@ help:  ## list the targets
 $(NAME): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "miniRT needs Python 3.11 or newer: make PYTHON=python3.12")'
 	$(PYTHON) -m venv $(VENV)
-	$(PIP) install --quiet --upgrade 'pip>=25.1'
+	$(PIP) install --quiet --upgrade 'pip>=25.1' hatchling
 	$(call INSTALL,.)
+	$(VENV)/bin/python -m compileall -q minirt  # also where PYTHONDONTWRITEBYTECODE would have each start compile it
+	touch $@
+
+# Without them a program compiles what its scene needs, in seconds: so `make run` does not wait for them.
+$(KERNELS): $(NAME) $(shell find minirt -name '*.py')
+	$(VENV)/bin/python -m minirt.rendering.ahead_of_time
 	touch $@
 
 bonus: all  ## the same: what the subject calls the bonus is part of the program
@@ -39,7 +46,7 @@ run: $(NAME)  ## show a scene: make run SCENE=scenes/subject.rt
 	@mkdir -p out
 	$(NAME) $(SCENE) --fallback out/$(basename $(notdir $(SCENE))).png
 
-test: $(DEV)  ## run all tests, or some: make test TESTS=tests/shapes
+test: $(DEV) $(KERNELS)  ## run all tests, or some: make test TESTS=tests/shapes
 	$(PYTEST) $(TESTS)
 
 quick: $(DEV)  ## run the tests that take a minute in all
@@ -62,8 +69,9 @@ bench: $(NAME)  ## time frames beside other programs: make bench BENCH=--quick f
 	$(VENV)/bin/python -m tests.bench $(BENCH)
 
 bench-peers: $(NAME)  ## install what `make bench` compares with and draws with (Debian, Ubuntu)
-	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox
-	$(call INSTALL,'.[report]' embreex)
+	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox xvfb
+	-$(SUDO) apt-get install -y --no-install-recommends libllvm19  # for Mitsuba; older systems lack it
+	$(call INSTALL,'.[report]' embreex mitsuba)
 
 REPORTED := demo figure-v4-everything eval-shadows-many
 
@@ -79,7 +87,7 @@ clean:  ## remove what tests, tools and runs have left
 	rm -rf out .pytest_cache .mypy_cache .ruff_cache .hypothesis build dist
 
 fclean: clean  ## remove the installed program, too
-	rm -rf $(VENV)
+	rm -rf $(VENV) minirt/kernel/ahead_of_time
 
 re: fclean  ## install everything anew
 	$(MAKE) all

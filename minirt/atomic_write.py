@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import secrets
 import stat
 from contextlib import suppress
 from functools import partial
@@ -20,7 +19,7 @@ def write(path: str | os.PathLike[str], data: bytes, permissions: int | None = N
     target = Path(os.path.realpath(path))
     existing = mode_of_existing(target)
     mode = existing if permissions is None else permissions
-    temporary = target.with_name(f".minirt-{secrets.token_hex(8)}.tmp")
+    temporary = target.with_name(f".minirt-{os.urandom(8).hex()}.tmp")
     try:
         with open(temporary, "xb", opener=partial(os.open, mode=0o666 if permissions is None else permissions)) as file:
             file.write(data)

@@ -1,6 +1,6 @@
 """Base classes of all elements of a scene: what one line of a scene file describes.
 
-A subclass is a frozen dataclass whose attributes are declared with `minirt.fields.declare`, in the order of the file's
+A subclass is a record whose attributes are declared with `minirt.fields.declare`, in the order of the file's
 format; `code` is the identifier at the beginning of the line. A record has declared fields, too, but no line of its
 own.
 """
@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from functools import cache
 from itertools import repeat
 from typing import Any, ClassVar, Self, TypeVar, cast
 
 from minirt.errors import ElementError
 from minirt.fields import Field, FieldError
+from minirt.records import Immutable, record
 
 Answer = TypeVar("Answer")
 Kind = TypeVar("Kind", bound="Record")
@@ -46,8 +47,8 @@ def pattern(element: type[Element]) -> str:
     return " ".join((element.code, *parts))
 
 
-@dataclass(frozen=True)
-class Record:
+@record()
+class Record(Immutable):
     """Values of declared fields. ValueError if one is out of range."""
 
     title: ClassVar[str]  # its name in messages and documentation
@@ -69,7 +70,7 @@ class Record:
         return replace(self, **changes)
 
 
-@dataclass(frozen=True)
+@record()
 class Element(Record):
     """One element of a scene. ElementError if two of its fields contradict each other."""
 

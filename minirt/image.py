@@ -1,4 +1,4 @@
-"""Pictures in memory, written to PNG and other formats by Pillow."""
+"""Pictures in memory, written to PNG, and to other formats by Pillow."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from minirt import atomic_write
+from minirt import atomic_write, png
 from minirt.errors import RenderError
 
 if TYPE_CHECKING:
@@ -22,9 +22,11 @@ if TYPE_CHECKING:
 
 def format_of(path: str | os.PathLike[str]) -> str:
     """Return Pillow's name of the format of a file extension; RenderError when Pillow cannot write it."""
+    suffix = Path(path).suffix.lower()
+    if suffix == ".png":  # without Pillow, which loads the plug-ins of all formats to answer
+        return "PNG"
     from PIL import Image as pillow  # noqa: N813
 
-    suffix = Path(path).suffix.lower()
     name = pillow.registered_extensions().get(suffix, "")
     if name not in pillow.SAVE:
         raise RenderError(f"{os.fspath(path)}: cannot write pictures with the extension '{suffix}', try .png")
@@ -55,6 +57,8 @@ class Image:
         """Return the bytes of a file in a format of Pillow; RenderError when the format cannot hold the picture."""
         buffer = io.BytesIO()
         try:
+            if name == "PNG":
+                return png.encode(self.array)
             self.pil.save(buffer, name)
         except (OSError, ValueError, KeyError) as error:
             raise RenderError(f"cannot write this picture as {name}: {error}") from None

@@ -17,8 +17,8 @@ from tests.pages import PAGES, block, name, read
 from tests.paths import ROOT, SCENES
 from tests.test_imports import MAY
 
-HELPERS = {"errors", "atomic_write", "fork_safety", "gc_pause", "regular_files", "timing", "__main__"}
-HELPERS |= {"image", "movie"}  # left out of the diagram, as small
+HELPERS = {"errors", "records", "atomic_write", "fork_safety", "gc_pause", "regular_files", "timing", "__main__"}
+HELPERS |= {"png", "image", "movie"}  # left out of the diagram, as small
 PLACE = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 INDEX_TEXT = re.compile(r"^(text = '''\n).*?^(''')$", re.MULTILINE | re.DOTALL)
 PICTURE = re.compile(r"^\| !\[.*?\]\((.*?)\) \| .*?<br>`miniRT (\S+)(.*)$", re.MULTILINE)

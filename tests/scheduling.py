@@ -15,7 +15,12 @@ from tests.paths import ROOT
 
 WINDOWS, SCENES = "windows", "scenes"
 LARGEST = (WINDOWS, SCENES)  # the groups that take longest start first
-SCENE_TESTS = {"tests/test_goldens.py", "tests/stability/test_pictures.py", "tests/rendering/queries/test_preview.py"}
+SCENE_TESTS = {
+    "tests/test_goldens.py",
+    "tests/rendering/packing/test_widening.py",
+    "tests/rendering/queries/test_preview.py",
+    "tests/stability/test_pictures.py",
+}
 
 # Files that `make quick` skips: they take two thirds of the time of all tests that open no window.
 SLOW = {
@@ -30,6 +35,7 @@ SLOW = {
     "tests/kernel/shading/test_texturing.py",
     "tests/lanes/test_operators.py",
     "tests/materials/test_textures.py",
+    "tests/rendering/packing/test_widening.py",
     "tests/rendering/queries/test_pick.py",
     "tests/rendering/queries/test_preview.py",
     "tests/rendering/sampling/test_auto.py",

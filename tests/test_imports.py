@@ -14,7 +14,7 @@ from tests.cli.program import SCENE, environment
 from tests.paths import PACKAGE
 from tests.processes import run
 
-LOW = {"errors", "fields", "element", "lanes", "materials", "shapes"}
+LOW = {"errors", "records", "fields", "element", "lanes", "materials", "shapes"}
 
 # For each part what it may import of ours. A part is a folder or a file of the package.
 MAY: dict[str, set[str]] = {
@@ -24,14 +24,16 @@ MAY: dict[str, set[str]] = {
     "fork_safety": set(),
     "regular_files": {"errors"},
     "lanes": set(),
-    "fields": {"errors"},
-    "element": {"errors", "fields"},
-    "materials": {"errors", "fields", "element", "fork_safety", "regular_files"},
+    "records": set(),
+    "fields": {"errors", "records"},
+    "element": {"errors", "records", "fields"},
+    "materials": {"errors", "records", "fields", "element", "fork_safety", "regular_files"},
     "meshes": {"errors", "fields", "fork_safety", "regular_files"},
-    "shapes": {"lanes", "fields", "element", "materials", "meshes"},
-    "image": {"errors", "atomic_write"},
+    "shapes": {"lanes", "records", "fields", "element", "materials", "meshes"},
+    "png": set(),
+    "image": {"errors", "atomic_write", "png"},
     "movie": {"errors", "atomic_write", "image"},
-    "scene": {"errors", "fields", "element", "materials", "meshes", "shapes", "atomic_write", "regular_files"},
+    "scene": LOW - {"lanes"} | {"meshes", "atomic_write", "regular_files"},
     "kernel": {"errors", "lanes", "shapes", "atomic_write"},
     "rendering": LOW | {"fork_safety", "gc_pause", "kernel", "scene"},
     "mlx": {"errors"},

@@ -84,7 +84,7 @@ def argument_parser() -> Arguments:
     add = parser.add_argument_group("inspect").add_argument
     add("--check", action="store_true", help="read the scene and report its errors; render nothing")
     add("--lenient", action="store_true", help="accept older scenes: several L, blanks around commas, ...")
-    add("--bench", action="store_true", help="measure the frame time")
+    add("--bench", action="store_true", help="measure the frame time: of an eye at rest, and of a moving one")
     add("--json", action="store_true", help="with --bench: print JSON")
     add("--report", metavar="DIR", help="measure error against run time; write tables, pictures and a diagram into DIR")
     add("--quick", action="store_true", help="with --report: smaller pictures and fewer rays; takes seconds")

@@ -61,7 +61,7 @@ def render(scene: Scene, options: argparse.Namespace) -> Image:
             f"{(perf_counter() - start) * 1e3:.1f} ms"
         )
         tell(f"rays whose light is not finite: {renderer.not_finite}")
-        for note in renderer.packing.notes:
+        for note in renderer.notes:
             tell(note)
     return image
 

@@ -12,10 +12,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, ClassVar, NamedTuple
 
 from minirt.errors import FieldError
+from minirt.records import Immutable, record
 
 
 class PictureFile(NamedTuple):
@@ -33,8 +34,8 @@ class Repair(NamedTuple):
     deed: str
 
 
-@dataclass(frozen=True, kw_only=True)
-class Field(ABC):
+@record(kw_only=True)
+class Field(Immutable, ABC):
     """One field of an element; `name` and `default` are those of the dataclass attribute that declares it."""
 
     width: ClassVar[int] = 1  # components, with commas between them

@@ -9,6 +9,7 @@ from typing import Any
 from minirt.errors import FieldError
 from minirt.fields.field import Field
 from minirt.fields.pictures import file_name
+from minirt.records import record
 
 
 @dataclass(frozen=True)
@@ -19,7 +20,7 @@ class MeshFile:
     triangles: Any = None  # `minirt.meshes.Triangles`; None if it has not been read, as for lines without a scene file
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class MeshField(Field):
     """A mesh file, its name kept as written."""
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from minirt.errors import FieldError
 from minirt.fields.field import Field, PictureFile, Repair
 from minirt.fields.triples import Colour, Triple
+from minirt.records import record
 
 FORBIDDEN = " \t\r\n\0#"  # a line is cut at blanks, and `#` begins a comment
 
@@ -20,7 +20,7 @@ def file_name(text: str, also: str = "", sort: str = "picture") -> str:
     return text
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Picture(Field):
     """A picture file, its name kept as written; `heights`: read as a height map, `also`: characters it must not
     have."""
@@ -39,7 +39,7 @@ class Picture(Field):
         yield PictureFile(value, self.heights)
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Paint(Colour):
     """A colour or a picture file; a word with a comma is a colour."""
 

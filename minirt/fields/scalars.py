@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field
 from minirt.fields.numerals import PLAIN, number, numbers, spelled, whole, wholes
+from minirt.records import record
 
 FARTHEST = 1e15  # scene units; beyond it neighbouring float64 numbers are an eighth of a unit apart
 LEAST_LENGTH = 1e-9  # scene units; editing never makes a length smaller
@@ -18,7 +18,7 @@ def clamp(value: float, low: float, high: float) -> float:
     return min(max(value, low), high)
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Scalar(Field):
     """One number in an interval."""
 
@@ -32,7 +32,7 @@ class Scalar(Field):
         return None if any(self.remark(self.check(end)) for end in (least, greatest)) else values
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Real(Scalar):
     """A number in [low, high]."""
 
@@ -62,7 +62,7 @@ class Real(Scalar):
         return f"[{spelled(self.low)}, {spelled(self.high)}]"
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Length(Scalar):
     """A size greater than 0; a key press multiplies it by `step`."""
 
@@ -92,7 +92,7 @@ class Length(Scalar):
         return "> 0"
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Factor(Real):
     """A number above 0 in [low, high]; a key press multiplies it by `step`."""
 
@@ -103,7 +103,7 @@ class Factor(Real):
         return clamp(value * self.step ** clamp(steps, -1000, 1000), self.low, self.high)
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Whole(Scalar):
     """A whole number in [low, high]."""
 
@@ -126,7 +126,7 @@ class Whole(Scalar):
         return f"[{self.low}, {self.high}]"
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Flag(Field):
     """A flag: true if the word that is its name is there."""
 

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field, Repair
 from minirt.fields.numerals import PLAIN, number, numbers, spelled, whole, wholes
 from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, clamp
+from minirt.records import record
 
 Triple = tuple[float, float, float]
 
 SLACK = 1e-3  # by which the length of a direction may differ from 1 without a notice
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Three(Field):
     """Three components with commas between them, called `names` in messages."""
 
@@ -79,7 +79,7 @@ class Three(Field):
         return Repair(head, "drops the fourth component")
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Point(Three):
     """A point in the scene."""
 
@@ -99,7 +99,7 @@ class Point(Three):
         return f"[-{FARTHEST:g}, {FARTHEST:g}]"
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Lengths(Three):
     """Three sizes greater than 0; a key press multiplies all of them by `step`."""
 
@@ -130,7 +130,7 @@ class Lengths(Three):
         return "> 0"
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Direction(Three):
     """A direction with components in [-1, 1]; kept at unit length."""
 
@@ -164,7 +164,7 @@ class Direction(Three):
         return "[-1, 1]"
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Colour(Three):
     """Red, green and blue, whole numbers from 0 to 255; a key press changes all three."""
 

@@ -38,8 +38,8 @@ class SceneArrays(NamedTuple):
     light_shapes: Any  # shapes of all cells of all light buffers, those of a cell and kind sorted by distance
     light_cones: Any  # (m, n, 5) bounding cones as seen from each light
     groups: Any  # a tuple of Group: one for each kind of shape in the scene
-    # Features that most scenes lack. A field that is None adds no code to the kernel; an array without rows belongs to
-    # a feature that the kernel has and the scene lacks.
+    # Features that most scenes lack. A field that is None adds no code to the kernel; an array without rows means that
+    # the kernel has the feature and the scene lacks it.
     spots: Any = None  # (m, 7) spot, parallel and fading lights, see `minirt.kernel.shading.lights`
     specular: Any = None  # (n, 3) specular highlights, see `minirt.kernel.shading.specular`
     reflective: Any = None  # (n, 3) mirrors and glass, see `minirt.kernel.shading.whitted`

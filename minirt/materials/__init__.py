@@ -5,7 +5,6 @@ documentation, the public name `minirt.Glass` and the features of the kernel der
 how it is packed (`minirt.rendering.packing.materials`) and how it changes light (`minirt.kernel.shading`).
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 from minirt.element import Element, fields_of
@@ -18,12 +17,13 @@ from minirt.materials.mirror import Mirror as Mirror
 from minirt.materials.normal_map import NormalMap as NormalMap
 from minirt.materials.specular import Specular as Specular
 from minirt.materials.texture import Texture as Texture
+from minirt.records import record
 
 SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
 BOARD: dict[str, Any] = {"record": Checker, "aliases": ("pat",)} | SHARED
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Attributes(Element):
     """The materials that every shape may have; None where it has not."""
 

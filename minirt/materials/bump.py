@@ -11,14 +11,14 @@ Mirrored and refracted rays follow the bumped normal, too, unless they would lea
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 
 from minirt.fields import Picture, Real, declare
 from minirt.materials.material import Material
+from minirt.records import record
 
 
-@dataclass(frozen=True)
+@record()
 class Bump(Material):
     """The values of `bump:`."""
 

@@ -10,13 +10,12 @@ around, as their manual pages say, so that a size of 0.125 makes a board of 8 by
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from minirt.fields import Colour, Length, Triple, declare
 from minirt.materials.material import Material
+from minirt.records import record
 
 
-@dataclass(frozen=True)
+@record()
 class Checker(Material):
     """The values of `checker:`."""
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from minirt.element import fields_of
 from minirt.errors import FieldError, quoted
 from minirt.fields import Field, PictureFile
 from minirt.materials.material import Material
+from minirt.records import record
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Compound(Field):
     """A material, its values in the order of its fields; the last ones may be left out where they have a default."""
 

@@ -11,13 +11,12 @@ goes straight on.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from minirt.fields import Real, declare
 from minirt.materials.material import Material
+from minirt.records import record
 
 
-@dataclass(frozen=True)
+@record()
 class Glass(Material):
     """The values of `glass:`."""
 

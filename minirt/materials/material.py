@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from minirt.element import Record
+from minirt.records import record
 
 
-@dataclass(frozen=True)
+@record()
 class Material(Record):
     """Values of one material, and the feature of the kernel that draws it."""
 

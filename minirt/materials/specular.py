@@ -11,15 +11,14 @@ exponent, the smaller the highlight; with `blinn` a highlight of the same size t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from minirt.fields import Factor, Flag, Real, declare
 from minirt.materials.material import Material
+from minirt.records import record
 
 GREATEST = 1e6  # exponent: its highlight is a tenth of a degree wide
 
 
-@dataclass(frozen=True)
+@record()
 class Specular(Material):
     """The values of `specular:`."""
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from minirt import regular_files
 from minirt.errors import FileError
 from minirt.fork_safety import ForkSafeLock
-from minirt.meshes.obj import ObjError, parse
 from minirt.meshes.triangles import Triangles
 
 MAX_BYTES = 256 * 2**20  # 256 MiB
@@ -33,6 +32,8 @@ def load_mesh(path: str | os.PathLike[str]) -> Triangles:
 
 def read(path: Path) -> Triangles:
     """Read and parse an .obj file; FileError when it is no mesh."""
+    from minirt.meshes.obj import ObjError, parse
+
     try:
         return parse(regular_files.read(path, MAX_BYTES))
     except ObjError as error:

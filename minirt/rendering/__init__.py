@@ -3,7 +3,6 @@
 Knows no window and no file; imports the compiler only when the first picture is made.
 """
 
-from minirt.rendering.queries.pick import pick
 from minirt.rendering.renderer import Renderer
 
-__all__ = ["Renderer", "pick"]
+__all__ = ["Renderer"]

@@ -12,38 +12,20 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import chain
 from pathlib import Path
 
-import numpy as np
-
 from minirt.errors import MiniRTError
-from minirt.kernel.machine_code import cache_folder, functions, shipped_code
+from minirt.kernel.machine_code import cache_folder, shipped_code
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import Call, identity_of
 from minirt.kernel.machine_code.processor import processor
-from minirt.rendering.packing.features import DEPTH
-from minirt.rendering.packing.widening import FULL_DOUBLE, WIDE_KERNELS, empty_arrays
+from minirt.rendering.packing.widening import WIDE_KERNELS
 from minirt.rendering.running.cores import usable_cores
-from minirt.rendering.running.needed_kernels import calls_for, wide_call
-from minirt.scene import Camera, ParallelLight, Scene
-from minirt.shapes.sphere import Sphere
-
-WHITE = (255, 255, 255)
-EYE, SUN = Camera((0, 0, -9), (0, 0, 1), 60), ParallelLight((0, -1, 0), 1, WHITE)
-SPHERES = tuple(Sphere((0, 0, z), 1, WHITE) for z in range(9))  # so many that parallel light needs a BVH
-EXAMPLE = Scene((EYE, SUN, *SPHERES))
+from minirt.rendering.running.needed_kernels import packing_calls, ray_query, wide_call
 
 
 def calls() -> list[list[Call]]:
-    """Return calls of the kernels to compile, in groups for one process each; the groups take about as long."""
+    """Return calls of the kernels to compile, in groups for one process each, the slowest first."""
     full, plain, *single = map(wide_call, sorted(WIDE_KERNELS, key=lambda each: (each.precision, each.name)))
-    *packing, _ = calls_for(EXAMPLE, "double", DEPTH)
-    return [[full], [*packing, plain, ray_query()], *([each] for each in single)]
-
-
-def ray_query() -> Call:
-    """Return a call of the query for single rays, for all kinds of shapes."""
-    vectors, numbers, integers = np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64)
-    tree = empty_arrays(FULL_DOUBLE).bvh
-    return functions.trace_rays.call(integers, tree, vectors, vectors, numbers, integers, vectors, vectors)
+    return [[full], [*packing_calls(), plain], *([each] for each in single), [ray_query()]]
 
 
 def build(folder: Path, target: str) -> int:

@@ -11,6 +11,7 @@ from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.culling.planes import never_occludes
 from minirt.rendering.packing.features import FEATURES, features
 from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.rendering.packing.widening import WideKernel
 from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Shape
 
@@ -18,12 +19,6 @@ from minirt.shapes import ALL_KINDS, Shape
 def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Iterator[str]:
     """Describe the decisions. Lights, and the shapes of each kind, are numbered in the order of the file."""
     shapes = f"{len(shape_arrays.slots)} shape{'s' * (len(shape_arrays.slots) != 1)}"
-    used = {type(shape) for shape in scene.shapes}
-    yield f"kernel for {plurals(used)}"
-    if unused := {kind.element for kind in ALL_KINDS} - used:
-        yield f"kernel without {plurals(unused)}"
-    used_features = features(scene)
-    yield f"kernel without {', '.join(words for feature, words in FEATURES.items() if feature not in used_features)}"
     sizes = sum(np.diff(group.tile_starts) for group in arrays.groups)
     yield f"tiles: {len(sizes)}, {np.mean(sizes):.1f} of {shapes} in each, {np.count_nonzero(sizes == 0)} without any"
     if arrays.light_buffer_cells == 1:
@@ -39,6 +34,21 @@ def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Itera
             harmless = never_occludes(shape_arrays, np.array(scene.camera.position), light)
             for index in shape_arrays.plane_indices[harmless].tolist():
                 yield f"{shape_name(shape_arrays, index)} hides nothing from light {number}"
+
+
+def kernel_notes(scene: Scene, wide: WideKernel | None, compiling: bool) -> Iterator[str]:
+    """Describe the kernel that drew a scene: what it leaves out; `wide` is None for the narrow kernel of the scene."""
+    used = {type(shape) for shape in scene.shapes}
+    if wide:
+        yield f"wide kernel for all kinds of shapes and {'all' if wide.features else 'no'} features"
+        if compiling:
+            yield f"the kernel for {plurals(used)} alone is being compiled"
+        return
+    yield f"kernel for {plurals(used)}"
+    if unused := {kind.element for kind in ALL_KINDS} - used:
+        yield f"kernel without {plurals(unused)}"
+    used_features = features(scene)
+    yield f"kernel without {', '.join(words for feature, words in FEATURES.items() if feature not in used_features)}"
 
 
 def light_buffer_sizes(arrays: SceneArrays) -> Iterator[str]:

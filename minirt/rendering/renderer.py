@@ -13,8 +13,8 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.fork_safety import renew_after_fork
 from minirt.rendering.frame_arguments import NO_LINEAR
+from minirt.rendering.notes import kernel_notes
 from minirt.rendering.packing.features import DEPTH
-from minirt.rendering.queries import pick, preview
 from minirt.rendering.running import fixed_samples, to_error
 from minirt.rendering.running.cores import usable_cores
 from minirt.rendering.running.frame_runner import FrameRunner
@@ -68,19 +68,40 @@ class Renderer:
     def about(self) -> list[str]:
         """Sentences about how the last picture was rendered and what its kernel lacks."""
         with self.busy:
-            return [f"{self.threads} threads, {self.precision} precision", *self.packing.notes]
+            return [f"{self.threads} threads, {self.precision} precision", *self.notes]
+
+    @property
+    def notes(self) -> list[str]:
+        """Sentences about the kernel of the last picture, and about its tiles, light buffers and lights."""
+        choice, last = self.runner.choice, self.packing.last
+        if not choice or not last:
+            return []
+        compiling = self.kernels.background.busy
+        return [*kernel_notes(last[0], choice.wide, compiling), *self.packing.notes]
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether there is a kernel, narrow or wide, that can draw this scene."""
         return self.kernels.is_ready(scene)
 
     def prepare(self, scene: Scene) -> None:
-        """Load the narrow kernel for this scene, or compile it, which takes seconds.
+        """Load a kernel that can draw this scene. Where there is none, another process compiles the narrow one, which
+        takes seconds. RenderError where that fails.
+        """
+        if not self.is_ready(scene):
+            self.kernels.compile(scene)
+        self.render(scene, np.zeros((1, 1, 4), np.uint8))
 
-        Another process compiles. RenderError where that fails.
+    def specialise(self, scene: Scene) -> None:
+        """Load or compile the narrow kernel for this scene, so that measurements are those of this kernel alone.
+
+        RenderError where compiling fails.
         """
         self.kernels.compile(scene)
-        self.render(scene, np.zeros((1, 1, 4), np.uint8))
+        self.prepare(scene)
+
+    def specialise_early(self) -> None:
+        """Have narrow kernels compiled as soon as a wide one has drawn a picture: for windows, which stay open."""
+        self.kernels.narrow_after = 0.0
 
     def stop(self) -> None:
         """Stop compiling; callable from any thread."""
@@ -88,6 +109,8 @@ class Renderer:
 
     def preview(self, scene: Scene, width: int, height: int) -> np.ndarray | None:
         """Return a coarse picture of a scene without using a kernel; see `minirt.rendering.queries.preview`."""
+        from minirt.rendering.queries import preview
+
         return preview.preview(scene, width, height)
 
     def render(
@@ -137,7 +160,7 @@ class Renderer:
         self.runner.not_finite = 0
         light = NO_LINEAR if linear is None else linear
         if not scene.shapes or not pixels.size:
-            preview.draw_background(scene, pixels, light)
+            draw_background(scene, pixels, light)
             return True
         return fixed_samples.render(
             self.runner, self.packing, scene, pixels, light, samples, is_wanted, edges_only=edges_only
@@ -159,7 +182,7 @@ class Renderer:
             self.runner.not_finite = 0
             light = NO_LINEAR if linear is None else linear
             if not scene.shapes or not pixels.size:
-                preview.draw_background(scene, pixels, light)
+                draw_background(scene, pixels, light)
                 return Outcome(1.0, 1, 0.0, perf_counter() - start)
             return to_error.reach(self.runner, self.packing, scene, pixels, light, error, seconds)
 
@@ -169,6 +192,8 @@ class Renderer:
         A picture that is being made is cancelled. Where something else keeps the renderer busy, such as the compiler,
         this packs the scene anew instead of using the packed shapes.
         """
+        from minirt.rendering.queries import pick
+
         for _ in range(TRIES):
             if self.busy.acquire(timeout=PATIENCE):
                 try:
@@ -178,6 +203,17 @@ class Renderer:
             self.cancel()
         return pick.pick(scene, width, height, x, y)
 
+    def give_way(self) -> None:
+        """Let the other threads of this process, such as an event loop, go before those that render, from now on."""
+        self.runner.pool.give_way()
+
     def cancel(self) -> None:
         """End the picture that is being rendered, soon and incomplete; callable from any thread."""
         self.runner.cancel()
+
+
+def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray) -> None:
+    """Draw a scene without shapes, see `minirt.rendering.queries.preview`."""
+    from minirt.rendering.queries import preview
+
+    preview.draw_background(scene, pixels, linear)

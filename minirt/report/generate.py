@@ -12,6 +12,7 @@ import numpy as np
 from minirt import atomic_write
 from minirt.errors import RenderError
 from minirt.rendering import Renderer
+from minirt.rendering.notes import kernel_notes
 from minirt.rendering.running.cores import usable_cores
 from minirt.report.measurements import formula_errors
 from minirt.report.measurements.coincident import coincident
@@ -69,7 +70,7 @@ def report(
         [row for row, _ in found],
         rows,
         stiff,
-        packing.notes,
+        [*kernel_notes(scene, wide=None, compiling=False), *packing.notes],
         identical_without_culling({(row.knob, row.samples): picture for row, picture in found if picture is not None}),
         kinds_not_measured(kinds) + ([] if find_spec("matplotlib") else [NO_DIAGRAM]),
     )

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from minirt.element import Element
 from minirt.fields import Colour, Direction, Paint, Point, Real, Triple, Whole, declare, unit
+from minirt.records import record
 
 
-@dataclass(frozen=True)
+@record()
 class Resolution(Element):
     """`R width height`: size of the window and of pictures, in pixels."""
 
@@ -17,7 +18,7 @@ class Resolution(Element):
     height: int = declare(Whole, "height of the picture", unit="pixel", low=1, high=16384)
 
 
-@dataclass(frozen=True)
+@record()
 class Ambient(Element):
     """`A ratio R,G,B`: light that reaches every surface from everywhere."""
 
@@ -26,7 +27,7 @@ class Ambient(Element):
     colour: Triple = declare(Colour, "colour")
 
 
-@dataclass(frozen=True)
+@record()
 class Camera(Element):
     """`C x,y,z dx,dy,dz fov [roll:degrees]`: a pinhole camera.
 
@@ -59,7 +60,7 @@ class Camera(Element):
         return cls(eye, unit((x, y, z)), fov, roll)
 
 
-@dataclass(frozen=True)
+@record()
 class Background(Element):
     """`bg R,G,B` or `bg file`: colour or environment map for rays that hit nothing; black without this line.
 

@@ -9,16 +9,20 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Sequence
+from functools import cache
 
 from minirt.element import Element, fields_of
 from minirt.scene.registry import ELEMENTS
 
-# Kinds that a scene may have many of: for the others the fast path does not pay.
-KINDS = {
-    code: kind
-    for code, kind in ELEMENTS.items()
-    if not kind.once and all(field.plain for field in fields_of(kind) if not field.keyed)
-}
+
+@cache
+def frequent_kinds() -> dict[str, type[Element]]:
+    """Return the kinds that a scene may have many of, by identifier: for the others the fast path does not pay."""
+    return {
+        code: kind
+        for code, kind in ELEMENTS.items()
+        if not kind.once and all(field.plain for field in fields_of(kind) if not field.keyed)
+    }
 
 
 def line_pattern(kind: type[Element]) -> str:
@@ -27,22 +31,26 @@ def line_pattern(kind: type[Element]) -> str:
     return f"(?P<{kind.code}>(?:{'|'.join((kind.code, *kind.aliases))}){fields})"
 
 
-LINE = re.compile(rf"[ \t]*(?:{'|'.join(map(line_pattern, KINDS.values()))})[ \t]*(?:#[^\r\n\0]*)?\r?")
+@cache
+def plain_line() -> re.Pattern[str]:
+    """Return the pattern of all plain lines; to compile it takes as long as to diagnose 100 lines."""
+    return re.compile(rf"[ \t]*(?:{'|'.join(map(line_pattern, frequent_kinds().values()))})[ \t]*(?:#[^\r\n\0]*)?\r?")
 
 
 def read(sources: Sequence[str]) -> Sequence[Element | None]:
     """Parse lines as they stand in a file; None for each line that is left to the diagnosing reader."""
     indices: dict[str, list[int]] = defaultdict(list)
     texts: dict[str, list[str]] = defaultdict(list)
+    match = plain_line().fullmatch
     for index, source in enumerate(sources):
-        line = LINE.fullmatch(source)
+        line = match(source)
         if line:
             code = line.lastgroup or ""
             indices[code].append(index)
             texts[code].append(line[code])
     elements: list[Element | None] = [None] * len(sources)
     for code, lines in indices.items():
-        parsed = read_kind(KINDS[code], texts[code], [sources[index] for index in lines])
+        parsed = read_kind(frequent_kinds()[code], texts[code], [sources[index] for index in lines])
         for index, element in zip(lines, parsed, strict=True):
             elements[index] = element
     return elements

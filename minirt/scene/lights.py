@@ -5,11 +5,11 @@ A light source gives a surface its colour times its brightness times the cosine 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from minirt.element import Element
 from minirt.fields import Colour, Direction, Length, Point, Real, Triple, declare
+from minirt.records import record
 
 RATIO: dict[str, Any] = {"unit": "ratio", "low": 0.0, "high": 1.0, "step": 0.05}
 WHITE = (255, 255, 255)
@@ -17,7 +17,7 @@ DOWN = (0.0, -1.0, 0.0)
 FADE = "distance at which its light has faded to nothing"
 
 
-@dataclass(frozen=True)
+@record()
 class Lamp(Element):
     """Base class of light sources: each has a brightness and a colour."""
 
@@ -26,7 +26,7 @@ class Lamp(Element):
         colour: Triple
 
 
-@dataclass(frozen=True)
+@record()
 class Light(Lamp):
     """`L x,y,z ratio [R,G,B]`: the point light of the mandatory format.
 
@@ -40,14 +40,14 @@ class Light(Lamp):
     fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance", initial=16.0)
 
 
-@dataclass(frozen=True)
+@record()
 class FurtherLight(Light):
     """`l x,y,z ratio [R,G,B]`: any number of further point lights."""
 
     code, title, plural, once = "l", "further light", "further_lights", False
 
 
-@dataclass(frozen=True)
+@record()
 class ParallelLight(Lamp):
     """`dl dx,dy,dz ratio [R,G,B]`: light along dx,dy,dz from an infinitely distant source, such as the sun."""
 
@@ -57,7 +57,7 @@ class ParallelLight(Lamp):
     colour: Triple = declare(Colour, "colour", default=WHITE)
 
 
-@dataclass(frozen=True)
+@record()
 class SpotLight(Lamp):
     """`sl x,y,z dx,dy,dz angle ratio [R,G,B]`: light within a cone.
 

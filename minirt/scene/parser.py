@@ -6,6 +6,7 @@ import gc
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import repeat
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,6 +24,7 @@ from minirt.scene.scene import Scene
 from minirt.scene.suggestions import nearest_element
 
 BLOCK = 4096  # lines that the fast path reads at once
+FEW_LINES = 100  # of a file: the diagnosing reader reads them before the pattern of the fast path is compiled
 
 
 class Reading(NamedTuple):
@@ -74,7 +76,8 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
     seen: dict[str, int] = {}  # identifier: first line that has it, or seems to mean it
     for start in range(0, len(sources), BLOCK):
         block = sources[start : start + BLOCK]
-        for number, (source, element) in enumerate(zip(block, fast.read(block), strict=True), start + 1):
+        elements = fast.read(block) if len(sources) > FEW_LINES else repeat(None, len(block))
+        for number, (source, element) in enumerate(zip(block, elements, strict=True), start + 1):
             if element:
                 seen.setdefault(element.code, number)
                 items.append(element)

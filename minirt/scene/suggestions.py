@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 
 from minirt.scene.registry import ELEMENTS, SPELLINGS
@@ -36,6 +35,8 @@ def nearest(word: str, known: list[str]) -> str:
     for entry in known:
         if entry.lower() in (word.lower(), word.translate(LOOKALIKES).lower()):
             return entry
+    import difflib
+
     return next(iter(difflib.get_close_matches(word, known, n=1, cutoff=0.6)), "")
 
 

@@ -10,7 +10,6 @@ below.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import product
 from math import inf
 from typing import NamedTuple
@@ -19,13 +18,14 @@ from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
 from minirt.lanes import Vec, copysign, fabs, maximum, minimum, splat, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.bounds import bounds_of_points, point_along
 from minirt.shapes.shape import Ball, Position, Shape
 from minirt.shapes.shape import Bounds as Corners
 
 
-@dataclass(frozen=True)
+@record()
 class Box(Shape):
     """A line `bo` of a scene file."""
 

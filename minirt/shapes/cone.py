@@ -9,13 +9,13 @@ once on the square around the base; on a cone that stands upright its middle is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
 from minirt.shapes.quadric import clamped_minimum, negative_interval
@@ -23,7 +23,7 @@ from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.uv_mapping import revolved_mapping
 
 
-@dataclass(frozen=True)
+@record()
 class Cone(Shape):
     """A line `co` of a scene file."""
 

@@ -8,13 +8,13 @@ around the side, with its middle towards -z on an upright cylinder, and once on 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, copysign, fabs, maximum, minimum, splat, sqrt, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
 from minirt.shapes.quadric import clamped_minimum, negative_interval
@@ -22,7 +22,7 @@ from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
-@dataclass(frozen=True)
+@record()
 class Cylinder(Shape):
     """A line `cy` of a scene file."""
 

@@ -8,20 +8,20 @@ it once, upright for a viewer who faces it; on a floor its upper edge is towards
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes.basis import facing_frame
 from minirt.shapes.bounds import bounds_of_disc
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
 
-@dataclass(frozen=True)
+@record()
 class Disc(Shape):
     """A line `di` of a scene file."""
 

@@ -9,7 +9,6 @@ to its opposite. A picture lies on it as on a sphere that is stretched together 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import hypot
 from sys import float_info
 from typing import NamedTuple
@@ -18,6 +17,7 @@ from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
 from minirt.lanes import Vec, any, dot, sqrt, unit, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.bounds import point_along
 from minirt.shapes.quadric import negative_interval
@@ -27,7 +27,7 @@ from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns
 SHORTEST = float_info.min  # semi-axis, in scene units: half of a subnormal size may be 0
 
 
-@dataclass(frozen=True)
+@record()
 class Ellipsoid(Shape):
     """A line `el` of a scene file."""
 

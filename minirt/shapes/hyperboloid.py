@@ -10,7 +10,6 @@ each cap.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import sqrt as root
 from typing import NamedTuple
 
@@ -18,6 +17,7 @@ from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spe
 from minirt.lanes import Vec, any, copysign, fabs, inverse_root, maximum, minimum, splat, sqrt, unit, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
 from minirt.shapes.quadric import clamped_minimum, negative_interval
@@ -25,7 +25,7 @@ from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
-@dataclass(frozen=True)
+@record()
 class Hyperboloid(Shape):
     """A line `hy` of a scene file."""
 

@@ -10,7 +10,6 @@ pictures.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +19,7 @@ from minirt.fields import FARTHEST, Colour, Length, MeshField, MeshFile, Point, 
 from minirt.lanes import Vec, cross, dot, maximum, minimum, unit, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes import pyramid, triangle
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
@@ -27,7 +27,7 @@ BARYCENTRIC = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)  # u and v at the three corners whe
 OPPOSED = 1e-3  # squared length of a mean of unit normals; below it they cancel, and the mean points anywhere
 
 
-@dataclass(frozen=True)
+@record()
 class Mesh(Shape):
     """A line `ob` of a scene file."""
 

@@ -10,13 +10,13 @@ around the cap.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, unit, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.bounds import bounds_of_disc, disc_extents, point_along, union_of_bounds
 from minirt.shapes.quadric import clamped_minimum, negative_interval
@@ -24,7 +24,7 @@ from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
-@dataclass(frozen=True)
+@record()
 class Paraboloid(Shape):
     """A line `pa` of a scene file."""
 

@@ -9,7 +9,7 @@ upright; on a floor u, to the right, runs along x and v, upwards, along -z, on a
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY
 from typing import NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
@@ -17,17 +17,18 @@ from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.materials import BOARD, Checker, Compound
+from minirt.records import record
 from minirt.shapes.basis import facing_frame
 from minirt.shapes.shape import Ball, Position, Shape
 
 PARALLEL = 4  # error of the scalar product of two unit vectors, in unit roundoffs
 
 
-@dataclass(frozen=True)
+@record()
 class Plane(Shape):
     """A line `pl` of a scene file."""
 
-    code, title, plural = "pl", "plane", "planes"
+    code, title, plural, infinite = "pl", "plane", "planes", True
     point: Triple = declare(Point, "a point of the plane")
     normal: Triple = declare(Direction, "normal")
     colour: Triple = declare(Colour, "colour")

@@ -1,6 +1,6 @@
 """The interface of shapes: what each shape's file defines.
 
-The file of a shape holds its manual page, its line in a scene file (a frozen dataclass), its packed form for the kernel
+The file of a shape holds its manual page, its line in a scene file (a record), its packed form for the kernel
 (a NamedTuple of numbers and Vecs, made by `pack`) and three functions on packed shapes:
 
     intersect(shape, origin, direction)   whether a ray hits the shape, and the distance t along the unit `direction` at
@@ -29,7 +29,6 @@ from __future__ import annotations
 import sys
 from abc import abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NewType, get_type_hints
 
 import numpy as np
@@ -38,17 +37,19 @@ from minirt.fields import Triple
 from minirt.lanes import Vec
 from minirt.lanes.operations import Mask
 from minirt.materials import Attributes
+from minirt.records import record
 
 Bounds = tuple[Triple, Triple]  # axis-aligned bounding box: least and greatest corner
 Ball = tuple[Triple, float]  # centre and radius
 Position = NewType("Position", Vec)  # a point in a packed shape; other Vecs there are directions
 
 
-@dataclass(frozen=True, kw_only=True)
+@record(kw_only=True)
 class Shape(Attributes):
     """A surface that rays can hit, with its materials. The last field of every shape is its colour."""
 
     batched: ClassVar[bool] = False  # whether one element is many primitives, as a mesh is many triangles
+    infinite: ClassVar[bool] = False  # whether the shapes of this kind have no bounding box, as planes
     if TYPE_CHECKING:
         colour: Triple
 
@@ -76,7 +77,7 @@ class Shape(Attributes):
 
     @abstractmethod
     def bounds(self) -> Bounds | None:
-        """The axis-aligned bounding box, or None for an infinite shape."""
+        """The axis-aligned bounding box, or None for a kind that is `infinite`."""
 
 
 def geometric_normal(shape: Any, point: Vec, normal: Vec) -> Vec:
@@ -100,6 +101,7 @@ class Kind(NamedTuple):
     shading: Callable[..., Any] = geometric_normal
     may_meet: Callable[..., Any] = all_rays
     batched: bool = False  # whether one element is many small primitives side by side
+    infinite: bool = False  # whether the shapes have no bounding box
 
 
 def kind_of(element: type[Shape]) -> Kind:
@@ -107,4 +109,13 @@ def kind_of(element: type[Shape]) -> Kind:
     module = sys.modules[element.__module__]
     optional = {name: getattr(module, name) for name in ("shading", "may_meet") if hasattr(module, name)}
     packed = get_type_hints(element.pack)["return"]
-    return Kind(element, packed, module.intersect, module.surface, module.mapping, **optional, batched=element.batched)
+    return Kind(
+        element,
+        packed,
+        module.intersect,
+        module.surface,
+        module.mapping,
+        **optional,
+        batched=element.batched,
+        infinite=element.infinite,
+    )

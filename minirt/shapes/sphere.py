@@ -8,13 +8,13 @@ and latitude (equirectangular projection): its upper edge at the pole +y, its mi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes.compensated import power_of_point
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns
@@ -23,7 +23,7 @@ CLOSE = 2.0**-6  # to the surface: |f|^2 / radius^2 - 1
 ROUNDING = 16  # unit roundoffs by which |f|^2 / radius^2 - 1 may be off, and more
 
 
-@dataclass(frozen=True)
+@record()
 class Sphere(Shape):
     """A line `sp` of a scene file."""
 

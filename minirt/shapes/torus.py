@@ -9,7 +9,6 @@ the axis, with its middle towards -z on a ring that lies flat, and once around t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import cos, pi, sin
 from typing import NamedTuple
 
@@ -17,6 +16,7 @@ from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spe
 from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, splat, sqrt, unit_roundoff, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.bounds import bounds_of_disc, point_along
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
@@ -26,7 +26,7 @@ STEPS = 100  # of Newton's method at most; most roots take less than ten
 CORNERS = 8  # of the polygon around the circle in the middle of the tube
 
 
-@dataclass(frozen=True)
+@record()
 class Torus(Shape):
     """A line `to` of a scene file."""
 

@@ -9,7 +9,6 @@ on it: its lower left corner on the first corner, the lower right one on the sec
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import hypot
 from typing import NamedTuple
 
@@ -18,6 +17,7 @@ from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rounded_product,
 from minirt.lanes import cross as product
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes import pyramid
 from minirt.shapes.bounds import bounds_of_points
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
@@ -25,7 +25,7 @@ from minirt.shapes.shape import Ball, Bounds, Position, Shape
 FLAT = 16 * 2.0**-53  # least height of a triangle, as a share of its largest coordinate
 
 
-@dataclass(frozen=True)
+@record()
 class Triangle(Shape):
     """A line `tr` of a scene file."""
 

@@ -1,5 +1,5 @@
-"""`python -m tests.bench`: benchmark miniRT against other renderers, over growing scenes, and its exact formulas
-against textbook formulas."""
+"""`python -m tests.bench`: benchmark miniRT against other renderers, in frames and from its start, over growing scenes,
+and its exact formulas against textbook formulas."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from typing import NamedTuple
 
 from minirt.rendering.running.cores import usable_cores
 from minirt.report.measurements.machine import processor
-from tests.bench import formulas, scenes
+from tests.bench import formulas, meshes, scenes, starts
 from tests.bench.measure import Cells, available, take_turns
 from tests.bench.ours import MiniRT
 from tests.bench.peers.embree import Embree
+from tests.bench.peers.mitsuba import Mitsuba
 from tests.bench.peers.povray import PovRay
 from tests.bench.peers.tachyon import Tachyon
 from tests.bench.system import Setting, System
@@ -26,7 +27,7 @@ from tests.bench.yardstick import Yardstick
 Maker = Callable[[Setting], System]
 
 OWN: list[Maker] = [partial(MiniRT, precision="double"), partial(MiniRT, precision="single"), Yardstick]
-PEERS: list[Maker] = [Embree, Tachyon, PovRay]
+PEERS: list[Maker] = [Embree, Mitsuba, Tachyon, PovRay]
 WIDTH, HEIGHT = 1280, 720
 
 
@@ -34,13 +35,14 @@ class Plan(NamedTuple):
     """The extent of the benchmark."""
 
     rounds: int  # rounds of the comparison
+    starts: int  # rounds of the starts
     grown_rounds: int  # rounds of the growth curve
     most: int  # spheres of the growth curve, at most
     seconds: float  # of a turn
 
 
-FULL = Plan(rounds=5, grown_rounds=3, most=1_000_000, seconds=0.6)
-QUICK = Plan(rounds=2, grown_rounds=1, most=10_000, seconds=0.2)
+FULL = Plan(rounds=5, starts=5, grown_rounds=3, most=1_000_000, seconds=0.6)
+QUICK = Plan(rounds=2, starts=1, grown_rounds=1, most=10_000, seconds=0.2)
 
 
 def arguments() -> argparse.Namespace:
@@ -64,9 +66,12 @@ def main() -> None:
     print(f"{processor()}, {usable_cores()} processors; {asked.threads} threads each.")
     print(f"{WIDTH}x{HEIGHT} pixels, a ray for each and a shadow ray to each light. Median of {plan.rounds} rounds")
     print("in which the systems take turns; the second figure is a multiple of the first row.\n", flush=True)
-    three = scenes.compared(folder)
-    compared = take_turns(systems, three, plan.rounds, plan.seconds)
-    print(table(compared, names(systems), [scene.stem for scene in three]), end="\n\n", flush=True)
+    four = [*scenes.compared(folder), meshes.compared(folder)]
+    compared = take_turns(systems, four, plan.rounds, plan.seconds)
+    print(table(compared, names(systems), [scene.stem for scene in four]), end="\n\n", flush=True)
+
+    started, start_reasons = starts.measured(setting, four[:3], plan.starts)
+    print(starts.report(started, plan.starts), end="\n\n", flush=True)
 
     grown = [scenes.grown(folder, count) for count in scenes.COUNTS if count <= plan.most]
     growth = take_turns(own, grown, plan.grown_rounds, plan.seconds)
@@ -75,40 +80,44 @@ def main() -> None:
     exact = list(formulas.measured())
     print(formulas.table(exact), formulas.MEANING, sep="\n", end="\n\n")
 
-    if any(cell.disturbed for cell in (*compared.values(), *growth.values())) or not all(row.valid for row in exact):
+    disturbed = any(cell.disturbed for cells in (compared, started, growth) for cell in cells.values())
+    if disturbed or not all(row.valid for row in exact):
         print(f"{MARK} other programs needed the processors in every round")
     for system in systems:
         print(f"{system.name}: {system.how}")
-    for reason in reasons + more_reasons:
+    reasons += more_reasons + start_reasons
+    for reason in reasons:
         print(f"not measured: {reason}")
     found = {
         "processor": processor(),
         "processors": usable_cores(),
         "size": [WIDTH, HEIGHT],
         "how": {system.name: system.how for system in systems},
-        "not measured": reasons + more_reasons,
+        "not measured": reasons,
         "compared": records(compared),
+        "starts": records(started),
         "growth": records(growth),
         "formulas": formulas.records(exact),
     }
     (asked.out / "bench.json").write_text(json.dumps(found, indent=1) + "\n")
-    draw(compared, growth, asked.out)
+    draw(compared, started, growth, asked.out)
 
 
 def names(systems: list[System]) -> list[str]:
     return [system.name for system in systems]
 
 
-def draw(compared: Cells, growth: Cells, out: Path) -> None:
+def draw(compared: Cells, started: Cells, growth: Cells, out: Path) -> None:
     """Draw the charts if matplotlib is installed."""
     if find_spec("matplotlib") is None:
         print("no pictures: matplotlib is not installed (pip install -e '.[report]')")
         return
     from tests.bench import charts
 
-    charts.dots(compared, out / "bench.png")
+    charts.dots(compared, out / "bench.png", f"milliseconds per frame of {WIDTH} x {HEIGHT}, logarithmic axis")
+    charts.dots(started, out / "starts.png", "milliseconds from the start to the picture, logarithmic axis")
     charts.growth(growth, out / "growth.png")
-    print(f"{out}: bench.json, bench.png, growth.png")
+    print(f"{out}: bench.json, bench.png, starts.png, growth.png")
 
 
 if __name__ == "__main__":

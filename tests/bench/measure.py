@@ -87,11 +87,11 @@ def available(makers: Iterable[Callable[[], System]]) -> tuple[list[System], lis
 
 
 def take_turns(systems: list[System], scenes: list[Path], rounds: int, seconds: float) -> Cells:
-    """Measure each system on each scene; cells without a quiet round get as many further rounds."""
+    """Measure each system on each scene that it renders; cells without a quiet round get as many further rounds."""
     cells: Cells = {}
     for number in range(2 * rounds):
         for scene in scenes:
-            for system in systems:
+            for system in (each for each in systems if each.renders(scene)):
                 cell = cells.setdefault((system.name, scene.stem), Cell(system.setting.threads))
                 if number < rounds or cell.disturbed:
                     print(f"round {number + 1}: {system.name} on {scene.stem}", file=sys.stderr, flush=True)

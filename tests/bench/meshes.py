@@ -9,6 +9,7 @@ from pathlib import Path
 from tests.bench.scenes import write
 
 COUNTS = (1_000, 10_000, 100_000, 1_000_000)
+COMPARED = 100_000  # triangles
 
 SCENE = """\
 A 0.2 255,255,255
@@ -46,6 +47,12 @@ def ball(count: int) -> Iterator[str]:
             above, below = ring * around, (ring + 1) * around
             yield f"f {above + here} {above + beside} {below + beside} {below + here}\n"
         yield f"f {last} {last - around + step} {last - around + (step + 1) % around}\n"
+
+
+def compared(folder: Path) -> Path:
+    """Write the scene of a mesh on which the systems are compared; return its file."""
+    waves(folder, COMPARED)
+    return write(folder / "mesh.rt", iter([SCENE.format(f"meshes/{COMPARED}")]))
 
 
 def waves(folder: Path, count: int) -> Path:

@@ -14,7 +14,7 @@ from minirt.rendering import Renderer
 from tests.bench.system import Setting, System
 
 LEAST_FRAMES = 3
-RECENT = 3  # packed scenes that are kept
+RECENT = 4  # packed scenes that are kept
 STEP = 1e-3  # scene units that the eye moves from frame to frame
 
 read = lru_cache(RECENT)(load)
@@ -31,9 +31,11 @@ class MiniRT(System):
         self.precision = precision
         self.renderer = lru_cache(RECENT)(self.new_renderer)
 
-    def new_renderer(self, _: Path) -> Renderer:
-        """Make a renderer for a scene; each scene has its own, since a renderer keeps only the last packed scene."""
-        return Renderer(self.setting.threads, self.precision)
+    def new_renderer(self, path: Path) -> Renderer:
+        """Make a renderer for a scene, with its kernel; a renderer keeps only the last packed scene."""
+        renderer = Renderer(self.setting.threads, self.precision)
+        renderer.prepare(read(path))
+        return renderer
 
     def frame_times(self, path: Path, seconds: float) -> list[float]:
         scene, renderer = read(path), self.renderer(path)

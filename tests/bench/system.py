@@ -31,6 +31,10 @@ class System(ABC):
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
 
+    def renders(self, path: Path) -> bool:
+        """Whether the system has all that a scene needs."""
+        return True
+
     @abstractmethod
     def frame_times(self, path: Path, seconds: float) -> list[float]:
         """Render frames of a scene file for about `seconds`, at least one; return the milliseconds of each."""

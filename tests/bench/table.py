@@ -7,6 +7,7 @@ from typing import Any
 from tests.bench.measure import Cells
 
 MARK = "*"  # marks a figure that other programs disturbed
+LACKING = "-"  # for a scene that a system does not render
 
 
 def figure(ms: float) -> str:
@@ -22,16 +23,19 @@ def times(ratio: float) -> str:
 
 
 def table(cells: Cells, systems: list[str], scenes: list[str], title: str = "ms a frame") -> str:
-    """Return a table with a row per system and a column per scene; ratios are to the first row."""
+    """Return a table with a row per system and a column per scene; ratios are to the first row, which has all."""
     rows = [[title, *scenes]]
-    for system in systems:
-        row = [system]
-        for scene in scenes:
-            cell = cells[system, scene]
-            ratio = times(cell.ms / cells[systems[0], scene].ms)
-            row.append(f"{figure(cell.ms)}{MARK if cell.disturbed else ' '} {ratio:>5}")
-        rows.append(row)
+    rows += [[system, *(text(cells, system, scene, systems[0]) for scene in scenes)] for system in systems]
     return aligned(rows)
+
+
+def text(cells: Cells, system: str, scene: str, first: str) -> str:
+    """Format a figure, marked if other programs disturbed it, and its ratio to the first system's."""
+    if (system, scene) not in cells:
+        return LACKING
+    cell = cells[system, scene]
+    ratio = times(cell.ms / cells[first, scene].ms)
+    return f"{figure(cell.ms)}{MARK if cell.disturbed else ' '} {ratio:>5}"
 
 
 def aligned(rows: list[list[str]]) -> str:

@@ -41,6 +41,20 @@ def test_systems_take_turns(monkeypatch: pytest.MonkeyPatch) -> None:
     assert cells["bb", "x"].ms == 6
 
 
+def test_a_system_is_not_measured_on_what_it_does_not_render(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tests.bench.measure.elsewhere", lambda start, end: 0.0)
+    monkeypatch.setattr(Counting, "renders", lambda self, path: (self.name, path.stem) != ("bb", "mesh"))
+    setting = Setting(16, 16, usable_cores(), Path())
+    systems: list[System] = [Counting(setting, name, []) for name in ("a", "bb")]
+    cells = take_turns(systems, [Path("one.rt"), Path("mesh.rt")], rounds=1, seconds=0)
+    assert list(cells) == [("a", "one"), ("bb", "one"), ("a", "mesh")]
+    assert table(cells, ["a", "bb"], ["one", "mesh"]).splitlines() == [
+        "ms a frame          one         mesh",
+        "a           1.00   x1.0  2.00   x1.0",
+        "bb          2.00   x2.0            -",
+    ]
+
+
 def test_cells_that_were_always_disturbed_are_measured_again(monkeypatch: pytest.MonkeyPatch) -> None:
     loads = iter([9.0, 9.0, 0.0, 9.0, 0.0])  # of bb and a in two rounds, then of a alone
     monkeypatch.setattr("tests.bench.measure.elsewhere", lambda start, end: next(loads))

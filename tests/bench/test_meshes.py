@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import minirt
-from tests.bench.meshes import waves
+from tests.bench.meshes import compared, waves
 
 
 @pytest.mark.parametrize("count", [1_000, 10_000])
@@ -23,3 +23,9 @@ def test_a_ball_of_waves(tmp_path: Path, count: int) -> None:
     stamp = path.stat().st_mtime_ns
     waves(tmp_path, count)
     assert path.stat().st_mtime_ns == stamp  # written once
+
+
+def test_the_compared_mesh_has_a_hundred_thousand_triangles(tmp_path: Path) -> None:
+    path = compared(tmp_path)
+    assert path.stem == "mesh"
+    assert minirt.load(path).meshes[0].parts == pytest.approx(100_000, rel=0.01)

@@ -151,14 +151,18 @@ def test_bench_prints_its_measurements(run: Run, monkeypatch: pytest.MonkeyPatch
         "frames": -(-1000 // frame),  # frames that fill a second
         "ms_min": frame,
         "ms_median": frame,
+        "ms_min_moving": frame,
+        "ms_median_moving": frame,
         "compile_s": 0.001,  # a picture of one pixel
         "load_s": 0.0,
     }
     clock.slowness *= 100
+    slow = frame * 100.0
     text = run("ball.rt", "--bench", "--size", "16x9", "--threads", "2").out.decode()
     assert text == (
         "scene ball.rt, size 16x9, threads 2, precision double, "
-        f"frames 9, ms_min {frame * 100.0}, ms_median {frame * 100.0}, compile_s 0.1, load_s 0.0\n"
+        f"frames 9, ms_min {slow}, ms_median {slow}, ms_min_moving {slow}, ms_median_moving {slow}, "
+        "compile_s 0.1, load_s 0.0\n"
     )
 
 

@@ -16,6 +16,11 @@ from tests.waiting import HANG_LIMIT
 LOADED = "import sys; print(*sorted({each.split('.')[0] for each in sys.modules}), *sorted(sys.modules))"
 QUIETLY = "import contextlib, io\nfrom minirt.cli import main\nwith contextlib.redirect_stdout(io.StringIO()):\n"
 HEAVY = {"numba", "llvmlite", "pyglet", "PIL", "minirt.mlx", "minirt.viewer"}
+OTHER_WORK = {"PIL", "minirt.movie", "minirt.report", "minirt.meshes.obj"}  # other formats, reports, meshes
+OTHER_WORK |= {"minirt.rendering.queries.pick", "minirt.rendering.queries.preview"}  # clicks, coarse pictures
+FOR_MISTAKES = {"difflib", "logging", "subprocess"}  # needed to report a mistake, or to compile
+CRYPTOGRAPHY = {"secrets", "hashlib"}
+RENDER = "from minirt.cli import main\nassert main(['ball.rt', '-o', '{}', '--size', '8x8']) == 0"
 
 
 COUNTED = """
@@ -50,15 +55,29 @@ def test_importing_the_library_imports_nothing_heavy(folder: Path) -> None:
 
 
 def test_checking_a_scene_imports_nothing_heavy(folder: Path) -> None:
-    assert not HEAVY & modules(QUIETLY + "    assert main(['ball.rt', '--check']) == 0", folder)
+    loaded = modules(QUIETLY + "    assert main(['ball.rt', '--check']) == 0", folder)
+    assert not (HEAVY | OTHER_WORK | FOR_MISTAKES | CRYPTOGRAPHY) & loaded
 
 
 def test_rendering_to_a_file_imports_no_window(folder: Path) -> None:
-    loaded = modules(
-        "from minirt.cli import main\nassert main(['ball.rt', '-o', 'x.png', '--size', '8x8']) == 0", folder
-    )
-    assert "numba" in loaded
-    assert not {"pyglet", "minirt.mlx", "minirt.viewer"} & loaded
+    assert not {"pyglet", "minirt.mlx", "minirt.viewer"} & modules(RENDER.format("x.jpg"), folder)
+
+
+def test_rendering_to_png_imports_nothing_that_other_work_needs(folder: Path) -> None:
+    loaded = modules(RENDER.format("x.png"), folder)
+    assert "minirt.png" in loaded
+    assert not OTHER_WORK & loaded
+    assert OTHER_WORK & modules(RENDER.format("x.bmp"), folder) == {"PIL"}
+
+
+VERSION = "from minirt.cli import main\nimport sys\nsys.argv = ['miniRT', '--version']\nmain()\n"
+
+
+@pytest.mark.parametrize(("asked", "found"), [("", "1"), ("os.environ['OPENBLAS_NUM_THREADS'] = '3'\n", "3")])
+def test_numpy_starts_no_threads_of_its_own_unless_asked(folder: Path, asked: str, found: str) -> None:
+    start = f"import os\nos.environ.pop('OPENBLAS_NUM_THREADS', None)\n{asked}{VERSION}"
+    program = f"{start}print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
+    assert printed(program, folder)[-2:] == [found, "False"]
 
 
 def test_python_m_minirt_runs_the_program(folder: Path) -> None:

@@ -7,17 +7,17 @@ A made-up shape: an upright square around `x,y,z`, seen from both sides. A pictu
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
 from minirt.lanes import Vec, fabs, maximum, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.records import record
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
 
-@dataclass(frozen=True)
+@record()
 class Gate(Shape):
     """A line `ga` of a scene file."""
 

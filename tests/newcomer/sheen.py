@@ -7,13 +7,12 @@ A made-up material: a highlight as wide as can be.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from minirt.fields import Real, declare
 from minirt.materials.material import Material
+from minirt.records import record
 
 
-@dataclass(frozen=True)
+@record()
 class Sheen(Material):
     """The values of `sheen:`."""
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from unittest.mock import patch
 
 from minirt.errors import Problem, SceneError
-from minirt.scene import Item, fast
+from minirt.scene import Item, fast, parser
 from minirt.scene.diagnostics import Log
 from minirt.scene.parser import read_lines
 
@@ -36,7 +36,8 @@ def read_by_both(sources: list[str], log: Log) -> list[Item]:
     """Read lines as `read_lines` does; AssertionError when the diagnosing reader alone gives another outcome."""
     with patch.object(fast, "read", no_plain_lines):
         diagnosed = outcome(sources, Log(log.file, log.lenient))[1]
-    items, both = outcome(sources, log)
+    with patch.object(parser, "FEW_LINES", 0):
+        items, both = outcome(sources, log)
     assert both == diagnosed
     if isinstance(both[2], tuple):
         raise SceneError(both[2])

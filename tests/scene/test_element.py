@@ -5,13 +5,14 @@ from __future__ import annotations
 import pickle
 import sys
 import tracemalloc
-from dataclasses import FrozenInstanceError, dataclass
+from dataclasses import FrozenInstanceError
 from typing import Any
 
 import pytest
 
 from minirt.element import Element
 from minirt.fields import Real, declare
+from minirt.records import record
 from minirt.shapes.sphere import Sphere
 
 COLUMNS = {"centre": [(0.0, 1.0, 2.0), (3.0, 4.0, 5.0)], "diameter": [1.0, 2.0], "colour": [(1, 2, 3)] * 2}
@@ -34,14 +35,14 @@ def test_elements_made_at_once_are_equal_frozen_and_pickled_like_single_ones() -
 
 @pytest.mark.skipif(sys.implementation.name != "cpython", reason="about the attributes of CPython objects")
 def test_elements_made_at_once_take_no_more_memory() -> None:
-    @dataclass(frozen=True)
+    @record()
     class Cloud(Element):  # a new class, of which CPython has seen no instance
         code, title, plural = "cl", "cloud", "clouds"
         width: float = declare(Real, "width")
         height: float = declare(Real, "height")
         depth: float = declare(Real, "depth")
 
-    @dataclass(frozen=True)
+    @record()
     class Fog(Cloud):
         code, title, plural = "fo", "fog", "fogs"
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.rendering import pick
+from minirt.rendering.queries.pick import pick
 from minirt.scene import Scene, dump, parse
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
@@ -46,6 +46,7 @@ class FakeRenderer:
         self.cancelled = 0
         self.ready = True
         self.previews = True
+        self.gives_way = False
         self.stops = False  # whether `stop` ends `prepare`
         self.error: Exception | None = None
         self.prepare_error: Exception | None = None
@@ -112,6 +113,9 @@ class FakeRenderer:
         if self.error:
             raise self.error
         return True
+
+    def give_way(self) -> None:
+        self.gives_way = True
 
     def cancel(self) -> None:
         self.cancel_requested.set()

@@ -51,6 +51,8 @@ def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Hit:
 
 def closest_unbounded(group: Group, state: Hit, arguments: tuple[Tree, Vec, Vec]) -> Hit:
     """Continue `closest_hit` over the unbounded shapes of one kind."""
+    if group.unbounded is None:
+        return state
     tree, origin, direction = arguments
     for i in range(group.unbounded.shape[0]):
         index = group.unbounded[i]
@@ -89,6 +91,8 @@ def unoccluded(tree: Tree, origin: Vec, direction: Vec, distance: Number, active
 
 def unoccluded_by_unbounded(group: Group, visible: Mask, arguments: tuple[Tree, Vec, Vec, Number]) -> Mask:
     """Remove the shadow rays that an unbounded shape of one kind occludes from `visible`."""
+    if group.unbounded is None:
+        return visible
     tree, origin, direction, distance = arguments
     for i in range(group.unbounded.shape[0]):
         hit, t = intersect(read(group.rows, tree.slots[group.unbounded[i], 1]), origin, direction)

@@ -7,68 +7,80 @@ the compiler.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from importlib import import_module
 from typing import Any
 
 from llvmlite import ir
-from numba import cfunc, njit, types
+from numba import cfunc, types
 from numba.core.typing import signature
-from numba.extending import intrinsic
+from numba.extending import intrinsic, register_jitable
 
 from minirt.kernel.compiler import bvh_functions, kernel_functions  # noqa: F401  (register what kernels call)
 from minirt.kernel.compiler.argument_types import type_of
-from minirt.kernel.compiler.options import FAILED, FLAGS
+from minirt.kernel.compiler.options import FAILED, FLAGS, INLINED
 from minirt.kernel.machine_code.signature import Signature
 
-WORD = 8  # bytes
-ENTRY_FLAGS = {name: value for name, value in FLAGS.items() if name != "nogil"}  # code for C never holds Python's lock
-WITHOUT_WRAPPERS = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+C_FLAGS = {name: value for name, value in FLAGS.items() if name != "nogil"}  # code for C never holds Python's lock
 
 
 def object_code(function: str, signatures: list[Signature]) -> tuple[dict[str, Any], bytes]:
     """Return names and object code of a function, "module:name", for arguments of these signatures."""
     module, name = function.split(":")
     plain = getattr(import_module(module), name)
-    kinds = types.Tuple([type_of(each) for each in signatures])
-    compiled = njit(**WITHOUT_WRAPPERS, **FLAGS)(plain)
-    results = result_count(compiled, kinds)
-    entry = cfunc(types.void(types.voidptr), **ENTRY_FLAGS)(entry_point(compiled, kinds, results))
-    return {"entry": entry.native_name, "results": results}, machine_code(entry)
+    register(plain)
+    entry = EntryPoint(plain, types.Tuple([type_of(each) for each in signatures]))
+    compiled = cfunc(types.void(types.voidptr), **C_FLAGS)(entry.function())
+    return {"entry": compiled.native_name, "results": entry.results}, machine_code(compiled)
 
 
-def result_count(compiled: Any, kinds: Any) -> int:
-    """Return the number of integers that a function returns; TypeError where it returns anything else."""
-    result = compiled.get_call_template(tuple(kinds), {})[0].cases[0].return_type
-    results = list(result) if isinstance(result, types.BaseTuple) else [result] * (result != types.none)
-    if any(types.unliteral(each) != types.int64 for each in results):
-        raise TypeError(f"a kernel returns integers of 64 bits or nothing, not {result}")
-    return len(results)
+@cache
+def register(function: Callable[..., Any]) -> None:
+    """Let compiled code inline a function."""
+    register_jitable(**INLINED)(function)
 
 
-def entry_point(compiled: Callable[..., Any], kinds: Any, results: int) -> Callable[[Any], None]:
-    """Return a function that takes the address of an argument block, calls a function and stores its result there."""
+class EntryPoint:
+    """An entry point of a function: it takes the address of its arguments, and stores the result behind them."""
 
-    @intrinsic  # type: ignore[untyped-decorator]
-    def arguments_at(_typing: Any, address: Any) -> Any:
+    def __init__(self, called: Callable[..., Any], kinds: Any) -> None:
+        """`kinds` is the type of the tuple of all arguments."""
+        self.called = called
+        self.kinds = kinds
+        self.results = 0  # integers that the function returns, known when the entry point has been compiled
+
+    def function(self) -> Callable[[Any], None]:
+        """Return the entry point, to be compiled."""
+        called, arguments_at, store_result = self.called, intrinsic(self.arguments_at), intrinsic(self.store_result)
+
+        def entry(address: Any) -> None:
+            store_result(address, called(*arguments_at(address)))
+
+        return entry
+
+    def arguments_at(self, _typing: Any, address: Any) -> Any:
+        """Load the arguments: typing and code of an operation."""
+
         def load(context: Any, builder: ir.IRBuilder, _signature: Any, args: Any) -> Any:
-            place = builder.gep(args[0], [ir.Constant(ir.IntType(64), WORD * results)])
-            return builder.load(builder.bitcast(place, context.get_value_type(kinds).as_pointer()))
+            return builder.load(builder.bitcast(args[0], context.get_value_type(self.kinds).as_pointer()))
 
-        return signature(kinds, address), load
+        return signature(self.kinds, address), load
 
-    @intrinsic  # type: ignore[untyped-decorator]
-    def store_result(_typing: Any, address: Any, result: Any) -> Any:
-        def store(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-            if results:
-                builder.store(args[1], builder.bitcast(args[0], args[1].type.as_pointer()))
+    def store_result(self, _typing: Any, address: Any, result: Any) -> Any:
+        """Store the result: typing and code of an operation."""
+        results = list(result) if isinstance(result, types.BaseTuple) else [result] * (result != types.none)
+        if any(types.unliteral(each) != types.int64 for each in results):
+            raise TypeError(f"a kernel returns integers of 64 bits or nothing, not {result}")
+        self.results = len(results)
+
+        def store(context: Any, builder: ir.IRBuilder, _signature: Any, args: Any) -> Any:
+            if self.results:
+                end = context.get_abi_sizeof(context.get_value_type(self.kinds))
+                place = builder.gep(args[0], [ir.Constant(ir.IntType(64), end)])
+                builder.store(args[1], builder.bitcast(place, args[1].type.as_pointer()))
             return context.get_dummy_value()
 
         return signature(types.none, address, result), store
-
-    def entry(address: Any) -> None:
-        store_result(address, compiled(*arguments_at(address)))
-
-    return entry
 
 
 def machine_code(entry: Any) -> bytes:

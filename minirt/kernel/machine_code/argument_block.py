@@ -2,7 +2,7 @@
 
 The compiler lays a tuple out as its items one after the other, and an array as seven words or more: two that are 0
 here, the number of items, bytes of an item, address of the data, shape and strides. All of them are words of 64 bits,
-so that there is no padding between them.
+so that there is no padding between them. The kernel stores its results, integers, in the words behind the arguments.
 """
 
 from __future__ import annotations

@@ -17,6 +17,7 @@ from pathlib import Path
 
 from minirt.kernel.machine_code.private_files import PRIVATE_FOLDER, make_private_folder
 from minirt.kernel.machine_code.processor import described, processor
+from minirt.kernel.machine_code.source_files import source_files
 
 PACKAGE = Path(__file__).parents[2]
 SOURCES = ("kernel", "lanes", "shapes")  # folders of all sources of a kernel
@@ -43,8 +44,8 @@ def fingerprint_of(name: str) -> str:
     """Return a hash of the sources and of the processor of a name: see `minirt.kernel.machine_code.processor`."""
     digest = hashlib.sha256(described(name).encode())
     for folder in SOURCES:
-        for source in sorted((PACKAGE / folder).rglob("*.py")):
-            digest.update(source.relative_to(PACKAGE).as_posix().encode() + b"\0" + source.read_bytes())
+        for path, source in source_files(PACKAGE / folder, folder):
+            digest.update(path.encode() + b"\0" + source)
     return digest.hexdigest()[:16]
 
 

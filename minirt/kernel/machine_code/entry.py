@@ -28,7 +28,7 @@ class Entry:
 
     def run(self, words: list[int]) -> Any:
         """Run the kernel with the words of its arguments, which the caller keeps alive."""
-        block = np.array([0] * self.results + words, np.int64)
+        block = np.array(words + [0] * self.results, np.int64)
         self.call(block.ctypes.data)
-        results = block[: self.results].tolist()
+        results = block[len(words) :].tolist()
         return tuple(results) if self.results > 1 else results[0] if results else None

@@ -30,7 +30,8 @@ class Library:
     def __init__(self) -> None:
         self.identities: dict[Hashable, str] = {}
         self.entries: dict[str, Entry] = {}  # by identity, the one that was used last at the end
-        self.missing: set[str] = set()  # identities of kernels that were not found
+        self.seen: set[str] = set()  # identities of kernels that were found,
+        self.missing: set[str] = set()  # and of those that were not
         self.lock = Lock()
         if hasattr(os, "register_at_fork"):  # a child process finds the lock free; Windows has no fork
             release = self.lock.release
@@ -58,14 +59,23 @@ class Library:
                 self.keep(identity, entry)
             return entry
 
+    def has(self, identity: str) -> bool:
+        """Whether a kernel can be found, without loading it."""
+        with self.lock:
+            return identity in self.entries or identity in self.seen or self.code(identity) is not None
+
     def loaded(self, identity: str) -> Entry | None:
-        """Return a kernel from the package or the disk."""
+        """Load a kernel from the package or the disk."""
+        code = self.code(identity)
+        return loader.load(*code) if code else None
+
+    def code(self, identity: str) -> ObjectCode | None:
+        """Return the object code of a kernel from the package or the disk, unless it was missing there before."""
         if identity in self.missing:
             return None
-        code = shipped_code.read(identity) or (self.cache and self.cache.read(identity))
-        if not code:
-            self.missing.add(identity)
-        return loader.load(*code) if code else None
+        code = shipped_code.read(identity) or (self.cache.read(identity) if self.cache else None)
+        (self.seen if code else self.missing).add(identity)
+        return code
 
     def keep(self, identity: str, entry: Entry) -> None:
         """Keep a kernel in memory, and drop those that were not used for longest if they can be loaded again."""

@@ -7,7 +7,6 @@ in this sense: there the folder of the user protects its files.
 from __future__ import annotations
 
 import os
-import secrets
 import stat
 import sys
 import time
@@ -73,7 +72,7 @@ def key_of(folder: Path) -> bytes:
         with locked(folder / "key.lock"):
             key = read_key(path)
             if key is None:
-                key = secrets.token_bytes(KEY_SIZE)
+                key = os.urandom(KEY_SIZE)
                 write(path, key)
     return key
 

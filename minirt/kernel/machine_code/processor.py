@@ -36,9 +36,12 @@ def described(name: str) -> str:
 @cache
 def level() -> str:
     """Return the highest level of x86-64 that this machine has; NATIVE on others."""
-    if sys.platform != "linux" or platform.machine() != "x86_64":
-        return NATIVE
-    return level_of(cpu_flags())
+    return level_of(cpu_flags()) if is_linux_on_x86_64() else NATIVE
+
+
+def is_linux_on_x86_64() -> bool:
+    """Whether kernels can be compiled for the levels of x86-64 and run here."""
+    return sys.platform == "linux" and platform.machine() == "x86_64"
 
 
 def level_of(flags: set[str]) -> str:

@@ -9,8 +9,9 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 
+from minirt.lanes.compiled import fused
 from minirt.lanes.compiled.registration import register, same_numbers, two_numbers
-from minirt.lanes.compiled.types import CONTRACT, Lanes, Mask, splat
+from minirt.lanes.compiled.types import Lanes, Mask, splat
 
 PAIRS = ((Lanes, Lanes), (Lanes, types.Number), (types.Number, Lanes))
 
@@ -27,12 +28,12 @@ def mask_type(a: types.Type, b: types.Type) -> types.Type | None:
     return kind and Mask(kind)
 
 
-def register_arithmetic(function: Callable[..., Any], instruction: str) -> None:
-    """Register an arithmetic operator as one LLVM instruction."""
+def register_arithmetic(function: Callable[..., Any], emit: Callable[..., Any]) -> None:
+    """Register an arithmetic operator, which `emit` emits."""
 
     @register(function, lanes_type, PAIRS)
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-        return getattr(builder, instruction)(*same_numbers(context, builder, sig, args), flags=CONTRACT)
+        return emit(builder, *same_numbers(context, builder, sig, args))
 
 
 def register_comparison(function: Callable[..., Any], symbol: str) -> None:
@@ -62,13 +63,13 @@ def register_logic(function: Callable[..., Any], instruction: str) -> None:
         return getattr(builder, instruction)(*masks)
 
 
-for _function, _instruction in (
-    (operator.add, "fadd"),
-    (operator.sub, "fsub"),
-    (operator.mul, "fmul"),
-    (operator.truediv, "fdiv"),
+for _function, _emit in (
+    (operator.add, fused.add),
+    (operator.sub, fused.subtract),
+    (operator.mul, fused.multiply),
+    (operator.truediv, fused.divide),
 ):
-    register_arithmetic(_function, _instruction)
+    register_arithmetic(_function, _emit)
 for _function, _symbol in (
     (operator.lt, "<"),
     (operator.le, "<="),

@@ -18,8 +18,6 @@ from numba.extending import make_attribute_wrapper, register_model
 
 from minirt.lanes.operations import BYTES
 
-CONTRACT = ("contract",)  # a * b + c may round once; nothing else may change a result
-
 
 class Lanes(types.Type):
     """A number for each ray of a packet, all float64 or all float32."""
@@ -127,11 +125,14 @@ def llvm(builder: ir.IRBuilder, name: str, *values: Any) -> Any:
 
 def vec_parts(builder: ir.IRBuilder, value: Any) -> list[Any]:
     """Return the three components of a Vec."""
+    if isinstance(value, ir.instructions.InsertValue):  # by `vec_of`: a part is seen as what it is, such as a product
+        return [value.aggregate.aggregate.value, value.aggregate.value, value.value]
     return [builder.extract_value(value, index) for index in range(3)]
 
 
 def vec_of(context: Any, builder: ir.IRBuilder, kind: VecType, parts: list[Any]) -> Any:
     """Return the Vec of three components."""
-    vec = cgutils.create_struct_proxy(kind)(context, builder)
-    vec.x, vec.y, vec.z = parts
-    return vec._getvalue()
+    vec = ir.Constant(context.get_value_type(kind), ir.Undefined)
+    for index, part in enumerate(parts):
+        vec = builder.insert_value(vec, part, index)
+    return vec

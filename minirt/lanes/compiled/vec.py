@@ -10,9 +10,10 @@ from llvmlite import ir
 from numba import types
 
 from minirt.lanes import operations, vec
+from minirt.lanes.compiled import fused
 from minirt.lanes.compiled.inverse_root import inverse_root
 from minirt.lanes.compiled.registration import Result, register, same_numbers
-from minirt.lanes.compiled.types import CONTRACT, VecType, common, constant, is_number, llvm, vec_of, vec_parts, widen
+from minirt.lanes.compiled.types import VecType, common, constant, is_number, vec_of, vec_parts, widen
 
 ANY = types.Any
 
@@ -56,21 +57,21 @@ def number_and_vec(a: types.Type, b: types.Type) -> types.Type | None:
 
 
 def register_by_component(
-    function: Callable[..., Any], instruction: str, result: Result, pattern: tuple[Any, ...]
+    function: Callable[..., Any], emit: Callable[..., Any], result: Result, pattern: tuple[Any, ...]
 ) -> None:
-    """Register an operator as one LLVM instruction on each component."""
+    """Register an operator, which `emit` emits for each component."""
 
     @register(function, result, [pattern])
     def generate(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
         table = components(context, builder, sig, args, sig.return_type.number)
-        parts = [getattr(builder, instruction)(*column, flags=CONTRACT) for column in zip(*table, strict=True)]
+        parts = [emit(builder, *column) for column in zip(*table, strict=True)]
         return vec_of(context, builder, sig.return_type, parts)
 
 
-register_by_component(operator.add, "fadd", two_vecs, (VecType, VecType))
-register_by_component(operator.sub, "fsub", two_vecs, (VecType, VecType))
-register_by_component(operator.mul, "fmul", vec_and_number, (VecType, ANY))
-register_by_component(operator.mul, "fmul", number_and_vec, (ANY, VecType))
+register_by_component(operator.add, fused.add, two_vecs, (VecType, VecType))
+register_by_component(operator.sub, fused.subtract, two_vecs, (VecType, VecType))
+register_by_component(operator.mul, fused.multiply, vec_and_number, (VecType, ANY))
+register_by_component(operator.mul, fused.multiply, number_and_vec, (ANY, VecType))
 
 
 @register(operator.truediv, vec_and_number, [(VecType, ANY)])
@@ -87,14 +88,9 @@ def _negate_vec(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any
 
 
 def scalar_product(builder: ir.IRBuilder, a: list[Any], b: list[Any]) -> Any:
-    """Return the sum of the products of three components.
-
-    Which product is rounded by itself is said here, by `fmuladd`: left to the compiler, it depends on the code around,
-    and the same ray would get other last bits in another kernel.
-    """
-    (ax, ay, az), (bx, by, bz) = a, b
-    y = builder.fmul(ay, by, flags=CONTRACT)
-    return llvm(builder, "fmuladd", az, bz, llvm(builder, "fmuladd", ax, bx, y))
+    """Return the sum of the products of three components."""
+    x, y, z = (builder.fmul(*pair) for pair in zip(a, b, strict=True))
+    return fused.add(builder, z, fused.add(builder, x, y))
 
 
 @register(vec.dot, lambda a, b: getattr(two_vecs(a, b), "number", None), [(VecType, VecType)])

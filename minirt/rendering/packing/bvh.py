@@ -23,6 +23,11 @@ def block_type(kind: Kind) -> np.dtype[Any]:
     return np.dtype([(name, np.float64, (*fields[name].shape, WIDTH)) for name in fields.names or ()])
 
 
+def is_infinite(rows: np.ndarray) -> bool:
+    """Whether these rows are of a kind whose shapes have no bounding box."""
+    return kind_of(rows.dtype.names).infinite
+
+
 def primitive_boxes(shape_arrays: ShapeArrays) -> tuple[np.ndarray, np.ndarray]:
     """The bounding boxes of the primitives as `BinaryTree` has them, and the indices of those that are infinite."""
     bounds = [shape.bounds() for shape in shape_arrays.shapes]
@@ -55,7 +60,8 @@ def build_bvh(shape_arrays: ShapeArrays, kernel: Any) -> Tree:
         members = boxes[np.minimum(start + np.arange(WIDTH), stop - 1), INDEX].astype(np.int64)
         group_blocks = as_blocks(rows, shape_arrays.slots[members, 1])
         labels = np.stack([members, extents[members]], axis=-1)
-        groups.append(Group(rows, group_blocks, labels, infinite[shape_arrays.slots[infinite, 0] == group], group))
+        unbounded = infinite[shape_arrays.slots[infinite, 0] == group]
+        groups.append(Group(rows, group_blocks, labels, unbounded if is_infinite(rows) else None, group))
     names = nodes.reshape(-1, 7, WIDTH)[:, 6]
     is_leaf = names < 0
     leaf = (-1 - names[is_leaf]).astype(np.int64)

@@ -142,4 +142,5 @@ def without(names: tuple[str, ...], wide: WideKernel) -> dict[str, Any]:
 
 def empty_blocks(kind: Kind, rows: np.ndarray) -> nodes.Group:
     """Return a group of a BVH for a kind without shapes."""
-    return nodes.Group(rows, np.zeros(0, block_type(kind)), np.zeros((0, WIDTH, 2)), np.zeros(0, np.int64), ABSENT)
+    unbounded = np.zeros(0, np.int64) if kind.infinite else None
+    return nodes.Group(rows, np.zeros(0, block_type(kind)), np.zeros((0, WIDTH, 2)), unbounded, ABSENT)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterable
 from threading import Lock, Thread
 
 from minirt.errors import RenderError
@@ -11,12 +12,13 @@ from minirt.kernel.machine_code.library import LIBRARY
 
 
 class BackgroundCompiler:
-    """Compiles one kernel at a time; of those that are asked for meanwhile, the last one is next."""
+    """Compiles one kernel at a time; of those that are wanted meanwhile, the last one is next."""
 
     def __init__(self) -> None:
         self.process = CompileProcess(patient=True)
         self.lock = Lock()
         self.wanted: str | None = None
+        self.later: list[str] = []  # when nothing else is wanted
         self.asked: set[str] = set()  # identities that were compiled, or failed
         self.thread: Thread | None = None
 
@@ -28,12 +30,22 @@ class BackgroundCompiler:
     def compile(self, identity: str) -> None:
         """Ask for a kernel, unless that was done before; callable from any thread."""
         with self.lock:
-            if identity in self.asked:
-                return
-            self.wanted = identity
-            if not self.thread:
-                self.thread = Thread(target=self.work, name="minirt-compiler", daemon=True)
-                self.thread.start()
+            if identity not in self.asked:
+                self.wanted = identity
+                self.start()
+
+    def compile_later(self, identities: Iterable[str]) -> None:
+        """Ask for kernels that are compiled when nothing else is wanted; callable from any thread."""
+        with self.lock:
+            self.later = [each for each in identities if each not in self.asked]
+            if self.later:
+                self.start()
+
+    def start(self) -> None:
+        """Start the thread, unless it runs. The caller holds the lock."""
+        if not self.thread:
+            self.thread = Thread(target=self.work, name="minirt-compiler", daemon=True)
+            self.thread.start()
 
     def work(self) -> None:
         """Compile what is wanted until nothing is: the body of the thread."""
@@ -46,7 +58,7 @@ class BackgroundCompiler:
     def next(self) -> str | None:
         """Return the identity of the next kernel; None, which ends the thread, where there is none."""
         with self.lock:
-            identity, self.wanted = self.wanted, None
+            identity, self.wanted = self.wanted or (self.later.pop(0) if self.later else None), None
             if identity is None:
                 self.thread = None
             else:
@@ -56,5 +68,5 @@ class BackgroundCompiler:
     def stop(self) -> None:
         """End compiling; callable from any thread."""
         with self.lock:
-            self.wanted = None
+            self.wanted, self.later = None, []
         self.process.stop()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+from functools import cache, cached_property
 from typing import NamedTuple
 
 from minirt.kernel.machine_code import functions
@@ -12,7 +14,8 @@ from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.frame_arguments import Frame
 from minirt.rendering.packing.widening import WIDE_KERNELS, WideKernel, fitting, widened
 from minirt.rendering.running.background_compiler import BackgroundCompiler
-from minirt.rendering.running.needed_kernels import calls_for, wide_call
+from minirt.rendering.running.kernel_features import kernel_features
+from minirt.rendering.running.needed_kernels import calls_for, packing_calls, wide_call
 from minirt.scene import Scene
 
 NARROW_AFTER = 0.5  # seconds of rendering with a wide kernel, after which a narrow one is worth compiling
@@ -38,6 +41,8 @@ class Kernels:
         self.precision = precision
         self.depth = depth
         self.narrow_after = NARROW_AFTER
+        self.wants_wide = True
+        self.narrow_kernels: dict[frozenset[Hashable], list[str]] = {}  # their identities, for each set of features
         self.wide_seconds: dict[str, float] = {}  # of rendering with a wide kernel, by the identity of the narrow one
         self.compile_process = CompileProcess()
         self.background = BackgroundCompiler()
@@ -55,7 +60,7 @@ class Kernels:
         if entry:
             return Choice(entry, frame.scene, None, narrow)
         for wide in fitting(frame.scene):
-            entry = LIBRARY.find(LIBRARY.identity(wide_call(wide)))
+            entry = LIBRARY.find(wide_identity(wide))
             if entry:
                 return Choice(entry, widened(frame.scene, wide), wide, narrow)
         return Choice(LIBRARY.get(call), frame.scene, None, narrow)
@@ -66,27 +71,46 @@ class Kernels:
             total = self.wide_seconds[choice.narrow] = self.wide_seconds.get(choice.narrow, 0.0) + seconds
             if total >= self.narrow_after:
                 self.background.compile(choice.narrow)
+        elif self.wants_wide and not self.narrow_after:
+            self.compile_wide()
+
+    def compile_wide(self) -> None:
+        """Compile the wide kernels that are missing, in the background, so that edits need not wait for narrow ones."""
+        self.wants_wide = False
+        self.background.compile_later([each for each in self.for_all_scenes if not LIBRARY.has(each)])
 
     def is_ready(self, scene: Scene) -> bool:
-        """Whether there is a kernel that can draw a scene; a scene without shapes needs none."""
-        if not scene.shapes or all(LIBRARY.find(LIBRARY.identity(wide_call(wide))) for wide in self.wide_kernels()):
-            return True
-        return all(LIBRARY.find(identity) for identity in self.identities(scene))
+        """Whether there are kernels that can draw a scene; a scene without shapes needs none."""
+        return (
+            not scene.shapes or all(map(LIBRARY.has, self.for_all_scenes)) or all(map(LIBRARY.has, self.narrow(scene)))
+        )
 
-    def identities(self, scene: Scene) -> list[str]:
+    @cached_property
+    def for_all_scenes(self) -> list[str]:
+        """The identities of kernels that are enough for all scenes, some of which single precision cannot draw."""
+        wide = [each for each in WIDE_KERNELS if each.name == "full" and each.precision in ("double", self.precision)]
+        return [*map(LIBRARY.identity, packing_calls()), *map(wide_identity, wide)]
+
+    def narrow(self, scene: Scene) -> list[str]:
         """Return the identities of the narrow kernels for a scene."""
-        return [LIBRARY.identity(call) for call in calls_for(scene, self.precision, self.depth)]
-
-    def wide_kernels(self) -> list[WideKernel]:
-        """Return the wide kernels that are enough for all scenes, some of which cannot be single."""
-        return [each for each in WIDE_KERNELS if each.name == "full" and each.precision in ("double", self.precision)]
+        features = kernel_features(scene)
+        if features not in self.narrow_kernels:
+            calls = calls_for(scene, self.precision, self.depth)
+            self.narrow_kernels[features] = list(map(LIBRARY.identity, calls))
+        return self.narrow_kernels[features]
 
     def compile(self, scene: Scene) -> None:
         """Compile those narrow kernels for a scene that are missing. RenderError where compiling fails."""
         if scene.shapes:
-            LIBRARY.compile(self.identities(scene), self.compile_process)
+            LIBRARY.compile(self.narrow(scene), self.compile_process)
 
     def stop(self) -> None:
         """Stop compiling; callable from any thread."""
         self.compile_process.stop()
         self.background.stop()
+
+
+@cache
+def wide_identity(wide: WideKernel) -> str:
+    """Return the identity of a wide kernel."""
+    return LIBRARY.identity(wide_call(wide))

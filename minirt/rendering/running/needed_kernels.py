@@ -11,11 +11,14 @@ from minirt.kernel import interpreted
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.library import Call
 from minirt.rendering.frame_arguments import frame_arguments
-from minirt.rendering.packing.widening import WideKernel, empty_arrays
+from minirt.rendering.packing.features import DEPTH
+from minirt.rendering.packing.widening import FULL_DOUBLE, WideKernel, empty_arrays
 from minirt.rendering.running.kernel_features import minimal_scene
 from minirt.rendering.scene_packing import Packing
-from minirt.scene import Scene
+from minirt.scene import Scene, parse
 
+# With so many shapes parallel light needs a BVH.
+EXAMPLE = "A 1 255,255,255\nC 0,0,-9 0,0,1 60\ndl 0,-1,0 1 255,255,255\n" + "sp 0,0,0 1 255,255,255\n" * 9
 PIXEL = np.zeros((1, 1, 4), np.uint8)
 
 
@@ -30,6 +33,19 @@ def calls_for(scene: Scene, precision: str, depth: int) -> list[Call]:
 def wide_call(wide: WideKernel) -> Call:
     """Return a call of a wide kernel."""
     return functions.frame.call(*frame_arguments(empty_arrays(wide), PIXEL))
+
+
+def packing_calls() -> list[Call]:
+    """Return calls of all functions that pack scenes in double precision, whose types are the same for all scenes."""
+    *packing, _ = calls_for(parse(EXAMPLE).scene, "double", DEPTH)
+    return packing
+
+
+def ray_query() -> Call:
+    """Return a call of the query for single rays, for all kinds of shapes."""
+    vectors, numbers, integers = np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64)
+    tree = empty_arrays(FULL_DOUBLE).bvh
+    return functions.trace_rays.call(integers, tree, vectors, vectors, numbers, integers, vectors, vectors)
 
 
 class CallRecorder:

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Callable
+from contextlib import suppress
 from queue import SimpleQueue
 from threading import Thread
 from typing import NamedTuple, TypeAlias
 from weakref import finalize
 
 Job: TypeAlias = Callable[[], object]
+
+# Of threads that give way: the longest pause of a drag falls from 34 ms to 30, since the event loop composes frames
+# sooner. With 10 it falls to 28, but that of a held key grows from 26 ms to 34.
+NICENESS = 4
 
 
 class Task(NamedTuple):
@@ -32,9 +39,20 @@ class ThreadPool:
 
     def __init__(self, number: int) -> None:
         self.tasks: SimpleQueue[Task | None] = SimpleQueue()
-        for _ in range(number):
-            Thread(target=run_tasks, args=(self.tasks,), name="minirt-render", daemon=True).start()
+        self.threads = [
+            Thread(target=run_tasks, args=(self.tasks,), name="minirt-render", daemon=True) for _ in range(number)
+        ]
+        for thread in self.threads:
+            thread.start()
         finalize(self, stop_threads, self.tasks, number)
+
+    def give_way(self) -> None:
+        """Let the other threads of the process go first from now on. Only Linux has priorities of threads."""
+        if sys.platform == "linux":
+            niceness = os.getpriority(os.PRIO_PROCESS, os.getpid()) + NICENESS
+            for thread in self.threads:
+                with suppress(OSError):  # where a sandbox forbids it
+                    os.setpriority(os.PRIO_PROCESS, thread.native_id or 0, niceness)
 
     def run(self, jobs: list[Job], cancel: Callable[[], None]) -> None:
         """Run as many jobs as there are threads, and wait for all of them; an error of one is raised.

@@ -60,7 +60,7 @@ class SettingRenderer:
         if setting.knob.name not in self.ready:
             renderer = setting.knob.renderer(self.threads)
             start = perf_counter()
-            renderer.prepare(self.scene)
+            renderer.specialise(self.scene)
             compiled = perf_counter()
             height, width, _ = self.pixels.shape
             renderer.packing.pack(self.scene, width, height)

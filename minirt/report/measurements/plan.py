@@ -36,7 +36,7 @@ def fitting_size(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, 
     Halving, unlike exact scaling, mostly gives the same size when the report is repeated.
     """
     renderer = Renderer()
-    renderer.prepare(scene)
+    renderer.specialise(scene)
     width, height = scaled_size(size, min(1.0, plan.width / size[0]))
     pixels = np.zeros((height, width, 4), np.uint8)
     renderer.render(scene, pixels)

@@ -8,10 +8,12 @@ from pathlib import Path
 from minirt.mlx import Event
 from minirt.viewer.app import file_sync
 from minirt.viewer.app.commands import COMMANDS
+from minirt.viewer.app.held_edits import HeldEdits
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.session import Session
 from minirt.viewer.editing.editor import EDITS, apply
 from minirt.viewer.input.bindings import Binding
+from minirt.viewer.input.key_repeat import Advance
 
 
 class EventDispatcher:
@@ -20,6 +22,8 @@ class EventDispatcher:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.mouse = Mouse(session, self.perform)
+        self.held_edits = HeldEdits()
+        self._tick_hook = self.as_hook(self.on_tick)
 
     def connect(self) -> None:
         """Install the handlers as hooks of the window."""
@@ -36,11 +40,11 @@ class EventDispatcher:
             Event.DESTROY_NOTIFY: session.quit,
         }
         for event, handler in handlers.items():
-            mlx.mlx_hook(window, event, 0, drop_parameter(handler), None)
-        mlx.mlx_text_hook(window, drop_parameter(self.on_press))
-        mlx.mlx_drop_hook(window, drop_parameter(self.on_drop))
-        mlx.mlx_resize_hook(window, drop_parameter(self.on_resize))
-        mlx.mlx_wake_hook(session.display, drop_parameter(self.on_wake))
+            mlx.mlx_hook(window, event, 0, self.as_hook(handler), None)
+        mlx.mlx_text_hook(window, self.as_hook(self.on_press))
+        mlx.mlx_drop_hook(window, self.as_hook(self.on_drop))
+        mlx.mlx_resize_hook(window, self.as_hook(self.on_resize))
+        mlx.mlx_wake_hook(session.display, self.as_hook(self.on_wake))
 
     def on_press(self, code: int | str) -> None:
         """A key goes down, or a character was typed."""
@@ -50,22 +54,25 @@ class EventDispatcher:
                 self.perform(binding, 1.0)
             return
         pressed = session.keymap.find(code, session.modifiers)
-        if pressed:
+        if pressed and pressed.held:
+            session.release_button()
+            self.apply_advances(session.key_repeat.press(code, pressed.action, session.now))
+        elif pressed:
             self.perform(pressed, session.step)
-            if pressed.held:
-                session.key_repeat.press(code, pressed.action, session.now)
-                self.set_tick_hook()
 
     def on_release(self, code: int) -> None:
         """A key goes up: its last steps are done, and a still picture is requested."""
         session = self.session
         self.apply_advances(session.key_repeat.release(code, session.now))
-        self.set_tick_hook()
         session.update()
 
     def on_tick(self) -> None:
-        """A sixtieth of a second passed while a key is held."""
-        self.apply_advances(self.session.key_repeat.advance(self.session.now))
+        """A sixtieth of a second passed while a key is held or words wait for their picture."""
+        session = self.session
+        waited = session.words_wait
+        self.apply_advances(session.key_repeat.advance(session.now))
+        if waited:
+            session.draw_late_words()
 
     def on_wake(self) -> None:
         """Another thread woke the event loop: the painter has a result, or the file has changed."""
@@ -76,7 +83,7 @@ class EventDispatcher:
         for error in session.refinement.collect():
             session.show_error(error)
         session.attempt(Session.take_screenshot)
-        session.draw()
+        session.refresh()
         session.update()
 
     def on_resize(self, _width: int, _height: int) -> None:
@@ -100,22 +107,25 @@ class EventDispatcher:
         session.attempt(COMMANDS[binding.action])
         session.show(session.state)
 
-    def apply_advances(self, advances: list[tuple[str, float]]) -> None:
-        """Continue the actions of held keys, each by a number of steps."""
+    def apply_advances(self, advances: list[Advance]) -> None:
+        """Continue the actions of held keys."""
         session = self.session
         state = session.state
-        for action, amount in advances:
-            if amount:
-                state = apply(state, action, amount * session.step, session.now)
+        for advance in advances:
+            state = self.held_edits.apply(state, advance, session.step, session.now)
         if state is not session.state:
             session.show(state)
 
-    def set_tick_hook(self) -> None:
-        """Let the event loop tick while a key is held, and sleep until the next event otherwise."""
-        session = self.session
-        session.mlx.mlx_loop_hook(session.display, drop_parameter(self.on_tick) if session.key_repeat else None, None)
+    def as_hook(self, handler: Callable[..., object]) -> Callable[..., object]:
+        """Wrap a handler as a hook of MiniLibX, whose last argument is a parameter that the handler does not need.
 
+        After it, the event loop ticks while a key is held or words wait, and sleeps until the next event otherwise.
+        """
 
-def drop_parameter(handler: Callable[..., object]) -> Callable[..., object]:
-    """Wrap a handler as a hook of MiniLibX, whose last argument is a parameter that the handler does not need."""
-    return lambda *arguments: handler(*arguments[:-1])
+        def hook(*arguments: object) -> None:
+            handler(*arguments[:-1])
+            session = self.session
+            ticks = session.key_repeat or session.words_wait
+            session.mlx.mlx_loop_hook(session.display, self._tick_hook if ticks else None, None)
+
+        return hook

@@ -88,7 +88,7 @@ class Mouse:
         state, window = session.state, session.window
         view = projection_of(state.scene.camera, window.width, window.height)
         has_icons = session.screen.level > HudLevel.NOTHING
-        icons = session.screen.marks.visible_icons(state, view, window.scale) if has_icons else []
+        icons = session.screen.marks.visible_icons(state.scene, state.selected, view, window.scale) if has_icons else []
         icon = icon_at(icons, x, y, window.scale)
         if icon:
             if selecting:

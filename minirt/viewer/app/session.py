@@ -2,12 +2,16 @@
 
 A session renders only when its scene or the size of its window has changed. `minirt.viewer.app.events` passes the
 events of the window to it.
+
+Words describe the current state, which may be newer than the picture. Words of a new scene are drawn together with its
+first picture, because one frame costs less than two; if that picture is late, they are drawn over the old one.
 """
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +21,7 @@ from minirt.mlx import Mlx, Modifier
 from minirt.scene import Scene
 from minirt.shapes import Shape
 from minirt.viewer.app.pressed_button import PressedButton
-from minirt.viewer.display.painter import Painter, Pixels
+from minirt.viewer.display.painter import Outcome, Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen
 from minirt.viewer.editing.state import State, initial_state
@@ -32,6 +36,7 @@ if TYPE_CHECKING:
 Pick = Callable[[Scene, int, int, int, int], Shape | None]  # (scene, width, height, x, y)
 
 FINE_STEP = 0.1  # of a step, while Shift is held
+WORDS_DELAY = 0.02  # seconds after a frame in which words wait for the next picture
 
 
 class Session:
@@ -73,27 +78,39 @@ class Session:
         self.window = mlx.mlx_new_window(display, *size, f"miniRT - {path.name}", resizable=True)
         self.refinement = Refinement(painter(lambda: mlx.mlx_wake(display)), self.window, samples)
         self.screen = Screen(mlx, self.window, self.keymap.layout)
+        self._described: Scene | None = None  # the scene that the words in the window describe
+        self._drawn: Outcome | None = None  # the picture in the window
+        self._drawn_at = -inf
         self.watch_file()
 
     def show(self, state: State) -> None:
-        """Make `state` the current one. If its scene is new, the text on the picture changes with the next picture."""
-        same = state.scene is self.state.scene
+        """Make `state` the current one."""
         self.state = state
         self.update()
-        if same:
-            self.draw()
+        self.refresh()
 
     def update(self) -> None:
         """Request the next picture of the current scene, if one is missing."""
         self.refinement.request_missing(self.state.scene, moving=bool(self.key_repeat))
 
+    def refresh(self) -> None:
+        """Draw the window, unless words wait for their picture and it has not come."""
+        if not self.words_wait or self.refinement.latest is not self._drawn:
+            self.draw()
+
+    def draw_late_words(self) -> None:
+        """Draw words that wait for their picture, if the window shows no frame of the last WORDS_DELAY."""
+        if self.words_wait and self.now - self._drawn_at >= WORDS_DELAY:
+            self.draw()
+
     def draw(self) -> None:
         """Draw the latest picture and its overlay in the window, and measure how long that takes."""
         start = self.now
-        latest, painter, resolution = self.refinement.latest, self.refinement.painter, self.refinement.resolution
-        if self.screen.draw(self.state, latest, painter.compiling, resolution.rate):
+        self._described, self._drawn = self.state.scene, self.refinement.latest
+        if self.screen.draw(self.state, self._drawn, self.refinement.resolution.rate):
             self.mlx.mlx_sync(self.display, self.mlx.SYNC_WIN_FLUSH, self.window)
-            resolution.record_display_time(self.now - start)
+            self._drawn_at = self.now
+            self.refinement.resolution.record_display_time(self._drawn_at - start)
 
     def take_screenshot(self) -> None:
         """Save the picture if a screenshot is pending and the picture is complete. RenderError."""
@@ -135,6 +152,11 @@ class Session:
     def quit(self) -> None:
         """End the event loop."""
         self.mlx.mlx_loop_exit(self.display)
+
+    @property
+    def words_wait(self) -> bool:
+        """Whether the words in the window describe an older scene than the current one."""
+        return self._described is not self.state.scene
 
     @property
     def picture(self) -> Pixels:

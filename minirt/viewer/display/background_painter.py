@@ -23,6 +23,7 @@ class BackgroundPainter(Painter):
 
     def __init__(self, renderer: Renderer, notify: Callable[[], object]) -> None:
         super().__init__(renderer, notify)
+        renderer.give_way()
         self._changed = threading.Condition()
         self._waiting: Job | None = None
         self._running: Job | None = None
@@ -70,7 +71,10 @@ class BackgroundPainter(Painter):
                 self._running = None
                 if outcome:
                     self._add(outcome)
-            self._notify()
+                # The loop need not wake to learn that a picture made room for the next: drawing would delay that one.
+                made_room = self._waiting is not None and not any(map(is_news, self.outcomes))
+            if not made_room:
+                self._notify()
 
     def _add(self, outcome: Outcome) -> None:
         """Add an outcome; a new picture replaces older ones that nobody took."""
@@ -104,9 +108,7 @@ class BackgroundPainter(Painter):
                 self._changed.wait_for(lambda: not self._preparing or self._closed, PREVIEW_DELAY)
             if not self._preparing:
                 return self.renderer.is_ready(job.scene)
-            self.compiling = True
             self._previewed = None if self._waiting else job
-        self._notify()
         return False
 
     def _prepare(self, job: Job) -> None:
@@ -117,7 +119,7 @@ class BackgroundPainter(Painter):
         except Exception as reason:
             error = reason
         with self._changed:
-            self._preparing = self.compiling = False
+            self._preparing = False
             if error:
                 self.outcomes.append(Outcome(job, error=error))
             elif not self._waiting:
@@ -134,3 +136,8 @@ class BackgroundPainter(Painter):
     def _notify(self) -> None:
         if not self._closed:
             self.notify()
+
+
+def is_news(outcome: Outcome) -> bool:
+    """Whether an outcome has something to show."""
+    return outcome.pixels is not None or outcome.error is not None

@@ -31,16 +31,21 @@ class Marks:
         self._outline_key: tuple[object, ...] = ()
         self._outline: tuple[PixelIndices, PixelIndices]
 
-    def draw(self, pixels: Pixels, state: State, scale: float, moving: bool) -> None:
-        """Draw all marks over a picture of the state's scene."""
-        view = projection_of(state.scene.camera, pixels.shape[1], pixels.shape[0])
-        element = state.element
-        if isinstance(element, Shape):
-            rays = MOVING_RAYS if moving else STILL_RAYS
-            draw_outline(pixels, *self.outline(element, state.scene.camera, pixels, rays))
-        draw_axis(pixels, state, view)
-        for icon in self.visible_icons(state, view, scale):
-            draw_icon(pixels, icon, scale, selected=icon.owner == state.selected)
+    def draw(self, pixels: Pixels, state: State, scene: Scene, scale: float, moving: bool) -> None:
+        """Draw all marks over a picture of `scene`, which may be another version of the state's scene.
+
+        The marks fit the picture: an element that it does not show yet has none.
+        """
+        view = projection_of(scene.camera, pixels.shape[1], pixels.shape[0])
+        selected = state.index_in(scene)
+        if selected is not None:
+            element = scene.elements[selected]
+            if isinstance(element, Shape):
+                rays = MOVING_RAYS if moving else STILL_RAYS
+                draw_outline(pixels, *self.outline(element, scene.camera, pixels, rays))
+            draw_axis(pixels, element, state.frame, view)
+        for icon in self.visible_icons(scene, selected, view, scale):
+            draw_icon(pixels, icon, scale, selected=icon.owner == selected)
 
     def outline(self, shape: Shape, camera: Camera, pixels: Pixels, rays: int) -> tuple[PixelIndices, PixelIndices]:
         """Return the pixels just outside and just inside the silhouette of a shape."""
@@ -50,17 +55,18 @@ class Marks:
             self._outline, self._outline_key = outline_pixels(shape, camera, width, height, rays), key
         return self._outline
 
-    def visible_icons(self, state: State, view: Projection, scale: float) -> list[Icon]:
+    def visible_icons(self, scene: Scene, selected: int | None, view: Projection, scale: float) -> list[Icon]:
         """Return the icons that are shown: all if the user wants them, else that of the selected element."""
-        return place_icons(state.scene, icon_owners(state.scene, state.selected, self.icons), view, scale)
+        return place_icons(scene, icon_owners(scene, selected, self.icons), view, scale)
 
 
-def icon_owners(scene: Scene, selected: int, every: bool) -> list[int]:
+def icon_owners(scene: Scene, selected: int | None, every: bool) -> list[int]:
     """Return the indices of the elements whose icons are shown."""
     if every:
         return elements_with_icon(scene)
-    element = scene.elements[selected]
-    return [] if isinstance(element, (Shape, Camera)) else [selected]
+    if selected is None or isinstance(scene.elements[selected], (Shape, Camera)):
+        return []
+    return [selected]
 
 
 def draw_outline(pixels: Pixels, outside: PixelIndices, inside: PixelIndices) -> None:
@@ -73,12 +79,12 @@ def draw_outline(pixels: Pixels, outside: PixelIndices, inside: PixelIndices) ->
     pixels[inside] = pixels[outside] = bgra(GOLD)
 
 
-def draw_axis(pixels: Pixels, state: State, view: Projection) -> None:
+def draw_axis(pixels: Pixels, element: Element, frame: Frame, view: Projection) -> None:
     """Draw the axis along which the selected element moves, if its movement is bound to one."""
-    axis, point = WORLD_AXES.get(state.frame), anchor(state.element)
+    axis, point = WORLD_AXES.get(frame), anchor(element)
     ends = view.visible_segment(point, axis) if axis and point else None
     if ends:
-        draw_line(pixels, *ends, AXIS_COLOURS[state.frame])
+        draw_line(pixels, *ends, AXIS_COLOURS[frame])
 
 
 def anchor(element: Element) -> tuple[float, float, float] | None:

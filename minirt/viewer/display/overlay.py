@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 from enum import IntEnum
+from math import ceil
 
 from minirt.element import fields_of
 from minirt.mlx.text import draw_text, measure
@@ -17,7 +18,6 @@ TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACK
 MARGIN, PADDING = 10, 4  # pixels
 TEXT_SIZE, MIN_TEXT_SIZE = 16, 8  # pixels: on a screen of scale 1, and the least that can be read
 COLUMNS, ROWS = 40, 18  # letters for which a window must have room; if it has not, they become smaller
-COMPILING = "Compiling kernels (first run only)"
 
 LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
 
@@ -125,16 +125,20 @@ def draw_lines(pixels: Pixels, y: int, text: str, colour: int, size: int) -> Non
 
 def draw_help(pixels: Pixels, layout: str, max_size: int) -> None:
     """Draw the table of key bindings over the darkened picture, in two columns, in the largest text that fits."""
-    pixels[..., :3] //= 4
+    pixels >>= 2  # 20 times as fast as the three colours alone
+    pixels[..., 3] = 255
     listed = [*key_groups(layout), ("", [FINE_NOTE])]
     columns = [listed[:2], listed[2:]]
     height, width = pixels.shape[:2]
-    for size in range(max_size, MIN_TEXT_SIZE - 2, -1):
-        texts_of_columns = [column_texts(column) for column in columns]
+    texts_of_columns = [column_texts(column) for column in columns]
+    size = max_size
+    while True:
         widths = [[measure(text, size)[0] + size for text in texts] for texts in texts_of_columns]
         heights = [measure(texts[0], size)[1] for texts in texts_of_columns]
-        if sum(map(sum, widths)) + 2 * MARGIN <= width and max(heights) + 2 * MARGIN <= height:
+        excess = max((sum(map(sum, widths)) + 2 * MARGIN) / width, (max(heights) + 2 * MARGIN) / height)
+        if excess <= 1 or size < MIN_TEXT_SIZE:
             break
+        size = max(MIN_TEXT_SIZE - 1, min(size - 1, ceil(size / excess)))  # widths are nearly proportional to the size
     x = MARGIN
     for texts, text_widths in zip(texts_of_columns, widths, strict=True):
         for text, text_width, colour in zip(texts, text_widths, (MESSAGE_COLOUR, TEXT_COLOUR), strict=True):

@@ -28,6 +28,9 @@ class Renderer(Protocol):
     def stop(self) -> None:
         """End a running `prepare` soon, if that is possible; callable from any thread."""
 
+    def specialise_early(self) -> None:
+        """Have faster kernels compiled as soon as a picture is shown, while the window is open."""
+
     def preview(self, scene: Scene, width: int, height: int) -> Pixels | None:
         """Return a coarse picture, at most of that size, without a kernel; None if it would take long."""
 
@@ -49,6 +52,9 @@ class Renderer(Protocol):
 
     def refine(self, scene: Scene, pixels: Pixels, samples: int, *, is_wanted: IsWanted = ...) -> bool:
         """Render the edges in `pixels` with more samples; return False as `render` does."""
+
+    def give_way(self) -> None:
+        """Let the event loop go before the threads that render, from now on."""
 
     def cancel(self) -> None:
         """Let a running `render` or `refine` return False soon; callable from any thread."""
@@ -101,7 +107,10 @@ class Job:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """The result of a job: a picture, or an error, or neither if it was cancelled."""
+    """The result of a job: a picture, or an error, or neither if it was cancelled.
+
+    Notes without a picture replace those of the latest picture: the renderer has changed, and the pixels would not.
+    """
 
     job: Job
     pixels: Pixels | None = None
@@ -117,8 +126,6 @@ class Painter:
 
     All pixels get all samples, as in a picture that is rendered without a window.
     """
-
-    compiling = False  # whether the first picture waits for its kernel
 
     def __init__(self, renderer: Renderer, notify: Callable[[], object]) -> None:
         """`notify` is called when there are outcomes to take."""
@@ -159,8 +166,10 @@ def paint(renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: I
     if not done:
         return Outcome(job)
     about = () if job.urgent else tuple(renderer.about)
-    estimate = None if base is None else estimated_error(base, pixels, job.base_samples, job.samples)
-    return Outcome(job, pixels, error_estimate=estimate, about=about)
+    if base is None:
+        return Outcome(job, pixels, about=about)
+    estimate = estimated_error(base, pixels, job.base_samples, job.samples, is_wanted)
+    return Outcome(job) if estimate is None else Outcome(job, pixels, error_estimate=estimate, about=about)
 
 
 def preview(renderer: Renderer, job: Job) -> Outcome:

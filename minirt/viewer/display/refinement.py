@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from minirt.mlx import Window
 from minirt.scene import Scene
 from minirt.viewer.display.adaptive_resolution import AdaptiveResolution
@@ -43,6 +45,9 @@ class Refinement:
             if outcome.error:
                 errors.append(outcome.error)
                 continue
+            if outcome.pixels is None and outcome.about:
+                self._renew_notes(outcome)
+                continue
             if not outcome.preview:
                 self.resolution.record(outcome)
             if outcome.pixels is not None:
@@ -50,6 +55,12 @@ class Refinement:
             elif outcome.job is self._requested:
                 self._request(outcome.job)  # it was cancelled, but no other request replaced it
         return errors
+
+    def _renew_notes(self, outcome: Outcome) -> None:
+        """Replace the notes of the latest picture if it shows the same scene: the picture stays as it is."""
+        latest = self.latest
+        if latest and latest.job.scene is outcome.job.scene:
+            self.latest = replace(latest, about=outcome.about)
 
     @property
     def _answer(self) -> Outcome | None:

@@ -2,22 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from minirt.mlx import Image, Mlx, Window
 from minirt.mlx.canvas import stretch
 from minirt.viewer.display.marks import Marks
-from minirt.viewer.display.overlay import (
-    COMPILING,
-    TEXT_SIZE,
-    HudLevel,
-    draw_help,
-    draw_hud,
-    draw_message,
-    text_size,
-)
+from minirt.viewer.display.overlay import HudLevel, draw_help, draw_hud, draw_message, text_size
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import State
 
@@ -34,7 +24,6 @@ class Screen:
         self.banner = ""  # a message that stays until its reason is gone
         self.marks = Marks()
         self.image = mlx.mlx_new_image(window.display, 1, 1)
-        draw_message(self.frame, COMPILING, 0, TEXT_SIZE)  # loads the font, which takes 50 ms, while nobody waits
         self._drawn: tuple[object, ...] = ()  # the contents of the window
 
     @property
@@ -42,14 +31,16 @@ class Screen:
         """The pixels that were last brought to the window."""
         return self.image.pixels
 
-    def draw(self, state: State, picture: Outcome | None, compiling: bool, rate: float = 0.0) -> bool:
+    def draw(self, state: State, picture: Outcome | None, rate: float = 0.0) -> bool:
         """Draw a frame unless the window already shows it; return whether it was drawn.
 
-        `rate`: primary rays per second.
+        The words describe `state`, whose scene may be newer than the picture's; the marks fit the picture. `rate`:
+        primary rays per second.
         """
         width, height, scale = self.window.width, self.window.height, self.window.scale
-        message = COMPILING if compiling else state.message or self.banner
-        contents = (state, picture, message, self.level, self.help, self.marks.icons, width, height, scale)
+        message = state.message or self.banner
+        described = state if self.level and not self.help else None
+        contents = (described, picture, message, self.level, self.help, self.marks.icons, width, height, scale)
         if contents == self._drawn:
             return False
         self._drawn = contents
@@ -59,9 +50,9 @@ class Screen:
         if self.help:
             draw_help(self.frame, self.layout, size)
         elif self.level:
-            shown = state_in_picture(state, picture)
-            self.marks.draw(self.frame, shown, scale, picture is not None and picture.job.urgent)
-            bottom = draw_hud(self.frame, shown, picture, self.level, rate, size)
+            if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
+                self.marks.draw(self.frame, state, picture.job.scene, scale, moving=picture.job.urgent)
+            bottom = draw_hud(self.frame, state, picture, self.level, rate, size)
         draw_message(self.frame, message, bottom, size)
         self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True
@@ -73,12 +64,3 @@ class Screen:
             return np.full((height, width, 4), (0, 0, 0, 255), np.uint8)
         same_size = picture.pixels.shape[:2] == (height, width)
         return picture.pixels.copy() if same_size else stretch(picture.pixels, width, height)
-
-
-def state_in_picture(state: State, picture: Outcome | None) -> State:
-    """Return the state with the scene of the picture, so that the overlay matches the picture while something moves."""
-    if picture is None or picture.job.scene is state.scene:
-        return state
-    elements = picture.job.scene.elements
-    same = state.selected < len(elements) and type(elements[state.selected]) is type(state.element)
-    return replace(state, scene=picture.job.scene) if same else state

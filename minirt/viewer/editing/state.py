@@ -68,6 +68,15 @@ class State:
         """One step of a movement in scene units: a nice number."""
         return nice_number(STEP_SHARE * self.size)
 
+    def index_in(self, scene: Scene) -> int | None:
+        """Index of the selected element in an older or newer version of the scene; None if that lacks the element."""
+        if len(scene.elements) == len(self.scene.elements):  # elements were changed, but not added or deleted
+            return self.selected
+        try:
+            return index_of(scene, self.element)
+        except ValueError:
+            return None
+
     def with_message(self, message: str) -> State:
         """This state with a message to the user."""
         return replace(self, message=message)

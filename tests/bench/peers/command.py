@@ -54,11 +54,15 @@ class Command(System):
     def milliseconds(self, printed: str) -> float:
         """Read the render time from the command's output."""
 
-    def frame_times(self, path: Path, seconds: float) -> list[float]:
+    def prepared(self, path: Path) -> list[str]:
+        """Translate a scene and return the command that renders it."""
         width, height, _, folder = self.setting
-        file = folder / f"{path.stem}{self.suffix}"
+        file = folder / f"{path.stem}-{width}x{height}{self.suffix}"
         file.write_text("\n".join(self.translate(load(path), width, height)) + "\n", encoding="ascii")
-        ran = run([self.command, *self.arguments(file, self.picture(path))], text=True)
+        return [self.command, *self.arguments(file, self.picture(path))]
+
+    def frame_times(self, path: Path, seconds: float) -> list[float]:
+        ran = run(self.prepared(path), text=True)
         if ran.returncode:
-            raise RuntimeError(f"{self.name} on {file}: {ran.stderr or ran.stdout}")
+            raise RuntimeError(f"{self.name} on {path}: {ran.stderr or ran.stdout}")
         return [self.milliseconds(ran.stdout + ran.stderr)]

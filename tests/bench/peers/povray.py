@@ -9,10 +9,12 @@ from pathlib import Path
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane
 from minirt.shapes.shape import Shape
 from minirt.shapes.sphere import Sphere
 from tests.bench.peers.command import Command, ends, light, words
+from tests.bench.peers.triangles import triangulated
 
 TRACE_TIME = re.compile(r"Trace Time:.*\(([\d.]+) seconds\)")
 
@@ -36,6 +38,10 @@ def solid(shape: Shape) -> str:
         case Plane():
             height = sum(n * p for n, p in zip(shape.normal, shape.point, strict=True))
             return f"plane {{ {vector(shape.normal)}, {height:.9g} {surface(shape.colour)} }}"
+        case Mesh():
+            points, corners = triangulated(shape)
+            vertices, faces = (", ".join([str(len(rows)), *map(vector, rows)]) for rows in (points, corners))
+            return f"mesh2 {{ vertex_vectors {{ {vertices} }} face_indices {{ {faces} }} {surface(shape.colour)} }}"
     raise ValueError(f"no POV-Ray for {shape}")
 
 

@@ -12,10 +12,12 @@ from minirt.rendering.packing.camera import camera_numbers
 from minirt.scene import Scene
 from minirt.scene.camera_frame import camera_frame
 from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane
 from minirt.shapes.shape import Shape
 from minirt.shapes.sphere import Sphere
 from tests.bench.peers.command import Command, ends, light, words
+from tests.bench.peers.triangles import triangulated
 
 TRACING_TIME = re.compile(r"Ray Tracing Time:\s*([\d.]+) seconds")
 
@@ -47,6 +49,10 @@ def solid(shape: Shape, ambient: float) -> Iterator[str]:
                 yield f"RING CENTER {mirrored(end)} NORMAL {mirrored(shape.axis)} INNER 0 OUTER {radius} {finish}"
         case Plane():
             yield f"PLANE CENTER {mirrored(shape.point)} NORMAL {mirrored(shape.normal)} {finish}"
+        case Mesh():
+            points, corners = triangulated(shape)
+            for a, b, c in points[corners]:
+                yield f"TRI V0 {mirrored(a)} V1 {mirrored(b)} V2 {mirrored(c)} {finish}"
         case _:
             raise ValueError(f"no Tachyon for {shape}")
 

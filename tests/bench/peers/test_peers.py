@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from subprocess import CompletedProcess
 
 import numpy as np
 import pytest
@@ -12,14 +13,16 @@ import minirt
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
-from tests.bench.peers import povray, tachyon
+from tests.bench import meshes
+from tests.bench.peers import mitsuba, povray, tachyon
 from tests.bench.peers.command import Command
 from tests.bench.peers.embree import Embree
+from tests.bench.peers.mitsuba import Mitsuba
 from tests.bench.peers.povray import PovRay
 from tests.bench.peers.tachyon import Tachyon
 from tests.bench.peers.triangles import SIDES, cylinder, plane
 from tests.bench.system import MissingError, Setting, System
-from tests.compare import edges
+from tests.compare import Bytes, edges
 
 WIDTH, HEIGHT = 320, 180
 LINES = """\
@@ -113,15 +116,59 @@ def test_the_time_that_they_print(kind: type[Command], printed: str, ms: float) 
 
 
 # Embree's prisms have flat sides, and Tachyon's rays go through the corners of pixels.
-@pytest.mark.parametrize(("kind", "tolerance"), [(PovRay, 1), (Tachyon, 6), (Embree, 12)])
-def test_they_show_the_same_scene(kind: type[System], tolerance: int, path: Path, tmp_path: Path) -> None:
+SCENE_PEERS = pytest.mark.parametrize(("kind", "tolerance"), [(PovRay, 1), (Tachyon, 6), (Embree, 12), (Mitsuba, 1)])
+MESH_PEERS = pytest.mark.parametrize(("kind", "tolerance"), [(PovRay, 1), (Tachyon, 12), (Embree, 1), (Mitsuba, 1)])
+
+
+def picture_of(kind: type[System], path: Path, folder: Path) -> Bytes:
+    """Return a peer's picture of a scene; the test is skipped where the peer is not installed."""
     try:
-        system = kind(Setting(WIDTH, HEIGHT, 2, tmp_path))
+        system = kind(Setting(WIDTH, HEIGHT, 2, folder))
     except MissingError as reason:
         pytest.skip(str(reason))
     assert min(system.frame_times(path, 0)) > 0
-    picture = np.asarray(Image.open(system.picture(path)).convert("RGB")).astype(int)
+    return np.asarray(Image.open(system.picture(path)).convert("RGB"))
+
+
+def shows_the_same(picture: Bytes, ours: Bytes, tolerance: int) -> bool:
+    """Whether a peer's picture differs from ours at edges alone."""
+    wrong = (np.abs(picture.astype(int) - ours).max(axis=-1) > tolerance) & ~edges(ours)
+    return bool(wrong.mean() < 1e-3) and bool(ours.std() > 20)
+
+
+@SCENE_PEERS
+def test_they_show_the_same_scene(kind: type[System], tolerance: int, path: Path, tmp_path: Path) -> None:
     ours = minirt.render(minirt.load(path), WIDTH, HEIGHT).array
-    wrong = (np.abs(picture - ours).max(axis=-1) > tolerance) & ~edges(ours)
-    assert wrong.mean() < 1e-3
-    assert ours.std() > 20
+    assert shows_the_same(picture_of(kind, path, tmp_path), ours, tolerance)
+
+
+@MESH_PEERS
+def test_they_show_the_same_mesh(kind: type[System], tolerance: int, tmp_path: Path) -> None:
+    path = meshes.waves(tmp_path, 1000)
+    ours = minirt.render(minirt.load(path), WIDTH, HEIGHT).array
+    assert shows_the_same(picture_of(kind, path, tmp_path), ours, tolerance)
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"), [("sp 1,2,3 4", "sp 1,2,3 3.5"), ("l 5,5,-8 0.3", "l 5,5,-8 0.2"), ("A 0.5", "A 0.4")]
+)
+def test_another_scene_is_found(text: str, wrong: str, scene: Scene, path: Path) -> None:
+    ours = minirt.render(scene, WIDTH, HEIGHT).array
+    assert shows_the_same(ours, ours, 0)
+    path.write_text(LINES.replace(text, wrong))
+    assert not shows_the_same(minirt.render(minirt.load(path), WIDTH, HEIGHT).array, ours, 12)
+
+
+def test_an_llvm_that_mitsuba_cannot_use_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Dr.Jit ends the program where LLVM is too old, so another program tries it."""
+    failed = CompletedProcess([], -6, "", "LLVM ERROR: Cannot select: fminimum\n  in a function")
+    monkeypatch.setattr(mitsuba, "find_spec", lambda name: object())
+    monkeypatch.setattr(mitsuba, "run", lambda command, **options: failed)
+    with pytest.raises(MissingError, match=r"Mitsuba 3: .* LLVM ERROR: Cannot select: fminimum$"):
+        Mitsuba(Setting(WIDTH, HEIGHT, 1, tmp_path))
+
+
+def test_mitsuba_may_be_missing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(mitsuba, "find_spec", lambda name: None)
+    with pytest.raises(MissingError, match="Mitsuba 3: mitsuba is not installed"):
+        Mitsuba(Setting(WIDTH, HEIGHT, 1, tmp_path))

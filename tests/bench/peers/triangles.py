@@ -1,18 +1,43 @@
-"""Planes and cylinders as triangles: their corners, (n, 3, 3)."""
+"""Planes, cylinders and meshes as triangles."""
 
 from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from minirt.fields import Triple
 from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane
+from minirt.shapes.shape import Shape
 
-Corners = NDArray[np.float64]
+Corners = NDArray[np.float64]  # (n, 3, 3) points of the corners of triangles
 
 SIDES = 64  # of a cylinder
 ENDLESS = 1e5  # half of an edge of a plane
+
+
+class Triangles(NamedTuple):
+    """Triangles that share points."""
+
+    points: NDArray[np.float64]  # (n, 3)
+    corners: NDArray[Any]  # (m, 3) indices of points
+
+
+def triangulated(shape: Shape) -> Triangles:
+    """Return the triangles of a plane, a cylinder or a mesh."""
+    match shape:
+        case Mesh():
+            return Triangles(shape.placed(shape.triangles.points), shape.triangles.corners)
+        case Cylinder():
+            corners = cylinder(shape)
+        case Plane():
+            corners = plane(shape)
+        case _:
+            raise ValueError(f"no triangles for {shape}")
+    return Triangles(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3))
 
 
 def across(axis: Triple) -> tuple[Corners, Corners]:

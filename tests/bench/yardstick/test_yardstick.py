@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 import minirt
-from tests.bench import scenes
+from tests.bench import meshes, scenes
 from tests.bench.system import MissingError, Setting
 from tests.bench.yardstick import Yardstick
 from tests.compare import edges, off
@@ -72,6 +72,13 @@ def test_what_it_cannot_render_it_refuses(yardstick: Yardstick, tmp_path: Path, 
     path.write_text(f"{HEAD}L 0,9,0 0.7 255,255,255\n{line}\n")
     with pytest.raises(RuntimeError, match=complaint):
         yardstick.run(path)
+
+
+def test_it_renders_no_meshes(yardstick: Yardstick, tmp_path: Path) -> None:
+    assert all(yardstick.renders(path) for path in scenes.compared(tmp_path))
+    assert not yardstick.renders(meshes.waves(tmp_path, 100))
+    with pytest.raises(RuntimeError, match="no number"):
+        yardstick.run(meshes.waves(tmp_path, 100))
 
 
 def test_what_it_prints(yardstick: Yardstick) -> None:

@@ -56,7 +56,9 @@ def check_tree(scene: Tree, shapes: list[Shape]) -> int:
         assert (nodes[node, :3, empty] == np.inf).all()
         assert (nodes[node, 3:6, empty] == -np.inf).all()
     assert sorted(references) == list(range(len(nodes)))
-    unbounded = np.concatenate([group.unbounded for group in scene.groups]).tolist()
+    unbounded = np.concatenate(
+        [np.zeros(0, int), *(g.unbounded for g in scene.groups if g.unbounded is not None)]
+    ).tolist()
     assert sorted(owned + unbounded) == list(range(len(shapes)))
     return depth
 

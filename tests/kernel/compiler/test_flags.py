@@ -16,7 +16,8 @@ FLAGS = {"FLAGS", "ENTRY_FLAGS"}  # names of the project's flags
 
 def test_the_flags_let_kernels_divide_as_ieee_754_says_and_keep_nan() -> None:
     assert options.FLAGS["error_model"] == "numpy"
-    assert options.FLAGS[FASTMATH] == {"contract"}
+    # Nor "contract": `minirt.lanes.compiled.fused` says which products are not rounded.
+    assert FASTMATH not in options.FLAGS
 
 
 def test_inlined_functions_have_no_flags_of_their_own() -> None:
@@ -35,7 +36,7 @@ def calls_with_other_flags(source: str) -> list[str]:
     for call in calls(source):
         name = call.func.id if isinstance(call.func, ast.Name) else getattr(call.func, "attr", "")
         keywords = {each.arg: ast.unparse(each.value) for each in call.keywords}
-        if keywords.get(FASTMATH, "{'contract'}") != "{'contract'}":
+        if FASTMATH in keywords:
             descriptions.append(f"{name} with fastmath={keywords[FASTMATH]}")
         if name in COMPILERS and keywords.get("error_model") != "'numpy'" and keywords.get(None) not in FLAGS:
             descriptions.append(f"{name} without the error model of numpy")
@@ -53,14 +54,14 @@ def test_planted_flags_are_found() -> None:
     assert calls_with_other_flags("@numba.njit(cache=True)\ndef f(): pass") == ["njit without the error model of numpy"]
     assert calls_with_other_flags("njit(**FLAGS)(f)") == []
     assert calls_with_other_flags("cfunc(t, **OTHERS)(f)") == ["cfunc without the error model of numpy"]
-    assert calls_with_other_flags("register_jitable(fastmath={'nnan'})(f)") == [
-        "register_jitable with fastmath={'nnan'}"
+    assert calls_with_other_flags("register_jitable(fastmath={'contract'})(f)") == [
+        "register_jitable with fastmath={'contract'}"
     ]
 
 
-def test_contraction_is_the_only_fast_math_of_instructions() -> None:
+def test_no_instruction_has_flags_of_fast_math() -> None:
     compiled(*BENIGN[0])
     code = "\n".join(kernel().inspect_llvm().values())
-    assert " contract " in code
-    for forbidden in (" fast ", " nnan ", " ninf ", " nsz ", " arcp ", " reassoc ", " afn "):
+    assert "llvm.fmuladd" in code
+    for forbidden in (" contract ", " fast ", " nnan ", " ninf ", " nsz ", " arcp ", " reassoc ", " afn "):
         assert forbidden not in code

@@ -33,13 +33,13 @@ class FirstRun(NamedTuple):
 
 @pytest.fixture
 def first_run(desktop: Desktop, tmp_path: Path) -> Iterator[FirstRun]:
-    """Yield the first run of the program once it shows a message; afterwards check that no process is left."""
+    """Yield the first run of the program once it shows words; afterwards check that no process is left."""
     with viewing(desktop, tmp_path / "first.rt", cache=tmp_path / "cache", text=SPHERE_ON_PLANE) as viewer:
         program = viewer.process.pid
         until(lambda: bool(compilers(program)), "the compiler")
         (compiler,) = compilers(program)
         os.kill(compiler, signal.SIGSTOP)
-        until(lambda: desktop.screenshot(viewer.window).any(), "a message in the black window")
+        until(lambda: desktop.screenshot(viewer.window).any(), "words in the black window")
         yield FirstRun(viewer, compiler)
         until(lambda: not group(program), "the end of all processes of the program")
 

@@ -16,18 +16,27 @@ from tests.viewer.session_harness import SIZE, SessionHarness
 from tests.waiting import HANG_LIMIT, until
 
 
-def test_the_loop_sleeps_unless_a_key_is_held():
+def test_the_loop_sleeps_unless_a_key_is_held_or_words_wait():
     harness = SessionHarness()
+    assert harness.display.busy
+    harness.finish(0.001)
+    assert not harness.display.busy
+    harness.tap(Key.D)
+    assert harness.display.busy
+    harness.memory.wait(0.05)
+    harness.memory.play()
     assert not harness.display.busy
     harness.memory.press(Key.D)
     harness.memory.play()
     assert harness.display.busy
     harness.memory.release(Key.D)
     harness.memory.play()
+    harness.finish(0.001)
     assert not harness.display.busy
     harness.memory.press(Key.D)
     harness.memory.focus(False)
     harness.memory.play()
+    harness.finish(0.001)
     assert not harness.display.busy
 
 
@@ -57,7 +66,7 @@ def test_an_unchanged_frame_is_not_drawn_again():
 
 def test_a_coarse_picture_is_stretched_over_the_window():
     harness = SessionHarness()
-    harness.finish(FRAME_TIME * 100)
+    harness.finish(FRAME_TIME * 64)
     harness.hide_overlay()
     harness.tap(Key.D)
     harness.finish(FRAME_TIME)
@@ -102,12 +111,14 @@ def test_a_render_error_is_a_message_over_the_picture():
     before = harness.memory.screenshot()
     harness.painter.renderer.error = RenderError("too many shapes")
     harness.finish(0.001)
+    harness.memory.wait(0.05)
+    harness.memory.play()
     assert harness.session.state.message == "too many shapes"
     assert (harness.session.picture == colour_of(scene())).all()
     assert (harness.memory.screenshot() != before).any()
     harness.memory.wait(1)
     harness.memory.play()
-    assert len(harness.painter.requests) == 2  # and it is not requested again
+    assert len(harness.painter.requests) == 3  # two with the tap; and it is not requested again
 
 
 def test_an_error_of_picking_is_a_message_over_the_picture() -> None:
@@ -128,19 +139,6 @@ def test_an_unknown_exception_ends_the_program_with_a_render_error():
     harness.painter.renderer.error = ZeroDivisionError("division by zero")
     with pytest.raises(RenderError, match="ZeroDivisionError: division by zero"):
         harness.finish(0.001)
-
-
-def test_a_message_is_shown_while_kernels_compile():
-    harness = SessionHarness()
-    harness.hide_overlay()
-    dark = harness.memory.screenshot()
-    harness.painter.compiling = True
-    harness.painter.notify()
-    harness.memory.play()
-    assert (harness.memory.screenshot() != dark).any()
-    harness.painter.compiling = False
-    harness.finish(0.001)
-    assert (harness.memory.screenshot() == colour_of(scene())).all()
 
 
 def test_a_screenshot_waits_for_the_final_picture(tmp_path):

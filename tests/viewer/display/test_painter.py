@@ -11,7 +11,7 @@ import pytest
 from minirt.errors import RenderError
 from minirt.viewer.display import background_painter
 from minirt.viewer.display.background_painter import BackgroundPainter
-from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.painter import Job, Outcome, paint
 from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
 from tests.waiting import HANG_LIMIT, until
 
@@ -63,6 +63,10 @@ def test_a_finished_picture_is_notified(harness):
     assert not harness.painter.busy
 
 
+def test_rendering_gives_way_to_the_event_loop(harness):
+    assert harness.renderer.gives_way
+
+
 def test_a_coarser_picture_covers_the_window(harness):
     harness.painter.request(Job(JOB.scene, 65, 48, divisor=4))
     assert harness.outcomes(1)[0].pixels.shape == (12, 17, 4)
@@ -85,6 +89,25 @@ def test_a_picture_that_is_not_urgent_is_cancelled(harness):
     assert (cancelled.job, cancelled.pixels, cancelled.error) == (JOB, None, None)
     harness.renderer.gate.set()
     assert harness.outcomes(1)[0].job.divisor == 2
+
+
+def wakes_before_the_next(harness: PainterHarness) -> bool:
+    """Whether a picture that makes room for the next is notified, although it has nothing to show."""
+    harness.start(JOB)
+    harness.renderer.started.clear()
+    harness.painter.request(replace(JOB, divisor=2))
+    assert harness.renderer.started.wait(HANG_LIMIT)
+    woken = harness.notifications.acquire(blocking=False)
+    harness.renderer.gate.set()
+    assert harness.notifications.acquire(timeout=HANG_LIMIT)
+    assert [each.job.divisor for each in harness.outcomes(1)][-1] == 2
+    return woken
+
+
+def test_a_picture_that_made_room_for_the_next_wakes_nobody(harness, monkeypatch):
+    assert not wakes_before_the_next(harness)
+    monkeypatch.setattr(background_painter, "is_news", lambda _: True)
+    assert wakes_before_the_next(harness)
 
 
 def test_a_picture_of_another_size_is_cancelled(harness):
@@ -124,14 +147,6 @@ class TestWithoutAKernel:
         harness.renderer.ready = False
         return harness
 
-    def test_compiling_is_true_while_the_kernel_is_prepared(self, harness):
-        harness.renderer.preview = lambda *_: harness.renderer.gate.wait(HANG_LIMIT) and None  # no preview comes first
-        harness.start(JOB)
-        assert harness.notifications.acquire(timeout=HANG_LIMIT)
-        assert harness.painter.compiling
-        harness.renderer.gate.set()
-        until(lambda: not harness.painter.compiling, "the kernel")
-
     def test_a_preview_is_followed_by_the_picture(self, harness):
         harness.start(JOB)
         (outcome,) = harness.outcomes(1)
@@ -162,12 +177,12 @@ class TestWithoutAKernel:
         harness.painter.request(JOB)
         (outcome,) = harness.outcomes(1)
         assert not outcome.preview
-        assert not harness.painter.compiling
 
     def test_without_a_preview_the_picture_still_follows(self, harness):
-        harness.renderer.previews = False
+        previewed = threading.Event()
+        harness.renderer.preview = lambda *_: previewed.set()
         harness.start(JOB)
-        until(lambda: harness.painter.compiling, "the message about compiling")
+        assert previewed.wait(HANG_LIMIT)
         harness.renderer.gate.set()
         assert not harness.outcomes(1)[0].preview
 
@@ -185,7 +200,6 @@ class TestWithoutAKernel:
         harness = PainterHarness()
         harness.renderer.ready, harness.renderer.stops = False, stops
         harness.start(JOB)
-        until(lambda: harness.painter.compiling, "the message about compiling")
         assert harness.painter.close(HANG_LIMIT if stops else 0.01) == stops
         assert harness.renderer.gate.is_set() == stops  # otherwise close would have waited for it
         harness.renderer.gate.set()
@@ -220,6 +234,12 @@ def test_refining_is_cancelled_by_the_next_request(harness):
     assert (REFINED.base == colour_of(JOB.scene)).all()
     harness.renderer.gate.set()
     assert harness.outcomes(1)[0].job.samples == 1
+
+
+def test_a_picture_is_dropped_if_it_becomes_unwanted_while_its_error_is_estimated():
+    answers = iter([True, False])  # to the renderer, and to the estimate
+    outcome = paint(FakeRenderer(), REFINED, REFINED.base, lambda: next(answers))
+    assert (outcome.pixels, outcome.error) == (None, None)
 
 
 def test_a_request_before_the_renderer_can_be_cancelled_still_cancels(harness):

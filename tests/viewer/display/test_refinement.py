@@ -60,7 +60,7 @@ def test_a_key_press_is_shown_coarse_first_if_that_is_faster():
     harness.tap(Key.D)
     harness.finish(FRAME_TIME)
     harness.finish(FRAME_TIME * 3)
-    assert harness.painter.divisors == [1, 2, 1]
+    assert harness.painter.divisors == [1, 2, 2, 1]  # a tap changes the scene with the press and with the release
     assert not harness.painter.busy
 
 
@@ -123,7 +123,7 @@ def test_a_picture_goes_from_coarse_to_full_resolution_to_refined():
     harness.tap(Key.D)
     while harness.painter.busy:
         harness.finish(FRAME_TIME / 2)
-    assert list(zip(harness.painter.divisors, harness.painter.samples, strict=True))[2:] == [(2, 1), (1, 1), (1, 4)]
+    assert list(zip(harness.painter.divisors, harness.painter.samples, strict=True))[3:] == [(2, 1), (1, 1), (1, 4)]
 
 
 def test_nothing_is_rendered_after_an_error_in_a_pass():
@@ -154,11 +154,31 @@ def test_a_cancelled_pass_is_never_shown():
         until(half_refined, "a pass")
         whole = harness.memory.screenshot()
         assert (whole == colour_of(harness.session.state.scene)).all()
-        harness.tap(Key.D)
+        harness.memory.text(".")  # a single change; a tap of a key that can be held makes two
+        harness.memory.play()
         renderer.gate.set()
         until(lambda n=n: renderer.cancelled == n, "the end of the pass")
         assert np.array_equal(harness.memory.screenshot(), whole)
     assert harness.painter.close(HANG_LIMIT)
+
+
+def test_new_notes_without_a_picture_are_shown_over_the_same_picture():
+    harness = SessionHarness(samples=4)
+    harness.memory.resize(640, 480)
+    harness.tap(Key.I)
+    while harness.painter.busy:
+        harness.finish(0.001)
+    latest, requests = harness.session.refinement.latest, len(harness.painter.requests)
+    before = harness.memory.screenshot()
+    for job, shown in ((Job(scene(), *SIZE), ()), (latest.job, ("kernel for spheres",))):
+        harness.painter.outcomes.append(Outcome(job, about=("kernel for spheres",)))
+        harness.painter.notify()
+        harness.memory.play()
+        assert harness.session.refinement.latest.about == shown
+        assert np.array_equal(harness.memory.screenshot(), before) == (not shown)
+    assert harness.session.refinement.latest.pixels is latest.pixels
+    assert harness.session.refinement.complete
+    assert len(harness.painter.requests) == requests
 
 
 class SlowScreen(Memory):
@@ -174,7 +194,7 @@ def test_a_slow_screen_leaves_less_time_for_rendering():
         harness = SessionHarness(memory=memory)
         harness.finish(FRAME_TIME * 0.7)
         harness.tap(Key.D)
-        assert harness.painter.divisors == [1, divisor]
+        assert harness.painter.divisors == [1, divisor, divisor]
 
 
 def test_a_picture_cancelled_without_a_newer_request_is_requested_again():

@@ -1,0 +1,188 @@
+"""Choice of kernels: the narrow one where it is there, else a wide one until the narrow one has been compiled."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from minirt.errors import RenderError
+from minirt.kernel.machine_code import functions, shipped_code
+from minirt.kernel.machine_code.code_cache import CodeCache
+from minirt.kernel.machine_code.compile_process import CompileProcess
+from minirt.kernel.machine_code.library import Library
+from minirt.rendering import Renderer
+from minirt.rendering.frame_arguments import Frame, frame_arguments
+from minirt.rendering.packing.widening import WIDE_KERNELS, WideKernel
+from minirt.rendering.running import background_compiler, kernels
+from minirt.rendering.running.kernels import Choice, Kernels, wide_identity
+from minirt.rendering.running.needed_kernels import packing_calls
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Scene, parse
+from tests.skipping import skip_incomplete
+from tests.waiting import until
+
+VIEW = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\n"
+BALL = parse(f"{VIEW}sp 0,0,0 2 255,60,60\n").scene
+SHINY = parse(f"{VIEW}sp 0,0,0 2 255,60,60 specular:0.5,20\n").scene
+
+
+def frame_of(scene: Scene, precision: str = "double") -> Frame:
+    """Return the arguments of a frame."""
+    arrays = Packing(precision=precision).pack(scene, 8, 8)
+    return frame_arguments(arrays, np.zeros((8, 8, 4), np.uint8))
+
+
+class FakeLibrary:
+    """A library in which only some kernels can be found: an entry is its identity."""
+
+    def __init__(self, *found: str) -> None:
+        self.found = list(found)
+        self.identity = Library().identity
+        self.compiled: list[str] = []
+
+    def find(self, identity: str) -> Any:
+        return identity if identity in self.found else None
+
+    def has(self, identity: str) -> bool:
+        return identity in self.found
+
+    def get(self, call: Any) -> Any:
+        self.compiled.append(self.identity(call))
+        return self.identity(call)
+
+
+def narrow_identity(scene: Scene, precision: str = "double") -> str:
+    """Return the identity of the narrow kernel of a scene."""
+    return Library().identity(functions.frame.call(*frame_of(scene, precision)))
+
+
+def choose(monkeypatch: pytest.MonkeyPatch, scene: Scene, *found: str, precision: str = "double") -> Choice:
+    """Return the choice of a kernel for a scene where only some can be found."""
+    monkeypatch.setattr(kernels, "LIBRARY", FakeLibrary(*found))
+    return Kernels(precision, 8).choose(frame_of(scene, precision))
+
+
+WIDE = {wide: wide_identity(wide) for wide in WIDE_KERNELS}
+
+
+def wide(name: str, precision: str) -> WideKernel:
+    """Return a wide kernel."""
+    (found,) = (each for each in WIDE_KERNELS if (each.name, each.precision) == (name, precision))
+    return found
+
+
+def test_the_narrowest_kernel_that_is_there_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    narrow = narrow_identity(BALL)
+    assert choose(monkeypatch, BALL, narrow, *WIDE.values()).wide is None
+    assert choose(monkeypatch, BALL, *WIDE.values()).wide == wide("plain", "double")
+    assert choose(monkeypatch, SHINY, *WIDE.values()).wide == wide("full", "double")
+    assert choose(monkeypatch, BALL, *WIDE.values(), precision="single").wide == wide("plain", "single")
+    assert choose(monkeypatch, BALL, WIDE[wide("full", "double")]).wide == wide("full", "double")
+
+
+def test_a_wide_kernel_gets_the_scene_in_its_form(monkeypatch: pytest.MonkeyPatch) -> None:
+    choice = choose(monkeypatch, BALL, *WIDE.values())
+    frame = frame_of(BALL)._replace(scene=choice.scene)
+    assert Library().identity(functions.frame.call(*frame)) == WIDE[wide("plain", "double")]
+
+
+def test_without_any_the_narrow_one_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    choice = choose(monkeypatch, BALL, WIDE[wide("full", "single")])
+    assert (choice.wide, choice.entry) == (None, narrow_identity(BALL))
+    library: Any = kernels.LIBRARY
+    assert library.compiled == [narrow_identity(BALL)]
+
+
+def test_a_narrow_kernel_is_compiled_once_that_is_worth_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    choice = choose(monkeypatch, BALL, *WIDE.values())
+    asked: list[str] = []
+    for after, seconds in ((kernels.NARROW_AFTER, kernels.NARROW_AFTER / 2), (0.0, 0.0)):
+        mine = Kernels("double", 8)
+        mine.narrow_after = after
+        monkeypatch.setattr(mine.background, "compile", asked.append)
+        mine.count(choice, seconds)
+        assert asked == [choice.narrow] * (not after)
+        mine.count(choice, seconds)
+        assert set(asked) == {choice.narrow}
+        asked.clear()
+
+
+def test_a_scene_is_ready_where_wide_kernels_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    packing = [Library().identity(each) for each in packing_calls()]
+    narrow = [Library().identity(functions.frame.call(*frame_of(BALL)))]
+    for found, ready in (
+        ([*packing, WIDE[wide("full", "double")]], True),
+        ([*packing, WIDE[wide("plain", "double")]], False),
+        ([WIDE[wide("full", "double")]], False),
+        ([*packing, *narrow], True),
+        ([], False),
+    ):
+        monkeypatch.setattr(kernels, "LIBRARY", FakeLibrary(*found))
+        assert Kernels("double", 8).is_ready(BALL) is ready
+    assert Kernels("double", 8).is_ready(Scene(BALL.elements[:3]))
+
+
+def empty_library(monkeypatch: pytest.MonkeyPatch, folder: Path) -> Library:
+    """Let renderers use a library that has the kernels of the package and none of the user's."""
+    library = Library()
+    library.cache = CodeCache(folder)
+    for module in (functions, kernels, background_compiler):
+        monkeypatch.setattr(module, "LIBRARY", library)
+    if not all(library.find(each) for each in WIDE.values()):
+        skip_incomplete("wide kernels are not compiled: make all")
+    return library
+
+
+def picture(renderer: Renderer) -> bytes:
+    """Render the ball into the bytes of its pixels."""
+    pixels = np.zeros((60, 80, 4), np.uint8)
+    assert renderer.render(BALL, pixels)
+    return pixels.tobytes()
+
+
+def test_the_narrow_kernel_is_swapped_in_and_draws_the_same_bits(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    library = empty_library(monkeypatch, tmp_path)
+    renderer = Renderer(2)
+    before = picture(renderer)
+    assert renderer.runner.choice
+    assert renderer.runner.choice.wide
+    assert renderer.notes[0].startswith("wide kernel for all kinds of shapes")
+    renderer.specialise_early()
+    picture(renderer)
+    until(lambda: library.find(narrow_identity(BALL)) is not None, "the narrow kernel")
+    assert picture(renderer) == before
+    assert renderer.runner.choice.wide is None
+    assert renderer.notes[0] == "kernel for spheres"
+
+
+def test_a_wide_kernel_stays_where_the_narrow_one_cannot_be_compiled(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    empty_library(monkeypatch, tmp_path)
+    asked: list[Any] = []
+
+    def fail(_self: CompileProcess, requests: list[str], _target: str | None = None) -> None:
+        asked.append(requests)
+        raise RenderError("no compiler")
+
+    monkeypatch.setattr(CompileProcess, "compile", fail)
+    renderer = Renderer(2)
+    renderer.specialise_early()
+    before = picture(renderer)
+    until(lambda: not renderer.kernels.background.busy, "the end of the attempt")
+    assert picture(renderer) == before
+    until(lambda: not renderer.kernels.background.busy, "the end of a second attempt")
+    assert asked == [[narrow_identity(BALL)]]
+    assert renderer.runner.choice
+    assert renderer.runner.choice.wide
+
+
+def test_the_package_has_the_wide_kernels_for_this_machine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    library = empty_library(monkeypatch, tmp_path)
+    identities = [*WIDE.values(), *map(library.identity, packing_calls())]
+    assert all(shipped_code.read(each) for each in identities)

@@ -1,0 +1,30 @@
+"""Threads of a pool give way to the others of the process when they are asked to."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import pytest
+
+from minirt.rendering.running.thread_pool import NICENESS, ThreadPool
+
+
+def nicenesses(pool: ThreadPool) -> list[int]:
+    """Niceness of each thread of a pool above that of the process."""
+    ids = [thread.native_id or 0 for thread in pool.threads]
+    return [os.getpriority(os.PRIO_PROCESS, each) - os.getpriority(os.PRIO_PROCESS, os.getpid()) for each in ids]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has priorities of threads")
+@pytest.mark.skipif(os.getpriority(os.PRIO_PROCESS, 0) > 19 - NICENESS, reason="the process itself gives way")
+def test_only_the_threads_of_the_pool_give_way() -> None:
+    pool, other = ThreadPool(2), ThreadPool(2)
+    assert nicenesses(pool) == [0, 0]
+    before = os.getpriority(os.PRIO_PROCESS, 0)
+    pool.give_way()
+    assert nicenesses(pool) == [NICENESS, NICENESS]
+    pool.give_way()
+    assert nicenesses(pool) == [NICENESS, NICENESS]
+    assert nicenesses(other) == [0, 0]
+    assert os.getpriority(os.PRIO_PROCESS, 0) == before

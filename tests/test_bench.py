@@ -1,0 +1,71 @@
+"""`--bench` measures frames that keep the lists of the last one, and frames that need new ones."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+import pytest
+
+from minirt import bench, load
+from minirt.rendering import Renderer, scene_packing
+from minirt.scene import Scene
+from tests.paths import ROOT
+
+PATH = ROOT / "scenes" / "demo.rt"
+SIZE = (16, 9)
+Measured = dict[str, str | float]
+
+
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Log each frame and, before it, the making of the lists that it needs."""
+    log: list[str] = []
+
+    lists, render = scene_packing.seen_by_eye, Renderer.render
+
+    def logged_lists(*arguments: Any) -> Any:
+        log.append("lists")
+        return lists(*arguments)
+
+    def logged_render(renderer: Renderer, scene: Scene, pixels: np.ndarray) -> None:
+        render(renderer, scene, pixels)
+        if pixels.shape[:2] == SIZE[::-1]:  # not the pixel for which the kernel is prepared
+            log.append("frame")
+
+    monkeypatch.setattr(scene_packing, "seen_by_eye", logged_lists)
+    monkeypatch.setattr(Renderer, "render", logged_render)
+    monkeypatch.setattr(bench, "LEAST_SECONDS", 0.0)
+    return log
+
+
+def measure() -> Measured:
+    return bench.measure(str(PATH), load(PATH), SIZE, 1, "double")
+
+
+def frames_without_lists(made: list[str]) -> list[int]:
+    """Return how many frames followed each making of lists."""
+    return [len([*group]) for entry, group in groupby(made) if entry == "frame"]
+
+
+def test_an_eye_at_rest_keeps_the_lists_and_a_moving_one_needs_new_ones_for_each_frame(made: list[str]) -> None:
+    measure()
+    rest, *moving = frames_without_lists(made)
+    assert rest == 1 + bench.LEAST_FRAMES  # the first one is not counted
+    assert moving == [1] * (1 + bench.LEAST_FRAMES)
+
+
+def test_an_eye_that_does_not_move_is_found(made: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """The planted fault: frames that only claim to be of a moving eye."""
+    monkeypatch.setattr(bench, "moved", lambda scene: scene)
+    measure()
+    assert frames_without_lists(made) == [2 * (1 + bench.LEAST_FRAMES)]
+
+
+def test_the_eye_moves_by_a_thousandth() -> None:
+    scene: Scene = load(PATH)
+    moved = bench.moved(scene)
+    steps = [b - a for a, b in zip(scene.camera.position, moved.camera.position, strict=True)]
+    assert steps == pytest.approx([1e-3, 0, 0])
+    assert moved.replace(moved.camera, position=scene.camera.position) == scene
