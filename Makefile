@@ -25,7 +25,7 @@ help:  ## list the targets
 $(NAME): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "miniRT needs Python 3.11 or newer: make PYTHON=python3.12")'
 	$(PYTHON) -m venv $(VENV)
-	$(PIP) install --quiet --upgrade 'pip>=25.1' hatchling
+	$(PIP) install --quiet --upgrade 'pip>=25.1' hatchling editables  # what builds the project
 	$(call INSTALL,.)
 	$(VENV)/bin/python -m compileall -q minirt  # also where PYTHONDONTWRITEBYTECODE would have each start compile it
 	touch $@
