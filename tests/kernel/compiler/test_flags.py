@@ -11,7 +11,7 @@ from tests.shapes.test_sphere import BENIGN
 
 COMPILERS = {"njit", "jit", "vectorize", "guvectorize", "cfunc", "stencil"}
 FASTMATH = "fastmath"
-FLAGS = {"FLAGS", "ENTRY_FLAGS"}  # names of the project's flags
+FLAGS = {"FLAGS", "C_FLAGS"}  # names of the project's flags
 
 
 def test_the_flags_let_kernels_divide_as_ieee_754_says_and_keep_nan() -> None:
@@ -46,7 +46,7 @@ def calls_with_other_flags(source: str) -> list[str]:
 def test_no_source_compiles_with_other_flags() -> None:
     sources = {path: path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py")}
     assert [call for source in sources.values() for call in calls_with_other_flags(source)] == []
-    assert [sum(f" {name}(" in source for source in sources.values()) for name in ("njit", "cfunc")] == [2, 1]
+    assert [sum(f" {name}(" in source for source in sources.values()) for name in ("njit", "cfunc")] == [1, 1]
 
 
 def test_planted_flags_are_found() -> None:

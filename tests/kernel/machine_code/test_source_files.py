@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from minirt.kernel.compiler import cache_folder
+from minirt.kernel.machine_code import cache_folder
 from minirt.kernel.machine_code.source_files import source_files
 
 

@@ -11,8 +11,8 @@ from numba import typeof
 
 import minirt
 from minirt.kernel import frame
-from minirt.kernel.compiler import jit
 from minirt.kernel.culling import binning
+from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.materials import Checker, Specular
 from minirt.rendering.frame_arguments import frame_arguments
@@ -42,7 +42,7 @@ def drawn(arrays: SceneArrays, samples: int = 1, width: int = 96, height: int = 
     """Return the pixels and the linear light that the kernel for the types of some arrays draws."""
     pixels, light = np.zeros((height, width, 4), np.uint8), np.full((height, width, 3), np.nan)
     arguments = frame_arguments(arrays, pixels, samples, light)
-    jit.kernel_for(arrays)(*arguments)
+    functions.frame(*arguments)
     return pixels, light
 
 
@@ -196,5 +196,6 @@ def test_kinds_are_in_the_order_of_the_registry() -> None:
 
 
 def test_every_feature_has_a_wide_kernel() -> None:
+    optional = [name for name, default in SceneArrays._field_defaults.items() if default is None]
     double = [wide for wide in WIDE_KERNELS if wide.precision == "double"]
-    assert double[-1].features == {*jit.OPTIONAL_FIELDS, *jit.SURFACE_MAPS}
+    assert double[-1].features == {*optional, "checks", "textures", "bumps", "normals"}

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pytest
+
+from minirt.kernel.machine_code.library import LIBRARY
 from minirt.materials import Checker
 from minirt.rendering import Renderer
 from minirt.rendering.culling.visibility import SMALL
@@ -18,13 +21,17 @@ BALL = Sphere((0, 0, 0), 1, GREY)
 SUN = ParallelLight((0, -1, 0), 0.5)
 
 
-def test_a_kernel_is_ready_for_all_scenes_of_its_kinds() -> None:
-    renderer = Renderer(1)
+def test_a_kernel_is_ready_for_all_scenes_of_its_kinds(monkeypatch: pytest.MonkeyPatch) -> None:
+    renderer, there = Renderer(1), set[str]()
+    monkeypatch.setattr(LIBRARY, "has", there.__contains__)
+    assert renderer.is_ready(Scene((EYE,)))
     assert not renderer.is_ready(ALL)
-    renderer.prepare(ALL)
+    there.update(renderer.kernels.narrow(ALL))
     assert renderer.is_ready(ALL)
     assert renderer.is_ready(Scene((EYE, *SHAPES[:3])))
     assert not renderer.is_ready(Scene((EYE, SHAPES[0])))
+    there.update(renderer.kernels.for_all_scenes)
+    assert renderer.is_ready(Scene((EYE, SHAPES[0])))
     assert kernel_features(ALL) == {type(shape) for shape in SHAPES}
 
 
