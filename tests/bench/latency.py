@@ -178,10 +178,11 @@ class User:
         return start, self.pictures[before]
 
     def gaps(self, move: Callable[[], float]) -> list[float]:
-        """Move something while a picture is refined; return the seconds between its pictures."""
+        """Move something while a picture is refined; return the seconds between its start, its pictures and its end."""
         sleep(PAUSE)
         before = len(self.pictures)
-        times = [move(), *(shown.handed for shown in self.pictures[before:])]
+        start, end = move(), perf_counter()
+        times = [start, *(shown.handed for shown in self.pictures[before:]), end]
         return [late - early for early, late in pairwise(times)]
 
     def hold(self, key: int) -> float:

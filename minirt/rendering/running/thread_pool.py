@@ -13,8 +13,8 @@ from weakref import finalize
 
 Job: TypeAlias = Callable[[], object]
 
-# Of threads that give way: the longest pause of a drag falls from 34 ms to 30, since the event loop composes frames
-# sooner. With 10 it falls to 28, but that of a held key grows from 26 ms to 34.
+# Of threads that give way. The event loop composes frames sooner: the longest pause of a drag falls from 34 ms to 30.
+# With 10 it falls to 28, but that of a held key grows from 26 ms to 34.
 NICENESS = 4
 
 
