@@ -87,8 +87,6 @@ class Renderer:
         """Load a kernel that can draw this scene. Where there is none, another process compiles the narrow one, which
         takes seconds. RenderError where that fails.
         """
-        if not self.is_ready(scene):
-            self.kernels.compile(scene)
         self.render(scene, np.zeros((1, 1, 4), np.uint8))
 
     def specialise(self, scene: Scene) -> None:
@@ -162,6 +160,7 @@ class Renderer:
         if not scene.shapes or not pixels.size:
             draw_background(scene, pixels, light)
             return True
+        self.kernels.make_ready(scene)
         return fixed_samples.render(
             self.runner, self.packing, scene, pixels, light, samples, is_wanted, edges_only=edges_only
         )
@@ -184,6 +183,7 @@ class Renderer:
             if not scene.shapes or not pixels.size:
                 draw_background(scene, pixels, light)
                 return Outcome(1.0, 1, 0.0, perf_counter() - start)
+            self.kernels.make_ready(scene)
             return to_error.reach(self.runner, self.packing, scene, pixels, light, error, seconds)
 
     def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:

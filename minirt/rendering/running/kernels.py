@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache, cached_property
 from typing import NamedTuple
 
@@ -44,13 +45,16 @@ class Kernels:
         self.wants_wide = True
         self.narrow_kernels: dict[frozenset[Hashable], list[str]] = {}  # their identities, for each set of features
         self.wide_seconds: dict[str, float] = {}  # of rendering with a wide kernel, by the identity of the narrow one
-        self.compile_process = CompileProcess()
+        self.start_anew()
+
+    def start_anew(self) -> None:
+        """Forget compiling processes."""
+        self.compile_process, self.packing_process = CompileProcess(), CompileProcess()
         self.background = BackgroundCompiler()
 
     def after_fork(self) -> None:
         """In a child process: leave the compiling processes, if there are any, to the parent."""
-        self.compile_process = CompileProcess()
-        self.background = BackgroundCompiler()
+        self.start_anew()
 
     def choose(self, frame: Frame) -> Choice:
         """Return the narrowest kernel that is there for a frame; where there is none the narrow one is compiled."""
@@ -85,6 +89,11 @@ class Kernels:
             not scene.shapes or all(map(LIBRARY.has, self.for_all_scenes)) or all(map(LIBRARY.has, self.narrow(scene)))
         )
 
+    def make_ready(self, scene: Scene) -> None:
+        """Compile the narrow kernels for a scene where no kernel can draw it. RenderError where compiling fails."""
+        if not self.is_ready(scene):
+            self.compile(scene)
+
     @cached_property
     def for_all_scenes(self) -> list[str]:
         """The identities of kernels that are enough for all scenes, some of which single precision cannot draw."""
@@ -100,13 +109,19 @@ class Kernels:
         return self.narrow_kernels[features]
 
     def compile(self, scene: Scene) -> None:
-        """Compile those narrow kernels for a scene that are missing. RenderError where compiling fails."""
-        if scene.shapes:
-            LIBRARY.compile(self.narrow(scene), self.compile_process)
+        """Compile those narrow kernels for a scene that are missing, in two processes. RenderError where that fails."""
+        if not scene.shapes:
+            return
+        *packing, drawing = self.narrow(scene)
+        with ThreadPoolExecutor(1) as pool:
+            first = pool.submit(LIBRARY.compile, packing, self.packing_process)
+            LIBRARY.compile([drawing], self.compile_process)
+            first.result()
 
     def stop(self) -> None:
         """Stop compiling; callable from any thread."""
         self.compile_process.stop()
+        self.packing_process.stop()
         self.background.stop()
 
 
