@@ -6,6 +6,7 @@ python -m tests.viewer.action_log LAYOUT LOG SCENE...      # one scene after the
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from minirt.scene import load
@@ -17,14 +18,17 @@ from tests.viewer.fake import FakeRenderer
 
 def main(layout: str, log: str, *scenes: str) -> int:
     """Show the scenes; return the first exit status that is not 0, or 0."""
-    perform = EventDispatcher.perform
 
-    def perform_and_log(dispatcher: EventDispatcher, binding: Binding, step: float) -> None:
-        perform(dispatcher, binding, step)
-        with Path(log).open("a") as lines:
-            lines.write(f"{binding.action}\n")
+    def logged(perform: Callable[..., None]) -> Callable[..., None]:
+        def perform_and_log(dispatcher: EventDispatcher, binding: Binding, *arguments: float) -> None:
+            perform(dispatcher, binding, *arguments)
+            with Path(log).open("a") as lines:
+                lines.write(f"{binding.action}\n")
 
-    EventDispatcher.perform = perform_and_log  # type: ignore[method-assign]
+        return perform_and_log
+
+    for name in ("perform", "hold"):
+        setattr(EventDispatcher, name, logged(getattr(EventDispatcher, name)))
     statuses = (
         run(load(scene).scene, path=scene, size=(320, 240), keys=layout, renderer=FakeRenderer()) for scene in scenes
     )

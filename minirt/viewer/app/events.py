@@ -55,8 +55,7 @@ class EventDispatcher:
             return
         pressed = session.keymap.find(code, session.modifiers)
         if pressed and pressed.held:
-            session.release_button()
-            self.apply_advances(session.key_repeat.press(code, pressed.action, session.now))
+            self.hold(pressed, code)
         elif pressed:
             self.perform(pressed, session.step)
 
@@ -106,6 +105,11 @@ class EventDispatcher:
         session.state = session.state.with_message("")
         session.attempt(COMMANDS[binding.action])
         session.show(session.state)
+
+    def hold(self, binding: Binding, key: int) -> None:
+        """Begin the action of a key that goes on while the key is held."""
+        self.session.release_button()
+        self.apply_advances(self.session.key_repeat.press(key, binding.action, self.session.now))
 
     def apply_advances(self, advances: list[Advance]) -> None:
         """Continue the actions of held keys."""
