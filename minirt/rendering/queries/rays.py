@@ -39,8 +39,8 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
     which a ray starts may be hit again: start it a little off. Where surfaces coincide the shape that comes first in
     the scene is hit. The BVH of the last scene is kept, so that further rays through it start at once. Safe to call
     from several threads. Where no kernel was compiled ahead of time, the first call for a combination of shapes
-    compiles for some seconds. ValueError, naming the argument, if an array has another shape, a number is infinite or NaN, or a
-    direction has length 0.
+    compiles for some seconds. ValueError, naming the argument, if an array has another shape, a number is infinite or
+    NaN, or a direction has length 0.
     """
     starts = checked_vectors(origins, "origins")
     vectors = checked_vectors(directions, "directions")
