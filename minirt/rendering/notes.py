@@ -15,6 +15,8 @@ from minirt.rendering.packing.widening import WideKernel
 from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Shape
 
+NO_WIDE_KERNEL = "no wide kernel: none was compiled ahead of time for these sources and this processor"
+
 
 def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Iterator[str]:
     """Describe the decisions. Lights, and the shapes of each kind, are numbered in the order of the file."""

@@ -13,7 +13,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.fork_safety import renew_after_fork
 from minirt.rendering.frame_arguments import NO_LINEAR
-from minirt.rendering.notes import kernel_notes
+from minirt.rendering.notes import NO_WIDE_KERNEL, kernel_notes
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.running import fixed_samples, to_error
 from minirt.rendering.running.cores import usable_cores
@@ -76,8 +76,9 @@ class Renderer:
         choice, last = self.runner.choice, self.packing.last
         if not choice or not last:
             return []
-        compiling = self.kernels.background.busy
-        return [*kernel_notes(last[0], choice.wide, compiling), *self.packing.notes]
+        missing = [] if self.kernels.is_wide_kernel_there else [NO_WIDE_KERNEL]
+        sentences = kernel_notes(last[0], choice.wide, self.kernels.background.busy)
+        return [*sentences, *missing, *self.packing.notes]
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether there is a kernel, narrow or wide, that can draw this scene."""

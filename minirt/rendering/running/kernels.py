@@ -83,6 +83,11 @@ class Kernels:
         self.wants_wide = False
         self.background.compile_later([each for each in self.for_all_scenes if not LIBRARY.has(each)])
 
+    @property
+    def is_wide_kernel_there(self) -> bool:
+        """Whether a kernel that was compiled ahead of time can draw all scenes of this precision."""
+        return LIBRARY.has(self.for_all_scenes[-1])
+
     def is_ready(self, scene: Scene) -> bool:
         """Whether there are kernels that can draw a scene; a scene without shapes needs none."""
         return (

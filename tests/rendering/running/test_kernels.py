@@ -15,6 +15,7 @@ from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import Library
 from minirt.rendering import Renderer
 from minirt.rendering.frame_arguments import Frame, frame_arguments
+from minirt.rendering.notes import NO_WIDE_KERNEL
 from minirt.rendering.packing.widening import WIDE_KERNELS, WideKernel
 from minirt.rendering.running import background_compiler, kernels
 from minirt.rendering.running.kernels import Choice, Kernels, wide_identity
@@ -123,6 +124,15 @@ def test_a_scene_is_ready_where_wide_kernels_are(monkeypatch: pytest.MonkeyPatch
         monkeypatch.setattr(kernels, "LIBRARY", FakeLibrary(*found))
         assert Kernels("double", 8).is_ready(BALL) is ready
     assert Kernels("double", 8).is_ready(Scene(BALL.elements[:3]))
+
+
+def test_the_notes_say_where_no_wide_kernel_fits(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    library = empty_library(monkeypatch, tmp_path)
+    renderer = Renderer(1)
+    picture(renderer)
+    assert NO_WIDE_KERNEL not in renderer.notes
+    monkeypatch.setattr(library, "has", lambda _identity: False)
+    assert NO_WIDE_KERNEL in renderer.notes
 
 
 def empty_library(monkeypatch: pytest.MonkeyPatch, folder: Path) -> Library:
