@@ -192,27 +192,25 @@ def unoccluded(
     directions close around it too, and `memory` (m, 4) caches for each light the direction that was last looked up and
     its cell: most rays of a packet, and of the next packet, need no other lookup.
     """
+    if scene.light_buffer_cells == 1:
+        return for_each_kind(
+            unoccluded_by_kind, scene.groups, active, (scene, light, 0, active, origin, direction, distance)
+        )
     visible = active
     remaining = active
     for _ in range(width(distance)):  # at most one lookup for each ray
         if not any(remaining):
             break
-        in_cell, cell = rays_of_a_cell(scene, memory, light, direction, remaining)
-        arguments = (scene, light, cell, in_cell, origin, direction, distance)
+        in_cell = remaining & is_close(memory[light], scene.light_buffers[light], direction)
+        if rarely(not any(in_cell)):
+            remember_cell(
+                memory[light], scene.light_buffers[light], scene.light_buffer_cells, direction, first(remaining)
+            )
+            in_cell = remaining & is_close(memory[light], scene.light_buffers[light], direction)
+        arguments = (scene, light, int(memory[light, 3]), in_cell, origin, direction, distance)
         visible = for_each_kind(unoccluded_by_kind, scene.groups, visible, arguments)
         remaining = remaining & ~in_cell
     return visible
-
-
-def rays_of_a_cell(scene: SceneArrays, memory: Any, light: int, direction: Vec, remaining: Mask) -> tuple[Mask, int]:
-    """Return those of the remaining rays that arrive through one light-buffer cell, and the cell."""
-    if scene.light_buffer_cells == 1:
-        return remaining, 0
-    in_cell = remaining & is_close(memory[light], scene.light_buffers[light], direction)
-    if rarely(not any(in_cell)):
-        remember_cell(memory[light], scene.light_buffers[light], scene.light_buffer_cells, direction, first(remaining))
-        in_cell = remaining & is_close(memory[light], scene.light_buffers[light], direction)
-    return in_cell, int(memory[light, 3])
 
 
 def unoccluded_by_kind(

@@ -66,10 +66,9 @@ def store_rays(memory: Any, origin: Vec, direction: Vec) -> None:
     grow = Vec(copysign(slack, inverse.x), copysign(slack, inverse.y), copysign(slack, inverse.z))
     enter = origin + grow  # moving the ray forward moves the planes by which it enters boxes back
     leave = origin - grow
-    # The distance to a plane is then one multiplication and addition, whose rounding is less than the slack too.
-    # Negative, so that the box test adds: a subtraction would negate it first, which took a sixth more time.
-    put_vec(memory, ENTER, -Vec(enter.x * inverse.x, enter.y * inverse.y, enter.z * inverse.z))
-    put_vec(memory, LEAVE, -Vec(leave.x * inverse.x, leave.y * inverse.y, leave.z * inverse.z))
+    # The distance to a plane is then one multiplication and subtraction, whose rounding is less than the slack too.
+    put_vec(memory, ENTER, Vec(enter.x * inverse.x, enter.y * inverse.y, enter.z * inverse.z))
+    put_vec(memory, LEAVE, Vec(leave.x * inverse.x, leave.y * inverse.y, leave.z * inverse.z))
     put_vec(memory, INVERSE, inverse)
     put_vec(memory, ORIGIN, origin)
     put_vec(memory, DIRECTION, direction)
@@ -106,12 +105,12 @@ def intersect_boxes(
     """Slab test (Kay and Kajiya 1986): the boxes of a node that a ray hits up to `limit`, and its entry distances."""
     x, y, z = planes
     enter, leave, inverse = vec_at(memory, ENTER, ray), vec_at(memory, LEAVE, ray), vec_at(memory, INVERSE, ray)
-    in_x = load(nodes, node + x) * inverse.x + enter.x
-    in_y = load(nodes, node + y) * inverse.y + enter.y
-    in_z = load(nodes, node + z) * inverse.z + enter.z
-    out_x = load(nodes, node + 3 * WIDTH - x) * inverse.x + leave.x
-    out_y = load(nodes, node + 5 * WIDTH - y) * inverse.y + leave.y
-    out_z = load(nodes, node + 7 * WIDTH - z) * inverse.z + leave.z
+    in_x = load(nodes, node + x) * inverse.x - enter.x
+    in_y = load(nodes, node + y) * inverse.y - enter.y
+    in_z = load(nodes, node + z) * inverse.z - enter.z
+    out_x = load(nodes, node + 3 * WIDTH - x) * inverse.x - leave.x
+    out_y = load(nodes, node + 5 * WIDTH - y) * inverse.y - leave.y
+    out_z = load(nodes, node + 7 * WIDTH - z) * inverse.z - leave.z
     near = maximum(maximum(in_x, in_y), maximum(in_z, 0.0))
     far = minimum(minimum(out_x, out_y), minimum(out_z, limit))
     return near <= far, near

@@ -41,9 +41,8 @@ if FAILED:
         TESTED,
     )
 
-# error_model: x / 0 is infinite or NaN, as in IEEE 754. No fastmath, not even "contract": which products of a sum are
-# rounded would depend on the code around. `minirt.lanes.compiled.fused` says it instead.
-FLAGS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
+# error_model: x / 0 is infinite or NaN, as in IEEE 754. fastmath: a * b + c may round once, and nothing else.
+FLAGS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True}
 if not FAILED:
     FLAGS["_nrt"] = False  # The kernel allocates nothing: no reference counting.
 

@@ -52,7 +52,7 @@ def _unit_roundoff(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> 
 
 @register(operations.rounded_product, two_numbers, [(ANY, ANY)])
 def _rounded_product(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    # Without the fence a sum that follows would take this for a product to fuse.
+    # Without the fence the flags of the kernel allow fusing the product with a sum that follows.
     return llvm(builder, "arithmetic.fence", builder.fmul(*same_numbers(context, builder, sig, args)))
 
 

@@ -89,7 +89,7 @@ def _negate_vec(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any
 
 def scalar_product(builder: ir.IRBuilder, a: list[Any], b: list[Any]) -> Any:
     """Return the sum of the products of three components."""
-    x, y, z = (builder.fmul(*pair) for pair in zip(a, b, strict=True))
+    x, y, z = (fused.multiply(builder, *pair) for pair in zip(a, b, strict=True))
     return fused.add(builder, z, fused.add(builder, x, y))
 
 
