@@ -32,7 +32,14 @@ def test_the_program_comes_first() -> None:
     """`make` alone makes it, as the subject asks."""
     done = run(["make", "--dry-run", "--always-make"], cwd=ROOT, env=OUTSIDE, text=True)
     assert "pip" in done.stdout
-    assert done.stdout.rstrip().endswith("touch .venv/bin/miniRT")
+    program, kernels = done.stdout.index("touch .venv/bin/miniRT"), done.stdout.index("touch .venv/.kernels")
+    assert program < kernels
+
+
+def test_showing_a_scene_does_not_wait_for_wide_kernels() -> None:
+    done = run(["make", "--dry-run", "--always-make", "run"], cwd=ROOT, env=OUTSIDE, text=True)
+    assert "touch .venv/bin/miniRT" in done.stdout
+    assert "ahead_of_time" not in done.stdout
 
 
 def test_test_files_that_it_names_exist() -> None:

@@ -42,7 +42,7 @@ DIRECTIONS = ((0.0, 1.0, 0.0), (0.0, 0.6, -0.8), (5e-324, 0.0, 1.0), (1e-160, 1e
 def pack(scene: Scene) -> None:
     """Pack a scene as for a picture in both precisions, with the notices about it."""
     for precision in RENDERERS:
-        packing = Packing(None, precision)
+        packing = Packing(precision=precision)
         packing.pack(scene, WIDTH, HEIGHT)
         assert list(packing.notes)
         list(lost_in_single(scene, packing, WIDTH, HEIGHT))

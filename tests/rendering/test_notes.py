@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from minirt.rendering.notes import kernel_notes
 from minirt.rendering.packing.features import FEATURES
+from minirt.rendering.packing.widening import WIDE_KERNELS
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes import ALL_KINDS
@@ -23,11 +25,28 @@ def notes_of(*balls: Sphere) -> list[str]:
     return packing.notes
 
 
-def test_features_that_are_left_out_are_named_with_the_reason() -> None:
-    kernel, without, plain, tiles, buffer, *rest = notes_of(Sphere((0, 0, 0), 1, GREY))
+def test_kinds_and_features_that_a_kernel_lacks_are_named() -> None:
+    scene = Scene((Sphere((0, 0, 0), 1, GREY), Plane((0, -9, 0), (0, 1, 0), GREY)))
+    kernel, without, plain = kernel_notes(scene, wide=None, compiling=True)
     others = [kind.element.plural for kind in ALL_KINDS if kind.element not in (Sphere, Plane)]
     assert (kernel, without) == ("kernel for spheres, planes", f"kernel without {', '.join(others)}")
     assert plain == f"kernel without {', '.join(FEATURES.values())}"
+
+
+def test_a_wide_kernel_is_named_with_what_it_waits_for() -> None:
+    scene = Scene((Sphere((0, 0, 0), 1, GREY),))
+    for wide in WIDE_KERNELS:
+        features = "all" if wide.features else "no"
+        note = f"wide kernel for all kinds of shapes and {features} features"
+        assert list(kernel_notes(scene, wide, compiling=False)) == [note]
+        assert list(kernel_notes(scene, wide, compiling=True)) == [
+            note,
+            "the kernel for spheres alone is being compiled",
+        ]
+
+
+def test_shapes_and_lights_that_are_left_out_are_named_with_the_reason() -> None:
+    tiles, buffer, *rest = notes_of(Sphere((0, 0, 0), 1, GREY))
     assert tiles.startswith("tiles: 12, ")
     assert buffer == "light buffer: none, every shape is tried (3 shapes)"
     assert rest == [
@@ -43,9 +62,7 @@ def test_a_fallback_to_double_precision_is_noted() -> None:
     packing = Packing(precision="single")
     for mirror in (None, 0.5):
         packing.pack(Scene((Camera((0, 0, -9), (0, 0, 1), 60), Sphere((0, 0, 0), 1, GREY, mirror=mirror))), 64, 48)
-        assert packing.notes[0] == (
-            "double precision: single supports neither images nor a BVH" if mirror else "kernel for spheres"
-        )
+        assert ("double precision: single supports neither images nor a BVH" in packing.notes) is bool(mirror)
 
 
 def test_the_size_of_the_light_buffer_is_noted() -> None:

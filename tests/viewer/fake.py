@@ -47,6 +47,7 @@ class FakeRenderer:
         self.ready = True
         self.previews = True
         self.gives_way = False
+        self.specialises = False
         self.stops = False  # whether `stop` ends `prepare`
         self.error: Exception | None = None
         self.prepare_error: Exception | None = None
@@ -65,6 +66,9 @@ class FakeRenderer:
         if self.prepare_error:
             raise self.prepare_error
         self.ready = True
+
+    def specialise_early(self) -> None:
+        self.specialises = True
 
     def stop(self) -> None:
         if self.stops:

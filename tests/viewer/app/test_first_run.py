@@ -21,14 +21,15 @@ pytestmark = pytest.mark.window
 
 
 class FirstRun(NamedTuple):
-    """The program without a kernel; its compiler process is stopped by a signal and would never end by itself."""
+    """The program without a kernel; its compiling processes are stopped by a signal and would never end by themselves."""
 
     viewer: Viewer
-    compiler: int  # process id
+    compilers: list[int]  # process ids
 
-    def resume_compiler(self) -> None:
-        """Let the compiler process continue."""
-        os.kill(self.compiler, signal.SIGCONT)
+    def resume_compilers(self) -> None:
+        """Let the compiling processes continue."""
+        for each in self.compilers:
+            os.kill(each, signal.SIGCONT)
 
 
 @pytest.fixture
@@ -36,11 +37,12 @@ def first_run(desktop: Desktop, tmp_path: Path) -> Iterator[FirstRun]:
     """Yield the first run of the program once it shows words; afterwards check that no process is left."""
     with viewing(desktop, tmp_path / "first.rt", cache=tmp_path / "cache", text=SPHERE_ON_PLANE) as viewer:
         program = viewer.process.pid
-        until(lambda: bool(compilers(program)), "the compiler")
-        (compiler,) = compilers(program)
-        os.kill(compiler, signal.SIGSTOP)
+        until(lambda: len(compilers(program)) == 2, "the compilers of what packs the scene and of what draws it")
+        stopped = compilers(program)
+        for each in stopped:
+            os.kill(each, signal.SIGSTOP)
         until(lambda: desktop.screenshot(viewer.window).any(), "words in the black window")
-        yield FirstRun(viewer, compiler)
+        yield FirstRun(viewer, stopped)
         until(lambda: not group(program), "the end of all processes of the program")
 
 
@@ -55,7 +57,7 @@ def test_an_interrupt_does_not_wait_for_the_compiler(first_run):
 
 
 def test_ctrl_c_in_the_terminal_also_ends_the_compiler_silently(first_run):
-    first_run.resume_compiler()
+    first_run.resume_compilers()
     os.killpg(first_run.viewer.process.pid, signal.SIGINT)
     assert first_run.viewer.end() == (130, "", "")
 
@@ -73,7 +75,7 @@ def test_keys_work_on_a_preview_until_the_picture_comes(first_run):
     viewer.key("Tab", "Tab", "Tab", "Delete", "ctrl+s")
     until(lambda: viewer.path.read_text() != SPHERE_ON_PLANE, "the saved scene")
     assert minirt.load(viewer.path).planes == ()
-    first_run.resume_compiler()  # and then compile again: a sphere alone has another kernel
+    first_run.resume_compilers()  # and then compile again: a sphere alone has another kernel
     viewer.key("Tab")  # clears the message
     sphere = picture(viewer.path)
     viewer.shows(sphere)

@@ -60,12 +60,13 @@ def viewing(
 ) -> Iterator[Viewer]:
     """Run the program in a window with the scene `text`.
 
-    `cache`: an empty folder, if the program is to compile its kernel; `options`: further arguments; `program`: the
+    `cache`: an empty folder, if the program is to compile its kernel, for a processor for which no kernel was compiled
+    ahead of time; `options`: further arguments; `program`: the
     module to run.
     """
     command = [sys.executable, "-W", "error", "-m", program, str(path), "--size", f"{size[0]}x{size[1]}", *options]
     if cache:
-        command = ["env", f"XDG_CACHE_HOME={cache}", *command]
+        command = ["env", f"XDG_CACHE_HOME={cache}", "NUMBA_CPU_NAME=generic", *command]
     path.write_text(text)
     with desktop.program(*command) as process:
         yield Viewer(desktop, process, desktop.find(f"miniRT - {path.name}"), path)
