@@ -21,7 +21,7 @@ pytestmark = pytest.mark.window
 
 
 class FirstRun(NamedTuple):
-    """The program without a kernel; its compiling processes are stopped by a signal and would never end by themselves."""
+    """The program without a kernel; its compiling processes are stopped by a signal and never end by themselves."""
 
     viewer: Viewer
     compilers: list[int]  # process ids
