@@ -98,9 +98,12 @@ class Renderer:
         self.kernels.compile(scene)
         self.prepare(scene)
 
-    def specialise_early(self) -> None:
-        """Have narrow kernels compiled as soon as a wide one has drawn a picture: for windows, which stay open."""
+    def specialise_early(self, notify: Callable[[], object] = lambda: None) -> None:
+        """Have narrow kernels compiled as soon as a wide one has drawn a picture: for windows, which stay open.
+
+        `notify` is called when one has been compiled, by the thread that waited for it."""
         self.kernels.narrow_after = 0.0
+        self.kernels.background.notify = notify
 
     def stop(self) -> None:
         """Stop compiling; callable from any thread."""

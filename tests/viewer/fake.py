@@ -47,7 +47,6 @@ class FakeRenderer:
         self.ready = True
         self.previews = True
         self.gives_way = False
-        self.specialises = False
         self.stops = False  # whether `stop` ends `prepare`
         self.error: Exception | None = None
         self.prepare_error: Exception | None = None
@@ -67,8 +66,8 @@ class FakeRenderer:
             raise self.prepare_error
         self.ready = True
 
-    def specialise_early(self) -> None:
-        self.specialises = True
+    def specialise_early(self, notify: Callable[[], object]) -> None:
+        self.specialised = notify
 
     def stop(self) -> None:
         if self.stops:

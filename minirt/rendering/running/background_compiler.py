@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from threading import Lock, Thread
 
 from minirt.errors import RenderError
@@ -21,6 +21,7 @@ class BackgroundCompiler:
         self.later: list[str] = []  # when nothing else is wanted
         self.asked: set[str] = set()  # identities that were compiled, or failed
         self.thread: Thread | None = None
+        self.notify: Callable[[], object] = lambda: None  # called when nothing is being compiled any more
 
     @property
     def busy(self) -> bool:
@@ -54,6 +55,7 @@ class BackgroundCompiler:
                 LIBRARY.compile([identity], self.process)
             except RenderError as error:
                 logging.getLogger(__name__).info("a wide kernel stays in use: %s", error)
+        self.notify()
 
     def next(self) -> str | None:
         """Return the identity of the next kernel; None, which ends the thread, where there is none."""

@@ -101,7 +101,6 @@ def open_session(
 ) -> Session:
     """Open a session with its window, connected to the window's events. MlxError."""
     display = mlx.mlx_init()
-    renderer.specialise_early()
     try:
         with gc_paused():
             session = Session(

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from minirt.viewer.display.painter import Job, Outcome, Painter, Renderer, paint, preview
 
-PREVIEW_DELAY = 0.4  # seconds that a kernel may take before a preview and a message appear: loading one takes less
+PREVIEW_DELAY = 0.4  # seconds that a kernel may take before a preview appears: loading one takes less
 
 
 class BackgroundPainter(Painter):
@@ -24,9 +24,11 @@ class BackgroundPainter(Painter):
     def __init__(self, renderer: Renderer, notify: Callable[[], object]) -> None:
         super().__init__(renderer, notify)
         renderer.give_way()
+        renderer.specialise_early(self._describe_again)
         self._changed = threading.Condition()
         self._waiting: Job | None = None
         self._running: Job | None = None
+        self._last: Job | None = None
         self._previewed: Job | None = None  # to be rendered again when the kernel is ready
         self._closed = False
         self._preparing = False
@@ -76,6 +78,14 @@ class BackgroundPainter(Painter):
             if not made_room:
                 self._notify()
 
+    def _describe_again(self) -> None:
+        """Renew the notes on the last picture: a faster kernel has been compiled. Callable from any thread."""
+        about = tuple(self.renderer.about)
+        with self._changed:
+            if self._last:
+                self.outcomes.append(Outcome(self._last, about=about))
+        self._notify()
+
     def _add(self, outcome: Outcome) -> None:
         """Add an outcome; a new picture replaces older ones that nobody took."""
         if outcome.pixels is not None:
@@ -87,6 +97,7 @@ class BackgroundPainter(Painter):
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._closed)
             self._running, self._waiting = self._waiting, None
+            self._last = self._running
             return None if self._closed else self._running
 
     def _render(self, job: Job) -> Outcome | None:

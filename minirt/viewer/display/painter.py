@@ -28,8 +28,8 @@ class Renderer(Protocol):
     def stop(self) -> None:
         """End a running `prepare` soon, if that is possible; callable from any thread."""
 
-    def specialise_early(self) -> None:
-        """Have faster kernels compiled as soon as a picture is shown, while the window is open."""
+    def specialise_early(self, notify: Callable[[], object]) -> None:
+        """Have faster kernels compiled as soon as a picture is shown; `notify` is called when one has been."""
 
     def preview(self, scene: Scene, width: int, height: int) -> Pixels | None:
         """Return a coarse picture, at most of that size, without a kernel; None if it would take long."""

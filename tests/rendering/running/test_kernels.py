@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from minirt.rendering.running.needed_kernels import packing_calls
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene, parse
 from tests.skipping import skip_incomplete
-from tests.waiting import until
+from tests.waiting import HANG_LIMIT, until
 
 VIEW = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\n"
 BALL = parse(f"{VIEW}sp 0,0,0 2 255,60,60\n").scene
@@ -162,8 +163,10 @@ def test_the_narrow_kernel_is_swapped_in_and_draws_the_same_bits(
     assert renderer.runner.choice
     assert renderer.runner.choice.wide
     assert renderer.notes[0].startswith("wide kernel for all kinds of shapes")
-    renderer.specialise_early()
+    compiled = Event()
+    renderer.specialise_early(compiled.set)
     picture(renderer)
+    assert compiled.wait(HANG_LIMIT)
     until(lambda: library.find(narrow_identity(BALL)) is not None, "the narrow kernel")
     assert picture(renderer) == before
     assert renderer.runner.choice.wide is None

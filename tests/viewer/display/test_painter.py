@@ -67,6 +67,16 @@ def test_rendering_gives_way_to_the_event_loop(harness):
     assert harness.renderer.gives_way
 
 
+def test_a_kernel_that_was_compiled_meanwhile_renews_the_notes(harness):
+    harness.painter.request(JOB)
+    assert harness.outcomes(1)[0].about == ()
+    assert harness.notifications.acquire(timeout=HANG_LIMIT)
+    harness.renderer.about = ("kernel for spheres",)
+    harness.renderer.specialised()
+    assert harness.outcomes(1) == [Outcome(JOB, about=("kernel for spheres",))]
+    assert harness.notifications.acquire(timeout=HANG_LIMIT)
+
+
 def test_a_coarser_picture_covers_the_window(harness):
     harness.painter.request(Job(JOB.scene, 65, 48, divisor=4))
     assert harness.outcomes(1)[0].pixels.shape == (12, 17, 4)
