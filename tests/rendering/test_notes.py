@@ -12,6 +12,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 
 GREY = (128, 128, 128)
+EYE = Camera((0, 0, -9), (0, 0, 1), 60)
 
 
 def notes_of(*balls: Sphere) -> list[str]:
@@ -26,7 +27,7 @@ def notes_of(*balls: Sphere) -> list[str]:
 
 
 def test_kinds_and_features_that_a_kernel_lacks_are_named() -> None:
-    scene = Scene((Sphere((0, 0, 0), 1, GREY), Plane((0, -9, 0), (0, 1, 0), GREY)))
+    scene = Scene((EYE, Sphere((0, 0, 0), 1, GREY), Plane((0, -9, 0), (0, 1, 0), GREY)))
     kernel, without, plain = kernel_notes(scene, wide=None, compiling=True)
     others = [kind.element.plural for kind in ALL_KINDS if kind.element not in (Sphere, Plane)]
     assert (kernel, without) == ("kernel for spheres, planes", f"kernel without {', '.join(others)}")
@@ -34,7 +35,7 @@ def test_kinds_and_features_that_a_kernel_lacks_are_named() -> None:
 
 
 def test_a_wide_kernel_is_named_with_what_it_waits_for() -> None:
-    scene = Scene((Sphere((0, 0, 0), 1, GREY),))
+    scene = Scene((EYE, Sphere((0, 0, 0), 1, GREY)))
     for wide in WIDE_KERNELS:
         features = "all" if wide.features else "no"
         note = f"wide kernel for all kinds of shapes and {features} features"

@@ -73,7 +73,8 @@ def test_a_kernel_that_was_compiled_meanwhile_renews_the_notes(harness):
     assert harness.notifications.acquire(timeout=HANG_LIMIT)
     harness.renderer.about = ("kernel for spheres",)
     harness.renderer.specialised()
-    assert harness.outcomes(1) == [Outcome(JOB, about=("kernel for spheres",))]
+    (outcome,) = harness.outcomes(1)
+    assert (outcome.job, outcome.pixels, outcome.about) == (JOB, None, ("kernel for spheres",))
     assert harness.notifications.acquire(timeout=HANG_LIMIT)
 
 
