@@ -21,7 +21,7 @@ with (ROOT / "pyproject.toml").open("rb") as _file:
 
 
 class App:
-    """What a hook tells the user."""
+    """Records the warnings that a hook shows to the user."""
 
     def __init__(self) -> None:
         self.warnings: list[str] = []

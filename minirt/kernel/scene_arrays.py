@@ -58,3 +58,17 @@ def has_rows(table: Any) -> bool:
 def by_reference(arrays: Any) -> Any:
     """Return a scene, or another tuple of arrays, unchanged. Compiled functions pass the result by address."""
     return arrays
+
+
+def range_in_tile(group: Group, tile: int) -> tuple[int, int]:
+    """Return the range in `SceneArrays.tile_shapes` of the shapes of one kind in a tile."""
+    if not has_rows(group.rows):
+        return 0, 0
+    return int(group.tile_starts[tile]), int(group.tile_starts[tile + 1])
+
+
+def range_in_cell(group: Group, light: int, cell: int) -> tuple[int, int]:
+    """Return the range in `SceneArrays.light_shapes` of the shapes of one kind in a light-buffer cell."""
+    if not has_rows(group.rows):
+        return 0, 0
+    return int(group.light_starts[light, cell]), int(group.light_starts[light, cell + 1])

@@ -12,7 +12,7 @@ from typing import Any
 
 from minirt.kernel.culling.light_buffer import is_close, remember_cell
 from minirt.kernel.rows import intersect, is_batched, may_meet, read, surface
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows
+from minirt.kernel.scene_arrays import Group, SceneArrays, range_in_cell, range_in_tile
 from minirt.lanes import (
     Vec,
     any,
@@ -58,20 +58,6 @@ def count_kind(group: Group, count: int, tile: int) -> int:
     """Add the number of shapes of one kind in a tile to `count`."""
     start, end = range_in_tile(group, tile)
     return count + end - start
-
-
-def range_in_tile(group: Group, tile: int) -> tuple[int, int]:
-    """Return the range in `SceneArrays.tile_shapes` of the shapes of one kind in a tile."""
-    if not has_rows(group.rows):
-        return 0, 0
-    return int(group.tile_starts[tile]), int(group.tile_starts[tile + 1])
-
-
-def range_in_cell(group: Group, light: int, cell: int) -> tuple[int, int]:
-    """Return the range in `SceneArrays.light_shapes` of the shapes of one kind in a light-buffer cell."""
-    if not has_rows(group.rows):
-        return 0, 0
-    return int(group.light_starts[light, cell]), int(group.light_starts[light, cell + 1])
 
 
 def closest_hit(scene: SceneArrays, tile: int, origin: Vec, direction: Vec) -> tuple[Number, Number, Number]:

@@ -29,7 +29,7 @@ NO_TEXELS, NO_PICTURES = np.zeros(0, np.float32), np.zeros((0, 4), np.int64)
 
 
 class WideKernel(NamedTuple):
-    """What a wide kernel is compiled for, beside all kinds of shapes."""
+    """A wide kernel: the features that it is compiled for, beside all kinds of shapes."""
 
     name: str
     precision: str  # "double" or "single"
