@@ -8,10 +8,12 @@ from pathlib import Path
 from minirt.mlx import Event
 from minirt.viewer.app import file_sync
 from minirt.viewer.app.commands import COMMANDS
+from minirt.viewer.app.held_edits import HeldEdits
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.session import Session
 from minirt.viewer.editing.editor import EDITS, apply
 from minirt.viewer.input.bindings import Binding
+from minirt.viewer.input.key_repeat import Advance
 
 
 class EventDispatcher:
@@ -20,6 +22,7 @@ class EventDispatcher:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.mouse = Mouse(session, self.perform)
+        self.held_edits = HeldEdits()
 
     def connect(self) -> None:
         """Install the handlers as hooks of the window."""
@@ -50,11 +53,12 @@ class EventDispatcher:
                 self.perform(binding, 1.0)
             return
         pressed = session.keymap.find(code, session.modifiers)
-        if pressed:
+        if pressed and pressed.held:
+            session.release_button()
+            self.apply_advances(session.key_repeat.press(code, pressed.action, session.now))
+            self.set_tick_hook()
+        elif pressed:
             self.perform(pressed, session.step)
-            if pressed.held:
-                session.key_repeat.press(code, pressed.action, session.now)
-                self.set_tick_hook()
 
     def on_release(self, code: int) -> None:
         """A key goes up: its last steps are done, and a still picture is requested."""
@@ -100,13 +104,12 @@ class EventDispatcher:
         session.attempt(COMMANDS[binding.action])
         session.show(session.state)
 
-    def apply_advances(self, advances: list[tuple[str, float]]) -> None:
-        """Continue the actions of held keys, each by a number of steps."""
+    def apply_advances(self, advances: list[Advance]) -> None:
+        """Continue the actions of held keys."""
         session = self.session
         state = session.state
-        for action, amount in advances:
-            if amount:
-                state = apply(state, action, amount * session.step, session.now)
+        for advance in advances:
+            state = self.held_edits.apply(state, advance, session.step, session.now)
         if state is not session.state:
             session.show(state)
 

@@ -8,7 +8,7 @@ from statistics import median_low
 from minirt.viewer.display.painter import Outcome
 
 FRAME_TIME = 0.016  # seconds from a key to its picture on the screen while something moves
-DIVISORS = (1, 2, 3, 4, 8)  # of width and height
+DIVISORS = (1, 2, 3, 4, 6, 8, 12)  # of width and height
 FINER_SHARE = 0.8  # of the time: a finer picture must fit into it before it replaces a coarser one
 TRIAL_EXCESS = 1.5  # times the time: a finer picture that is estimated to take at most this is tried all the same ...
 TRIAL_INTERVAL = 30  # ... after so many pictures in a row
@@ -18,13 +18,16 @@ class AdaptiveResolution:
     """Choose the resolution from the measured time of rendering and of displaying pictures.
 
     A picture that is twice as coarse costs a quarter, plus a constant cost per picture. So the cost of coarse pictures
-    overestimates that of finer ones; a finer one is tried now and then, ever less often until nothing moves.
+    overestimates that of finer ones; a finer one is tried now and then, ever less often until nothing moves. And the
+    cost of a still picture underestimates that of the coarse one which follows it, whose rays are less alike, too: how
+    far is learned from the last movements.
     """
 
     def __init__(self) -> None:
         # The median of the last times counts: a single slow picture changes nothing.
         self._costs: deque[float] = deque(maxlen=3)  # seconds per pixel
         self._display_times: deque[float] = deque(maxlen=3)  # seconds per picture
+        self._excesses: deque[float] = deque(maxlen=3)  # cost of the first coarse picture by that of the still one
         self._measured = 0  # the divisor that had these costs; 0 while nothing is known
         self._chosen = DIVISORS[-1]
         self._candidates = 0  # pictures in a row after which a finer one seemed possible
@@ -40,6 +43,8 @@ class AdaptiveResolution:
                 self._costs.append(cost)
             return
         if job.divisor != self._measured:
+            if self._measured == 1:
+                self._excesses.append(max(1.0, cost / median_low(self._costs)))
             self._costs.clear()
             self._measured = job.divisor
         self._costs.append(cost)
@@ -67,6 +72,8 @@ class AdaptiveResolution:
 
         The chosen one stays until it is too slow or a finer one fits into FINER_SHARE of the time.
         """
+        if self._chosen == 1 and seconds > self._time:
+            return least_divisor(seconds * (median_low(self._excesses) if self._excesses else 1.0), self._time)
         better = min(
             max(self._chosen, least_divisor(seconds, self._time)), least_divisor(seconds, self._time * FINER_SHARE)
         )

@@ -70,7 +70,10 @@ class BackgroundPainter(Painter):
                 self._running = None
                 if outcome:
                     self._add(outcome)
-            self._notify()
+                # The loop need not wake to learn that a picture made room for the next: drawing would delay that one.
+                made_room = self._waiting is not None and not any(map(is_news, self.outcomes))
+            if not made_room:
+                self._notify()
 
     def _add(self, outcome: Outcome) -> None:
         """Add an outcome; a new picture replaces older ones that nobody took."""
@@ -134,3 +137,8 @@ class BackgroundPainter(Painter):
     def _notify(self) -> None:
         if not self._closed:
             self.notify()
+
+
+def is_news(outcome: Outcome) -> bool:
+    """Whether an outcome has something to show."""
+    return outcome.pixels is not None or outcome.error is not None

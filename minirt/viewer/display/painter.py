@@ -159,8 +159,10 @@ def paint(renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: I
     if not done:
         return Outcome(job)
     about = () if job.urgent else tuple(renderer.about)
-    estimate = None if base is None else estimated_error(base, pixels, job.base_samples, job.samples)
-    return Outcome(job, pixels, error_estimate=estimate, about=about)
+    if base is None:
+        return Outcome(job, pixels, about=about)
+    estimate = estimated_error(base, pixels, job.base_samples, job.samples, is_wanted)
+    return Outcome(job) if estimate is None else Outcome(job, pixels, error_estimate=estimate, about=about)
 
 
 def preview(renderer: Renderer, job: Job) -> Outcome:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 RATE = 8.0  # steps a second
+FIRST_PART = 0.5  # of the first step, which comes with the press
 
 
 @dataclass
@@ -13,13 +15,23 @@ class HeldKey:
 
     action: str
     since: float  # seconds
-    done: float = 1.0  # steps until now; the first one comes with the press
+    done: float = 0.0  # steps until now
+
+
+class Advance(NamedTuple):
+    """Progress of a held key: its steps since the press, before and after."""
+
+    key: int
+    action: str
+    before: float
+    after: float
 
 
 class KeyRepeat:
     """The held keys whose actions repeat.
 
-    After t seconds a key has taken max(1, RATE t) steps: one with the press, then without a jump at a constant rate.
+    A part of the first step comes with the press, the rest follows until it is time for the second one: nothing stands
+    still meanwhile. A key that was held for t seconds has taken max(1, RATE t) steps when it is released.
     """
 
     def __init__(self) -> None:
@@ -28,22 +40,30 @@ class KeyRepeat:
     def __bool__(self) -> bool:
         return bool(self._held)
 
-    def press(self, key: int, action: str, now: float) -> None:
-        """Note that a key goes down. The caller takes its first step."""
+    def press(self, key: int, action: str, now: float) -> list[Advance]:
+        """Note that a key goes down. Returns the part of its first step that comes at once."""
         self._held[key] = HeldKey(action, now)
+        return [self._advance(key, FIRST_PART)]
 
-    def release(self, key: int, now: float) -> list[tuple[str, float]]:
-        """Note that a key goes up. Returns its action and remaining steps, or nothing for an unknown key."""
-        held = self._held.pop(key, None)
-        return [advance(held, now)] if held else []
+    def release(self, key: int, now: float) -> list[Advance]:
+        """Note that a key goes up. Returns its remaining steps, or nothing for an unknown key."""
+        if key not in self._held:
+            return []
+        last = self._advance(key, max(1.0, self._steps(key, now)))
+        del self._held[key]
+        return [last]
 
-    def advance(self, now: float) -> list[tuple[str, float]]:
-        """Return the actions of all held keys, each with its steps since the last call."""
-        return [advance(held, now) for held in self._held.values()]
+    def advance(self, now: float) -> list[Advance]:
+        """Return the progress of all held keys since the last call."""
+        return [self._advance(key, self._steps(key, now)) for key in self._held]
 
+    def _steps(self, key: int, now: float) -> float:
+        """Return the steps of a held key until now."""
+        steps = RATE * (now - self._held[key].since)
+        return max(FIRST_PART + (1 - FIRST_PART) * steps, steps)
 
-def advance(held: HeldKey, now: float) -> tuple[str, float]:
-    """Return the action of a key and its steps since the last call."""
-    due = max(held.done, RATE * (now - held.since))
-    amount, held.done = due - held.done, due
-    return held.action, amount
+    def _advance(self, key: int, steps: float) -> Advance:
+        """Note that a key has taken so many steps; it never takes any back."""
+        held = self._held[key]
+        before, held.done = held.done, max(held.done, steps)
+        return Advance(key, held.action, before, held.done)

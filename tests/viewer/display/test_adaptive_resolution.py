@@ -30,7 +30,20 @@ def render_moving(resolution: AdaptiveResolution, seconds: float, always: float 
 
 @pytest.mark.parametrize(
     ("longest", "divisor"),
-    [(0.5, 1), (0.99, 1), (1.1, 2), (3.9, 2), (4.1, 3), (8.9, 3), (9.1, 4), (16, 4), (17, 8), (1e6, 8)],
+    [
+        (0.5, 1),
+        (0.99, 1),
+        (1.1, 2),
+        (3.9, 2),
+        (4.1, 3),
+        (8.9, 3),
+        (9.1, 4),
+        (16, 4),
+        (17, 6),
+        (37, 8),
+        (65, 12),
+        (1e6, 12),
+    ],
 )
 def test_the_divisor_is_as_small_as_the_render_time_allows(longest, divisor):
     resolution = AdaptiveResolution()
@@ -42,9 +55,9 @@ def test_the_divisor_is_as_small_as_the_render_time_allows(longest, divisor):
 
 def test_the_divisor_is_greatest_while_no_time_is_known():
     resolution = AdaptiveResolution()
-    assert resolution.divisor(800, 600) == 8
+    assert resolution.divisor(800, 600) == 12
     resolution.record(outcome(0.001, pixels=False))
-    assert resolution.divisor(800, 600) == 8
+    assert resolution.divisor(800, 600) == 12
 
 
 def test_the_cost_scales_with_the_window():
@@ -97,6 +110,26 @@ def test_a_cancelled_picture_at_full_resolution_leaves_the_divisor():
     assert resolution.divisor(800, 600) == 2
 
 
+def first_divisors(resolution: AdaptiveResolution, factors: list[float]) -> list[int]:
+    """Move some times after a still picture of 7.5 frames; return the first divisor of each movement.
+
+    Rays of the coarse pictures cost as many times those of the still one as `factors` say.
+    """
+    first = []
+    for factor in factors:
+        resolution.record(outcome(FRAME_TIME * 7.5))
+        first.append(render_moving(resolution, FRAME_TIME * 7.5 * factor))
+        for _ in range(5):
+            render_moving(resolution, FRAME_TIME * 7.5 * factor)
+    return first
+
+
+def test_the_first_divisor_of_a_movement_learns_from_the_movements_before():
+    assert first_divisors(AdaptiveResolution(), [2.0] * 4) == [3, 4, 4, 4]
+    assert first_divisors(AdaptiveResolution(), [0.8] * 4) == [3, 3, 3, 3]  # never finer than the still picture says
+    assert first_divisors(AdaptiveResolution(), [1.0, 1.0, 50.0, 1.0]) == [3, 3, 3, 3]  # a single slow picture
+
+
 def test_near_the_limit_the_resolution_does_not_flicker():
     resolution = AdaptiveResolution()
     resolution.record(outcome(FRAME_TIME * 0.98))
@@ -111,7 +144,7 @@ def test_a_finer_picture_is_tried_where_coarse_ones_mislead():
     """Each picture takes at least a tenth of the frame time, at any resolution."""
     resolution, always = AdaptiveResolution(), FRAME_TIME / 10
     resolution.record(outcome(FRAME_TIME * 90))
-    assert render_moving(resolution, FRAME_TIME * 90, always) == 8  # another program had the processor
+    assert render_moving(resolution, FRAME_TIME * 90, always) == 12  # another program had the processor
     used = [render_moving(resolution, FRAME_TIME * 0.9, always) for _ in range(1000)]
     assert used[-1] == 1
     assert sum(a != b for a, b in itertools.pairwise(used)) <= 4

@@ -11,7 +11,7 @@ import pytest
 from minirt.errors import RenderError
 from minirt.viewer.display import background_painter
 from minirt.viewer.display.background_painter import BackgroundPainter
-from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.painter import Job, Outcome, paint
 from tests.viewer.fake import MARK, TEXT, FakeRenderer, colour_of, scene
 from tests.waiting import HANG_LIMIT, until
 
@@ -85,6 +85,25 @@ def test_a_picture_that_is_not_urgent_is_cancelled(harness):
     assert (cancelled.job, cancelled.pixels, cancelled.error) == (JOB, None, None)
     harness.renderer.gate.set()
     assert harness.outcomes(1)[0].job.divisor == 2
+
+
+def wakes_before_the_next(harness: PainterHarness) -> bool:
+    """Whether a picture that makes room for the next is notified, although it has nothing to show."""
+    harness.start(JOB)
+    harness.renderer.started.clear()
+    harness.painter.request(replace(JOB, divisor=2))
+    assert harness.renderer.started.wait(HANG_LIMIT)
+    woken = harness.notifications.acquire(blocking=False)
+    harness.renderer.gate.set()
+    assert harness.notifications.acquire(timeout=HANG_LIMIT)
+    assert [each.job.divisor for each in harness.outcomes(1)][-1] == 2
+    return woken
+
+
+def test_a_picture_that_made_room_for_the_next_wakes_nobody(harness, monkeypatch):
+    assert not wakes_before_the_next(harness)
+    monkeypatch.setattr(background_painter, "is_news", lambda _: True)
+    assert wakes_before_the_next(harness)
 
 
 def test_a_picture_of_another_size_is_cancelled(harness):
@@ -220,6 +239,12 @@ def test_refining_is_cancelled_by_the_next_request(harness):
     assert (REFINED.base == colour_of(JOB.scene)).all()
     harness.renderer.gate.set()
     assert harness.outcomes(1)[0].job.samples == 1
+
+
+def test_a_picture_is_dropped_if_it_becomes_unwanted_while_its_error_is_estimated():
+    answers = iter([True, False])  # to the renderer, and to the estimate
+    outcome = paint(FakeRenderer(), REFINED, REFINED.base, lambda: next(answers))
+    assert (outcome.pixels, outcome.error) == (None, None)
 
 
 def test_a_request_before_the_renderer_can_be_cancelled_still_cancels(harness):

@@ -1,39 +1,59 @@
-"""Steps of held keys are proportional to time and independent of the frame rate."""
+"""Steps of held keys are proportional to time and independent of the frame rate, and none stands still."""
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
-from minirt.viewer.input.key_repeat import RATE, KeyRepeat
+from minirt.viewer.input.key_repeat import FIRST_PART, RATE, Advance, KeyRepeat
+
+KEY = 97
+TICKS = 144  # a second
 
 
-def total(seconds: float, ticks: int) -> float:
-    """Steps of a key that is held for some seconds, in which the frame is drawn `ticks` times."""
+def taken(seconds: float, ticks: int) -> list[float]:
+    """Steps that a held key has taken after its press, after each of `ticks`, and after its release."""
     keys = KeyRepeat()
-    keys.press(97, "left", 10.0)
-    steps = 1.0  # with the press
+    advances = keys.press(KEY, "left", 10.0)
     for tick in range(1, ticks + 1):
-        steps += sum(amount for _, amount in keys.advance(10.0 + seconds * tick / ticks))
-    return steps + sum(amount for _, amount in keys.release(97, 10.0 + seconds))
+        advances += keys.advance(10.0 + seconds * tick / ticks)
+    advances += keys.release(KEY, 10.0 + seconds)
+    assert all(early.after == late.before for early, late in pairwise(advances))
+    return [advance.after for advance in advances]
 
 
 @pytest.mark.parametrize("ticks", [0, 1, 7, 144])
 @pytest.mark.parametrize("seconds", [0.5, 2.0])
 def test_steps_are_proportional_to_time(seconds, ticks):
-    assert total(seconds, ticks) == pytest.approx(RATE * seconds)
+    assert taken(seconds, ticks)[-1] == pytest.approx(RATE * seconds)
 
 
 @pytest.mark.parametrize("ticks", [0, 3])
 def test_a_tap_is_one_step(ticks):
-    assert total(0.9 / RATE, ticks) == 1
+    assert taken(0.9 / RATE, ticks)[-1] == 1
+
+
+def stands_still(steps: list[float]) -> bool:
+    """Whether a tick took less than half of its share of the steps."""
+    return any(late - early < 0.5 * FIRST_PART * RATE / TICKS for early, late in pairwise(steps))
+
+
+def test_a_held_key_never_stands_still():
+    steps = taken(1.0, TICKS)[:-1]  # after the last tick no time passes until the release
+    assert steps[0] == FIRST_PART
+    assert not stands_still(steps)
+    assert stands_still([max(1.0, each) for each in steps])  # a whole step with the press, and then a pause
 
 
 def test_keys_are_independent():
     keys = KeyRepeat()
-    keys.press(97, "left", 0.0)
+    keys.press(KEY, "left", 0.0)
     keys.press(119, "forward", 1.0)
-    assert keys.advance(1.0) == [("left", RATE - 1), ("forward", 0.0)]
-    assert keys.release(97, 1.0) == [("left", 0.0)]
+    left, forward = keys.advance(1.0)
+    assert left == Advance(KEY, "left", FIRST_PART, RATE)
+    assert forward == Advance(119, "forward", FIRST_PART, FIRST_PART)
+    assert keys.release(KEY, 1.0) == [Advance(KEY, "left", RATE, RATE)]
     assert keys
     assert keys.release(42, 1.0) == []
     keys.release(119, 1.0)
