@@ -14,6 +14,8 @@ from tests.bench.table import figure
 COLOURS = {"miniRT double": "#d1495b", "miniRT single": "#edae49", "C++ yardstick": "#7a8b99"}
 OTHERS = "#30638e"
 SCENES, MARKS = ("#d1495b", "#30638e", "#edae49", "#5b8e7d"), "osD^"  # of the dots of each scene
+NEAR = 1.35  # ratio of values whose labels would overlap
+CLOSE, FAR = (7, -15), (17, -25)  # heights of labels in points, above and below their dots
 ROOT_FROM = 100  # spheres at which the line of comparison begins
 STYLE = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False, "svg.hashsalt": "minirt"}
 
@@ -23,11 +25,13 @@ def dots(cells: Cells, path: Path, label: str) -> None:
     rcParams.update(STYLE)
     systems, scenes = names(cells)
     canvas, panel = pyplot.subplots(figsize=(9, 1.3 + 0.55 * len(systems)))
-    for scene, colour, mark, offset in zip(scenes, SCENES, MARKS, (7, -15, 7, -15), strict=False):
+    for scene, colour, mark in zip(scenes, SCENES, MARKS, strict=False):
         measured = [(row, cells[system, scene].ms) for row, system in enumerate(systems) if (system, scene) in cells]
         rows, values = zip(*measured, strict=True)
         panel.plot(values, rows, mark, color=colour, markersize=9, label=scene)
-        for row, value in measured:
+    for row, system in enumerate(systems):
+        values = sorted(cells[system, scene].ms for scene in scenes if (system, scene) in cells)
+        for value, offset in zip(values, offsets(values), strict=True):
             panel.annotate(
                 figure(value), (value, row), (0, offset), textcoords="offset points", ha="center", fontsize=9
             )
@@ -40,6 +44,15 @@ def dots(cells: Cells, path: Path, label: str) -> None:
     panel.tick_params(length=0)
     panel.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, 1.14), ncols=len(scenes))
     save(canvas, path)
+
+
+def offsets(values: list[float]) -> list[int]:
+    """Return the heights of labels of increasing values: above and below in turn, further off where two are near."""
+    heights: list[int] = []
+    for number, value in enumerate(values):
+        near = number >= 2 and value < NEAR * values[number - 2] and heights[number - 2] in CLOSE
+        heights.append((FAR if near else CLOSE)[number % 2])
+    return heights
 
 
 def growth(cells: Cells, path: Path) -> None:

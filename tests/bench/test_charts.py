@@ -33,6 +33,18 @@ def test_dots_lie_further_right_for_longer_times(tmp_path: Path) -> None:
     assert middle - near > 100
 
 
+@pytest.mark.parametrize(
+    ("values", "heights"),
+    [
+        ([1.0, 10.0, 100.0, 1000.0], [7, -15, 7, -15]),
+        ([1.0, 1.1, 1.2, 1.3], [7, -15, 17, -25]),
+        ([1.0, 1.1, 1.2, 9.0], [7, -15, 17, -15]),
+    ],
+)
+def test_labels_of_near_values_do_not_overlap(values: list[float], heights: list[int]) -> None:
+    assert charts.offsets(values) == heights
+
+
 def test_a_scene_that_a_system_does_not_render_has_no_dot(tmp_path: Path) -> None:
     cells = {(system, "one"): Cell(1, [Round(3.0, 0)]) for system in SYSTEMS}
     drawn = []
