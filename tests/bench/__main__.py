@@ -1,5 +1,5 @@
 """`python -m tests.bench`: benchmark miniRT against other renderers, in frames and from its start, over growing scenes,
-and its exact formulas against textbook formulas."""
+its latency while it refines, and its exact formulas against textbook formulas."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from minirt.rendering.running.cores import usable_cores
 from minirt.report.measurements.machine import processor
-from tests.bench import formulas, meshes, scenes, starts
+from tests.bench import formulas, latencies, meshes, scenes, starts
 from tests.bench.measure import Cells, available, take_turns
 from tests.bench.ours import MiniRT
 from tests.bench.peers.embree import Embree
@@ -77,6 +77,9 @@ def main() -> None:
     growth = take_turns(own, grown, plan.grown_rounds, plan.seconds)
     print(table(growth, names(own), [scene.stem for scene in grown], "spheres in view"), end="\n\n")
 
+    late = list(latencies.measured(latencies.COMPARED, WIDTH, HEIGHT))
+    print(f"Latency while a picture of {WIDTH}x{HEIGHT} is refined:\n\n{latencies.table(late)}", end="\n\n", flush=True)
+
     exact = list(formulas.measured())
     print(formulas.table(exact), formulas.MEANING, sep="\n", end="\n\n")
 
@@ -97,6 +100,7 @@ def main() -> None:
         "compared": records(compared),
         "starts": records(started),
         "growth": records(growth),
+        "latency": latencies.records(late),
         "formulas": formulas.records(exact),
     }
     (asked.out / "bench.json").write_text(json.dumps(found, indent=1) + "\n")
