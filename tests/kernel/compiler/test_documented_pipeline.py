@@ -20,9 +20,11 @@ CHANGE = "from numba.core.ccallback import CFunc; CFunc.inspect_llvm = lambda f,
 COMPILE = f"{CHANGE}; from minirt.kernel.compiler.process import main; main()"
 RENDER = f"""
 import sys
-from minirt.kernel.machine_code import compile_process
+from pathlib import Path
+from minirt.kernel.machine_code import compile_process, shipped_code
 from tests.kernel.compiler.test_documented_pipeline import fingerprints
 
+shipped_code.FOLDER = Path("none")
 compile_process.COMMAND = sys.executable, "-c", {COMPILE!r}
 print(*fingerprints())
 """

@@ -10,8 +10,7 @@ import pytest
 from numba import typeof
 
 import minirt
-from minirt.kernel import frame
-from minirt.kernel.culling import binning
+from minirt.kernel import frame, interpreted
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.materials import Checker, Specular
@@ -114,7 +113,7 @@ def test_any_depth_has_the_same_bits(depth: int) -> None:
 
 def test_the_interpreted_kernel_draws_the_same_bits_too() -> None:
     for scene in (ALL, SPECIAL["parallel light, a BVH and mirrors"]):
-        arrays = Packing(binning).pack(scene, 24, 16)
+        arrays = Packing(interpreted).pack(scene, 24, 16)
         pictures = []
         for each in (arrays, widened(arrays, fitting(arrays)[-1])):
             light = np.full((16, 24, 3), np.nan)
