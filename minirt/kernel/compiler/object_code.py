@@ -7,6 +7,7 @@ the compiler.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from importlib import import_module
 from typing import Any
@@ -18,7 +19,9 @@ from numba.extending import intrinsic, register_jitable
 
 from minirt.kernel.compiler import bvh_functions, kernel_functions  # noqa: F401  (register what kernels call)
 from minirt.kernel.compiler.argument_types import type_of
+from minirt.kernel.compiler.elf_image import image_of
 from minirt.kernel.compiler.options import FAILED, FLAGS, INLINED
+from minirt.kernel.machine_code.processor import is_linux_on_x86_64
 from minirt.kernel.machine_code.signature import Signature
 
 C_FLAGS = {name: value for name, value in FLAGS.items() if name != "nogil"}  # code for C never holds Python's lock
@@ -31,7 +34,16 @@ def object_code(function: str, signatures: list[Signature]) -> tuple[dict[str, A
     register(plain)
     entry = EntryPoint(plain, types.Tuple([type_of(each) for each in signatures]))
     compiled = cfunc(types.void(types.voidptr), **C_FLAGS)(entry.function())
-    return {"entry": compiled.native_name, "results": entry.results}, machine_code(compiled)
+    names, code = loadable(compiled.native_name, machine_code(compiled))
+    return names | {"results": entry.results}, code
+
+
+def loadable(entry: str, code: bytes) -> tuple[dict[str, Any], bytes]:
+    """Return an image of object code where that can be loaded, else the object code itself, with its entry point."""
+    if is_linux_on_x86_64():
+        with suppress(ValueError):
+            return image_of(code, entry)
+    return {"entry": entry}, code
 
 
 @cache
