@@ -37,9 +37,8 @@ def test_files_hold_machine_code_and_hardly_more() -> None:
     names, machine_code = found
     assert len(machine_code) > 10_000
     assert LIBRARY.cache.file_of(identity).stat().st_size < 1.2 * len(machine_code)
-    assert set(names) == {"entry", "results"}
+    assert set(names) - {"relocations"} == {"entry", "results"}
     assert names["results"] == 0
-    assert names["entry"].encode() in machine_code
 
 
 def is_freed_with_its_last_reference(kernels: Any) -> bool:

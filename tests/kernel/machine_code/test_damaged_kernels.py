@@ -39,7 +39,7 @@ def empty(path: Path) -> None:
 
 def flip_a_bit_of_the_code(path: Path) -> None:
     data = bytearray(path.read_bytes())
-    data[-1000] ^= 1
+    data[-50] ^= 1
     path.write_bytes(data)
 
 
