@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from matplotlib import pyplot, rcParams
-from matplotlib.ticker import NullLocator, StrMethodFormatter
+from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
 from tests.bench.measure import Cells
 from tests.bench.table import figure
@@ -39,6 +39,8 @@ def dots(cells: Cells, path: Path, label: str) -> None:
     panel.invert_yaxis()
     panel.margins(x=0.05, y=0.14)
     panel.set(xscale="log", xlabel=label)
+    panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    panel.xaxis.set_minor_locator(NullLocator())
     panel.xaxis.set_major_formatter(StrMethodFormatter("{x:,g}"))
     panel.grid(alpha=0.3)
     panel.tick_params(length=0)
