@@ -22,6 +22,7 @@ class FrameRunner:
         self.kernels = kernels
         self.next_row = np.zeros(1, np.int64)  # counters of the frames that are being rendered
         self.choice: Choice | None = None  # the kernel of the last frame
+        self.scene_words: list[int] = []  # of its argument block
         self.cancellations = 0
         self.not_finite = 0  # rays since it was last set to 0 whose light was infinite or NaN, and is 0 in the picture
 
@@ -44,8 +45,10 @@ class FrameRunner:
 
         The caller's thread only waits, so that Ctrl+C reaches it.
         """
-        self.choice = choice = self.kernels.choose(frames[0])
-        scene = words_of(choice.scene)  # the same for all frames
+        choice = self.kernels.choose(frames[0])
+        if not self.choice or self.choice.scene is not choice.scene:
+            self.scene_words = words_of(choice.scene)  # which holds for all frames of a scene
+        self.choice, scene = choice, self.scene_words
         arguments = [
             frame._replace(memory=thread_memory(frame.scene), sums=sum_buffer(frame.scene))
             for frame in frames
