@@ -100,7 +100,7 @@ def test_a_kernel_divides_as_ieee_754_says_and_keeps_nan() -> None:
 
 
 def test_the_entry_point_is_compiled_with_the_flags_of_the_kernel() -> None:
-    """Of which one is none for functions of C."""
+    """All of them but `nogil`: code for C never holds the lock of the interpreter."""
     assert {"nogil": True, **object_code_module.C_FLAGS} == FLAGS
 
 

@@ -127,7 +127,7 @@ def test_arguments_with_the_same_key_have_the_same_signature() -> None:
 
 @pytest.mark.parametrize("forgotten", [np.ndarray, tuple])
 def test_a_key_that_forgets_something_would_be_found_here(forgotten: type, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is in arrays, or what is in tuples."""
+    """Contents of arrays, or of tuples."""
 
     def forgetful(value: Any) -> Any:
         if isinstance(value, forgotten):
