@@ -1,4 +1,4 @@
-"""Turns object code into an image: bytes that are copied to memory, and addresses in them that are then added to.
+"""Turns object code into an image: bytes to copy into memory, and a list of the addresses in them to relocate.
 
 The format is ELF for x86-64 (System V ABI, AMD64 supplement). Code of a kernel refers to nothing but its own constants,
 so there is no need for a linker; code that refers to anything else is refused.

@@ -1,4 +1,4 @@
-"""Loads machine code into memory: an image by the system alone, which takes no time, other object code by llvmlite.
+"""Loads machine code into memory: an image by mmap and mprotect alone, other object code by llvmlite.
 
 Importing llvmlite would take a third of the start of the program.
 """
