@@ -5,43 +5,135 @@ from __future__ import annotations
 import errno
 import os
 import stat
-from contextlib import suppress
-from functools import partial
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+
+PRIVATE = 0o600
+TEMPORARY = ".minirt-*.tmp"
+ABANDONED = 3600  # seconds after which a temporary file belongs to a program that was killed
+CLEANED: set[Path] = set()  # folders in which this process has deleted abandoned files
 
 
 def write(path: str | os.PathLike[str], data: bytes, permissions: int | None = None) -> None:
     """Replace the contents of a file by `data` in one step; OSError when that fails, and nothing is left behind.
 
-    A symbolic link stays, and its target is replaced; an existing file keeps its permissions, unless others are asked
-    for: then the file never has more than these.
+    A symbolic link stays, and its target is replaced. An existing file keeps its permissions, unless others are asked
+    for, its extended attributes and, where the system allows it, its owner. The file never has more permissions than
+    it has in the end. Other hard links keep the old contents.
     """
     target = Path(os.path.realpath(path))
-    existing = mode_of_existing(target)
-    mode = existing if permissions is None else permissions
-    temporary = target.with_name(f".minirt-{os.urandom(8).hex()}.tmp")
-    try:
-        with open(temporary, "xb", opener=partial(os.open, mode=0o666 if permissions is None else permissions)) as file:
+    existing = status_of_existing(target)
+    with temporary_file(target, data, existing, permissions) as temporary:
+        temporary.replace(target)
+    delete_abandoned(target.parent)
+
+
+def create(path: str | os.PathLike[str], data: bytes) -> None:
+    """Write a new file as a whole; FileExistsError when there is one already, another OSError when that fails.
+
+    Of several programs that create the same file at once, one succeeds.
+    """
+    target = Path(path)
+    if os.path.lexists(target):
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target))
+    with temporary_file(target, data, None, None) as temporary:
+        try:
+            os.link(temporary, target)
+        except FileExistsError:
+            raise
+        except OSError:  # a file system without hard links
+            create_in_place(target, data)
+        temporary.unlink()
+
+
+def create_in_place(target: Path, data: bytes) -> None:
+    """Write a new file under its own name: others may see a part of it for a moment."""
+    with target.open("xb") as file:
+        try:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
+        except BaseException:
+            target.unlink()
+            raise
+
+
+@contextmanager
+def temporary_file(
+    target: Path, data: bytes, existing: os.stat_result | None, permissions: int | None
+) -> Iterator[Path]:
+    """Write a temporary file beside the target, with the permissions and the owner of the existing file, if any.
+
+    It is deleted when the block fails.
+    """
+    temporary = target.with_name(TEMPORARY.replace("*", os.urandom(8).hex()))
+    kept = stat.S_IMODE(existing.st_mode) if existing else None
+    mode = kept if permissions is None else permissions
+    try:
+        with os.fdopen(os.open(temporary, flags_to_create(), 0o666 if mode is None else mode & PRIVATE), "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        if existing:
+            keep_owner(temporary, existing)
+            copy_extended_attributes(target, temporary)
         if mode is not None:
             temporary.chmod(mode)
-        temporary.replace(target)
+        yield temporary
     except BaseException:
         with suppress(OSError):
             temporary.unlink()
         raise
 
 
-def mode_of_existing(target: Path) -> int | None:
-    """Return the permissions of an existing file, None without one; OSError when it must not be replaced."""
+def flags_to_create() -> int:
+    """Return the flags for opening a file that must not exist yet."""
+    return os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+
+
+def keep_owner(path: Path, existing: os.stat_result) -> None:
+    """Give a file the owner and the group of another one, as far as the system allows it."""
+    status = path.stat()
+    with suppress(OSError):
+        if status.st_gid != existing.st_gid:
+            os.chown(path, -1, existing.st_gid)
+    with suppress(OSError):
+        if status.st_uid != existing.st_uid:
+            os.chown(path, existing.st_uid, -1)
+
+
+def copy_extended_attributes(source: Path, target: Path) -> None:
+    """Copy the extended attributes, such as access control lists, as far as the system allows it."""
+    if not hasattr(os, "listxattr"):
+        return
+    with suppress(OSError):
+        for name in os.listxattr(source):
+            with suppress(OSError):
+                os.setxattr(target, name, os.getxattr(source, name))
+
+
+def delete_abandoned(folder: Path) -> None:
+    """Delete temporary files that killed programs have left in a folder; each process looks once."""
+    if folder in CLEANED:
+        return
+    CLEANED.add(folder)
+    with suppress(OSError):
+        for each in folder.glob(TEMPORARY):
+            with suppress(OSError):
+                if time.time() - each.stat().st_mtime > ABANDONED:
+                    each.unlink()
+
+
+def status_of_existing(target: Path) -> os.stat_result | None:
+    """Return the status of an existing file, None without one; OSError when it must not be replaced."""
     try:
-        mode = target.stat().st_mode
+        status = target.stat()
     except FileNotFoundError:
         return None
-    if not stat.S_ISREG(mode):
+    if not stat.S_ISREG(status.st_mode):
         raise OSError(errno.EINVAL, "not a regular file")
     if not os.access(target, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
-    return stat.S_IMODE(mode)
+    return status

@@ -12,6 +12,7 @@ from pathlib import Path
 from tests.paths import ROOT
 
 FALLBACK_CACHE = ROOT / "out" / "cache"  # cache of compiled kernels if the user's cache folder cannot be written
+STATE = ROOT / "out" / "state"  # journals of unsaved changes, apart from the user's
 
 
 def prepare() -> None:
@@ -20,6 +21,7 @@ def prepare() -> None:
         os.environ.setdefault("NUMBA_CPU_FEATURES", "")
     if not is_writable(user_cache()):
         os.environ["XDG_CACHE_HOME"] = str(FALLBACK_CACHE)
+    os.environ["XDG_STATE_HOME"] = str(STATE)
 
 
 def user_cache() -> Path | None:

@@ -6,14 +6,17 @@ import argparse
 import os
 from typing import TYPE_CHECKING, Any
 
+from minirt import regular_files
 from minirt.cli.arguments import SAMPLES, WINDOW_SAMPLES
 from minirt.cli.exit_status import OK
 from minirt.cli.output import say
 from minirt.cli.picture import render, write
-from minirt.errors import MlxError, ReplayError
+from minirt.errors import FileError, MlxError, ReplayError
 
 if TYPE_CHECKING:
     from minirt.scene import Scene
+
+MAX_RECORDING = 16 * 2**20  # bytes of a file of recorded keys
 
 
 def show(scene: Scene, options: argparse.Namespace) -> int:
@@ -69,7 +72,8 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
 def read_lines(path: str) -> list[str]:
     """Return the lines of a file of recorded keys; ReplayError when it cannot be read."""
     try:
-        with open(path, encoding="utf-8") as file:  # noqa: PTH123
-            return file.read().split("\n")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ReplayError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        return regular_files.read(path, MAX_RECORDING).decode().replace("\r\n", "\n").split("\n")
+    except FileError as error:
+        raise ReplayError(str(error)) from None
+    except UnicodeDecodeError as error:
+        raise ReplayError(f"{path}: cannot be read: {error}") from None

@@ -32,6 +32,8 @@ class Loop(Protocol):
 
     def raise_failure(self) -> None: ...
 
+    def lost(self) -> None: ...
+
 
 class Backend(ABC):
     """A window system for one display at a time. All methods but `wake` are called from the thread that called `open`.

@@ -21,6 +21,7 @@ class Display:
         self.windows: list[Window] = []
         self.loop_hook: BoundHook | None = None
         self.wake_hook: BoundHook | None = None
+        self.lost_hook: BoundHook | None = None
         self.autorepeat = False
         self.is_open = True
         self.running = False  # inside mlx_loop
@@ -122,6 +123,12 @@ class Display:
         for window in self.windows:
             if window.visible and (window.stale or window.shown.changes):
                 self.show(window)
+
+    def lost(self) -> None:
+        """The connection to the screen is lost: call the hook for that. The back end ends the program after it."""
+        if self.lost_hook:
+            function, parameter = self.lost_hook
+            function(parameter)
 
     def show(self, window: Window) -> None:
         """Bring the canvas to the screen now."""

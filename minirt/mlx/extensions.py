@@ -43,6 +43,11 @@ class Extensions:
         win.drop_hook = None if f is None else (f, param)
         return 0
 
+    def mlx_lost_hook(self, mlx: Display, f: Hook | None, param: object = None) -> int:
+        """Call f(param) when the connection to the screen is lost. The program ends after it, with exit status 1."""
+        mlx.lost_hook = None if f is None else (f, param)
+        return 0
+
     def mlx_get_modifiers(self, win: Window) -> Modifier:
         """Return the held modifiers, as of the event that a hook is called for."""
         return win.keyboard.modifiers

@@ -217,3 +217,26 @@ def test_a_replay_uses_the_keyboard_layout_of_the_options(tmp_path: Path) -> Non
     left_qwerty, left_azerty, down_azerty = pictures
     assert (left_qwerty == left_azerty).all()
     assert (left_qwerty != down_azerty).any()
+
+
+@pytest.mark.parametrize("output", ["x.png", "x.gif"])
+def test_a_replay_whose_save_fails_is_an_error(
+    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, output: str
+) -> None:
+    def full(_descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    (folder / "keys.txt").write_text("press Tab\npress d\npress Ctrl+S\n")
+    with monkeypatch.context() as patch:
+        patch.setattr(atomic_write.os, "fsync", full)
+        ended = run("ball.rt", "--replay", "keys.txt", "--size", "40x30", "-o", output)
+    assert ended == (1, b"", "Error\nball.rt: cannot be written: no space left on device\n")
+    assert not (folder / output).exists()
+
+
+def test_recorded_keys_are_read_from_regular_files_alone(run: Run, folder: Path) -> None:
+    os.mkfifo(folder / "fifo")
+    for name in ("fifo", "."):
+        ended = run("ball.rt", "--replay", name, "--size", "40x30")
+        assert (ended.status, ended.err.split("\n")[0]) == (1, "Error")
+        assert f"{name}: is" in ended.err

@@ -13,6 +13,7 @@ from pyglet.app.base import EventLoop
 
 from minirt.errors import MlxError
 from minirt.mlx.backend import Backend
+from minirt.mlx.on_pyglet.connection_loss import end_program_when_connection_is_lost
 from minirt.mlx.on_pyglet.interrupt import interruptible
 from minirt.mlx.on_pyglet.native import NativeWindow
 
@@ -57,6 +58,7 @@ class PygletBackend(Backend):
         self._request_turn()
         # On some Macs pyglet uses another loop, which cannot sleep: it ticks.
         interval = None if type(pyglet.app.event_loop) is EventLoop else TICK
+        end_program_when_connection_is_lost(self._display.lost)
         with interruptible(lambda: self._display.fail(KeyboardInterrupt()), self.wake):
             pyglet.app.event_loop.run(interval)
         self._tick_while(False)

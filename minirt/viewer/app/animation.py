@@ -9,7 +9,7 @@ import numpy as np
 
 from minirt.image import Image
 from minirt.scene import Scene
-from minirt.viewer.app.replay import play
+from minirt.viewer.app.replay import play, raise_failure
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Pixels, Renderer
 from minirt.viewer.editing.measure import scene_centre
@@ -42,7 +42,7 @@ def animation(
 ) -> list[Image]:
     """Return the frames of a replay, FPS per simulated second, with the pointer while it is used.
 
-    ReplayError as for `minirt.viewer.app.replay.replay`.
+    Errors as for `minirt.viewer.app.replay.replay`.
     """
     frames: list[Image] = []
     ticks = iter(range(10**9))
@@ -55,6 +55,7 @@ def animation(
         scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient, samples=samples,
         watch=add_frame,
     )  # fmt: skip
+    raise_failure(session)
     return [*frames, Image.from_bgra(session.screen.frame)]
 
 

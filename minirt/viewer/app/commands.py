@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from minirt.scene import describe
-from minirt.viewer.app.file_sync import reload, save_scene
+from minirt.viewer.app import file_sync, recovery
+from minirt.viewer.app.file_sync import save_scene
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.files.scene_files import save_copy
@@ -14,6 +15,14 @@ from minirt.viewer.files.scene_files import save_copy
 def save_a_copy(session: Session) -> None:
     """Write the scene to a new file. SceneError."""
     session.state = session.state.with_message(f"saved a copy: {save_copy(session.state.scene, session.path)}")
+
+
+def reload(session: Session) -> None:
+    """Take the unsaved changes of an earlier run where there are some, read the file again otherwise. SceneError."""
+    if session.found_changes:
+        recovery.take(session)
+    else:
+        file_sync.reload(session)
 
 
 def screenshot(session: Session) -> None:

@@ -13,11 +13,12 @@ import minirt
 from minirt.gc_pause import gc_paused
 from minirt.mlx import Mlx
 from minirt.scene import Scene
+from minirt.viewer.app import recovery
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
+from minirt.viewer.app.signals import ended_by_signals
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Renderer
-from minirt.viewer.files.scene_files import contents_differ, save_recovery
 
 if TYPE_CHECKING:
     from minirt.mlx.display import Display
@@ -40,11 +41,11 @@ def run(
     mlx: Mlx | None = None,
     watch: bool = True,
 ) -> int:
-    """Show a scene until the user quits; return the exit status: 0, or 130 after Ctrl+C.
+    """Show a scene until the user quits; return the exit status: 0, or 128 + n after signal n (Ctrl+C: 130).
 
     `path` is the scene's file; with `watch` it is read again when another program changes it. Unsaved changes are
-    kept in a recovery file, whose name is printed. When nothing moves, the edges in the picture are refined to
-    `samples` rays per pixel.
+    kept in a recovery file, whose name is printed; those of a program that was killed are offered at the next start.
+    When nothing moves, the edges in the picture are refined to `samples` rays per pixel.
 
     MlxError if no window can be opened, RenderError if the pictures cannot be rendered.
 
@@ -52,13 +53,12 @@ def run(
     """
     renderer = renderer or minirt.renderer(threads)
     session = open_session(scene, Path(path), size, renderer, mlx or Mlx(), keys, lenient, samples, watch)
+    recovery.begin(session)
+    session.mlx.mlx_lost_hook(session.display, recovery.end_at_once, session)
     try:
         status, stopped = run_event_loop(session)
     finally:
-        if contents_differ(session.state.scene, session.saved):
-            copy = save_recovery(session.state.scene, session.path)
-            with suppress(OSError):  # standard output may be closed
-                print(f"The changes that were not saved are in {copy}")
+        recovery.tell(recovery.end(session))
     if not stopped:
         exit_at_once(status)
     return status
@@ -125,19 +125,26 @@ def open_session(
 
 def run_event_loop(session: Session) -> tuple[int, bool]:
     """Run the event loop until it ends; return the exit status, and whether all threads have ended."""
-    status = OK
+    statuses = []
+
+    def end(number: int) -> None:
+        statuses.append(128 + number)
+        session.quit()
+        session.mlx.mlx_wake(session.display)
+
     before = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_INTERVAL)
     try:
-        session.mlx.mlx_loop(session.display)
+        with ended_by_signals(end):
+            session.mlx.mlx_loop(session.display)
     except KeyboardInterrupt:
-        status = INTERRUPTED
+        statuses.append(INTERRUPTED)
     finally:
         sys.setswitchinterval(before)
         session.mlx.mlx_release(session.display)
         session.file.close()
         stopped = session.refinement.painter.close(STOP_TIMEOUT)
-    return status, stopped
+    return statuses[0] if statuses else OK, stopped
 
 
 def fit_screen(mlx: Mlx, display: Display, size: tuple[int, int]) -> tuple[int, int]:

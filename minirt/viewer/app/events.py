@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from minirt.mlx import Event
-from minirt.viewer.app import file_sync
+from minirt.viewer.app import file_sync, recovery
 from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.held_edits import HeldEdits
 from minirt.viewer.app.mouse import Mouse
@@ -93,6 +93,8 @@ class EventDispatcher:
     def on_drop(self, file: str) -> None:
         """A file was dropped on the window."""
         self.session.attempt(lambda session: file_sync.open_another(session, Path(file)))
+        if self.session.path == Path(file):
+            recovery.offer(self.session)
         self.session.show(self.session.state)
 
     def perform(self, binding: Binding, step: float) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,18 +14,29 @@ from minirt.viewer.files.scene_files import back_up, contents_differ, error_summ
 from minirt.viewer.files.watched_file import WatchedFile, signature
 from minirt.viewer.input.chords import platform_spelling
 
+DELETED = "{} was deleted by another program: {} writes it again"
 UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and keeps the other as a copy"
 
 
 def save_scene(session: Session) -> None:
     """Write the scene to its file; if another program has changed the file, copy it first. SceneError."""
     copy = back_up(session.path) if session.file.changed else None
+    linked = has_other_links(session.path)
     save(session.state.scene, session.path)
     session.file.accept(signature(session.path))
     session.saved = session.state.scene
     session.screen.banner = ""
+    session.found_changes = None
     kept = f"; what another program had written is in {copy}" if copy else ""
-    session.state = session.state.with_message(f"saved: {session.path}{kept}")
+    cut = "; its other hard links keep the old scene" if linked else ""
+    session.state = session.state.with_message(f"saved: {session.path}{kept}{cut}")
+
+
+def has_other_links(path: Path) -> bool:
+    """Whether a file has more than one name, of which saving replaces one."""
+    with suppress(OSError):
+        return path.stat().st_nlink > 1
+    return False
 
 
 def reload(session: Session) -> None:
@@ -36,8 +48,11 @@ def reload(session: Session) -> None:
 def follow_change(session: Session) -> None:
     """Show the file after another program has written it, unless the session has unsaved changes.
 
-    If the file has errors, the last picture stays and a banner shows the first error.
+    If the file has errors or is gone, the last picture stays and a banner says so.
     """
+    if session.file.missing:
+        session.screen.banner = DELETED.format(session.path.name, platform_spelling("Ctrl+S"))
+        return
     if contents_differ(session.state.scene, session.saved):
         session.screen.banner = UNSAVED.format(
             session.path.name, platform_spelling("Ctrl+R"), platform_spelling("Ctrl+S")

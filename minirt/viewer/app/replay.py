@@ -33,12 +33,19 @@ def replay(
 
     Without `hud` the frame is the picture alone. The same lines give the same frame. `path` is the scene's file, which
     keys may save and reload; `file` is the name of the recording in error messages. If a line is wrong, ReplayError is
-    raised before any line is played.
+    raised before any line is played; if a command fails, such as saving, its error is raised at the end.
     """
     session = play(
         scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient, samples=samples
     )
+    raise_failure(session)
     return session.screen.frame if hud else session.picture
+
+
+def raise_failure(session: Session) -> None:
+    """Raise the error of the first command that failed, if there is one."""
+    if session.failures:
+        raise session.failures[0]
 
 
 def play(

@@ -29,9 +29,11 @@ from minirt.viewer.files.scene_files import error_summary, save_picture
 from minirt.viewer.files.watched_file import WatchedFile
 from minirt.viewer.input.key_repeat import KeyRepeat
 from minirt.viewer.input.keymap import Keymap
+from minirt.viewer.recovery.journal import Journal, Version
 
 if TYPE_CHECKING:
     from minirt.mlx.display import Display
+    from minirt.viewer.recovery.found_changes import FoundChanges
 
 Pick = Callable[[Scene, int, int, int, int], Shape | None]  # (scene, width, height, x, y)
 
@@ -70,9 +72,12 @@ class Session:
         self.saved = scene  # the scene as the file holds it
         self.file = WatchedFile(path)
         self.watches_file = watch
+        self.journal: Journal | None = None  # of unsaved changes
+        self.found_changes: FoundChanges | None = None  # by an earlier run, which reading the file again would take
         self.keymap = Keymap(keys)
         self.key_repeat = KeyRepeat()
         self.pressed: PressedButton | None = None
+        self.failures: list[MiniRTError] = []  # of commands
         self.screenshot_pending = False
         self.full_screen = False
         self.window = mlx.mlx_new_window(display, *size, f"miniRT - {path.name}", resizable=True)
@@ -90,7 +95,9 @@ class Session:
         self.refresh()
 
     def update(self) -> None:
-        """Request the next picture of the current scene, if one is missing."""
+        """Request the next picture of the current scene, if one is missing, and keep its changes on disk."""
+        if self.journal:
+            self.journal.keep(Version(self.state.scene, self.saved, self.path, self.file.known))
         self.refinement.request_missing(self.state.scene, moving=bool(self.key_repeat))
 
     def refresh(self) -> None:
@@ -124,6 +131,7 @@ class Session:
         try:
             command(self)
         except MiniRTError as error:
+            self.failures.append(error)
             self.show_error(error)
 
     def show_error(self, error: Exception) -> None:

@@ -3,57 +3,70 @@
 from __future__ import annotations
 
 import tempfile
-from itertools import count
+from contextlib import suppress
+from itertools import chain, count
 from pathlib import Path
 
 from minirt import atomic_write
-from minirt.errors import MiniRTError, SceneError
+from minirt.errors import MiniRTError, RenderError, SceneError
 from minirt.image import Image
 from minirt.regular_files import reason
-from minirt.scene import Camera, Scene, save
-from minirt.scene.files import file_error
+from minirt.scene import Camera, Scene, dump
+from minirt.scene.files import SUFFIX, file_error
 
 
-def free_path(path: Path, suffix: str) -> Path:
-    """Return `name-1.suffix`, or the path with the next number that no file has."""
-    return next(each for n in count(1) if not (each := path.with_name(f"{path.stem}-{n}{suffix}")).exists())
+def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = None) -> Path:
+    """Write a new file `name-1.suffix`, or with the first number that no file has; return its path. OSError.
+
+    `first` is a name to try before. No other program's file is ever replaced, even one that is written just now.
+    """
+    numbered = (path.with_name(f"{path.stem}-{n}{suffix}") for n in count(1))
+    for each in chain([first] if first else [], numbered):
+        with suppress(FileExistsError):
+            atomic_write.create(each, data)
+            return each
+    raise AssertionError("there are endlessly many numbers")
 
 
 def save_copy(scene: Scene, path: Path) -> Path:
     """Write the scene to a new file beside its own; return the new path. SceneError."""
-    copy = free_path(path, ".rt")
-    save(scene, copy)
-    return copy
+    return create_scene_file(path, dump(scene).encode())
+
+
+def create_scene_file(path: Path, data: bytes, first: Path | None = None) -> Path:
+    """Write a new scene file beside another one; return its path. SceneError."""
+    try:
+        return create_numbered(path, SUFFIX, data, first)
+    except OSError as error:
+        raise file_error(first or path, f"cannot be written: {reason(error)}") from None
 
 
 def save_picture(image: Image, path: Path) -> Path:
     """Write a picture beside the scene's file; return its path. RenderError."""
-    picture = free_path(path, ".png")
-    image.save(picture)
-    return picture
+    try:
+        return create_numbered(path, ".png", image.encode())
+    except OSError as error:
+        raise RenderError(f"{path.with_suffix('.png')}: cannot write: {reason(error)}") from None
 
 
 def back_up(path: Path) -> Path:
     """Copy a file, byte for byte, to a new file beside it; return the new path. SceneError."""
-    copy = free_path(path, ".rt")
     try:
-        atomic_write.write(copy, path.read_bytes())
+        data = path.read_bytes()
     except OSError as error:
-        raise file_error(copy, f"cannot be written: {reason(error)}") from None
-    return copy
+        raise file_error(path, f"cannot be read: {reason(error)}") from None
+    return create_scene_file(path, data)
 
 
 def save_recovery(scene: Scene, path: Path) -> Path:
     """Write unsaved changes beside the file, or if that fails into a new temporary folder; return the path."""
-    copy = path.with_name(f"{path.stem}.recovered.rt")
-    if copy.exists():  # the user may still need an older recovery file
-        copy = free_path(copy, ".rt")
+    name = f"{path.stem}.recovered{SUFFIX}"
+    data = dump(scene).encode()
     try:
-        save(scene, copy)
+        return create_scene_file(path.with_name(name), data, path.with_name(name))
     except SceneError:
-        copy = Path(tempfile.mkdtemp(prefix="minirt-")) / copy.name
-        save(scene, copy)
-    return copy
+        folder = Path(tempfile.mkdtemp(prefix="minirt-"))
+        return create_scene_file(folder / name, data, folder / name)
 
 
 def contents_differ(scene: Scene, saved: Scene) -> bool:

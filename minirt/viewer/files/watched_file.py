@@ -25,13 +25,23 @@ class WatchedFile:
         self._known = self._reported = seen
 
     @property
+    def known(self) -> Signature:
+        """The signature of the file as it was last read or written here."""
+        return self._known
+
+    @property
+    def missing(self) -> bool:
+        """Whether the file was there, and is not any more."""
+        return self._known is not None and signature(self.path) is None
+
+    @property
     def changed(self) -> bool:
         """Whether another program has written the file since."""
         now = signature(self.path)
         return now is not None and now != self._known
 
     def watch(self, notify: Callable[[], object]) -> None:
-        """Start a thread that calls `notify` when the file has changed and two checks in a row found it the same."""
+        """Start a thread that calls `notify` when the file was changed or deleted and two checks found it the same."""
         threading.Thread(target=self._watch, args=(notify,), name="minirt-watch", daemon=True).start()
 
     def close(self) -> None:
@@ -42,7 +52,7 @@ class WatchedFile:
         before = self._reported
         while not self._closed.wait(INTERVAL):
             now = signature(self.path)
-            if now == before and now not in (None, self._reported):
+            if now == before and now != self._reported:
                 self._reported = now
                 notify()
             before = now

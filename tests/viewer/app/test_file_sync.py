@@ -96,6 +96,26 @@ def test_a_broken_file_keeps_the_picture_and_shows_the_error_until_it_is_mended(
     assert harness.session.state.scene.spheres[0].diameter == 7
 
 
+def test_a_deleted_file_is_said_until_it_is_written_again(harness, path):
+    path.unlink()
+    notify(harness)
+    assert "scene.rt was deleted by another program: Ctrl+S writes it again" in harness.session.screen.banner
+    harness.tap(Key.CONTROL_L, Key.S)
+    assert load(path).scene.items == harness.session.state.scene.items
+    assert harness.session.screen.banner == ""
+
+
+def test_a_hard_link_that_saving_cuts_is_said(harness, path):
+    other = path.with_name("other.rt")
+    other.hardlink_to(path)
+    edit(harness)
+    harness.tap(Key.CONTROL_L, Key.S)
+    assert "its other hard links keep the old scene" in harness.session.state.message
+    assert other.read_text() == TEXT
+    harness.tap(Key.CONTROL_L, Key.S)
+    assert "links" not in harness.session.state.message
+
+
 class TestBothChanged:
     def test_the_file_is_not_read_and_a_banner_says_so(self, harness, path):
         edit(harness)

@@ -113,11 +113,18 @@ def test_a_change_is_reported_when_the_file_is_stable(path, monkeypatch):
     assert notified == [5]
 
 
-def test_a_deleted_file_is_not_reported(path, watch):
+def test_a_deleted_file_is_reported_once_and_again_when_it_is_back(path, watch):
+    assert not watch.file.missing
     path.unlink()
     watch.check(4)
-    assert watch.notified == 0
+    assert watch.notified == 1
+    assert watch.file.missing
     assert not watch.file.changed
     path.write_text(TEXT)
     watch.check(2)
-    assert watch.notified == 1
+    assert watch.notified == 2
+    assert not watch.file.missing
+
+
+def test_a_file_that_never_was_there_is_not_missing(tmp_path):
+    assert not WatchedFile(tmp_path / "none.rt").missing

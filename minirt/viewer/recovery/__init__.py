@@ -1,0 +1,1 @@
+"""Recovery: unsaved changes outlive a killed program, and are offered when the scene is opened again."""

@@ -1,0 +1,110 @@
+"""Found changes: the last unsaved version of a scene, if it is newer than the file."""
+
+from __future__ import annotations
+
+import os
+import time
+
+import pytest
+
+from minirt.scene import load
+from minirt.viewer.files.watched_file import signature
+from minirt.viewer.recovery.found_changes import FoundChanges, find_changes
+from minirt.viewer.recovery.journal import Journal, Version
+from tests.viewer.fake import TEXT
+
+OTHER = TEXT.replace("sp 0,0,0 2", "sp 0,0,0 7")
+
+
+@pytest.fixture
+def path(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    file = tmp_path / "scene [1].rt"
+    file.write_text(TEXT)
+    set_time(file, 1000)
+    return file
+
+
+def set_time(path, seconds: float) -> None:
+    """Set the modification time of a file."""
+    os.utime(path, (seconds, seconds))
+
+
+def recovered(path, text: str, seconds: float, number: str = ""):
+    """Write a recovery file of a scene."""
+    file = path.with_name(f"{path.stem}.recovered{number}.rt")
+    file.write_text(text)
+    set_time(file, seconds)
+    return file
+
+
+def leave_journal(path):
+    """Leave the journal of a program that was killed after an edit; return its path."""
+    saved = load(path).scene
+    book = Journal()
+    book.keep(Version(saved.replace(saved.spheres[0], diameter=9.0), saved, path, signature(path)))
+    book.flush()
+    left = book.path
+    book.close(delete=False)
+    return left
+
+
+def test_a_scene_without_any_has_none(path):
+    assert find_changes(path) is None
+    assert find_changes(path.with_name("missing.rt")) is None
+
+
+def test_a_journal_is_found(path):
+    left = leave_journal(path)
+    found = find_changes(path)
+    assert (found.path, found.is_journal) == (left, True)
+    assert "sp 0,0,0 9 255,0,0" in found.text
+
+
+def test_a_recovery_file_is_found_by_its_own_name(path):
+    file = recovered(path, OTHER, 2000)
+    assert find_changes(path) == FoundChanges(file, 2000, OTHER, is_journal=False)
+
+
+def test_the_newest_is_found(path):
+    recovered(path, OTHER, 2000)
+    newer = recovered(path, OTHER.replace("7", "8"), 3000, "-1")
+    assert find_changes(path).path == newer
+    left = leave_journal(path)
+    assert find_changes(path).path == left
+    set_time(left, 2500)
+    assert find_changes(path) is None or find_changes(path).path == newer
+
+
+def test_changes_older_than_the_file_are_not_offered(path):
+    recovered(path, OTHER, 999)
+    assert find_changes(path) is None
+
+
+def test_changes_that_the_file_holds_are_not_offered(path):
+    recovered(path, TEXT, 2000)
+    assert find_changes(path) is None
+
+
+def test_what_cannot_be_read_is_passed_over(path):
+    file = recovered(path, OTHER, 2000)
+    newer = recovered(path, OTHER, 3000, "-1")
+    newer.write_bytes(b"\xff")
+    set_time(newer, 3000)
+    left = leave_journal(path)
+    left.write_bytes(b"{}\n")
+    assert find_changes(path).path == file
+
+
+@pytest.mark.parametrize("is_journal", [True, False])
+def test_the_title_has_the_time_of_day_and_of_another_day_the_date(path, monkeypatch, is_journal):
+    monkeypatch.setenv("TZ", "UTC")
+    time.tzset()
+    found = FoundChanges(path, 86400 + 14 * 3600 + 3 * 60, "", is_journal)
+    name = "" if is_journal else " (scene [1].rt)"
+    assert found.title == f"unsaved changes of 1970-01-02 14:03{name}"
+    path.touch()
+    now = found._replace(time=path.stat().st_mtime)
+    assert "-" not in now.title
+    monkeypatch.undo()
+    time.tzset()
