@@ -63,6 +63,7 @@ MAY: dict[str, set[str]] = {
         "errors",
         "gc_pause",
         "image",
+        "regular_files",
         "scene",
         "viewer",
         "bench",

@@ -32,4 +32,4 @@ def end_program_when_connection_is_lost(save: Callable[[], None]) -> None:
             os._exit(STATUS)
 
     INSTALLED[:] = [HANDLER(handler)]
-    xlib._lib.XSetIOErrorHandler(INSTALLED[0])
+    ctypes.CDLL(xlib._lib._name).XSetIOErrorHandler(INSTALLED[0])  # the same library, without pyglet's argument types

@@ -56,9 +56,9 @@ def viewing(
     cache: Path | None = None,
     options: tuple[str, ...] = (),
     program: str = "minirt",
-    text: str = WITH_CYLINDER,
+    text: str | None = WITH_CYLINDER,
 ) -> Iterator[Viewer]:
-    """Run the program in a window with the scene `text`.
+    """Run the program in a window with the scene `text`; None: with the file as it is.
 
     `cache`: an empty folder, if the program is to compile its kernel, for a processor for which no kernel was compiled
     ahead of time; `options`: further arguments; `program`: the
@@ -67,7 +67,8 @@ def viewing(
     command = [sys.executable, "-W", "error", "-m", program, str(path), "--size", f"{size[0]}x{size[1]}", *options]
     if cache:
         command = ["env", f"XDG_CACHE_HOME={cache}", "NUMBA_CPU_NAME=generic", *command]
-    path.write_text(text)
+    if text is not None:
+        path.write_text(text)
     with desktop.program(*command) as process:
         yield Viewer(desktop, process, desktop.find(f"miniRT - {path.name}"), path)
 

@@ -1,0 +1,139 @@
+"""Files are written as a whole, replace only what they may, and keep who may read them."""
+
+from __future__ import annotations
+
+import os
+import stat
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from minirt import atomic_write
+from minirt.viewer.files.scene_files import create_numbered
+from tests.processes import run
+
+
+def names(folder: Path) -> list[str]:
+    """Return the names of a folder's files."""
+    return sorted(each.name for each in folder.iterdir())
+
+
+def test_a_new_file_never_replaces_one(tmp_path: Path) -> None:
+    (tmp_path / "a").write_bytes(b"old")
+    (tmp_path / "b").symlink_to("nowhere")
+    for name in "ab":
+        with pytest.raises(FileExistsError):
+            atomic_write.create(tmp_path / name, b"new")
+    atomic_write.create(tmp_path / "c", b"new")
+    assert (tmp_path / "a").read_bytes() == b"old"
+    assert (tmp_path / "c").read_bytes() == b"new"
+    assert names(tmp_path) == ["a", "b", "c"]
+
+
+def test_a_file_that_appears_just_now_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(atomic_write.os.path, "lexists", lambda _: False)
+    (tmp_path / "a").write_bytes(b"old")
+    with pytest.raises(FileExistsError):
+        atomic_write.create(tmp_path / "a", b"new")
+    assert (tmp_path / "a").read_bytes() == b"old"
+    assert names(tmp_path) == ["a"]
+
+
+def test_file_systems_without_hard_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "link", refuse)
+    atomic_write.create(tmp_path / "a", b"new")
+    assert (tmp_path / "a").read_bytes() == b"new"
+    with pytest.raises(FileExistsError):
+        atomic_write.create_in_place(tmp_path / "a", b"other")
+    assert names(tmp_path) == ["a"]
+
+
+def test_copies_of_many_writers_at_once_are_all_there(tmp_path: Path) -> None:
+    start = threading.Barrier(12)
+
+    def write(writer: int) -> None:
+        start.wait()
+        for n in range(5):
+            create_numbered(tmp_path / "scene.rt", ".rt", f"{writer} {n}".encode())
+
+    threads = [threading.Thread(target=write, args=(writer,)) for writer in range(12)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert names(tmp_path) == sorted(f"scene-{n}.rt" for n in range(1, 61))
+    assert len({each.read_bytes() for each in tmp_path.iterdir()}) == 60
+
+
+def test_copies_by_looking_first_would_be_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two programs that look for a free name before either writes, as `create` does not."""
+    monkeypatch.setattr(atomic_write, "create", atomic_write.write)
+    for data in (b"first", b"second"):
+        create_numbered(tmp_path / "scene.rt", ".rt", data)
+    assert names(tmp_path) == ["scene-1.rt"]
+
+
+def test_a_private_file_is_private_at_every_moment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "private"
+    path.write_bytes(b"old")
+    path.chmod(0o600)
+    modes = []
+    for name in ("fsync", "replace"):
+        target = os if name == "fsync" else Path
+        original = getattr(target, name)
+
+        def watched(first: object, *others: object, original: object = original) -> object:
+            modes.extend(stat.S_IMODE(each.stat().st_mode) for each in tmp_path.iterdir())
+            return original(first, *others)  # type: ignore[operator]
+
+        monkeypatch.setattr(target, name, watched)
+    atomic_write.write(path, b"new")
+    assert len(modes) == 4
+    assert set(modes) == {0o600}
+
+
+def test_extended_attributes_stay(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(b"old")
+    try:
+        os.setxattr(path, "user.comment", b"kept")
+    except (AttributeError, OSError):
+        pytest.skip("this file system has no extended attributes")
+    atomic_write.write(path, b"new")
+    assert os.getxattr(path, "user.comment") == b"kept"
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root may give files away")
+def test_the_owner_stays(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(b"old")
+    os.chown(path, 12345, 54321)
+    path.chmod(0o640)
+    atomic_write.write(path, b"new")
+    status = path.stat()
+    assert (status.st_uid, status.st_gid, stat.S_IMODE(status.st_mode)) == (12345, 54321, 0o640)
+
+
+def test_files_that_killed_programs_left_are_deleted(tmp_path: Path) -> None:
+    program = """
+import os, sys
+from pathlib import Path
+from minirt import atomic_write
+atomic_write.os.fsync = lambda _: os.kill(os.getpid(), 9)
+atomic_write.write(sys.argv[1], b"new")
+"""
+    path = tmp_path / "file"
+    assert run([sys.executable, "-c", program, str(path)]).returncode == -9
+    (left,) = tmp_path.iterdir()
+    atomic_write.CLEANED.discard(tmp_path)
+    atomic_write.write(path, b"young files may be in use")
+    assert names(tmp_path) == sorted([left.name, "file"])
+    os.utime(left, (1, 1))
+    atomic_write.CLEANED.discard(tmp_path)
+    atomic_write.write(path, b"new")
+    assert names(tmp_path) == ["file"]

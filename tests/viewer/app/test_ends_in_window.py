@@ -1,0 +1,82 @@
+"""However the program ends, unsaved changes are there afterwards: tests in a real window."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+import minirt
+from minirt.viewer.recovery.journal_folder import name_of
+from tests.viewer.app.test_real_window import Viewer, viewing
+from tests.viewer.scenes import WITH_CYLINDER
+from tests.waiting import until
+from tests.windows import Desktop
+
+pytestmark = pytest.mark.window
+
+
+def journals(desktop: Desktop, path: Path) -> list[Path]:
+    """Return the journals of a scene file."""
+    return list((Path(desktop.environment["XDG_STATE_HOME"]) / "minirt" / "journals").glob(f"{name_of(path)}-*"))
+
+
+@contextmanager
+def with_unsaved_changes(desktop: Desktop, path: Path) -> Iterator[Viewer]:
+    """Run the program; when the block begins it has deleted the sphere, and its journal says so."""
+    with viewing(desktop, path) as viewer:
+        viewer.key("Tab", "Tab", "Delete")
+        until(lambda: any(b"]\n" in each.read_bytes() for each in journals(desktop, path)), "the journal")
+        yield viewer
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_signals_end_the_program_and_keep_changes(desktop, tmp_path, number):
+    path = tmp_path / "scene.rt"
+    with with_unsaved_changes(desktop, path) as viewer:
+        os.kill(viewer.process.pid, number)
+        status, output, errors = viewer.end()
+    copy = path.with_name("scene.recovered.rt")
+    assert (status, errors) == (128 + number, "")
+    assert str(copy) in output
+    assert minirt.load(copy).spheres == ()
+    assert journals(desktop, path) == []
+
+
+def test_a_window_without_unsaved_changes_ends_by_a_signal_and_leaves_nothing(desktop, tmp_path):
+    path = tmp_path / "scene.rt"
+    with viewing(desktop, path) as viewer:
+        viewer.key("d")
+        os.kill(viewer.process.pid, signal.SIGTERM)
+        assert viewer.end() == (143, "", "")
+    assert list(tmp_path.iterdir()) == [path]
+    assert journals(desktop, path) == []
+
+
+def test_a_killed_program_loses_nothing(desktop, tmp_path):
+    path = tmp_path / "scene.rt"
+    with with_unsaved_changes(desktop, path) as viewer:
+        viewer.process.kill()
+        assert viewer.end()[0] == -signal.SIGKILL
+    assert path.read_text() == WITH_CYLINDER
+    with viewing(desktop, path, text=None) as viewer:
+        viewer.key("ctrl+r", "ctrl+s", "Escape")
+        assert viewer.end() == (0, "", "")
+    assert minirt.load(path).spheres == ()
+    assert journals(desktop, path) == []
+
+
+def test_a_lost_connection_to_the_screen_keeps_changes(desktop, tmp_path):
+    path = tmp_path / "scene.rt"
+    with with_unsaved_changes(desktop, path) as viewer:
+        desktop.run("xdotool", "windowkill", str(viewer.window))
+        status, output, errors = viewer.end()
+    copy = path.with_name("scene.recovered.rt")
+    assert (status, errors) == (1, "Error\nthe connection to the X server is lost\n")
+    assert str(copy) in output
+    assert minirt.load(copy).spheres == ()
+    assert journals(desktop, path) == []
