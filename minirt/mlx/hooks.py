@@ -3,7 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from minirt.mlx.window import Window
 
 Hook: TypeAlias = Callable[..., object]  # its last argument is the parameter given with it
 BoundHook: TypeAlias = tuple[Hook, object]  # a hook and its parameter
+
+
+def bound(callback: Hook | None, param: object) -> BoundHook | None:
+    """Return the hook with its parameter, or None for none."""
+    return (callback, param) if callback else None
+
+
+def set_hook(window: Window, event: int, callback: Hook | None, param: object) -> int:
+    """Set the one hook of an event and window, or remove it; return 0 as MiniLibX does."""
+    if callback:
+        window.hooks[event] = (callback, param)
+    else:
+        window.hooks.pop(event, None)
+    return 0

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from minirt.mlx.hooks import BoundHook
+    from minirt.mlx.options import Options
 
 
 class WindowControls(Protocol):
@@ -34,6 +35,9 @@ class WindowHost(Protocol):
 
     @property
     def backend(self) -> WindowControls: ...
+
+    @property
+    def options(self) -> Options: ...
 
     def call(self, hook: BoundHook | None, *arguments: object) -> None: ...
 
@@ -66,8 +70,8 @@ class Window:
     announced: bool = False  # the first MAP_NOTIFY was delivered
 
     def __post_init__(self) -> None:
-        self._canvas = Canvas(self.width, self.height)
-        self.keyboard = Keyboard(self.deliver)
+        self._canvas = self._new_canvas()
+        self.keyboard = Keyboard(self.deliver, self.display.options)
 
     @property
     def shown(self) -> Canvas:
@@ -77,9 +81,13 @@ class Window:
     @property
     def canvas(self) -> Canvas:
         """The canvas to draw on: of the window's size, black where it is new."""
-        if (self._canvas.width, self._canvas.height) != (self.width, self.height):
-            self._canvas = Canvas(self.width, self.height)
-        return self._canvas
+        canvas = self._canvas
+        if canvas.width != self.width or canvas.height != self.height:
+            canvas = self._canvas = self._new_canvas()
+        return canvas
+
+    def _new_canvas(self) -> Canvas:
+        return Canvas(self.width, self.height, alpha=self.display.options.alpha)
 
     def deliver(self, event: Event, *arguments: int) -> None:
         """Call the hook on `event`, if there is one."""
