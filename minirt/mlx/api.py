@@ -7,7 +7,7 @@
     m.mlx_key_hook(win, lambda key, _: m.mlx_loop_exit(mlx), None)
     m.mlx_loop(mlx)
 
-Handles, which are numbers in the wrapper, are objects here: `Display`, `Window`, `Image`.
+Handles, which are numbers in the wrapper, are objects here, and numbers, too: `Display`, `Window`, `Image`.
 """
 
 from __future__ import annotations
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from minirt.mlx.backend import Backend
     from minirt.mlx.options import Integer
     from minirt.mlx.window import WindowHost
+
+PITCH = 10  # pixels from one character to the next, as in the wrapper: programs centre text by it
 
 
 class Mlx(ImageCalls, LoopCalls, Extensions):
@@ -95,9 +97,9 @@ class Mlx(ImageCalls, LoopCalls, Extensions):
     def mlx_string_put(
         self, mlx_ptr: WindowHost, win_ptr: Window, x: Integer, y: Integer, color: Integer, string: str
     ) -> int:
-        """Draw opaque text with its top left corner at x, y."""
+        """Draw opaque text with its top left corner at x, y; a character takes 10x20 pixels on average."""
         canvas, left, top = win_ptr.canvas, integer(x), integer(y)
-        width, height = draw_text(canvas.pixels, left, top, string, integer(color))
+        width, height = draw_text(canvas.pixels, left, top, string, integer(color), pitch=PITCH)
         canvas.touch(left, top, left + width, top + height)
         return 0
 

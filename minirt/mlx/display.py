@@ -8,6 +8,7 @@ import traceback
 from typing import TYPE_CHECKING
 
 from minirt.mlx.events import Event
+from minirt.mlx.handle import Handle
 
 if TYPE_CHECKING:
     from minirt.mlx.backend import Backend
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from minirt.mlx.window import Window
 
 
-class Display:
+class Display(Handle):
     """The state that MiniLibX keeps between its calls. Only `wake` may be called from any thread."""
 
     def __init__(self, backend: Backend, options: Options) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from minirt.mlx.canvas import Canvas
 from minirt.mlx.events import Button, Event
+from minirt.mlx.handle import Handle
 from minirt.mlx.keyboard import Keyboard
 
 if TYPE_CHECKING:
@@ -42,8 +43,8 @@ class WindowHost(Protocol):
     def call(self, hook: BoundHook | None, *arguments: object) -> None: ...
 
 
-@dataclass(eq=False)
-class Window:
+@dataclass(eq=False, repr=False)
+class Window(Handle):
     """An open window. The size of a resizable window is that of its frame buffer.
 
     A window of fixed size keeps the requested size: if the platform shows it larger, its picture is stretched
@@ -90,9 +91,9 @@ class Window:
         return Canvas(self.width, self.height, alpha=self.display.options.alpha)
 
     def deliver(self, event: Event, *arguments: int) -> None:
-        """Call the hook on `event`, if there is one."""
+        """Call the hook on `event`, if there is one, with plain integers: programs print them."""
         if self.is_open:
-            self.display.call(self.hooks.get(event), *arguments)
+            self.display.call(self.hooks.get(event), *map(int, arguments))
 
     # --- events, as back ends report them; keys go to `keyboard` ---
 

@@ -130,7 +130,7 @@ def drawing_in_a_hook_is_shown_after_it(harness: Harness) -> None:
 @scenario(["picture", True], ["box", True])
 def text_has_its_top_left_corner_at_x_y(harness: Harness) -> None:
     expected = np.zeros((100, 200, 4), np.uint8)
-    width, height = draw_text(expected, 30, 40, "Hello", 0x80C0FF)
+    width, height = draw_text(expected, 30, 40, "Hello", 0x80C0FF, pitch=10)
     harness.m.mlx_string_put(harness.mlx, harness.win, 30, 40, 0x80C0FF, "Hello")
 
     def inside(picture: NDArray[np.uint8]) -> bool:
