@@ -111,8 +111,9 @@ class Mlx(ImageCalls, LoopCalls, Extensions):
 
     def mlx_mouse_move(self, mlx_ptr: Window | Display, x: Integer, y: Integer) -> int:
         """Move the pointer to x, y of a window or of the first window of a display."""
-        window = _window_of(mlx_ptr)
-        window.display.backend.move_pointer(window, integer(x), integer(y))
+        window, left, top = _window_of(mlx_ptr), integer(x), integer(y)
+        window.display.backend.move_pointer(window, left, top)
+        window.place_pointer(left, top)
         return 0
 
     def mlx_mouse_hide(self, mlx_ptr: Display) -> int:

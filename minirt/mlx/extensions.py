@@ -24,7 +24,7 @@ class Extensions:
 
     def mlx_close_hook(self, win_ptr: Window, callback: Hook | None, param: object = None) -> int:
         """Call callback(param) for the close button; the window stays until it is destroyed."""
-        return set_hook(win_ptr, Event.DESTROY_NOTIFY, callback, param)
+        return set_hook(win_ptr.hooks, Event.DESTROY_NOTIFY, callback, param)
 
     def mlx_text_hook(self, win_ptr: Window, callback: Hook | None, param: object = None) -> int:
         """Call callback(text, param) for typed text, in the keyboard's layout; repeats while a key is held."""

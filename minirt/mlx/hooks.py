@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeAlias
-
-if TYPE_CHECKING:
-    from minirt.mlx.window import Window
+from typing import TypeAlias
 
 Hook: TypeAlias = Callable[..., object]  # its last argument is the parameter given with it
 BoundHook: TypeAlias = tuple[Hook, object]  # a hook and its parameter
@@ -17,10 +14,10 @@ def bound(callback: Hook | None, param: object) -> BoundHook | None:
     return (callback, param) if callback else None
 
 
-def set_hook(window: Window, event: int, callback: Hook | None, param: object) -> int:
-    """Set the one hook of an event and window, or remove it; return 0 as MiniLibX does."""
+def set_hook(hooks: dict[int, BoundHook], event: int, callback: Hook | None, param: object) -> int:
+    """Set the one hook of an event, or remove it; return 0 as MiniLibX does."""
     if callback:
-        window.hooks[event] = (callback, param)
+        hooks[event] = (callback, param)
     else:
-        window.hooks.pop(event, None)
+        hooks.pop(event, None)
     return 0

@@ -11,7 +11,6 @@ from minirt.errors import MlxError
 from minirt.mlx.image import Image
 from minirt.mlx.options import MaybeNone, integer
 from minirt.mlx.settings import Settings
-from minirt.mlx.xpm import read_xpm, strings_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -63,6 +62,8 @@ class ImageCalls(Settings):
 
     def mlx_xpm_to_image(self, mlx_ptr: WindowHost, xpm_data: Sequence[str]) -> ImageAndSize:
         """Return (image, width, height) of the strings of an XPM file."""
+        from minirt.mlx.xpm import read_xpm
+
         return self._mlx_image_of(lambda: read_xpm(xpm_data))
 
     def _mlx_image_of(self, read: Callable[[], NDArray[np.uint8]]) -> ImageAndSize:
@@ -88,6 +89,8 @@ def _read_picture(filename: FileName) -> NDArray[np.uint8]:
 
 def _read_xpm_file(filename: FileName) -> NDArray[np.uint8]:
     """Read an XPM file as BGRA. Raises MlxError."""
+    from minirt.mlx.xpm import read_xpm, strings_of
+
     try:
         return read_xpm(strings_of(Path(filename).read_text(encoding="latin-1")))
     except (OSError, ValueError, MlxError) as error:

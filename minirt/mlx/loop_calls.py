@@ -25,19 +25,19 @@ class LoopCalls:
 
     def mlx_hook(self, win_ptr: Window, x_event: Integer, x_mask: Integer, callback: Hook | None, param: object) -> int:
         """Set the one hook of an event and window. `Event` lists the arguments before `param`; the mask is unused."""
-        return set_hook(win_ptr, integer(x_event), callback, param)
+        return set_hook(win_ptr.hooks, integer(x_event), callback, param)
 
     def mlx_key_hook(self, win_ptr: Window, callback: Hook | None, param: object) -> int:
         """Call callback(keycode, param) when a key is released."""
-        return set_hook(win_ptr, Event.KEY_RELEASE, callback, param)
+        return set_hook(win_ptr.hooks, Event.KEY_RELEASE, callback, param)
 
     def mlx_mouse_hook(self, win_ptr: Window, callback: Hook | None, param: object) -> int:
         """Call callback(button, x, y, param) when a button is pressed or the wheel turned."""
-        return set_hook(win_ptr, Event.BUTTON_PRESS, callback, param)
+        return set_hook(win_ptr.hooks, Event.BUTTON_PRESS, callback, param)
 
     def mlx_expose_hook(self, win_ptr: Window, callback: Hook | None, param: object) -> int:
         """Call callback(param) when the window has to be drawn; its earlier content is still there."""
-        return set_hook(win_ptr, Event.EXPOSE, callback, param)
+        return set_hook(win_ptr.hooks, Event.EXPOSE, callback, param)
 
     def mlx_loop_hook(self, mlx_ptr: Display, callback: Hook | None, param: object) -> int:
         """Call callback(param) about 60 times a second; with None the loop sleeps until an event."""

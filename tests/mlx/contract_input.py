@@ -181,6 +181,27 @@ def motion_counts_from_the_top_left(harness: Harness) -> None:
     harness.run(actions)
 
 
+@scenario(["at once", [0, 30, 40]], ["motion", 30, 40])
+def the_program_moves_the_pointer(harness: Harness) -> None:
+    def moved(x: int, y: int, param: str) -> None:
+        if harness.log:
+            harness.record(param, x, y)
+
+    def pressed(*_: object) -> None:
+        harness.m.mlx_mouse_move(harness.win, 30, 40)
+        harness.record("at once", list(harness.m.mlx_mouse_get_pos(harness.win)))
+
+    harness.m.mlx_hook(harness.win, Event.MOTION_NOTIFY, 0, moved, "motion")
+    harness.m.mlx_hook(harness.win, Event.KEY_PRESS, 0, pressed, None)
+
+    def actions(user: User) -> None:
+        user.move(100, 50)
+        user.wait_until_handled()
+        user.keys("+a -a")
+
+    harness.run(actions)
+
+
 @scenario(["enter"], ["leave"])
 def the_pointer_enters_and_leaves(harness: Harness) -> None:
     def actions(user: User) -> None:

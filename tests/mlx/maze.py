@@ -57,6 +57,7 @@ class Game(Mlx):  # type: ignore[misc]
     def quit(self, key: int, _: object) -> None:
         """Leave with Escape, as programs do that the wrapper does not let use sys.exit."""
         if key == 65307:
+            self.mlx_destroy_window(self.mlx_ptr, self.win_ptr)
             os._exit(7)
 
     def close(self, _: object) -> None:

@@ -93,40 +93,17 @@ def test_strict_ends_at_the_first_exception(tmp_path: Path) -> None:
     assert "65363" not in done.stdout
 
 
-PROGRAM = """
-import sys, time, importlib.util
-import mlx
-from mlx.mlx import Mlx
-assert mlx.Mlx is Mlx and importlib.util.find_spec("mlx") and mlx.mlx.Mlx is Mlx
-import helper
-m = Mlx()
-ptr = m.mlx_init()
-print(m.mlx_get_screen_size(ptr), sys.argv[1:], __name__, helper.VALUE)
-begin = time.time()
-time.sleep(1000)
-while time.time() < begin + 1000.01:
-    pass
-print(round(time.time() - begin, 1))
-windows = [m.mlx_new_window(ptr, 30, 20, name) for name in "ab"]
-for number, win in enumerate(windows):
-    m.mlx_mouse_hook(win, lambda *arguments: print(arguments), number)
-    m.mlx_pixel_put(ptr, win, 3, 4, 0xFF000000 | 0xFF << 8 * number)
-m.mlx_hook(windows[1], 33, 0, lambda _: m.mlx_loop_exit(ptr), None)
-m.mlx_loop(ptr)
-sys.exit("done")
-"""
-
-
 def test_the_process_is_that_of_the_program(tmp_path: Path) -> None:
     """Modules, arguments, clocks, several windows and the exit are as `python program.py` has them."""
     (tmp_path / "helper.py").write_text("VALUE = 5\n")
+    program = MAZE.with_name("two_windows.py").read_text(encoding="utf-8")
     done = run(
-        tmp_path, "--screen", "640x480", "one", program=PROGRAM,
+        tmp_path, "--screen", "640x480", "one", program=program,
         events="click 3,4\nwindow 2\nclick 5,6 right\nwheel down 2 7,8\nclose\n",
     )  # fmt: skip
     assert done.stdout.splitlines() == [
-        "(0, 640, 480) ['one'] __main__ 5",
-        "1000.0",
+        "(0, 640, 480) ['one'] 5",
+        "1000.0 1",
         "(1, 3, 4, 0)",
         "(3, 5, 6, 1)",
         "(5, 7, 8, 1)",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import inspect
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 
 from minirt.mlx import Mlx, MlxError
 from minirt.mlx.memory import Memory
+from tests.paths import PACKAGE
 
 if TYPE_CHECKING:
     from minirt.mlx import Window
@@ -67,6 +69,22 @@ def test_parameters_have_the_names_and_the_order_of_the_wrapper(name: str) -> No
     parameters = list(inspect.signature(getattr(Mlx, name)).parameters.values())[1:]
     positional = [parameter.name for parameter in parameters if parameter.kind is not parameter.KEYWORD_ONLY]
     assert positional == WRAPPER[name].split()
+
+
+def test_the_readme_lists_every_call_with_its_parameters() -> None:
+    listed = re.findall(r"`(mlx_\w+\([^)]*\))`", (PACKAGE / "mlx/README.md").read_text(encoding="utf-8"))
+    calls = [spelled(name) for name in dir(Mlx) if name.startswith("mlx_")]
+    assert sorted(listed) == sorted(calls)
+
+
+def spelled(name: str) -> str:
+    """Return the call with its parameters, those by name behind a star."""
+    words: list[str] = []
+    for parameter in list(inspect.signature(getattr(Mlx, name)).parameters.values())[1:]:
+        if parameter.kind is parameter.KEYWORD_ONLY and "*" not in words:
+            words.append("*")
+        words.append(parameter.name)
+    return f"{name}({', '.join(words)})"
 
 
 def test_constants() -> None:

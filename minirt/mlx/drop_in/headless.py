@@ -28,7 +28,7 @@ class Headless(Memory):
         super().__init__(screen)
         self.picture = picture
         self.selected = 0
-        self._last: NDArray[np.uint8] | None = None  # the picture of the window that was closed last
+        self._last: NDArray[np.uint8] | None = None  # the picture that was shown last, in any window
 
     def simulate_process(self) -> None:
         """Let the program see simulated time, and save its picture even if it ends by `os._exit`."""
@@ -63,7 +63,7 @@ class Headless(Memory):
         return True
 
     def save(self, file: Path) -> None:
-        """Save the picture of the selected window, or of the window that was closed last. Raises MlxError."""
+        """Save the picture of the selected window or, if it is closed, the one that was shown last. Raises MlxError."""
         from PIL import Image
 
         windows = self.windows if self._display else []
@@ -75,9 +75,9 @@ class Headless(Memory):
         except (OSError, ValueError) as error:
             raise MlxError(f"{file} cannot be written: {error}") from error
 
-    def close_window(self, window: Window) -> None:
+    def show(self, window: Window) -> None:
+        super().show(window)
         self._last = self.screenshot(window)
-        super().close_window(window)
 
     def _pause(self) -> None:
         """Let the program handle what came, and take one tick of the loop."""
