@@ -9,8 +9,7 @@ import numpy as np
 
 from minirt.errors import MlxError
 from minirt.mlx.image import Image
-from minirt.mlx.options import MaybeNone, integer
-from minirt.mlx.settings import Settings
+from minirt.mlx.options import MaybeNone, Settings, integer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
