@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from minirt.mlx.options import Integer
     from minirt.mlx.window import WindowHost
 
-PITCH = 10  # pixels from one character to the next, as in the wrapper: programs centre text by it
+PITCH = 10  # pixels from one character to the next, as in the wrapper: programs centre and align text by it
 
 
 class Mlx(ImageCalls, LoopCalls, Extensions):
@@ -97,7 +97,7 @@ class Mlx(ImageCalls, LoopCalls, Extensions):
     def mlx_string_put(
         self, mlx_ptr: WindowHost, win_ptr: Window, x: Integer, y: Integer, color: Integer, string: str
     ) -> int:
-        """Draw opaque text with its top left corner at x, y; a character takes 10x20 pixels on average."""
+        """Draw opaque text of 0xRRGGBB with its top left corner at x, y; a character takes 10x20 pixels."""
         canvas, left, top = win_ptr.canvas, integer(x), integer(y)
         width, height = draw_text(canvas.pixels, left, top, string, integer(color), pitch=PITCH)
         canvas.touch(left, top, left + width, top + height)

@@ -36,7 +36,7 @@ def draw_text(
     """Draw `text` (0xRRGGBB, opaque) with its top left corner at x, y. Returns its width and height.
 
     text: newlines start lines.
-    pitch: average advance from one character to the next in pixels, by even spacing; 0 is the font's own.
+    pitch: width of each character in pixels, as of a typewriter; 0 is the font's own.
     pixels: (h, w, 4) uint8, BGRA, written in place; text outside is clipped.
     background: 0xAARRGGBB, blended by its alpha below the text and `padding` pixels around it.
     """
@@ -72,18 +72,16 @@ def _coverage(line: str, size: int, pitch: int) -> NDArray[np.uint8]:
     """Coverage of each pixel by one line of text, 0 to 255; cached, since lines seldom change."""
     from PIL import Image, ImageDraw
 
-    width = _width(line, size, pitch)
+    if pitch and len(line) > 1:
+        return np.hstack([_coverage(character, size, pitch) for character in line])
+    width, height, natural = _width(line, size, pitch), _line_height(size), _font(size).getlength(line)
     if width == 0:
-        return np.zeros((_line_height(size), 0), np.uint8)
-    image = Image.new("L", (width, _line_height(size)))
-    draw, font = ImageDraw.Draw(image), _font(size)
-    if pitch:
-        spacing = pitch - font.getlength(line) / len(line)
-        for index, character in enumerate(line):
-            place = font.getlength(line[:index]) + (index + 0.5) * spacing
-            draw.text((place, 0), character, fill=255, font=font)
-    else:
-        draw.text((0, 0), line, fill=255, font=font)
+        return np.zeros((height, 0), np.uint8)
+    image = Image.new("L", (max(width, int(np.ceil(natural))), height))
+    place = (image.width - natural) / 2 if pitch else 0
+    ImageDraw.Draw(image).text((place, 0), line, fill=255, font=_font(size))
+    if image.width > width:  # narrow a wide character to the pitch
+        image = image.resize((width, height), Image.Resampling.BILINEAR)
     coverage = np.asarray(image).copy()
     coverage.flags.writeable = False
     return coverage

@@ -40,7 +40,9 @@ class Game(Mlx):  # type: ignore[misc]
         """Draw everything; the corner turns red after a second."""
         self.mlx_put_image_to_window(self.mlx_ptr, self.win_ptr, self.walls, 0, 0)
         self.mlx_put_image_to_window(self.mlx_ptr, self.win_ptr, self.player, self.x * CELL, self.y * CELL)
-        self.mlx_string_put(self.mlx_ptr, self.win_ptr, 5, 0, 0xFFFFFF, f"moves {self.moves}")
+        self.mlx_string_put(
+            self.mlx_ptr, self.win_ptr, 5, 0, 0x00FFFF, f"moves {self.moves}"
+        )  # yellow: red and blue are swapped
         if time.perf_counter() - self.start > 1:
             self.mlx_pixel_put(self.mlx_ptr, self.win_ptr, 139, 99, 0xFFFF0000)
 

@@ -71,12 +71,17 @@ def test_text_stays_within_the_measured_size() -> None:
 
 
 def test_text_has_the_pitch_of_the_wrapper() -> None:
-    """Programs centre text with 10 pixels a character."""
+    """Programs centre and align text with 10 pixels a character."""
     pixels = np.zeros((30, 300, 4), np.uint8)
-    assert draw_text(pixels, 0, 5, "iiiiiiiiii wwww 012345", 0xFFFFFF, pitch=10) == (220, measure("x")[1])
-    columns = np.nonzero(pixels.any(axis=(0, 2)))[0]
-    assert columns.min() < 6
-    assert 212 < columns.max() < 220
+    assert draw_text(pixels, 0, 5, "iWiMi i", 0xFFFFFF, pitch=10) == (70, measure("x")[1])
+    drawn = pixels.any(axis=(0, 2))
+    cells = drawn[:70].reshape(7, 10)
+    assert cells[[0, 2, 4, 6]].tolist() == [cells[0].tolist()] * 4, "each character has its cell"
+    assert cells[0, 3:7].any()
+    assert not cells[0, [0, 1, 8, 9]].any()
+    assert cells[[1, 3]].sum() >= 16, "wide characters fill it"
+    assert not cells[5].any()
+    assert not drawn[70:].any()
 
 
 def test_text_is_blended_with_the_pixels_below() -> None:

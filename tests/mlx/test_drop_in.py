@@ -68,7 +68,9 @@ def test_a_scripted_user_plays_the_maze(tmp_path: Path) -> None:
     assert [start[29, 22].tolist(), start[21, 21].tolist()] == [RIM, FLOOR], "the sprite has no black box"
     assert end[69, 69].tolist() == DISC
     assert end[99, 139].tolist() == RED, "simulated time has passed"
-    assert (start[:20, :100] == 255).any(), "text"
+    text = start[:20, 5:75].reshape(-1, 3).astype(int)
+    assert (text[:, :2].min(axis=1) > 150).sum() > 20
+    assert text[:, 2].max() == 0x60, "no blue but that of the wall"
 
 
 def test_a_program_that_leaves_by_force_leaves_its_picture(tmp_path: Path) -> None:

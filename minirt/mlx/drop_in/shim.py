@@ -8,9 +8,12 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from minirt.mlx.api import Mlx
+from minirt.mlx.options import integer
 
 if TYPE_CHECKING:
     from minirt.mlx.backend import Backend
+    from minirt.mlx.options import Integer
+    from minirt.mlx.window import Window, WindowHost
 
 
 def install(backend: Backend | None, *, strict: bool) -> None:
@@ -19,6 +22,14 @@ def install(backend: Backend | None, *, strict: bool) -> None:
     class WrapperMlx(Mlx):
         def __init__(self) -> None:
             super().__init__(backend, strict=strict)
+
+        def mlx_string_put(
+            self, mlx_ptr: WindowHost, win_ptr: Window, x: Integer, y: Integer, color: Integer, string: str
+        ) -> int:
+            """Draw text in a colour 0xBBGGRR: in text, and only there, the wrapper's shader takes blue for red."""
+            word = integer(color)
+            swapped = (word & 0xFF) << 16 | word & 0xFF00 | word >> 16 & 0xFF
+            return super().mlx_string_put(mlx_ptr, win_ptr, x, y, swapped, string)
 
     WrapperMlx.__name__ = WrapperMlx.__qualname__ = "Mlx"
     WrapperMlx.__module__ = "mlx.mlx"
