@@ -16,6 +16,7 @@ import os
 from typing import TYPE_CHECKING
 
 from minirt.errors import MlxError
+from minirt.mlx.backend import ADVICE
 from minirt.mlx.display import Display
 from minirt.mlx.extensions import Extensions
 from minirt.mlx.image_calls import ImageCalls
@@ -158,5 +159,5 @@ def _pyglet_backend() -> Backend:
     except Exception as error:  # any error of the window system means that there is no window
         missing = type(error).__name__ == "NoSuchDisplayException" and not os.environ.get("DISPLAY")
         reason = "there is no display" if missing else str(error) or type(error).__name__
-        raise MlxError(f"no window can be opened ({reason}); -o FILE renders without one") from error
+        raise MlxError(f"no window can be opened ({reason}); {ADVICE}") from error
     return PygletBackend()

@@ -9,7 +9,8 @@ import numpy as np
 
 from minirt.errors import MlxError
 from minirt.mlx.image import Image
-from minirt.mlx.options import MaybeNone, Settings, integer
+from minirt.mlx.options import MaybeNone, integer
+from minirt.mlx.settings import Settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -169,12 +167,11 @@ def test_the_maze_runs_in_a_window(desktop: Desktop) -> None:
 
 
 def test_a_program_without_a_display_gets_none(tmp_path: Path) -> None:
-    """Without --headless and without a display, `mlx_init` returns None, which the maze tests for."""
-    shutil.copy(MAZE, tmp_path)
+    """Without --headless and without a display, `mlx_init` returns None, and the reason is printed."""
     program = "from mlx import Mlx\nprint(Mlx().mlx_init())\n"
     (tmp_path / "program.py").write_text(program)
     environment = NO_SCREEN | {"PYTHONPATH": str(ROOT)}
     done = processes.run([*COMMAND, "program.py"], cwd=tmp_path, env=environment, text=True)
-    if sys.platform == "linux" and os.name == "posix":
+    if sys.platform == "linux":
         assert (done.returncode, done.stdout) == (0, "None\n")
-        assert "there is no display" in done.stderr
+        assert "there is no display); --headless runs without one" in done.stderr

@@ -7,8 +7,10 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from minirt.errors import MlxError
 from minirt.mlx.api import Mlx
-from minirt.mlx.options import integer
+from minirt.mlx.backend import ADVICE
+from minirt.mlx.options import MaybeNone, integer
 
 if TYPE_CHECKING:
     from minirt.mlx.backend import Backend
@@ -30,6 +32,9 @@ def install(backend: Backend | None, *, strict: bool) -> None:
             word = integer(color)
             swapped = (word & 0xFF) << 16 | word & 0xFF00 | word >> 16 & 0xFF
             return super().mlx_string_put(mlx_ptr, win_ptr, x, y, swapped, string)
+
+        def _mlx_failed(self, error: MlxError) -> MaybeNone:
+            return super()._mlx_failed(MlxError(str(error).replace(ADVICE, "--headless runs without one")))
 
     WrapperMlx.__name__ = WrapperMlx.__qualname__ = "Mlx"
     WrapperMlx.__module__ = "mlx.mlx"
