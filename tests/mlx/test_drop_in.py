@@ -12,11 +12,11 @@ from PIL import Image
 
 from minirt.errors import MlxError
 from minirt.mlx.drop_in.headless import Headless
-from minirt.mlx.drop_in.script import add_script, key_codes
+from minirt.mlx.drop_in.script import STEPS, add_script, key_codes
 from tests import processes
 from tests.lines import next_line
 from tests.mlx.test_without_display import NO_SCREEN
-from tests.paths import ROOT
+from tests.paths import PACKAGE, ROOT
 from tests.waiting import HANG_LIMIT, until
 
 if TYPE_CHECKING:
@@ -175,3 +175,10 @@ def test_a_program_without_a_display_gets_none(tmp_path: Path) -> None:
     if sys.platform == "linux":
         assert (done.returncode, done.stdout) == (0, "None\n")
         assert "there is no display); --headless runs without one" in done.stderr
+
+
+def test_the_script_in_the_readme_is_right() -> None:
+    readme = (PACKAGE / "mlx/README.md").read_text(encoding="utf-8")
+    lines = readme.split("```\n# events.txt\n")[1].split("```")[0].splitlines()
+    add_script(lines, "events", Headless(None, (100, 100)))
+    assert {line.split()[0] for line in lines} | {"up", "show"} == set(STEPS)
