@@ -54,11 +54,12 @@ class Canvas:
 
     def point(self, x: int, y: int, color: int) -> None:
         """Draw one pixel of 0xAARRGGBB; pixels outside are ignored."""
-        if 0 <= x < self.width and 0 <= y < self.height:
+        if self._left <= x < self._right and self._top <= y < self._bottom:  # within the box of earlier points
             self._points[y * self.width + x] = color & 0xFFFFFFFF
-            if not (self._left <= x < self._right and self._top <= y < self._bottom):
-                self._left, self._right = min(x, self._left), max(x + 1, self._right)
-                self._top, self._bottom = min(y, self._top), max(y + 1, self._bottom)
+        elif 0 <= x < self.width and 0 <= y < self.height:
+            self._points[y * self.width + x] = color & 0xFFFFFFFF
+            self._left, self._right = min(x, self._left), max(x + 1, self._right)
+            self._top, self._bottom = min(y, self._top), max(y + 1, self._bottom)
 
     def put(self, source: NDArray[np.uint8], x: int, y: int) -> None:
         """Draw a picture with its top left corner at x, y, clipped at the borders."""
