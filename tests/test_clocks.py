@@ -22,6 +22,8 @@ EXEMPT = {  # files that measure time, or run for a given time
     "waiting.py",
     "stability/mutation.py",
     "viewer/monkey.py",
+    "mlx/maze.py",  # programs that run in simulated time
+    "mlx/two_windows.py",
     *(
         path.relative_to(TESTS).as_posix()
         for path in (TESTS / "bench").rglob("*.py")

@@ -2,7 +2,8 @@
 
     from minirt.mlx import Button, Event, Key, Mlx
 
-Importing this package opens no display and loads no window library; `Mlx.mlx_init` does both.
+Importing this package opens no display and loads no window library; `Mlx.mlx_init` does both. `python -m
+minirt.mlx program.py` runs a program that says `from mlx import Mlx`.
 """
 
 from minirt.errors import MlxError

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from minirt.mlx.window import Window
 
+ADVICE = "-o FILE renders without one"  # the end of an error where no window can be opened
+
 
 class Loop(Protocol):
     """The part of a display that its back end uses; `minirt.mlx.display.Display` describes it."""

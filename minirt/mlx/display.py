@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
+import sys
 import threading
+import traceback
 from typing import TYPE_CHECKING
 
 from minirt.mlx.events import Event
+from minirt.mlx.handle import Handle
 
 if TYPE_CHECKING:
     from minirt.mlx.backend import Backend
-    from minirt.mlx.hooks import BoundHook
+    from minirt.mlx.hooks import BoundHook, Hook
+    from minirt.mlx.options import Options
     from minirt.mlx.window import Window
 
 
-class Display:
+class Display(Handle):
     """The state that MiniLibX keeps between its calls. Only `wake` may be called from any thread."""
 
-    def __init__(self, backend: Backend) -> None:
+    def __init__(self, backend: Backend, options: Options) -> None:
         self.backend = backend
+        self.options = options
         self.windows: list[Window] = []
         self.loop_hook: BoundHook | None = None
         self.wake_hook: BoundHook | None = None
         self.lost_hook: BoundHook | None = None
-        self.autorepeat = False
+        self.autorepeat = True
         self.is_open = True
         self.running = False  # inside mlx_loop
         self.ending = False
@@ -34,8 +39,9 @@ class Display:
     # --- the program's side ---
 
     def loop(self) -> None:
-        """Run until the program ends it, a hook raises (raised again here), or no window is left."""
+        """Run until the program ends it, an exception has to be raised from here, or no window is left."""
         self.running = True
+        self.ending = not self.is_open
         try:
             if self.windows:
                 self.backend.run()
@@ -98,7 +104,10 @@ class Display:
         self.failure = self.failure or failure
 
     def call(self, hook: BoundHook | None, *arguments: object) -> None:
-        """Call a hook. Its exception, even SystemExit, is kept until the loop ends: a platform would lose it."""
+        """Call a hook. Its exception, even SystemExit, is reported, and the loop goes on.
+
+        With `Options.strict` it ends the loop, which raises it: raised at once, a platform would lose it.
+        """
         if hook is None or self.ending or self.failure is not None:
             return
         function, parameter = hook
@@ -106,7 +115,10 @@ class Display:
         try:
             function(*arguments, parameter)
         except BaseException as failure:
-            self.fail(failure)
+            if self.options.strict or not isinstance(failure, Exception | SystemExit):
+                self.fail(failure)
+            else:
+                _report(function, failure)
         finally:
             self._depth -= 1
 
@@ -154,3 +166,9 @@ class Display:
             self.backend.close_window(self._closing.pop())
         if not self.is_open and not self.running:
             self.backend.close()
+
+
+def _report(hook: Hook, failure: BaseException) -> None:
+    """Print the exception of a hook, as Python does for those that it cannot raise."""
+    print(f"Exception ignored in the hook {getattr(hook, '__qualname__', hook)}:", file=sys.stderr)
+    traceback.print_exception(failure)

@@ -5,13 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from minirt.mlx.handle import Handle
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
 
-@dataclass(eq=False)
-class Image:
+@dataclass(eq=False, repr=False)
+class Image(Handle):
     """A picture to draw into: (h, w, 4) uint8, in memory blue, green, red, alpha."""
 
     pixels: NDArray[np.uint8]

@@ -10,6 +10,8 @@ from minirt.mlx.keys import MODIFIER_KEYS, Modifier
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from minirt.mlx.options import Options
+
 REPEAT_DELAY = 0.5  # seconds until a held key repeats
 REPEAT_INTERVAL = 0.04  # seconds
 
@@ -17,13 +19,14 @@ REPEAT_INTERVAL = 0.04  # seconds
 class Keyboard:
     """Pairs every press of a key with a release, although platforms lose releases.
 
-    Releases are lost when the window loses the focus, when Cmd is held on macOS, and when the symbol of a held key
-    changes (Shift and = is +; with Shift released first, the platform reports the release of =). This class releases
-    the keys concerned.
+    Releases are lost when the window loses the focus, when Cmd is held on macOS, and, if keys are reported as symbols,
+    when the symbol of a held key changes (Shift and = is +; with Shift released first, the platform reports the
+    release of =). This class releases the keys concerned.
     """
 
-    def __init__(self, report: Callable[[Event, int], None]) -> None:
+    def __init__(self, report: Callable[[Event, int], None], options: Options) -> None:
         self._report = report
+        self._options = options
         self.held: list[int] = []  # oldest first
         self.modifiers = Modifier.NONE
         self._repeating: int | None = None  # the newest key, while it is held
@@ -44,7 +47,7 @@ class Keyboard:
         modifier = MODIFIER_KEYS.get(key, Modifier.NONE)
         released = [key] if key in self.held else []
         if modifier:
-            released += [other for other in self.held if other != key and _hides_release(modifier, other)]
+            released += [other for other in self.held if other != key and self._hides_release(modifier, other)]
         self.held = [other for other in self.held if other not in released]
         self._update_modifiers(modifiers)
         self.modifiers &= ~modifier
@@ -72,6 +75,14 @@ class Keyboard:
             self._report(Event.KEY_RELEASE, self._repeating)
             self._report(Event.KEY_PRESS, self._repeating)
 
+    def _hides_release(self, modifier: Modifier, key: int) -> bool:
+        """Whether releasing `modifier` may hide the release of `key`: symbols change with it, letters do not."""
+        if key in MODIFIER_KEYS:
+            return False
+        if modifier is Modifier.COMMAND:
+            return True
+        return self._options.symbols and 0x20 < key < 0xFF00 and not 0x61 <= key <= 0x7A
+
     def _update_modifiers(self, modifiers: Modifier | None) -> None:
         self.modifiers = self._held_modifiers() if modifiers is None else modifiers
 
@@ -80,12 +91,3 @@ class Keyboard:
         for key in self.held:
             modifiers |= MODIFIER_KEYS.get(key, Modifier.NONE)
         return modifiers
-
-
-def _hides_release(modifier: Modifier, key: int) -> bool:
-    """Whether releasing `modifier` may hide the release of `key`: printed symbols change with it, letters do not."""
-    if key in MODIFIER_KEYS:
-        return False
-    if modifier is Modifier.COMMAND:
-        return True
-    return 0x20 < key < 0xFF00 and not 0x61 <= key <= 0x7A

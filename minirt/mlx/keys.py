@@ -7,7 +7,8 @@ from enum import IntEnum, IntFlag
 class Key(IntEnum):
     """Named keys. A hook receives plain integers, which may be keys without a name here.
 
-    A letter has its lower case code with or without Shift; a printable symbol has its character code.
+    The code is that of the symbol which the key prints without modifiers: a letter's lower case, and 1 even if Shift
+    makes it an exclamation mark. With the option `symbols` it is that of the printed symbol.
     """
 
     SPACE = 0x20
@@ -82,8 +83,21 @@ class Key(IntEnum):
     END = 0xFF57
     INSERT = 0xFF63
     KEYPAD_ENTER = 0xFF8D
+    KEYPAD_HOME = 0xFF95  # the keys of the keypad with these names print digits only with Num Lock
+    KEYPAD_LEFT = 0xFF96
+    KEYPAD_UP = 0xFF97
+    KEYPAD_RIGHT = 0xFF98
+    KEYPAD_DOWN = 0xFF99
+    KEYPAD_PAGE_UP = 0xFF9A
+    KEYPAD_PAGE_DOWN = 0xFF9B
+    KEYPAD_END = 0xFF9C
+    KEYPAD_BEGIN = 0xFF9D
+    KEYPAD_INSERT = 0xFF9E
+    KEYPAD_DELETE = 0xFF9F
+    KEYPAD_MULTIPLY = 0xFFAA
     KEYPAD_ADD = 0xFFAB
     KEYPAD_SUBTRACT = 0xFFAD
+    KEYPAD_DIVIDE = 0xFFAF
     F1 = 0xFFBE
     F2 = 0xFFBF
     F3 = 0xFFC0

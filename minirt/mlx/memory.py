@@ -247,7 +247,9 @@ class Memory(Backend):
             self._resize(window, *self._windowed.pop(window))
 
     def move_pointer(self, window: Window, x: int, y: int) -> None:
-        self.motion(x, y, window)
+        """Report the motion before the next step of the script."""
+        self._script.appendleft(lambda: window.on_motion(x, y))
+        self._wakeup.set()
 
     def show_pointer(self, window: Window, on: bool) -> None:
         self.pointer_shown = on

@@ -29,28 +29,30 @@ def draw_text(
     color: int,
     *,
     size: int = SIZE,
+    pitch: int = 0,
     background: int | None = None,
     padding: int = 0,
 ) -> tuple[int, int]:
     """Draw `text` (0xRRGGBB, opaque) with its top left corner at x, y. Returns its width and height.
 
     text: newlines start lines.
+    pitch: width of each character in pixels, as of a typewriter; 0 is the font's own.
     pixels: (h, w, 4) uint8, BGRA, written in place; text outside is clipped.
     background: 0xAARRGGBB, blended by its alpha below the text and `padding` pixels around it.
     """
-    width, height = measure(text, size)
+    width, height = measure(text, size, pitch)
     if background is not None:
         opacity = np.full((height + 2 * padding, width + 2 * padding), background >> 24 & 0xFF, np.uint8)
         _blend(pixels, x - padding, y - padding, opacity, background)
     for number, line in enumerate(text.split("\n")):
-        _blend(pixels, x, y + number * _line_height(size), _coverage(line, size), color)
+        _blend(pixels, x, y + number * _line_height(size), _coverage(line, size, pitch), color)
     return width, height
 
 
-def measure(text: str, size: int = SIZE) -> tuple[int, int]:
+def measure(text: str, size: int = SIZE, pitch: int = 0) -> tuple[int, int]:
     """Return the width and height in pixels that `draw_text` would take."""
     lines = text.split("\n")
-    return max(_width(line, size) for line in lines), len(lines) * _line_height(size)
+    return max(_width(line, size, pitch) for line in lines), len(lines) * _line_height(size)
 
 
 def _blend(pixels: NDArray[np.uint8], x: int, y: int, coverage: NDArray[np.uint8], color: int) -> None:
@@ -66,24 +68,29 @@ def _blend(pixels: NDArray[np.uint8], x: int, y: int, coverage: NDArray[np.uint8
 
 
 @lru_cache(maxsize=1024)
-def _coverage(line: str, size: int) -> NDArray[np.uint8]:
+def _coverage(line: str, size: int, pitch: int) -> NDArray[np.uint8]:
     """Coverage of each pixel by one line of text, 0 to 255; cached, since lines seldom change."""
     from PIL import Image, ImageDraw
 
-    width = _width(line, size)
+    if pitch and len(line) > 1:
+        return np.hstack([_coverage(character, size, pitch) for character in line])
+    width, height, natural = _width(line, size, pitch), _line_height(size), _font(size).getlength(line)
     if width == 0:
-        return np.zeros((_line_height(size), 0), np.uint8)
-    image = Image.new("L", (width, _line_height(size)))
-    ImageDraw.Draw(image).text((0, 0), line, fill=255, font=_font(size))
+        return np.zeros((height, 0), np.uint8)
+    image = Image.new("L", (max(width, int(np.ceil(natural))), height))
+    place = (image.width - natural) / 2 if pitch else 0
+    ImageDraw.Draw(image).text((place, 0), line, fill=255, font=_font(size))
+    if image.width > width:  # narrow a wide character to the pitch
+        image = image.resize((width, height), Image.Resampling.BILINEAR)
     coverage = np.asarray(image).copy()
     coverage.flags.writeable = False
     return coverage
 
 
 @lru_cache(maxsize=1024)
-def _width(line: str, size: int) -> int:
+def _width(line: str, size: int, pitch: int) -> int:
     """Width of one line in pixels; six times as fast as drawing it."""
-    return int(np.ceil(_font(size).getlength(line)))
+    return pitch * len(line) if pitch else int(np.ceil(_font(size).getlength(line)))
 
 
 @lru_cache(maxsize=64)

@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Protocol
 
 from minirt.mlx.canvas import Canvas
 from minirt.mlx.events import Button, Event
+from minirt.mlx.handle import Handle
 from minirt.mlx.keyboard import Keyboard
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from minirt.mlx.hooks import BoundHook
+    from minirt.mlx.options import Options
 
 
 class WindowControls(Protocol):
@@ -35,11 +37,14 @@ class WindowHost(Protocol):
     @property
     def backend(self) -> WindowControls: ...
 
+    @property
+    def options(self) -> Options: ...
+
     def call(self, hook: BoundHook | None, *arguments: object) -> None: ...
 
 
-@dataclass(eq=False)
-class Window:
+@dataclass(eq=False, repr=False)
+class Window(Handle):
     """An open window. The size of a resizable window is that of its frame buffer.
 
     A window of fixed size keeps the requested size: if the platform shows it larger, its picture is stretched
@@ -66,8 +71,8 @@ class Window:
     announced: bool = False  # the first MAP_NOTIFY was delivered
 
     def __post_init__(self) -> None:
-        self._canvas = Canvas(self.width, self.height)
-        self.keyboard = Keyboard(self.deliver)
+        self._canvas = self._new_canvas()
+        self.keyboard = Keyboard(self.deliver, self.display.options)
 
     @property
     def shown(self) -> Canvas:
@@ -77,14 +82,18 @@ class Window:
     @property
     def canvas(self) -> Canvas:
         """The canvas to draw on: of the window's size, black where it is new."""
-        if (self._canvas.width, self._canvas.height) != (self.width, self.height):
-            self._canvas = Canvas(self.width, self.height)
-        return self._canvas
+        canvas = self._canvas
+        if canvas.width != self.width or canvas.height != self.height:
+            canvas = self._canvas = self._new_canvas()
+        return canvas
+
+    def _new_canvas(self) -> Canvas:
+        return Canvas(self.width, self.height, alpha=self.display.options.alpha)
 
     def deliver(self, event: Event, *arguments: int) -> None:
-        """Call the hook on `event`, if there is one."""
+        """Call the hook on `event`, if there is one, with plain integers: programs print them."""
         if self.is_open:
-            self.display.call(self.hooks.get(event), *arguments)
+            self.display.call(self.hooks.get(event), *map(int, arguments))
 
     # --- events, as back ends report them; keys go to `keyboard` ---
 

@@ -51,8 +51,18 @@ def shift_tab_is_tab(harness: Harness) -> None:
 PLUS_LOST = [["press", 65505], ["press", 43], ["release", 65505], ["release", 43]]
 
 
+@scenario(
+    ["press", 65505], ["press", 49], ["release", 49], ["press", 61], ["release", 65505], ["release", 61],
+    ["press", 65430], ["release", 65430],
+)  # fmt: skip
+def a_key_has_the_code_that_it_has_without_modifiers(harness: Harness) -> None:
+    log_keys(harness)
+    harness.run(lambda user: user.keys("+shift +digit_1 -digit_1 +equal -shift -equal +keypad_left -keypad_left"))
+
+
 @scenario(*PLUS_LOST, *PLUS_LOST)
 def a_symbol_whose_release_is_lost_is_released_with_shift(harness: Harness) -> None:
+    harness.m.mlx_set_options(symbols=True)
     log_keys(harness)
     harness.run(lambda user: user.keys(2 * "+shift +equal -shift -equal "))
 
@@ -107,9 +117,10 @@ def losing_the_focus_releases_held_keys(harness: Harness) -> None:
 
 
 @scenario(["press", 119], ["typed again", True], ["release", 119])
-def a_held_key_does_not_repeat(harness: Harness) -> None:
+def a_held_key_does_not_repeat_if_asked_for(harness: Harness) -> None:
     """The platform repeats the key as text only."""
     typed: list[str] = []
+    harness.m.mlx_do_key_autorepeatoff(harness.mlx)
     log_keys(harness)
     harness.m.mlx_text_hook(harness.win, lambda text, _: typed.append(text))
 
@@ -122,9 +133,8 @@ def a_held_key_does_not_repeat(harness: Harness) -> None:
 
 
 @scenario(["repeats", True])
-def a_held_key_repeats_if_asked_for(harness: Harness) -> None:
+def a_held_key_repeats(harness: Harness) -> None:
     seen: Log = []
-    harness.m.mlx_do_key_autorepeaton(harness.mlx)
     harness.m.mlx_hook(harness.win, Event.KEY_PRESS, 0, lambda key, _: seen.append([2, key]), None)
     harness.m.mlx_hook(harness.win, Event.KEY_RELEASE, 0, lambda key, _: seen.append([3, key]), None)
 
@@ -167,6 +177,27 @@ def motion_counts_from_the_top_left(harness: Harness) -> None:
         user.move(0, 0)
         user.until(lambda: len(harness.log) == 1)
         user.move(199, 99)
+
+    harness.run(actions)
+
+
+@scenario(["at once", [0, 30, 40]], ["motion", 30, 40])
+def the_program_moves_the_pointer(harness: Harness) -> None:
+    def moved(x: int, y: int, param: str) -> None:
+        if harness.log:
+            harness.record(param, x, y)
+
+    def pressed(*_: object) -> None:
+        harness.m.mlx_mouse_move(harness.win, 30, 40)
+        harness.record("at once", list(harness.m.mlx_mouse_get_pos(harness.win)))
+
+    harness.m.mlx_hook(harness.win, Event.MOTION_NOTIFY, 0, moved, "motion")
+    harness.m.mlx_hook(harness.win, Event.KEY_PRESS, 0, pressed, None)
+
+    def actions(user: User) -> None:
+        user.move(100, 50)
+        user.wait_until_handled()
+        user.keys("+a -a")
 
     harness.run(actions)
 

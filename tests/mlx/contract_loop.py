@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import threading
+from contextlib import redirect_stderr
 from typing import TYPE_CHECKING
 
 from minirt.mlx import Event
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
 @scenario(["map"], ["expose", "mine"], ["looked", [[9, 9, 9]]])
 def a_window_is_mapped_and_exposed_at_first(harness: Harness) -> None:
     def draw(param: str) -> None:
-        harness.m.mlx_pixel_put(harness.mlx, harness.win, 1, 1, 0x090909)
+        harness.m.mlx_pixel_put(harness.mlx, harness.win, 1, 1, 0xFF090909)
         if len(harness.log) == 1:  # the window system may send further events
             harness.record("expose", param)
 
@@ -44,7 +46,7 @@ def a_minimised_window_keeps_its_picture_and_the_loop_goes_on(harness: Harness) 
         user.do(lambda: harness.record("exposed", bool(exposes)))
         user.log_picture("kept", lambda picture: picture[50, 100].tolist())
 
-    harness.m.mlx_pixel_put(harness.mlx, harness.win, 100, 50, 0x070809)
+    harness.m.mlx_pixel_put(harness.mlx, harness.win, 100, 50, 0xFF070809)
     harness.hook(Event.UNMAP_NOTIFY, "hidden")
     harness.m.mlx_loop_hook(harness.mlx, ticks.append, 1)
     harness.m.mlx_expose_hook(harness.win, exposes.append, 1)
@@ -119,6 +121,39 @@ def an_exception_of_a_hook_is_raised_by_the_loop(harness: Harness) -> None:
     harness.run(lambda user: user.keys("+b -b"))
 
 
+@scenario(["wheel", 4], ["exit"], ["wheel", 4], ["key", 98], ["printed", 2, 1])
+def the_loop_goes_on_after_an_exception_of_a_hook(harness: Harness) -> None:
+    """It is printed, even SystemExit, as the official wrapper does."""
+    harness.m.mlx_set_options(strict=False)
+
+    def turned(button: int, _x: int, _y: int, _: object) -> None:
+        harness.record("wheel", button)
+        raise KeyError("no wheel")
+
+    def released(*_: object) -> None:
+        harness.m.mlx_hook(harness.win, Event.BUTTON_RELEASE, 0, None, None)
+        harness.record("exit")
+        raise SystemExit(3)
+
+    harness.m.mlx_mouse_hook(harness.win, turned, None)
+    harness.m.mlx_hook(harness.win, Event.BUTTON_RELEASE, 0, released, None)
+    harness.hook(Event.KEY_PRESS, "key")
+
+    def actions(user: User) -> None:
+        for count in (2, 3):
+            user.click(5, 5, 4)
+            user.until(lambda count=count: len(harness.log) == count)  # type: ignore[misc]
+        user.keys("+b -b")
+        user.until(lambda: len(harness.log) == 4)
+        user.do(
+            lambda: harness.record("printed", *map(errors.getvalue().count, ("KeyError: 'no wheel'", "SystemExit: 3")))
+        )
+
+    errors = io.StringIO()
+    with redirect_stderr(errors):
+        harness.run(actions)
+
+
 @scenario(["exit", 3])
 def sys_exit_in_a_hook_is_raised_by_the_loop(harness: Harness) -> None:
     ticks: list[int] = []
@@ -143,8 +178,7 @@ def no_hook_is_called_after_loop_exit(harness: Harness) -> None:
     harness.m.mlx_mouse_hook(harness.win, turned, None)
     harness.hook(Event.BUTTON_RELEASE, "not after the end")  # comes with the press
     harness.run(lambda user: user.click(5, 5, 4))
-    harness.m.mlx_loop_exit(harness.mlx)
-    harness.record("returned", harness.m.mlx_loop(harness.mlx))
+    harness.record("returned", harness.m.mlx_loop_exit(harness.mlx))  # no loop runs: the next one is not ended
     harness.hook(Event.KEY_PRESS, "again")
     harness.run(lambda user: user.keys("+b -b"))
 

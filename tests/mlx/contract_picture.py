@@ -58,6 +58,7 @@ def a_new_window_is_black(harness: Harness) -> None:
 def every_pixel_is_shown_unchanged(harness: Harness) -> None:
     image = harness.m.mlx_new_image(harness.mlx, 200, 100)
     image.pixels[...] = np.random.default_rng(1).integers(0, 256, (100, 200, 4), np.uint8)
+    image.pixels[..., 3] = 255
     harness.m.mlx_put_image_to_window(harness.mlx, harness.win, image, 0, 0)
     expected = image.pixels[..., 2::-1].copy()
     image.pixels[...] = 0  # the window has its copy
@@ -68,7 +69,7 @@ def every_pixel_is_shown_unchanged(harness: Harness) -> None:
 def pictures_are_clipped_at_the_borders(harness: Harness) -> None:
     expected = np.zeros((100, 200, 3), np.uint8)
     for x, y, blue in ((-5, -5, 1), (195, -5, 2), (-5, 95, 3), (195, 95, 4), (300, 0, 5), (0, -10, 6), (0, 100, 7)):
-        harness.m.mlx_put_image_to_window(harness.mlx, harness.win, solid(harness, 10, 10, blue), x, y)
+        harness.m.mlx_put_image_to_window(harness.mlx, harness.win, solid(harness, 10, 10, 0xFF000000 | blue), x, y)
     expected[:5, :5] = 0, 0, 1
     expected[:5, 195:] = 0, 0, 2
     expected[95:, :5] = 0, 0, 3
@@ -87,13 +88,33 @@ def single_pixels_and_clear(harness: Harness) -> None:
     harness.run(lambda user: user.log_picture("picture", lambda picture: np.array_equal(picture, expected)))
 
 
+@scenario(["picture", [[0x80, 0x40, 0], [0x80, 0x40, 0], [0x80, 0x40, 0x80], [0x80, 0x40, 0x80]]])
+def images_and_pixels_are_blended_by_their_alpha(harness: Harness) -> None:
+    """Of two pixels at one place the last counts, unless an image lies between."""
+
+    def put(image: Image) -> None:
+        harness.m.mlx_put_image_to_window(harness.mlx, harness.win, image, 0, 0)
+
+    def point(x: int, color: int) -> None:
+        harness.m.mlx_pixel_put(harness.mlx, harness.win, x, 0, color)
+
+    put(solid(harness, 200, 100, 0xFF804000))
+    put(solid(harness, 200, 100, 0x00FFFFFF))
+    for x in (2, 3):
+        point(x, 0xFF804001)
+        point(x, 0x80804000 | 0xFF)
+    point(1, 0x00FFFFFF)
+    colours = at((0, 0), (1, 0), (2, 0), (3, 0))
+    harness.run(lambda user: user.log_picture("picture", colours))
+
+
 @scenario(["before", [[0, 0, 0], [0, 0, 0]]], ["after", [[9, 0, 0], [0, 9, 0]]])
 def drawing_in_a_hook_is_shown_after_it(harness: Harness) -> None:
     """Two distant pixels are drawn: both are in the box of changes that is uploaded."""
 
     def draw(*_: object) -> None:
-        harness.m.mlx_pixel_put(harness.mlx, harness.win, 20, 30, 0x090000)
-        harness.m.mlx_pixel_put(harness.mlx, harness.win, 190, 5, 0x000900)
+        harness.m.mlx_pixel_put(harness.mlx, harness.win, 20, 30, 0xFF090000)
+        harness.m.mlx_pixel_put(harness.mlx, harness.win, 190, 5, 0xFF000900)
 
     harness.m.mlx_key_hook(harness.win, draw, None)
     colours = at((20, 30), (190, 5))
@@ -109,7 +130,7 @@ def drawing_in_a_hook_is_shown_after_it(harness: Harness) -> None:
 @scenario(["picture", True], ["box", True])
 def text_has_its_top_left_corner_at_x_y(harness: Harness) -> None:
     expected = np.zeros((100, 200, 4), np.uint8)
-    width, height = draw_text(expected, 30, 40, "Hello", 0x80C0FF)
+    width, height = draw_text(expected, 30, 40, "Hello", 0x80C0FF, pitch=10)
     harness.m.mlx_string_put(harness.mlx, harness.win, 30, 40, 0x80C0FF, "Hello")
 
     def inside(picture: NDArray[np.uint8]) -> bool:

@@ -18,9 +18,13 @@ if TYPE_CHECKING:
 
 
 class Harness:
-    """A window `win` of 200x100 pixels, a log, and the log that is expected of the scenario."""
+    """A window `win` of 200x100 pixels, a log, and the log that is expected of the scenario.
+
+    Exceptions of hooks are raised, or failed assertions would be lost.
+    """
 
     def __init__(self, m: Mlx, title: str, expected: list[list[Any]]) -> None:
+        m.mlx_set_options(strict=True, symbols=False)
         self.m = m
         self.mlx = m.mlx_init()
         self.expected = expected

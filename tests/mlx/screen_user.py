@@ -23,7 +23,14 @@ if TYPE_CHECKING:
     from minirt.mlx import Window
     from tests.mlx.harness import Harness
 
-X_NAMES = {"shift": "Shift_L", "ctrl": "Control_L", "escape": "Escape", "tab": "Tab"}
+X_NAMES = {
+    "shift": "Shift_L",
+    "ctrl": "Control_L",
+    "escape": "Escape",
+    "tab": "Tab",
+    "digit_1": "1",
+    "keypad_left": "KP_Left",
+}
 IDLE_LOOKS = 10  # consecutive looks that find the main thread asleep
 
 

@@ -70,6 +70,20 @@ def test_text_stays_within_the_measured_size() -> None:
     assert pixels.max(axis=(0, 1)).tolist() == [0, 0x80, 0xFF, 0]  # blue, green, red; alpha is left alone
 
 
+def test_text_has_the_pitch_of_the_wrapper() -> None:
+    """Programs centre and align text with 10 pixels a character."""
+    pixels = np.zeros((30, 300, 4), np.uint8)
+    assert draw_text(pixels, 0, 5, "iWiMi i", 0xFFFFFF, pitch=10) == (70, measure("x")[1])
+    drawn = pixels.any(axis=(0, 2))
+    cells = drawn[:70].reshape(7, 10)
+    assert cells[[0, 2, 4, 6]].tolist() == [cells[0].tolist()] * 4, "each character has its cell"
+    assert cells[0, 3:7].any()
+    assert not cells[0, [0, 1, 8, 9]].any()
+    assert cells[[1, 3]].sum() >= 16, "wide characters fill it"
+    assert not cells[5].any()
+    assert not drawn[70:].any()
+
+
 def test_text_is_blended_with_the_pixels_below() -> None:
     black = np.zeros((40, 100, 4), np.uint8)
     grey = np.full((40, 100, 4), 100, np.uint8)
@@ -129,7 +143,7 @@ def test_files_become_images(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("content", [None, b"", b"\x89PNG\r\n\x1a\nbroken"])
 def test_a_file_that_is_no_picture_raises(tmp_path: Path, content: bytes | None) -> None:
-    m = Mlx(Memory())
+    m = Mlx(Memory(), strict=True)
     path = tmp_path / "broken.png"
     if content is not None:
         path.write_bytes(content)
@@ -139,6 +153,6 @@ def test_a_file_that_is_no_picture_raises(tmp_path: Path, content: bytes | None)
 
 @pytest.mark.parametrize("size", [(0, 10), (10, 0), (-1, 5)])
 def test_a_window_without_pixels_raises(size: tuple[int, int]) -> None:
-    m = Mlx(Memory())
+    m = Mlx(Memory(), strict=True)
     with pytest.raises(MlxError):
         m.mlx_new_window(m.mlx_init(), *size, "none")

@@ -35,7 +35,7 @@ def test_time_is_simulated() -> None:
 
 def test_play_steps_without_a_loop_and_raises() -> None:
     memory = Memory()
-    m = Mlx(memory)
+    m = Mlx(memory, strict=True)
     win = m.mlx_new_window(m.mlx_init(), 10, 10, "steps")
     seen: list[object] = []
     m.mlx_hook(win, Event.KEY_PRESS, 0, lambda key, _: seen.append((key, m.mlx_get_modifiers(win))), None)

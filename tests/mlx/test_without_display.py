@@ -31,7 +31,7 @@ def test_no_display_is_an_error_with_advice_each_time() -> None:
 from minirt.mlx import Mlx, MlxError
 for _ in range(2):
     try:
-        Mlx().mlx_init()
+        Mlx(strict=True).mlx_init()
     except MlxError as error:
         print("-o FILE" in str(error), "no display" in str(error))
 """

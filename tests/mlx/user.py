@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from minirt.mlx.memory import Memory
     from tests.mlx.harness import Harness
 
-SHIFTED_SYMBOLS = {"equal": "plus", "slash": "question"}  # with Shift, on the layout us
+SHIFTED_SYMBOLS = {"equal": "plus", "slash": "question", "digit_1": "exclamation"}  # with Shift, on the layout us
 KEYS = {"shift": Key.SHIFT_L, "ctrl": Key.CONTROL_L}
 
 
@@ -122,7 +122,7 @@ class MemoryUser(User):
     def press(self, key: str) -> None:
         self._held.append(key)
         symbol = SHIFTED_SYMBOLS.get(key, key) if "shift" in self._held else key
-        self._memory.press(_code(symbol), self._focus)
+        self._memory.press(_code(self._reported(key)), self._focus)
         self._type(symbol)
 
     def hold_until(self, key: str, enough: Callable[[], bool]) -> None:
@@ -134,7 +134,7 @@ class MemoryUser(User):
 
     def release(self, key: str) -> None:
         self._held.remove(key)
-        self._memory.release(_code(SHIFTED_SYMBOLS.get(key, key) if "shift" in self._held else key), self._focus)
+        self._memory.release(_code(self._reported(key)), self._focus)
 
     def move(self, x: int, y: int) -> None:
         self._memory.motion(x, y, self._harness.win)
@@ -211,6 +211,11 @@ class MemoryUser(User):
 
     def log_title(self) -> None:
         self._memory.do(lambda: self._harness.record("title", self._harness.win.title))
+
+    def _reported(self, key: str) -> str:
+        """Return the name of what the platform reports for a key: its symbol, if the program asked for symbols."""
+        symbols = self._harness.win.display.options.symbols and "shift" in self._held
+        return SHIFTED_SYMBOLS.get(key, key) if symbols else key
 
     def _type(self, symbol: str) -> None:
         """Type the character of a key, if it prints one."""

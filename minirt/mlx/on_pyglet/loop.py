@@ -12,7 +12,7 @@ import pyglet.display
 from pyglet.app.base import EventLoop
 
 from minirt.errors import MlxError
-from minirt.mlx.backend import Backend
+from minirt.mlx.backend import ADVICE, Backend
 from minirt.mlx.on_pyglet.connection_loss import end_program_when_connection_is_lost
 from minirt.mlx.on_pyglet.interrupt import interruptible
 from minirt.mlx.on_pyglet.native import NativeWindow
@@ -46,7 +46,7 @@ class PygletBackend(Backend):
         try:
             self._natives[window] = NativeWindow(window, self.time, self._request_turn)
         except Exception as error:  # any error of pyglet means that there is no window
-            raise MlxError(f"no window with OpenGL 3.3 can be opened ({error}); -o FILE renders without one") from error
+            raise MlxError(f"no window with OpenGL 3.3 can be opened ({error}); {ADVICE}") from error
 
     def close_window(self, window: Window) -> None:
         self._natives.pop(window).pyglet.close()

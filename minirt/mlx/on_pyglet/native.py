@@ -13,6 +13,7 @@ from minirt.mlx.events import Button, Event
 from minirt.mlx.keys import Key, Modifier
 from minirt.mlx.on_pyglet.canvas_texture import CanvasTexture
 from minirt.mlx.on_pyglet.drag_and_drop import fix_drag_enter
+from minirt.mlx.on_pyglet.key_codes import report_key_codes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -56,6 +57,7 @@ class NativeWindow:
             vsync=False,  # a buffer swap of a hidden window may take a second: never wait for it
         )  # fmt: skip
         fix_drag_enter(self.pyglet)
+        self._has_key_codes = report_key_codes(self.pyglet, self._on_key_code)
         self.pyglet.push_handlers(self)
         self._texture = CanvasTexture()
         self.on_resize(window.width, window.height)
@@ -85,14 +87,16 @@ class NativeWindow:
         self._texture.draw(self._window.shown, *self._framebuffer_size())
 
     def on_key_press(self, symbol: int, modifiers: int) -> bool:
-        self._window.keyboard.press(SYMBOLS.get(symbol, symbol), self._clock(), _modifiers(modifiers))
-        self._changed()
+        if not self._reports_codes:
+            self._window.keyboard.press(SYMBOLS.get(symbol, symbol), self._clock(), _modifiers(modifiers))
+            self._changed()
         return True
 
     def on_key_release(self, symbol: int, modifiers: int) -> bool:
-        released = self._window.keyboard.release(SYMBOLS.get(symbol, symbol), _modifiers(modifiers))
-        self._forget_keys(released)
-        self._changed()
+        if not self._reports_codes:
+            released = self._window.keyboard.release(SYMBOLS.get(symbol, symbol), _modifiers(modifiers))
+            self._forget_keys(released)
+            self._changed()
         return True
 
     def on_text(self, text: str) -> None:
@@ -169,6 +173,21 @@ class NativeWindow:
         self._window.on_close_button()
         self._changed()
         return True
+
+    @property
+    def _reports_codes(self) -> bool:
+        """Whether keys are reported by the codes of X11, not by the symbols of pyglet; elsewhere these are the same."""
+        return self._has_key_codes and not self._window.display.options.symbols
+
+    def _on_key_code(self, pressed: bool, code: int, modifiers: int) -> None:
+        """Report a key by its code, before pyglet handles its event."""
+        if self._reports_codes:
+            keyboard = self._window.keyboard
+            if pressed:
+                keyboard.press(code, self._clock(), _modifiers(modifiers))
+            else:
+                keyboard.release(code, _modifiers(modifiers))
+            self._changed()
 
     def _button(self, event: Event, x: float, y: float, button: int, modifiers: int) -> None:
         self._window.keyboard.modifiers = _modifiers(modifiers)

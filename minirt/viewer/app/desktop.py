@@ -100,6 +100,7 @@ def open_session(
     watch: bool,
 ) -> Session:
     """Open a session with its window, connected to the window's events. MlxError."""
+    mlx.mlx_set_options(strict=True)
     display = mlx.mlx_init()
     try:
         with gc_paused():

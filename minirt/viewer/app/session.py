@@ -80,6 +80,8 @@ class Session:
         self.failures: list[MiniRTError] = []  # of commands
         self.screenshot_pending = False
         self.full_screen = False
+        mlx.mlx_set_options(alpha=False, strict=True, symbols=True)
+        mlx.mlx_do_key_autorepeatoff(display)  # `key_repeat` repeats what is worth it
         self.window = mlx.mlx_new_window(display, *size, f"miniRT - {path.name}", resizable=True)
         self.refinement = Refinement(painter(lambda: mlx.mlx_wake(display)), self.window, samples)
         self.screen = Screen(mlx, self.window, self.keymap.layout)
