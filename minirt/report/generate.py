@@ -16,15 +16,16 @@ from minirt.rendering.notes import kernel_notes
 from minirt.rendering.running.cores import usable_cores
 from minirt.report.measurements import formula_errors
 from minirt.report.measurements.coincident import coincident
+from minirt.report.measurements.convergence import orders
 from minirt.report.measurements.exact_hits import SOLIDS
 from minirt.report.measurements.eye_rays import rays_from_the_eye
-from minirt.report.measurements.findings import Findings, choices, subject
+from minirt.report.measurements.findings import EIGHT_BITS, Findings, choices, subject
 from minirt.report.measurements.metrics import Picture
-from minirt.report.measurements.picture_errors import SettingRenderer, measure_settings
+from minirt.report.measurements.picture_errors import SettingRenderer, measure_disturbed_again, measure_settings
 from minirt.report.measurements.plan import FULL, QUICK, RAYS, Plan, fitting_size
 from minirt.report.measurements.reference import Reference, passes, reference
 from minirt.report.measurements.regimes import regimes_of
-from minirt.report.measurements.settings import settings
+from minirt.report.measurements.settings import COUNTS, settings
 from minirt.report.measurements.stiffness import stiff_shapes
 from minirt.report.output.document import document, formula_section, summary
 from minirt.report.output.error_image import error_image
@@ -50,7 +51,7 @@ def report(
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
     make_folder(folder)
     plan, kinds = QUICK if quick else FULL, [kind for kind in ALL_KINDS if kind.element in set(map(type, scene.shapes))]
-    wanted = list(settings(scene, plan.most))
+    wanted = list(settings(scene, plan.most, plan.least_error))
     steps = passes(plan.samples) + len(wanted) + sum(len(regimes_of(kind)) + 1 for kind in kinds)
     with progress(steps + 1) as shown:
         shown.step("compiling")
@@ -60,6 +61,8 @@ def report(
         stage = SettingRenderer(scene, width, height, about.threads)
         found = list(measure_settings(stage, wanted, right, plan.budget, shown.step))
         rows = list(formula_rows(kinds, plan, shown.step, scene))
+        pictures = {row.name: picture for row, picture in found if picture is not None}
+        measured = measure_disturbed_again(stage, wanted, [row for row, _ in found], plan.budget, shown.step)
     packing = Renderer().packing
     packing.pack(scene, width, height)
     stiff = [*stiff_shapes(scene, packing.shape_arrays, width, height), *coincident(scene, packing.shape_arrays)]
@@ -67,14 +70,17 @@ def report(
         about,
         right.samples,
         right.error,
-        [row for row, _ in found],
+        EIGHT_BITS,
+        measured,
+        list(orders(measured, right.error)),
+        [],
+        [],
         rows,
         stiff,
         [*kernel_notes(scene, wide=None, compiling=False), *packing.notes],
-        identical_without_culling({(row.knob, row.samples): picture for row, picture in found if picture is not None}),
+        identical_without_culling(pictures),
         kinds_not_measured(kinds) + ([] if find_spec("matplotlib") else [NO_DIAGRAM]),
     )
-    pictures = {f"{row.knob} {row.samples}": picture for row, picture in found if picture is not None}
     write_files(folder, report_files(findings, pictures, right))
     return summary(findings) + f"\nThe report is in {Path(folder, REPORT)}"
 
@@ -111,12 +117,13 @@ def kinds_not_measured(kinds: Iterable[Kind]) -> list[str]:
     return [f"formula of the {kind.element.title}: none in 60 digits" for kind in kinds if kind.element not in SOLIDS]
 
 
-def identical_without_culling(pictures: dict[tuple[str, int], Picture]) -> list[int]:
+def identical_without_culling(pictures: dict[str, Picture]) -> list[int]:
     """The sample counts for which brute force gave the same picture, bit for bit."""
     return [
         samples
-        for (knob, samples), picture in pictures.items()
-        if knob == "brute force" and np.array_equal(picture, pictures.get(("uniform", samples), 0))
+        for samples in COUNTS
+        if (picture := pictures.get(f"brute force {samples}")) is not None
+        and np.array_equal(picture, pictures.get(f"uniform {samples}", 0))
     ]
 
 
@@ -127,6 +134,9 @@ def report_files(found: Findings, pictures: dict[str, Picture], right: Reference
         REPORT: document(found, has_diagram).encode(),
         "report.json": as_json(found._asdict() | {"choices": choices(found.pictures, found.reference_error)}).encode(),
         "pictures.csv": as_csv(found.pictures).encode(),
+        "orders.csv": as_csv(found.orders).encode(),
+        "ablation.csv": as_csv(found.ablation).encode(),
+        "single.csv": as_csv(found.single).encode(),
         "kernels.csv": as_csv(found.kernels).encode(),
     }
     for name, picture in pictures.items():

@@ -29,7 +29,7 @@ def diagram(rows: Iterable[Row], reference_error: float, title: str) -> bytes:
     with rc_context(STYLE):
         canvas = Figure(figsize=(9, 5.2), layout="constrained")
         panel = canvas.add_subplot(xscale="log", yscale="log", title=title)
-        best = pareto_front(rows, reference_error)
+        best = pareto_front([row for row in rows if row.valid], reference_error)
         panel.plot([row.rmse for row in best], [row.wall_ms for row in best], color="#cccccc", linewidth=7, zorder=0)
         for knob, colour, mark in zip(knobs, COLOURS, MARKS, strict=False):
             draw_setting(panel, [row for row in rows if row.knob == knob], colour, mark)
@@ -59,5 +59,5 @@ def draw_setting(panel: Axes, rows: list[Row], colour: str, mark: str) -> None:
             panel.plot(row.rmse, row.wall_ms, mark, color=colour, markerfacecolor="white")
         if isfinite(row.rmse):
             panel.annotate(
-                str(row.samples), (row.rmse, row.wall_ms), (5, 5), textcoords="offset points", color=colour, fontsize=9
+                row.label, (row.rmse, row.wall_ms), (5, 5), textcoords="offset points", color=colour, fontsize=9
             )

@@ -14,13 +14,20 @@ from minirt.report.output.tables import Column, as_markdown
 
 PICTURES = (
     Column("setting", "knob"),
-    Column("samples", "samples", "d"),
+    Column("point", "label", ""),
+    Column("samples", "samples", ".3g"),
     Column("RMSE", "rmse", ".5f"),
+    Column("from", "rmse_low", ".5f"),
+    Column("to", "rmse_high", ".5f"),
+    Column("in 8 bits", "rmse_8_bits", ".5f"),
+    Column("own estimate", "estimated", ".5f"),
     Column("PSNR, dB", "psnr", ".1f"),
     Column("FLIP", "flip", ".4f"),
     Column("changed pixels", "changed", ".0f"),
     Column("rays not finite", "not_finite", ".0f"),
     Column("ms", "wall_ms", ".2f"),
+    Column("from", "wall_low_ms", ".2f"),
+    Column("to", "wall_high_ms", ".2f"),
     Column("processor ms", "cpu_ms", ".2f"),
     Column("sorting, ms", "sort_ms", ".2f"),
     Column("compiling or loading, s", "compile_s", ".2f"),
@@ -43,7 +50,7 @@ def report_lines(found: Findings, has_diagram: bool) -> Iterator[str]:
     yield (
         f"The reference has {found.reference_samples} samples per pixel in float64, at other sample positions; its own "
         f"RMSE is about {found.reference_error:.1g}. The pictures `error-*.png` show the errors: black below 1e-4, "
-        "white at 1. Each time is the least of at least 7 runs."
+        "white at 1. Each time is the median of undisturbed runs. From and to are 95 % confidence intervals."
     )
     if has_diagram:
         yield "\n![Error against run time](diagram.png)"
@@ -80,9 +87,9 @@ def described(row: Any) -> str:
     """Describe a recommended setting in words."""
     if row is None:
         return "none of these settings"
-    samples = f"{row.samples} sample{'s' * (row.samples != 1)}"
-    figures = f"{row.wall_ms:.3g} ms, RMSE {row.rmse:.2g}, {row.psnr:.1f} dB"
-    return f"{row.knob}, {samples} ({figures}{'' if row.valid else ', disturbed'})"
+    samples = f"{row.samples:.3g} sample{'s' * (row.samples != 1)}"
+    asked = "" if isnan(row.asked) else f" asked for {row.asked:g},"
+    return f"{row.knob},{asked} {samples} ({row.wall_ms:.3g} ms, RMSE {row.rmse:.2g}, {row.psnr:.1f} dB)"
 
 
 def formula_section(rows: list[Row]) -> Iterator[str]:
