@@ -44,7 +44,8 @@ class Table(NamedTuple):
 class Diagrams(NamedTuple):
     """The work-precision diagram, in two widths."""
 
-    about: str
+    name: str
+    about: str  # caption
     file: str  # of the wide one, beside the document
     wide: str  # SVG elements
     narrow: str

@@ -104,4 +104,5 @@ def overlaps(boxes: NDArray[np.float64], others: list[Box]) -> NDArray[np.intp]:
     other = np.array(others).reshape(-1, 4)
     one = boxes[:, None]
     apart = (one[..., 2:] <= other[:, :2]).any(axis=-1) | (other[:, 2:] <= one[..., :2]).any(axis=-1)
-    return np.sum(~apart, axis=1, dtype=np.intp)
+    found: NDArray[np.intp] = np.count_nonzero(~apart, axis=1)
+    return found

@@ -25,8 +25,8 @@ def block_text(block: Block) -> str:
             written = "\n".join(f"- {item}" for item in items)
         case Table():
             written = table_text(block)
-        case Diagrams(about, file):
-            written = f"![{about}]({file})"
+        case Diagrams(name, about, file):
+            written = f"![{name}]({file})\n\n{about}"
         case Pictures():
             written = ""
     return written

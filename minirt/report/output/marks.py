@@ -23,9 +23,10 @@ def mark(form: str, at: Point, is_hollow: bool = False) -> str:
     return element("polygon", points=" ".join(f"{x:.1f},{y:.1f}" for x, y in points), class_=style)
 
 
-def error_bar(start: Point, end: Point) -> str:
-    """Draw a confidence interval."""
-    return path([start, end], class_="interval")
+def cross(at: Point) -> str:
+    """Draw the two bars of confidence intervals."""
+    (x, y), arm = at, RADIUS * 1.7
+    return path([(x - arm, y), (x + arm, y)], class_="interval") + path([(x, y - arm), (x, y + arm)], class_="interval")
 
 
 def ring(at: Point) -> str:

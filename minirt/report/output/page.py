@@ -50,7 +50,7 @@ def block_html(block: Block) -> str:
             written = element("ul", *(element("li", inline(item)) for item in items))
         case Table():
             written = table_html(block)
-        case Diagrams(about, _, wide, narrow):
+        case Diagrams(_, about, _, wide, narrow):
             both = element("div", wide, class_="wide"), element("div", narrow, class_="narrow")
             written = element("figure", *both, element("figcaption", inline(about)), class_="diagrams")
         case Pictures(pictures, other):
