@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
 from minirt.rendering.running.cores import usable_cores
 from minirt.report.measurements import formula_errors
+from minirt.report.measurements.ablation import Ablation
 from minirt.report.measurements.coincident import coincident
 from minirt.report.measurements.convergence import orders
 from minirt.report.measurements.exact_hits import SOLIDS
@@ -26,7 +28,9 @@ from minirt.report.measurements.plan import FULL, QUICK, RAYS, Plan, fitting_siz
 from minirt.report.measurements.reference import Reference, passes, reference
 from minirt.report.measurements.regimes import regimes_of
 from minirt.report.measurements.settings import COUNTS, settings
+from minirt.report.measurements.single_errors import single_errors
 from minirt.report.measurements.stiffness import stiff_shapes
+from minirt.report.measurements.variants import with_more, without_lists
 from minirt.report.output.document import document, formula_section, summary
 from minirt.report.output.error_image import error_image
 from minirt.report.output.tables import as_csv, as_json
@@ -41,11 +45,18 @@ ReportFiles = dict[str, bytes]  # file name -> content
 
 
 def report(
-    scene: Scene, name: str, folder: str | os.PathLike[str], size: tuple[int, int], threads: int | None, quick: bool
+    scene: Scene,
+    name: str,
+    folder: str | os.PathLike[str],
+    size: tuple[int, int],
+    threads: int | None,
+    quick: bool,
+    ablation: bool = False,
 ) -> str:
     """Write the report of a scene into a folder, which is created if needed, and return a summary of it.
 
-    RenderError if the scene has no shapes or a file cannot be written.
+    With `ablation` it tells what each absent feature and kind of shape would cost, each of which needs a kernel of its
+    own. RenderError if the scene has no shapes or a file cannot be written.
     """
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
@@ -53,13 +64,16 @@ def report(
     plan, kinds = QUICK if quick else FULL, [kind for kind in ALL_KINDS if kind.element in set(map(type, scene.shapes))]
     wanted = list(settings(scene, plan.most, plan.least_error))
     steps = passes(plan.samples) + len(wanted) + sum(len(regimes_of(kind)) + 1 for kind in kinds)
-    with progress(steps + 1) as shown:
+    with progress(steps + 1) as shown, TemporaryDirectory() as files:
         shown.step("compiling")
         width, height = fitting_size(scene, size, plan)
         about = subject(scene, name, width, height, threads or usable_cores(), SEED)
         right = reference(scene, width, height, plan.samples, SEED, lambda: shown.step("reference"))
         stage = SettingRenderer(scene, width, height, about.threads)
         found = list(measure_settings(stage, wanted, right, plan.budget, shown.step))
+        single = list(single_errors(scene, width, height, about.threads))
+        variants = [*without_lists(scene), *(with_more(scene, Path(files)) if ablation else ())]
+        parts = list(Ablation(scene, width, height, about.threads, plan.budget).parts(variants, shown.step))
         rows = list(formula_rows(kinds, plan, shown.step, scene))
         pictures = {row.name: picture for row, picture in found if picture is not None}
         measured = measure_disturbed_again(stage, wanted, [row for row, _ in found], plan.budget, shown.step)
@@ -73,8 +87,8 @@ def report(
         EIGHT_BITS,
         measured,
         list(orders(measured, right.error)),
-        [],
-        [],
+        parts,
+        single,
         rows,
         stiff,
         [*kernel_notes(scene, wide=None, compiling=False), *packing.notes],

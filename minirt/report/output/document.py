@@ -10,6 +10,7 @@ from minirt.report.measurements.findings import Findings, choices
 from minirt.report.measurements.formula_errors import Row
 from minirt.report.measurements.regimes import REGIMES
 from minirt.report.measurements.settings import BOUNCES, KNOBS
+from minirt.report.output.sections import ablation_section, orders_section, single_section
 from minirt.report.output.tables import Column, as_markdown
 
 PICTURES = (
@@ -57,6 +58,7 @@ def report_lines(found: Findings, has_diagram: bool) -> Iterator[str]:
     yield "\n" + as_markdown(found.pictures, PICTURES)
     used = {row.knob for row in found.pictures}
     yield from ("", *(f"- {knob.name}: {knob.about}" for knob in (*KNOBS, *BOUNCES) if knob.name in used))
+    yield from orders_section(found)
     yield "\n## Recommended settings\n"
     yield from (f"- {each}" for each in advice(found))
     yield "\n## Work that this scene leaves out\n"
@@ -64,6 +66,8 @@ def report_lines(found: Findings, has_diagram: bool) -> Iterator[str]:
     if found.same:
         counts = " and ".join(map(str, found.same))
         yield f"- testing every ray against every shape gives the same pictures, bit for bit (samples: {counts})"
+    yield from ablation_section(found)
+    yield from single_section(found)
     yield "\n## Stiff parts of the scene\n"
     yield from [f"- {each}" for each in found.stiff] or ["None."]
     yield from formula_section(found.kernels)
