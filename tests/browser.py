@@ -23,7 +23,14 @@ from tests.processes import started
 from tests.waiting import HANG_LIMIT
 
 NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
-OPTIONS = ("--headless", "--no-sandbox", "--no-first-run", "--disable-gpu", "--hide-scrollbars", "--remote-debugging-pipe")
+OPTIONS = (
+    "--headless",
+    "--no-sandbox",
+    "--no-first-run",
+    "--disable-gpu",
+    "--hide-scrollbars",
+    "--remote-debugging-pipe",
+)
 IN_PIPES = 'exec "$0" "${@:3}" 3<&"$1" 4>&"$2"'  # the browser reads commands from 3 and writes answers to 4
 Message = dict[str, Any]
 
@@ -68,7 +75,9 @@ class Page:
     def drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
         """Press the mouse at one point of the window and release it at another."""
         for sort, (x, y), held in (("Pressed", start, 1), ("Moved", end, 1), ("Released", end, 0)):
-            self.call("Input.dispatchMouseEvent", type=f"mouse{sort}", x=x, y=y, button="left", buttons=held, clickCount=1)
+            self.call(
+                "Input.dispatchMouseEvent", type=f"mouse{sort}", x=x, y=y, button="left", buttons=held, clickCount=1
+            )
 
     def press(self, key: str, code: int) -> None:
         """Press and release a key; `code` is that of `KeyboardEvent.keyCode`."""

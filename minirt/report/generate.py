@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from minirt.errors import RenderError
 from minirt.report.interruption import sigterm_interrupts
@@ -12,6 +13,7 @@ from minirt.report.measure import Measured, findings_of, formula_rows, formula_s
 from minirt.report.measurements import formula_errors
 from minirt.report.measurements.durations import formula_seconds
 from minirt.report.measurements.plan import FULL, QUICK
+from minirt.report.measurements.variants import with_more, without_lists
 from minirt.report.output.document import summary
 from minirt.report.output.files import PAGE, formula_files, report_files, write_files
 from minirt.report.progress import progress
@@ -22,21 +24,29 @@ NOTHING = "Interrupted before anything was measured; no report was written."
 
 
 def report(
-    scene: Scene, name: str, folder: str | os.PathLike[str], size: tuple[int, int], threads: int | None, quick: bool
+    scene: Scene,
+    name: str,
+    folder: str | os.PathLike[str],
+    size: tuple[int, int],
+    threads: int | None,
+    quick: bool,
+    ablation: bool = False,
 ) -> str:
     """Write the report of a scene into a folder, which is created if needed, and return a summary of it.
 
-    Ctrl+C and SIGTERM end the measurements: what was measured until then is written, standard error says so, and
+    With `ablation` it tells what each absent feature and kind of shape would cost, each of which needs a kernel of its
+    own. Ctrl+C and SIGTERM end the measurements: what was measured until then is written, standard error says so, and
     KeyboardInterrupt is raised. RenderError if the scene has no shapes or a file cannot be written.
     """
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
     make_folder(folder)
     measured, plan = Measured(), QUICK if quick else FULL
-    with sigterm_interrupts():
+    with sigterm_interrupts(), TemporaryDirectory() as files:
+        variants = [*without_lists(scene), *(with_more(scene, Path(files)) if ablation else ())]
         with progress() as shown:
             try:
-                measure(measured, scene, name, plan, size, threads, shown)
+                measure(measured, scene, name, plan, size, threads, variants, shown)
             except KeyboardInterrupt:
                 shown.clear()
                 tell(write_report(measured, scene, folder, interrupted(shown.what)) or NOTHING)

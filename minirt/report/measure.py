@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,9 +11,16 @@ from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
 from minirt.rendering.running.cores import usable_cores
 from minirt.report.measurements import formula_errors, picture_errors
+from minirt.report.measurements.ablation import Ablation, Part
 from minirt.report.measurements.coincident import coincident
 from minirt.report.measurements.convergence import orders
-from minirt.report.measurements.durations import formula_seconds, frame_seconds, reference_seconds, setting_seconds
+from minirt.report.measurements.durations import (
+    formula_seconds,
+    frame_seconds,
+    reference_seconds,
+    setting_seconds,
+    variant_seconds,
+)
 from minirt.report.measurements.exact_hits import SOLIDS
 from minirt.report.measurements.eye_rays import rays_from_the_eye
 from minirt.report.measurements.findings import EIGHT_BITS, Findings, Subject, subject
@@ -23,7 +30,9 @@ from minirt.report.measurements.plan import RAYS, Plan, fitting_size
 from minirt.report.measurements.reference import Reference, passes, reference
 from minirt.report.measurements.regimes import regimes_of
 from minirt.report.measurements.settings import COUNTS, settings
+from minirt.report.measurements.single_errors import SingleError, single_errors
 from minirt.report.measurements.stiffness import stiff_shapes
+from minirt.report.measurements.variants import Variant
 from minirt.report.progress import Progress
 from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Kind
@@ -39,11 +48,20 @@ class Measured:
     reference: Reference | None = None
     rows: list[picture_errors.Row] = field(default_factory=list)
     pictures: dict[str, Picture] = field(default_factory=dict)  # of the settings, by their names
+    single: list[SingleError] = field(default_factory=list)
+    parts: list[Part] = field(default_factory=list)
     formulas: list[formula_errors.Row] = field(default_factory=list)
 
 
 def measure(
-    into: Measured, scene: Scene, name: str, plan: Plan, size: tuple[int, int], threads: int | None, shown: Progress
+    into: Measured,
+    scene: Scene,
+    name: str,
+    plan: Plan,
+    size: tuple[int, int],
+    threads: int | None,
+    variants: Sequence[Variant],
+    shown: Progress,
 ) -> None:
     """Measure everything that a report says about a scene, and keep each figure as soon as it is known."""
     shown.step("compiling")
@@ -54,6 +72,7 @@ def measure(
     kinds = kinds_of(scene)
     cost = {each.name: setting_seconds(each, plan, frame, width * height) for each in wanted.values()}
     a_pass, a_formula = reference_seconds(plan, frame), formula_seconds(plan)
+    cost |= {f"{each.name} {each.change}": variant_seconds(each, frame) for each in variants}
     formulas = a_formula * formula_steps(kinds, scene)
     shown.expect(a_pass * passes(plan.samples) + sum(cost.values()) + formulas)
 
@@ -68,6 +87,8 @@ def measure(
         into.rows.append(row)
         if picture is not None:
             into.pictures[row.name] = picture
+    into.single.extend(single_errors(scene, width, height, about.threads))
+    into.parts.extend(Ablation(scene, width, height, about.threads, plan.budget).parts(variants, step))
     into.formulas.extend(formula_rows(kinds, plan, lambda what: shown.step(what, a_formula), scene))
     into.rows = measure_disturbed_again(stage, list(wanted.values()), into.rows, plan.budget, step)
 
@@ -126,8 +147,8 @@ def findings_of(measured: Measured, scene: Scene, about: Subject, right: Referen
         EIGHT_BITS,
         measured.rows,
         list(orders(measured.rows, right.error)),
-        [],
-        [],
+        measured.parts,
+        measured.single,
         measured.formulas,
         [*stiff_shapes(scene, shapes, about.width, about.height), *coincident(scene, shapes)],
         [*kernel_notes(scene, wide=None, compiling=False), *packing.notes],

@@ -5,16 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from minirt.rendering import Renderer
+from minirt.report.measurements.ablation import PAIRS
 from minirt.report.measurements.plan import Plan
 from minirt.report.measurements.reference import passes
 from minirt.report.measurements.run_times import RUNS
 from minirt.report.measurements.settings import AUTO, Setting
+from minirt.report.measurements.variants import Variant
 from minirt.scene import Scene
 from minirt.timing import runs
 
 ONE_SAMPLE = 0.02  # a usual RMSE of a picture with one sample per pixel
 CONVERGENCE = 0.75  # a usual order of convergence
-FORMULA = 0.012  # seconds for a shape in a regime, mostly of exact arithmetic
+COMPILING = 15.0  # seconds for a kernel
+FORMULA = 0.02  # seconds for a shape in a regime, mostly of exact arithmetic
 PERCEIVED = 2e-6  # seconds for a pixel of the perceived difference
 
 
@@ -36,6 +39,11 @@ def setting_seconds(setting: Setting, plan: Plan, frame: float, pixels: int) -> 
         samples = min(max(1.0, (ONE_SAMPLE / setting.value) ** (1 / CONVERGENCE)), plan.samples)
     picture = frame * samples
     return picture + max(RUNS * picture, plan.budget.seconds) * (picture < plan.budget.longest) + PERCEIVED * pixels
+
+
+def variant_seconds(variant: Variant, frame: float) -> float:
+    """Return the expected duration of the measurement of a variant of the scene."""
+    return 4 * PAIRS * frame + (0.0 if variant.packing else COMPILING)
 
 
 def formula_seconds(plan: Plan) -> float:

@@ -11,7 +11,12 @@ import numpy as np
 from minirt.rendering import Renderer
 from minirt.rendering.packing.features import DEPTH, features
 from minirt.rendering.scene_packing import Packing
-from minirt.report.measurements.brute_force import BruteForce
+from minirt.report.measurements.brute_force import (
+    ChangedPacking,
+    without_boxes,
+    without_light_buffers,
+    without_tiles,
+)
 from minirt.scene import Scene
 
 COUNTS = (1, 4, 16, 64)  # samples per pixel
@@ -61,7 +66,7 @@ def automatic_samples(
 def brute_force(threads: int) -> Renderer:
     """Return a renderer that tests every ray against every shape."""
     renderer = Renderer(threads)
-    renderer.packing = BruteForce()
+    renderer.packing = ChangedPacking(without_tiles, without_light_buffers, without_boxes)
     return renderer
 
 

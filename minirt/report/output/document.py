@@ -22,6 +22,7 @@ from minirt.report.output.blocks import (
     table,
 )
 from minirt.report.output.formula_section import formula_section
+from minirt.report.output.sections import ablation_section, orders_section, single_section
 
 PICTURES = (
     Column("setting", "knob"),
@@ -55,7 +56,10 @@ def document(found: Findings, diagrams: Diagrams, pictures: list[Picture]) -> It
     if pictures:
         yield from error_pictures(found, pictures)
     yield from settings_section(found)
+    yield from orders_section(found)
     yield from left_out_section(found)
+    yield from ablation_section(found)
+    yield from single_section(found)
     yield Heading("Stiff parts of the scene")
     yield Bullets([str(each) for each in found.stiff]) if found.stiff else Text("None.")
     yield from formula_section(found.kernels)
