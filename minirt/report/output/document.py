@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import isnan
-from typing import Any
 
 from minirt.report.measurements.findings import Findings, choices
 from minirt.report.measurements.picture_errors import Row
@@ -135,13 +134,19 @@ def summary(found: Findings) -> str:
 def advice(found: Findings) -> Iterator[str]:
     """Yield the best setting for each target error and each target time."""
     for choice in choices(found.pictures, found.reference_error):
-        yield f"{choice['wanted']}: {described(choice['best'])}"
+        best = choice["best"]
+        yield f"{choice['wanted']}: {described(best) if best else none_of(found.pictures)}"
 
 
-def described(row: Any) -> str:
+def none_of(rows: list[Row]) -> str:
+    """Say why no setting is recommended."""
+    return (
+        "none of these settings" if any(row.valid for row in rows) else "unknown, as other programs disturbed all times"
+    )
+
+
+def described(row: Row) -> str:
     """Describe a recommended setting in words."""
-    if row is None:
-        return "none of these settings"
     samples = f"{row.samples:.3g} sample{'s' * (row.samples != 1)}"
     asked = "" if isnan(row.asked) else f" asked for {row.asked:g},"
     return f"{row.knob},{asked} {samples} ({row.wall_ms:.3g} ms, RMSE {row.rmse:.2g}, {row.psnr:.1f} dB)"

@@ -54,7 +54,7 @@ def block_html(block: Block) -> str:
             both = element("div", wide, class_="wide"), element("div", narrow, class_="narrow")
             written = element("figure", *both, element("figcaption", inline(about)), class_="diagrams")
         case Pictures(pictures, other):
-            written = comparison(other) + element("div", *map(picture_html, pictures), class_="grid")
+            written = comparison(other) + element("div", *map(picture_html, pictures), class_="pictures")
     return written
 
 

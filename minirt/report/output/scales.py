@@ -9,7 +9,7 @@ from typing import NamedTuple
 from minirt.report.output.svg import Point, group, path, text
 
 LABEL_WIDTH, LABEL_HEIGHT = 40.0, 18.0  # pixels that a label of an axis takes
-LEAST_RANGE = 4.0  # between the ends of a scale
+LEAST_RANGE = 6.0  # ratio of the ends of a scale, which then has two of 1, 2, 5, 10 between them
 
 
 class Scale(NamedTuple):
