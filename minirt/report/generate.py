@@ -21,10 +21,11 @@ from minirt.report.measurements.coincident import coincident
 from minirt.report.measurements.convergence import orders
 from minirt.report.measurements.exact_hits import SOLIDS
 from minirt.report.measurements.eye_rays import rays_from_the_eye
-from minirt.report.measurements.findings import EIGHT_BITS, Findings, choices, subject
+from minirt.report.measurements.findings import EIGHT_BITS, Findings, Subject, choices, subject
 from minirt.report.measurements.metrics import Picture
-from minirt.report.measurements.picture_errors import SettingRenderer, measure_disturbed_again, measure_settings
+from minirt.report.measurements.picture_errors import Row, SettingRenderer, measure_disturbed_again, measure_settings
 from minirt.report.measurements.plan import FULL, QUICK, RAYS, Plan, fitting_size
+from minirt.report.measurements.povray import PovRay
 from minirt.report.measurements.reference import Reference, passes, reference
 from minirt.report.measurements.regimes import regimes_of
 from minirt.report.measurements.settings import COUNTS, settings
@@ -71,12 +72,15 @@ def report(
         right = reference(scene, width, height, plan.samples, SEED, lambda: shown.step("reference"))
         stage = SettingRenderer(scene, width, height, about.threads)
         found = list(measure_settings(stage, wanted, right, plan.budget, shown.step))
+        others, reason = other_programs(scene, right, about, plan, Path(files), shown.step)
         single = list(single_errors(scene, width, height, about.threads))
         variants = [*without_lists(scene), *(with_more(scene, Path(files)) if ablation else ())]
         parts = list(Ablation(scene, width, height, about.threads, plan.budget).parts(variants, shown.step))
         rows = list(formula_rows(kinds, plan, shown.step, scene))
         pictures = {row.name: picture for row, picture in found if picture is not None}
         measured = measure_disturbed_again(stage, wanted, [row for row, _ in found], plan.budget, shown.step)
+        measured += [row for row, _ in others]
+        pictures |= {row.name: picture for row, picture in others if picture is not None}
     packing = Renderer().packing
     packing.pack(scene, width, height)
     stiff = [*stiff_shapes(scene, packing.shape_arrays, width, height), *coincident(scene, packing.shape_arrays)]
@@ -93,7 +97,7 @@ def report(
         stiff,
         [*kernel_notes(scene, wide=None, compiling=False), *packing.notes],
         identical_without_culling(pictures),
-        kinds_not_measured(kinds) + ([] if find_spec("matplotlib") else [NO_DIAGRAM]),
+        kinds_not_measured(kinds) + reason + ([] if find_spec("matplotlib") else [NO_DIAGRAM]),
     )
     write_files(folder, report_files(findings, pictures, right))
     return summary(findings) + f"\nThe report is in {Path(folder, REPORT)}"
@@ -108,6 +112,19 @@ def report_formulas(folder: str | os.PathLike[str], quick: bool) -> None:
     text = "# Formulas of all shapes\n" + "\n".join(formula_section(rows)) + "\n"
     made = {"kernels.csv": as_csv(rows), "kernels.json": as_json(rows), "kernels.md": text}
     write_files(folder, {name: each.encode() for name, each in made.items()})
+
+
+def other_programs(
+    scene: Scene, right: Reference, about: Subject, plan: Plan, folder: Path, step: Callable[[str], object]
+) -> tuple[list[tuple[Row, Picture | None]], list[str]]:
+    """Measure other programs on a scene; return their rows and pictures, or the reason why there are none."""
+    if not plan.others:
+        return [], []
+    try:
+        program = PovRay(scene, about.width, about.height, about.threads, folder)
+        return list(program.rows(right, plan.budget.longest, step)), []
+    except RenderError as error:
+        return [], [str(error)]
 
 
 def formula_rows(

@@ -65,7 +65,9 @@ class Ablation:
         if not all(variant.packing for variant in variants):
             step("compiling the scene as it is")
             self.compile_s = compile_seconds(self.scene)
-        yield Part("scene", "", "as it is", frame_ms, compile_s=self.compile_s, valid=bool(calm), remark=remark)
+        yield Part(
+            "scene", "the scene", "as it is", frame_ms, compile_s=self.compile_s, valid=bool(calm), remark=remark
+        )
         for variant in variants:
             step(f"{variant.name} {variant.change}")
             try:

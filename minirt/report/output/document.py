@@ -8,6 +8,7 @@ from typing import Any
 
 from minirt.report.measurements.findings import Findings, choices
 from minirt.report.measurements.formula_errors import Row
+from minirt.report.measurements.povray import ABOUT
 from minirt.report.measurements.regimes import REGIMES
 from minirt.report.measurements.settings import BOUNCES, KNOBS
 from minirt.report.output.sections import ablation_section, orders_section, single_section
@@ -57,7 +58,8 @@ def report_lines(found: Findings, has_diagram: bool) -> Iterator[str]:
         yield "\n![Error against run time](diagram.png)"
     yield "\n" + as_markdown(found.pictures, PICTURES)
     used = {row.knob for row in found.pictures}
-    yield from ("", *(f"- {knob.name}: {knob.about}" for knob in (*KNOBS, *BOUNCES) if knob.name in used))
+    abouts = {knob.name: knob.about for knob in (*KNOBS, *BOUNCES)} | ABOUT
+    yield from ("", *(f"- {name}: {about}" for name, about in abouts.items() if name in used))
     yield from orders_section(found)
     yield "\n## Recommended settings\n"
     yield from (f"- {each}" for each in advice(found))
@@ -84,7 +86,8 @@ def summary(found: Findings) -> str:
 def advice(found: Findings) -> Iterator[str]:
     """Yield the best setting for each target error and each target time."""
     for choice in choices(found.pictures, found.reference_error):
-        yield f"{choice['wanted']}: {described(choice['best'])}"
+        left_out = f" ({choice['disturbed']} more were disturbed by other programs)" if choice["disturbed"] else ""
+        yield f"{choice['wanted']}: {described(choice['best'])}{left_out}"
 
 
 def described(row: Any) -> str:

@@ -43,8 +43,9 @@ def orders_section(found: Findings) -> Iterator[str]:
     """Yield the orders of convergence."""
     yield "\n## Orders of convergence\n"
     yield (
-        "RMSE falls as samples^-order, or as time^-order, by least squares; from and to are 95 % confidence intervals by "
-        "Student's t. Points within twice the error of the reference are left out, and that error is taken off the rest."
+        "RMSE falls as samples^-order, or as time^-order, by least squares; from and to are 95 % confidence intervals "
+        "by Student's t. Points within twice the error of the reference are left out, and that error is taken off the "
+        "rest; disturbed times are left out."
     )
     yield "\n" + as_markdown(found.orders, ORDERS)
 
@@ -54,8 +55,9 @@ def ablation_section(found: Findings) -> Iterator[str]:
     yield "\n## What parts cost and save\n"
     yield (
         "Processor time of a frame with one sample per pixel, changed by one part: a list is left out, or something "
-        "that no ray meets is added. It is the median of the ratios of frames in turn with the scene as it is; from and "
-        "to are a 95 % confidence interval. The place of code in memory alone changes a time by up to 3 %."
+        "that no ray meets is added. It is the median of the ratios of frames in turn with the scene as it is; from "
+        "and to are a 95 % confidence interval. Where code lies in memory changes a time by some per cent, too. "
+        "`--ablation` adds the features and the kinds of shapes that the scene lacks."
     )
     yield "\n" + as_markdown(found.ablation, ABLATION)
 
@@ -64,7 +66,7 @@ def single_section(found: Findings) -> Iterator[str]:
     """Yield the errors of float32, feature by feature."""
     yield "\n## Single precision, feature by feature\n"
     yield (
-        "Difference between pictures in float32 and in float64 with one sample per pixel: of the shapes alone, in their "
-        "own colours, and with one feature of the scene at a time."
+        "Difference between pictures in float32 and in float64 with one sample per pixel: of the shapes alone, in "
+        "their own colours, and with one feature of the scene at a time."
     )
     yield "\n" + as_markdown(found.single, SINGLE)
