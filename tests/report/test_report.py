@@ -18,7 +18,7 @@ import minirt
 from minirt.errors import RenderError
 from minirt.report import __main__, generate, report, report_formulas
 from minirt.report.generate import NO_DIAGRAM
-from minirt.report.measurements.picture_errors import Budget
+from minirt.report.measurements.run_times import Budget
 from minirt.report.measurements.plan import QUICK, fitting_size
 from minirt.report.output.error_image import HEAT
 from minirt.scene import Scene, dump
@@ -32,13 +32,14 @@ from tests.terminals import terminal
 
 __all__ = ["folder", "run"]
 Run = Callable[..., Result]
-TABLES = {"report.md", "report.json", "pictures.csv", "kernels.csv"}
+ROWS = {"pictures": 9, "orders": 1, "ablation": 3, "single": 1, "kernels": 6}  # at least
+TABLES = {"report.md", "report.json", *(f"{table}.csv" for table in ROWS)}
 
 
 @pytest.fixture(autouse=True)
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     """Use a plan with little work, and a simulated clock that only rendering moves on."""
-    plan = QUICK._replace(shapes=1, samples=64, most=4, budget=Budget(0.0, inf, tries=1))
+    plan = QUICK._replace(shapes=1, samples=64, most=4, least_error=0.01, budget=Budget(0.0, inf, tries=1))
     monkeypatch.setattr(generate, "QUICK", plan)
     return simulate_clock(monkeypatch)
 
@@ -53,19 +54,19 @@ def made(tmp_path: Path) -> Path:
 def test_the_files_agree(made: Path) -> None:
     names = {path.name for path in made.iterdir()}
     found = json.loads((made / "report.json").read_text())
-    settings = {f"{row['knob']} {row['samples']}".replace(" ", "-") for row in found["pictures"]}
-    expected = {"uniform": (1, 4), "adaptive": (4,), "single": (1, 4), "brute-force": (1, 4)}
+    settings = {f"{row['knob']} {row['label']}".replace(" ", "-") for row in found["pictures"]}
+    expected = {"uniform": (1, 2, 4), "adaptive": (4,), "auto": (0.01,), "single": (1, 4), "brute-force": (1, 4)}
     assert settings == {f"{knob}-{samples}" for knob, counts in expected.items() for samples in counts}
     assert names - {"diagram.png"} == TABLES | {f"error-{name}.png" for name in settings}
-    for table in ("pictures", "kernels"):
+    for table, least in ROWS.items():
         read = list(csv.DictReader((made / f"{table}.csv").read_text().splitlines()))
         assert [list(row) for row in read] == [list(row) for row in found[table]]
-        assert len(read) == len(found[table]) > 5
+        assert len(read) == len(found[table]) >= least
         for one, other in zip(read, found[table], strict=True):
             assert all(str(value) == one[key] for key, value in other.items() if value is not None)
     text = (made / "report.md").read_text()
     for row in found["pictures"]:
-        assert f"| {row['knob']} | {row['samples']} | {row['rmse']:.5f} |" in text
+        assert f"| {row['knob']} | {row['label']} | {row['samples']:.3g} | {row['rmse']:.5f} |" in text
     for kind in {row["kind"] for row in found["kernels"]}:
         assert f"| {kind} | this scene |" in text
 
@@ -194,7 +195,7 @@ from math import inf
 from minirt import cli
 from minirt.report import generate
 from minirt.report.measurements import formula_errors, plan
-from minirt.report.measurements.picture_errors import Budget
+from minirt.report.measurements.run_times import Budget
 from minirt.timing import runs
 from tests.cli.announcing import announce_rendering
 
