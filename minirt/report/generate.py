@@ -8,14 +8,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from minirt.errors import RenderError
+from minirt.report.formulas import formula_names, formula_rows
 from minirt.report.interruption import sigterm_interrupts
-from minirt.report.measure import Measured, findings_of, formula_rows, formula_steps, measure
+from minirt.report.measure import Measurement
 from minirt.report.measurements import formula_errors
-from minirt.report.measurements.durations import formula_seconds
+from minirt.report.measurements.durations import formula_steps
 from minirt.report.measurements.plan import FULL, QUICK
-from minirt.report.measurements.variants import with_more, without_lists
 from minirt.report.output.document import summary
-from minirt.report.output.files import PAGE, formula_files, report_files, write_files
+from minirt.report.output.files import FORMULAS, PAGE, formula_files, report_files, write_files
 from minirt.report.progress import progress
 from minirt.scene import Scene
 from minirt.shapes import KINDS
@@ -41,25 +41,23 @@ def report(
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
     make_folder(folder)
-    measured, plan = Measured(), QUICK if quick else FULL
-    with sigterm_interrupts(), TemporaryDirectory() as files:
-        variants = [*without_lists(scene), *(with_more(scene, Path(files)) if ablation else ())]
-        with progress() as shown:
-            try:
-                measure(measured, scene, name, plan, size, threads, variants, shown)
-            except KeyboardInterrupt:
-                shown.clear()
-                tell(write_report(measured, scene, folder, interrupted(shown.what)) or NOTHING)
-                raise
-        return write_report(measured, scene, folder)
+    with sigterm_interrupts(), TemporaryDirectory() as files, progress() as shown:
+        measurement = Measurement(scene, name, QUICK if quick else FULL, threads, shown)
+        try:
+            measurement.run(size, Path(files), ablation)
+        except KeyboardInterrupt:
+            shown.clear()
+            tell(write_report(measurement, folder, interrupted(shown.what)) or NOTHING)
+            raise
+        return write_report(measurement, folder)
 
 
-def write_report(measured: Measured, scene: Scene, folder: str | os.PathLike[str], interrupted: str = "") -> str:
+def write_report(measurement: Measurement, folder: str | os.PathLike[str], interrupted: str = "") -> str:
     """Write the files of a report, and return its summary; nothing if no picture was measured."""
-    if not (measured.subject and measured.reference and measured.rows):
+    found = measurement.findings(interrupted)
+    if not (found and measurement.reference):
         return ""
-    found = findings_of(measured, scene, measured.subject, measured.reference)._replace(interrupted=interrupted)
-    write_files(folder, report_files(found, measured.pictures, measured.reference.picture))
+    write_files(folder, report_files(found, measurement.pictures, measurement.reference.picture))
     return f"{summary(found)}\nThe report is in {Path(folder, PAGE)}"
 
 
@@ -70,20 +68,23 @@ def report_formulas(folder: str | os.PathLike[str], quick: bool) -> None:
     """
     make_folder(folder)
     plan, rows = QUICK if quick else FULL, list[formula_errors.Row]()
-    seconds = formula_seconds(plan)
-    with sigterm_interrupts():
-        with progress() as shown:
-            shown.expect(seconds * formula_steps(KINDS))
-            try:
-                for row in formula_rows(KINDS, plan, lambda what: shown.step(what, seconds)):
-                    rows.append(row)
-            except KeyboardInterrupt:
-                shown.clear()
-                if rows:
-                    write_files(folder, formula_files(rows, interrupted(shown.what)))
-                tell(f"{interrupted(shown.what)}\nThe report is in {Path(folder)}" if rows else NOTHING)
-                raise
-        write_files(folder, formula_files(rows))
+    with sigterm_interrupts(), progress() as shown:
+        shown.expect(formula_steps(formula_names(KINDS), plan))
+        try:
+            rows.extend(formula_rows(KINDS, plan, shown.step))
+        except KeyboardInterrupt:
+            shown.clear()
+            tell(write_formulas(rows, folder, interrupted(shown.what)) or NOTHING)
+            raise
+        write_formulas(rows, folder)
+
+
+def write_formulas(rows: list[formula_errors.Row], folder: str | os.PathLike[str], interrupted: str = "") -> str:
+    """Write the files about formulas, and return where they are; nothing if no formula was measured."""
+    if not rows:
+        return ""
+    write_files(folder, formula_files(rows, interrupted))
+    return f"{interrupted}\nThe report is in {Path(folder, FORMULAS)}"
 
 
 def interrupted(step: str) -> str:

@@ -1,128 +1,120 @@
-"""Measure a scene for its report, figure by figure, so that an interrupt keeps what was measured."""
+"""Measure a scene for its report."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
+from minirt.errors import RenderError
 from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
 from minirt.rendering.running.cores import usable_cores
-from minirt.report.measurements import formula_errors, picture_errors
+from minirt.report.formulas import SEED, formula_names, formula_rows, kinds_not_measured, kinds_of
+from minirt.report.measurements import durations, formula_errors, picture_errors
 from minirt.report.measurements.ablation import Ablation, Part
 from minirt.report.measurements.coincident import coincident
 from minirt.report.measurements.convergence import orders
-from minirt.report.measurements.durations import (
-    formula_seconds,
-    frame_seconds,
-    reference_seconds,
-    setting_seconds,
-    variant_seconds,
-)
-from minirt.report.measurements.exact_hits import SOLIDS
-from minirt.report.measurements.eye_rays import rays_from_the_eye
-from minirt.report.measurements.findings import EIGHT_BITS, Findings, Subject, subject
+from minirt.report.measurements.findings import EIGHT_BITS, Findings, subject
 from minirt.report.measurements.metrics import Picture
 from minirt.report.measurements.picture_errors import SettingRenderer, measure_disturbed_again, measure_settings
-from minirt.report.measurements.plan import RAYS, Plan, fitting_size
-from minirt.report.measurements.reference import Reference, passes, reference
-from minirt.report.measurements.regimes import regimes_of
-from minirt.report.measurements.settings import COUNTS, settings
+from minirt.report.measurements.plan import Plan, fitting_size
+from minirt.report.measurements.povray import PovRay
+from minirt.report.measurements.reference import Reference, reference
+from minirt.report.measurements.settings import COUNTS, Setting, settings
 from minirt.report.measurements.single_errors import SingleError, single_errors
 from minirt.report.measurements.stiffness import stiff_shapes
-from minirt.report.measurements.variants import Variant
+from minirt.report.measurements.variants import Variant, with_more, without_lists
 from minirt.report.progress import Progress
 from minirt.scene import Scene
-from minirt.shapes import ALL_KINDS, Kind
-
-SEED = 20240607
 
 
-@dataclass
-class Measured:
-    """What was measured so far."""
+class Measurement:
+    """Measurement of a scene, which keeps each figure as soon as it is known, so that an interrupt loses none."""
 
-    subject: Subject | None = None
-    reference: Reference | None = None
-    rows: list[picture_errors.Row] = field(default_factory=list)
-    pictures: dict[str, Picture] = field(default_factory=dict)  # of the settings, by their names
-    single: list[SingleError] = field(default_factory=list)
-    parts: list[Part] = field(default_factory=list)
-    formulas: list[formula_errors.Row] = field(default_factory=list)
+    def __init__(self, scene: Scene, name: str, plan: Plan, threads: int | None, shown: Progress) -> None:
+        self.scene, self.name, self.plan, self.shown = scene, name, plan, shown
+        self.threads = threads or usable_cores()
+        self.width = self.height = 0
+        self.reference: Reference | None = None
+        self.rows: list[picture_errors.Row] = []
+        self.pictures: dict[str, Picture] = {}  # of the settings, by their names
+        self.single: list[SingleError] = []
+        self.parts: list[Part] = []
+        self.formulas: list[formula_errors.Row] = []
+        self.not_measured = kinds_not_measured(kinds_of(scene))
 
+    def run(self, size: tuple[int, int], files: Path, ablation: bool) -> None:
+        """Measure everything; `files` is a folder for temporary files."""
+        scene, plan, step = self.scene, self.plan, self.shown.step
+        step("compiling")
+        self.width, self.height = fitting_size(scene, size, plan)
+        wanted = list(settings(scene, plan.most, plan.least_error))
+        variants = [*without_lists(scene), *(with_more(scene, files) if ablation else ())]
+        self.shown.expect(self.steps(wanted, variants))
+        self.reference = reference(
+            scene, self.width, self.height, plan.samples, SEED, lambda: step(durations.REFERENCE)
+        )
+        stage = SettingRenderer(scene, self.width, self.height, self.threads)
+        for row, picture in measure_settings(stage, wanted, self.reference, plan.budget, step):
+            self.keep(row, picture)
+        if plan.others:
+            self.measure_others(self.reference, files)
+        self.single.extend(single_errors(scene, self.width, self.height, self.threads))
+        self.parts.extend(Ablation(scene, self.width, self.height, self.threads, plan.budget).parts(variants, step))
+        self.formulas.extend(formula_rows(kinds_of(scene), plan, step, scene))
+        self.rows = measure_disturbed_again(stage, wanted, self.rows, plan.budget, step)
 
-def measure(
-    into: Measured,
-    scene: Scene,
-    name: str,
-    plan: Plan,
-    size: tuple[int, int],
-    threads: int | None,
-    variants: Sequence[Variant],
-    shown: Progress,
-) -> None:
-    """Measure everything that a report says about a scene, and keep each figure as soon as it is known."""
-    shown.step("compiling")
-    width, height = fitting_size(scene, size, plan)
-    frame = frame_seconds(scene, width, height)
-    about = into.subject = subject(scene, name, width, height, threads or usable_cores(), SEED)
-    wanted = {each.name: each for each in settings(scene, plan.most, plan.least_error)}
-    kinds = kinds_of(scene)
-    cost = {each.name: setting_seconds(each, plan, frame, width * height) for each in wanted.values()}
-    a_pass, a_formula = reference_seconds(plan, frame), formula_seconds(plan)
-    cost |= {f"{each.name} {each.change}": variant_seconds(each, frame) for each in variants}
-    formulas = a_formula * formula_steps(kinds, scene)
-    shown.expect(a_pass * passes(plan.samples) + sum(cost.values()) + formulas)
+    def steps(self, wanted: list[Setting], variants: list[Variant]) -> list[durations.Step]:
+        """Return the steps of the work, with their expected durations."""
+        plan, pixels = self.plan, self.width * self.height
+        frame = durations.frame_seconds(self.scene, self.width, self.height)
+        return [
+            *durations.reference_steps(plan, frame),
+            *durations.setting_steps(wanted, plan, frame, pixels),
+            *durations.povray_steps(plan, pixels),
+            *durations.variant_steps(variants, frame),
+            *durations.formula_steps(formula_names(kinds_of(self.scene), self.scene), plan),
+        ]
 
-    def step(what: str) -> None:
-        shown.step(what, cost.get(what, 0.0))
-
-    into.reference = right = reference(
-        scene, width, height, plan.samples, SEED, lambda: shown.step("the reference", a_pass)
-    )
-    stage = SettingRenderer(scene, width, height, about.threads)
-    for row, picture in measure_settings(stage, list(wanted.values()), right, plan.budget, step):
-        into.rows.append(row)
+    def keep(self, row: picture_errors.Row, picture: Picture | None) -> None:
+        """Keep a row, and the picture that it tells about."""
+        self.rows.append(row)
         if picture is not None:
-            into.pictures[row.name] = picture
-    into.single.extend(single_errors(scene, width, height, about.threads))
-    into.parts.extend(Ablation(scene, width, height, about.threads, plan.budget).parts(variants, step))
-    into.formulas.extend(formula_rows(kinds, plan, lambda what: shown.step(what, a_formula), scene))
-    into.rows = measure_disturbed_again(stage, list(wanted.values()), into.rows, plan.budget, step)
+            self.pictures[row.name] = picture
 
+    def measure_others(self, right: Reference, files: Path) -> None:
+        """Measure other programs, or note why they cannot be measured."""
+        try:
+            program = PovRay(self.scene, self.width, self.height, self.threads, files)
+            for row, picture in program.rows(right, self.plan.budget.longest, self.shown.step):
+                self.keep(row, picture)
+        except RenderError as error:
+            self.not_measured.append(str(error))
 
-def kinds_of(scene: Scene) -> list[Kind]:
-    """Return the kinds of shapes that a scene has."""
-    elements = set(map(type, scene.shapes))
-    return [kind for kind in ALL_KINDS if kind.element in elements]
-
-
-def formula_rows(
-    kinds: Iterable[Kind], plan: Plan, step: Callable[[str], object], scene: Scene | None = None
-) -> Iterator[formula_errors.Row]:
-    """Measure the formulas of some shape types in all their regimes and, if a scene is given, from its eye."""
-    for number, kind in enumerate(kinds):
-        if kind.element not in SOLIDS:
-            continue
-        random = np.random.default_rng([SEED, number])
-        poses = [(each.name, each.pose(kind, random, plan.shapes, RAYS)) for each in regimes_of(kind)]
-        if scene:
-            poses.append(("this scene", rays_from_the_eye(kind, scene, random, plan.shapes, RAYS)))
-        for name, rays in poses:
-            step(f"{kind.element.title}, {name}")
-            yield from formula_errors.measure_formulas(kind, name, rays)
-
-
-def formula_steps(kinds: Iterable[Kind], scene: Scene | None = None) -> int:
-    """Return the number of steps of `formula_rows`."""
-    return sum(len(regimes_of(kind)) + bool(scene) for kind in kinds if kind.element in SOLIDS)
-
-
-def kinds_not_measured(kinds: Iterable[Kind]) -> list[str]:
-    """Remarks on the shape types that have no exact reference to measure against."""
-    return [f"formula of the {kind.element.title}: none in 60 digits" for kind in kinds if kind.element not in SOLIDS]
+    def findings(self, interrupted: str = "") -> Findings | None:
+        """Conclude from what was measured; None if no picture was."""
+        if not (self.reference and self.rows):
+            return None
+        packing = Renderer().packing
+        packing.pack(self.scene, self.width, self.height)
+        shapes = packing.shape_arrays
+        return Findings(
+            subject(self.scene, self.name, self.width, self.height, self.threads, SEED),
+            self.reference.samples,
+            self.reference.error,
+            EIGHT_BITS,
+            self.rows,
+            list(orders(self.rows, self.reference.error)),
+            self.parts,
+            self.single,
+            self.formulas,
+            [*stiff_shapes(self.scene, shapes, self.width, self.height), *coincident(self.scene, shapes)],
+            [*kernel_notes(self.scene, wide=None, compiling=False), *packing.notes],
+            identical_without_culling(self.pictures),
+            self.not_measured,
+            interrupted,
+        )
 
 
 def identical_without_culling(pictures: dict[str, Picture]) -> list[int]:
@@ -133,25 +125,3 @@ def identical_without_culling(pictures: dict[str, Picture]) -> list[int]:
         if (picture := pictures.get(f"brute force {samples}")) is not None
         and np.array_equal(picture, pictures.get(f"uniform {samples}", 0))
     ]
-
-
-def findings_of(measured: Measured, scene: Scene, about: Subject, right: Reference) -> Findings:
-    """Conclude from what was measured."""
-    packing = Renderer().packing
-    packing.pack(scene, about.width, about.height)
-    shapes = packing.shape_arrays
-    return Findings(
-        about,
-        right.samples,
-        right.error,
-        EIGHT_BITS,
-        measured.rows,
-        list(orders(measured.rows, right.error)),
-        measured.parts,
-        measured.single,
-        measured.formulas,
-        [*stiff_shapes(scene, shapes, about.width, about.height), *coincident(scene, shapes)],
-        [*kernel_notes(scene, wide=None, compiling=False), *packing.notes],
-        identical_without_culling(measured.pictures),
-        kinds_not_measured(kinds_of(scene)),
-    )

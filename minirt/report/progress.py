@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from time import perf_counter
 from typing import TextIO
@@ -18,20 +18,23 @@ class Progress:
 
     def __init__(self, out: TextIO, clock: Callable[[], float]) -> None:
         self.out, self.clock, self.is_shown = out, clock, out.isatty()
+        self.seconds: dict[str, float] = {}  # expected of a step with a name
         self.expected = 0.0  # seconds of all steps, 0 as long as nobody knows
         self.done = 0.0  # expected seconds of the steps that have ended
         self.current = 0.0  # expected seconds of the step that runs
         self.start = clock()
         self.what = ""  # name of the step that runs
 
-    def expect(self, seconds: float) -> None:
-        """Say how long all steps from the next one on will take together; a guess will do."""
-        self.expected, self.done, self.current, self.start = seconds, 0.0, 0.0, self.clock()
+    def expect(self, steps: Iterable[tuple[str, float]]) -> None:
+        """Say which steps will come, and how many seconds each will take; a guess will do."""
+        steps = list(steps)
+        self.seconds, self.expected = dict(steps), sum(seconds for _, seconds in steps)
+        self.done, self.current, self.start = 0.0, 0.0, self.clock()
 
-    def step(self, what: str, seconds: float = 0.0) -> None:
-        """Show that the next step begins; `what` names it, and it is expected to take so many seconds."""
+    def step(self, what: str) -> None:
+        """Show that the next step begins; `what` names it."""
         self.done += self.current
-        self.what, self.current = what, seconds
+        self.what, self.current = what, self.seconds.get(what, 0.0)
         if self.is_shown:
             share = min(1.0, self.done / self.expected) if self.expected else 0.0
             left = f"  {in_words(self.remaining())} left" if self.expected else ""

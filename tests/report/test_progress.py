@@ -34,9 +34,9 @@ def test_a_terminal_shows_how_far_it_is_and_is_left_clean(monkeypatch: pytest.Mo
     with progress(clock := Clock()) as shown:
         shown.step("compiling")
         clock.now = 100.0  # which nobody has expected
-        shown.expect(40.0)
+        shown.expect((what, 10.0) for what in ("one", "two", "three", "four"))
         for what in ("one", "two", "three"):
-            shown.step(what, 10.0)
+            shown.step(what)
             clock.now += 10.0
     start, compiling, one, two, three, end = bars(terminal)
     assert (start, end) == ("", "")
@@ -50,10 +50,10 @@ def test_the_remaining_time_follows_the_pace(monkeypatch: pytest.MonkeyPatch) ->
     """Everything takes three times as long as expected: after half of it, nearly as long remains as has gone by."""
     monkeypatch.setattr(sys, "stderr", Terminal())
     with progress(clock := Clock()) as shown:
-        shown.expect(1000.0)
+        shown.expect([("step", 100.0)] * 10)
         remaining = []
         for _ in range(10):
-            shown.step("step", 100.0)
+            shown.step("step")
             remaining.append(shown.remaining())
             clock.now += 300.0
     assert remaining[0] == pytest.approx(1000.0)
@@ -64,9 +64,9 @@ def test_the_remaining_time_follows_the_pace(monkeypatch: pytest.MonkeyPatch) ->
 def test_more_steps_than_expected_do_not_go_beyond_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stderr", terminal := Terminal())
     with progress(Clock()) as shown:
-        shown.expect(10.0)
+        shown.expect([("step", 10.0)])
         for _ in range(3):
-            shown.step("step", 10.0)
+            shown.step("step")
     assert bars(terminal)[3] == "#" * 24 + " 100%  0 s left  step"
 
 

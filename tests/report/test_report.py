@@ -15,7 +15,7 @@ from PIL import Image
 
 import minirt
 from minirt.errors import RenderError
-from minirt.report import __main__, generate, measure, report, report_formulas
+from minirt.report import __main__, formulas, generate, report, report_formulas
 from minirt.report.measurements.plan import QUICK, fitting_size
 from minirt.report.measurements.run_times import Budget
 from minirt.report.output.error_image import HEAT
@@ -123,7 +123,7 @@ def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
 
 
 def test_shape_types_without_an_exact_reference_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(measure, "SOLIDS", {})
+    monkeypatch.setattr(formulas, "SOLIDS", {})
     assert "formula of the sphere: none in 60 digits" in report(ALL, "all.rt", tmp_path, (16, 16), 1, quick=True)
     assert (tmp_path / "kernels.csv").read_text().strip() == ""
 
@@ -132,7 +132,7 @@ def test_the_formulas_of_all_kinds(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr("sys.argv", ["report", str(tmp_path / "shapes"), "--quick"])
     __main__.main()
     rows = json.loads((tmp_path / "shapes" / "kernels.json").read_text())
-    assert {row["kind"] for row in rows} == {kind.element.title for kind in KINDS if kind.element in measure.SOLIDS}
+    assert {row["kind"] for row in rows} == {kind.element.title for kind in KINDS if kind.element in formulas.SOLIDS}
     assert "| cylinder | long tube |" in (tmp_path / "shapes" / "kernels.md").read_text()
     (tmp_path / "file").touch()
     monkeypatch.setattr("sys.argv", ["report", str(tmp_path / "file")])

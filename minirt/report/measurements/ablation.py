@@ -65,7 +65,9 @@ class Ablation:
         if not all(variant.packing for variant in variants):
             step("compiling the scene as it is")
             self.compile_s = compile_seconds(self.scene)
-        yield Part("scene", "", "as it is", frame_ms, compile_s=self.compile_s, valid=bool(calm), remark=remark)
+        yield Part(
+            "scene", "the scene", "as it is", frame_ms, compile_s=self.compile_s, valid=bool(calm), remark=remark
+        )
         for variant in variants:
             step(f"{variant.name} {variant.change}")
             try:
@@ -84,7 +86,7 @@ class Ablation:
         frame = Frame(renderer, variant.scene, self.shape)
         frame.draw()
         pairs, remark = self.pairs(frame)
-        ratios = [other.cpu / base.cpu for base, other in pairs]
+        ratios = [ratio(base, other) for base, other in pairs]
         low, high = of_median(ratios)
         return Part(
             variant.sort,
@@ -136,6 +138,11 @@ class Frame:
     def draw(self) -> None:
         """Draw it with one sample per pixel."""
         self.renderer.render(self.scene, self.pixels)
+
+
+def ratio(base: Run, other: Run) -> float:
+    """Return the ratio of processor times, or of wall times where the clock of the processor is too coarse."""
+    return other.cpu / base.cpu if base.cpu else other.wall / base.wall
 
 
 def per_cent(ratio: float) -> float:

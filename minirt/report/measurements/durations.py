@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 import numpy as np
 
 from minirt.rendering import Renderer
+from minirt.report.measurements import povray
 from minirt.report.measurements.ablation import PAIRS
 from minirt.report.measurements.plan import Plan
 from minirt.report.measurements.reference import passes
@@ -14,8 +17,12 @@ from minirt.report.measurements.variants import Variant
 from minirt.scene import Scene
 from minirt.timing import runs
 
+Step = tuple[str, float]  # name and expected seconds
+
+REFERENCE = "the reference"
 ONE_SAMPLE = 0.02  # a usual RMSE of a picture with one sample per pixel
 CONVERGENCE = 0.75  # a usual order of convergence
+POVRAY = 3e-6  # seconds for a sample
 COMPILING = 15.0  # seconds for a kernel
 FORMULA = 0.02  # seconds for a shape in a regime, mostly of exact arithmetic
 PERCEIVED = 2e-6  # seconds for a pixel of the perceived difference
@@ -27,25 +34,36 @@ def frame_seconds(scene: Scene, width: int, height: int) -> float:
     return min(runs(lambda: renderer.render(scene, pixels), 2, 0.0)).wall
 
 
-def reference_seconds(plan: Plan, frame: float) -> float:
-    """Return the expected duration of a step of the reference, `frame` being that of a picture with one sample."""
-    return frame * plan.samples / passes(plan.samples)
+def reference_steps(plan: Plan, frame: float) -> list[Step]:
+    """Return the steps of the reference, `frame` being the seconds of a picture with one sample per pixel."""
+    count = passes(plan.samples)
+    return [(REFERENCE, frame * plan.samples / count)] * count
 
 
-def setting_seconds(setting: Setting, plan: Plan, frame: float, pixels: int) -> float:
-    """Return the expected duration of the measurement of a setting."""
-    samples = setting.value
-    if setting.knob is AUTO:
-        samples = min(max(1.0, (ONE_SAMPLE / setting.value) ** (1 / CONVERGENCE)), plan.samples)
-    picture = frame * samples
-    return picture + max(RUNS * picture, plan.budget.seconds) * (picture < plan.budget.longest) + PERCEIVED * pixels
+def setting_steps(settings: Iterable[Setting], plan: Plan, frame: float, pixels: int) -> Iterator[Step]:
+    """Yield a step for each setting."""
+    for setting in settings:
+        samples = setting.value
+        if setting.knob is AUTO:
+            samples = min(max(1.0, (ONE_SAMPLE / setting.value) ** (1 / CONVERGENCE)), plan.samples)
+        picture, budget = frame * samples, plan.budget
+        again = max(RUNS * picture, budget.seconds) if picture < budget.longest else 0.0
+        yield setting.name, picture + again + PERCEIVED * pixels
 
 
-def variant_seconds(variant: Variant, frame: float) -> float:
-    """Return the expected duration of the measurement of a variant of the scene."""
-    return 4 * PAIRS * frame + (0.0 if variant.packing else COMPILING)
+def povray_steps(plan: Plan, pixels: int) -> Iterator[Step]:
+    """Yield a step for each setting of POV-Ray."""
+    for setting in povray.SETTINGS if plan.others else ():
+        samples = np.nan_to_num(setting.samples, nan=4.0)
+        yield f"{setting.knob} {setting.label}", povray.RUNS * POVRAY * samples * pixels
 
 
-def formula_seconds(plan: Plan) -> float:
-    """Return the expected duration of the measurement of a shape type in a regime."""
-    return FORMULA * plan.shapes
+def variant_steps(variants: Iterable[Variant], frame: float) -> Iterator[Step]:
+    """Yield a step for each variant of the scene."""
+    for variant in variants:
+        yield f"{variant.name} {variant.change}", 4 * PAIRS * frame + (0.0 if variant.packing else COMPILING)
+
+
+def formula_steps(names: Iterable[str], plan: Plan) -> Iterator[Step]:
+    """Yield a step for each shape type in each regime."""
+    yield from ((name, FORMULA * plan.shapes) for name in names)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from minirt.report.measurements import ablation, convergence, formula_errors, picture_errors
 from minirt.report.measurements.machine import processor, versions
 from minirt.report.measurements.pareto import closest, fastest
+from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS
 from minirt.report.measurements.single_errors import SingleError
 from minirt.report.measurements.stiffness import Stiff
 from minirt.scene import Scene, dump
@@ -60,9 +61,11 @@ def choices(rows: list[picture_errors.Row], doubt: float) -> list[dict[str, Any]
     """Find the best setting for each target error and each target time; None if no setting reaches it.
 
     Errors are known up to `doubt`. Rows that failed or were disturbed are never the best, nor are other programs.
+    "disturbed" counts the rows that were left out since their times were disturbed.
     """
-    rows = [row for row in rows if row.valid and row.program == picture_errors.OURS]
-    wanted: list[dict[str, Any]] = [
-        {"wanted": f"error at most {error:g}", "best": fastest(rows, error)} for error in ERRORS
-    ]
-    return wanted + [{"wanted": f"at most {time:g} ms", "best": closest(rows, time, doubt)} for time in TIMES]
+    ours = [row for row in rows if row.program == picture_errors.OURS]
+    calm = [row for row in ours if row.valid]
+    best = {f"error at most {error:g}": fastest(calm, error) for error in ERRORS}
+    best |= {f"at most {time:g} ms": closest(calm, time, doubt) for time in TIMES}
+    disturbed = sum(row.remark == DISTURBED_BY_OTHERS for row in ours)
+    return [{"wanted": wanted, "best": row, "disturbed": disturbed} for wanted, row in best.items()]

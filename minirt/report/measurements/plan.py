@@ -25,10 +25,11 @@ class Plan(NamedTuple):
     width: int  # pixels, at most
     seconds: float  # time for the reference, at most
     budget: Budget
+    others: bool  # whether other programs are measured, too
 
 
-FULL = Plan(64, 1024, 64, 0.0005, 16384, 300.0, Budget(0.3, 5.0, tries=3))
-QUICK = Plan(8, 1024, 16, 0.002, 320, 5.0, Budget(0.0, 0.1, tries=1))
+FULL = Plan(64, 1024, 64, 0.0005, 16384, 300.0, Budget(0.3, 5.0, tries=3), others=True)
+QUICK = Plan(8, 1024, 16, 0.002, 320, 5.0, Budget(0.0, 0.1, tries=3), others=False)
 
 
 def fitting_size(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, int]:

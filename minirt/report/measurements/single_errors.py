@@ -72,7 +72,7 @@ def reduced_element(element: Any, feature: Hashable) -> Iterator[Any]:
             if feature == ("environment" if isinstance(element.paint, str) else "background"):
                 yield element
         case Light() | SpotLight() if feature != "spots" and (element.fade or isinstance(element, SpotLight)):
-            yield FurtherLight(element.position, element.brightness, element.colour)
+            yield FurtherLight(position=element.position, brightness=element.brightness, colour=element.colour)
         case _:
             if feature == "spots" or not hasattr(element, "direction") or hasattr(element, "position"):
                 yield element

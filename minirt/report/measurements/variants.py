@@ -39,9 +39,9 @@ class Variant(NamedTuple):
 
 def without_lists(scene: Scene) -> Iterator[Variant]:
     """Yield the scene packed without each list that it has. Such variants need no kernel of their own."""
-    yield Variant("list", "tiles", "without", scene, (without_tiles,))
+    yield Variant("list", "tiles and their cones", "without", scene, (without_tiles,))
     if scene.lights:
-        yield Variant("list", "light buffers", "without", scene, (without_light_buffers,))
+        yield Variant("list", "light buffers and their cones", "without", scene, (without_light_buffers,))
     if features(scene) & {"reflective", "parallel"}:
         yield Variant("list", "boxes of the BVH", "without", scene, (without_boxes,))
 

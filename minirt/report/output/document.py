@@ -7,6 +7,7 @@ from math import isnan
 
 from minirt.report.measurements.findings import Findings, choices
 from minirt.report.measurements.picture_errors import Row
+from minirt.report.measurements.povray import ABOUT
 from minirt.report.measurements.settings import BOUNCES, KNOBS
 from minirt.report.output.blocks import (
     Block,
@@ -108,7 +109,8 @@ def settings_section(found: Findings) -> Iterator[Block]:
     )
     yield table(found.pictures, PICTURES, recommended(found))
     used = {row.knob for row in found.pictures}
-    yield Bullets([f"{knob.name}: {knob.about}" for knob in (*KNOBS, *BOUNCES) if knob.name in used])
+    abouts = {knob.name: knob.about for knob in (*KNOBS, *BOUNCES)} | ABOUT
+    yield Bullets([f"{name}: {about}" for name, about in abouts.items() if name in used])
 
 
 def left_out_section(found: Findings) -> Iterator[Block]:
@@ -132,17 +134,13 @@ def summary(found: Findings) -> str:
 
 
 def advice(found: Findings) -> Iterator[str]:
-    """Yield the best setting for each target error and each target time."""
+    """Yield the best setting for each target error and each target time, and how many cannot be recommended."""
+    disturbed = 0
     for choice in choices(found.pictures, found.reference_error):
-        best = choice["best"]
-        yield f"{choice['wanted']}: {described(best) if best else none_of(found.pictures)}"
-
-
-def none_of(rows: list[Row]) -> str:
-    """Say why no setting is recommended."""
-    return (
-        "none of these settings" if any(row.valid for row in rows) else "unknown, as other programs disturbed all times"
-    )
+        best, disturbed = choice["best"], choice["disturbed"]
+        yield f"{choice['wanted']}: {described(best) if best else 'none of these settings'}"
+    if disturbed:
+        yield f"left out, as other programs disturbed their times: {disturbed} settings"
 
 
 def described(row: Row) -> str:

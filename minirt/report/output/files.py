@@ -29,7 +29,7 @@ CAPTION = (
     "was asked for. No other setting of miniRT is better in both error and time than the points on the grey band. Bars "
     "are 95 % confidence intervals."
 )
-PAGE, TEXT, DIAGRAM = "report.html", "report.md", "diagram.svg"
+PAGE, TEXT, DIAGRAM, FORMULAS = "report.html", "report.md", "diagram.svg", "kernels.html"
 
 
 def report_files(found: Findings, lights: dict[str, Light], reference: Light) -> Files:
@@ -69,7 +69,7 @@ def formula_files(rows: list[FormulaRow], interrupted: str = "") -> Files:
     notice = [Notice(interrupted)] * bool(interrupted)
     blocks = [Heading("Formulas of all shapes", level=1), *notice, *formula_section(rows)]
     made = {
-        "kernels.html": page("Formulas of all shapes", blocks),
+        FORMULAS: page("Formulas of all shapes", blocks),
         "kernels.md": markdown(blocks),
         "kernels.csv": as_csv(rows),
         "kernels.json": as_json(rows),
