@@ -18,8 +18,8 @@ import minirt
 from minirt.errors import RenderError
 from minirt.report import __main__, generate, report, report_formulas
 from minirt.report.generate import NO_DIAGRAM
-from minirt.report.measurements.run_times import Budget
 from minirt.report.measurements.plan import QUICK, fitting_size
+from minirt.report.measurements.run_times import Budget
 from minirt.report.output.error_image import HEAT
 from minirt.scene import Scene, dump
 from minirt.shapes import KINDS

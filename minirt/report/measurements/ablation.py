@@ -64,7 +64,7 @@ class Ablation:
         variants = list(variants)
         if not all(variant.packing for variant in variants):
             step("compiling the scene as it is")
-            self.compile_s = compile_seconds(self.scene)
+            self.compile_s = compile_seconds(drawing_kernel(self.scene))
         yield Part(
             "scene", "the scene", "as it is", frame_ms, compile_s=self.compile_s, valid=bool(calm), remark=remark
         )
@@ -82,7 +82,7 @@ class Ablation:
         if variant.packing:
             renderer.packing = ChangedPacking(*variant.packing)
         else:
-            compile_s = compile_seconds(variant.scene)
+            compile_s = compile_seconds(drawing_kernel(variant.scene))
         frame = Frame(renderer, variant.scene, self.shape)
         frame.draw()
         pairs, remark = self.pairs(frame)
@@ -150,9 +150,13 @@ def per_cent(ratio: float) -> float:
     return (ratio - 1) * 100
 
 
-def compile_seconds(scene: Scene) -> float:
-    """Compile the kernel that draws a scene, anew, keep it in memory, and return the processor time of the compiler."""
-    identity = LIBRARY.identity(calls_for(scene, "double", DEPTH)[-1])
+def drawing_kernel(scene: Scene) -> str:
+    """Return the identity of the narrow kernel that draws a scene."""
+    return LIBRARY.identity(calls_for(scene, "double", DEPTH)[-1])
+
+
+def compile_seconds(identity: str) -> float:
+    """Compile a kernel, even if it is there, keep it in memory, and return the processor time of the compiler."""
     start, before = perf_counter(), os.times()
     (code,) = CompileProcess().compile([identity])
     after = os.times()

@@ -21,7 +21,7 @@ from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS, Times
 from minirt.scene import Scene
 from minirt.timing import Run, is_disturbed
 
-PROGRAM = "POV-Ray"
+PROGRAM, COMMAND = "POV-Ray", ("povray",)
 RUNS, MOST_RUNS = 3, 6  # undisturbed, and in all
 TICK = 0.005  # seconds by which its processor time may be too small
 SAME = 0.01  # RMSE: a picture of many samples that is further off is not that of the scene
@@ -98,7 +98,7 @@ class PovRay:
 
     def run(self, setting: Setting) -> Run:
         """Render with a setting; return the time that POV-Ray took for the rays."""
-        command = ["povray", f"+W{self.width}", f"+H{self.height}", f"+WT{self.threads}", "-D", "-V", "+FP16"]
+        command = [*COMMAND, f"+W{self.width}", f"+H{self.height}", f"+WT{self.threads}", "-D", "-V", "+FP16"]
         paths = "File_Gamma=1.0", "+Iscene.pov", "+Opicture.ppm"
         ended = subprocess.run([*command, *paths, *setting.options], cwd=self.folder, capture_output=True, check=False)
         found = TRACE.findall(ended.stderr.decode(errors="replace"))
