@@ -48,6 +48,7 @@ class Findings(NamedTuple):
     notes: list[str]  # how the scene was packed, and which features were left out
     same: list[int]  # sample counts for which the picture without culling is the same, bit for bit
     not_measured: list[str]
+    interrupted: str = ""  # what was being measured when the user interrupted the report, and what is missing
 
 
 def subject(scene: Scene, name: str, width: int, height: int, threads: int, seed: int) -> Subject:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from minirt.report.measurements.findings import Findings
-from minirt.report.output.tables import Column, as_markdown
+from minirt.report.output.blocks import Block, Column, Heading, Text, table
 
 ORDERS = (
     Column("setting", "knob"),
@@ -39,34 +39,34 @@ SINGLE = (
 )
 
 
-def orders_section(found: Findings) -> Iterator[str]:
+def orders_section(found: Findings) -> Iterator[Block]:
     """Yield the orders of convergence."""
-    yield "\n## Orders of convergence\n"
-    yield (
+    yield Heading("Orders of convergence")
+    yield Text(
         "RMSE falls as samples^-order, or as time^-order, by least squares; from and to are 95 % confidence intervals "
         "by Student's t. Points within twice the error of the reference are left out, and that error is taken off the "
         "rest; disturbed times are left out."
     )
-    yield "\n" + as_markdown(found.orders, ORDERS)
+    yield table(found.orders, ORDERS)
 
 
-def ablation_section(found: Findings) -> Iterator[str]:
+def ablation_section(found: Findings) -> Iterator[Block]:
     """Yield what each part costs or saves."""
-    yield "\n## What parts cost and save\n"
-    yield (
+    yield Heading("What parts cost and save")
+    yield Text(
         "Processor time of a frame with one sample per pixel, changed by one part: a list is left out, or something "
         "that no ray meets is added. It is the median of the ratios of frames in turn with the scene as it is; from "
         "and to are a 95 % confidence interval. Where code lies in memory changes a time by some per cent, too. "
         "`--ablation` adds the features and the kinds of shapes that the scene lacks."
     )
-    yield "\n" + as_markdown(found.ablation, ABLATION)
+    yield table(found.ablation, ABLATION)
 
 
-def single_section(found: Findings) -> Iterator[str]:
+def single_section(found: Findings) -> Iterator[Block]:
     """Yield the errors of float32, feature by feature."""
-    yield "\n## Single precision, feature by feature\n"
-    yield (
+    yield Heading("Single precision, feature by feature")
+    yield Text(
         "Difference between pictures in float32 and in float64 with one sample per pixel: of the shapes alone, in "
         "their own colours, and with one feature of the scene at a time."
     )
-    yield "\n" + as_markdown(found.single, SINGLE)
+    yield table(found.single, SINGLE)
