@@ -24,6 +24,7 @@ from minirt.report.measurements.reference import Reference, reference
 from minirt.report.measurements.settings import COUNTS, Setting, settings
 from minirt.report.measurements.single_errors import SingleError, single_errors
 from minirt.report.measurements.stiffness import stiff_shapes
+from minirt.report.measurements.unseen import without_unseen
 from minirt.report.measurements.variants import Variant, with_more, without_lists
 from minirt.report.progress import Progress
 from minirt.scene import Scene
@@ -50,7 +51,9 @@ class Measurement:
         step("compiling")
         self.width, self.height = fitting_size(scene, size, plan)
         wanted = list(settings(scene, plan.most, plan.least_error))
-        variants = [*without_lists(scene), *(with_more(scene, files) if ablation else ())]
+        variants = list(without_lists(scene))
+        if ablation:
+            variants += [*without_unseen(scene, self.width, self.height), *with_more(scene, files)]
         self.shown.expect(self.steps(wanted, variants))
         self.reference = reference(
             scene, self.width, self.height, plan.samples, SEED, lambda: step(durations.REFERENCE)

@@ -1,4 +1,4 @@
-"""Ablation: what each absent feature or kind of shape would cost, and what each list for culling saves."""
+"""Ablation: what each absent feature or kind of shape would cost, what unseen ones cost, and what each list saves."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ PAIRS = 15  # of frames, of the scene as it is and of the variant, in turn
 class Part(NamedTuple):
     """Frame time and compile time with one part of the renderer added to, or taken from, what a scene uses."""
 
-    sort: str  # "scene", "feature", "kind" or "list"
+    sort: str  # "scene", "list", "unseen", "feature" or "kind"
     name: str  # such as "mirrors and glass", "tori", "tiles"
     change: str  # "as it is", "added" or "without"
     frame_ms: float = nan  # of a picture with one sample per pixel, median
@@ -40,6 +40,7 @@ class Part(NamedTuple):
     percent_high: float = nan
     compile_s: float = nan  # processor time of the compiler; NaN for a list, which needs no kernel of its own
     compile_percent: float = nan
+    pays_after_s: float = nan  # of rendering, until a kernel without the part has saved its compile time; NaN: in doubt
     same: bool = True  # the picture is that of the scene as it is, bit for bit
     valid: bool = False  # False: failed, or other programs disturbed the times
     remark: str = ""
@@ -64,7 +65,7 @@ class Ablation:
         variants = list(variants)
         if not all(variant.packing for variant in variants):
             step("compiling the scene as it is")
-            self.compile_s = compile_seconds(self.scene)
+            self.compile_s = compile_seconds(drawing_kernel(self.scene))
         yield Part(
             "scene", "the scene", "as it is", frame_ms, compile_s=self.compile_s, valid=bool(calm), remark=remark
         )
@@ -82,7 +83,7 @@ class Ablation:
         if variant.packing:
             renderer.packing = ChangedPacking(*variant.packing)
         else:
-            compile_s = compile_seconds(variant.scene)
+            compile_s = compile_seconds(drawing_kernel(variant.scene))
         frame = Frame(renderer, variant.scene, self.shape)
         frame.draw()
         pairs, remark = self.pairs(frame)
@@ -98,10 +99,22 @@ class Ablation:
             percent_high=per_cent(high),
             compile_s=compile_s,
             compile_percent=per_cent(compile_s / self.compile_s),
+            pays_after_s=self.pays_after(variant.change, ratios, compile_s),
             same=np.array_equal(frame.pixels, self.base.pixels),
             valid=not remark,
             remark=remark,
         )
+
+    def pays_after(self, change: str, ratios: list[float], compile_s: float) -> float:
+        """Return after how many seconds of rendering a kernel without a part has saved its own compile time.
+
+        `ratios` are frame times of the variant by those of the scene as it is. NaN where they do not tell for certain
+        that the part costs time.
+        """
+        low, high = of_median(ratios)
+        if change == "added":
+            return self.compile_s * median(ratios) / (median(ratios) - 1) if low > 1 else nan
+        return compile_s / (1 - median(ratios)) if high < 1 else nan
 
     def pairs(self, frame: Frame) -> tuple[list[tuple[Run, Run]], str]:
         """Time the scene as it is and a variant in turn; return the pairs that count, and a remark if they do not."""
@@ -150,9 +163,13 @@ def per_cent(ratio: float) -> float:
     return (ratio - 1) * 100
 
 
-def compile_seconds(scene: Scene) -> float:
-    """Compile the kernel that draws a scene, anew, keep it in memory, and return the processor time of the compiler."""
-    identity = LIBRARY.identity(calls_for(scene, "double", DEPTH)[-1])
+def drawing_kernel(scene: Scene) -> str:
+    """Return the identity of the narrow kernel that draws a scene."""
+    return LIBRARY.identity(calls_for(scene, "double", DEPTH)[-1])
+
+
+def compile_seconds(identity: str) -> float:
+    """Compile a kernel, even if it is there, keep it in memory, and return the processor time of the compiler."""
     start, before = perf_counter(), os.times()
     (code,) = CompileProcess().compile([identity])
     after = os.times()

@@ -13,7 +13,7 @@ import numpy as np
 
 from minirt.errors import RenderError
 from minirt.report.measurements import flip
-from minirt.report.measurements.metrics import Picture
+from minirt.report.measurements.metrics import Picture, rmse
 from minirt.report.measurements.picture_errors import Row, with_errors, with_times
 from minirt.report.measurements.povray_scene import translated
 from minirt.report.measurements.reference import Reference
@@ -21,10 +21,11 @@ from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS, Times
 from minirt.scene import Scene
 from minirt.timing import Run, is_disturbed
 
-PROGRAM = "POV-Ray"
+PROGRAM, COMMAND = "POV-Ray", ("povray",)
 RUNS, MOST_RUNS = 3, 6  # undisturbed, and in all
 TICK = 0.005  # seconds by which its processor time may be too small
-SAME = 0.01  # RMSE: a picture of many samples that is further off is not that of the scene
+CHECKED = 2  # samples along an edge of a pixel, of the picture that shows whether the scene is the same
+SAME = 0.02  # RMSE: a picture of four samples per pixel that is further off is not that of the scene
 TRACE = re.compile(r"Trace Time:.*\(([\d.]+) seconds\)\s+using \d+ thread\(s\) with ([\d.]+) CPU-seconds")
 HEADER = re.compile(rb"P6\s(?:#[^\n]*\n)*(\d+)\s+(\d+)\s+65535\s")
 
@@ -74,8 +75,9 @@ class PovRay:
     ) -> Iterator[tuple[Row, Picture | None]]:
         """Yield a row and a picture for each setting that takes at most `longest` seconds.
 
-        RenderError if its picture is not that of the scene.
+        RenderError, before the first row, if its picture is not that of the scene.
         """
+        self.check(right)
         perceived = flip.perceived(right.picture)
         slow: set[str] = set()
         for setting in SETTINGS:
@@ -86,24 +88,30 @@ class PovRay:
                 continue
             runs = [self.run(setting)]
             picture = self.picture()
-            row = with_errors(row, picture, right, perceived)
-            if row.rmse > SAME and setting.samples > 1:
-                raise RenderError(f"{PROGRAM} shows something else: RMSE {row.rmse:.2g} at {setting.label} samples")
             if runs[0].wall > longest:
                 slow.add(setting.knob)
             while runs[0].wall <= longest and len(self.calm(runs)) < RUNS and len(runs) < MOST_RUNS:
                 runs.append(self.run(setting))
             calm = self.calm(runs)
-            yield with_times(row, Times(calm) if calm else Times(runs, DISTURBED_BY_OTHERS)), picture
+            times = Times(calm) if calm else Times(runs, DISTURBED_BY_OTHERS)
+            yield with_times(with_errors(row, picture, right, perceived), times), picture
+
+    def check(self, right: Reference) -> None:
+        """Compare a picture of some samples per pixel with the reference. RenderError if it shows something else."""
+        self.run(uniform(CHECKED))
+        error = rmse(self.picture(), right.picture)
+        if error > SAME:
+            raise RenderError(f"{PROGRAM} shows something else: RMSE {error:.2g} at {CHECKED**2} samples per pixel")
 
     def run(self, setting: Setting) -> Run:
         """Render with a setting; return the time that POV-Ray took for the rays."""
-        command = ["povray", f"+W{self.width}", f"+H{self.height}", f"+WT{self.threads}", "-D", "-V", "+FP16"]
+        command = [*COMMAND, f"+W{self.width}", f"+H{self.height}", f"+WT{self.threads}", "-D", "-V", "+FP16"]
         paths = "File_Gamma=1.0", "+Iscene.pov", "+Opicture.ppm"
         ended = subprocess.run([*command, *paths, *setting.options], cwd=self.folder, capture_output=True, check=False)
-        found = TRACE.findall(ended.stderr.decode(errors="replace"))
+        printed = ended.stderr.decode(errors="replace")
+        found = TRACE.findall(printed)
         if ended.returncode or not found:
-            raise RenderError(f"{PROGRAM} failed: {ended.stderr.decode(errors='replace').strip()[-200:]}")
+            raise RenderError(f"{PROGRAM} failed: {printed.strip()[-200:]}")
         wall, cpu = map(float, found[-1])
         return Run(wall, cpu + TICK)
 

@@ -188,6 +188,19 @@ def test_a_setting_that_takes_too_long_is_left_out() -> None:
             assert isnan(row.wall_ms) if left_out else row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
 
 
+@pytest.mark.parametrize(("longest", "runs"), [(7.1, 7), (6.9, 3), (1.1, 3)])
+def test_slow_pictures_have_fewer_runs(longest: float, runs: int) -> None:
+    (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(longest=longest * ONCE))
+    assert (row.runs, row.valid) == (runs, True)
+
+
+def test_tries_end_where_they_take_longer_than_a_picture_may(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_times, "is_disturbed", lambda run, threads: True)
+    for longest, runs in ((1e3, 3 * 7), (10 * ONCE, 2 * 7), (5 * ONCE, 2 * 3)):
+        (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(longest=longest, tries=3))
+        assert (row.runs, row.remark) == (runs, DISTURBED_BY_OTHERS)
+
+
 def test_runs_fill_the_time_that_they_are_given(clock: Clock) -> None:
     right()
     for seconds, runs in ((0.0, run_times.RUNS), (9.5 * ONCE, 10)):
