@@ -40,7 +40,7 @@ def test_an_interrupt_is_told_first() -> None:
 def test_disturbed_settings_are_counted_and_not_recommended() -> None:
     lines = list(advice(FINDINGS))
     assert lines[-1] == "left out, as other programs disturbed their times: 1"
-    assert "error at most 0.01: uniform, 4 samples (10 ms, RMSE 0.01, 30.0 dB)" in lines
+    assert "error at most 0.01: single, 4 samples (9 ms, RMSE 0.01, 30.0 dB)" in lines
     calm = FINDINGS._replace(pictures=[row._replace(valid=True, remark="") for row in ROWS])
     assert "error at most 0.01: adaptive, 4 samples (7 ms, RMSE 0.01, 30.0 dB)" in list(advice(calm))
     assert not [line for line in advice(calm) if "left out" in line]
@@ -61,7 +61,7 @@ def test_every_picture_is_a_file_and_in_the_page() -> None:
 @pytest.mark.parametrize("name", ["report.html", "report.md"])
 def test_both_forms_tell_every_figure(name: str) -> None:
     text = report_files(FINDINGS, {}, BLACK)[name].decode()
-    for figure in ("0.01000", "0.03600", "tiles", "+100.0", "shapes alone", "1e-07", "formula of the blob"):
+    for figure in ("0.01000", "0.03600", "tiles", "+100.0", "shapes alone", "1.0e-07", "formula of the blob"):
         assert figure in text
     assert ("&lt;slow&gt; &amp; sure" if name == "report.html" else "<slow> & sure") in text
 
