@@ -11,6 +11,7 @@ import os
 import re
 import select
 import shutil
+import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -32,6 +33,7 @@ OPTIONS = (
     "--remote-debugging-pipe",
 )
 IN_PIPES = 'exec "$0" "${@:3}" 3<&"$1" 4>&"$2"'  # the browser reads commands from 3 and writes answers to 4
+SILENT = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 Message = dict[str, Any]
 
 
@@ -154,7 +156,7 @@ def open_browser(command: str, home: Path) -> Iterator[Page]:
     """Start a browser, which keeps its files in a folder, and return its first page; it ends with the block."""
     (commands, writer), (reader, answers) = os.pipe(), os.pipe()
     shell = ["bash", "-c", IN_PIPES, command, str(commands), str(answers), *OPTIONS, f"--user-data-dir={home}"]
-    with started(shell, pass_fds=(commands, answers), env=os.environ | {"HOME": str(home)}, stderr=-3, stdout=-3):
+    with started(shell, pass_fds=(commands, answers), env=os.environ | {"HOME": str(home)}, **SILENT):
         os.close(commands)
         os.close(answers)
         try:

@@ -56,13 +56,17 @@ def document(found: Findings, diagrams: Diagrams, pictures: list[Picture]) -> It
     if pictures:
         yield from error_pictures(found, pictures)
     yield from settings_section(found)
-    yield from orders_section(found)
+    if found.orders:
+        yield from orders_section(found)
     yield from left_out_section(found)
-    yield from ablation_section(found)
-    yield from single_section(found)
+    if found.ablation:
+        yield from ablation_section(found)
+    if found.single:
+        yield from single_section(found)
     yield Heading("Stiff parts of the scene")
     yield Bullets([str(each) for each in found.stiff]) if found.stiff else Text("None.")
-    yield from formula_section(found.kernels)
+    if found.kernels:
+        yield from formula_section(found.kernels)
     if found.not_measured:
         yield Heading("Not measured")
         yield Bullets(found.not_measured)
@@ -87,7 +91,10 @@ def title(found: Findings) -> str:
 def error_pictures(found: Findings, pictures: list[Picture]) -> Iterator[Block]:
     """Yield the error pictures, the first beside the most accurate recommended one."""
     yield Heading("Where the errors are")
-    yield Text("The pictures `error-*.png` show the error of each pixel: black below 1e-4, white at 1.")
+    yield Text(
+        "The pictures `error-*.png` show the error of each pixel: black up to 0.0001, blue at 0.001, red at 0.01, "
+        "orange at 0.1, white at 1."
+    )
     best = [
         picture_name(row) for row in recommended(found) if row.rmse == min(each.rmse for each in recommended(found))
     ]
@@ -140,7 +147,7 @@ def advice(found: Findings) -> Iterator[str]:
         best, disturbed = choice["best"], choice["disturbed"]
         yield f"{choice['wanted']}: {described(best) if best else 'none of these settings'}"
     if disturbed:
-        yield f"left out, as other programs disturbed their times: {disturbed} settings"
+        yield f"left out, as other programs disturbed their times: {disturbed}"
 
 
 def described(row: Row) -> str:

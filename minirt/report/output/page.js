@@ -12,6 +12,7 @@ for (const comparison of document.querySelectorAll(".comparison")) {
       const pane = comparison.querySelector(`img.${side}`);
       pane.src = pictures[select.value].src;
       pane.alt = pictures[select.value].alt;
+      pane.style.imageRendering = pane.naturalWidth < pane.clientWidth ? "pixelated" : "auto";
     };
     select.addEventListener("change", show);
     show();

@@ -11,7 +11,7 @@ from minirt.report.measurements.findings import EIGHT_BITS
 from minirt.report.measurements.picture_errors import Row
 from minirt.report.output.diagram import draw, standalone
 from minirt.report.output.panel import NARROW, WIDE, Size, diagram_of
-from tests.report.made_up import REFERENCE_ERROR, ROWS, row
+from tests.report.made_up import NAMES, REFERENCE_ERROR, ROWS, row
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -38,11 +38,11 @@ def ends(path: Element) -> list[tuple[float, float]]:
 def test_each_setting_has_a_line_with_its_name() -> None:
     picture = drawn(ROWS)
     lines = classed(picture, "line")
-    assert [line.get("data-name") for line in lines] == ["uniform", "adaptive", "<slow> & sure", "POV-Ray"]
-    assert len({line.get("class") for line in lines}) == 4
+    assert [line.get("data-name") for line in lines] == NAMES
+    assert len({line.get("class") for line in lines}) == len(NAMES)
     names = [name for each in classed(picture, "name") for name in texts(each)]
-    assert sorted(names) == sorted(["uniform", "adaptive", "<slow> & sure", "POV-Ray"])
-    assert [len(classed(line, "point")) for line in lines] == [3, 2, 2, 3]
+    assert sorted(names) == sorted(NAMES)
+    assert [len(classed(line, "point")) for line in lines] == [3, 2, 2, 3, 3, 3, 3]
 
 
 def test_less_error_is_left_and_more_time_is_up() -> None:

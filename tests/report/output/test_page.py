@@ -12,7 +12,7 @@ from PIL import Image
 from minirt.report.output.files import PAGE, report_files
 from tests import browser
 from tests.browser import Page, page, require_browser
-from tests.report.made_up import FINDINGS, ROWS
+from tests.report.made_up import FINDINGS, POINTS, ROWS
 
 __all__ = ["page"]
 pytestmark = pytest.mark.slow
@@ -74,7 +74,7 @@ def test_the_diagram_comes_first_then_pictures_then_tables(page: Page, file: Pat
     page.open(file)
     order = "[...document.querySelectorAll('.diagrams, .pictures, table')].map(each => each.className || each.tagName)"
     assert page.value(order)[:3] == ["diagrams", "pictures", "TABLE"]
-    assert page.value("document.querySelectorAll('.wide .point').length") == 10
+    assert page.value("document.querySelectorAll('.wide .point').length") == POINTS
     assert page.value("[...document.images].every(each => each.complete && each.naturalWidth > 0)")
 
 
@@ -159,7 +159,7 @@ def test_recommended_and_disturbed_rows_stand_out(page: Page, file: Path) -> Non
     page.open(file)
     bright = page.value("[...document.querySelectorAll('.emphasised')].map(each => each.cells[0].textContent)")
     assert bright
-    assert set(bright) <= {"uniform", "adaptive"}
+    assert set(bright) <= {"uniform", "adaptive", "single"}
     assert page.value("document.querySelectorAll('.wide .line .hollow').length") == 1
     assert page.value("document.querySelectorAll('.wide .line .ring').length") == len(bright)
 
