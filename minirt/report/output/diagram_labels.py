@@ -59,7 +59,7 @@ def key() -> str:
     y = 16.0
     parts = [
         mark("circle", (15.0, y)) + ring((15.0, y)) + text("recommended", (28.0, y + 4)),
-        mark("circle", (122.0, y), is_hollow=True) + text("disturbed", (131.0, y + 4)),
+        mark("circle", (122.0, y), is_hollow=True) + text("uncertain", (131.0, y + 4)),
         cross((208.0, y)) + text("95 %", (221.0, y + 4)),
         path([(266.0, y), (278.0, y)], class_="front") + text("Pareto front", (288.0, y + 4)),
     ]
