@@ -89,5 +89,7 @@ def table(rows: Iterable[Any], columns: Iterable[Column], emphasised: Collection
 
 
 def cell(value: Any, format: str) -> str:
-    """Format one cell; a dash for NaN."""
+    """Format one cell; a dash for NaN, yes or no for truth."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     return "-" if isinstance(value, float) and isnan(value) else f"{value:{format}}"
