@@ -87,7 +87,7 @@ AUTO = Knob(
     "as many samples in each part of the picture as the error that is asked for needs (`--samples auto`)",
     picture=automatic_samples,
     values=ERRORS,
-    work=lambda error: error**-2,
+    work=lambda error: error**-1.5,
 )
 KNOBS = (
     Knob("uniform", "the same samples in each pixel, float64", values=MORE_COUNTS),
