@@ -71,7 +71,7 @@ bench: $(NAME)  ## time frames beside other programs: make bench BENCH=--quick f
 bench-peers: $(NAME)  ## install what `make bench` compares with and draws with (Debian, Ubuntu)
 	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox xvfb
 	-$(SUDO) apt-get install -y --no-install-recommends libllvm19  # for Mitsuba; older systems lack it
-	$(call INSTALL,'.[report]' embreex mitsuba)
+	$(call INSTALL,'.[charts]' embreex mitsuba)
 
 REPORTED := demo figure-v4-everything eval-shadows-many
 
@@ -81,6 +81,9 @@ report: $(NAME)  ## measure error against run time: make report REPORT=--quick f
 
 textures gallery: $(NAME)  ## draw the textures of the scenes, or render the gallery
 	$(VENV)/bin/python assets/make_$@.py
+
+diagrams: $(NAME)  ## measure the diagrams of the pages anew: error against run time
+	$(VENV)/bin/python assets/make_diagrams.py
 
 clean:  ## remove what tests, tools and runs have left
 	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +
@@ -92,4 +95,4 @@ fclean: clean  ## remove the installed program, too
 re: fclean  ## install everything anew
 	$(MAKE) all
 
-.PHONY: all help bonus run test quick processors check bench bench-peers report textures gallery clean fclean re
+.PHONY: all help bonus run test quick processors check bench bench-peers report textures gallery diagrams clean fclean re

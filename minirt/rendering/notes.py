@@ -27,6 +27,10 @@ def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Itera
         yield f"light buffer: none, every shape is tried ({shapes})"
     else:
         yield f"light buffer: {' or '.join(light_buffer_sizes(arrays))} per light ({shapes})"
+    for name in ("specular", "reflective"):
+        rows = getattr(arrays, name)
+        if rows is not None and not len(rows):
+            yield f"no pixel can show {FEATURES[name]}: skipped"
     for number, light in enumerate(scene.lights, 1):
         if not light.brightness:
             yield f"light {number} has brightness 0"

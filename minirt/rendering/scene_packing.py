@@ -12,6 +12,7 @@ from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.rendering.culling.light_frustum import dense_cluster
 from minirt.rendering.culling.planes import never_occludes
+from minirt.rendering.culling.unseen_materials import effective, without_unseen
 from minirt.rendering.culling.visibility import (
     BinnedShapes,
     light_buffer_cells,
@@ -87,6 +88,7 @@ class Packing:
                 binned.append(cached(keys[-1], seen_by_light, self.kernel, shapes, dense, position, cells, skipped))
         light_starts, light_shapes, light_cones, light_buffers = cached(tuple(keys), joined_light_buffers, binned, eye)
         materials = cached(("materials", used), pack_materials, scene, shapes.owner, used)
+        materials = without_unseen(materials, cached(("effective", used), effective, materials), eye.members)
         needs_bvh = "reflective" in used or ("parallel" in used and cells > 1)
         paint: Any = scene.background and scene.background.paint
         return SceneArrays(

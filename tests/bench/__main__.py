@@ -114,7 +114,7 @@ def names(systems: list[System]) -> list[str]:
 def draw(compared: Cells, started: Cells, growth: Cells, out: Path) -> None:
     """Draw the charts if matplotlib is installed."""
     if find_spec("matplotlib") is None:
-        print("no pictures: matplotlib is not installed (pip install -e '.[report]')")
+        print("no pictures: matplotlib is not installed (pip install -e '.[charts]')")
         return
     from tests.bench import charts
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import minirt
 
-PACKAGES = ("numpy", "numba", "llvmlite", "pillow", "matplotlib")
+PACKAGES = ("numpy", "numba", "llvmlite", "pillow")
 
 
 def processor() -> str:
