@@ -76,7 +76,7 @@ bench-peers: $(NAME)  ## install what `make bench` compares with and draws with 
 REPORTED := demo figure-v4-everything eval-shadows-many
 
 report: $(NAME)  ## measure error against run time: make report REPORT=--quick for a short run
-	$(VENV)/bin/python -m minirt.report out/report/shapes $(REPORT)
+	$(VENV)/bin/python -m minirt.report out/report/shapes $(filter --quick,$(REPORT))
 	$(foreach scene,$(REPORTED),$(NAME) scenes/$(scene).rt --report out/report/$(scene) $(REPORT) &&) true
 
 textures gallery: $(NAME)  ## draw the textures of the scenes, or render the gallery
