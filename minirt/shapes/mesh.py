@@ -10,7 +10,7 @@ pictures.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes import pyramid, triangle
+from minirt.shapes.boundary import Boundary, facing, triangle_boundary
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
 BARYCENTRIC = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)  # u and v at the three corners where the file has none
@@ -164,3 +165,9 @@ def mapping(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> tuple[Number, 
         along_u - dot(along_u, normal) * normal,
         along_v - dot(along_v, normal) * normal,
     )
+
+
+def boundary(mesh: Any, point: Vec) -> Boundary:
+    """As for `tr`, of a triangle with rounded corners; its normal is on the side of the normals of the file."""
+    (height,), edges = triangle_boundary(mesh.a, mesh.b, mesh.c, point)
+    return Boundary((facing(mesh.normal, height),), edges)

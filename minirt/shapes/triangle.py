@@ -10,7 +10,7 @@ on it: its lower left corner on the first corner, the lower right one on the sec
 from __future__ import annotations
 
 from math import hypot
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Point, Triple, declare, unit
 from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rounded_product, where
@@ -19,6 +19,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes import pyramid
+from minirt.shapes.boundary import Boundary, triangle_boundary
 from minirt.shapes.bounds import bounds_of_points
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
@@ -152,3 +153,8 @@ def mapping(triangle: PackedTriangle, point: Vec, normal: Vec) -> tuple[Number, 
     per_area = 1.0 / dot(product(to_b, to_c), triangle.normal)
     u, v = dot(product(p, to_c), triangle.normal), dot(product(to_b, p), triangle.normal)
     return u * per_area, v * per_area, to_b, to_c
+
+
+def boundary(triangle: Any, point: Vec) -> Boundary:
+    """Height above the triangle, and distances beyond its edges."""
+    return triangle_boundary(triangle.a, triangle.b, triangle.c, point)

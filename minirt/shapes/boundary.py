@@ -1,0 +1,82 @@
+"""Boundaries of shapes: their faces, as functions of a point that are 0 there.
+
+A file of a shape declares `boundary(shape, point)`, which `minirt.rendering.queries.certificate` calls to check hits:
+
+    def boundary(sphere: Any, point: Vec) -> Boundary:
+        return Boundary((length(point - sphere.centre) - sphere.diameter / 2,))
+
+`shape` has the fields of the scene line, or of the packed form of a mesh's triangle, and directions have exactly unit
+length. All numbers are `minirt.shapes.double_double.Double`: use + - * / and abs, and the functions here.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from minirt.lanes import Vec, cross, dot
+from minirt.shapes.double_double import Double, sqrt
+
+
+class Boundary(NamedTuple):
+    """Faces of a shape, and where they end: numbers that belong to a point, < 0 inside.
+
+    A face is where one of `faces` is 0, and neither another face nor one of the `limits` is above 0. The numbers are
+    distances or, close to the face, nearly proportional to them. Normals point to where they grow.
+    """
+
+    faces: tuple[Double, ...]
+    limits: tuple[Double, ...] = ()  # edges of a sheet, and ends without a face
+
+
+def length(v: Vec) -> Double:
+    """Return the length of a vector."""
+    return sqrt(dot(v, v))
+
+
+def unit(v: Vec) -> Vec:
+    """Return the vector of length 1 in the direction of v, however short v is."""
+    largest = np.maximum(np.maximum(abs(v.x.high), abs(v.y.high)), abs(v.z.high))
+    scaled = v * np.ldexp(1.0, np.minimum(-np.frexp(largest)[1], 1000))
+    return scaled / length(scaled)
+
+
+def hypotenuse(a: Double, b: Double) -> Double:
+    """Return sqrt(a^2 + b^2)."""
+    return sqrt(a * a + b * b)
+
+
+def along_and_off_axis(axis: Vec, p: Vec) -> tuple[Double, Double]:
+    """Return the coordinate of p along a unit vector, and its distance from the line through the origin along it."""
+    height = dot(axis, p)
+    return height, length(p - height * axis)
+
+
+def own_coordinates(axis: Vec, p: Vec) -> tuple[Double, Double, Double]:
+    """Return p in the frame of a shape whose own y axis is `axis`: as `minirt.shapes.basis.basis`, exactly."""
+    x, y, z = axis.x, axis.y, axis.z
+    sign = np.copysign(1.0, y.high)
+    a = -1.0 / (sign + y)
+    b = z * x * a
+    own_x, own_z = Vec(sign + x * x * a, -x, b), Vec(sign * b, -sign * z, 1.0 + sign * (z * z * a))
+    return dot(own_x, p), dot(axis, p), dot(own_z, p)
+
+
+def upright_frame(normal: Vec) -> tuple[Vec, Vec]:
+    """Return right and up of a flat surface, as `minirt.shapes.basis.facing_frame`, exactly."""
+    level = (normal.x.high == 0.0) & (normal.z.high == 0.0)
+    right = unit(Vec(normal.z + np.where(level, 1.0, 0.0), 0.0 * normal.y, -normal.x))
+    return right, cross(normal, right)
+
+
+def facing(way: Vec, height: Double) -> Double:
+    """Return a height above a plane, or its opposite: the one that grows along `way`."""
+    return height * np.where(dot(height.slope, Vec(way.x.high, way.y.high, way.z.high)) < 0.0, -1.0, 1.0)
+
+
+def triangle_boundary(a: Vec, b: Vec, c: Vec, point: Vec) -> Boundary:
+    """The boundary of the triangle between three corners: its plane and its edges."""
+    normal = unit(cross(b - a, c - a))
+    edges = tuple(dot(unit(cross(end - start, normal)), point - start) for start, end in ((a, b), (b, c), (c, a)))
+    return Boundary((dot(normal, point - a),), edges)
