@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 
 from minirt.shapes import KINDS, Kind
+from tests.stability.certificates import away_from_surface
 from tests.stability.execution_modes import MODES
 from tests.stability.regime import Regime, posed
 from tests.stability.table import REGIMES
+
+# A hit of a sliver is the mean of its corners by areas, off by roundings of the square of its length by its height.
+SLIVERS = ("a sliver", "a sliver next to none")
+CERTIFIED = [(kind, regime) for kind, regime in REGIMES if regime.name not in SLIVERS]
 
 
 def label(value: object) -> str:
@@ -23,6 +28,14 @@ def test_hits_are_exact(kind: Kind, regime: Regime, way: str) -> None:
     assert {type(shape) for shape in right.rays.shapes} == {kind.element}
     wrong = right.wrong(intersect(*right.rays), every)
     assert not wrong, f"{len(wrong)} of {right.t.size // every}, the first: {wrong[0]}"
+
+
+@pytest.mark.parametrize("way", ["arrays", "compiled"])
+@pytest.mark.parametrize(("kind", "regime"), CERTIFIED, ids=label)
+def test_hits_are_on_the_surface_within_the_backward_bound(kind: Kind, regime: Regime, way: str) -> None:
+    rays = posed(regime).rays
+    away = away_from_surface(rays, MODES[way][0](*rays))
+    assert not away, f"{len(away)}, the first: {away[0]}"
 
 
 @pytest.mark.parametrize(("kind", "regime"), REGIMES, ids=label)

@@ -59,7 +59,8 @@ def closest_face(boundary: Boundary, normal: Vec) -> NDArray[np.int64]:
     """The index of the face whose normal is closest to `normal`."""
     slopes = [face.slope for face in boundary.faces]
     cosines = [dot(slope, normal) / sqrt(dot(slope, slope)) + 0.0 * normal.x for slope in slopes]
-    return np.argmax(np.nan_to_num(cosines, nan=-2.0), axis=0)
+    closest: NDArray[np.int64] = np.argmax(np.nan_to_num(cosines, nan=-2.0), axis=0)
+    return closest
 
 
 def height_and_slope(boundary: Boundary, face: NDArray[np.int64]) -> tuple[Array, Vec]:
