@@ -13,6 +13,7 @@ from minirt.shapes.boundary import Boundary
 from minirt.shapes.double_double import Double
 
 STEPS = 4  # towards the foot; each adds digits, unless the face is curved as strongly as the point is far from it
+SETTLED = 1e-4  # relative change of the way to the foot after which no further step is taken
 AXES = (Vec(1.0, 0.0, 0.0), Vec(0.0, 1.0, 0.0), Vec(0.0, 0.0, 1.0))
 Array = NDArray[np.float64]
 
@@ -45,7 +46,10 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> Foot:
         if step:
             boundary = kind.boundary(shape, seeded(point + Vec(*map(Double, (way.x, way.y, way.z)))))
         height, slope = height_and_slope(boundary, face)
-        way = ((dot(slope, way) - height) / dot(slope, slope)) * slope
+        before, way = way, ((dot(slope, way) - height) / dot(slope, slope)) * slope
+        change = way - before
+        if not (dot(change, change) > SETTLED * SETTLED * dot(way, way)).any():
+            break
     return Foot(sqrt(dot(way, way)), slope * (1.0 / sqrt(dot(slope, slope))), beyond)
 
 
