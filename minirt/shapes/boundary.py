@@ -37,8 +37,8 @@ def length(v: Vec) -> Double:
 
 def unit(v: Vec) -> Vec:
     """Return the vector of length 1 in the direction of v, however short v is."""
-    largest = np.maximum(np.maximum(abs(v.x.high), abs(v.y.high)), abs(v.z.high))
-    scaled = v * np.ldexp(1.0, np.minimum(-np.frexp(largest)[1], 1000))
+    power = -np.frexp(np.maximum(np.maximum(abs(v.x.high), abs(v.y.high)), abs(v.z.high)))[1]
+    scaled = Vec(v.x.scaled(power), v.y.scaled(power), v.z.scaled(power))
     return scaled / length(scaled)
 
 

@@ -75,6 +75,11 @@ class Double:
 
     __radd__, __rmul__ = __add__, __mul__
 
+    def scaled(self, power: Any) -> Double:
+        """The number times 2^power, for any power."""
+        slope = (np.ldexp(part, power) for part in (self.slope.x, self.slope.y, self.slope.z))
+        return Double(np.ldexp(self.high, power), np.ldexp(self.low, power), Vec(*slope))
+
     def rounded(self) -> Any:
         """The number in float64."""
         return self.high + self.low
@@ -98,8 +103,3 @@ def sqrt(x: Double) -> Double:
     square, error = two_product(root, root)
     rest = Double(x.high, x.low) - Double(square, error)
     return Double(*quick_two_sum(root, rest.high * per_root), per_root * x.slope)
-
-
-def constant(v: Vec) -> Vec:
-    """Return a vector of float64 as one of Doubles."""
-    return Vec(as_double(v.x), as_double(v.y), as_double(v.z))

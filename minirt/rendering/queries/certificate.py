@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.lanes import Vec, dot, sqrt
-from minirt.rendering.queries.exact_fields import ExactFields, exact_direction, exact_fields, exact_point
+from minirt.rendering.queries.exact_fields import ExactFields, exact_direction, exact_fields, exact_point, lengths_of
 from minirt.rendering.queries.foot import foot
 from minirt.shapes import ALL_KINDS, Kind, Shape
 
@@ -86,7 +86,7 @@ def certify_kind(kind: Kind, fields: ExactFields, rows: Integers, rays: Rays) ->
     The face that was hit is the one whose normal is closest to the hit's.
     """
     first = fields.first_point(rows)
-    magnitude = rays.distances + np.linalg.norm(rays.origins - first, axis=1) + fields.sizes[rows]
+    magnitude = rays.distances + lengths_of(rays.origins - first) + fields.sizes[rows]
     # Scaled by a power of two all numbers are about 1, so that no product under- or overflows.
     power = -np.frexp(magnitude)[1]
     magnitude, distances = np.ldexp(magnitude, power), np.ldexp(rays.distances, power)

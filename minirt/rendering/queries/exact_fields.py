@@ -64,9 +64,14 @@ def exact_fields(kind: Kind, shapes: list[Shape]) -> ExactFields:
     for each in lengths.values():
         sizes += each.reshape(len(each), -1).sum(axis=1)
     for each in others:
-        sizes += np.linalg.norm(each - first, axis=1)
+        sizes += lengths_of(each - first)
     first_row = np.concatenate([[0], np.cumsum([shape.parts for shape in shapes])[:-1]])
     return ExactFields(points, lengths, directions, sizes, first_row)
+
+
+def lengths_of(vectors: Array) -> Array:
+    """The lengths of vectors (n, 3), none of which under- or overflows."""
+    return np.hypot(np.hypot(vectors[:, 0], vectors[:, 1]), vectors[:, 2])
 
 
 def packed_columns(kind: Kind, shapes: list[Shape]) -> tuple[Columns, Columns, Columns]:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cache, cached_property, partial
 from importlib import import_module
 from threading import Lock
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,75 +17,11 @@ from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.argument_block import words_of
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering.packing.widening import widened_tree
+from minirt.rendering.queries.hits import Hits, Traced
 from minirt.rendering.running.cores import usable_cores
 from minirt.rendering.running.thread_pool import ThreadPool
 from minirt.scene import Scene
 from minirt.shapes import Shape
-
-if TYPE_CHECKING:
-    from minirt.rendering.queries.certificate import Certificate
-
-
-class ClosestHits(NamedTuple):
-    """The closest hits of n rays, as arrays."""
-
-    distance: NDArray[np.float64]  # (n,) from the origin, in units of the scene; infinity where nothing is hit
-    owner: NDArray[np.int64]  # (n,) the index in `scene.shapes` of the shape that is hit; -1 where nothing is
-    point: NDArray[np.float64]  # (n, 3) on the surface; NaN where nothing is hit
-    normal: NDArray[np.float64]  # (n, 3) of the surface, of unit length, outward where there is an outside; or NaN
-
-
-class Hits(ClosestHits):
-    """The closest hits of n rays, and their certificates, which are computed on first use.
-
-    They are computed from the arrays that `trace` was given, which must not have changed.
-    """
-
-    traced: Traced | None = None
-
-    @cached_property
-    def certificate(self) -> Certificate:
-        """Backward error, condition and normal error; ValueError for hits that are not those of a call of `trace`."""
-        if self.traced is None:
-            raise ValueError("only hits that minirt.trace returned have a certificate, not parts of them or copies")
-        certificate = import_module("minirt.rendering.queries.certificate")
-        shapes, first_primitive, primitives, *rays = self.traced
-        parts = np.zeros_like(self.owner)
-        is_hit = self.owner >= 0
-        parts[is_hit] = primitives - first_primitive[self.owner[is_hit]]
-        found: Certificate = certificate.certify(
-            shapes, self.owner, parts, certificate.Rays(*rays, self.distance, self.normal)
-        )
-        return found
-
-    @property
-    def backward_error(self) -> NDArray[np.float64]:
-        """(n,) distance of the hit from the exact surface, in units of 2^-53 (t + |o - c| + size): the rounding errors
-        of t, of the way from the origin of the ray to the shape, and of the shape's lengths. NaN where nothing is hit.
-        """
-        return self.certificate.backward_error
-
-    @property
-    def condition(self) -> NDArray[np.float64]:
-        """(n,) relative change of t per relative change of the numbers of ray and shape; infinity where a ray only
-        touches a surface, NaN where nothing is hit. t is exact within 2^-53 times this times the backward error."""
-        return self.certificate.condition
-
-    @property
-    def normal_error(self) -> NDArray[np.float64]:
-        """(n,) distance of the normal from the exact unit normal, in radians while it is small. NaN where nothing is
-        hit."""
-        return self.certificate.normal_error
-
-
-class Traced(NamedTuple):
-    """What certificates are computed from."""
-
-    shapes: tuple[Shape, ...]
-    first_primitive: NDArray[np.int64]  # of each shape
-    primitives: NDArray[np.int64]  # that were hit, of the rays that hit something
-    origins: NDArray[np.float64]
-    directions: NDArray[np.float64]
 
 
 def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: int | None = None) -> Hits:
@@ -160,6 +96,7 @@ class Tracer:
         hits = Hits(
             np.full(count, np.inf), np.full(count, -1), np.full((count, 3), np.nan), np.full((count, 3), np.nan)
         )
+        primitives = first_primitive = np.zeros(0, np.int64)
         if count and scene.shapes:
             with self.busy:
                 if self.shapes is not scene.shapes:
@@ -172,7 +109,7 @@ class Tracer:
                 primitives = hits.owner[is_hit]
                 hits.owner[is_hit] = self.shape_arrays.owner[primitives]
                 first_primitive = self.shape_arrays.first_primitive
-            hits.traced = Traced(scene.shapes, first_primitive, primitives, origins, directions)
+        hits.traced = Traced(scene.shapes, first_primitive, primitives, origins, directions)
         return hits
 
     def build_bvh(self, shapes: tuple[Shape, ...]) -> None:
