@@ -170,7 +170,7 @@ def test_certificates_are_computed_on_first_use_alone(monkeypatch: pytest.Monkey
     for _ in range(2):
         assert (hits.backward_error, hits.condition, hits.normal_error) == (0, 2.75, 0)
     assert len(calls) == 1
-    with pytest.raises(ValueError, match="^only hits that"):
+    with pytest.raises(ValueError, match=r"^only hits that"):
         _ = hits._replace(distance=hits.distance).condition
 
 
