@@ -88,6 +88,9 @@ def argument_parser() -> Arguments:
     add("--json", action="store_true", help="with --bench: print JSON")
     add("--report", metavar="DIR", help="measure error against run time; write tables, pictures and a diagram into DIR")
     add("--quick", action="store_true", help="with --report: smaller pictures and fewer rays; takes seconds")
+    add(
+        "--ablation", action="store_true", help="with --report: also what each absent feature would cost; takes minutes"
+    )
     add("--list-keys", action="store_true", help="list the key bindings of the window")
     add(
         "--threads",

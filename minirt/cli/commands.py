@@ -55,5 +55,6 @@ def report(scene: Scene, options: argparse.Namespace) -> int:
     from minirt.report import report as write_report
 
     size = options.size or minirt.size_of(scene)
-    say(write_report(scene, options.scene[0], options.report, size, options.threads, options.quick))
+    how = options.threads, options.quick, options.ablation
+    say(write_report(scene, options.scene[0], options.report, size, *how))
     return OK

@@ -1,141 +1,100 @@
-"""Generate a report: run all measurements of a scene and write the results into a folder."""
+"""Generate a report: run all measurements and write the results into a folder, also when the user interrupts them."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
-from importlib.util import find_spec
+import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
-import numpy as np
-
-from minirt import atomic_write
 from minirt.errors import RenderError
-from minirt.rendering import Renderer
-from minirt.rendering.notes import kernel_notes
-from minirt.rendering.running.cores import usable_cores
+from minirt.report.formulas import formula_names, formula_rows
+from minirt.report.interruption import sigterm_interrupts
+from minirt.report.measure import Measurement
 from minirt.report.measurements import formula_errors
-from minirt.report.measurements.coincident import coincident
-from minirt.report.measurements.exact_hits import SOLIDS
-from minirt.report.measurements.eye_rays import rays_from_the_eye
-from minirt.report.measurements.findings import Findings, choices, subject
-from minirt.report.measurements.metrics import Picture
-from minirt.report.measurements.picture_errors import SettingRenderer, measure_settings
-from minirt.report.measurements.plan import FULL, QUICK, RAYS, Plan, fitting_size
-from minirt.report.measurements.reference import Reference, passes, reference
-from minirt.report.measurements.regimes import regimes_of
-from minirt.report.measurements.settings import settings
-from minirt.report.measurements.stiffness import stiff_shapes
-from minirt.report.output.document import document, formula_section, summary
-from minirt.report.output.error_image import error_image
-from minirt.report.output.tables import as_csv, as_json
+from minirt.report.measurements.durations import formula_steps
+from minirt.report.measurements.plan import FULL, QUICK
+from minirt.report.output.document import summary
+from minirt.report.output.files import FORMULAS, PAGE, formula_files, report_files, write_files
 from minirt.report.progress import progress
 from minirt.scene import Scene
-from minirt.shapes import ALL_KINDS, KINDS, Kind
+from minirt.shapes import KINDS
 
-SEED = 20240607
-REPORT = "report.md"
-NO_DIAGRAM = "no diagram: matplotlib is not installed, which `pip install minirt[report]` does"
-ReportFiles = dict[str, bytes]  # file name -> content
+NOTHING = "Interrupted before anything was measured; no report was written."
 
 
 def report(
-    scene: Scene, name: str, folder: str | os.PathLike[str], size: tuple[int, int], threads: int | None, quick: bool
+    scene: Scene,
+    name: str,
+    folder: str | os.PathLike[str],
+    size: tuple[int, int],
+    threads: int | None,
+    quick: bool,
+    ablation: bool = False,
 ) -> str:
     """Write the report of a scene into a folder, which is created if needed, and return a summary of it.
 
-    RenderError if the scene has no shapes or a file cannot be written.
+    With `ablation` it tells what each absent feature and kind of shape would cost, each of which needs a kernel of its
+    own. Ctrl+C and SIGTERM end the measurements: what was measured until then is written, standard error says so, and
+    KeyboardInterrupt is raised. RenderError if the scene has no shapes or a file cannot be written.
     """
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
     make_folder(folder)
-    plan, kinds = QUICK if quick else FULL, [kind for kind in ALL_KINDS if kind.element in set(map(type, scene.shapes))]
-    wanted = list(settings(scene, plan.most))
-    steps = passes(plan.samples) + len(wanted) + sum(len(regimes_of(kind)) + 1 for kind in kinds)
-    with progress(steps + 1) as shown:
-        shown.step("compiling")
-        width, height = fitting_size(scene, size, plan)
-        about = subject(scene, name, width, height, threads or usable_cores(), SEED)
-        right = reference(scene, width, height, plan.samples, SEED, lambda: shown.step("reference"))
-        stage = SettingRenderer(scene, width, height, about.threads)
-        found = list(measure_settings(stage, wanted, right, plan.budget, shown.step))
-        rows = list(formula_rows(kinds, plan, shown.step, scene))
-    packing = Renderer().packing
-    packing.pack(scene, width, height)
-    stiff = [*stiff_shapes(scene, packing.shape_arrays, width, height), *coincident(scene, packing.shape_arrays)]
-    findings = Findings(
-        about,
-        right.samples,
-        right.error,
-        [row for row, _ in found],
-        rows,
-        stiff,
-        [*kernel_notes(scene, wide=None, compiling=False), *packing.notes],
-        identical_without_culling({(row.knob, row.samples): picture for row, picture in found if picture is not None}),
-        kinds_not_measured(kinds) + ([] if find_spec("matplotlib") else [NO_DIAGRAM]),
-    )
-    pictures = {f"{row.knob} {row.samples}": picture for row, picture in found if picture is not None}
-    write_files(folder, report_files(findings, pictures, right))
-    return summary(findings) + f"\nThe report is in {Path(folder, REPORT)}"
+    with sigterm_interrupts(), TemporaryDirectory() as files, progress() as shown:
+        measurement = Measurement(scene, name, QUICK if quick else FULL, threads, shown)
+        try:
+            measurement.run(size, Path(files), ablation)
+        except KeyboardInterrupt:
+            shown.clear()
+            tell(write_report(measurement, folder, interrupted(shown.what)) or NOTHING)
+            raise
+        return write_report(measurement, folder)
+
+
+def write_report(measurement: Measurement, folder: str | os.PathLike[str], interrupted: str = "") -> str:
+    """Write the files of a report, and return its summary; nothing if no picture was measured."""
+    found = measurement.findings(interrupted)
+    if not (found and measurement.reference):
+        return ""
+    write_files(folder, report_files(found, measurement.pictures, measurement.reference.picture))
+    return f"{summary(found)}\nThe report is in {Path(folder, PAGE)}"
 
 
 def report_formulas(folder: str | os.PathLike[str], quick: bool) -> None:
-    """Write the accuracy and cost of the intersection formulas of all shape types into a folder."""
+    """Write the accuracy and cost of the intersection formulas of all shape types into a folder.
+
+    Ctrl+C and SIGTERM act as in `report`.
+    """
     make_folder(folder)
-    plan = QUICK if quick else FULL
-    with progress(sum(map(len, map(regimes_of, KINDS)))) as shown:
-        rows = list(formula_rows(KINDS, plan, shown.step))
-    text = "# Formulas of all shapes\n" + "\n".join(formula_section(rows)) + "\n"
-    made = {"kernels.csv": as_csv(rows), "kernels.json": as_json(rows), "kernels.md": text}
-    write_files(folder, {name: each.encode() for name, each in made.items()})
+    plan, rows = QUICK if quick else FULL, list[formula_errors.Row]()
+    with sigterm_interrupts(), progress() as shown:
+        shown.expect(formula_steps(formula_names(KINDS), plan))
+        try:
+            rows.extend(formula_rows(KINDS, plan, shown.step))
+        except KeyboardInterrupt:
+            shown.clear()
+            tell(write_formulas(rows, folder, interrupted(shown.what)) or NOTHING)
+            raise
+        write_formulas(rows, folder)
 
 
-def formula_rows(
-    kinds: Iterable[Kind], plan: Plan, step: Callable[[str], object], scene: Scene | None = None
-) -> Iterator[formula_errors.Row]:
-    """Measure the formulas of some shape types in all their regimes and, if a scene is given, from its eye."""
-    for number, kind in enumerate(kinds):
-        if kind.element not in SOLIDS:
-            continue
-        random = np.random.default_rng([SEED, number])
-        poses = [(each.name, each.pose(kind, random, plan.shapes, RAYS)) for each in regimes_of(kind)]
-        if scene:
-            poses.append(("this scene", rays_from_the_eye(kind, scene, random, plan.shapes, RAYS)))
-        for name, rays in poses:
-            step(f"{kind.element.title}, {name}")
-            yield from formula_errors.measure_formulas(kind, name, rays)
+def write_formulas(rows: list[formula_errors.Row], folder: str | os.PathLike[str], interrupted: str = "") -> str:
+    """Write the files about formulas, and return where they are; nothing if no formula was measured."""
+    if not rows:
+        return ""
+    write_files(folder, formula_files(rows, interrupted))
+    return f"{interrupted}\nThe report is in {Path(folder, FORMULAS)}"
 
 
-def kinds_not_measured(kinds: Iterable[Kind]) -> list[str]:
-    """Remarks on the shape types that have no exact reference to measure against."""
-    return [f"formula of the {kind.element.title}: none in 60 digits" for kind in kinds if kind.element not in SOLIDS]
+def interrupted(step: str) -> str:
+    """Say what an interrupt during a step leaves out."""
+    return f"Interrupted while measuring {step}: this and all that would have followed is missing."
 
 
-def identical_without_culling(pictures: dict[tuple[str, int], Picture]) -> list[int]:
-    """The sample counts for which brute force gave the same picture, bit for bit."""
-    return [
-        samples
-        for (knob, samples), picture in pictures.items()
-        if knob == "brute force" and np.array_equal(picture, pictures.get(("uniform", samples), 0))
-    ]
-
-
-def report_files(found: Findings, pictures: dict[str, Picture], right: Reference) -> ReportFiles:
-    """Build all files of the report of a scene."""
-    has_diagram = NO_DIAGRAM not in found.not_measured
-    made = {
-        REPORT: document(found, has_diagram).encode(),
-        "report.json": as_json(found._asdict() | {"choices": choices(found.pictures, found.reference_error)}).encode(),
-        "pictures.csv": as_csv(found.pictures).encode(),
-        "kernels.csv": as_csv(found.kernels).encode(),
-    }
-    for name, picture in pictures.items():
-        made[f"error-{name.replace(' ', '-')}.png"] = error_image(picture, right.picture).encode()
-    if has_diagram:
-        from minirt.report.output.diagram import diagram
-
-        made["diagram.png"] = diagram(found.pictures, found.reference_error, found.subject.scene)
-    return made
+def tell(words: str) -> None:
+    """Tell the user on standard error, as standard output is for complete reports."""
+    print(words, file=sys.stderr, flush=True)
 
 
 def make_folder(folder: str | os.PathLike[str]) -> None:
@@ -144,13 +103,3 @@ def make_folder(folder: str | os.PathLike[str]) -> None:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise RenderError(f"{os.fspath(folder)}: cannot be made: {error.strerror or error}") from None
-
-
-def write_files(folder: str | os.PathLike[str], made: ReportFiles) -> None:
-    """Write files into a folder, each as a whole or not at all. RenderError."""
-    for name, data in made.items():
-        path = Path(folder) / name
-        try:
-            atomic_write.write(path, data)
-        except OSError as error:
-            raise RenderError(f"{path}: cannot write: {error.strerror or error}") from None

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import inf, nan
+from functools import partial
+from math import nan
+from statistics import median
 from time import perf_counter
 from typing import NamedTuple
 
@@ -12,39 +14,48 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.rendering import Renderer
 from minirt.report.measurements import flip
-from minirt.report.measurements.metrics import Picture, changed, clamped, psnr, rmse
+from minirt.report.measurements.intervals import of_median, of_rmse
+from minirt.report.measurements.metrics import Picture, changed, clamped, psnr, rmse, to_8_bits
 from minirt.report.measurements.reference import Reference
-from minirt.report.measurements.settings import Setting
+from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS, Budget, Times, measure_times
+from minirt.report.measurements.settings import Drawn, Setting
 from minirt.scene import Scene
-from minirt.timing import Run, is_disturbed, runs
+from minirt.timing import Run, runs
 
-RUNS = 7
+OURS = "miniRT"
 
 
 class Row(NamedTuple):
     """Error and run time of one setting."""
 
     knob: str
-    samples: int
+    label: str  # of the point in the diagram: "16" samples, or the error that was asked for
+    program: str = OURS  # that drew the picture
+    samples: float = nan  # per pixel: "adaptive" takes so many at most, "auto" on average; NaN where nobody tells
     rmse: float = nan  # of colours, 1 from black to white
+    rmse_low: float = nan  # 95 % confidence interval: bootstrap over blocks of pixels, and the error of the reference
+    rmse_high: float = nan
+    rmse_8_bits: float = nan  # of the picture rounded to 8 bits per channel, as files have it
     psnr: float = nan  # decibels
     flip: float = nan  # mean over the pixels
     changed: float = nan  # pixels that differ in 8 bits
     not_finite: float = nan  # rays whose light was infinite or NaN, and is 0 in the picture
-    wall_ms: float = nan
+    asked: float = nan  # error that was asked for, of automatic sampling
+    estimated: float = nan  # error that automatic sampling estimates itself
+    wall_ms: float = nan  # median of the undisturbed runs
+    wall_low_ms: float = nan  # 95 % confidence interval: bootstrap over the runs
+    wall_high_ms: float = nan
     cpu_ms: float = nan
+    runs: int = 0  # that were undisturbed
     sort_ms: float = nan  # packing and culling, once per scene
     compile_s: float = nan  # compiling the kernel, or loading it from the cache
-    valid: bool = False  # False: failed, or other programs disturbed the time
+    valid: bool = False  # False: failed, or other programs disturbed all tries: never recommended
     remark: str = ""
 
-
-class Budget(NamedTuple):
-    """Time that measuring a setting may take."""
-
-    seconds: float  # least total of the runs of a setting
-    longest: float  # seconds for a picture; a slower setting is left out
-    tries: int  # rounds of runs at most, until one is undisturbed
+    @property
+    def name(self) -> str:
+        """Name of the setting, such as `uniform 16`."""
+        return f"{self.knob} {self.label}"
 
 
 class SettingRenderer:
@@ -67,11 +78,19 @@ class SettingRenderer:
             self.ready[setting.knob.name] = renderer, compiled - start, (perf_counter() - compiled) * 1e3
         return self.ready[setting.knob.name]
 
-    def light(self, setting: Setting) -> tuple[Picture, int]:
-        """Return the picture of a setting, and how many of its rays brought light that is not finite."""
+    def light(self, setting: Setting) -> tuple[Picture, Drawn]:
+        """Return the picture of a setting, and how it was drawn."""
         linear = np.zeros((*self.pixels.shape[:2], 3))
+        return linear, self.draw(setting, linear)
+
+    def draw(self, setting: Setting, linear: Picture | None = None) -> Drawn:
+        """Draw the picture of a setting."""
         renderer, *_ = self.renderer(setting)
-        return linear, setting.knob.picture(renderer, self.scene, self.pixels, setting.samples, linear)
+        return setting.knob.picture(renderer, self.scene, self.pixels, setting.value, linear)
+
+    def times(self, setting: Setting, first: Run, budget: Budget) -> Times:
+        """Time a setting after the warm-up run `first`."""
+        return measure_times(lambda: self.draw(setting), first, self.threads, budget)
 
 
 def measure_settings(
@@ -82,20 +101,20 @@ def measure_settings(
     `step` is called with the name of each setting before it is measured.
     """
     right = flip.perceived(reference.picture)
-    cost: dict[str, float] = {}  # seconds a sample
+    cost: dict[str, float] = {}  # seconds for a unit of work
     for setting in settings:
         step(setting.name)
-        knob, samples = setting.knob.name, setting.samples
-        expected = cost.get(knob, 0.0) * samples
+        knob, work = setting.knob.name, setting.knob.work(setting.value)
+        expected = cost.get(knob, 0.0) * work
         if expected > budget.longest:
-            yield Row(knob, samples, remark=f"left out: takes about {expected:.2g} s"), None
+            yield Row(knob, setting.label, remark=f"left out: takes about {expected:.2g} s"), None
             continue
         try:
             row, picture = measure_setting(stage, setting, reference, right, budget)
         except RenderError as error:
-            yield Row(knob, samples, remark=f"failed: {error}"), None
+            yield Row(knob, setting.label, remark=f"failed: {error}"), None
             continue
-        cost[knob] = row.wall_ms / 1e3 / samples
+        cost[knob] = row.wall_ms / 1e3 / work
         yield row, picture
 
 
@@ -103,42 +122,66 @@ def measure_setting(
     stage: SettingRenderer, setting: Setting, reference: Reference, right: flip.Perceived, budget: Budget
 ) -> tuple[Row, Picture]:
     """Measure one setting; return its row and its picture."""
-    renderer, compile_s, sort_ms = stage.renderer(setting)
-    lights: list[tuple[Picture, int]] = []
-    (first,) = runs(lambda: lights.append(stage.light(setting)), 1, 0.0)
-    picture = clamped(lights[0][0])
-    best, remark = best_time(
-        lambda: setting.knob.picture(renderer, stage.scene, stage.pixels, setting.samples, None),
-        first,
-        stage.threads,
-        budget,
-    )
-    error = rmse(picture, reference.picture)
+    _, compile_s, sort_ms = stage.renderer(setting)
+    drawn: list[tuple[Picture, Drawn]] = []
+    (first,) = runs(lambda: drawn.append(stage.light(setting)), 1, 0.0)
+    light, how = drawn[0]
     row = Row(
         setting.knob.name,
-        setting.samples,
+        setting.label,
+        samples=how.samples,
+        not_finite=how.not_finite,
+        asked=how.asked,
+        estimated=how.estimated,
+        sort_ms=sort_ms,
+        compile_s=compile_s,
+    )
+    picture = clamped(light)
+    return with_times(with_errors(row, picture, reference, right), stage.times(setting, first, budget)), picture
+
+
+def measure_disturbed_again(
+    stage: SettingRenderer, settings: list[Setting], rows: list[Row], budget: Budget, step: Callable[[str], object]
+) -> list[Row]:
+    """Time those rows again that other programs disturbed, after all others; return all rows."""
+    by_name = {setting.name: setting for setting in settings}
+    measured = []
+    for row in rows:
+        if row.remark == DISTURBED_BY_OTHERS and row.name in by_name:
+            step(f"{row.name} again")
+            setting = by_name[row.name]
+            (first,) = runs(partial(stage.draw, setting), 1, 0.0)
+            measured.append(with_times(row, stage.times(setting, first, budget)))
+        else:
+            measured.append(row)
+    return measured
+
+
+def with_errors(row: Row, picture: Picture, reference: Reference, right: flip.Perceived) -> Row:
+    """Return a row with the errors of its picture; `right` is the reference as it is perceived."""
+    error, rounded = rmse(picture, reference.picture), to_8_bits(picture) / 255
+    low, high = of_rmse(picture, reference.picture, reference.error)
+    return row._replace(
         rmse=error,
+        rmse_low=low,
+        rmse_high=high,
+        rmse_8_bits=rmse(rounded, reference.picture),
         psnr=psnr(error),
         flip=float(flip.flip(flip.perceived(picture), right).mean()),
         changed=changed(picture, reference.picture),
-        not_finite=lights[0][1],
-        wall_ms=best.wall * 1e3,
-        cpu_ms=best.cpu * 1e3,
-        sort_ms=sort_ms,
-        compile_s=compile_s,
-        valid=not remark,
-        remark=remark,
     )
-    return row, picture
 
 
-def best_time(work: Callable[[], object], first: Run, threads: int, budget: Budget) -> tuple[Run, str]:
-    """Return the fastest run after the warm-up run `first`, and a remark if that time is not reliable."""
-    if first.wall > budget.longest:
-        return first, "takes too long for more than the first run"
-    best = Run(inf, inf)
-    for _ in range(budget.tries):
-        best = min(best, *runs(work, RUNS, budget.seconds))
-        if not is_disturbed(best, threads):
-            return best, ""
-    return best, "other programs needed the processors"
+def with_times(row: Row, times: Times) -> Row:
+    """Return a row with its times."""
+    walls = [run.wall * 1e3 for run in times.runs]
+    low, high = of_median(walls)
+    return row._replace(
+        wall_ms=median(walls),
+        wall_low_ms=low,
+        wall_high_ms=high,
+        cpu_ms=median(run.cpu * 1e3 for run in times.runs),
+        runs=len(walls),
+        valid=not times.remark,
+        remark=times.remark,
+    )

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.rendering import Renderer
-from minirt.report.measurements.picture_errors import Budget
+from minirt.report.measurements.run_times import Budget
 from minirt.scene import Scene
 from minirt.timing import runs
 
@@ -21,13 +21,15 @@ class Plan(NamedTuple):
     shapes: int  # random shapes of each type in each regime
     samples: int  # samples per pixel of the reference
     most: int  # samples per pixel of the compared pictures, at most
+    least_error: float  # asked of automatic sampling
     width: int  # pixels, at most
     seconds: float  # time for the reference, at most
     budget: Budget
+    others: bool  # whether other programs are measured, too
 
 
-FULL = Plan(64, 1024, 64, 16384, 300.0, Budget(0.3, 5.0, tries=3))
-QUICK = Plan(8, 1024, 16, 320, 5.0, Budget(0.0, 0.1, tries=1))
+FULL = Plan(64, 1024, 64, 0.0005, 16384, 300.0, Budget(0.3, 5.0, tries=3), others=True)
+QUICK = Plan(8, 1024, 16, 0.002, 320, 5.0, Budget(0.0, 0.1, tries=3), others=False)
 
 
 def fitting_size(scene: Scene, size: tuple[int, int], plan: Plan) -> tuple[int, int]:

@@ -1,63 +1,65 @@
-"""Work-precision diagram: error against run time (drawn by matplotlib, which the extra `report` installs)."""
+"""Work-precision diagram as SVG: error against run time, a line for each render option."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from io import BytesIO
-from math import isfinite
+from collections.abc import Collection
+from html import escape
+from pathlib import Path
 
-from matplotlib import rc_context
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from minirt.report.measurements.picture_errors import OURS, Row
+from minirt.report.output.diagram_labels import COLOURS, drawn_floor, key, names, point_labels
+from minirt.report.output.marks import FORMS, mark, ring
+from minirt.report.output.panel import Diagram, Panel, Size, intervals, panel_for
+from minirt.report.output.scales import horizontal_axis, vertical_axis
+from minirt.report.output.svg import element, group, path
 
-from minirt.report.measurements.pareto import pareto_front
-from minirt.report.measurements.picture_errors import Row
-
-STYLE = {"font.size": 11, "axes.spines.top": False, "axes.spines.right": False}
-COLOURS = ("#d1495b", "#30638e", "#edae49", "#7a8b99", "#5b8c5a", "#8e5b8c")
-MARKS = "osD^vP"
+STYLE = Path(__file__).with_name("diagram.css")
 
 
-def diagram(rows: Iterable[Row], reference_error: float, title: str) -> bytes:
-    """Draw a PNG: a line for each knob, a point for each number of samples, hollow if its time was disturbed.
-
-    The grey line is the Pareto front. `reference_error` is the RMSE of the reference itself.
-    """
-    rows = list(rows)
-    knobs = list(dict.fromkeys(row.knob for row in rows))
-    with rc_context(STYLE):
-        canvas = Figure(figsize=(9, 5.2), layout="constrained")
-        panel = canvas.add_subplot(xscale="log", yscale="log", title=title)
-        best = pareto_front(rows, reference_error)
-        panel.plot([row.rmse for row in best], [row.wall_ms for row in best], color="#cccccc", linewidth=7, zorder=0)
-        for knob, colour, mark in zip(knobs, COLOURS, MARKS, strict=False):
-            draw_setting(panel, [row for row in rows if row.knob == knob], colour, mark)
-        low, high = panel.get_xlim()
-        if low < reference_error < high:
-            panel.axvline(reference_error, color="#999999", linestyle="--", linewidth=1, label="error of the reference")
-        elif reference_error > 0:
-            panel.plot([], [], " ", label=f"error of the reference: {reference_error:.1g}")
-        panel.set(xlabel="error: RMSE of colours, 1 from black to white", ylabel="milliseconds per picture")
-        for axis in (panel.xaxis, panel.yaxis):
-            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-            axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-            axis.set_minor_locator(NullLocator())
-        panel.grid(alpha=0.3)
-        panel.legend(frameon=False)
-        data = BytesIO()
-        canvas.savefig(data, format="png", dpi=130)
-    return data.getvalue()
+def draw(shown: Diagram, size: Size) -> str:
+    """Return the diagram as an SVG element without a style sheet."""
+    panel = panel_for(shown, size)
+    content = [
+        element("title", escape(shown.title)),
+        element("rect", width=size.width, height=size.height, class_="paper"),
+        horizontal_axis(panel.errors, panel.times.end, panel.times.start, "error: RMSE, 1 from black to white"),
+        vertical_axis(panel.times, panel.errors.start, panel.errors.end, "milliseconds per picture"),
+        path(map(panel.at, shown.front), class_="front") if shown.front else "",
+        *(drawn_floor(panel, floor) for floor in shown.floors if floor.error > 0),
+        *(drawn_line(panel, number, line, shown.recommended) for number, line in enumerate(shown.lines.values())),
+        *names(panel, shown.lines),
+        *point_labels(panel, shown.lines),
+        key(),
+    ]
+    box = f"0 0 {size.width} {size.height}"
+    return element("svg", *content, xmlns="http://www.w3.org/2000/svg", viewBox=box, class_="diagram", role="img")
 
 
-def draw_setting(panel: Axes, rows: list[Row], colour: str, mark: str) -> None:
-    """Draw the points of one knob, joined by a line and labelled with their numbers of samples."""
-    errors, times = [row.rmse for row in rows], [row.wall_ms for row in rows]
-    panel.plot(errors, times, color=colour, marker=mark, label=rows[0].knob)
-    for row in rows:
-        if not row.valid:
-            panel.plot(row.rmse, row.wall_ms, mark, color=colour, markerfacecolor="white")
-        if isfinite(row.rmse):
-            panel.annotate(
-                str(row.samples), (row.rmse, row.wall_ms), (5, 5), textcoords="offset points", color=colour, fontsize=9
-            )
+def standalone(drawn: str) -> str:
+    """Return a diagram as a file of its own, with its style sheet."""
+    start, end = drawn.split(">", 1)
+    return f"{start}>{element('style', STYLE.read_text(encoding='utf-8'))}{end}\n"
+
+
+def drawn_line(panel: Panel, number: int, rows: list[Row], recommended: Collection[Row]) -> str:
+    """Draw the points of a render option, joined by a line."""
+    style = f"line colour-{number % COLOURS}" + " other" * (rows[0].program != OURS)
+    points = (point(panel, row, FORMS[number % len(FORMS)], row in recommended) for row in rows)
+    return group([path(map(panel.at, rows), class_="join"), *points], class_=style, data_name=rows[0].knob)
+
+
+def point(panel: Panel, row: Row, form: str, is_recommended: bool) -> str:
+    """Draw a point with its confidence intervals; the pointer shows its figures."""
+    parts = [
+        element("title", escape(described(row, is_recommended))),
+        *(path(bar, class_="interval") for bar in intervals(panel, row)),
+        mark(form, panel.at(row), is_hollow=not row.valid),
+        ring(panel.at(row)) if is_recommended else "",
+    ]
+    return group(parts, class_="point")
+
+
+def described(row: Row, is_recommended: bool) -> str:
+    """Describe a point in words."""
+    remark = [row.remark] * bool(row.remark) + ["recommended"] * is_recommended
+    return "; ".join([f"{row.name}: RMSE {row.rmse:.2g}, {row.wall_ms:.3g} ms", *remark])

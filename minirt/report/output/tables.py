@@ -1,13 +1,13 @@
-"""Write rows of figures as CSV, JSON and Markdown."""
+"""Write rows of figures as CSV and JSON."""
 
 from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from io import StringIO
-from math import isfinite, isnan
-from typing import Any, NamedTuple
+from math import isfinite
+from typing import Any
 
 Rows = Sequence[Any]  # NamedTuples, all of one type
 
@@ -35,25 +35,3 @@ def json_value(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [json_value(each) for each in value]
     return None if isinstance(value, float) and not isfinite(value) else value
-
-
-class Column(NamedTuple):
-    """A column of a table: its title, the field of the rows that it shows, and the format of the field."""
-
-    title: str
-    field: str
-    format: str = ""
-
-
-def as_markdown(rows: Rows, columns: Iterable[Column]) -> str:
-    """Return a Markdown table, with a dash for NaN."""
-    columns = list(columns)
-    lines = ["| " + " | ".join(column.title for column in columns) + " |"]
-    lines.append("|" + "|".join("---" if not column.format else "---:" for column in columns) + "|")
-    lines += ["| " + " | ".join(cell(getattr(row, c.field), c.format) for c in columns) + " |" for row in rows]
-    return "\n".join(lines)
-
-
-def cell(value: Any, format: str) -> str:
-    """Format one cell; a dash for NaN."""
-    return "-" if isinstance(value, float) and isnan(value) else f"{value:{format}}"

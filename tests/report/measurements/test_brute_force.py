@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from minirt.errors import RenderError
+from minirt.kernel.bvh.nodes import NODE, REFERENCES
 from minirt.rendering.scene_packing import Packing
-from minirt.report.measurements.brute_force import BruteForce
+from minirt.report.measurements.brute_force import ChangedPacking, without_boxes, without_light_buffers, without_tiles
 from minirt.report.measurements.settings import brute_force
 from minirt.scene import Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, SHAPES, linear
@@ -29,7 +30,7 @@ def test_scenes_without_lights() -> None:
 
 
 def test_every_tile_and_every_light_has_every_shape() -> None:
-    traced = BruteForce().pack(ALL, WIDTH, HEIGHT)
+    traced = ChangedPacking(without_tiles, without_light_buffers).pack(ALL, WIDTH, HEIGHT)
     for kind, group in enumerate(traced.groups):
         expected = np.flatnonzero(traced.slots[:, 0] == kind).tolist()
         assert len(group.tile_starts) == 15 + 1
@@ -46,6 +47,18 @@ def test_every_tile_and_every_light_has_every_shape() -> None:
 
 def test_lists_that_would_fill_the_memory_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("minirt.report.measurements.brute_force.MOST", 15 * len(ALL.shapes))
-    BruteForce().pack(ALL, WIDTH, HEIGHT)
+    packing = ChangedPacking(without_tiles)
+    packing.pack(ALL, WIDTH, HEIGHT)
     with pytest.raises(RenderError, match="6 shapes in each of 18 tiles are too many"):
-        BruteForce().pack(ALL, WIDTH + 16, HEIGHT)
+        packing.pack(ALL, WIDTH + 16, HEIGHT)
+
+
+def test_every_ray_visits_every_leaf_of_the_tree() -> None:
+    mirrors = ALL.replace(ALL.shapes[1], mirror=0.7).replace(ALL.shapes[0], mirror=0.4)
+    tree, wide = (packing.pack(mirrors, WIDTH, HEIGHT).bvh for packing in (Packing(), ChangedPacking(without_boxes)))
+    boxes, open_boxes = (each.nodes.reshape(-1, NODE)[:, :REFERENCES] for each in (tree, wide))
+    used = (boxes[:, : REFERENCES // 2] <= boxes[:, REFERENCES // 2 :]).sum()
+    assert 0 < used == np.isneginf(open_boxes[:, : REFERENCES // 2]).sum()
+    assert np.array_equal(tree.nodes.reshape(-1, NODE)[:, REFERENCES:], wide.nodes.reshape(-1, NODE)[:, REFERENCES:])
+    brute = linear(mirrors, WIDTH, HEIGHT, 1, brute_force(1))
+    assert np.array_equal(brute, linear(mirrors, WIDTH, HEIGHT))

@@ -11,10 +11,11 @@ import pytest
 import minirt
 from minirt.errors import RenderError
 from minirt.rendering import scene_packing
-from minirt.report.measurements import picture_errors
-from minirt.report.measurements.picture_errors import Budget, Row, SettingRenderer, measure_settings
+from minirt.report.measurements import run_times
+from minirt.report.measurements.picture_errors import Row, SettingRenderer, measure_disturbed_again, measure_settings
 from minirt.report.measurements.reference import Reference, passes, reference
-from minirt.report.measurements.settings import KNOBS, Knob, Setting, knobs_of, settings
+from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS, ENOUGH, Budget
+from minirt.report.measurements.settings import AUTO, KNOBS, Drawn, Knob, Setting, knobs_of, settings
 from minirt.scene import FurtherLight, Scene
 from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
 from tests.simulated_clock import PACKET_SECONDS, PROCESSOR_SHARE, Clock, packets, simulate_clock
@@ -56,8 +57,8 @@ def rows_for(*wanted: Setting, budget: Budget = EASY) -> list[Row]:
 
 
 @cache
-def rows() -> dict[tuple[str, int], Row]:
-    return {(row.knob, row.samples): row for row in rows_for(*settings(ALL, 16))}
+def rows() -> dict[tuple[str, float], Row]:
+    return {(row.knob, float(row.label)): row for row in rows_for(*settings(ALL, 16, 0.005))}
 
 
 @pytest.mark.parametrize("samples", [1, 4, 16])
@@ -115,17 +116,18 @@ def test_knobs_do_what_they_say(clock: Clock) -> None:
     assert rows()["single", 4].rmse == pytest.approx(rows()["uniform", 4].rmse, rel=0.05)
     assert rows()["single", 4].rmse != rows()["uniform", 4].rmse
     brute = rows()["brute force", 4]
-    assert brute[1:6] == rows()["uniform", 4][1:6]  # samples and all errors
+    errors = slice(Row._fields.index("label"), Row._fields.index("not_finite"))
+    assert brute[errors] == rows()["uniform", 4][errors]
     assert all(row.not_finite == 0 for row in rows().values())
 
 
 def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
     mirrors = ALL.replace(ALL.shapes[0], mirror=0.5).replace(ALL.shapes[1], mirror=0.9)
     names = [knob.name for knob in knobs_of(ALL)]
-    assert names == ["uniform", "adaptive", "single", "brute force"]
-    assert [knob.name for knob in knobs_of(mirrors)] == [*names[:2], names[3], "no bounces", "1 bounce", "3 bounces"]
+    assert names == ["uniform", "adaptive", "auto", "single", "brute force"]
+    assert [knob.name for knob in knobs_of(mirrors)] == [*names[:3], names[4], "no bounces", "1 bounce", "3 bounces"]
     right = reference(mirrors, WIDTH, HEIGHT, 256, seed=3)
-    wanted = [setting for setting in settings(mirrors, 16) if setting.samples == 16]
+    wanted = [setting for setting in settings(mirrors, 16, 1.0) if setting.value == 16]
     stage = SettingRenderer(mirrors, WIDTH, HEIGHT, 1)
     rmse = {row.knob: row.rmse for row, _ in measure_settings(stage, wanted, right, EASY, lambda name: None)}
     assert rmse["no bounces"] > 2 * rmse["1 bounce"] > 4 * rmse["3 bounces"] > 4 * rmse["uniform"]
@@ -150,9 +152,9 @@ def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) ->
         scene_packing, "positions_and_intensities", lambda lamps: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps))
     )
     stage = SettingRenderer(bright, WIDTH, HEIGHT, 1)
-    wanted = list(settings(bright, 4))
+    wanted = list(settings(bright, 4, 1.0))
     rows = [row for row, _ in measure_settings(stage, wanted, right(), EASY, lambda name: None)]
-    counts = {(row.knob, row.samples): row.not_finite for row in rows}
+    counts = {(row.knob, int(row.label)): row.not_finite for row in rows}
     assert 0 < counts["uniform", 1] < WIDTH * HEIGHT
     assert counts["uniform", 4] == pytest.approx(4 * counts["uniform", 1], rel=0.05)
     assert counts["uniform", 1] < counts["adaptive", 4] < counts["uniform", 1] + counts["uniform", 4]
@@ -161,7 +163,7 @@ def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_a_setting_that_fails_stays_as_nan() -> None:
-    def fails(*_: object) -> int:
+    def fails(*_: object) -> Drawn:
         raise RenderError("no room")
 
     failed, good = rows_for(Setting(Knob("bad", "", picture=fails), 1), Setting(KNOBS[0], 1))
@@ -186,23 +188,78 @@ def test_a_setting_that_takes_too_long_is_left_out() -> None:
             assert isnan(row.wall_ms) if left_out else row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
 
 
+@pytest.mark.parametrize(("longest", "runs"), [(7.1, 7), (6.9, 3), (1.1, 3)])
+def test_slow_pictures_have_fewer_runs(longest: float, runs: int) -> None:
+    (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(longest=longest * ONCE))
+    assert (row.runs, row.valid) == (runs, True)
+
+
+def test_tries_end_where_they_take_longer_than_a_picture_may(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(run_times, "is_disturbed", lambda run, threads: True)
+    for longest, runs in ((1e3, 3 * 7), (10 * ONCE, 2 * 7), (5 * ONCE, 2 * 3)):
+        (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(longest=longest, tries=3))
+        assert (row.runs, row.remark) == (runs, DISTURBED_BY_OTHERS)
+
+
 def test_runs_fill_the_time_that_they_are_given(clock: Clock) -> None:
     right()
-    for seconds, runs in ((0.0, picture_errors.RUNS), (9.5 * ONCE, 10)):
+    for seconds, runs in ((0.0, run_times.RUNS), (9.5 * ONCE, 10)):
         before = clock.packets
         rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(seconds=seconds))
         prepared, first = 1, packets(WIDTH, HEIGHT)
         assert clock.packets - before == prepared + first + runs * packets(WIDTH, HEIGHT)
 
 
-def test_a_disturbed_measurement_is_tried_again_and_then_not_valid(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_disturbed_runs_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every second run is disturbed: seven runs leave four, which is too few, fourteen leave enough."""
     asked: list[int] = []
-    monkeypatch.setattr(picture_errors, "is_disturbed", lambda run, threads: asked.append(threads) or len(asked) < 3)
-    (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(tries=2))
-    assert (row.valid, row.remark) == (False, "other programs needed the processors")
-    assert asked == [1, 1]
-    (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(tries=2))
-    assert (row.valid, row.remark) == (True, "")
+    monkeypatch.setattr(run_times, "is_disturbed", lambda run, threads: asked.append(threads) or len(asked) % 2 == 0)
+    for tries, runs, valid in ((1, run_times.RUNS, False), (2, run_times.RUNS, True)):
+        asked.clear()
+        (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(tries=tries))
+        assert (row.valid, row.remark) == (valid, "" if valid else DISTURBED_BY_OTHERS)
+        assert set(asked) == {1}
+        assert row.runs >= runs if valid else row.runs == run_times.RUNS
+    assert ENOUGH > run_times.RUNS / 2
+
+
+def test_a_disturbed_row_is_measured_again_after_all_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    busy = [True]
+    monkeypatch.setattr(run_times, "is_disturbed", lambda run, threads: busy[0])
+    wanted = [Setting(KNOBS[0], samples) for samples in (1, 4)]
+    before = rows_for(*wanted)
+    assert [row.remark for row in before] == [DISTURBED_BY_OTHERS] * 2
+    busy[0], told, stage = False, [], SettingRenderer(ALL, WIDTH, HEIGHT, 1)
+    good, *_ = rows_for(wanted[0])
+    after = measure_disturbed_again(stage, wanted, [good, before[1]], EASY, told.append)
+    assert told == ["uniform 4 again"]
+    assert after[0] == good
+    assert (after[1].valid, after[1].remark, after[1].rmse) == (True, "", before[1].rmse)
+
+
+def test_automatic_sampling_tells_what_was_asked_and_its_own_estimate() -> None:
+    row = rows()["auto", 0.005]
+    assert row.asked == 0.005
+    assert 0 < row.estimated <= 0.005
+    assert row.rmse == pytest.approx(row.estimated, rel=0.5)
+    assert 1 < row.samples < 64
+    assert [setting.label for setting in settings(ALL, 1, 0.002) if setting.knob is AUTO] == ["0.01", "0.005", "0.002"]
+    assert isnan(rows()["uniform", 4].asked)
+
+
+def test_the_error_in_8_bits_is_that_of_the_file() -> None:
+    """Rounding adds its own error, independent of that of the samples: a twelfth of a squared level."""
+    for samples in (1, 16):
+        row = rows()["uniform", samples]
+        file = minirt.render(ALL, WIDTH, HEIGHT, samples=samples).array / 255
+        assert row.rmse_8_bits == pytest.approx(error(file, right().picture), rel=1e-9)
+        assert row.rmse_8_bits == pytest.approx((row.rmse**2 + 1 / 255**2 / 12) ** 0.5, rel=0.05)
+
+
+def test_the_intervals_hold_the_values() -> None:
+    for row in rows().values():
+        assert row.rmse_low < row.rmse < row.rmse_high < 1.5 * row.rmse
+        assert row.wall_low_ms <= row.wall_ms <= row.wall_high_ms
 
 
 def test_a_scene_without_shapes_is_black() -> None:

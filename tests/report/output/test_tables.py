@@ -8,7 +8,7 @@ import json
 from math import inf, isnan, nan
 from typing import NamedTuple
 
-from minirt.report.output.tables import Column, as_csv, as_json, as_markdown
+from minirt.report.output.tables import as_csv, as_json
 
 
 class Row(NamedTuple):
@@ -32,8 +32,3 @@ def test_json_has_no_nan() -> None:
     read = json.loads(as_json({"rows": ROWS, "best": ROWS[0]}), parse_constant=lambda name: 1 / 0)
     assert read["best"] == {"name": "a, b", "error": 0.1 + 0.2, "count": 3}
     assert [row["error"] for row in read["rows"]] == [0.1 + 0.2, None, None]
-
-
-def test_markdown() -> None:
-    table = as_markdown(ROWS[:2], [Column("name", "name"), Column("error", "error", ".2f")])
-    assert table.split("\n") == ["| name | error |", "|---|---:|", "| a, b | 0.30 |", '| "c" | - |']

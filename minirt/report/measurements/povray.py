@@ -1,0 +1,130 @@
+"""Lines of POV-Ray in the diagram: its error and time on the same scene, where the scene can be translated exactly."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from minirt.errors import RenderError
+from minirt.report.measurements import flip
+from minirt.report.measurements.metrics import Picture, rmse
+from minirt.report.measurements.picture_errors import Row, with_errors, with_times
+from minirt.report.measurements.povray_scene import translated
+from minirt.report.measurements.reference import Reference
+from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS, Times
+from minirt.scene import Scene
+from minirt.timing import Run, is_disturbed
+
+PROGRAM, COMMAND = "POV-Ray", ("povray",)
+RUNS, MOST_RUNS = 3, 6  # undisturbed, and in all
+TICK = 0.005  # seconds by which its processor time may be too small
+CHECKED = 2  # samples along an edge of a pixel, of the picture that shows whether the scene is the same
+SAME = 0.02  # RMSE: a picture of four samples per pixel that is further off is not that of the scene
+TRACE = re.compile(r"Trace Time:.*\(([\d.]+) seconds\)\s+using \d+ thread\(s\) with ([\d.]+) CPU-seconds")
+HEADER = re.compile(rb"P6\s(?:#[^\n]*\n)*(\d+)\s+(\d+)\s+65535\s")
+
+
+class Setting(NamedTuple):
+    """Options of POV-Ray: a point of a line."""
+
+    knob: str
+    label: str
+    samples: float
+    options: tuple[str, ...]
+
+
+def uniform(side: int) -> Setting:
+    """A grid of side x side samples in each pixel."""
+    many = "+AM1", "+A0.0", f"+R{side}", "-J"
+    return Setting(PROGRAM, str(side * side), side * side, many if side > 1 else ("-A",))
+
+
+def adaptive(threshold: float) -> Setting:
+    """Recursive supersampling where colours differ by more than a threshold, with 81 samples per pixel at most."""
+    return Setting(f"{PROGRAM} adaptive", f"A{threshold:g}", float("nan"), ("+AM2", f"+A{threshold:g}", "+R3", "-J"))
+
+
+SETTINGS = (*map(uniform, (1, 2, 3, 4)), *map(adaptive, (0.3, 0.1, 0.03, 0.01)))
+ABOUT = {
+    PROGRAM: "POV-Ray with a grid of samples in each pixel; its time is what it prints as Trace Time",
+    f"{PROGRAM} adaptive": "POV-Ray with recursive supersampling (+AM2 +R3) from a difference of colours (+A) on",
+}
+
+
+class PovRay:
+    """Renders one scene with POV-Ray: RenderError where it is not installed or cannot show the same scene."""
+
+    def __init__(self, scene: Scene, width: int, height: int, threads: int, folder: Path) -> None:
+        if not shutil.which("povray"):
+            raise RenderError(f"{PROGRAM} is not installed")
+        self.width, self.height, self.threads, self.folder = width, height, threads, folder
+        try:
+            text = "\n".join(translated(scene, width, height))
+        except RenderError as error:
+            raise RenderError(f"{PROGRAM} cannot show the same scene: {error}") from None
+        (folder / "scene.pov").write_text(text + "\n", encoding="ascii")
+
+    def rows(
+        self, right: Reference, longest: float, step: Callable[[str], object]
+    ) -> Iterator[tuple[Row, Picture | None]]:
+        """Yield a row and a picture for each setting that takes at most `longest` seconds.
+
+        RenderError, before the first row, if its picture is not that of the scene.
+        """
+        self.check(right)
+        perceived = flip.perceived(right.picture)
+        slow: set[str] = set()
+        for setting in SETTINGS:
+            step(f"{setting.knob} {setting.label}")
+            row = Row(setting.knob, setting.label, PROGRAM, setting.samples)
+            if setting.knob in slow:
+                yield row._replace(remark="left out: takes too long"), None
+                continue
+            runs = [self.run(setting)]
+            picture = self.picture()
+            if runs[0].wall > longest:
+                slow.add(setting.knob)
+            while runs[0].wall <= longest and len(self.calm(runs)) < RUNS and len(runs) < MOST_RUNS:
+                runs.append(self.run(setting))
+            calm = self.calm(runs)
+            times = Times(calm) if calm else Times(runs, DISTURBED_BY_OTHERS)
+            yield with_times(with_errors(row, picture, right, perceived), times), picture
+
+    def check(self, right: Reference) -> None:
+        """Compare a picture of some samples per pixel with the reference. RenderError if it shows something else."""
+        self.run(uniform(CHECKED))
+        error = rmse(self.picture(), right.picture)
+        if error > SAME:
+            raise RenderError(f"{PROGRAM} shows something else: RMSE {error:.2g} at {CHECKED**2} samples per pixel")
+
+    def run(self, setting: Setting) -> Run:
+        """Render with a setting; return the time that POV-Ray took for the rays."""
+        command = [*COMMAND, f"+W{self.width}", f"+H{self.height}", f"+WT{self.threads}", "-D", "-V", "+FP16"]
+        paths = "File_Gamma=1.0", "+Iscene.pov", "+Opicture.ppm"
+        ended = subprocess.run([*command, *paths, *setting.options], cwd=self.folder, capture_output=True, check=False)
+        printed = ended.stderr.decode(errors="replace")
+        found = TRACE.findall(printed)
+        if ended.returncode or not found:
+            raise RenderError(f"{PROGRAM} failed: {printed.strip()[-200:]}")
+        wall, cpu = map(float, found[-1])
+        return Run(wall, cpu + TICK)
+
+    def calm(self, runs: list[Run]) -> list[Run]:
+        """Return the undisturbed runs."""
+        return [run for run in runs if not is_disturbed(run, self.threads)]
+
+    def picture(self) -> Picture:
+        """Read the last picture: linear light in 16 bits."""
+        data = (self.folder / "picture.ppm").read_bytes()
+        header = HEADER.match(data)
+        if not header:
+            raise RenderError(f"{PROGRAM} wrote no picture of 16 bits")
+        numbers = np.frombuffer(data, ">u2", offset=header.end())
+        light: Picture = numbers.reshape(self.height, self.width, 3) / 65535.0
+        return light

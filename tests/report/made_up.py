@@ -1,0 +1,59 @@
+"""Findings with known figures, to be drawn and written."""
+
+from __future__ import annotations
+
+from minirt.report.measurements.ablation import Part
+from minirt.report.measurements.convergence import Order
+from minirt.report.measurements.findings import EIGHT_BITS, Findings, Subject
+from minirt.report.measurements.formula_errors import Row as FormulaRow
+from minirt.report.measurements.picture_errors import Row
+from minirt.report.measurements.single_errors import SingleError
+from minirt.report.measurements.stiffness import Stiff
+
+REFERENCE_ERROR = 0.0002
+
+
+def row(knob: str, samples: int, slowness: float = 1.0, valid: bool = True, program: str = "miniRT") -> Row:
+    """A row with an error of 0.04 at one sample, 0.02 at two and so on, and bars of 10 and 20 per cent."""
+    error, time = 0.04 / samples, 2.5 * slowness * samples
+    remark = "" if valid else "other programs needed the processors"
+    return Row(
+        knob,
+        str(samples),
+        program,
+        samples=samples,
+        rmse=error,
+        rmse_low=0.9 * error,
+        rmse_high=1.1 * error,
+        psnr=30.0,
+        wall_ms=time,
+        wall_low_ms=0.8 * time,
+        wall_high_ms=1.2 * time,
+        runs=7,
+        valid=valid,
+        remark=remark,
+    )
+
+
+ROWS = [
+    *(row("uniform", samples) for samples in (1, 4, 16)),
+    *(row("adaptive", samples, 0.7, valid=samples != 4) for samples in (4, 16)),
+    *(row("<slow> & sure", samples, 3.0) for samples in (1, 4)),
+    *(row("POV-Ray", samples, 30.0, program="POV-Ray") for samples in (1, 4, 16)),
+    Row("auto", "0.01", remark="failed: a|b"),
+]
+FINDINGS = Findings(
+    Subject("scenes/<ball>.rt", "0" * 64, 32, 20, 2, 1, "a processor", {"minirt": "0.1.0"}),
+    1024,
+    REFERENCE_ERROR,
+    EIGHT_BITS,
+    ROWS,
+    [Order("uniform", 3, by_samples=1.0, by_samples_low=0.9, by_samples_high=1.1)],
+    [Part("scene", "", "as it is", 2.5, valid=True), Part("list", "tiles", "without", 5.0, percent=100.0, valid=True)],
+    [SingleError("shapes alone", 1e-7, 1e-6, 3)],
+    [FormulaRow("sphere", "benign", "double", *[0.0] * (len(FormulaRow._fields) - 3))],  # type: ignore[arg-type]
+    [Stiff("sphere 1", "small", {"size": 1e-9})],
+    ["kernel for spheres"],
+    [1, 4],
+    ["formula of the blob: none in 60 digits"],
+)

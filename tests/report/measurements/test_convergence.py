@@ -1,0 +1,54 @@
+"""Orders of convergence are found where they are known."""
+
+from __future__ import annotations
+
+from math import isnan, nan
+
+import numpy as np
+import pytest
+
+from minirt.report.measurements.convergence import orders
+from minirt.report.measurements.picture_errors import Row
+
+FLOOR = 1e-4  # error of the reference
+
+
+def row(knob: str, samples: float, order: float = 0.75, noise: float = 1.0, **changes: object) -> Row:
+    """A row whose time is proportional to its samples, measured against a reference that has an error of its own."""
+    error = 0.02 * samples**-order * noise
+    made = Row(knob, str(samples), samples=samples, rmse=float(np.hypot(error, FLOOR)), wall_ms=3 * samples, valid=True)
+    return made._replace(**changes)
+
+
+def test_the_order_and_the_constant_are_found() -> None:
+    (found,) = orders([row("uniform", samples) for samples in (1, 4, 16, 64)], FLOOR)
+    assert (found.knob, found.points) == ("uniform", 4)
+    for order, low, high in (found[2:5], found[5:8]):
+        assert low <= order <= high
+        assert (order, high - low) == (pytest.approx(0.75), pytest.approx(0.0, abs=1e-6))
+    assert found.constant == pytest.approx(0.02)
+
+
+def test_scatter_widens_the_interval_around_the_order() -> None:
+    noise = (1.1, 0.9, 1.05, 0.95)
+    (found,) = orders([row("u", 4**k, noise=factor) for k, factor in enumerate(noise)], FLOOR)
+    assert 0.05 < found.by_samples_high - found.by_samples_low < 0.5
+    assert found.by_samples_low < 0.75 < found.by_samples_high
+
+
+def test_points_that_the_reference_cannot_tell_are_left_out() -> None:
+    rows = [row("u", samples) for samples in (1, 4, 16, 64)]
+    same = row("u", 4096, rmse=1.5 * FLOOR)
+    assert [*orders([*rows, same], FLOOR)] == [*orders(rows, FLOOR)]
+    assert [*orders(rows[:2], FLOOR)] == []
+    assert [*orders([*rows[:2], Row("u", "failed")], FLOOR)] == []
+
+
+def test_disturbed_times_and_unknown_samples_are_left_out_of_the_fit() -> None:
+    rows = [row("u", samples) for samples in (1, 4, 16, 64)]
+    slow = rows[2]._replace(wall_ms=1e6, valid=False)
+    (found,) = orders([*rows[:2], slow, rows[3]], FLOOR)
+    assert found.by_time == pytest.approx(0.75)
+    (found,) = orders([each._replace(samples=nan) for each in rows], FLOOR)
+    assert isnan(found.by_samples)
+    assert found.by_time == pytest.approx(0.75)
