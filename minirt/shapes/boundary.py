@@ -6,33 +6,39 @@ A file of a shape declares `boundary(shape, point)`, which `minirt.rendering.que
         return Boundary((length(point - sphere.centre) - sphere.diameter / 2,))
 
 `shape` has the fields of the scene line, or of the packed form of a mesh's triangle, and directions have exactly unit
-length. All numbers are `minirt.shapes.double_double.Double`: use + - * / and abs, and the functions here.
+length. All numbers are `minirt.shapes.double_double.Double`: use + - * /, abs, their method `root`, and what is here.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from minirt.lanes import Vec, cross, dot
-from minirt.shapes.double_double import Double, sqrt
+
+if TYPE_CHECKING:  # for annotations alone: who checks no hits does not load it
+    from minirt.shapes.double_double import Double
 
 
-class Boundary(NamedTuple):
+class Boundary:
     """Faces of a shape, and where they end: numbers that belong to a point, < 0 inside.
 
-    A face is where one of `faces` is 0, and neither another face nor one of the `limits` is above 0. The numbers are
-    distances or, close to the face, nearly proportional to them. Normals point to where they grow.
+    A face is where one of `faces` is 0, and neither another face nor one of the `limits`, which are edges of a sheet or
+    ends without a face, is above 0. The numbers are distances or, close to the face, nearly proportional to them.
+    Normals point to where they grow.
     """
 
-    faces: tuple[Double, ...]
-    limits: tuple[Double, ...] = ()  # edges of a sheet, and ends without a face
+    __slots__ = ("faces", "limits")
+
+    def __init__(self, faces: tuple[Double, ...], limits: tuple[Double, ...] = ()) -> None:
+        self.faces, self.limits = faces, limits
 
 
 def length(v: Vec) -> Double:
     """Return the length of a vector."""
-    return sqrt(dot(v, v))
+    root: Double = dot(v, v).root()
+    return root
 
 
 def unit(v: Vec) -> Vec:
@@ -44,7 +50,7 @@ def unit(v: Vec) -> Vec:
 
 def hypotenuse(a: Double, b: Double) -> Double:
     """Return sqrt(a^2 + b^2)."""
-    return sqrt(a * a + b * b)
+    return (a * a + b * b).root()
 
 
 def along_and_off_axis(axis: Vec, p: Vec) -> tuple[Double, Double]:

@@ -75,6 +75,14 @@ class Double:
 
     __radd__, __rmul__ = __add__, __mul__
 
+    def root(self) -> Double:
+        """The square root; that of 0, and of rounding errors below it, is 0 with the gradient 0."""
+        root = np.sqrt(np.maximum(self.high, 0.0))
+        per_root = np.where(root > 0.0, 0.5 / np.where(root > 0.0, root, 1.0), 0.0)
+        square, error = two_product(root, root)
+        rest = Double(self.high, self.low) - Double(square, error)
+        return Double(*quick_two_sum(root, rest.high * per_root), per_root * self.slope)
+
     def scaled(self, power: Any) -> Double:
         """The number times 2^power, for any power."""
         slope = (np.ldexp(part, power) for part in (self.slope.x, self.slope.y, self.slope.z))
@@ -94,12 +102,3 @@ def quick_two_sum(a: Any, b: Any) -> tuple[Any, Any]:
     """The rounded sum a + b and its rounding error, for |a| >= |b| (Dekker 1971)."""
     total = a + b
     return total, b - (total - a)
-
-
-def sqrt(x: Double) -> Double:
-    """Return the square root; that of 0, and of rounding errors below it, is 0 with the gradient 0."""
-    root = np.sqrt(np.maximum(x.high, 0.0))
-    per_root = np.where(root > 0.0, 0.5 / np.where(root > 0.0, root, 1.0), 0.0)
-    square, error = two_product(root, root)
-    rest = Double(x.high, x.low) - Double(square, error)
-    return Double(*quick_two_sum(root, rest.high * per_root), per_root * x.slope)

@@ -169,5 +169,5 @@ def mapping(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> tuple[Number, 
 
 def boundary(mesh: Any, point: Vec) -> Boundary:
     """As for `tr`, of a triangle with rounded corners; its normal is on the side of the normals of the file."""
-    (height,), edges = triangle_boundary(mesh.a, mesh.b, mesh.c, point)
-    return Boundary((facing(mesh.normal, height),), edges)
+    flat = triangle_boundary(mesh.a, mesh.b, mesh.c, point)
+    return Boundary((facing(mesh.normal, flat.faces[0]),), flat.limits)

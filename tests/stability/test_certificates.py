@@ -85,8 +85,10 @@ def larger(boundary: Callable[..., Boundary]) -> Callable[..., Boundary]:
     """A boundary whose faces lie a few roundings of their size farther out: a slip in a declaration."""
 
     def moved(shape: Any, point: Vec) -> Boundary:
-        faces, limits = boundary(shape, point)
-        return Boundary(tuple(face - 2.0**-51 * sqrt(dot(face.slope, face.slope)) for face in faces), limits)
+        right = boundary(shape, point)
+        return Boundary(
+            tuple(face - 2.0**-51 * sqrt(dot(face.slope, face.slope)) for face in right.faces), right.limits
+        )
 
     return moved
 
