@@ -15,8 +15,9 @@ from minirt.lanes import Vec, dot, sqrt
 from minirt.rendering.queries import certificate
 from minirt.rendering.queries.certificate import Certificate
 from minirt.scene import Camera, Scene
-from minirt.shapes import KINDS, Kind
+from minirt.shapes import KINDS, Kind, Shape
 from minirt.shapes.boundary import Boundary
+from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.triangle import Triangle
@@ -129,12 +130,12 @@ def test_a_wrong_normal_is_noticed(kind: Kind) -> None:
 
 def test_the_face_that_was_hit_counts() -> None:
     """The normal tells which one, and the point may not lie beyond the end of it."""
-    tube = Cylinder((0, 0, 0), (0, 1, 0), 2, 2, GREY)
+    tube, tent = Cylinder((0, 0, 0), (0, 1, 0), 2, 2, GREY), Cone((0, 1, 0), (0, -1, 0), 1, 2, GREY)
     down, side, cap = [[0.0, -1, 0]], [[1.0, 0, 0]], [[0.0, 1, 0]]
 
-    def error(x: float, t: float, normal: Any) -> float:
+    def error(x: float, t: float, normal: Any, shape: Shape = tube) -> float:
         rays = certificate.Rays(*map(np.array, ([[x, 5.0, 0]], down, [t], normal)))
-        return float(certificate.certify((tube,), np.array([0]), np.array([0]), rays).backward_error[0])
+        return float(certificate.certify((shape,), np.array([0]), np.array([0]), rays).backward_error[0])
 
     assert error(0.5, 4.0, cap) == 0
     assert error(0.5, 4.0, side) > 1e14  # half a unit from the side
@@ -143,6 +144,9 @@ def test_the_face_that_was_hit_counts() -> None:
     assert error(1.0 + 2.0**-52, 4.0, cap) == pytest.approx(2 / (4 + np.hypot(5, 1) + 4))
     assert error(2.0, 4.0, cap) > 1e14
     assert error(0.5, 4.0, [[np.nan] * 3]) == 0  # the nearest
+    steep = np.array([[4.0, 1, 0]]) / np.sqrt(17)
+    assert error(2.0**-60, 4.0, steep, tent) < 1
+    assert error(-(2.0**-60), 4.0, steep, tent) < 1  # at the apex the normal may be that of the other side
 
 
 @pytest.mark.parametrize("name", ["icosahedron", "knot"])

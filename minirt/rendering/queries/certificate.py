@@ -83,7 +83,7 @@ def certify(shapes: tuple[Shape, ...], owners: Integers, parts: Integers, rays: 
 def certify_kind(kind: Kind, fields: ExactFields, rows: Integers, rays: Rays) -> Certificate:
     """Certify hits of shapes of one kind, each of the shape in a row of `fields`.
 
-    The face that was hit is the one whose normal is closest to the hit's.
+    The face that was hit is the one whose normal is closest to the hit's, or the nearest one where none fits.
     """
     first = fields.first_point(rows)
     magnitude = rays.distances + lengths_of(rays.origins - first) + fields.sizes[rows]

@@ -14,6 +14,7 @@ from minirt.shapes.double_double import Double
 
 STEPS = 4  # towards the foot; each adds digits, unless the face is curved as strongly as the point is far from it
 SETTLED = 1e-4  # relative change of the way to the foot after which no further step is taken
+FITTING = 0.5  # cosine of face and normal; at an apex, where the normal may be any of a cone, no face may fit
 AXES = (Vec(1.0, 0.0, 0.0), Vec(0.0, 1.0, 0.0), Vec(0.0, 0.0, 1.0))
 Array = NDArray[np.float64]
 
@@ -27,7 +28,7 @@ class Foot(NamedTuple):
 
 
 def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> Foot:
-    """Find the nearest point of the face whose normal is closest to `normal`; of the nearest face where that is NaN.
+    """Find the nearest point of the face whose normal is closest to `normal`, of the nearest face where none fits.
 
     Each step linearises the face about the last foot: the next one lies on that tangent plane, straight below the
     point. Where that ends the foot is on the face, and the face's normal at the foot leads to the point.
@@ -36,10 +37,8 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> Foot:
     amounts = [each.rounded() / sqrt(dot(each.slope, each.slope)) for each in (*boundary.faces, *boundary.limits)]
     flat = np.zeros_like(point.x.high)
     ends = [np.fmax.reduce([flat, *amounts[:i], *amounts[i + 1 :]]) for i in range(len(boundary.faces))]
-    face = closest_face(boundary, normal)
-    if np.isnan(normal.x).any():
-        farther = [np.fmax(np.abs(amount), end) for amount, end in zip(amounts, ends, strict=False)]
-        face = np.where(np.isnan(normal.x), np.argmin(farther, axis=0), face)
+    farther = [np.fmax(np.abs(amount), end) for amount, end in zip(amounts, ends, strict=False)]
+    face = chosen_face(boundary, normal, np.argmin(farther, axis=0))
     beyond = np.choose(face, ends)
     way = Vec(flat, flat, flat)  # from the point to its foot
     for step in range(STEPS):
@@ -59,12 +58,14 @@ def seeded(point: Vec) -> Vec:
     return Vec(*(Double(part.high, part.low, axis) for part, axis in zip(parts, AXES, strict=True)))
 
 
-def closest_face(boundary: Boundary, normal: Vec) -> NDArray[np.int64]:
-    """The index of the face whose normal is closest to `normal`."""
+def chosen_face(boundary: Boundary, normal: Vec, nearest: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The index of the face whose normal is closest to `normal`, or of the nearest face where none fits."""
     slopes = [face.slope for face in boundary.faces]
     cosines = [dot(slope, normal) / sqrt(dot(slope, slope)) + 0.0 * normal.x for slope in slopes]
-    closest: NDArray[np.int64] = np.argmax(np.nan_to_num(cosines, nan=-2.0), axis=0)
-    return closest
+    chosen: NDArray[np.int64] = np.where(
+        np.fmax.reduce(cosines) >= FITTING, np.argmax(np.nan_to_num(cosines, nan=-2.0), axis=0), nearest
+    )
+    return chosen
 
 
 def height_and_slope(boundary: Boundary, face: NDArray[np.int64]) -> tuple[Array, Vec]:
