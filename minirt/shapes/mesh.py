@@ -23,6 +23,7 @@ from minirt.records import record
 from minirt.shapes import pyramid, triangle
 from minirt.shapes.boundary import Boundary, facing, triangle_boundary
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.triangle_normal import plane_normals
 
 BARYCENTRIC = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)  # u and v at the three corners where the file has none
 OPPOSED = 1e-3  # squared length of a mean of unit normals; below it they cancel, and the mean points anywhere
@@ -72,9 +73,9 @@ class Mesh(Shape):
         triangles = self.triangles
         rows = np.zeros((len(triangles), 27))
         rows[:, :9].reshape(-1, 3, 3)[...] = self.placed(triangles.points)[triangles.corners]
-        rows[:, 9:12] = triangles.flat_normals
+        rows[:, 9:12] = plane_normals(rows[:, :9], triangles.flat_normals)
         if triangles.normals is None:
-            rows[:, 12:21].reshape(-1, 3, 3)[...] = triangles.flat_normals[:, None]
+            rows[:, 12:21].reshape(-1, 3, 3)[...] = rows[:, None, 9:12]
         else:
             rows[:, 12:21] = triangles.normals.reshape(-1, 9)
         rows[:, 21:] = BARYCENTRIC if triangles.uvs is None else triangles.uvs.reshape(-1, 6)
@@ -115,7 +116,7 @@ class PackedMeshTriangle(NamedTuple):
 
 def intersect(mesh: PackedMeshTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the triangle: watertight, as for `tr`."""
-    return triangle.watertight(mesh.a, mesh.b, mesh.c, origin, direction)
+    return triangle.watertight(mesh.a, mesh.b, mesh.c, mesh.normal, origin, direction)
 
 
 def may_meet(mesh: PackedMeshTriangle, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:

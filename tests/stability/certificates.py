@@ -14,8 +14,6 @@ from tests.shapes.execution_modes import surfaces
 from tests.shapes.regimes import Array, Rays
 
 BOUND = 4.0  # of the backward error of any hit, in units of 2^-53 (t + |o - c| + size)
-# Regimes that do not hold it: t is a mean of corners by areas, off by roundings of length^2 / height of the triangle.
-SLIVERS = ("a sliver", "a sliver next to none")
 U = 2.0**-53
 STEEPEST = 1e-6  # relative tolerance; beyond it the surface turns away within the error, and no first order holds
 

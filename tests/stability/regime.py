@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from minirt.element import fields_of
 from minirt.fields import Length, Lengths, Point
 from minirt.shapes import Shape
-from minirt.shapes.triangle import Triangle
 from tests import oracle
 from tests.oracle.body import body, inside
 from tests.shapes.regimes import Rays
@@ -35,8 +34,8 @@ class Regime(NamedTuple):
     it is a solid, any hit in the thicker one passes: along a straight side the ends of that may be far away.
 
     A sheet is larger and smaller instead of thicker and thinner, and no tolerance is chosen for it: of a ray at a slope
-    s to it, t may be off by 4 roundings of t, of the way from the origin to the sheet and of its `lever`, by s. So much
-    changes when the origin moves by these roundings.
+    s to it, t may be off by 4 roundings of t and of the way from the origin to the sheet, by s. So much changes when
+    the origin moves by these roundings.
     """
 
     name: str
@@ -80,7 +79,7 @@ class Right:
     def sheet_error(self, i: int, j: int, t: float) -> float:
         """The tolerance of a hit of a sheet at t."""
         slope = float(abs(oracle.dot(self.normal(i), self.rays.directions[i, j])))
-        return 4 * U * (t + self.away(i, j) + lever(self.rays.shapes[i])) / slope
+        return 4 * U * (t + self.away(i, j)) / slope
 
     def within_thicker(self, i: int, j: int, t: float) -> bool:
         origin, direction = self.rays.origins[i, j], self.rays.directions[i, j]
@@ -129,19 +128,6 @@ def posed(regime: Regime) -> Right:
 def points(shape: Shape) -> list[Array]:
     """The points that a shape is given by."""
     return [np.array(getattr(shape, each.name)) for each in fields_of(type(shape)) if isinstance(each, Point)]
-
-
-def lever(shape: Shape) -> float:
-    """Length of which a hit of a triangle is known to some roundings; 0 for other shapes.
-
-    A hit is the mean of the corners by areas, which are known to roundings of the square of the longest edge: for a
-    sliver that is a large error along it.
-    """
-    if not isinstance(shape, Triangle):
-        return 0.0
-    longest = max(float(np.linalg.norm(edge)) for edge in shape.edges())
-    twice_the_area = float(np.linalg.norm(np.cross(*shape.edges()[:2])))
-    return longest**3 / twice_the_area
 
 
 def size(shape: Shape) -> float:

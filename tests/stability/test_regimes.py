@@ -7,12 +7,10 @@ import pytest
 
 from minirt.shapes import KINDS, Kind
 from tests.shapes.execution_modes import compiled
-from tests.stability.certificates import SLIVERS, away_from_surface
+from tests.stability.certificates import away_from_surface
 from tests.stability.execution_modes import MODES
 from tests.stability.regime import Regime, posed
 from tests.stability.table import REGIMES
-
-CERTIFIED = [(kind, regime) for kind, regime in REGIMES if regime.name not in SLIVERS]
 
 
 def label(value: object) -> str:
@@ -29,7 +27,7 @@ def test_hits_are_exact(kind: Kind, regime: Regime, way: str) -> None:
     assert not wrong, f"{len(wrong)} of {right.t.size // every}, the first: {wrong[0]}"
 
 
-@pytest.mark.parametrize(("kind", "regime"), CERTIFIED, ids=label)
+@pytest.mark.parametrize(("kind", "regime"), REGIMES, ids=label)
 def test_compiled_formulas_hold_the_backward_bound(kind: Kind, regime: Regime) -> None:
     rays = posed(regime).rays
     away = away_from_surface(rays, compiled(*rays))
