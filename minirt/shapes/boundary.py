@@ -6,7 +6,7 @@ A file of a shape declares `boundary(shape, point)`, which `minirt.rendering.que
         return Boundary((length(point - sphere.centre) - sphere.diameter / 2,))
 
 `shape` has the fields of the scene line, or of the packed form of a mesh's triangle, and directions have exactly unit
-length. All numbers are `minirt.shapes.double_double.Double`: use + - * /, abs, their method `root`, and what is here.
+length. Numbers are `minirt.shapes.double_double.DoubleDouble`: use + - * /, abs, their method `root` and what is here.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from minirt.lanes import Vec, cross, dot
 
 if TYPE_CHECKING:  # for annotations alone: who checks no hits does not load it
-    from minirt.shapes.double_double import Double
+    from minirt.shapes.double_double import DoubleDouble
 
 
 class Boundary:
@@ -31,13 +31,13 @@ class Boundary:
 
     __slots__ = ("faces", "limits")
 
-    def __init__(self, faces: tuple[Double, ...], limits: tuple[Double, ...] = ()) -> None:
+    def __init__(self, faces: tuple[DoubleDouble, ...], limits: tuple[DoubleDouble, ...] = ()) -> None:
         self.faces, self.limits = faces, limits
 
 
-def length(v: Vec) -> Double:
+def length(v: Vec) -> DoubleDouble:
     """Return the length of a vector."""
-    root: Double = dot(v, v).root()
+    root: DoubleDouble = dot(v, v).root()
     return root
 
 
@@ -48,18 +48,18 @@ def unit(v: Vec) -> Vec:
     return scaled / length(scaled)
 
 
-def hypotenuse(a: Double, b: Double) -> Double:
+def hypotenuse(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble:
     """Return sqrt(a^2 + b^2)."""
     return (a * a + b * b).root()
 
 
-def along_and_off_axis(axis: Vec, p: Vec) -> tuple[Double, Double]:
+def along_and_off_axis(axis: Vec, p: Vec) -> tuple[DoubleDouble, DoubleDouble]:
     """Return the coordinate of p along a unit vector, and its distance from the line through the origin along it."""
     height = dot(axis, p)
     return height, length(p - height * axis)
 
 
-def own_coordinates(axis: Vec, p: Vec) -> tuple[Double, Double, Double]:
+def own_coordinates(axis: Vec, p: Vec) -> tuple[DoubleDouble, DoubleDouble, DoubleDouble]:
     """Return p in the frame of a shape whose own y axis is `axis`: as `minirt.shapes.basis.basis`, exactly."""
     x, y, z = axis.x, axis.y, axis.z
     sign = np.copysign(1.0, y.high)
@@ -76,7 +76,7 @@ def upright_frame(normal: Vec) -> tuple[Vec, Vec]:
     return right, cross(normal, right)
 
 
-def facing(way: Vec, height: Double) -> Double:
+def facing(way: Vec, height: DoubleDouble) -> DoubleDouble:
     """Return a height above a plane, or its opposite: the one that grows along `way`."""
     return height * np.where(dot(height.slope, Vec(way.x.high, way.y.high, way.z.high)) < 0.0, -1.0, 1.0)
 

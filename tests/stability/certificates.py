@@ -1,7 +1,4 @@
-"""Backward bounds of every kind of shape, and the certificates of hits that are compared with them.
-
-python -m tests.stability.certificates      prints the largest backward error and the conditions of each regime
-"""
+"""The backward bound of all hits, the tolerance of t that follows from it, and certificates to compare with them."""
 
 from __future__ import annotations
 

@@ -149,7 +149,7 @@ def test_the_face_that_was_hit_counts() -> None:
 
 
 @pytest.mark.parametrize("name", ["icosahedron", "knot"])
-def test_triangles_of_meshes_are_certified_by_their_placed_corners(name: str) -> None:
+def test_traced_triangles_of_meshes_are_certified_by_their_placed_corners(name: str) -> None:
     mesh = Mesh(MeshFile(str(SCENES / f"meshes/{name}.obj")), (3.0, -2.0, 7.0), 1.7, GREY)
     random = np.random.default_rng(3)
     directions = random_directions(random, 40)

@@ -14,7 +14,7 @@ from minirt.lanes import Vec
 from minirt.shapes import Kind, Shape
 from minirt.shapes.boundary import unit
 from minirt.shapes.compensated import two_sum
-from minirt.shapes.double_double import Double
+from minirt.shapes.double_double import DoubleDouble
 from minirt.shapes.shape import Position
 
 Array = NDArray[np.float64]
@@ -88,15 +88,15 @@ def packed_columns(kind: Kind, shapes: list[Shape]) -> tuple[Columns, Columns, C
 def exact_point(points: Array, first: Array, power: Integers) -> Vec:
     """The vectors from the `first` points to others, times 2^power."""
     parts = (two_sum(one, -other) for one, other in zip(points.T, first.T, strict=True))
-    return Vec(*(Double(np.ldexp(high, power), np.ldexp(low, power)) for high, low in parts))
+    return Vec(*(DoubleDouble(np.ldexp(high, power), np.ldexp(low, power)) for high, low in parts))
 
 
-def exact_length(lengths: Array, power: Integers) -> Double | Vec:
+def exact_length(lengths: Array, power: Integers) -> DoubleDouble | Vec:
     """One length or three, times 2^power."""
-    parts = [Double(np.ldexp(part, power)) for part in np.atleast_2d(lengths.T)]
+    parts = [DoubleDouble(np.ldexp(part, power)) for part in np.atleast_2d(lengths.T)]
     return parts[0] if lengths.ndim == 1 else Vec(*parts)
 
 
 def exact_direction(directions: Array) -> Vec:
     """Directions of exactly unit length."""
-    return unit(Vec(*map(Double, directions.T)))
+    return unit(Vec(*map(DoubleDouble, directions.T)))

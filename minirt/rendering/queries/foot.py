@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from minirt.lanes import Vec, dot, sqrt, where
 from minirt.shapes import Kind
 from minirt.shapes.boundary import Boundary
-from minirt.shapes.double_double import Double
+from minirt.shapes.double_double import DoubleDouble
 
 STEPS = 4  # towards the foot; each adds digits, unless the face is curved as strongly as the point is far from it
 SETTLED = 1e-4  # relative change of the way to the foot after which no further step is taken
@@ -43,7 +43,7 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> Foot:
     way = Vec(flat, flat, flat)  # from the point to its foot
     for step in range(STEPS):
         if step:
-            boundary = kind.boundary(shape, seeded(point + Vec(*map(Double, (way.x, way.y, way.z)))))
+            boundary = kind.boundary(shape, seeded(point + Vec(*map(DoubleDouble, (way.x, way.y, way.z)))))
         height, slope = height_and_slope(boundary, face)
         before, way = way, ((dot(slope, way) - height) / dot(slope, slope)) * slope
         change = way - before
@@ -55,7 +55,7 @@ def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> Foot:
 def seeded(point: Vec) -> Vec:
     """The point, its coordinates as the variables that gradients are taken by."""
     parts = (point.x, point.y, point.z)
-    return Vec(*(Double(part.high, part.low, axis) for part, axis in zip(parts, AXES, strict=True)))
+    return Vec(*(DoubleDouble(part.high, part.low, axis) for part, axis in zip(parts, AXES, strict=True)))
 
 
 def chosen_face(boundary: Boundary, normal: Vec, nearest: NDArray[np.int64]) -> NDArray[np.int64]:
