@@ -24,7 +24,7 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.materials import *  # noqa: F403
     from minirt.movie import save_movie as save_movie
     from minirt.rendering import Renderer
-    from minirt.rendering.queries.rays import Hits as Hits
+    from minirt.rendering.queries.hits import Hits as Hits
     from minirt.rendering.queries.rays import trace as trace
     from minirt.scene import Ambient as Ambient
     from minirt.scene import Background as Background
@@ -49,7 +49,8 @@ HOMES = {
         ("Ambient", "Background", "Camera", "FurtherLight", "Light", "ParallelLight", "Scene", "SpotLight"),
         "minirt.scene",
     ),
-    **dict.fromkeys(("Hits", "trace"), "minirt.rendering.queries.rays"),
+    "Hits": "minirt.rendering.queries.hits",
+    "trace": "minirt.rendering.queries.rays",
     "save_movie": "minirt.movie",
     "view": "minirt.viewer",
 }

@@ -29,6 +29,7 @@ RUN = {  # a word of each Python block that a test below runs, by its page
         "class Torus",
         "class PackedTorus",
         "def intersect",
+        "def boundary",
     ),  # compared with the sources
     "CONTRIBUTING.md": ("not picture_at", "Cull shapes", "scene units"),  # examples of style
 }
@@ -91,6 +92,12 @@ def test_the_heart_of_a_sphere_is_in_its_file() -> None:
     source = (PACKAGE / "shapes/sphere.py").read_text(encoding="utf-8")
     for line in block("minirt/README.md", "python", "squared = ").splitlines():
         assert line.split("  #")[0] in source, line
+
+
+def test_the_boundary_of_a_torus_is_in_its_file() -> None:
+    source = (PACKAGE / "shapes/torus.py").read_text(encoding="utf-8")
+    for line in block("minirt/README.md", "python", "def boundary").splitlines():
+        assert line in source, line
 
 
 def test_the_scene_is_read(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from minirt.report.measurements.ablation import Ablation, Part
 from minirt.report.measurements.coincident import coincident
 from minirt.report.measurements.convergence import orders
 from minirt.report.measurements.findings import EIGHT_BITS, Findings, subject
+from minirt.report.measurements.hit_certificates import KindCertificates, hit_certificates
 from minirt.report.measurements.metrics import Picture
 from minirt.report.measurements.picture_errors import SettingRenderer, measure_disturbed_again, measure_settings
 from minirt.report.measurements.plan import Plan, fitting_size
@@ -41,6 +42,7 @@ class Measurement:
         self.rows: list[picture_errors.Row] = []
         self.pictures: dict[str, Picture] = {}  # of the settings, by their names
         self.single: list[SingleError] = []
+        self.certificates: list[KindCertificates] = []
         self.parts: list[Part] = []
         self.formulas: list[formula_errors.Row] = []
         self.not_measured = kinds_not_measured(kinds_of(scene))
@@ -64,6 +66,7 @@ class Measurement:
         if plan.others:
             self.measure_others(self.reference, files)
         self.single.extend(single_errors(scene, self.width, self.height, self.threads))
+        self.certificates.extend(hit_certificates(scene, self.width, self.height, SEED))
         self.parts.extend(Ablation(scene, self.width, self.height, self.threads, plan.budget).parts(variants, step))
         self.formulas.extend(formula_rows(kinds_of(scene), plan, step, scene))
         self.rows = measure_disturbed_again(stage, wanted, self.rows, plan.budget, step)
@@ -112,6 +115,7 @@ class Measurement:
             self.parts,
             self.single,
             self.formulas,
+            self.certificates,
             [*stiff_shapes(self.scene, shapes, self.width, self.height), *coincident(self.scene, shapes)],
             [*kernel_notes(self.scene, wide=None, compiling=False), *packing.notes],
             identical_without_culling(self.pictures),

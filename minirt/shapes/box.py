@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from itertools import product
 from math import inf
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
 from minirt.lanes import Vec, copysign, fabs, maximum, minimum, splat, where
@@ -20,6 +20,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.bounds import bounds_of_points, point_along
 from minirt.shapes.shape import Ball, Position, Shape
 from minirt.shapes.shape import Bounds as Corners
@@ -129,3 +130,9 @@ def mapping(box: PackedBox, point: Vec, normal: Vec) -> tuple[Number, Number, Ve
         where(by_x, sign * deep, 0.0) * box.w + where(by_x, 0.0, where(by_y, wide, sign * wide)) * box.u,
         where(by_y, sign * deep, 0.0) * box.w + where(by_y, 0.0, tall) * box.v,
     )
+
+
+def boundary(box: Any, point: Vec) -> Boundary:
+    """Distances from the three pairs of faces."""
+    x, y, z = own_coordinates(box.axis, point - box.centre)
+    return Boundary((abs(x) - box.sizes.x / 2, abs(y) - box.sizes.y / 2, abs(z) - box.sizes.z / 2))

@@ -9,7 +9,7 @@ once on the square around the base; on a cone that stands upright its middle is 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, where
@@ -17,6 +17,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
 from minirt.shapes.quadric import clamped_minimum, negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
@@ -118,3 +119,11 @@ def mapping(cone: PackedCone, point: Vec, normal: Vec) -> tuple[Number, Number, 
     narrowing = -cone.slope * sqrt(1.0 + cone.slope * cone.slope)  # by height, along out.x and out.y
     rise = cone.height * Vec(narrowing * out.x, narrowing * out.y, 1.0)
     return revolved_mapping(u, v, w, p, out.z > -0.5, 1.0 + p.z / cone.height, rise, cone.slope * cone.height)
+
+
+def boundary(cone: Any, point: Vec) -> Boundary:
+    """Distances from the side and from the base; the side ends at the apex."""
+    height, rho = along_and_off_axis(cone.axis, point - cone.apex)
+    radius = cone.diameter / 2
+    side = (rho * cone.height - height * radius) / hypotenuse(radius, cone.height)
+    return Boundary((side, height - cone.height), (-height,))

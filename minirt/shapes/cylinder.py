@@ -8,7 +8,7 @@ around the side, with its middle towards -z on an upright cylinder, and once on 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, copysign, fabs, maximum, minimum, splat, sqrt, where
@@ -16,6 +16,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
 from minirt.shapes.quadric import clamped_minimum, negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
@@ -108,3 +109,9 @@ def mapping(cylinder: PackedCylinder, point: Vec, normal: Vec) -> tuple[Number, 
     side = is_side(p, to_basis(u, v, w, normal))
     tall = 2.0 * cylinder.half
     return revolved_mapping(u, v, w, p, side, 0.5 + p.z / tall, Vec(0.0, 0.0, tall), cylinder.radius)
+
+
+def boundary(cylinder: Any, point: Vec) -> Boundary:
+    """Distances from the side and from the caps."""
+    height, rho = along_and_off_axis(cylinder.axis, point - cylinder.centre)
+    return Boundary((rho - cylinder.diameter / 2, abs(height) - cylinder.height / 2))

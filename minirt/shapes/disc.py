@@ -8,7 +8,7 @@ it once, upright for a viewer who faces it; on a floor its upper edge is towards
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
@@ -16,6 +16,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import facing_frame
+from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.bounds import bounds_of_disc
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
@@ -75,3 +76,10 @@ def mapping(disc: PackedDisc, point: Vec, normal: Vec) -> tuple[Number, Number, 
     per_diameter = 1.0 / across
     u, v = 0.5 + dot(p, disc.right) * per_diameter, 0.5 + dot(p, disc.up) * per_diameter
     return u, v, across * disc.right, across * disc.up
+
+
+def boundary(disc: Any, point: Vec) -> Boundary:
+    """Height above the disc, and distance beyond its rim."""
+    p = point - disc.centre
+    height = dot(disc.normal, p)
+    return Boundary((height,), (length(p - height * disc.normal) - disc.diameter / 2,))

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from math import hypot
 from sys import float_info
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
 from minirt.lanes import Vec, any, dot, sqrt, unit, where
@@ -19,6 +19,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.bounds import point_along
 from minirt.shapes.quadric import negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
@@ -129,3 +130,10 @@ def mapping(ellipsoid: PackedEllipsoid, point: Vec, normal: Vec) -> tuple[Number
 def scaled(v: Vec, scale: Vec) -> Vec:
     """The vector v, scaled by its own factor along each axis."""
     return Vec(v.x * scale.x, v.y * scale.y, v.z * scale.z)
+
+
+def boundary(ellipsoid: Any, point: Vec) -> Boundary:
+    """(x / a)^2 + (y / b)^2 + (z / c)^2 - 1 along its own axes, for the semi-axes a, b and c."""
+    x, y, z = own_coordinates(ellipsoid.axis, point - ellipsoid.centre)
+    x, y, z = 2 * x / ellipsoid.sizes.x, 2 * y / ellipsoid.sizes.y, 2 * z / ellipsoid.sizes.z
+    return Boundary((x * x + y * y + z * z - 1.0,))

@@ -11,7 +11,7 @@ each cap.
 from __future__ import annotations
 
 from math import sqrt as root
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
 from minirt.lanes import Vec, any, copysign, fabs, inverse_root, maximum, minimum, splat, sqrt, unit, where
@@ -19,6 +19,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
 from minirt.shapes.quadric import clamped_minimum, negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
@@ -151,3 +152,12 @@ def mapping(hyperboloid: PackedHyperboloid, point: Vec, normal: Vec) -> tuple[Nu
     reach = hyperboloid.slope * hyperboloid.half
     radius = sqrt(hyperboloid.waist * hyperboloid.waist + reach * reach)
     return revolved_mapping(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), 0.5 + p.z / tall, rise, radius)
+
+
+def boundary(hyperboloid: Any, point: Vec) -> Boundary:
+    """x^2 + y^2 - waist^2 - slope^2 z^2 on the side; distance from the caps."""
+    height, rho = along_and_off_axis(hyperboloid.axis, point - hyperboloid.centre)
+    waist, widest = hyperboloid.waist, hyperboloid.diameter
+    slope = (widest - waist) * (widest + waist) / (hyperboloid.height * hyperboloid.height)  # squared
+    side = rho * rho - waist * waist / 4 - slope * height * height
+    return Boundary((side, abs(height) - hyperboloid.height / 2))

@@ -10,7 +10,7 @@ pictures.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,9 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes import pyramid, triangle
+from minirt.shapes.boundary import Boundary, facing, triangle_boundary
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.triangle_normal import plane_normals
 
 BARYCENTRIC = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)  # u and v at the three corners where the file has none
 OPPOSED = 1e-3  # squared length of a mean of unit normals; below it they cancel, and the mean points anywhere
@@ -71,9 +73,9 @@ class Mesh(Shape):
         triangles = self.triangles
         rows = np.zeros((len(triangles), 27))
         rows[:, :9].reshape(-1, 3, 3)[...] = self.placed(triangles.points)[triangles.corners]
-        rows[:, 9:12] = triangles.flat_normals
+        rows[:, 9:12] = plane_normals(rows[:, :9], triangles.flat_normals)
         if triangles.normals is None:
-            rows[:, 12:21].reshape(-1, 3, 3)[...] = triangles.flat_normals[:, None]
+            rows[:, 12:21].reshape(-1, 3, 3)[...] = rows[:, None, 9:12]
         else:
             rows[:, 12:21] = triangles.normals.reshape(-1, 9)
         rows[:, 21:] = BARYCENTRIC if triangles.uvs is None else triangles.uvs.reshape(-1, 6)
@@ -114,7 +116,7 @@ class PackedMeshTriangle(NamedTuple):
 
 def intersect(mesh: PackedMeshTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the triangle: watertight, as for `tr`."""
-    return triangle.watertight(mesh.a, mesh.b, mesh.c, origin, direction)
+    return triangle.watertight(mesh.a, mesh.b, mesh.c, mesh.normal, origin, direction)
 
 
 def may_meet(mesh: PackedMeshTriangle, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
@@ -164,3 +166,9 @@ def mapping(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> tuple[Number, 
         along_u - dot(along_u, normal) * normal,
         along_v - dot(along_v, normal) * normal,
     )
+
+
+def boundary(mesh: Any, point: Vec) -> Boundary:
+    """As for `tr`, of a triangle with rounded corners; its normal is on the side of the normals of the file."""
+    flat = triangle_boundary(mesh.a, mesh.b, mesh.c, point)
+    return Boundary((facing(mesh.normal, flat.faces[0]),), flat.limits)

@@ -10,7 +10,7 @@ around the cap.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, unit, where
@@ -18,6 +18,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.bounds import bounds_of_disc, disc_extents, point_along, union_of_bounds
 from minirt.shapes.quadric import clamped_minimum, negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
@@ -132,3 +133,10 @@ def mapping(paraboloid: PackedParaboloid, point: Vec, normal: Vec) -> tuple[Numb
     per_rho = 1.0 / where(rho == 0.0, 1.0, rho)
     rise = radius * Vec(p.x * per_rho, p.y * per_rho, rho / paraboloid.focal)
     return revolved_mapping(u, v, w, p, is_side(p, to_basis(u, v, w, normal)), rho / radius, rise, radius)
+
+
+def boundary(paraboloid: Any, point: Vec) -> Boundary:
+    """x^2 + y^2 - radius^2 z / height on the side; distance from the cap."""
+    height, rho = along_and_off_axis(paraboloid.axis, point - paraboloid.vertex)
+    radius = paraboloid.diameter / 2
+    return Boundary((rho * rho - radius * radius / paraboloid.height * height, height - paraboloid.height))

@@ -10,7 +10,7 @@ upright; on a floor u, to the right, runs along x and v, upwards, along -z, on a
 from __future__ import annotations
 
 from dataclasses import KW_ONLY
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
@@ -19,6 +19,7 @@ from minirt.lanes.vec import Number
 from minirt.materials import BOARD, Checker, Compound
 from minirt.records import record
 from minirt.shapes.basis import facing_frame
+from minirt.shapes.boundary import Boundary
 from minirt.shapes.shape import Ball, Position, Shape
 
 PARALLEL = 4  # error of the scalar product of two unit vectors, in unit roundoffs
@@ -75,3 +76,8 @@ def mapping(plane: PackedPlane, point: Vec, normal: Vec) -> tuple[Number, Number
     """u and v in scene units, and the unit vectors along them."""
     p = point - plane.point
     return dot(p, plane.right), dot(p, plane.up), plane.right, plane.up
+
+
+def boundary(plane: Any, point: Vec) -> Boundary:
+    """Height above the plane."""
+    return Boundary((dot(plane.normal, point - plane.point),))

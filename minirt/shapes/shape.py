@@ -1,7 +1,7 @@
 """The interface of shapes: what each shape's file defines.
 
 The file of a shape holds its manual page, its line in a scene file (a record), its packed form for the kernel
-(a NamedTuple of numbers and Vecs, made by `pack`) and three functions on packed shapes:
+(a NamedTuple of numbers and Vecs, made by `pack`), three functions on packed shapes:
 
     intersect(shape, origin, direction)   whether a ray hits the shape, and the distance t along the unit `direction` at
                                           which it enters or, from inside, leaves: the least t > 0
@@ -9,6 +9,11 @@ The file of a shape holds its manual page, its line in a scene file (a record), 
                                           normal there, outward where there is an outside
     mapping(shape, point, normal)         texture coordinates of a point of the surface with this normal: u to the right
                                           and v upwards, 0 to 1 across a picture; and the tangents dP/du and dP/dv
+
+and one on the fields of the scene line, which states the shape once more, for the certificates of hits:
+
+    boundary(shape, point)                its faces: functions of a point that are 0 on a face and grow outwards, see
+                                          `minirt.shapes.boundary`
 
 Two functions are optional:
 
@@ -38,6 +43,7 @@ from minirt.lanes import Vec
 from minirt.lanes.operations import Mask
 from minirt.materials import Attributes
 from minirt.records import record
+from minirt.shapes.boundary import Boundary
 
 Bounds = tuple[Triple, Triple]  # axis-aligned bounding box: least and greatest corner
 Ball = tuple[Triple, float]  # centre and radius
@@ -98,6 +104,7 @@ class Kind(NamedTuple):
     intersect: Callable[..., Any]
     surface: Callable[..., Any]
     mapping: Callable[..., Any]
+    boundary: Callable[..., Boundary]
     shading: Callable[..., Any] = geometric_normal
     may_meet: Callable[..., Any] = all_rays
     batched: bool = False  # whether one element is many small primitives side by side
@@ -115,6 +122,7 @@ def kind_of(element: type[Shape]) -> Kind:
         module.intersect,
         module.surface,
         module.mapping,
+        module.boundary,
         **optional,
         batched=element.batched,
         infinite=element.infinite,

@@ -8,13 +8,14 @@ and latitude (equirectangular projection): its upper edge at the pole +y, its mi
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
 from minirt.lanes import Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
+from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.compensated import power_of_point
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns
@@ -103,3 +104,8 @@ def mapping(sphere: PackedSphere, point: Vec, normal: Vec) -> tuple[Number, Numb
     along_u = 2.0 * half * Vec(normal.z, 0.0, -normal.x)
     along_v = half * Vec(fall * normal.x, rho, fall * normal.z)
     return u, v, along_u, along_v
+
+
+def boundary(sphere: Any, point: Vec) -> Boundary:
+    """Distance from the surface."""
+    return Boundary((length(point - sphere.centre) - sphere.diameter / 2,))

@@ -9,7 +9,7 @@ a viewer who faces it; on a floor its upper edge is towards -z, on a ceiling tow
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Vec, dot, fabs, unit_roundoff
@@ -17,6 +17,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import facing_frame
+from minirt.shapes.boundary import Boundary, upright_frame
 from minirt.shapes.bounds import bounds_of_points, point_along
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
@@ -83,3 +84,11 @@ def mapping(square: PackedSquare, point: Vec, normal: Vec) -> tuple[Number, Numb
     per_side = 1.0 / side
     u, v = 0.5 + dot(p, square.right) * per_side, 0.5 + dot(p, square.up) * per_side
     return u, v, side * square.right, side * square.up
+
+
+def boundary(square: Any, point: Vec) -> Boundary:
+    """Height above the square, and distances beyond its two pairs of edges."""
+    p = point - square.centre
+    right, up = upright_frame(square.normal)
+    half = square.side / 2
+    return Boundary((dot(square.normal, p),), (abs(dot(right, p)) - half, abs(dot(up, p)) - half))

@@ -10,7 +10,7 @@ the axis, with its middle towards -z on a ring that lies flat, and once around t
 from __future__ import annotations
 
 from math import cos, pi, sin
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
 from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, splat, sqrt, unit_roundoff, where
@@ -18,6 +18,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.bounds import bounds_of_disc, point_along
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns, longitude
@@ -213,3 +214,9 @@ def mapping(torus: PackedTorus, point: Vec, normal: Vec) -> tuple[Number, Number
         from_basis(torus.u, torus.v, torus.w, direction),
         from_basis(torus.u, torus.v, torus.w, rise),
     )
+
+
+def boundary(torus: Any, point: Vec) -> Boundary:
+    """Distance from the surface."""
+    height, rho = along_and_off_axis(torus.axis, point - torus.centre)
+    return Boundary((hypotenuse(rho - torus.diameter / 2, height) - torus.tube / 2,))

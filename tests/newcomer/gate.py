@@ -7,13 +7,14 @@ A made-up shape: an upright square around `x,y,z`, seen from both sides. A pictu
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
 from minirt.lanes import Vec, fabs, maximum, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
+from minirt.shapes.boundary import Boundary
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
 
@@ -64,3 +65,9 @@ def mapping(gate: PackedGate, point: Vec, normal: Vec) -> tuple[Number, Number, 
     side = 2.0 * gate.half
     p = point - gate.centre
     return 0.5 + p.x / side, 0.5 + p.y / side, Vec(side, 0.0, 0.0), Vec(0.0, side, 0.0)
+
+
+def boundary(gate: Any, point: Vec) -> Boundary:
+    """Height above the gate, and distances beyond its edges."""
+    p = point - gate.centre
+    return Boundary((p.z,), (abs(p.x) - gate.side / 2, abs(p.y) - gate.side / 2))

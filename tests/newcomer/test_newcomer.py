@@ -109,6 +109,8 @@ assert features(soft) - features(plain) == {"specular"}
 light = [minirt.render(scene, 9, 9).linear[4, 4] for scene in (plain, soft)]
 assert np.allclose(light[0], 0.7 * np.array([200, 90, 50]) / 255)
 assert np.allclose(light[1] - light[0], 0.3 * 0.6)
+hits = minirt.trace(plain, [[0.3, 0.1, -9]], [[0, 0.1, 1]])
+assert hits.backward_error[0] <= 4 and hits.normal_error[0] == 0
 """
 
 

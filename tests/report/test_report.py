@@ -28,7 +28,7 @@ from tests.simulated_clock import PACKET_SECONDS, Clock, packets, simulate_clock
 
 __all__ = ["folder", "run"]
 Run = Callable[..., Result]
-ROWS = {"pictures": 9, "orders": 1, "ablation": 3, "single": 1, "kernels": 6}  # at least
+ROWS = {"pictures": 9, "orders": 1, "ablation": 3, "single": 1, "kernels": 6, "certificates": 4}  # at least
 TABLES = {f"{table}.csv" for table in ROWS}
 DOCUMENTS = {"report.html", "report.md", "report.json", "diagram.svg", "reference.png"}
 

@@ -10,6 +10,7 @@ from minirt.lanes import Vec, dot, fabs, sqrt
 from minirt.report.measurements.textbook import meets_cylinder, meets_sphere
 from minirt.shapes.plane import PackedPlane
 from minirt.shapes.sphere import PackedSphere
+from minirt.shapes.triangle import PackedTriangle, edge_function, permuted_axes, sheared
 from tests.shapes.execution_modes import on_arrays
 
 naive_sphere = meets_sphere  # loses a small sphere far away
@@ -40,6 +41,22 @@ def hits_behind(plane: PackedPlane, origin: Vec, direction: Vec) -> Any:
     """A plane that is hit behind the eye, too."""
     slope = dot(plane.normal, direction)
     return slope != 0, fabs(dot(plane.normal, plane.point - origin) / slope)
+
+
+def mean_of_corners(triangle: PackedTriangle, origin: Vec, direction: Vec) -> Any:
+    """A triangle's formula whose distance is the mean of the corners, weighted by the edge functions: off the plane of
+    a sliver by the square of its length over its height."""
+    x, y, z = fabs(direction.x), fabs(direction.y), fabs(direction.z)
+    by_x = (x >= y) & (x >= z)
+    by_y = (y >= z) & ~by_x
+    d = permuted_axes(by_x, by_y, direction)
+    shear = Vec(d.x / d.z, d.y / d.z, 1.0 / d.z)
+    corners = triangle.a, triangle.b, triangle.c
+    a, b, c = (sheared(shear, permuted_axes(by_x, by_y, corner - origin)) for corner in corners)
+    of_a, of_b, of_c = edge_function(b, c), edge_function(c, a), edge_function(a, b)
+    inside = ((of_a >= 0) & (of_b >= 0) & (of_c >= 0)) | ((of_a <= 0) & (of_b <= 0) & (of_c <= 0))
+    t = (of_a * a.z + of_b * b.z + of_c * c.z) / (of_a + of_b + of_c) / d.z
+    return inside & (t > 0.0), t
 
 
 def with_formula(formula: Any) -> Any:

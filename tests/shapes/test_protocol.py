@@ -57,6 +57,7 @@ def test_its_file_opens_with_its_manual_page(kind: Kind) -> None:
 def test_its_formulas_have_the_parameters_of_the_protocol(kind: Kind) -> None:
     assert [*inspect.signature(kind.intersect).parameters][1:] == ["origin", "direction"]
     assert [*inspect.signature(kind.surface).parameters][1:] == ["point"]
+    assert [*inspect.signature(kind.boundary).parameters][1:] == ["point"]
     assert kind.intersect.__module__ == kind.surface.__module__ == kind.element.__module__ == kind.packed.__module__
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 from itertools import permutations
 
@@ -9,7 +10,8 @@ import numpy as np
 import pytest
 
 from minirt.errors import ElementError
-from minirt.shapes.triangle import Triangle
+from minirt.shapes.triangle import Triangle, cross
+from minirt.shapes.triangle_normal import plane_normals
 from tests.shapes.checks import U
 from tests.shapes.execution_modes import Intersect, surfaces
 from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_directions, unit
@@ -123,14 +125,43 @@ def test_a_triangle_that_is_too_thin_is_refused() -> None:
     assert Triangle((4, 0, 0), (8, 0, 0), (6, np.nextafter(limit, 1), 0), GREY).normal() == (0, 0, 1)
 
 
-def test_the_normal_of_a_sliver_is_perpendicular_to_its_longest_edge() -> None:
+def normal_errors(normal_of: Callable[[Triangle], Array]) -> Array:
+    """Errors of the normals of slivers with heights of 1e-12 to 1 of their length, against exact fractions."""
     random = np.random.default_rng(7)
+    errors = []
     for height in log_uniform(random, 1e-12, 1, 200):
         a, edge, aside = random.normal(size=(3, 3)) * [[1], [random.uniform(0.5, 4)], [height]]
         sliver = Triangle(tuple(a), tuple(a + edge), tuple(a + random.uniform(0.2, 0.8) * edge + aside), GREY)
-        longest = max(sliver.edges(), key=lambda each: np.hypot(*each[:2]) ** 2 + each[2] ** 2)
-        across = sum(Fraction(n) * Fraction(e) for n, e in zip(sliver.normal(), longest, strict=True))
-        assert abs(across) <= 4 * U * np.linalg.norm(longest)
+        to_b, to_c = (
+            [Fraction(y) - Fraction(x) for x, y in zip(sliver.a, p, strict=True)] for p in (sliver.b, sliver.c)
+        )
+        exact = cross(to_b, to_c)
+        exact = unit(np.array([float(x / max(map(abs, exact))) for x in exact]))
+        errors.append(np.linalg.norm(normal_of(sliver) - exact))
+    return np.array(errors)
+
+
+def of_mesh(triangle: Triangle) -> Array:
+    """The normal of a triangle as that of a mesh; only the side comes from the approximate one."""
+    corners = np.array([[*triangle.a, *triangle.b, *triangle.c]])
+    normal: Array = plane_normals(corners, np.array([triangle.normal()]) + 0.1)[0]
+    return normal
+
+
+def plain(triangle: Triangle) -> Array:
+    a, b, c = (np.array(corner) for corner in (triangle.a, triangle.b, triangle.c))
+    return unit(np.cross(b - a, c - a))
+
+
+def test_the_normals_of_slivers_are_exact() -> None:
+    assert normal_errors(lambda triangle: np.array(triangle.normal())).max() <= 4 * U
+    assert normal_errors(of_mesh).max() <= 4 * U
+    assert normal_errors(plain).max() > 1e-6
+
+
+def test_corners_of_a_mesh_that_lie_on_a_line_keep_the_approximate_normal() -> None:
+    corners = np.array([[0.0, 0, 0, 1, 1, 1, 3, 3, 3]])
+    assert plane_normals(corners, np.array([[0.0, 0, -1]])).tolist() == [[0, 0, -1]]
 
 
 def test_its_box_and_its_balls() -> None:

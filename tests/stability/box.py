@@ -59,6 +59,6 @@ REGIMES = [
     Regime("nearly along an axis", partial(along, 12, make, axes, (1e-14, 1e-3))),
     Regime("along an axis, a scene at 1e8", partial(along, 13, make, axes, None, 1e8)),
     Regime("in the plane of a face", partial(in_a_face, 16)),
-    Regime("at an edge", partial(at, 14, make, edge), blur=1e-12),
-    Regime("at a corner", partial(at, 15, make, corner), blur=1e-12),
+    Regime("at an edge", partial(at, 14, make, edge)),
+    Regime("at a corner", partial(at, 15, make, corner)),
 ]

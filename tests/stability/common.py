@@ -79,7 +79,7 @@ def common(kind: Kind) -> list[Regime]:
     ]
     if solid:
         regimes += [
-            Regime("along the surface", partial(touching, kind, 8), blur=1e-6),
-            Regime("beside the surface", partial(leaving, kind, 9), tolerance=1e-13, blur=np.inf),
+            Regime("along the surface", partial(touching, kind, 8)),
+            Regime("beside the surface", partial(leaving, kind, 9), blur=np.inf),
         ]
     return regimes

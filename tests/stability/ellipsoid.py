@@ -54,7 +54,7 @@ def beside(seed: int, size: float, height: tuple[float, float]) -> Rays:
 
 # At a tip of a flat or a long one a rounding across the short axis moves the hit far along the long one.
 REGIMES = [
-    Regime("at the ends of its axes", partial(at, 11, make, tips), blur=1e-6),
+    Regime("at the ends of its axes", partial(at, 11, make, tips)),
     Regime("along an axis", partial(along, 12, make, directions)),
     Regime("nearly along an axis", partial(along, 13, make, directions, (1e-14, 1e-3))),
     Regime("along an axis, a scene at 1e8", partial(along, 14, make, directions, None, 1e8)),

@@ -54,12 +54,12 @@ def beside_rulings(seed: int, off: tuple[float, float]) -> object:
 
 
 REGIMES = [
-    Regime("along an asymptote", partial(along, 11, make, asymptote), blur=1e-10),
-    Regime("along an asymptote, a scene at 1e8", partial(along, 12, make, asymptote, None, 1e8), blur=1e-10),
-    Regime("nearly along an asymptote", partial(along, 13, make, asymptote, (1e-12, 1e-3)), 1e-14, blur=1e-14),
+    Regime("along an asymptote", partial(along, 11, make, asymptote)),
+    Regime("along an asymptote, a scene at 1e8", partial(along, 12, make, asymptote, None, 1e8)),
+    Regime("nearly along an asymptote", partial(along, 13, make, asymptote, (1e-12, 1e-3))),
     Regime("along a ruling", partial(beside_rulings, 14, (1e-3, 1e-1))),
-    Regime("closely along a ruling", partial(beside_rulings, 15, (1e-14, 1e-6)), blur=1e-6),
-    Regime("at the rim", partial(at, 16, make, rim), blur=1e-12),
+    Regime("closely along a ruling", partial(beside_rulings, 15, (1e-14, 1e-6))),
+    Regime("at the rim", partial(at, 16, make, rim)),
     Regime("at the waist", partial(at, 17, make, waist)),
     Regime("a waist of 1e-6 of the diameter", partial(at, 18, partial(make, waist=1e-6), waist, (1e-3, 1e-1))),
     Regime("closely at a waist of 1e-6 of that", partial(at, 20, partial(make, waist=1e-6), waist, (1e-9, 1e-6))),

@@ -65,5 +65,6 @@ OWN: dict[str, tuple[Intersect, tuple[str, ...]]] = {
         ("a million sizes away", "along the axis", "at the vertex"),
     ),
     "hyperboloid": (mutants.with_formula(textbook.meets_hyperboloid), ("a million sizes away", "along an asymptote")),
+    "triangle": (mutants.with_formula(mutants.mean_of_corners), ("a sliver", "a sliver next to none")),
     "plane": (mutants.with_formula(mutants.hits_behind), ("usual", "at a slope of 1e-6 to 0.01")),
 }

@@ -36,7 +36,10 @@ from tests.stability.table import REGIMES
 SHARED = ("quadric", "compensated", "basis", "bounds")  # files that several shapes use
 TOPICS = {"uv_mapping": "mapping"}  # file -> the word in the names of its tests, if that is another
 FILES = (*SHARED, *TOPICS, "pyramid", *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.ALL_KINDS))
-TESTS = ("tests/shapes", "tests/stability/test_surfaces.py", "tests/stability/test_properties.py")
+TESTS = (
+    "tests/shapes",
+    *(f"tests/stability/test_{name}.py" for name in ("certificates", "surfaces", "properties")),
+)
 # Tests that start threads cannot run after a fork.
 UNFIT = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
 KERNEL = {"trace": "kernel/trace.py", "shade": "kernel/shading/shade.py"}

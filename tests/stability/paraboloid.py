@@ -32,10 +32,10 @@ def axis(random: Random, paraboloid: Paraboloid) -> Array:
 
 
 REGIMES = [
-    Regime("along the axis", partial(along, 11, make, axis), blur=1e-10),
-    Regime("along the axis, a scene at 1e8", partial(along, 12, make, axis, None, 1e8), blur=1e-10),
-    Regime("nearly along the axis", partial(along, 13, make, axis, (1e-12, 1e-3)), blur=1e-10),
-    Regime("at the rim", partial(at, 14, make, rim), blur=1e-12),
+    Regime("along the axis", partial(along, 11, make, axis)),
+    Regime("along the axis, a scene at 1e8", partial(along, 12, make, axis, None, 1e8)),
+    Regime("nearly along the axis", partial(along, 13, make, axis, (1e-12, 1e-3))),
+    Regime("at the rim", partial(at, 14, make, rim)),
     Regime("at the vertex", partial(at, 15, make, vertex)),
     Regime("a height of 1e-6", partial(at, 16, partial(make, height=1e-6), rim, (1e-3, 0.3))),
     Regime("a height of 1e6", partial(at, 17, partial(make, height=1e6), vertex)),

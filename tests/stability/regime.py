@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from minirt.element import fields_of
 from minirt.fields import Length, Lengths, Point
 from minirt.shapes import Shape
-from minirt.shapes.triangle import Triangle
 from tests import oracle
 from tests.oracle.body import body, inside
 from tests.shapes.regimes import Rays
+from tests.stability.certificates import derived_tolerance
 
 Array = NDArray[np.float64]
 U = 2.0**-53
@@ -25,20 +25,22 @@ U = 2.0**-53
 class Regime(NamedTuple):
     """A recipe for rays, and the tolerance of their answers.
 
-    An answer passes that is exact within the relative `tolerance`. Where the surface ends or turns away from the ray an
+    An answer passes that is exact within the relative error that follows from the backward bound of all hits, which is
+    the bound times the condition number of t (`tests.stability.certificates`); or within a `tolerance`, where formulas
+    promise more, or rays are too many to certify. Where the surface ends or turns away from the ray an
     exact answer is of no use, as rounding the ray's own numbers changes it: there it passes if it lies between those
     for a shape thicker and one thinner by `slack` roundings of t, of the distance between origin and shape and of the
     shape's size, and, where all three hit, if it is one of those within `blur`. Where the thinner one is missed, and
     it is a solid, any hit in the thicker one passes: along a straight side the ends of that may be far away.
 
     A sheet is larger and smaller instead of thicker and thinner, and no tolerance is chosen for it: of a ray at a slope
-    s to it, t may be off by 4 roundings of t, of the way from the origin to the sheet and of its `lever`, by s. So much
-    changes when the origin moves by these roundings.
+    s to it, t may be off by 4 roundings of t and of the way from the origin to the sheet, by s. So much changes when
+    the origin moves by these roundings.
     """
 
     name: str
     make: Callable[[], Rays]
-    tolerance: float = 1e-13
+    tolerance: float | None = None
     slack: float = 64.0
     blur: float = 1e-13
 
@@ -52,6 +54,12 @@ class Right:
         self.normal = lru_cache(None)(lambda i: oracle.normal(rays.shapes[i], rays.origins[i, 0]))  # of a sheet
         self.t = np.array([[self.at(i, j) for j in range(rays.origins.shape[1])] for i in range(len(rays.shapes))])
         self.around = lru_cache(None)(self.thicker_and_thinner)
+
+    @cached_property
+    def tolerances(self) -> Array:
+        """The relative tolerance of each hit."""
+        given = self.regime.tolerance
+        return derived_tolerance(self.rays, self.t) if given is None else np.full(self.t.shape, given)
 
     def at(self, i: int, j: int, swell: float = 0.0) -> float:
         t = oracle.nearest(self.rays.shapes[i], self.rays.origins[i, j], self.rays.directions[i, j], mpfr(swell))
@@ -71,7 +79,7 @@ class Right:
     def sheet_error(self, i: int, j: int, t: float) -> float:
         """The tolerance of a hit of a sheet at t."""
         slope = float(abs(oracle.dot(self.normal(i), self.rays.directions[i, j])))
-        return 4 * U * (t + self.away(i, j) + lever(self.rays.shapes[i])) / slope
+        return 4 * U * (t + self.away(i, j)) / slope
 
     def within_thicker(self, i: int, j: int, t: float) -> bool:
         origin, direction = self.rays.origins[i, j], self.rays.directions[i, j]
@@ -86,7 +94,7 @@ class Right:
         """The complaints of `wrong`, one after the other: each is slow to find."""
         right = self.t[:, ::every]
         with np.errstate(invalid="ignore"):
-            near = np.isfinite(right) & (np.abs(t - right) <= self.regime.tolerance * right)
+            near = np.isfinite(right) & (np.abs(t - right) <= self.tolerances[:, ::every] * right)
         exact = (t == right) | (near & self.solid)
         found = (self.verdict(i, j * every, t[i, j]) for i, j in np.argwhere(~exact).tolist())
         return (each for each in found if each)
@@ -120,19 +128,6 @@ def posed(regime: Regime) -> Right:
 def points(shape: Shape) -> list[Array]:
     """The points that a shape is given by."""
     return [np.array(getattr(shape, each.name)) for each in fields_of(type(shape)) if isinstance(each, Point)]
-
-
-def lever(shape: Shape) -> float:
-    """Length of which a hit of a triangle is known to some roundings; 0 for other shapes.
-
-    A hit is the mean of the corners by areas, which are known to roundings of the square of the longest edge: for a
-    sliver that is a large error along it.
-    """
-    if not isinstance(shape, Triangle):
-        return 0.0
-    longest = max(float(np.linalg.norm(edge)) for edge in shape.edges())
-    twice_the_area = float(np.linalg.norm(np.cross(*shape.edges()[:2])))
-    return longest**3 / twice_the_area
 
 
 def size(shape: Shape) -> float:

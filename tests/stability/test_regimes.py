@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from minirt.shapes import KINDS, Kind
+from tests.shapes.execution_modes import compiled
+from tests.stability.certificates import away_from_surface
 from tests.stability.execution_modes import MODES
 from tests.stability.regime import Regime, posed
 from tests.stability.table import REGIMES
@@ -23,6 +25,13 @@ def test_hits_are_exact(kind: Kind, regime: Regime, way: str) -> None:
     assert {type(shape) for shape in right.rays.shapes} == {kind.element}
     wrong = right.wrong(intersect(*right.rays), every)
     assert not wrong, f"{len(wrong)} of {right.t.size // every}, the first: {wrong[0]}"
+
+
+@pytest.mark.parametrize(("kind", "regime"), REGIMES, ids=label)
+def test_compiled_formulas_hold_the_backward_bound(kind: Kind, regime: Regime) -> None:
+    rays = posed(regime).rays
+    away = away_from_surface(rays, compiled(*rays))
+    assert not away, f"{len(away)}, the first: {away[0]}"
 
 
 @pytest.mark.parametrize(("kind", "regime"), REGIMES, ids=label)

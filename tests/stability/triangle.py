@@ -47,12 +47,12 @@ def corner(random: Random, triangle: Triangle) -> Array:
     return corners(triangle)[random.integers(3, size=RAYS)]
 
 
-def grazing(seed: int, slope: tuple[float, float]) -> Rays:
-    """Rays at slopes in `slope` to the triangle, from both sides."""
+def grazing(seed: int, slope: tuple[float, float], height: float = 1.0) -> Rays:
+    """Rays at slopes in `slope` to a triangle of a height, from both sides."""
     random = np.random.default_rng(seed)
     shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
     for i in range(COUNT):
-        triangle = make(random)
+        triangle = make(random, height)
         rise = log_uniform(random, *slope, RAYS, 1) * random.choice([-1.0, 1.0], (RAYS, 1))
         normal = np.array(triangle.normal())
         directions[i] = unit(random_perpendiculars(random, normal, RAYS) + rise * normal)
@@ -67,4 +67,6 @@ REGIMES = [
     Regime("a sliver", partial(at, 13, partial(make, height=1e-6), inside)),
     Regime("a sliver next to none", partial(at, 14, partial(make, height=1e-12), inside)),
     Regime("at a slope of 1e-6 to 0.01", partial(grazing, 15, (1e-6, 1e-2))),
+    Regime("a sliver at a slope of 1e-6 to 0.01", partial(grazing, 16, (1e-6, 1e-2), 1e-6)),
+    Regime("a sliver of 1e-10 at a slope of 0.001 to 0.01", partial(grazing, 17, (1e-3, 1e-2), 1e-10)),
 ]

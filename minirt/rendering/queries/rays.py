@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cache, cached_property, partial
 from importlib import import_module
 from threading import Lock
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,19 +17,11 @@ from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.argument_block import words_of
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering.packing.widening import widened_tree
+from minirt.rendering.queries.hits import Hits, Traced
 from minirt.rendering.running.cores import usable_cores
 from minirt.rendering.running.thread_pool import ThreadPool
 from minirt.scene import Scene
 from minirt.shapes import Shape
-
-
-class Hits(NamedTuple):
-    """The closest hits of n rays."""
-
-    distance: NDArray[np.float64]  # (n,) from the origin, in units of the scene; infinity where nothing is hit
-    owner: NDArray[np.int64]  # (n,) the index in `scene.shapes` of the shape that is hit; -1 where nothing is
-    point: NDArray[np.float64]  # (n, 3) on the surface; NaN where nothing is hit
-    normal: NDArray[np.float64]  # (n, 3) of the surface, of unit length, outward where there is an outside; or NaN
 
 
 def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: int | None = None) -> Hits:
@@ -104,6 +96,7 @@ class Tracer:
         hits = Hits(
             np.full(count, np.inf), np.full(count, -1), np.full((count, 3), np.nan), np.full((count, 3), np.nan)
         )
+        primitives = first_primitive = np.zeros(0, np.int64)
         if count and scene.shapes:
             with self.busy:
                 if self.shapes is not scene.shapes:
@@ -113,7 +106,10 @@ class Tracer:
                 job = query(counter, self.bvh, origins, directions, hits)
                 self.pool.run([job] * self.threads, partial(counter.fill, count))
                 is_hit = hits.owner >= 0
-                hits.owner[is_hit] = self.shape_arrays.owner[hits.owner[is_hit]]
+                primitives = hits.owner[is_hit]
+                hits.owner[is_hit] = self.shape_arrays.owner[primitives]
+                first_primitive = self.shape_arrays.first_primitive
+        hits.traced = Traced(scene.shapes, first_primitive, primitives, origins, directions)
         return hits
 
     def build_bvh(self, shapes: tuple[Shape, ...]) -> None:

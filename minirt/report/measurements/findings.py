@@ -7,6 +7,7 @@ from math import sqrt
 from typing import Any, NamedTuple
 
 from minirt.report.measurements import ablation, convergence, formula_errors, picture_errors
+from minirt.report.measurements.hit_certificates import KindCertificates
 from minirt.report.measurements.machine import processor, versions
 from minirt.report.measurements.pareto import closest, fastest
 from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS
@@ -44,6 +45,7 @@ class Findings(NamedTuple):
     ablation: list[ablation.Part]  # what features, kinds of shapes and lists cost or save
     single: list[SingleError]  # errors of float32, feature by feature
     kernels: list[formula_errors.Row]
+    certificates: list[KindCertificates]  # of the hits in the picture, kind by kind
     stiff: list[Stiff]
     notes: list[str]  # how the scene was packed, and which features were left out
     same: list[int]  # sample counts for which the picture without culling is the same, bit for bit

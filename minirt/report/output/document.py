@@ -21,6 +21,7 @@ from minirt.report.output.blocks import (
     Text,
     table,
 )
+from minirt.report.output.certificate_section import certificate_section
 from minirt.report.output.formula_section import formula_section
 from minirt.report.output.sections import ablation_section, orders_section, single_section
 
@@ -67,6 +68,8 @@ def document(found: Findings, diagrams: Diagrams, pictures: list[Picture]) -> It
     yield Bullets([str(each) for each in found.stiff]) if found.stiff else Text("None.")
     if found.kernels:
         yield from formula_section(found.kernels)
+    if found.certificates:
+        yield from certificate_section(found.certificates)
     if found.not_measured:
         yield Heading("Not measured")
         yield Bullets(found.not_measured)

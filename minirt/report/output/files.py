@@ -60,6 +60,7 @@ def report_files(found: Findings, lights: dict[str, Light], reference: Light) ->
         "ablation.csv": as_csv(found.ablation),
         "single.csv": as_csv(found.single),
         "kernels.csv": as_csv(found.kernels),
+        "certificates.csv": as_csv(found.certificates),
     }
     return {name: each.encode() for name, each in made.items()} | {each.file: each.data for each in pictures}
 

@@ -12,7 +12,7 @@ from gmpy2 import mpfr
 
 import minirt
 from minirt.kernel.machine_code.library import LIBRARY
-from minirt.rendering.queries import rays
+from minirt.rendering.queries import certificate, rays
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -146,6 +146,60 @@ def test_several_threads_may_trace_at_once() -> None:
         found = list(pool.map(lambda each: minirt.trace(each, *many), scenes * 4))
     for right, hits in zip(expected * 4, found, strict=True):
         assert all(np.array_equal(one, other, equal_nan=True) for one, other in zip(right, hits, strict=True))
+
+
+def test_hits_have_certificates() -> None:
+    hits = minirt.trace(scene(BALL, FLOOR), np.zeros((4, 3)), [[0, 0, 1], [0, -1, 1], [0, 1, 0], [0, -3, 0]])
+    assert hits.owner.tolist() == [0, 1, -1, 1]
+    # |o - c| + t + size: 5 + 4 + 2 for the ball; 1 + t for the floor, which has no size.
+    expected = [11 / 4, (1 + 2**0.5) / (2**0.5 * 0.5**0.5), np.nan, 2]
+    assert hits.condition == pytest.approx(expected, rel=1e-12, nan_ok=True)
+    assert hits.backward_error[[0, 3]].tolist() == [0, 0]
+    assert 0 <= hits.backward_error[1] <= 4
+    assert np.isnan(hits.backward_error[2])
+    assert hits.normal_error[[0, 1, 3]].tolist() == [0, 0, 0]
+    assert hits.backward_error is hits.backward_error  # computed once
+
+
+def test_certificates_are_computed_on_first_use_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[int] = []
+    certify = certificate.certify
+    monkeypatch.setattr(certificate, "certify", lambda *arguments: calls.append(1) or certify(*arguments))
+    hits = minirt.trace(scene(BALL), np.zeros((1, 3)), [[0, 0, 1]])
+    assert not calls
+    for _ in range(2):
+        assert (hits.backward_error, hits.condition, hits.normal_error) == (0, 2.75, 0)
+    assert len(calls) == 1
+    with pytest.raises(ValueError, match=r"^only hits that"):
+        _ = hits._replace(distance=hits.distance).condition
+
+
+def test_no_rays_and_no_shapes_have_certificates() -> None:
+    assert minirt.trace(scene(BALL), np.zeros((0, 3)), np.zeros((0, 3))).condition.shape == (0,)
+    for part in minirt.trace(scene(), [[0, 0, 0]], [[0, 0, 1]]).certificate:
+        assert np.isnan(part).tolist() == [True]
+
+
+def test_hits_of_many_shapes_are_backward_stable() -> None:
+    random = np.random.default_rng(9)
+    shapes = random_shapes(random, 200)
+    hits = minirt.trace(scene(*shapes), *random_rays(random, shapes, 4000))
+    hit = hits.owner >= 0
+    assert hit.sum() > 500
+    assert hits.backward_error[hit].max() <= 4
+    assert hits.condition[hit].min() >= 1
+    assert np.isnan(hits.backward_error[~hit]).all()
+
+
+@pytest.mark.parametrize("scale", [1e-140, 1e-12, 1.0, 1e12])
+@pytest.mark.parametrize("length", [5e-324, 1e-200, 1.0, 1e308])
+def test_certificates_know_no_scale(scale: float, length: float) -> None:
+    ball, floor = Sphere((0, 0, 5 * scale), 2 * scale, RED), Plane((0, -scale, 0), (0, 1, 0), RED)
+    origins = np.array([[0.3 * scale, 0, 0]] * 2)
+    hits = minirt.trace(scene(ball, floor), origins, [[0, 0, length], [0, -length, length]])
+    assert hits.owner.tolist() == [0, 1]
+    assert hits.backward_error.max() <= 4
+    assert hits.condition == pytest.approx([2.9, 2.5], abs=0.4)
 
 
 def test_a_picture_imports_no_queries_and_an_import_no_compiler() -> None:

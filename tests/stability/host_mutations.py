@@ -1,0 +1,71 @@
+"""Single mutations of host code: a comparison, a condition, a number, a dropped statement, two swapped arguments."""
+
+from __future__ import annotations
+
+import ast
+import copy
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+from tests.stability.mutations import OPERATORS, STRICT, Change, replace, untouched
+
+HOST_OPERATORS: dict[type[ast.AST], type[Any]] = {
+    **OPERATORS,
+    ast.In: ast.NotIn,
+    ast.NotIn: ast.In,
+    ast.Is: ast.IsNot,
+    ast.IsNot: ast.Is,
+}
+SYMMETRIC = {"min", "max", "hasattr", "getattr", "setattr", "isinstance", "zip"}  # not worth a swap of arguments
+DEFINITIONS = ast.FunctionDef, ast.ClassDef
+
+
+def host_changes(source: str) -> Iterator[Callable[[], Change]]:
+    """Yield all single changes of the functions of a source, each to be made by a call; docstrings, signatures and
+    class bodies stay."""
+    tree = ast.parse(source)
+    aside = untouched(tree)
+    aside |= {id(inner) for each in tree.body if not isinstance(each, DEFINITIONS) for inner in ast.walk(each)}
+    for number, node in enumerate(ast.walk(tree)):
+        if id(node) not in aside:
+            yield from (partial(changed, tree, number, variant) for variant in host_variants(node))
+
+
+def changed(tree: ast.Module, number: int, variant: ast.AST) -> Change:
+    """Return the change that replaces node `number` of a tree."""
+    new = copy.deepcopy(tree)
+    node = next(each for i, each in enumerate(ast.walk(new)) if i == number)
+    before, after = (ast.unparse(each).splitlines()[0] for each in (node, variant))
+    line = getattr(node, "lineno", 0)
+    replace(new, node, variant)
+    return Change(line, before, after, ast.fix_missing_locations(new))
+
+
+def host_variants(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield the variants of an expression or a statement."""
+    match node:
+        case ast.Compare(left, [operator], [right]) if type(operator) in HOST_OPERATORS:
+            yield ast.Compare(left, [HOST_OPERATORS[type(operator)]()], [right])
+            if type(operator) in STRICT:
+                yield ast.Compare(left, [STRICT[type(operator)]()], [right])
+        case ast.BinOp(left, operator, right) if type(operator) in HOST_OPERATORS:
+            yield ast.BinOp(left, HOST_OPERATORS[type(operator)](), right)
+        case ast.BoolOp(operator, values):
+            yield ast.BoolOp(ast.Or() if isinstance(operator, ast.And) else ast.And(), values)
+        case ast.UnaryOp(ast.Not(), operand):
+            yield operand
+        case ast.Constant(bool() as value):
+            yield ast.Constant(not value)
+        case ast.Constant(int() | float() as value):
+            yield ast.Constant(value + 1)
+        case ast.IfExp(test, body, orelse):
+            yield ast.IfExp(test, orelse, body)
+        case ast.Call(function, [first, second, *others], keywords) if ast.unparse(function) not in SYMMETRIC:
+            yield ast.Call(function, [second, first, *others], keywords)
+        case ast.Expr(ast.Call()) | ast.AugAssign() | ast.Raise():
+            yield ast.Pass()
+        case ast.Break():
+            yield ast.Continue()
+        case ast.Continue():
+            yield ast.Break()

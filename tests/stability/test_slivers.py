@@ -1,0 +1,72 @@
+"""Slivers with heights down to 1e-12 of their length have no acne, at any scale, as triangles and in meshes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.kernel.pictures import linear
+from tests.shapes import mutants
+from tests.shapes.examples import shadow_offsets
+from tests.shapes.execution_modes import Intersect, compiled, surfaces
+from tests.shapes.regimes import Rays, log_uniform, random_directions, unit
+from tests.stability.slivers import AMBIENT, ASPECTS, SCALES, corners_of, scene_of, sliver
+
+SHAPES, COUNT = 30, 64
+ASPECT = pytest.mark.parametrize("aspect", ASPECTS)
+
+
+def aimed(seed: int, aspect: float, scale: float) -> Rays:
+    """Rays at slivers, from a thousandth of their length to ten lengths away."""
+    random = np.random.default_rng(seed)
+    slivers = [sliver(random, aspect, scale) for _ in range(SHAPES)]
+    corners = np.stack([corners_of(each) for each in slivers])
+    targets = random.dirichlet(np.ones(3), (SHAPES, COUNT)) @ corners
+    directions = random_directions(random, SHAPES, COUNT)
+    return Rays([*slivers], targets - scale * log_uniform(random, 1e-3, 10, SHAPES, COUNT, 1) * directions, directions)
+
+
+def acne(seed: int, aspect: float, scale: float, intersect: Intersect) -> tuple[int, int]:
+    """Number of rays that hit, and of those that hit again, where there is nothing to hit, after they were sent on as
+    shadow rays are: half of them grazing the sliver, to a slope of 1e-10."""
+    rays = aimed(seed, aspect, scale)
+    t = intersect(*rays)
+    hit = np.isfinite(t)
+    on, out = surfaces(rays.shapes, rays.origins + np.where(hit, t, 1.0)[..., None] * rays.directions)
+    out = np.where((out * rays.directions).sum(axis=-1, keepdims=True) > 0, -out, out)
+    random = np.random.default_rng(seed)
+    slope = np.where(
+        random.random((SHAPES, COUNT, 1)) < 0.5,
+        log_uniform(random, 1e-10, 0.01, SHAPES, COUNT, 1),
+        random.uniform(0.01, 1, (SHAPES, COUNT, 1)),
+    )
+    onwards = unit(slope * out + np.sqrt(1 - slope**2) * unit(np.cross(out, random_directions(random, SHAPES, COUNT))))
+    again = intersect(rays.shapes, on + shadow_offsets(on, rays.shapes) * out, onwards)
+    return int(hit.sum()), int((hit & np.isfinite(again)).sum())
+
+
+@ASPECT
+@pytest.mark.parametrize("scale", SCALES)
+def test_no_ray_hits_the_sliver_again_from_which_it_starts(scale: float, aspect: float) -> None:
+    hit, again = acne(1, aspect, scale, compiled)
+    assert hit > 0.95 * SHAPES * COUNT
+    assert again == 0
+
+
+@pytest.mark.parametrize("scale", SCALES)
+def test_the_mean_of_the_corners_has_acne(scale: float) -> None:
+    hit, again = acne(1, 1e-5, scale, mutants.with_formula(mutants.mean_of_corners))
+    assert again > 0.05 * hit
+
+
+@ASPECT
+@pytest.mark.parametrize("mesh", [False, True])
+@pytest.mark.parametrize("parallel", [False, True])
+def test_slivers_are_lit(parallel: bool, mesh: bool, aspect: float) -> None:
+    for seed, scale in enumerate(SCALES):
+        random = np.random.default_rng(seed)
+        scene, light = scene_of(random, aspect, scale, mesh, parallel)
+        found = linear(scene)[..., 0]
+        seen = found >= AMBIENT / 2
+        assert seen.sum() > 20
+        assert np.abs(found[seen] - light).max() < 1e-3
