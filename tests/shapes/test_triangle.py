@@ -132,7 +132,9 @@ def normal_errors(normal_of: Callable[[Triangle], Array]) -> Array:
     for height in log_uniform(random, 1e-12, 1, 200):
         a, edge, aside = random.normal(size=(3, 3)) * [[1], [random.uniform(0.5, 4)], [height]]
         sliver = Triangle(tuple(a), tuple(a + edge), tuple(a + random.uniform(0.2, 0.8) * edge + aside), GREY)
-        to_b, to_c = ([Fraction(y) - Fraction(x) for x, y in zip(sliver.a, p, strict=True)] for p in (sliver.b, sliver.c))
+        to_b, to_c = (
+            [Fraction(y) - Fraction(x) for x, y in zip(sliver.a, p, strict=True)] for p in (sliver.b, sliver.c)
+        )
         exact = cross(to_b, to_c)
         exact = unit(np.array([float(x / max(map(abs, exact))) for x in exact]))
         errors.append(np.linalg.norm(normal_of(sliver) - exact))

@@ -30,7 +30,7 @@ from tests.stability.mutations import Change
 from tests.waiting import HANG_LIMIT
 
 COPIED = ("minirt", "tests", "scenes", "assets", "pyproject.toml", "Makefile", "README.md", "CHANGELOG.md")
-QUICK = ("-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:randomly", "-m", "not window and not slow")
+QUICK = ("-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not window and not slow")
 Work = tuple[Path, Callable[[], Change]]  # a file, relative to the package, and what makes its change
 
 
