@@ -13,7 +13,7 @@ from math import hypot
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Point, Triple, declare, unit
-from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rounded_product, where
+from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rarely, rounded_product, where
 from minirt.lanes import cross as product
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
@@ -24,6 +24,7 @@ from minirt.shapes.bounds import bounds_of_points
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.triangle_normal import plane_normal
 
+GRAZING = 2.0**-10  # slope of a ray to the plane below which its hit is clamped to the depths of the corners
 FLAT = 16 * 2.0**-53  # least height of a triangle, as a share of its largest coordinate
 
 
@@ -100,8 +101,8 @@ def watertight(a: Vec, b: Vec, c: Vec, normal: Vec, origin: Vec, direction: Vec)
     rounded by themselves, never fused with the sum that follows.
 
     The distance is that to the plane of the triangle. The mean of the corners, weighted by the edge functions, would be
-    off by roundings of the square of the longest edge over the height: for slivers, far too much. The distance is
-    clamped to those of the nearest and the farthest corner, for rays that are parallel to the plane within rounding.
+    off by roundings of the square of the longest edge over the height: for slivers, far too much. The distance of a
+    grazing ray is clamped to those of the nearest and the farthest corner, even if it is parallel to the plane.
     """
     x, y, z = fabs(direction.x), fabs(direction.y), fabs(direction.z)
     by_x = (x >= y) & (x >= z)
@@ -121,11 +122,12 @@ def watertight(a: Vec, b: Vec, c: Vec, normal: Vec, origin: Vec, direction: Vec)
     hit = (least >= 0.0) | (most <= 0.0)
     t = a.z
     if any(hit):
-        # Not on_plane - origin: keeping it from above would cost registers, and 1 % of a frame.
-        t = dot(normal, origin - on_plane) / -dot(normal, direction)
-        at_a, at_b, at_c = a.z * per_depth, b.z * per_depth, c.z * per_depth
-        nearest, farthest = minimum(minimum(at_a, at_b), at_c), maximum(maximum(at_a, at_b), at_c)
-        t = minimum(maximum(t, nearest), farthest)  # `nearest` where t is NaN
+        slope = dot(normal, direction)
+        t = dot(normal, origin - on_plane) / -slope  # not on_plane - origin: kept from above, it costs registers
+        if rarely(hit & (fabs(slope) < GRAZING)):
+            at_a, at_b, at_c = a.z * per_depth, b.z * per_depth, c.z * per_depth
+            nearest, farthest = minimum(minimum(at_a, at_b), at_c), maximum(maximum(at_a, at_b), at_c)
+            t = minimum(maximum(t, nearest), farthest)  # `nearest` where t is NaN
         hit = hit & (least + most != 0.0) & (t > 0.0)  # a triangle seen edge on, where both are 0, is not hit
     return hit, t
 

@@ -30,7 +30,7 @@ from tests.stability.mutations import Change
 from tests.waiting import HANG_LIMIT
 
 COPIED = ("minirt", "tests", "scenes", "assets", "pyproject.toml", "Makefile", "README.md", "CHANGELOG.md")
-QUICK = ("-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:randomly", "-m", "not window and not slow")
+QUICK = ("-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not window and not slow")
 Work = tuple[Path, Callable[[], Change]]  # a file, relative to the package, and what makes its change
 
 
@@ -104,7 +104,7 @@ def test_all(waiting: SimpleQueue[Work | None], survivors: SimpleQueue[Change], 
 
 def passes(folder: Path, path: Path) -> bool:
     """Whether the tests of a file pass in a copy of the project; a hang is a failure."""
-    command = [sys.executable, "-m", "pytest", *QUICK, *tests_of(path)]
+    command = [sys.executable, "-m", "pytest", *QUICK, *selected_tests(path)]
     try:
         ended = subprocess.run(command, check=False, cwd=folder, capture_output=True, timeout=HANG_LIMIT)
     except subprocess.TimeoutExpired:
@@ -112,7 +112,7 @@ def passes(folder: Path, path: Path) -> bool:
     return ended.returncode == 0
 
 
-def tests_of(path: Path) -> list[str]:
+def selected_tests(path: Path) -> list[str]:
     """Return the tests of a file of the package: its own first, then those of the closest folder that has tests."""
     own = Path("tests") / path.parent / f"test_{path.name}"
     folder = next(each for each in own.parents if (ROOT / each).is_dir())

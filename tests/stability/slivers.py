@@ -7,7 +7,6 @@ import numpy as np
 from minirt.fields import MeshFile
 from minirt.meshes import Triangles
 from minirt.scene import Ambient, Camera, Light, Scene
-from minirt.scene.lights import ParallelLight
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.triangle import Triangle
 from tests.shapes.regimes import GREY, Array, Random, random_directions, random_perpendiculars, unit
@@ -19,7 +18,7 @@ AMBIENT = 0.25
 
 
 def sliver(random: Random, aspect: float, scale: float) -> Triangle:
-    """A triangle about the origin, its corners in any order and its lowest angle anywhere along the longest edge."""
+    """A triangle about the origin, its corners in any order and its highest point anywhere above the longest edge."""
     along = scale * random_directions(random)
     foot = random.uniform(0, 1) * along
     corners = np.array([0 * along, along, foot + aspect * scale * random_perpendiculars(random, along)])
@@ -37,17 +36,15 @@ def mesh_of(triangles: list[Triangle]) -> Mesh:
     return Mesh(MeshFile("slivers.obj", Triangles(points, np.arange(len(points)).reshape(-1, 3))), (0, 0, 0), 1.0, GREY)
 
 
-def scene_of(random: Random, aspect: float, scale: float, mesh: bool, parallel: bool) -> tuple[Scene, float]:
-    """A sliver that the eye sees from as near as the sliver is high, and the light of it: ambient and diffuse."""
+def scene_of(random: Random, aspect: float, scale: float) -> tuple[Scene, float]:
+    """A mesh of one sliver, seen from as near as the sliver is high, and its light: ambient and diffuse."""
     shape = sliver(random, aspect, scale)
     normal = np.array(shape.normal()) * random.choice([-1.0, 1.0])
     spot = random.dirichlet(np.full(3, 4.0)) @ corners_of(shape)
     view = unit(-normal + 0.5 * random_directions(random))
-    cosine = random.uniform(0.05, 1)
-    aside = random_perpendiculars(random, normal)
-    to_light = cosine * normal + np.sqrt(1 - cosine**2) * aside
     eye = Camera(tuple(spot - aspect * scale * view), tuple(view.clip(-1, 1)), 50)
-    beam = ParallelLight(tuple((-to_light).clip(-1, 1)), 0.5, WHITE)
-    lamp = beam if parallel else Light(tuple(spot + 1e4 * scale * to_light), 0.5, WHITE)
-    drawn = (mesh_of([shape]) if mesh else shape).replace(colour=WHITE)
-    return Scene((Ambient(AMBIENT, WHITE), eye, lamp, drawn)), AMBIENT + 0.5 * cosine
+    cosine = random.uniform(0.05, 1)
+    to_light = cosine * normal + np.sqrt(1 - cosine**2) * random_perpendiculars(random, normal)
+    light = Light(tuple(spot + 1e4 * scale * to_light), 0.5, WHITE)
+    drawn = mesh_of([shape]).replace(colour=WHITE)
+    return Scene((Ambient(AMBIENT, WHITE), eye, light, drawn)), AMBIENT + 0.5 * cosine

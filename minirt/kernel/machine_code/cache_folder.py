@@ -63,9 +63,8 @@ def folder() -> Path | None:
         path.parents[1].mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)
         for each in (path.parent, path):
             make_private_folder(each)
-        os.utime(path)
         probe = path / f"probe-{os.getpid()}"
-        probe.touch()
+        probe.touch()  # marks the folder as used now, too: `delete_old_folders`
         probe.unlink()
     except (OSError, RuntimeError) as error:  # RuntimeError: the user has no home
         notice("every run compiles anew, kernels cannot be kept: %s", error)

@@ -134,6 +134,22 @@ def test_the_folder_in_use_is_not_deleted(monkeypatch: pytest.MonkeyPatch, tmp_p
     assert current.exists()
 
 
+def test_a_folder_that_is_used_again_is_the_last_to_be_deleted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    used = cache_folder.folder()
+    assert used is not None
+    for age in range(cache_folder.OTHER_VERSIONS):
+        other = used.parent / f"kernels-{age}"
+        other.mkdir()
+        os.utime(other, (NOW + age, NOW + age))
+    os.utime(used, (NOW - 1, NOW - 1))
+    assert cache_folder.folder() == used
+    cache_folder.delete_old_folders(used.parent / "kernels-of-other-sources")
+    assert sorted(path.name for path in used.parent.iterdir()) == sorted(
+        [used.name, *(f"kernels-{age}" for age in range(1, cache_folder.OTHER_VERSIONS))]
+    )
+
+
 def test_without_a_writable_folder_the_picture_is_the_same_with_a_notice(copy: Path, tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.touch()

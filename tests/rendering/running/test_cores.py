@@ -43,7 +43,8 @@ def test_without_a_container_all_processors_count() -> None:
 
 
 def test_the_affinity_of_the_process_limits_the_number(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(os, "sched_getaffinity", lambda pid: {3, 5})
+    own = {0: {3, 5}}  # 0 stands for the calling process
+    monkeypatch.setattr(os, "sched_getaffinity", own.__getitem__)
     assert usable_cores() == 2
 
 
