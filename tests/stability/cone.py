@@ -10,6 +10,7 @@ from minirt.shapes.cone import Cone
 from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, random_directions, random_perpendiculars, unit
 from tests.stability.aimed_rays import along, at, axis_of, edge
 from tests.stability.common import COUNT
+from tests.stability.places import Place, fan, flat, frame, ring, spot
 from tests.stability.regime import Regime
 
 
@@ -67,3 +68,15 @@ REGIMES = [
     Regime("a half-angle of 89.94 degrees", partial(at, 17, partial(make, angle=FLAT), anywhere, (1e-3, 1e-1))),
     Regime("at the mirror image", partial(at_the_mirror_image, 18), blur=1e-10),
 ]
+
+
+def places(cone: Cone) -> list[Place]:
+    """Plane of the base, rim, and generators with those of the mirror image."""
+    _, _, axis = frame(cone.axis)
+    base = np.array(cone.apex) + cone.height * axis
+    return [
+        flat("base plane", cone, base, axis),
+        spot("centre of the base", base),
+        ring("rim", base, axis, cone.diameter / 2),
+        fan("generators", cone, cone.apex, axis, cone.diameter / 2 / cone.height),
+    ]

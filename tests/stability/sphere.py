@@ -20,6 +20,7 @@ from tests.shapes.regimes import (
     unit,
 )
 from tests.stability.common import COUNT
+from tests.stability.places import Place, flat, spot
 from tests.stability.regime import Regime
 
 
@@ -114,3 +115,12 @@ REGIMES = [
     ),
     Regime("from the centre", partial(in_the_centre, 13), 4e-16, 0.0),
 ]
+
+
+def places(sphere: Sphere) -> list[Place]:
+    """Its poles along the axes of the scene, with the planes that touch them."""
+    found = []
+    for axis in np.concatenate([np.eye(3), -np.eye(3)]):
+        pole = np.array(sphere.centre) + sphere.diameter / 2 * axis
+        found += [spot("pole", pole), flat("tangent plane", sphere, pole, axis)]
+    return found

@@ -20,6 +20,7 @@ from tests.shapes.regimes import (
 )
 from tests.stability.aimed_rays import at
 from tests.stability.common import COUNT
+from tests.stability.places import Place, flat, line, spot
 from tests.stability.regime import Regime
 
 
@@ -68,3 +69,10 @@ REGIMES = [
     Regime("a sliver next to none", partial(at, 14, partial(make, height=1e-12), inside)),
     Regime("at a slope of 1e-6 to 0.01", partial(grazing, 15, (1e-6, 1e-2))),
 ]
+
+
+def places(triangle: Triangle) -> list[Place]:
+    """Its plane, the lines of its edges, and its middle."""
+    (a, *_), edges = corners(triangle), np.array(triangle.edges())
+    found = [flat("plane", triangle, a, triangle.normal()), spot("middle", corners(triangle).mean(axis=0))]
+    return found + [line("edge", triangle, *each) for each in zip(corners(triangle), unit(edges), strict=True)]
