@@ -6,7 +6,8 @@ the ray neither enters the thinner solid nor leaves the thicker one before. A mi
 all. One more thing is asked of a ray that starts in the shell, such as one that starts exactly on the surface: it has no
 hit before it leaves the shell, unless the exact answer has one. Else the surface would shadow itself.
 
-A sheet has no inside: a hit is right if it is within 64 roundings of its plane and of its edges.
+A sheet has no inside: a hit is right if it is within 64 roundings of its plane and of its edges, and a miss if a ray so
+close to the given one passes beside it.
 
 The facts come for many rays at once from `tests.oracle.many`, or one by one in 60 digits.
 """
@@ -26,7 +27,8 @@ from tests.shapes.regimes import Array
 from tests.stability.regime import U, lever, points, size
 
 SLACK = 64.0
-NEAR = 2.0**-13  # of the size: a hit farther away is not that of the start, even along the surface
+NEAR = 2.0**-24  # of the size: for how long a ray may stay in the shell that does not touch the surface
+HAIR = 2.0**-60
 Mask = np.ndarray
 
 
@@ -34,35 +36,44 @@ class Facts(NamedTuple):
     """What is true of n rays, of solids and of sheets."""
 
     exact: Array  # the nearest hits, infinity where there is none
-    thicker: Array
+    thicker: Array  # of a sheet: where the ray leaves the band of its plane
     thinner: Array
-    starts_in_thicker: Mask  # of a sheet: within the band of its plane
+    starts_in_thicker: Mask  # of a sheet: in the band of its plane
     starts_in_thinner: Mask  # of a sheet: false
     in_shell: Mask  # the point at t
+    wider: Array  # the nearest hits of a sheet with wider edges, of a solid wider by next to nothing
 
 
 def right(shape: Shape, directions: Array, t: Array, facts: Facts) -> Mask:
     """Which of the answers t, infinity for a miss, are right."""
-    near = t <= NEAR * scale(shape, t)
-    hit = np.isfinite(t)
-    if body(shape).solid:
-        enters = np.where(facts.starts_in_thinner, 0.0, facts.thinner)  # the thinner solid
-        leaves = np.where(facts.starts_in_thicker, facts.thicker, 0.0)  # the thicker one
-        reached = np.maximum(enters, leaves) * (1 + 8 * U)
-        missed = np.isinf(enters) | np.isinf(leaves)
-        start = facts.starts_in_thicker & ~facts.starts_in_thinner & (t <= enters) & (t <= leaves)
-        again = start & near & ~(facts.exact <= np.minimum(enters, leaves))
-    else:
+    found = np.where(np.isfinite(t), (t > 0) & facts.in_shell & ~again(shape, t, facts), np.isposinf(t))
+    if not body(shape).solid:
         slope = np.abs(directions @ np.array([float(x) for x in oracle.normal(shape, points(shape)[0])]))
-        reached = np.full(t.shape, np.inf)
         missed = np.isinf(facts.exact) | np.isinf(facts.thinner) | facts.starts_in_thicker | (slope <= SLACK * U)
-        again = facts.starts_in_thicker & near & ~(facts.exact <= NEAR * scale(shape, t))
-    return np.where(hit, (t > 0) & facts.in_shell & (t <= reached) & ~again, np.isposinf(t) & missed)
+        return found & (np.isfinite(t) | missed)
+    enters, leaves = until(facts)
+    reached = np.maximum(enters, leaves) * (1 + 8 * U)
+    return found & np.where(np.isfinite(t), t <= reached, np.isinf(reached))
 
 
-def scale(shape: Shape, t: Array) -> Array:
-    """The size of a shape; a plane has none."""
-    return np.full(t.shape, size(shape) or 1.0)
+def again(shape: Shape, t: Array, facts: Facts) -> Mask:
+    """Which hits t are those of the surface from which the ray starts, where there is none.
+
+    Not asked of rays that stay in the shell for longer, as they touch the surface.
+    """
+    enters, leaves = until(facts)
+    first = np.minimum(enters, leaves)
+    start = facts.starts_in_thicker & ~facts.starts_in_thinner
+    found: Mask = start & (t <= first) & ~(facts.wider <= first) & (first <= NEAR * size(shape))
+    return found
+
+
+def until(facts: Facts) -> tuple[Array, Array]:
+    """Where a ray enters the thinner solid, and where it leaves the thicker one; 0 if it is there, or beyond."""
+    return (
+        np.where(facts.starts_in_thinner, 0.0, facts.thinner),
+        np.where(facts.starts_in_thicker, facts.thicker, 0.0),
+    )
 
 
 def swell(shape: Shape, origins: Array, t: Array, exact: Array) -> Array:
@@ -85,7 +96,11 @@ def facts_of_many(shape: Shape, origins: Array, directions: Array, t: Array) -> 
     else:
         starts = np.abs(plain.height(zero)) <= band, np.zeros(t.shape, bool)
         in_shell = (np.abs(plain.height(at)) <= band) & thicker.within(at)
-    return Facts(exact, thicker.nearest(), thinner.nearest(), *starts, in_shell)
+        play = band / np.abs(plain.walls[0].coefficients[1].high)
+        surely = np.logical_and.reduce([thinner.within(exact + side * play) for side in (-1, 0, 1)])
+        leaves, sure = np.where(starts[0], 2 * play, 0.0), np.where(surely, exact, np.inf)
+        return Facts(exact, leaves, sure, *starts, in_shell, thicker.nearest())
+    return Facts(exact, thicker.nearest(), thinner.nearest(), *starts, in_shell, exact)
 
 
 def facts_of_each(shape: Shape, origins: Array, directions: Array, t: Array) -> Facts:
@@ -107,6 +122,15 @@ def facts_of_one(shape: Shape, origin: Array, direction: Array, t: float) -> Fac
         starts = inside(thicker, list(origin)), inside(thinner, list(origin))
         in_shell = inside(thicker, at) and not inside(thinner, at)
     else:
-        starts = abs(thicker.walls[0](oracle.exact(origin))) <= band, False
-        in_shell = abs(thicker.walls[0](at)) <= band and all(clip(at) <= 0 for clip in thicker.clips)
-    return Facts(*(np.array(each) for each in (exact, nearest(band), nearest(-band), *starts, in_shell)))
+        wall = thicker.walls[0]
+        start, slope = wall(oracle.exact(origin)), abs(oracle.dot(oracle.normal(shape, origin), direction))
+        play = band / slope if slope else mpfr("inf")
+        starts = abs(start) <= band, False
+        in_shell = abs(wall(at)) <= band and all(clip(at) <= 0 for clip in thicker.clips)
+        ends = [oracle.exact(origin + (exact + side * float(play)) * direction) for side in (-1, 0, 1)]
+        surely = np.isfinite(exact) and all(clip(end) <= 0 for end in ends for clip in thinner.clips)
+        sure = exact if surely else np.inf
+        return Facts(*map(np.array, (exact, float(2 * play), sure, *starts, in_shell, nearest(band))))
+    wider = nearest(band * HAIR)  # a ray in the plane of a wall may pass it by a rounding of the oracle
+    wider = wider if 0.5 * t <= wider else exact
+    return Facts(*map(np.array, (exact, nearest(band), nearest(-band), *starts, in_shell, wider)))

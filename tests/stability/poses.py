@@ -11,6 +11,7 @@ from minirt.element import fields_of
 from minirt.errors import ElementError
 from minirt.fields import FARTHEST, Direction, Field, Length, Lengths, Point
 from minirt.shapes import Kind, Shape
+from minirt.shapes.torus import Torus
 from tests.shapes.examples import random_value
 from tests.shapes.regimes import Array, Random
 
@@ -30,11 +31,12 @@ def pose(kind: Kind, random: Random) -> Shape:
     middle = scale * (offset if scale * offset < FARTHEST / 100 else 1.0) * random.integers(-8, 9, 3)
     general = random.random() < 1 / 8
     placed = [each for each in fields_of(kind.element) if not each.keyed]
+    value_of = random_value if general else round_value
     while True:
         with suppress(ElementError):  # fields that contradict each other
-            if general:
-                return kind.element(**{each.name: random_value(each, random, scale, middle) for each in placed})
-            return kind.element(**{each.name: round_value(each, random, scale, middle) for each in placed})
+            shape = kind.element(**{each.name: value_of(each, random, scale, middle) for each in placed})
+            if not (isinstance(shape, Torus) and shape.tube == shape.diameter):  # a thicker one has a cavity
+                return shape
 
 
 def round_value(field: Field, random: Random, scale: float, middle: Array) -> object:

@@ -47,7 +47,7 @@ def tilted(random: Random, directions: Array) -> Array:
     near_zero = np.where(directions == 0, np.where(random.random(directions.shape) < 0.5, U, random.choice(TINY, directions.shape)), 0.0)
     ulp = np.where(directions == 0, near_zero, np.spacing(np.abs(directions)))
     tilt = directions + ulp * some_units(random, directions)
-    return np.where(tilt == 0, random.choice([-1.0, 1.0], tilt.shape) * 0.0, tilt)
+    return np.where(tilt == 0, random.choice([-1.0, 1.0], tilt.shape) * 0.0, unit(tilt))
 
 
 def some_units(random: Random, points: Array) -> Array:
