@@ -21,9 +21,9 @@ from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.bounds import bounds_of_points, point_along
+from minirt.shapes.flat_start import CLOSE, start_error
 from minirt.shapes.shape import Ball, Position, Shape
 from minirt.shapes.shape import Bounds as Corners
-from minirt.shapes.start import CLOSE, coordinate_error
 
 
 @record()
@@ -85,27 +85,32 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number
     enter_x, leave_x = slab_interval(p.x, d.x, box.half.x)
     enter_y, leave_y = slab_interval(p.y, d.y, box.half.y)
     enter_z, leave_z = slab_interval(p.z, d.z, box.half.z)
-    enter = maximum(enter_z, maximum(enter_y, maximum(enter_x, -inf)))
-    leave = minimum(leave_z, minimum(leave_y, minimum(leave_x, inf)))
-    t = where(enter > 0.0, enter, leave)
-    hit = (enter <= leave) & (t > 0.0)
+    hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
     close = hit & (t < CLOSE * (box.half.x + box.half.y + box.half.z))
     if rarely(close):
-        error = coordinate_error(f)
+        error = where(close, start_error(origin, f), -1.0)
         enter_x, leave_x = beyond_start(p.x, d.x, box.half.x, error, enter_x, leave_x)
         enter_y, leave_y = beyond_start(p.y, d.y, box.half.y, error, enter_y, leave_y)
         enter_z, leave_z = beyond_start(p.z, d.z, box.half.z, error, enter_z, leave_z)
-        enter = maximum(enter_z, maximum(enter_y, maximum(enter_x, -inf)))
-        leave = minimum(leave_z, minimum(leave_y, minimum(leave_x, inf)))
-        t = where(close, where(enter > 0.0, enter, leave), t)
-        hit = where(close, (enter <= leave) & (t > 0.0), hit)
+        hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
     return hit, t
+
+
+def first_in_all(
+    enter_x: Number, enter_y: Number, enter_z: Number, leave_x: Number, leave_y: Number, leave_z: Number
+) -> tuple[Mask, Number]:
+    """Whether three intervals overlap at t > 0, and the first end of the overlap with t > 0."""
+    enter = maximum(enter_z, maximum(enter_y, maximum(enter_x, -inf)))
+    leave = minimum(leave_z, minimum(leave_y, minimum(leave_x, inf)))
+    t = where(enter > 0.0, enter, leave)
+    return (enter <= leave) & (t > 0.0), t
 
 
 def beyond_start(
     p: Number, d: Number, half: Number, error: Number, enter: Number, leave: Number
 ) -> tuple[Number, Number]:
-    """The interval of `slab_interval` for rays that may start on a face: there they are inside already, or no more."""
+    """The interval of `slab_interval` for rays that may start on a face, within `error`: there they are inside
+    already, or no more."""
     starts = fabs(fabs(p) - half) <= error
     way = p * d
     return where(starts & (way < 0.0), -inf, enter), where(starts & (way > 0.0), 0.0, leave)

@@ -17,9 +17,9 @@ from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import facing_frame
 from minirt.shapes.bounds import bounds_of_disc
+from minirt.shapes.flat_start import CLOSE, start_error
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
-from minirt.shapes.start import CLOSE, is_rounding
 
 
 @record()
@@ -54,7 +54,8 @@ class PackedDisc(NamedTuple):
 
 
 def intersect(disc: PackedDisc, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the disc; a ray parallel to it, or that starts on it, within rounding, does not."""
+    """Whether and where a ray meets the disc; one that is parallel to it, or starts on it, within rounding, does
+    not."""
     f = origin - disc.centre
     slope = dot(disc.normal, direction)
     height = dot(disc.normal, f)
@@ -64,7 +65,7 @@ def intersect(disc: PackedDisc, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     hit = hit & (dot(p, p) <= disc.radius * disc.radius)
     close = hit & (t < CLOSE * disc.radius)
     if rarely(close):
-        hit = hit & ~(close & is_rounding(height, disc.normal, f))
+        hit = hit & ~(close & (fabs(height) <= start_error(origin, f)))
     return hit, t
 
 

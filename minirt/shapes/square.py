@@ -18,9 +18,9 @@ from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import facing_frame
 from minirt.shapes.bounds import bounds_of_points, point_along
+from minirt.shapes.flat_start import CLOSE, start_error
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
-from minirt.shapes.start import CLOSE, is_rounding
 
 
 @record()
@@ -62,7 +62,8 @@ class PackedSquare(NamedTuple):
 
 
 def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the square; a ray parallel to it, or that starts on it, within rounding, does not."""
+    """Whether and where a ray meets the square; one that is parallel to it, or starts on it, within rounding, does
+    not."""
     f = origin - square.centre
     slope = dot(square.normal, direction)
     height = dot(square.normal, f)
@@ -72,7 +73,7 @@ def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, 
     hit = hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half)
     close = hit & (t < CLOSE * square.half)
     if rarely(close):
-        hit = hit & ~(close & is_rounding(height, square.normal, f))
+        hit = hit & ~(close & (fabs(height) <= start_error(origin, f)))
     return hit, t
 
 

@@ -9,8 +9,9 @@ import numpy as np
 from minirt.element import fields_of
 from minirt.fields import Point
 from minirt.shapes import Shape
+from tests.oracle.along import Along
 from tests.oracle.body import body
-from tests.oracle.double_double import Along, Array, DoubleDouble
+from tests.oracle.double_double import Array, DoubleDouble
 
 
 class Crossed(NamedTuple):

@@ -2,12 +2,15 @@
 
 A rounding is 2^-53 of the sum of t, of the distance from the ray's origin to the shape, and of the shape's size. The
 shape thicker by 64 roundings and the one thinner by them enclose a shell. A hit is right if it lies in the shell and
-the ray neither enters the thinner solid nor leaves the thicker one before. A miss is right if the ray does neither at
-all. One more thing is asked of a ray that starts in the shell, such as one that starts exactly on the surface: it has no
-hit before it leaves the shell, unless the exact answer has one. Else the surface would shadow itself.
+the ray neither enters the thinner solid nor leaves the thicker one before. A miss is right if the ray never does one of
+the two.
+
+One more thing is asked of a ray that starts in the shell, such as one that starts exactly on the surface: it has no hit
+before it leaves the shell, unless the exact answer has one. Else the eye would see the place on which it lies.
 
 A sheet has no inside: a hit is right if it is within 64 roundings of its plane and of its edges, and a miss if a ray so
-close to the given one passes beside it.
+close to the given one passes beside it. A plane, which has no size, may be hit at a ray's start: rounding takes the eye
+to one of its sides, for all rays alike.
 
 The facts come for many rays at once from `tests.oracle.many`, or one by one in 60 digits.
 """
@@ -21,14 +24,14 @@ from gmpy2 import mpfr
 
 from minirt.shapes import Shape
 from tests import oracle
-from tests.oracle.body import body, inside
+from tests.oracle.body import body, inside, meetings
 from tests.oracle.many import crossed
 from tests.shapes.regimes import Array
 from tests.stability.regime import U, lever, points, size
 
 SLACK = 64.0
+START = 16.0  # roundings of the largest coordinate of an origin, by which it may be on a surface
 NEAR = 2.0**-24  # of the size: for how long a ray may stay in the shell that does not touch the surface
-HAIR = 2.0**-60
 Mask = np.ndarray
 
 
@@ -41,7 +44,7 @@ class Facts(NamedTuple):
     starts_in_thicker: Mask  # of a sheet: in the band of its plane
     starts_in_thinner: Mask  # of a sheet: false
     in_shell: Mask  # the point at t
-    wider: Array  # the nearest hits of a sheet with wider edges, of a solid wider by next to nothing
+    wider: Array  # the nearest hits, also of walls beyond edges that are within the band
 
 
 def right(shape: Shape, directions: Array, t: Array, facts: Facts) -> Mask:
@@ -54,6 +57,21 @@ def right(shape: Shape, directions: Array, t: Array, facts: Facts) -> Mask:
     enters, leaves = until(facts)
     reached = np.maximum(enters, leaves) * (1 + 8 * U)
     return found & np.where(np.isfinite(t), t <= reached, np.isinf(reached))
+
+
+def surely_wrong(shape: Shape, origins: Array, directions: Array, t: Array) -> tuple[Mask, Facts]:
+    """Which of the answers t are wrong to 60 digits, and the facts.
+
+    A ray that starts within the roundings of its origin's coordinates of the surface may be taken for one that starts
+    on it, or on the other side.
+    """
+    facts = facts_of_each(shape, origins, directions, t)
+    wrong = ~right(shape, directions, t, facts)
+    for i in np.flatnonzero(wrong & ~again(shape, t, facts)):
+        ray = shape, origins[i : i + 1], directions[i : i + 1], t[i : i + 1]
+        wider = facts_of_each(*ray, START)
+        wrong[i] = not (wider.starts_in_thicker & ~wider.starts_in_thinner & right(shape, *ray[2:], wider)).all()
+    return wrong, facts
 
 
 def again(shape: Shape, t: Array, facts: Facts) -> Mask:
@@ -103,19 +121,21 @@ def facts_of_many(shape: Shape, origins: Array, directions: Array, t: Array) -> 
     return Facts(exact, thicker.nearest(), thinner.nearest(), *starts, in_shell, exact)
 
 
-def facts_of_each(shape: Shape, origins: Array, directions: Array, t: Array) -> Facts:
-    """The same, each ray on its own in 60 digits: slow."""
-    answers = [facts_of_one(shape, *ray) for ray in zip(origins, directions, t, strict=True)]
+def facts_of_each(shape: Shape, origins: Array, directions: Array, t: Array, roundings: float = 0.0) -> Facts:
+    """The same, each ray on its own in 60 digits: slow. The band is at least as wide as these `roundings` of the
+    origin's largest coordinate."""
+    answers = [facts_of_one(shape, *ray, roundings) for ray in zip(origins, directions, t, strict=True)]
     return Facts(*(np.array(column) for column in zip(*answers, strict=True)))
 
 
-def facts_of_one(shape: Shape, origin: Array, direction: Array, t: float) -> Facts:
+def facts_of_one(shape: Shape, origin: Array, direction: Array, t: float, roundings: float) -> Facts:
     def nearest(by: mpfr) -> float:
         found = oracle.nearest(shape, origin, direction, by)
         return np.inf if found is None else float(found)
 
     exact = nearest(mpfr(0))
     band = mpfr(float(swell(shape, origin[None], np.array([t]), np.array([exact]))[0]))
+    band = max(band, mpfr(roundings * U * np.abs(origin).max()))
     at = [mpfr(o) + mpfr(t if np.isfinite(t) else 0.0) * mpfr(d) for o, d in zip(origin, direction, strict=True)]
     thicker, thinner = body(shape, band), body(shape, -band)
     if thicker.solid:
@@ -131,6 +151,6 @@ def facts_of_one(shape: Shape, origin: Array, direction: Array, t: float) -> Fac
         surely = np.isfinite(exact) and all(clip(end) <= 0 for end in ends for clip in thinner.clips)
         sure = exact if surely else np.inf
         return Facts(*map(np.array, (exact, float(2 * play), sure, *starts, in_shell, nearest(band))))
-    wider = nearest(band * HAIR)  # a ray in the plane of a wall may pass it by a rounding of the oracle
-    wider = wider if 0.5 * t <= wider else exact
+    near = any(abs(root - t) <= t / 2 for root in meetings(body(shape), list(origin), list(direction)))
+    wider = t if in_shell and near else exact
     return Facts(*map(np.array, (exact, nearest(band), nearest(-band), *starts, in_shell, wider)))

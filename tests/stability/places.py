@@ -42,7 +42,9 @@ def places(shape: Shape) -> list[Place]:
 def declaration(kind: Kind) -> Callable[[Any], list[Place]]:
     """The function `places` of the file in this folder that is named as the shape's own."""
     name = f"{__package__}.{kind.element.__module__.rpartition('.')[2]}"
-    found: Callable[[Any], list[Place]] | None = getattr(import_module(name), "places", None) if find_spec(name) else None
+    found: Callable[[Any], list[Place]] | None = None
+    if find_spec(name):
+        found = getattr(import_module(name), "places", None)
     if found is None:
         raise TypeError(
             f"no special places of a {kind.element.title}: declare `places` in {name.replace('.', '/')}.py, "
@@ -137,9 +139,10 @@ def surface(shape: Shape) -> Place:
         return np.where(np.isfinite(found), found, centre)
 
     def ways(random: Random, at: Array) -> Array:
-        out = surfaces([shape], at[None])[1][0]
-        aside = np.where(random.random((len(at), 1)) < 0.5, random_directions(random, len(at)), np.eye(3)[random.integers(3, size=len(at))])
-        return np.where(random.random((len(at), 1)) < 0.3, out * random.choice([-1.0, 1.0], (len(at), 1)), np.cross(out, aside))
+        out, n = surfaces([shape], at[None])[1][0], len(at)
+        axes = np.eye(3)[random.integers(3, size=n)]
+        aside = np.cross(out, np.where(random.random((n, 1)) < 0.5, random_directions(random, n), axes))
+        return np.where(random.random((n, 1)) < 0.3, out * random.choice([-1.0, 1.0], (n, 1)), aside)
 
     return Place("surface", on, ways)
 
@@ -153,7 +156,7 @@ def steps(random: Random, shape: Shape, n: int) -> Array:
 def turns(random: Random, n: int) -> tuple[Array, Array]:
     """Cosines and sines of angles, (n, 1) each: of multiples of 90 degrees, of 3-4-5 triangles, or any."""
     angle = random.uniform(0, 2 * np.pi, n)
-    pair = np.where(
-        random.random((n, 1)) < 0.7, TURNS[random.integers(len(TURNS), size=n)], np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    ) * random.choice([-1.0, 1.0], (n, 2))
+    anywhere = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    pair = np.where(random.random((n, 1)) < 0.7, TURNS[random.integers(len(TURNS), size=n)], anywhere)
+    pair = pair * random.choice([-1.0, 1.0], (n, 2))
     return pair[:, :1], pair[:, 1:]

@@ -44,7 +44,7 @@ def round_value(field: Field, random: Random, scale: float, middle: Array) -> ob
     if isinstance(field, Point):
         return tuple(middle + scale * random.integers(-3, 4, 3))
     if isinstance(field, Direction):
-        ways = ALIGNED if random.random() < 0.6 else TURNED
+        ways = ALIGNED if random.random() < 0.5 else TURNED
         return ways[random.integers(len(ways))]
     if isinstance(field, Length):
         return scale * random.choice(LENGTHS)
