@@ -84,13 +84,13 @@ def parts(v: Vec) -> tuple[Any, Any, Any]:
     return v.x, v.y, v.z
 
 
-def disc_hit_at_the_start(disc: PackedDisc, origin: Vec, direction: Vec) -> Any:
-    """A disc that is hit again by rays which start on it."""
+def disc_hit_at_0(disc: PackedDisc, origin: Vec, direction: Vec) -> Any:
+    """A disc whose `>` became `>=`, so that a ray which starts exactly on it hits it there."""
     f = origin - disc.centre
     slope = dot(disc.normal, direction)
     t = -dot(disc.normal, f) / slope
     p = f + t * direction
-    return (fabs(slope) > 0.0) & (t > 0.0) & (dot(p, p) <= disc.radius * disc.radius), t
+    return (slope != 0.0) & (t >= 0.0) & (dot(p, p) <= disc.radius * disc.radius), t
 
 
 def square_hit_at_the_start(square: PackedSquare, origin: Vec, direction: Vec) -> Any:
@@ -133,7 +133,7 @@ VARIANTS: dict[str, tuple[str, Intersect]] = {
     "cylinder hit at the start": ("cylinder", with_formula(cylinder_hit_at_the_start)),
     "box without the guard against NaN": ("box", with_formula(box_without_the_guard)),
     "box hit at the start": ("box", with_formula(box_hit_at_the_start)),
-    "disc hit at the start": ("disc", with_formula(disc_hit_at_the_start)),
+    "disc hit at 0": ("disc", with_formula(disc_hit_at_0)),
     "square hit at the start": ("square", with_formula(square_hit_at_the_start)),
     "plane hit at 0": ("plane", with_formula(plane_hit_at_0)),
     "sphere hit at the start": ("sphere", with_formula(sphere_by_the_textbook)),
