@@ -31,7 +31,7 @@ from tests.stability.regime import U, lever, points, size
 
 SLACK = 64.0
 START = 16.0  # roundings of the largest coordinate of an origin, by which it may be on a surface
-NEAR = 2.0**-24  # of the size: for how long a ray may stay in the shell that does not touch the surface
+STEEP = 2.0**-16  # slope of a ray to the surface: one that starts there and is flatter touches it, to rounding
 Mask = np.ndarray
 
 
@@ -44,6 +44,7 @@ class Facts(NamedTuple):
     starts_in_thicker: Mask  # of a sheet: in the band of its plane
     starts_in_thinner: Mask  # of a sheet: false
     in_shell: Mask  # the point at t
+    band: Array  # the 64 roundings
     wider: Array  # the nearest hits, also of walls beyond edges that are within the band
 
 
@@ -82,7 +83,7 @@ def again(shape: Shape, t: Array, facts: Facts) -> Mask:
     enters, leaves = until(facts)
     first = np.minimum(enters, leaves)
     start = facts.starts_in_thicker & ~facts.starts_in_thinner
-    found: Mask = start & (t <= first) & ~(facts.wider <= first) & (first <= NEAR * size(shape))
+    found: Mask = start & (t <= first) & ~(facts.wider <= first) & (STEEP * first <= facts.band) & (size(shape) > 0)
     return found
 
 
@@ -117,8 +118,8 @@ def facts_of_many(shape: Shape, origins: Array, directions: Array, t: Array) -> 
         play = band / np.abs(plain.walls[0].coefficients[1].high)
         surely = np.logical_and.reduce([thinner.within(exact + side * play) for side in (-1, 0, 1)])
         leaves, sure = np.where(starts[0], 2 * play, 0.0), np.where(surely, exact, np.inf)
-        return Facts(exact, leaves, sure, *starts, in_shell, thicker.nearest())
-    return Facts(exact, thicker.nearest(), thinner.nearest(), *starts, in_shell, exact)
+        return Facts(exact, leaves, sure, *starts, in_shell, band, thicker.nearest())
+    return Facts(exact, thicker.nearest(), thinner.nearest(), *starts, in_shell, band, exact)
 
 
 def facts_of_each(shape: Shape, origins: Array, directions: Array, t: Array, roundings: float = 0.0) -> Facts:
@@ -150,7 +151,7 @@ def facts_of_one(shape: Shape, origin: Array, direction: Array, t: float, roundi
         ends = [oracle.exact(origin + (exact + side * float(play)) * direction) for side in (-1, 0, 1)]
         surely = np.isfinite(exact) and all(clip(end) <= 0 for end in ends for clip in thinner.clips)
         sure = exact if surely else np.inf
-        return Facts(*map(np.array, (exact, float(2 * play), sure, *starts, in_shell, nearest(band))))
+        return Facts(*map(np.array, (exact, float(2 * play), sure, *starts, in_shell, float(band), nearest(band))))
     near = any(abs(root - t) <= t / 2 for root in meetings(body(shape), list(origin), list(direction)))
     wider = t if in_shell and near else exact
-    return Facts(*map(np.array, (exact, nearest(band), nearest(-band), *starts, in_shell, wider)))
+    return Facts(*map(np.array, (exact, nearest(band), nearest(-band), *starts, in_shell, float(band), wider)))
