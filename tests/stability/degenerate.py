@@ -23,7 +23,7 @@ from tests.stability.execution_modes import MODES
 from tests.stability.poses import pose
 from tests.stability.snapping import snapped
 
-EACH = 1000  # rays of a shape
+EACH = 1024  # rays of a shape, whole packets of a kernel
 SHOWN = 5  # wrong rays of a kind
 
 
