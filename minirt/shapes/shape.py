@@ -10,8 +10,9 @@ The file of a shape holds its manual page, its line in a scene file (a record), 
     mapping(shape, point, normal)         texture coordinates of a point of the surface with this normal: u to the right
                                           and v upwards, 0 to 1 across a picture; and the tangents dP/du and dP/dv
 
-Two functions are optional:
+Three functions are optional:
 
+    occludes(shape, origin, direction)    a cheaper `intersect` for shadow rays, which start clear of all surfaces
     shading(shape, point, normal)         the unit normal by which the point is lit, where that is not the `normal` of
                                           the surface: smooth shading of meshes
     may_meet(shape, apex, start, direction, active)
@@ -100,6 +101,7 @@ class Kind(NamedTuple):
     mapping: Callable[..., Any]
     shading: Callable[..., Any] = geometric_normal
     may_meet: Callable[..., Any] = all_rays
+    occludes: Callable[..., Any] | None = None
     batched: bool = False  # whether one element is many small primitives side by side
     infinite: bool = False  # whether the shapes have no bounding box
 
@@ -107,7 +109,7 @@ class Kind(NamedTuple):
 def kind_of(element: type[Shape]) -> Kind:
     """Make the entry of the registry for a shape from the names in its file; AttributeError where one is missing."""
     module = sys.modules[element.__module__]
-    optional = {name: getattr(module, name) for name in ("shading", "may_meet") if hasattr(module, name)}
+    optional = {name: getattr(module, name) for name in ("shading", "may_meet", "occludes") if hasattr(module, name)}
     packed = get_type_hints(element.pack)["return"]
     return Kind(
         element,

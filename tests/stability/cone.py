@@ -56,6 +56,21 @@ def at_the_mirror_image(seed: int) -> Rays:
     return Rays(shapes, origins, directions)
 
 
+def down_the_axis(seed: int) -> Rays:
+    """Rays exactly along the axis, up and down, from outside and inside; most cones lie along z."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
+    for i in range(COUNT):
+        cone = make(random)
+        lying = cone.replace(apex=(0, 0, cone.apex[2]), axis=(0, 0, -1))
+        cone = lying if i % 4 else cone
+        shapes.append(cone)
+        way = np.array(cone.axis)
+        origins[i] = np.array(cone.apex) + cone.height * random.uniform(-3, 4, (RAYS, 1)) * way
+        directions[i] = way * random.choice([-1.0, 1.0], (RAYS, 1))
+    return Rays(shapes, origins, directions)
+
+
 NEEDLE, FLAT = (np.degrees(1e-4), np.degrees(1e-4)), (89.94, 89.94)
 
 REGIMES = [
@@ -66,6 +81,7 @@ REGIMES = [
     Regime("nearly along a generator", partial(along, 15, make, generator, (1e-12, 1e-3)), blur=1e-10),
     Regime("a half-angle of 1e-4", partial(at, 16, partial(make, angle=NEEDLE), anywhere, (1e-6, 1e-5)), blur=1e-6),
     Regime("a half-angle of 89.94 degrees", partial(at, 17, partial(make, angle=FLAT), anywhere, (1e-3, 1e-1))),
+    Regime("along the axis", partial(down_the_axis, 19), blur=1e-12),
     Regime("at the mirror image", partial(at_the_mirror_image, 18), blur=1e-10),
 ]
 
