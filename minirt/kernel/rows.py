@@ -57,6 +57,12 @@ def intersect(shape: Any, origin: Vec, direction: Vec) -> Any:
     return kind_of_packed(type(shape)).intersect(shape, origin, direction)
 
 
+def occludes(shape: Any, origin: Vec, direction: Vec) -> Any:
+    """Intersect shadow rays with a packed shape by the formula of its kind: `occludes` of `minirt.shapes.shape`."""
+    kind = kind_of_packed(type(shape))
+    return (kind.occludes or kind.intersect)(shape, origin, direction)
+
+
 def mapping(shape: Any, point: Vec, normal: Vec) -> Any:
     """Compute texture coordinates and tangents by the formula of its kind: `mapping` of `minirt.shapes.shape`."""
     return kind_of_packed(type(shape)).mapping(shape, point, normal)

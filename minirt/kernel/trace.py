@@ -11,7 +11,7 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.culling.light_buffer import is_close, remember_cell
-from minirt.kernel.rows import intersect, is_batched, may_meet, read, surface
+from minirt.kernel.rows import intersect, is_batched, may_meet, occludes, read, surface
 from minirt.kernel.scene_arrays import Group, SceneArrays, range_in_cell, range_in_tile
 from minirt.lanes import (
     Vec,
@@ -222,7 +222,7 @@ def unoccluded_one_by_one(
         if everywhere or rarely(in_cell & in_cone(cone, -direction)):
             shape = read(group.rows, scene.slots[index, 1])
             if everywhere or any(may_meet(shape, position, origin, direction, visible & in_cell)):
-                hit, t = intersect(shape, origin, direction)
+                hit, t = occludes(shape, origin, direction)
                 visible = visible & ~(in_cell & hit & (t < distance))
     return visible
 
@@ -249,7 +249,7 @@ def unoccluded_batched(
             shape = read(group.rows, scene.slots[index, 1])
             everywhere = scene.light_cones[light, index, 3] <= -1.0
             if everywhere or any(may_meet(shape, position, origin, direction, visible & in_cell)):
-                hit, t = intersect(shape, origin, direction)
+                hit, t = occludes(shape, origin, direction)
                 visible = visible & ~(in_cell & hit & (t < distance))
         start += BATCH
     return visible

@@ -15,13 +15,14 @@ from math import inf
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
-from minirt.lanes import Vec, copysign, fabs, maximum, minimum, splat, where
+from minirt.lanes import Vec, copysign, fabs, maximum, minimum, rarely, splat, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.bounds import bounds_of_points, point_along
+from minirt.shapes.flat_start import CLOSE, start_error
 from minirt.shapes.shape import Ball, Position, Shape
 from minirt.shapes.shape import Bounds as Corners
 
@@ -77,17 +78,43 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number
     and Kajiya, Ray Tracing Complex Scenes, 1986). For a ray exactly in the plane of a face 0 times infinity is NaN: in
     that of x = half, y = half or z = half the ray passes between this pair of faces, in that of -half it passes beside
     them. So one of two boxes that share a face is hit by the rays in it. `maximum` and `minimum` ignore NaN in their
-    first argument alone.
+    first argument alone. A face on which a ray starts, within rounding, is neither entered nor left there again.
     """
-    p = to_basis(box.u, box.v, box.w, origin - box.centre)
+    f = origin - box.centre
+    p = to_basis(box.u, box.v, box.w, f)
     d = to_basis(box.u, box.v, box.w, direction)
     enter_x, leave_x = slab_interval(p.x, d.x, box.half.x)
     enter_y, leave_y = slab_interval(p.y, d.y, box.half.y)
     enter_z, leave_z = slab_interval(p.z, d.z, box.half.z)
+    hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
+    close = hit & (t < CLOSE * (box.half.x + box.half.y + box.half.z))
+    if rarely(close):
+        error = where(close, start_error(origin, f), -1.0)
+        enter_x, leave_x = beyond_start(p.x, d.x, box.half.x, error, enter_x, leave_x)
+        enter_y, leave_y = beyond_start(p.y, d.y, box.half.y, error, enter_y, leave_y)
+        enter_z, leave_z = beyond_start(p.z, d.z, box.half.z, error, enter_z, leave_z)
+        hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
+    return hit, t
+
+
+def first_in_all(
+    enter_x: Number, enter_y: Number, enter_z: Number, leave_x: Number, leave_y: Number, leave_z: Number
+) -> tuple[Mask, Number]:
+    """Whether three intervals overlap at t > 0, and the first end of the overlap with t > 0."""
     enter = maximum(enter_z, maximum(enter_y, maximum(enter_x, -inf)))
     leave = minimum(leave_z, minimum(leave_y, minimum(leave_x, inf)))
     t = where(enter > 0.0, enter, leave)
     return (enter <= leave) & (t > 0.0), t
+
+
+def beyond_start(
+    p: Number, d: Number, half: Number, error: Number, enter: Number, leave: Number
+) -> tuple[Number, Number]:
+    """The interval of `slab_interval` for rays that may start on a face, within `error`: there they are inside
+    already, or no more."""
+    starts = fabs(fabs(p) - half) <= error
+    way = p * d
+    return where(starts & (way < 0.0), -inf, enter), where(starts & (way > 0.0), 0.0, leave)
 
 
 def slab_interval(p: Number, d: Number, half: Number) -> tuple[Number, Number]:

@@ -40,3 +40,51 @@ def power_of_point(point: Vec, centre: Vec, radius: Number) -> Number:
     squares = xx_low + yy_low + zz_low - rr_low
     mixed = 2.0 * (x * x_low + y * y_low + z * z_low)
     return (total - rr) + (low_1 + low_2 + squares + mixed)  # near the sphere that difference is exact
+
+
+Pair = tuple[Number, Number]  # a number of twice the precision: its rounded value, and what that lacks
+
+
+def plus(a: Pair, b: Pair) -> Pair:
+    """The sum of two pairs."""
+    total, error = two_sum(a[0], b[0])
+    return total, error + (a[1] + b[1])
+
+
+def times(a: Pair, b: Pair) -> Pair:
+    """The product of two pairs."""
+    product, error = two_product(a[0], b[0])
+    return product, error + (a[0] * b[1] + a[1] * b[0])
+
+
+def minus(a: Pair, b: Pair) -> Pair:
+    """The difference of two pairs."""
+    return plus(a, (-b[0], -b[1]))
+
+
+def divided(a: Pair, b: Number, per_b: Number) -> Pair:
+    """The quotient a / b of a pair and a number, where `per_b` is 1 / b, rounded."""
+    high = a[0] * per_b
+    return high, value(minus(a, two_product(high, b))) * per_b
+
+
+def value(a: Pair) -> Number:
+    """A pair as one number."""
+    return a[0] + a[1]
+
+
+def offset(point: Vec, centre: Vec) -> tuple[Pair, Pair, Pair]:
+    """The exact vector from `centre` to `point`, as pairs x, y and z."""
+    return two_sum(point.x, -centre.x), two_sum(point.y, -centre.y), two_sum(point.z, -centre.z)
+
+
+def along(f: tuple[Pair, Pair, Pair], axis: Vec, low: Vec) -> Pair:
+    """The component of the vector f along a unit vector, of which `low` is what the rounded `axis` lacks."""
+    x, y, z = f
+    return plus(plus(times(x, (axis.x, low.x)), times(y, (axis.y, low.y))), times(z, (axis.z, low.z)))
+
+
+def squared_length(f: tuple[Pair, Pair, Pair]) -> Pair:
+    """|f|^2."""
+    x, y, z = f
+    return plus(plus(times(x, x), times(y, y)), times(z, z))

@@ -12,15 +12,26 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, where
+from minirt.lanes import Vec, any, fabs, inverse_root, maximum, minimum, rarely, splat, sqrt, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.compensated import minus, times, value
+from minirt.shapes.low_parts import axis_low, quotient_low
 from minirt.shapes.quadric import clamped_minimum, negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.start import (
+    axial,
+    beside_side,
+    between_caps,
+    position_error,
+    product_of_roots,
+    starts_close,
+    within_shell,
+)
 from minirt.shapes.uv_mapping import revolved_mapping
 
 
@@ -37,7 +48,9 @@ class Cone(Shape):
 
     def pack(self) -> PackedCone:
         u, v, w = basis(self.axis)
-        return PackedCone(Position(Vec(*self.apex)), u, v, w, self.diameter / 2 / self.height, self.height)
+        slope = self.diameter / 2 / self.height
+        slope_low = quotient_low((self.diameter,), (2.0, self.height), slope)
+        return PackedCone(Position(Vec(*self.apex)), u, v, w, axis_low(self.axis), slope, slope_low, self.height)
 
     def balls(self) -> tuple[Ball, ...]:
         return (self.apex, 0.0), (point_along(self.apex, self.axis, self.height), self.diameter / 2)
@@ -54,32 +67,70 @@ class PackedCone(NamedTuple):
     u: Vec
     v: Vec
     w: Vec  # the axis
+    w_low: Vec  # what the rounded axis lacks
     slope: float  # radius by height
+    slope_low: float  # what the rounded slope lacks
     height: float
 
 
 def intersect(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the cone, wherever it starts."""
+    return solve(cone, origin, direction, True)
+
+
+def occludes(cone: PackedCone, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a shadow ray, which starts clear of all surfaces, meets the cone."""
+    return solve(cone, origin, direction, None)
+
+
+def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the cone.
 
     x^2 + y^2 <= slope^2 z^2 holds in two nappes, the cone and its mirror image. A ray that is flatter than the side is
     in one of them for an interval of t. A steeper ray, which crosses the plane between them, is in both, except for an
     interval around that plane. The result is cut to the heights between apex and base: as with the cylinder there is no
-    crack at the rim, and none at the apex.
+    crack at the rim, and none at the apex. A steep ray meets the double cone in every case; for one along the axis
+    rounding may deny that, and the whole interval between apex and base is left.
+
+    Shadow rays pass None for `anywhere`: see `minirt.shapes.start`.
     """
     p = to_basis(cone.u, cone.v, cone.w, origin - cone.apex)
     d = to_basis(cone.u, cone.v, cone.w, direction)
     rise = cone.slope * d.z
     a = d.x * d.x + d.y * d.y - rise * rise
     steep = a < 0.0
+    reach = cone.slope * p.z
+    b = p.x * d.x + p.y * d.y - reach * rise
     per_a, per_height = 1.0 / a, 1.0 / d.z
     tip = -p.z * per_height
     base = (cone.height - p.z) * per_height
     first, last = minimum(tip, base), maximum(tip, base)
-    start = clamped_minimum(per_a, p.x * d.x + p.y * d.y - cone.slope * p.z * rise, first, last)
-    p = p + start * d
-    reach = cone.slope * p.z
-    b = p.x * d.x + p.y * d.y - reach * rise
-    hit, below, above = negative_interval(a, per_a, b, p.x * p.x + p.y * p.y - reach * reach)
+    start = clamped_minimum(per_a, b, first, last)
+    q = p + start * d
+    reach_q = cone.slope * q.z
+    half_b = q.x * d.x + q.y * d.y - reach_q * rise
+    product = c = q.x * q.x + q.y * q.y - reach_q * reach_q
+    if anywhere is not None:
+        squared = reach * reach
+        level = p.x * p.x + p.y * p.y - squared
+        half = 0.5 * cone.height
+        over, size = fabs(p.z - half) - half, (1.0 + cone.slope) * cone.height
+        within = within_shell(level, squared, over, size)
+        if rarely(within):
+            close = within & starts_close(a, b, level, squared, over, size, (p.z - half) * d.z)
+            if any(close):
+                height, power = axial(origin, cone.apex, cone.w, cone.w_low, a)
+                side = times((splat(cone.slope, a), splat(cone.slope_low, a)), height)  # its distance from the axis
+                exact_level = value(minus(power, times(side, side)))
+                error = position_error(origin, p)
+                low, high = between_caps(height, 0.0, cone.height, per_height, error)
+                b = p.x * d.x + p.y * d.y - cone.slope * height[0] * rise
+                first, last = where(close, low, first), where(close, high, last)
+                beside = close & beside_side(level, squared, over, half)
+                start, half_b, c = where(beside, 0.0, start), where(beside, b, half_b), where(beside, exact_level, c)
+                product = product_of_roots(beside, c, sqrt(squared * (1.0 + cone.slope * cone.slope)), error)
+    met, below, above = negative_interval(a, per_a, half_b, c, product)
+    hit = met | steep
     t = start
     if any(hit):
         rising = d.z > 0.0  # a steep ray that rises leaves the other nappe and enters this one, up to the base

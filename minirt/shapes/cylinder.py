@@ -11,15 +11,26 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, copysign, fabs, maximum, minimum, splat, sqrt, where
+from minirt.lanes import Vec, any, copysign, fabs, maximum, minimum, rarely, splat, sqrt, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.compensated import minus, two_product, value
+from minirt.shapes.low_parts import axis_low
 from minirt.shapes.quadric import clamped_minimum, negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.start import (
+    axial,
+    beside_side,
+    between_caps,
+    position_error,
+    product_of_roots,
+    starts_close,
+    within_shell,
+)
 from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
@@ -36,7 +47,9 @@ class Cylinder(Shape):
 
     def pack(self) -> PackedCylinder:
         u, v, w = basis(self.axis)
-        return PackedCylinder(Position(Vec(*self.centre)), u, v, w, self.diameter / 2, self.height / 2)
+        return PackedCylinder(
+            Position(Vec(*self.centre)), u, v, w, axis_low(self.axis), self.diameter / 2, self.height / 2
+        )
 
     def ends(self) -> tuple[Triple, Triple]:
         return point_along(self.centre, self.axis, self.height / 2), point_along(
@@ -57,27 +70,59 @@ class PackedCylinder(NamedTuple):
     u: Vec
     v: Vec
     w: Vec  # the axis
+    w_low: Vec  # what the rounded axis lacks
     radius: float
     half: float  # of the height
 
 
 def intersect(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the cylinder, wherever it starts."""
+    return solve(cylinder, origin, direction, True)
+
+
+def occludes(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a shadow ray, which starts clear of all surfaces, meets the cylinder."""
+    return solve(cylinder, origin, direction, None)
+
+
+def solve(cylinder: PackedCylinder, origin: Vec, direction: Vec, anywhere: bool | None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the cylinder.
 
     The ray is inside the infinite tube for one interval of t and between the planes of the caps for another; it is
     inside the cylinder where these overlap. There is no crack between cap and side, whatever the rounding.
+
+    Shadow rays pass None for `anywhere`: see `minirt.shapes.start`.
     """
     p = to_basis(cylinder.u, cylinder.v, cylinder.w, origin - cylinder.centre)
     d = to_basis(cylinder.u, cylinder.v, cylinder.w, direction)
     a = d.x * d.x + d.y * d.y
+    b = p.x * d.x + p.y * d.y
+    squared = cylinder.radius * cylinder.radius
     per_a, per_height = 1.0 / a, 1.0 / d.z
     bottom = (-cylinder.half - p.z) * per_height
     top = (cylinder.half - p.z) * per_height
     first, last = minimum(bottom, top), maximum(bottom, top)
-    start = clamped_minimum(per_a, p.x * d.x + p.y * d.y, first, last)
-    p = p + start * d
-    c = p.x * p.x + p.y * p.y - cylinder.radius * cylinder.radius
-    hit, below, above = negative_interval(a, per_a, p.x * d.x + p.y * d.y, c)
+    start = clamped_minimum(per_a, b, first, last)
+    q = p + start * d
+    half_b = q.x * d.x + q.y * d.y
+    product = c = q.x * q.x + q.y * q.y - squared
+    if anywhere is not None:
+        level = p.x * p.x + p.y * p.y - squared
+        over, size = fabs(p.z) - cylinder.half, cylinder.radius + cylinder.half
+        within = within_shell(level, squared, over, size)
+        if rarely(within):
+            close = within & starts_close(a, b, level, squared, over, size, p.z * d.z)
+            if any(close):
+                height, power = axial(origin, cylinder.centre, cylinder.w, cylinder.w_low, a)
+                radius = splat(cylinder.radius, a)
+                exact_level = value(minus(power, two_product(radius, radius)))
+                error = position_error(origin, p)
+                low, high = between_caps(height, -cylinder.half, cylinder.half, per_height, error)
+                first, last = where(close, low, first), where(close, high, last)
+                beside = close & beside_side(level, squared, over, cylinder.half)
+                start, half_b, c = where(beside, 0.0, start), where(beside, b, half_b), where(beside, exact_level, c)
+                product = product_of_roots(beside, c, cylinder.radius, error)
+    hit, below, above = negative_interval(a, per_a, half_b, c, product)
     t = start
     if any(hit):
         near = maximum(start + below, first)

@@ -11,13 +11,14 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, dot, fabs, unit_roundoff
+from minirt.lanes import Vec, dot, fabs, rarely, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import facing_frame
 from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.bounds import bounds_of_disc
+from minirt.shapes.flat_start import CLOSE, start_error
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
@@ -54,13 +55,19 @@ class PackedDisc(NamedTuple):
 
 
 def intersect(disc: PackedDisc, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the disc; a ray parallel to it, within rounding, does not."""
+    """Whether and where a ray meets the disc; one that is parallel to it, or starts on it, within rounding, does
+    not."""
     f = origin - disc.centre
     slope = dot(disc.normal, direction)
-    t = -dot(disc.normal, f) / slope
+    height = dot(disc.normal, f)
+    t = -height / slope
     p = f + t * direction
     hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0)
-    return hit & (dot(p, p) <= disc.radius * disc.radius), t
+    hit = hit & (dot(p, p) <= disc.radius * disc.radius)
+    close = hit & (t < CLOSE * disc.radius)
+    if rarely(close):
+        hit = hit & ~(close & (fabs(height) <= start_error(origin, f)))
+    return hit, t
 
 
 def surface(disc: PackedDisc, point: Vec) -> tuple[Vec, Vec]:

@@ -14,15 +14,18 @@ from sys import float_info
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
-from minirt.lanes import Vec, any, dot, sqrt, unit, where
+from minirt.lanes import Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.bounds import point_along
+from minirt.shapes.compensated import along, divided, minus, offset, plus, times, value
+from minirt.shapes.low_parts import basis_low
 from minirt.shapes.quadric import negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.start import CLOSE, ROUNDING, position_error, splat_vec, zero_within
 from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns
 
 SHORTEST = float_info.min  # semi-axis, in scene units: half of a subnormal size may be 0
@@ -41,7 +44,9 @@ class Ellipsoid(Shape):
     def pack(self) -> PackedEllipsoid:
         z, x, y = basis(self.axis)
         a, b, c = self.semi_axes()
-        return PackedEllipsoid(Position(Vec(*self.centre)), x, y, z, Vec(a, b, c), Vec(1 / a, 1 / b, 1 / c))
+        z_low, x_low, y_low = basis_low(self.axis, z, x, y)
+        centre, semi, scale = Position(Vec(*self.centre)), Vec(a, b, c), Vec(1 / a, 1 / b, 1 / c)
+        return PackedEllipsoid(centre, x, y, z, x_low, y_low, z_low, semi, scale)
 
     def semi_axes(self) -> Triple:
         width, height, depth = self.sizes
@@ -72,30 +77,69 @@ class PackedEllipsoid(NamedTuple):
     u: Vec
     v: Vec
     w: Vec
+    u_low: Vec  # what the rounded vectors lack
+    v_low: Vec
+    w_low: Vec
     semi: Vec  # the semi-axes along u, v and w
     scale: Vec  # 1 / semi
 
 
 def intersect(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the ellipsoid, wherever it starts."""
+    return solve(ellipsoid, origin, direction, True)
+
+
+def occludes(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a shadow ray, which starts clear of all surfaces, meets the ellipsoid."""
+    return solve(ellipsoid, origin, direction, None)
+
+
+def solve(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec, anywhere: bool | None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the ellipsoid.
 
     In its own frame, divided by its semi-axes, it is the unit sphere, and t along the scaled ray is the same. As for a
     sphere t is counted from the ray's closest approach to the centre, which keeps full precision for small ellipsoids
     that are far away.
+
+    Shadow rays pass None for `anywhere`: see `minirt.shapes.start`.
     """
     p = scaled(to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, origin - ellipsoid.centre), ellipsoid.scale)
     d = scaled(to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, direction), ellipsoid.scale)
     a = dot(d, d)
     per_a = 1.0 / a
-    approach = -dot(p, d) * per_a
-    p = p + approach * d
-    hit, enter, leave = negative_interval(a, per_a, dot(p, d), dot(p, p) - 1.0)
+    b = dot(p, d)
+    approach = -b * per_a
+    q = p + approach * d
+    half_b = dot(q, d)
+    product = c = dot(q, q) - 1.0
+    if anywhere is not None:
+        level = dot(p, p) - 1.0
+        if rarely(fabs(level) <= CLOSE):
+            close = (fabs(level) <= CLOSE) & ((b < 0.0) | (level <= ROUNDING * unit_roundoff(a)))
+            if any(close):
+                exact_level = level_of(ellipsoid, origin, a)
+                error = position_error(origin, scaled(p, ellipsoid.semi))
+                slope = scaled(p, ellipsoid.scale)
+                approach, half_b, c = where(close, 0.0, approach), where(close, b, half_b), where(close, exact_level, c)
+                product = where(close, zero_within(c, 2.0 * sqrt(dot(slope, slope)) * error), c)
+    hit, enter, leave = negative_interval(a, per_a, half_b, c, product)
     t = approach
     if any(hit):
         near = approach + enter
         t = where(near > 0.0, near, approach + leave)
         hit = hit & (t > 0.0)
     return hit, t
+
+
+def level_of(ellipsoid: PackedEllipsoid, point: Vec, like: Number) -> Number:
+    """Return |p|^2 - 1 of the point p on the scale of the unit sphere, to nearly full precision next to it too."""
+    f = offset(splat_vec(point, like), splat_vec(ellipsoid.centre, like))
+    semi, scale = splat_vec(ellipsoid.semi, like), splat_vec(ellipsoid.scale, like)
+    x = divided(along(f, splat_vec(ellipsoid.u, like), splat_vec(ellipsoid.u_low, like)), semi.x, scale.x)
+    y = divided(along(f, splat_vec(ellipsoid.v, like), splat_vec(ellipsoid.v_low, like)), semi.y, scale.y)
+    z = divided(along(f, splat_vec(ellipsoid.w, like), splat_vec(ellipsoid.w_low, like)), semi.z, scale.z)
+    zero = splat(0.0, like)
+    return value(plus(minus(plus(times(x, x), times(y, y)), (zero + 1.0, zero)), times(z, z)))
 
 
 def surface(ellipsoid: PackedEllipsoid, point: Vec) -> tuple[Vec, Vec]:

@@ -14,15 +14,26 @@ from math import sqrt as root
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
-from minirt.lanes import Vec, any, copysign, fabs, inverse_root, maximum, minimum, splat, sqrt, unit, where
+from minirt.lanes import Vec, any, copysign, fabs, inverse_root, maximum, minimum, rarely, splat, sqrt, unit, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
+from minirt.shapes.compensated import minus, times, two_product, value
+from minirt.shapes.low_parts import axis_low, root_low
 from minirt.shapes.quadric import clamped_minimum, negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.start import (
+    axial,
+    beside_side,
+    between_caps,
+    position_error,
+    product_of_roots,
+    starts_close,
+    within_shell,
+)
 from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
@@ -47,7 +58,10 @@ class Hyperboloid(Shape):
         u, v, w = basis(self.axis)
         thinner, thicker = self.diameter - self.waist, self.diameter + self.waist
         slope = root(thinner / self.height) * root(thicker / self.height)
-        return PackedHyperboloid(Position(Vec(*self.centre)), u, v, w, self.waist / 2, slope, self.height / 2)
+        slope_low = root_low(self.diameter, self.waist, self.height, slope)
+        return PackedHyperboloid(
+            Position(Vec(*self.centre)), u, v, w, axis_low(self.axis), self.waist / 2, slope, slope_low, self.height / 2
+        )
 
     def ends(self) -> tuple[Triple, Triple]:
         return point_along(self.centre, self.axis, -self.height / 2), point_along(
@@ -68,47 +82,90 @@ class PackedHyperboloid(NamedTuple):
     u: Vec
     v: Vec
     w: Vec  # the axis
+    w_low: Vec  # what the rounded axis lacks
     waist: float  # its radius
     slope: float  # x^2 + y^2 = waist^2 + slope^2 z^2 on the side
+    slope_low: float  # what the rounded slope lacks
     half: float  # of the height
 
 
 def intersect(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the hyperboloid, wherever it starts."""
+    return solve(hyperboloid, origin, direction, True)
+
+
+def occludes(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a shadow ray, which starts clear of all surfaces, meets the hyperboloid."""
+    return solve(hyperboloid, origin, direction, None)
+
+
+def solve(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, anywhere: bool | None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the hyperboloid.
 
     x^2 + y^2 <= waist^2 + slope^2 z^2 holds for an interval of t if the ray is flatter than the asymptotic cone, and
     outside of an interval, perhaps empty, if it is steeper. Cut to the heights between the caps that leaves up to two
     intervals in the solid; the first end of one with t > 0 is the hit.
+
+    Shadow rays pass None for `anywhere`: see `minirt.shapes.start`.
     """
     p = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, origin - hyperboloid.centre)
     d = to_basis(hyperboloid.u, hyperboloid.v, hyperboloid.w, direction)
     rise = hyperboloid.slope * d.z
     a = d.x * d.x + d.y * d.y - rise * rise
     steep = a < 0.0
+    reach = hyperboloid.slope * p.z
+    b = p.x * d.x + p.y * d.y - reach * rise
+    waist = hyperboloid.waist * hyperboloid.waist
     per_a, per_height = 1.0 / a, 1.0 / d.z
     bottom = (-hyperboloid.half - p.z) * per_height
     top = (hyperboloid.half - p.z) * per_height
     first, last = minimum(bottom, top), maximum(bottom, top)
     # From here on t is counted from the plane of the waist or, for a flat ray, from the deepest point in the solid.
-    least = clamped_minimum(per_a, p.x * d.x + p.y * d.y - hyperboloid.slope * p.z * rise, first, last)
-    start = where(steep, -p.z * per_height, least)
-    p = p + start * d
-    reach = hyperboloid.slope * p.z
-    b = p.x * d.x + p.y * d.y - reach * rise
-    c = p.x * p.x + p.y * p.y - reach * reach - hyperboloid.waist * hyperboloid.waist
-    met, below, above = negative_interval(a, per_a, b, c)
+    start = where(steep, -p.z * per_height, clamped_minimum(per_a, b, first, last))
+    q = p + start * d
+    reach_q = hyperboloid.slope * q.z
+    half_b = q.x * d.x + q.y * d.y - reach_q * rise
+    product = c = q.x * q.x + q.y * q.y - reach_q * reach_q - waist
+    if anywhere is not None:
+        squared = reach * reach + waist
+        level = p.x * p.x + p.y * p.y - squared
+        over = fabs(p.z) - hyperboloid.half
+        size = hyperboloid.waist + (1.0 + hyperboloid.slope) * hyperboloid.half
+        within = within_shell(level, squared, over, size)
+        if rarely(within):
+            close = within & starts_close(a, b, level, squared, over, size, p.z * d.z)
+            if any(close):
+                height, power = axial(origin, hyperboloid.centre, hyperboloid.w, hyperboloid.w_low, a)
+                side = times((splat(hyperboloid.slope, a), splat(hyperboloid.slope_low, a)), height)
+                at_waist = splat(hyperboloid.waist, a)
+                exact_level = value(minus(minus(power, times(side, side)), two_product(at_waist, at_waist)))
+                error = position_error(origin, p)
+                low, high = between_caps(height, -hyperboloid.half, hyperboloid.half, per_height, error)
+                b = p.x * d.x + p.y * d.y - hyperboloid.slope * height[0] * rise
+                first, last = where(close, low, first), where(close, high, last)
+                beside = close & beside_side(level, squared, over, hyperboloid.half)
+                start, half_b, c = where(beside, 0.0, start), where(beside, b, half_b), where(beside, exact_level, c)
+                slope = sqrt(squared * (1.0 + hyperboloid.slope * hyperboloid.slope))
+                product = product_of_roots(beside, c, slope, error)
+    met, below, above = negative_interval(a, per_a, half_b, c, product)
     hit = met | steep
     t = start
     if any(hit):
-        again = maximum(start + below, first)
-        near = where(steep, first, again)
-        far = minimum(start + above, last)
-        over = steep & ((far < near) | (far <= 0.0))
-        near = where(over, again, near)
-        far = where(over, last, far)
-        t = where(near > 0.0, near, far)
-        hit = hit & (near <= far) & (t > 0.0)
+        first_met, t = first_end(steep, start + below, start + above, first, last)
+        hit = hit & first_met
     return hit, t
+
+
+def first_end(steep: Mask, below: Number, above: Number, first: Number, last: Number) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the part between the caps of the interval or, if `steep`, the two intervals."""
+    again = maximum(below, first)
+    near = where(steep, first, again)
+    far = minimum(above, last)
+    over = steep & ((far < near) | (far <= 0.0))
+    near = where(over, again, near)
+    far = where(over, last, far)
+    t = where(near > 0.0, near, far)
+    return (near <= far) & (t > 0.0), t
 
 
 def surface(hyperboloid: PackedHyperboloid, point: Vec) -> tuple[Vec, Vec]:

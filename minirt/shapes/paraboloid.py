@@ -13,15 +13,26 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, any, inverse_root, maximum, minimum, splat, sqrt, unit, where
+from minirt.lanes import Vec, any, fabs, inverse_root, maximum, minimum, rarely, splat, sqrt, unit, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.bounds import bounds_of_disc, disc_extents, point_along, union_of_bounds
+from minirt.shapes.compensated import minus, times, value
+from minirt.shapes.low_parts import axis_low, quotient_low
 from minirt.shapes.quadric import clamped_minimum, negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.start import (
+    axial,
+    beside_side,
+    between_caps,
+    position_error,
+    product_of_roots,
+    starts_close,
+    within_shell,
+)
 from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
@@ -39,7 +50,11 @@ class Paraboloid(Shape):
     def pack(self) -> PackedParaboloid:
         u, v, w = basis(self.axis)
         radius = self.diameter / 2
-        return PackedParaboloid(Position(Vec(*self.vertex)), u, v, w, radius * (radius / self.height) / 2, self.height)
+        focal = radius * (radius / self.height) / 2
+        focal_low = quotient_low((radius, radius), (2.0, self.height), focal)
+        return PackedParaboloid(
+            Position(Vec(*self.vertex)), u, v, w, axis_low(self.axis), focal, focal_low, self.height
+        )
 
     def balls(self) -> tuple[Ball, ...]:
         # In directions below its vertex it reaches less far than a ball of half the radius of its rim.
@@ -65,28 +80,63 @@ class PackedParaboloid(NamedTuple):
     u: Vec
     v: Vec
     w: Vec  # the axis
+    w_low: Vec  # what the rounded axis lacks
     focal: float  # x^2 + y^2 = 2 focal z on the side: the radius of curvature of the vertex
+    focal_low: float  # what the rounded number lacks
     height: float
 
 
 def intersect(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a ray meets the paraboloid, wherever it starts."""
+    return solve(paraboloid, origin, direction, True)
+
+
+def occludes(paraboloid: PackedParaboloid, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a shadow ray, which starts clear of all surfaces, meets the paraboloid."""
+    return solve(paraboloid, origin, direction, None)
+
+
+def solve(paraboloid: PackedParaboloid, origin: Vec, direction: Vec, anywhere: bool | None) -> tuple[Mask, Number]:
     """Whether and where a ray meets the paraboloid.
 
     As with the cylinder the ray is inside for an interval of t, here that of x^2 + y^2 <= 2 focal z, cut to the heights
     below the cap. For a ray along the axis one end of the interval is infinite, and the other is exact.
+
+    Shadow rays pass None for `anywhere`: see `minirt.shapes.start`.
     """
     p = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, origin - paraboloid.vertex)
     d = to_basis(paraboloid.u, paraboloid.v, paraboloid.w, direction)
     a = d.x * d.x + d.y * d.y
     slant = paraboloid.focal * d.z
+    b = p.x * d.x + p.y * d.y - slant
     per_a, per_height = 1.0 / a, 1.0 / d.z
     vertex = -p.z * per_height
     cap = (paraboloid.height - p.z) * per_height
     first, last = minimum(vertex, cap), maximum(vertex, cap)
-    start = clamped_minimum(per_a, p.x * d.x + p.y * d.y - slant, first, last)
-    p = p + start * d
-    c = p.x * p.x + p.y * p.y - 2.0 * paraboloid.focal * p.z
-    hit, below, above = negative_interval(a, per_a, p.x * d.x + p.y * d.y - slant, c)
+    start = clamped_minimum(per_a, b, first, last)
+    q = p + start * d
+    half_b = q.x * d.x + q.y * d.y - slant
+    product = c = q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z
+    if anywhere is not None:
+        across = p.x * p.x + p.y * p.y
+        squared = across + paraboloid.focal * paraboloid.focal
+        level = across - 2.0 * paraboloid.focal * p.z
+        half = 0.5 * paraboloid.height
+        over, size = fabs(p.z - half) - half, paraboloid.focal + paraboloid.height
+        within = within_shell(level, squared, over, size)
+        if rarely(within):
+            close = within & starts_close(a, b, level, squared, over, size, (p.z - half) * d.z)
+            if any(close):
+                height, power = axial(origin, paraboloid.vertex, paraboloid.w, paraboloid.w_low, a)
+                double = splat(2.0 * paraboloid.focal, a), splat(2.0 * paraboloid.focal_low, a)
+                exact_level = value(minus(power, times(double, height)))
+                error = position_error(origin, p)
+                low, high = between_caps(height, 0.0, paraboloid.height, per_height, error)
+                first, last = where(close, low, first), where(close, high, last)
+                beside = close & beside_side(level, squared, over, half)
+                start, half_b, c = where(beside, 0.0, start), where(beside, b, half_b), where(beside, exact_level, c)
+                product = product_of_roots(beside, c, sqrt(squared), error)
+    hit, below, above = negative_interval(a, per_a, half_b, c, product)
     t = start
     if any(hit):
         near = maximum(start + below, first)

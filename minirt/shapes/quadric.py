@@ -9,13 +9,13 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 
 
-def negative_interval(a: Number, per_a: Number, b: Number, c: Number) -> tuple[Mask, Number, Number]:
+def negative_interval(a: Number, per_a: Number, b: Number, c: Number, product: Number) -> tuple[Mask, Number, Number]:
     """Solve a t^2 + 2 b t + c = 0: whether it has real roots, and where the parabola falls below 0 and rises above it.
 
     For a > 0 the roots are in ascending order, for a < 0 in descending order; NaN where there are none. `per_a` is
     1 / a. q adds two numbers of the same sign, so q / a and c / q are both exact to a few roundings (Press et al.,
-    Numerical Recipes, 5.6). With q = 0 the parabola touches zero at t = 0 or, if a = 0 too, is the constant c: below
-    zero from -infinity or from infinity on.
+    Numerical Recipes, 5.6). `product` is c, or 0 where the root c / q is to be exactly 0. With q = 0 the parabola
+    touches zero at t = 0 or, if a = 0 too, is the constant c: below zero from -infinity or from infinity on.
     """
     D = b * b - a * c
     real = D >= 0.0
@@ -23,7 +23,7 @@ def negative_interval(a: Number, per_a: Number, b: Number, c: Number) -> tuple[M
     above = below
     if any(real):
         q = -(b + copysign(sqrt(D), b))
-        by_a, by_c = q * per_a, c / q
+        by_a, by_c = q * per_a, product / q
         level = q == 0.0
         if rarely(level):
             by_c = where(level, where(a == 0.0, where(c > 0.0, inf, -inf), 0.0), by_c)

@@ -15,8 +15,9 @@ and one on the fields of the scene line, which states the shape once more, for t
     boundary(shape, point)                its faces: functions of a point that are 0 on a face and grow outwards, see
                                           `minirt.shapes.boundary`
 
-Two functions are optional:
+Three functions are optional:
 
+    occludes(shape, origin, direction)    a cheaper `intersect` for shadow rays, which start clear of all surfaces
     shading(shape, point, normal)         the unit normal by which the point is lit, where that is not the `normal` of
                                           the surface: smooth shading of meshes
     may_meet(shape, apex, start, direction, active)
@@ -107,6 +108,7 @@ class Kind(NamedTuple):
     boundary: Callable[..., Boundary]
     shading: Callable[..., Any] = geometric_normal
     may_meet: Callable[..., Any] = all_rays
+    occludes: Callable[..., Any] | None = None
     batched: bool = False  # whether one element is many small primitives side by side
     infinite: bool = False  # whether the shapes have no bounding box
 
@@ -114,7 +116,7 @@ class Kind(NamedTuple):
 def kind_of(element: type[Shape]) -> Kind:
     """Make the entry of the registry for a shape from the names in its file; AttributeError where one is missing."""
     module = sys.modules[element.__module__]
-    optional = {name: getattr(module, name) for name in ("shading", "may_meet") if hasattr(module, name)}
+    optional = {name: getattr(module, name) for name in ("shading", "may_meet", "occludes") if hasattr(module, name)}
     packed = get_type_hints(element.pack)["return"]
     return Kind(
         element,

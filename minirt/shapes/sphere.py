@@ -18,6 +18,7 @@ from minirt.records import record
 from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.compensated import power_of_point
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.start import position_error, zero_within
 from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns
 
 CLOSE = 2.0**-6  # to the surface: |f|^2 / radius^2 - 1
@@ -77,6 +78,7 @@ def intersect(sphere: PackedSphere, origin: Vec, direction: Vec) -> tuple[Mask, 
         if rarely(close):
             product = splat(power_of_point(origin, sphere.centre, sphere.radius), chord)
             chord = where(close, approach * approach - product, chord)
+            product = zero_within(product, 2.0 * sphere.radius * position_error(origin, f))
         half = sqrt(chord)
         near = approach - half
         far = approach + half

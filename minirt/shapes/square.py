@@ -12,13 +12,14 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, dot, fabs, unit_roundoff
+from minirt.lanes import Vec, dot, fabs, rarely, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import facing_frame
 from minirt.shapes.boundary import Boundary, upright_frame
 from minirt.shapes.bounds import bounds_of_points, point_along
+from minirt.shapes.flat_start import CLOSE, start_error
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
@@ -62,13 +63,19 @@ class PackedSquare(NamedTuple):
 
 
 def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the square; a ray parallel to it, within rounding, does not."""
+    """Whether and where a ray meets the square; one that is parallel to it, or starts on it, within rounding, does
+    not."""
     f = origin - square.centre
     slope = dot(square.normal, direction)
-    t = -dot(square.normal, f) / slope
+    height = dot(square.normal, f)
+    t = -height / slope
     p = f + t * direction
     hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0)
-    return hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half), t
+    hit = hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half)
+    close = hit & (t < CLOSE * square.half)
+    if rarely(close):
+        hit = hit & ~(close & (fabs(height) <= start_error(origin, f)))
+    return hit, t
 
 
 def surface(square: PackedSquare, point: Vec) -> tuple[Vec, Vec]:

@@ -13,7 +13,7 @@ from math import cos, pi, sin
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
-from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, splat, sqrt, unit_roundoff, where
+from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rarely, splat, sqrt, unit_roundoff, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
@@ -21,6 +21,7 @@ from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.bounds import bounds_of_disc, point_along
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.start import position_error
 from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns, longitude
 
 STEPS = 100  # of Newton's method at most; most roots take less than ten
@@ -77,7 +78,8 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
     Between two turning points of the quartic along the ray the surface is crossed once if they lie on different sides
     of it, and not at all if they lie on the same side. So a root is searched only where there is one, and until it is
     exact. The side of a point and its height above the surface come from its distance to the circle in the middle of
-    the tube: that keeps all digits of a thin tube, which the polynomial loses.
+    the tube: that keeps all digits of a thin tube, which the polynomial loses. A ray that starts on the surface, to
+    rounding, starts on the side to which it goes.
     """
     f = origin - torus.centre
     approach = -dot(f, direction)  # t is counted from the closest approach to the centre
@@ -102,10 +104,10 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
             first = minimum(maximum(first, enter), leave)
             second = minimum(maximum(second, enter), leave)
             third = minimum(maximum(third, enter), leave)
-            side_0 = side(torus, to_basis(torus.u, torus.v, torus.w, f))
+            side_0 = side_of_start(torus, origin, to_basis(torus.u, torus.v, torus.w, f), d)
             side_1 = where(first > enter, side(torus, p + first * d), side_0)
             side_2 = where(second > first, side(torus, p + second * d), side_1)
-            side_3 = side(torus, p + third * d)
+            side_3 = where(third > second, side(torus, p + third * d), side_2)
             # The first two neighbours on different sides enclose the first crossing. Behind the last turning point the
             # ray ends outside.
             by_1, by_2, by_3 = side_0 != side_1, side_1 != side_2, side_2 != side_3
@@ -122,6 +124,19 @@ def side(torus: PackedTorus, p: Vec) -> Number:
     """Side of the surface that a point is on: 1 outside of the tube, -1 inside."""
     aside = sqrt(p.x * p.x + p.y * p.y) - torus.ring
     return where(sqrt(aside * aside + p.z * p.z) > torus.tube, 1.0, -1.0)
+
+
+def side_of_start(torus: PackedTorus, origin: Vec, p: Vec, d: Vec) -> Number:
+    """Side of the surface on which a ray from p goes on: one that starts on the surface, to rounding, has no other."""
+    rho = sqrt(p.x * p.x + p.y * p.y)
+    aside = rho - torus.ring
+    above = splat(sqrt(aside * aside + p.z * p.z) - torus.tube, d.x)  # of primary rays it is one number
+    out = where(above > 0.0, 1.0, -1.0)
+    on = fabs(above) <= 2.0 * position_error(origin, p)  # `above` is as far off as the origin
+    if rarely(on):
+        leaving = aside * (p.x * d.x + p.y * d.y) + rho * (p.z * d.z) >= 0.0
+        out = where(on, where(leaving, 1.0, -1.0), out)
+    return out
 
 
 def turning_points(torus: PackedTorus, p: Vec, d: Vec, active: Mask) -> tuple[Number, Number, Number]:

@@ -48,8 +48,9 @@ class PackedGate(NamedTuple):
 
 def intersect(gate: PackedGate, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the gate."""
-    t = (gate.centre.z - origin.z) / direction.z
-    p = origin + t * direction - gate.centre
+    f = origin - gate.centre
+    t = -f.z / direction.z
+    p = f + t * direction
     crosses = fabs(direction.z) > 4 * unit_roundoff(t)
     return crosses & (t > 0.0) & (maximum(fabs(p.x), fabs(p.y)) <= gate.half), t
 

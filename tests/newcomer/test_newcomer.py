@@ -1,7 +1,7 @@
 """A made-up shape and material, added as `minirt/README.md` says, pass the questions asked of every kind.
 
-They are added to a copy of the project: for the shape its file, a line in the registry and its oracle; for the material
-its file, an import and a field in the registry, and the lines that pack it.
+They are added to a copy of the project: for the shape its file, a line in the registry, its oracle and its special
+places; for the material its file, an import and a field in the registry, and the lines that pack it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,12 @@ from tests.paths import ROOT
 from tests.processes import run
 
 HERE = Path(__file__).parent
-QUESTIONS = ("tests/shapes/test_protocol.py", "tests/shapes/test_mapping.py", "tests/oracle")
+QUESTIONS = (
+    "tests/shapes/test_protocol.py",
+    "tests/shapes/test_mapping.py",
+    "tests/oracle",
+    "tests/stability/test_degenerate.py",
+)
 EDITING = "tests/viewer/editing/test_every_kind.py"
 
 
@@ -44,6 +49,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "from minirt.shapes.gate import Gate as Gate",
     )
     shutil.copy(HERE / "gate_oracle.py", root / "tests/oracle/gate.py")
+    shutil.copy(HERE / "gate_places.py", root / "tests/stability/gate.py")
 
     shutil.copy(HERE / "sheen.py", package / "materials")
     registry = package / "materials/__init__.py"
@@ -79,10 +85,25 @@ def answers(copy: Path, *command: str) -> str:
 
 
 def test_a_new_shape_passes_the_questions_asked_of_every_shape(copy: Path) -> None:
-    told = answers(copy, "-m", "pytest", "-p", "no:xdist", "-rs", "-k", "gate or every_kind or knows", *QUESTIONS)
+    told = answers(
+        copy, "-m", "pytest", "-p", "no:xdist", "-rs", "-k", "(gate or every_kind or knows) and not traced", *QUESTIONS
+    )
     assert "passed" in told
     assert "no chart of the gate: with one in" in told
     assert "no known place of gate: add one to KNOWN in" in told
+
+
+def test_a_new_shape_without_special_places_is_told_what_to_declare(copy: Path) -> None:
+    missing = copy / "tests/stability/gate.py"
+    text = missing.read_text()
+    missing.unlink()
+    try:
+        command = [sys.executable, "-m", "pytest", "-p", "no:xdist", "-k", "gate and declares", QUESTIONS[-1]]
+        done = run(command, cwd=copy, env={**os.environ, "PYTHONPATH": str(copy)}, text=True)
+    finally:
+        missing.write_text(text)
+    assert done.returncode == 1
+    assert "no special places of a gate: declare `places` in tests/stability/gate.py" in done.stdout
 
 
 def test_a_new_shape_and_a_new_material_are_added_edited_and_saved_by_keys(copy: Path) -> None:

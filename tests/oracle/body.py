@@ -52,6 +52,12 @@ def crossings(each: Body, origin: Vector, direction: Vector) -> list[mpfr]:
     return sorted(hits)
 
 
+def meetings(each: Body, origin: Vector, direction: Vector) -> list[mpfr]:
+    """All t at which the line meets one of the walls, also where that is cut off or beyond another one."""
+    ray = [Polynomial(o, d) for o, d in zip(exact(origin), exact(direction), strict=True)]
+    return [t for wall in each.walls for t in as_polynomial(wall(ray)).roots()]
+
+
 def inside(each: Body, point: Vector) -> bool:
     """Whether a point is inside, not on the surface and not cut off; a sheet has no inside."""
     p = exact(point)

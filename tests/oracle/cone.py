@@ -13,6 +13,7 @@ from tests.oracle.vectors import Vector, cross, dot, exact, minus, unit
 def _(cone: Cone, swell: Any = 0) -> Body:
     axis, slope = unit(cone.axis), mpfr(cone.diameter) / 2 / mpfr(cone.height)
     back = swell * sqrt(1 + slope**2) / slope  # a cone around the cone at that distance has its apex so far behind
+    tip = mpfr(cone.height) / 2**80  # of the other nappe: a root at the apex itself is not lost to rounding
     apex = [x - back * a for x, a in zip(exact(cone.apex), axis, strict=True)]
 
     def height(p: Vector) -> Any:
@@ -22,4 +23,4 @@ def _(cone: Cone, swell: Any = 0) -> Body:
         across = cross(minus(p, apex), axis)
         return dot(across, across) - slope**2 * height(p) ** 2
 
-    return Body((side, lambda p: height(p) - back - cone.height - swell), (lambda p: -height(p),))
+    return Body((side, lambda p: height(p) - back - cone.height - swell), (lambda p: -height(p) - tip,))

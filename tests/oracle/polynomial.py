@@ -75,12 +75,17 @@ class Polynomial:
         turns = exact.derivative().roots()
         # All roots lie within twice the largest |a[n-k] / a[n]|^(1/k) (Fujiwara 1916).
         end = 1 + 2 * max(abs(c / kept[-1]) ** (mpfr(1) / k) for k, c in enumerate(reversed(kept[:-1]), 1))
-        found = [turn for turn in turns if exact(turn) == 0]
+        found = [turn for turn in turns if exact.is_zero(turn)]
         for low, high in pairwise([-end, *turns, end]):
             if exact(low) * exact(high) < 0:
                 turn, side = (low, 1) if low in turns else (high, -1)
                 found.append(exact.root(low, high, exact.beside(turn, side)))
         return sorted(found)
+
+    def is_zero(self, t: mpfr) -> bool:
+        """Whether the value at t is 0 within its own rounding: a double root is rarely met exactly."""
+        terms = Polynomial(*map(abs, self.coefficients))
+        return bool(abs(self(t)) <= 16 * EPS * terms(abs(t)))
 
     def beside(self, turn: mpfr, side: int) -> mpfr:
         """First guess of a root beside a turning point: the root of the parabola that fits the polynomial there."""

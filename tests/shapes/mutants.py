@@ -31,7 +31,7 @@ def accepts_nan(sphere: PackedSphere, origin: Vec, direction: Vec) -> Any:
     return ~(chord < 0), first(-dot(f, direction) - sqrt(chord), -dot(f, direction) + sqrt(chord))
 
 
-def naive_quadratic(a: Any, _: Any, b: Any, c: Any) -> Any:
+def naive_quadratic(a: Any, _: Any, b: Any, c: Any, _product: Any) -> Any:
     """`negative_interval` by the schoolbook formula, which cancels."""
     D = b * b - a * c
     return D >= 0, (-b - sqrt(D)) / a, (-b + sqrt(D)) / a

@@ -10,7 +10,7 @@ from numba import njit
 import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, product_error, rounded_product
-from minirt.shapes.compensated import power_of_point, two_product, two_sum
+from minirt.shapes.compensated import divided, minus, plus, power_of_point, times, two_product, two_sum
 
 RANDOM = np.random.default_rng(1)
 PAIRS = RANDOM.normal(size=(200, 2)) * 10.0 ** RANDOM.integers(-20, 20, (200, 2))
@@ -54,3 +54,13 @@ def test_the_power_of_a_point_is_exact_near_the_surface() -> None:
         right = squares - Fraction(5e8) ** 2
         found = power_of_point(Vec(*point), Vec(x, y, z), np.float64(5e8))
         assert abs(Fraction(found) - right) <= abs(right) * Fraction(1, 2**50)
+
+
+def test_pairs_have_twice_the_precision() -> None:
+    for a, b in PAIRS:
+        x, y = (a, a * 1e-17), (b, b * -2e-17)
+        one, other = (Fraction(high) + Fraction(low) for high, low in (x, y))
+        expected = (one + other, one - other, one * other, one / Fraction(b))
+        for found, right in zip((plus(x, y), minus(x, y), times(x, y), divided(x, b, 1 / b)), expected, strict=True):
+            scale = max(abs(right), abs(one), abs(other)) if found != times(x, y) else abs(right)
+            assert abs(sum(map(Fraction, found)) - right) <= scale * Fraction(1, 2**100)

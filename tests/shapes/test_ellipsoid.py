@@ -84,7 +84,7 @@ def from_the_origin(ellipsoid: PackedEllipsoid, origin: Vec, direction: Vec) -> 
     )
     d = module.scaled(module.to_basis(ellipsoid.u, ellipsoid.v, ellipsoid.w, direction), ellipsoid.scale)
     a, b, c = module.dot(d, d), module.dot(p, d), module.dot(p, p) - 1.0
-    hit, near, far = module.negative_interval(a, 1.0 / a, b, c)
+    hit, near, far = module.negative_interval(a, 1.0 / a, b, c, c)
     return hit & (far > 0.0), np.where(near > 0.0, near, far)
 
 

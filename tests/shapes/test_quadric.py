@@ -35,7 +35,7 @@ CASES = [
 
 
 def solved(a: Any, b: Any, c: Any) -> tuple[Any, Any, Any]:
-    return negative_interval(a, 1 / a, b, c)
+    return negative_interval(a, 1 / a, b, c, c)
 
 
 @pytest.mark.parametrize(("coefficients", "expected"), CASES)
@@ -59,3 +59,11 @@ def test_many_quadratics_at_once() -> None:
     ]
     assert np.isnan(below[~met]).all()
     assert np.isnan(above[~met]).all()
+
+
+def test_a_root_that_is_only_rounding_is_exactly_zero_and_the_other_one_stays() -> None:
+    for b, other in ((3.0, -6.0), (-3.0, 6.0)):
+        for c in (1e-17, -1e-17):
+            met, below, above = negative_interval(*map(np.float64, (1, 1, b, c, 0)))
+            assert met
+            assert sorted((below, above)) == sorted((0.0, other))

@@ -96,7 +96,7 @@ def test_most_roots_take_less_than_ten_steps(monkeypatch: pytest.MonkeyPatch) ->
         (1, (0, -5, 2), (0, -3, 0), 12),
         (1, (-7e6, -1e6, 5), (1, 3, 0), 30),
         (0.01, (0, 1, 0), (0, -3, 0), 12),  # its first place in the tube's wall is as near as can be told
-        (1, (-4, 0, 0), (-5, 7, 6), 12),  # from a rounding inside of it
+        (1, (-4 + 1e-13, 0, 0), (-5, 7, 6), 13),  # from closely inside of it
         (3, (1.5, 0.5, 0), (-5, -7, 0), 36),  # what height is left is rounding, of either sign
     ],
 )
@@ -201,9 +201,7 @@ def test_a_ray_from_the_inner_side_of_the_ring_hits_the_opposite_side(intersect:
     targets = np.array(RING.centre) - 2 * out + random.uniform(-0.5, 0.5, out.shape)
     directions = unit(targets - origins)
     t, beyond = (intersect([RING], (origins + start * directions)[None], directions[None]) for start in (0, 1e-3))
-    inside = t < 1e-9  # a rounding inside of the tube, it leaves that first
-    assert 0.05 < np.mean(inside) < 0.95
-    assert np.abs(t - 1e-3 - beyond)[~inside].max() < 1e-12
+    assert np.abs(t - 1e-3 - beyond).max() < 1e-12
 
 
 @pytest.mark.parametrize("intersect", [on_arrays, compiled])
@@ -211,8 +209,6 @@ def test_through_the_middle_of_the_tube_the_far_wall_is_seen(intersect: Intersec
     turns, tilts = np.random.default_rng(6).uniform(0, 2 * np.pi, (2, 2000 * RAYS))
     circle = np.stack([np.cos(turns), 0 * turns, np.sin(turns)], axis=1)
     normals = np.cos(tilts)[:, None] * circle + np.sin(tilts)[:, None] * np.array(RING.axis)
-    origins = np.array(RING.centre) + 3 * circle + normals
+    origins = np.array(RING.centre) + 3 * circle + normals  # within rounding of the tube, on either side of it
     t = intersect([RING], origins[None], -normals[None])
-    near = t < 1e-9  # a rounding outside of the tube, it meets that first
-    assert 0.05 < np.mean(near) < 0.95
-    assert np.abs(t - 2)[~near].max() < 1e-12
+    assert np.abs(t - 2).max() < 1e-12

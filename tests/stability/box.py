@@ -10,6 +10,7 @@ from minirt.shapes.box import Box
 from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, random_directions, unit
 from tests.stability.aimed_rays import along, at
 from tests.stability.common import COUNT
+from tests.stability.places import Place, flat, line, spot
 from tests.stability.regime import Regime
 
 
@@ -62,3 +63,15 @@ REGIMES = [
     Regime("at an edge", partial(at, 14, make, edge)),
     Regime("at a corner", partial(at, 15, make, corner)),
 ]
+
+
+def places(box: Box) -> list[Place]:
+    """Planes of the faces, lines of the edges, and corners."""
+    own = np.array([(axis.x, axis.y, axis.z) for axis in box.axes()])
+    corners, centre = np.array(box.corners()), np.array(box.centre)
+    found = [spot("corner", point) for point in corners]
+    for axis, length in zip(own, box.sizes, strict=True):
+        found += [flat("face", box, centre + sign * length / 2 * axis, axis) for sign in (-1, 1)]
+    for i, axis in enumerate(own):  # corners are in binary order of the signs of their axes
+        found += [line("edge", box, corner, axis) for k, corner in enumerate(corners) if not k >> (2 - i) & 1]
+    return found

@@ -10,6 +10,7 @@ from minirt.shapes.cone import Cone
 from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, random_directions, random_perpendiculars, unit
 from tests.stability.aimed_rays import along, at, axis_of, edge
 from tests.stability.common import COUNT
+from tests.stability.places import Place, fan, flat, frame, ring, spot
 from tests.stability.regime import Regime
 
 
@@ -55,6 +56,21 @@ def at_the_mirror_image(seed: int) -> Rays:
     return Rays(shapes, origins, directions)
 
 
+def down_the_axis(seed: int) -> Rays:
+    """Rays exactly along the axis, up and down, from outside and inside; most cones lie along z."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
+    for i in range(COUNT):
+        cone = make(random)
+        lying = cone.replace(apex=(0, 0, cone.apex[2]), axis=(0, 0, -1))
+        cone = lying if i % 4 else cone
+        shapes.append(cone)
+        way = np.array(cone.axis)
+        origins[i] = np.array(cone.apex) + cone.height * random.uniform(-3, 4, (RAYS, 1)) * way
+        directions[i] = way * random.choice([-1.0, 1.0], (RAYS, 1))
+    return Rays(shapes, origins, directions)
+
+
 NEEDLE, FLAT = (np.degrees(1e-4), np.degrees(1e-4)), (89.94, 89.94)
 
 REGIMES = [
@@ -65,5 +81,18 @@ REGIMES = [
     Regime("nearly along a generator", partial(along, 15, make, generator, (1e-12, 1e-3))),
     Regime("a half-angle of 1e-4", partial(at, 16, partial(make, angle=NEEDLE), anywhere, (1e-6, 1e-5))),
     Regime("a half-angle of 89.94 degrees", partial(at, 17, partial(make, angle=FLAT), anywhere, (1e-3, 1e-1))),
+    Regime("along the axis", partial(down_the_axis, 19)),
     Regime("at the mirror image", partial(at_the_mirror_image, 18)),
 ]
+
+
+def places(cone: Cone) -> list[Place]:
+    """Plane of the base, rim, and generators with those of the mirror image."""
+    _, _, axis = frame(cone.axis)
+    base = np.array(cone.apex) + cone.height * axis
+    return [
+        flat("base plane", cone, base, axis),
+        spot("centre of the base", base),
+        ring("rim", base, axis, cone.diameter / 2),
+        fan("generators", cone, cone.apex, axis, cone.diameter / 2 / cone.height),
+    ]

@@ -10,10 +10,11 @@ from minirt.shapes.cylinder import Cylinder
 from tests.shapes import regimes as given
 from tests.shapes.regimes import GREY, RAYS, Rays, random_directions
 from tests.stability.common import COUNT
+from tests.stability.places import Place, flat, frame, line, ring
 from tests.stability.regime import Regime
 
 
-def flat(seed: int, height: float) -> Rays:
+def nearly_flat(seed: int, height: float) -> Rays:
     """Rays at cylinders that are nearly flat, from above and below."""
     return given.disc(seed, height, COUNT)
 
@@ -49,6 +50,20 @@ REGIMES = [
     Regime("inside a tube of height 1e9", partial(given.inside_tube, 17, 1e9, COUNT), 3e-8),
     Regime("across a tube from its wall", partial(given.from_the_wall, 18, COUNT)),
     Regime("an axis off unit length by 6e-8", partial(short_axis, 21)),
-    Regime("a height of 1e-9", partial(flat, 19, 1e-9)),
+    Regime("a height of 1e-9", partial(nearly_flat, 19, 1e-9)),
     Regime("a needle", partial(needle, 20)),
 ]
+
+
+def places(cylinder: Cylinder) -> list[Place]:
+    """Planes of the caps, rims, generators and the planes that touch the side."""
+    u, v, axis = frame(cylinder.axis)
+    centre, radius = np.array(cylinder.centre), cylinder.diameter / 2
+    found = []
+    for end in (-cylinder.height / 2, cylinder.height / 2):
+        cap = centre + end * axis
+        found += [flat("cap plane", cylinder, cap, axis), ring("rim", cap, axis, radius)]
+    for out in (u, -v, 0.6 * u + 0.8 * v):
+        on = centre + radius * out
+        found += [line("generator", cylinder, on, axis), flat("tangent plane", cylinder, on, out)]
+    return found

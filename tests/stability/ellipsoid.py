@@ -10,6 +10,7 @@ from minirt.shapes.ellipsoid import Ellipsoid
 from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, log_uniform, random_directions
 from tests.stability.aimed_rays import along, at
 from tests.stability.common import COUNT
+from tests.stability.places import Place, flat, spot
 from tests.stability.regime import Regime
 
 
@@ -62,3 +63,13 @@ REGIMES = [
     Regime("at the ends of a long one", partial(at, 16, partial(make, flatness=1e6), tips), blur=np.inf),
     Regime("1e-3 to 1 beside a diameter of 1e9", partial(beside, 17, 1e9, (1e-3, 1.0)), blur=np.inf),
 ]
+
+
+def places(ellipsoid: Ellipsoid) -> list[Place]:
+    """The ends of its axes, with the planes that touch them."""
+    found = []
+    for length, axis in zip(*own_axes(ellipsoid), strict=True):
+        for sign in (-1, 1):
+            tip = np.array(ellipsoid.centre) + sign * length * axis
+            found += [spot("tip", tip), flat("tangent plane", ellipsoid, tip, axis)]
+    return found

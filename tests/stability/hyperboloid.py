@@ -9,6 +9,7 @@ import numpy as np
 from minirt.shapes.hyperboloid import Hyperboloid
 from tests.shapes.regimes import GREY, RAYS, Array, Random, random_directions, random_perpendiculars, unit
 from tests.stability.aimed_rays import along, at, axis_of, edge
+from tests.stability.places import Place, fan, flat, frame, line, ring
 from tests.stability.regime import Regime
 
 
@@ -65,3 +66,21 @@ REGIMES = [
     Regime("closely at a waist of 1e-6 of that", partial(at, 20, partial(make, waist=1e-6), waist, (1e-9, 1e-6))),
     Regime("a waist as wide as the ends", partial(at, 19, partial(make, waist=1.0), waist, (1e-3, 1e-1))),
 ]
+
+
+def places(hyperboloid: Hyperboloid) -> list[Place]:
+    """Planes of the caps, rims, waist and the planes that touch it, asymptotes and rulings."""
+    u, v, axis = frame(hyperboloid.axis)
+    centre, steep = np.array(hyperboloid.centre), slope(hyperboloid)
+    found = [
+        ring("waist", centre, axis, hyperboloid.waist / 2),
+        fan("asymptotes", hyperboloid, centre, axis, steep),
+    ]
+    for end in (-hyperboloid.height / 2, hyperboloid.height / 2):
+        cap = centre + end * axis
+        found += [flat("cap plane", hyperboloid, cap, axis), ring("rim", cap, axis, hyperboloid.diameter / 2)]
+    for out, aside in ((u, v), (-v, u), (0.6 * u + 0.8 * v, 0.8 * u - 0.6 * v)):
+        on = centre + hyperboloid.waist / 2 * out
+        found += [flat("tangent plane", hyperboloid, on, out)]
+        found += [line("ruling", hyperboloid, on, axis + sign * steep * aside) for sign in (-1, 1)]
+    return found

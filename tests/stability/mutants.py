@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 
 from minirt.lanes import Vec
 from minirt.report.measurements import textbook
-from minirt.shapes import Shape
+from minirt.shapes import KINDS, Shape, start
 from tests.shapes import mutants
 from tests.shapes.execution_modes import Array, Intersect, kind_of, on_arrays, vec
 
@@ -41,6 +42,19 @@ def single(packed: Any) -> Any:
     return type(packed)(*parts)
 
 
+def as_of_a_shadow_ray(shapes: list[Shape], origins: Array, directions: Array) -> Array:
+    """The real formula of rays that start clear of all surfaces."""
+    return on_arrays(shapes, origins, directions, kind_of(shapes[0]).occludes)
+
+
+def hits_its_start(shapes: list[Shape], origins: Array, directions: Array) -> Array:
+    """The real formula, which trusts the rounded place where a ray starts."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(start, "POSITION", 0.0)
+        return on_arrays(shapes, origins, directions)
+
+
+STARTS = ("on the surface", "on the surface, a scene at 1e4", "just above a huge one")
 # For each mutant regimes that it must fail; it passes those that are easy for it.
 ANY: dict[str, tuple[Intersect, tuple[str, ...]]] = {
     "from 1e-4 on": (from_1e_4_on, ("a size of 1e-12",)),
@@ -54,17 +68,25 @@ OWN: dict[str, tuple[Intersect, tuple[str, ...]]] = {
     ),
     "cylinder": (
         mutants.with_formula(mutants.naive_cylinder),
-        ("a million sizes away", "a size of 1e-6, seen from 1e6", "at the rim"),
+        ("a million sizes away", "a size of 1e-6, seen from 1e6", "at the rim", "on the surface"),
     ),
     "cone": (
         mutants.with_formula(textbook.meets_cone),
-        ("a million sizes away", "at the apex", "along a generator", "a half-angle of 89.94 degrees"),
+        (
+            *("a million sizes away", "at the apex", "along a generator", "a half-angle of 89.94 degrees"),
+            *("along the axis", "on the surface"),
+        ),
     ),
     "paraboloid": (
         mutants.with_formula(textbook.meets_paraboloid),
-        ("a million sizes away", "along the axis", "at the vertex"),
+        ("a million sizes away", "along the axis", "at the vertex", "on the surface"),
     ),
-    "hyperboloid": (mutants.with_formula(textbook.meets_hyperboloid), ("a million sizes away", "along an asymptote")),
+    "hyperboloid": (
+        mutants.with_formula(textbook.meets_hyperboloid),
+        ("a million sizes away", "along an asymptote", "on the surface"),
+    ),
+    "torus": (hits_its_start, ("on the surface", "on the surface, a scene at 1e4")),
     "triangle": (mutants.with_formula(mutants.mean_of_corners), ("a sliver", "a sliver next to none")),
     "plane": (mutants.with_formula(mutants.hits_behind), ("usual", "at a slope of 1e-6 to 0.01")),
 }
+CARELESS = [kind for kind in KINDS if kind.occludes]

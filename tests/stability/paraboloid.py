@@ -9,6 +9,7 @@ import numpy as np
 from minirt.shapes.paraboloid import Paraboloid
 from tests.shapes.regimes import GREY, RAYS, Array, Random, random_directions
 from tests.stability.aimed_rays import along, at, axis_of, edge
+from tests.stability.places import Place, flat, frame, ring, spot
 from tests.stability.regime import Regime
 
 
@@ -40,3 +41,17 @@ REGIMES = [
     Regime("a height of 1e-6", partial(at, 16, partial(make, height=1e-6), rim, (1e-3, 0.3))),
     Regime("a height of 1e6", partial(at, 17, partial(make, height=1e6), vertex)),
 ]
+
+
+def places(paraboloid: Paraboloid) -> list[Place]:
+    """Plane of the cap, rim, focus, and the circle around it at which the side is at 45 degrees."""
+    _, _, axis = frame(paraboloid.axis)
+    vertex, radius = np.array(paraboloid.vertex), paraboloid.diameter / 2
+    cap, focal = vertex + paraboloid.height * axis, radius * (radius / paraboloid.height) / 4
+    return [
+        flat("cap plane", paraboloid, cap, axis),
+        spot("centre of the cap", cap),
+        ring("rim", cap, axis, radius),
+        spot("focus", vertex + focal * axis),
+        ring("circle around the focus", vertex + focal * axis, axis, 2 * focal),
+    ]

@@ -9,6 +9,7 @@ import numpy as np
 from minirt.shapes.plane import Plane
 from tests.shapes.regimes import GREY, RAYS, Rays, log_uniform, random_directions, random_perpendiculars
 from tests.stability.common import COUNT
+from tests.stability.places import Place
 from tests.stability.regime import Regime
 
 
@@ -32,3 +33,8 @@ REGIMES = [
     Regime("at a slope of 1e-6 to 0.01", partial(grazing, 13, (1e-6, 1e-2))),
     Regime("at a slope of 1e-12 to 1e-6", partial(grazing, 14, (1e-12, 1e-6))),
 ]
+
+
+def places(_plane: Plane) -> list[Place]:
+    """None besides those of its fields."""
+    return []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cache, cached_property, lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from gmpy2 import mpfr
@@ -43,6 +43,7 @@ class Regime(NamedTuple):
     tolerance: float | None = None
     slack: float = 64.0
     blur: float = 1e-13
+    nearest: Callable[..., Any] = oracle.nearest  # or `oracle.onward`, for rays that start on the surface
 
 
 class Right:
@@ -62,7 +63,7 @@ class Right:
         return derived_tolerance(self.rays, self.t) if given is None else np.full(self.t.shape, given)
 
     def at(self, i: int, j: int, swell: float = 0.0) -> float:
-        t = oracle.nearest(self.rays.shapes[i], self.rays.origins[i, j], self.rays.directions[i, j], mpfr(swell))
+        t = self.regime.nearest(self.rays.shapes[i], self.rays.origins[i, j], self.rays.directions[i, j], mpfr(swell))
         return np.inf if t is None else float(t)
 
     def thicker_and_thinner(self, i: int, j: int) -> tuple[float, float]:

@@ -22,6 +22,7 @@ from tests.shapes.regimes import (
 )
 from tests.stability.aimed_rays import at
 from tests.stability.common import COUNT
+from tests.stability.places import Place, frame, line, ring, spot
 from tests.stability.regime import Regime
 
 Sheet = Square | Disc
@@ -73,3 +74,22 @@ def of(make: Callable[[Random], Sheet], border: Callable[[Random, Sheet], Array]
 
 SQUARES = of(square, edge)
 DISCS = of(disc, rim)
+
+
+def of_square(square: Square) -> list[Place]:
+    """Lines of the edges, and corners."""
+    corners = np.array(square.corners())
+    pairs = ((0, 1), (1, 3), (3, 2), (2, 0))
+    found = [spot("corner", corner) for corner in corners]
+    return found + [line("edge", square, corners[i], unit(corners[j] - corners[i])) for i, j in pairs]
+
+
+def of_disc(disc: Disc) -> list[Place]:
+    """The rim, and four lines that touch it."""
+    u, v, normal = frame(disc.normal)
+    centre, radius = np.array(disc.centre), disc.diameter / 2
+    touching = [(u, v), (-u, v), (v, u), (0.6 * u + 0.8 * v, 0.8 * u - 0.6 * v)]
+    return [
+        ring("rim", centre, normal, radius),
+        *(line("tangent", disc, centre + radius * out, along) for out, along in touching),
+    ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -11,7 +10,6 @@ from minirt.shapes.sphere import Sphere
 from tests.shapes.regimes import (
     GREY,
     RAYS,
-    Array,
     Rays,
     just_above,
     log_uniform,
@@ -20,6 +18,7 @@ from tests.shapes.regimes import (
     unit,
 )
 from tests.stability.common import COUNT
+from tests.stability.places import Place, flat, spot
 from tests.stability.regime import Regime
 
 
@@ -43,32 +42,6 @@ def near_the_surface(seed: int) -> Rays:
     directions = np.where(height > 0, down, random_directions(random, count, RAYS))
     centre = random_directions(random)
     return Rays([Sphere(tuple(centre), 2.0, GREY)] * count, centre + (1 + height) * out, directions)
-
-
-def on_the_surface(seed: int) -> Rays:
-    """Rays away from the centre, from points inside by less than a rounding: each of them hits at once.
-
-    Rounding may take these points for points outside.
-    """
-    random = np.random.default_rng(seed)
-    shapes = [Sphere(tuple(10.0**e * random_directions(random)), 10.0**e, GREY) for e in np.linspace(-12, 12, COUNT)]
-    origins, directions = np.empty((2, COUNT, RAYS, 3))
-    for i, shape in enumerate(shapes):
-        centre, radius = np.array(shape.centre), shape.diameter / 2
-        points = centre + radius * random_directions(random, 2**16)
-        exactly = above(points.astype(np.longdouble), centre.astype(np.longdouble), np.longdouble(radius))
-        seeming = np.where(exactly < 0, above(points, centre, radius), -np.inf)
-        origins[i] = points[np.argsort(seeming)[-RAYS:]]
-        out = unit(origins[i] - centre)
-        directions[i] = unit(random.uniform(0.1, 1, (RAYS, 1)) * out + random_perpendiculars(random, out, RAYS))
-    return Rays(shapes, origins, directions)
-
-
-def above(points: Array, centre: Array, radius: Any) -> Array:
-    """The power of points with respect to a sphere."""
-    f = points - centre
-    height: Array = (f * f).sum(axis=-1) - radius * radius
-    return height
 
 
 def to_the_horizon(seed: int, above: tuple[float, float], dips: tuple[float, ...]) -> Rays:
@@ -98,7 +71,6 @@ REGIMES = [
     ),
     Regime("from inside a diameter of 1e9", partial(just_inside, 12), 1e-9, 0.0),
     Regime("from 1e-9 to 1 radius off the surface", partial(near_the_surface, 14), 3e-14, 0.0),
-    Regime("from less than a rounding inside", partial(on_the_surface, 17), 1e-13, 0.0),
     # There the angle below the horizon is 1e-8 of a direction that is exact to 2^-53.
     Regime(
         "to the horizon of a diameter of 1e9",
@@ -114,3 +86,12 @@ REGIMES = [
     ),
     Regime("from the centre", partial(in_the_centre, 13), 4e-16, 0.0),
 ]
+
+
+def places(sphere: Sphere) -> list[Place]:
+    """Its poles along the axes of the scene, with the planes that touch them."""
+    found = []
+    for axis in np.concatenate([np.eye(3), -np.eye(3)]):
+        pole = np.array(sphere.centre) + sphere.diameter / 2 * axis
+        found += [spot("pole", pole), flat("tangent plane", sphere, pole, axis)]
+    return found

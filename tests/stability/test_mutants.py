@@ -45,6 +45,15 @@ def test_no_naive_formula_passes(title: str) -> None:
         assert errors(regime, intersect) > 0
 
 
+@pytest.mark.parametrize("kind", mutants.CARELESS, ids=lambda kind: kind.element.title)
+def test_a_formula_that_knows_the_start_of_a_ray_no_better_than_rounding_does_not_pass(kind: Kind) -> None:
+    assert errors(*regimes(kind, ["usual"]), mutants.as_of_a_shadow_ray) == 0
+    for regime in regimes(kind, mutants.STARTS):
+        assert errors(regime, mutants.as_of_a_shadow_ray) > 5
+    for regime in regimes(kind, mutants.STARTS[:2]):
+        assert errors(regime, mutants.hits_its_start) > 5
+
+
 def guards(D: float, t: float) -> tuple[bool, bool, bool, float]:
     """The guards that formulas and renderer rely on: NaN is no hit, infinity is no nearer hit, and light that is NaN or
     infinite ends in [0, 1]."""

@@ -20,6 +20,7 @@ from tests.shapes.regimes import (
 )
 from tests.stability.aimed_rays import along, at, axis_of
 from tests.stability.common import COUNT
+from tests.stability.places import Place, fan, flat, frame, ring
 from tests.stability.regime import Regime
 
 
@@ -31,25 +32,25 @@ def make(random: Random, tube: float = 0.4) -> Torus:
     )
 
 
-def ring(random: Random, torus: Torus) -> Array:
+def in_the_middle(random: Random, torus: Torus) -> Array:
     """Random points of the circle in the middle of the tube."""
     return np.array(torus.centre) + torus.diameter / 2 * random_perpendiculars(random, axis_of(torus), RAYS)
 
 
 def inside(random: Random, torus: Torus) -> Array:
     """Random points in the tube."""
-    return ring(random, torus) + torus.tube / 2 * random.random((RAYS, 1)) * random_directions(random, RAYS)
+    return in_the_middle(random, torus) + torus.tube / 2 * random.random((RAYS, 1)) * random_directions(random, RAYS)
 
 
 def top(random: Random, torus: Torus) -> Array:
     """Random points of the circle along which a plane touches it."""
-    return ring(random, torus) + torus.tube / 2 * axis_of(torus)
+    return in_the_middle(random, torus) + torus.tube / 2 * axis_of(torus)
 
 
 def inner(random: Random, torus: Torus) -> Array:
     """Random points of the inner equator, where it is curved like a saddle."""
     middle = np.array(torus.centre)
-    return middle + (1 - torus.tube / torus.diameter) * (ring(random, torus) - middle)
+    return middle + (1 - torus.tube / torus.diameter) * (in_the_middle(random, torus) - middle)
 
 
 def centre(_random: Random, torus: Torus) -> Array:
@@ -115,3 +116,21 @@ REGIMES = [
     Regime("at the inner equator", partial(at, 22, make, inner)),
     Regime("touching it twice", partial(touching_twice, 23, (1e-14, 1e-4))),
 ]
+
+
+def places(torus: Torus) -> list[Place]:
+    """Top and bottom with the planes that touch it there, both equators and the planes that touch the outer one, the
+    circle in the middle of the tube, and the directions that touch it twice (Villarceau)."""
+    u, v, axis = frame(torus.axis)
+    middle, radius, tube = np.array(torus.centre), torus.diameter / 2, torus.tube / 2
+    found = [ring("ring", middle, axis, radius), ring("outer equator", middle, axis, radius + tube)]
+    if radius > tube:
+        found += [ring("inner equator", middle, axis, radius - tube)]
+        found += [fan("touching twice", torus, middle, axis, np.sqrt(radius**2 - tube**2) / tube)]
+    for up in (-tube, tube):
+        pole = middle + up * axis
+        found += [ring("top", pole, axis, radius), flat("plane of the top", torus, pole, axis)]
+    for out in (u, -v, 0.6 * u + 0.8 * v):
+        found += [flat("tangent plane", torus, middle + (radius + tube) * out, out)]
+        found += [flat("inner tangent plane", torus, middle + (radius - tube) * out, out)]
+    return found

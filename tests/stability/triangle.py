@@ -20,6 +20,7 @@ from tests.shapes.regimes import (
 )
 from tests.stability.aimed_rays import at
 from tests.stability.common import COUNT
+from tests.stability.places import Place, flat, line, spot
 from tests.stability.regime import Regime
 
 
@@ -70,3 +71,10 @@ REGIMES = [
     Regime("a sliver at a slope of 1e-6 to 0.01", partial(grazing, 16, (1e-6, 1e-2), 1e-6)),
     Regime("a sliver of 1e-10 at a slope of 0.001 to 0.01", partial(grazing, 17, (1e-3, 1e-2), 1e-10)),
 ]
+
+
+def places(triangle: Triangle) -> list[Place]:
+    """Its plane, the lines of its edges, and its middle."""
+    (a, *_), edges = corners(triangle), np.array(triangle.edges())
+    found = [flat("plane", triangle, a, triangle.normal()), spot("middle", corners(triangle).mean(axis=0))]
+    return found + [line("edge", triangle, *each) for each in zip(corners(triangle), unit(edges), strict=True)]

@@ -22,7 +22,7 @@ from minirt.kernel.bvh.nodes import (
     vec_at,
 )
 from minirt.kernel.bvh.traversal import traverse
-from minirt.kernel.rows import intersect, kind_of, read, surface
+from minirt.kernel.rows import intersect, kind_of, occludes, read, surface
 from minirt.kernel.scene_arrays import by_reference
 from minirt.kernel.trace import closer_hit, for_each_kind
 from minirt.lanes import Vec, any, lane, load, lowest, splat, unit, where
@@ -95,14 +95,14 @@ def unoccluded_by_unbounded(group: Group, visible: Mask, arguments: tuple[Tree, 
         return visible
     tree, origin, direction, distance = arguments
     for i in range(group.unbounded.shape[0]):
-        hit, t = intersect(read(group.rows, tree.slots[group.unbounded[i], 1]), origin, direction)
+        hit, t = occludes(read(group.rows, tree.slots[group.unbounded[i], 1]), origin, direction)
         visible = visible & ~(hit & (t < distance))
     return visible
 
 
 def occlude_by_block(group: Group, block: int, tree: Tree, memory: Any, ray: int) -> None:
     """Set the distance in `HIT` of a shadow ray to -infinity, which ends it, if a shape of a block occludes it."""
-    hit, t = intersect(read_block(group.blocks, block), vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray))
+    hit, t = occludes(read_block(group.blocks, block), vec_at(memory, ORIGIN, ray), vec_at(memory, DIRECTION, ray))
     memory[HIT + ray] = where(any(hit & (t < memory[HIT + ray])), -inf, memory[HIT + ray])
 
 

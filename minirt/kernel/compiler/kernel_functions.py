@@ -17,7 +17,7 @@ from minirt.kernel.compiler.options import INLINED
 from minirt.kernel.culling import binning, light_buffer
 from minirt.kernel.shading import environment, lights, shade, specular, surfaces, texture_lookup, texturing, whitted
 from minirt.lanes import angle, largest, power, vec
-from minirt.shapes import ALL_KINDS, basis, compensated, pyramid, quadric, shape, uv_mapping
+from minirt.shapes import ALL_KINDS, basis, compensated, flat_start, pyramid, quadric, shape, start, uv_mapping
 
 REGISTERED = (
     whitted.ray_stack,
@@ -35,6 +35,7 @@ register_jitable(**INLINED)(vec.cross)
 for _module in (
     basis,
     compensated,
+    flat_start,
     angle,
     largest,
     power,
@@ -42,6 +43,7 @@ for _module in (
     uv_mapping,
     pyramid,
     shape,
+    start,
     binning,
     light_buffer,
     scene_arrays,

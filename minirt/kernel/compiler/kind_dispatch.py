@@ -21,6 +21,12 @@ def _intersect(shape, origin, direction):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).intersect
 
 
+@overload(rows.occludes, jit_options=INLINED, strict=False)
+def _occludes(shape, origin, direction):  # type: ignore[no-untyped-def]
+    kind = rows.kind_of_packed(shape.instance_class)
+    return kind.occludes or kind.intersect
+
+
 @overload(rows.surface, jit_options=INLINED, strict=False)
 def _surface(shape, point):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).surface

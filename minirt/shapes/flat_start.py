@@ -1,0 +1,19 @@
+"""Rays that start on a flat surface, for all that rounding lets one know, and so do not hit it there."""
+
+from __future__ import annotations
+
+from minirt.lanes import Vec, fabs, unit_roundoff
+from minirt.lanes.largest import largest
+from minirt.lanes.vec import Number
+
+CLOSE = 2.0**-20  # shares of the size of a shape: a hit nearer than that may be the place where the ray starts
+ROUNDINGS = 4.0
+
+
+def start_error(origin: Vec, f: Vec) -> Number:
+    """Distance to a flat surface below which a ray starts on it.
+
+    The roundings of the origin's coordinates, and of its height, which is computed from f, its difference from the
+    shape's centre.
+    """
+    return ROUNDINGS * unit_roundoff(f.x) * (largest(origin) + (fabs(f.x) + fabs(f.y) + fabs(f.z)))

@@ -1,0 +1,94 @@
+"""Rays that start on the surface of a quadric, or close to it on the scale of the solid.
+
+Nearly everything cancels there. The height of such a start above the surface is computed to 32 digits
+(`minirt.shapes.compensated`), and t is counted from the start. A start whose height is no more than the rounding of its
+coordinates is on the surface, and no ray hits the surface where it starts: one that goes inwards hits the other side,
+and one that goes outwards leaves the solid.
+
+Shadow rays start clear of all surfaces and need none of this: the formulas of quadrics leave it out for them, which
+saves a kernel a third of its size.
+"""
+
+from __future__ import annotations
+
+from minirt.lanes import Vec, fabs, maximum, minimum, splat, unit_roundoff, where
+from minirt.lanes.largest import largest
+from minirt.lanes.operations import Mask
+from minirt.lanes.vec import Number
+from minirt.shapes.compensated import Pair, along, minus, offset, squared_length, times
+
+CLOSE = 2.0**-6  # to a surface: share of a solid's size, or of the square of its radius there
+POSITION = 2.0  # unit roundoffs of the largest coordinate; rounding a point moves it by at most sqrt(3) of them
+ROUNDING = 8.0  # unit roundoffs of a solid's size by which a plain height above its surface may be off, and more
+
+
+def within_shell(level: Number, squared: Number, over: Number, size: Number) -> Mask:
+    """Whether a point is in a solid of revolution or close above it, on the scale of the solid.
+
+    `level` is by how much the square of its distance from the axis exceeds that of the side there, which is about
+    `squared`; `over` is its height above the nearer cap.
+    """
+    return (level <= CLOSE * squared) & (over <= CLOSE * size)
+
+
+def starts_close(
+    a: Number, b: Number, level: Number, squared: Number, over: Number, size: Number, outwards: Number
+) -> Mask:
+    """Whether a ray from within the shell starts close to the surface and may hit it there.
+
+    It does not if it starts clearly above the side or a cap and goes away from it, as most mirrored rays do. `a` and
+    `b` are those of its quadratic equation; it goes away from the middle between the caps if `outwards` > 0.
+    """
+    u = unit_roundoff(a)
+    near = (level >= -CLOSE * squared) | (over >= -CLOSE * size)
+    inwards = (a < 0.0) | (b < 0.0) | (level <= ROUNDING * u * squared)
+    return near & inwards & ((outwards < 0.0) | (over <= ROUNDING * u * size))
+
+
+def beside_side(level: Number, squared: Number, over: Number, half: Number) -> Mask:
+    """Whether a point is close to the side, on the scale of its squared distance from the axis and of half the height.
+
+    There t is counted from the ray's start. For a start beyond the caps, or in the mirror image of a cone, it is not.
+    """
+    return (fabs(level) <= CLOSE * squared) & (over <= CLOSE * half)
+
+
+def position_error(origin: Vec, p: Vec) -> Number:
+    """Distance to a surface below which a ray starts on it. p is the origin in the frame of the solid."""
+    return POSITION * unit_roundoff(p.x) * maximum(largest(origin), largest(p))
+
+
+def product_of_roots(beside: Mask, c: Number, slope: Number, error: Number) -> Number:
+    """Return c of a quadratic equation, or exactly 0 for rays `beside` the side that start on it.
+
+    `error` is that of the start, and twice the `slope` is the gradient of c.
+    """
+    return where(beside, zero_within(c, 2.0 * slope * error), c)
+
+
+def zero_within(x: Number, error: Number) -> Number:
+    """Return x, or exactly 0 where x is no more than its error."""
+    return where(fabs(x) <= error, 0.0, x)
+
+
+def axial(origin: Vec, centre: Vec, axis: Vec, axis_low: Vec, like: Number) -> tuple[Pair, Pair]:
+    """Compute the height of the origin along an axis through the centre, and its squared distance from the axis.
+
+    `axis_low` is what the rounded axis lacks. All numbers become lanes as `like` is, so that
+    kernels compile these operations once.
+    """
+    f = offset(splat_vec(origin, like), splat_vec(centre, like))
+    height = along(f, splat_vec(axis, like), splat_vec(axis_low, like))
+    return height, minus(squared_length(f), times(height, height))
+
+
+def between_caps(height: Pair, bottom: Number, top: Number, per_height: Number, error: Number) -> tuple[Number, Number]:
+    """Return the t at which a ray from this height passes the planes of the caps, in ascending order."""
+    one = zero_within((bottom - height[0]) - height[1], error) * per_height
+    other = zero_within((top - height[0]) - height[1], error) * per_height
+    return minimum(one, other), maximum(one, other)
+
+
+def splat_vec(v: Vec, like: Number) -> Vec:
+    """Return the same vector for each ray."""
+    return Vec(splat(v.x, like), splat(v.y, like), splat(v.z, like))

@@ -1,0 +1,162 @@
+"""Special places of shapes: the points, lines, planes and circles at which their formulas degenerate.
+
+A shape's file in this folder declares them as `places(shape)`; those that follow from the shape's declared fields and
+from its surface are added here. `tests.stability.snapping` puts rays exactly on them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from minirt.element import fields_of
+from minirt.fields import Direction
+from minirt.shapes import Kind, Shape
+from minirt.shapes.basis import basis
+from tests.shapes.execution_modes import kind_of, surfaces
+from tests.shapes.regimes import Array, Random, random_directions
+from tests.stability.regime import points, size
+
+STEPS = (0.0, 0.25, 0.5, 0.75, 1.0, 2.0, 4.0)  # in sizes of the shape
+TURNS = np.array([(1.0, 0.0), (0.0, 1.0), (0.6, 0.8), (0.8, 0.6)])  # cosine and sine
+
+
+class Place(NamedTuple):
+    """A set of points, which may reach beyond the shape, and for points of it directions that lie in it."""
+
+    name: str
+    points: Callable[[Random, int], Array]  # n of them, (n, 3)
+    ways: Callable[[Random, Array], Array]  # (n, 3), of any length
+
+
+def places(shape: Shape) -> list[Place]:
+    """All special places of a shape; TypeError where its kind declares none."""
+    declared = declaration(kind_of(shape))
+    return [*of_fields(shape), *declared(shape), surface(shape)]
+
+
+def declaration(kind: Kind) -> Callable[[Any], list[Place]]:
+    """The function `places` of the file in this folder that is named as the shape's own."""
+    name = f"{__package__}.{kind.element.__module__.rpartition('.')[2]}"
+    found: Callable[[Any], list[Place]] | None = None
+    if find_spec(name):
+        found = getattr(import_module(name), "places", None)
+    if found is None:
+        raise TypeError(
+            f"no special places of a {kind.element.title}: declare `places` in {name.replace('.', '/')}.py, "
+            "as tests/stability/cylinder.py does"
+        )
+    return found
+
+
+def of_fields(shape: Shape) -> list[Place]:
+    """Of each point of a shape itself; with each of its axes the axis and the planes of its frame through the first."""
+    first, *_ = centres = points(shape)
+    axes = [getattr(shape, each.name) for each in fields_of(type(shape)) if isinstance(each, Direction)]
+    frames = [frame(axis) for axis in axes] or [tuple(np.eye(3))]
+    found = [spot("point", point) for point in centres]
+    found += [line("axis", shape, first, axis) for own in frames for axis in own]
+    return found + [flat("plane of the frame", shape, first, normal) for own in frames for normal in own]
+
+
+def frame(axis: Any) -> tuple[Array, Array, Array]:
+    """The own frame of a shape about an axis or a normal, which is the last of three vectors."""
+    u, v, w = (np.array([each.x, each.y, each.z], float) for each in basis(tuple(map(float, axis))))
+    return u, v, w
+
+
+def spot(name: str, point: Any) -> Place:
+    """A point; its directions are those of the scene's axes and diagonals."""
+    return Place(
+        name,
+        lambda random, n: np.tile(np.asarray(point, float), (n, 1)),
+        lambda random, at: random.integers(-1, 2, at.shape) + np.where(random.random((len(at), 1)) < 0.5, 0.0, 1e-9),
+    )
+
+
+def line(name: str, shape: Shape, point: Any, direction: Any) -> Place:
+    """A straight line through a point."""
+    start, way = np.asarray(point, float), np.asarray(direction, float)
+    return Place(
+        name,
+        lambda random, n: start + steps(random, shape, n) * way,
+        lambda random, at: random.choice([-1.0, 1.0], (len(at), 1)) * way,
+    )
+
+
+def flat(name: str, shape: Shape, point: Any, normal: Any) -> Place:
+    """A plane through a point."""
+    start, (u, v, _) = np.asarray(point, float), frame(normal)
+
+    def ways(random: Random, at: Array) -> Array:
+        cosine, sine = turns(random, len(at))
+        return cosine * u + sine * v
+
+    return Place(name, lambda random, n: start + steps(random, shape, n) * u + steps(random, shape, n) * v, ways)
+
+
+def ring(name: str, centre: Any, axis: Any, radius: float) -> Place:
+    """A circle around an axis; the directions touch it."""
+    middle, (u, v, w) = np.asarray(centre, float), frame(axis)
+
+    def on(random: Random, n: int) -> Array:
+        cosine, sine = turns(random, n)
+        return middle + (radius * cosine) * u + (radius * sine) * v
+
+    return Place(name, on, lambda random, at: random.choice([-1.0, 1.0], (len(at), 1)) * np.cross(w, at - middle))
+
+
+def fan(name: str, shape: Shape, apex: Any, axis: Any, slope: float) -> Place:
+    """The straight lines through a point at this slope (across by along) to an axis: the generators of a cone."""
+    start, (u, v, w) = np.asarray(apex, float), frame(axis)
+
+    def ways(random: Random, at: Array) -> Array:
+        cosine, sine = turns(random, len(at))
+        along: Array = random.choice([-1.0, 1.0], (len(at), 1)) * (w + slope * (cosine * u + sine * v))
+        own = at - start
+        return np.where(own.any(axis=-1, keepdims=True) & (random.random((len(at), 1)) < 0.7), own, along)
+
+    def on(random: Random, n: int) -> Array:
+        return start + steps(random, shape, n) * ways(random, np.tile(start, (n, 1)))
+
+    return Place(name, on, ways)
+
+
+def surface(shape: Shape) -> Place:
+    """The surface of a shape, often where a plane of its frame cuts it; the directions touch it, or are normals."""
+    centre, around = points(shape)[0], size(shape) or 1.0
+    own = of_fields(shape)
+
+    def on(random: Random, n: int) -> Array:
+        chosen = random.integers(len(own), size=n)
+        on_places = np.choose(chosen[:, None], [each.points(random, n) for each in own])
+        anywhere = centre + around * random.uniform(-1, 1, (n, 3))
+        found = surfaces([shape], np.where(random.random((n, 1)) < 0.5, on_places, anywhere)[None])[0][0]
+        return np.where(np.isfinite(found), found, centre)
+
+    def ways(random: Random, at: Array) -> Array:
+        out, n = surfaces([shape], at[None])[1][0], len(at)
+        axes = np.eye(3)[random.integers(3, size=n)]
+        aside = np.cross(out, np.where(random.random((n, 1)) < 0.5, random_directions(random, n), axes))
+        return np.where(random.random((n, 1)) < 0.3, out * random.choice([-1.0, 1.0], (n, 1)), aside)
+
+    return Place("surface", on, ways)
+
+
+def steps(random: Random, shape: Shape, n: int) -> Array:
+    """Ways to go, (n, 1): round shares of the size of a shape, or any."""
+    share = np.where(random.random((n, 1)) < 0.7, random.choice(STEPS, (n, 1)), random.uniform(0, 4, (n, 1)))
+    return (size(shape) or 1.0) * share * random.choice([-1.0, 1.0], (n, 1))
+
+
+def turns(random: Random, n: int) -> tuple[Array, Array]:
+    """Cosines and sines of angles, (n, 1) each: of multiples of 90 degrees, of 3-4-5 triangles, or any."""
+    angle = random.uniform(0, 2 * np.pi, n)
+    anywhere = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    pair = np.where(random.random((n, 1)) < 0.7, TURNS[random.integers(len(TURNS), size=n)], anywhere)
+    pair = pair * random.choice([-1.0, 1.0], (n, 2))
+    return pair[:, :1], pair[:, 1:]

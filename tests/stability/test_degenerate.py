@@ -1,0 +1,63 @@
+"""Rays at the special places of every shape, exactly and to a few units in the last place, have right answers.
+
+A few thousand for each kind; `python -m tests.stability.degenerate` tries a million.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from minirt.shapes import KINDS, Kind
+from tests.oracle.many import crossed
+from tests.shapes.execution_modes import Intersect
+from tests.stability import wrong_starts
+from tests.stability.common import common
+from tests.stability.degenerate import groups, wrong
+from tests.stability.execution_modes import MODES
+from tests.stability.places import declaration, places
+from tests.stability.poses import pose
+from tests.stability.regime import posed
+
+KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+SEED, SHAPES, RAYS = 5, 24, 256
+
+
+def complaints(intersect: Intersect, kind: Kind, shapes: int = SHAPES) -> Iterator[str]:
+    return (str(each) for group in groups(kind, SEED, shapes, RAYS) for each in wrong(intersect, *group, most=4))
+
+
+@KIND
+@pytest.mark.parametrize("mode", ["arrays", "traced"])
+def test_rays_at_special_places_have_right_answers(kind: Kind, mode: str) -> None:
+    assert not list(islice(complaints(MODES[mode][0], kind), 3))
+
+
+@KIND
+def test_every_kind_declares_its_special_places(kind: Kind) -> None:
+    declaration(kind)  # TypeError, with what to do, where there is none
+    random = np.random.default_rng(1)
+    for place in places(pose(kind, random)):
+        points = place.points(random, 64)
+        assert points.shape == place.ways(random, points).shape == (64, 3), place.name
+        assert np.isfinite(points).all(), place.name
+
+
+@pytest.mark.parametrize("name", wrong_starts.VARIANTS)
+def test_a_wrong_formula_is_found(name: str) -> None:
+    title, intersect = wrong_starts.VARIANTS[name]
+    kind = next(each for each in KINDS if each.element.title == title)
+    assert next(complaints(intersect, kind, 10 * SHAPES), "")
+
+
+@KIND
+def test_many_rays_at_once_are_judged_as_each_alone(kind: Kind) -> None:
+    right = posed(next(each for each in common(kind) if each.name == "usual"))
+    shapes, origins, directions = right.rays
+    for i, shape in enumerate(shapes):
+        t = crossed(shape, origins[i], directions[i]).nearest()
+        assert np.array_equal(np.isfinite(t), np.isfinite(right.t[i]))
+        assert np.allclose(t, right.t[i], rtol=2.0**-52, atol=0.0)
