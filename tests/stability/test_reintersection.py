@@ -13,8 +13,8 @@ import pytest
 from minirt.shapes import KINDS, Kind, Shape
 from minirt.shapes.box import Box
 from minirt.shapes.disc import Disc
-from minirt.shapes.square import Square
 from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from tests import oracle
 from tests.oracle.body import body
