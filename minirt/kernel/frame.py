@@ -14,6 +14,10 @@ from minirt.lanes import Vec, lane, load, minimum, rarely, save, splat, unit, wh
 from minirt.lanes.vec import Number
 
 PACKET_HEIGHT = 4  # pixels; a packet is as wide as makes one pixel for each of the `width` rays
+SUMS = 3  # estimates of a packet's light: the one that is drawn, and two references that tell its error
+# Samples of a reference by those of what is drawn. The error of an estimate of the error is that of four times as many
+# references with as many samples, at twice the cost of one.
+REFERENCE_SAMPLES = 2
 TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles at a time
 CANCELLED = 2**40  # value of the row counter that cancels a frame; no picture has so many rows
 OPAQUE = 0xFF000000  # alpha of a pixel
@@ -33,15 +37,23 @@ def packet_radiance(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: in
     return incoming_radiance(scene, memory, tile, origin, unit(direction))
 
 
-def accumulate(radiance: Vec, sums: Any, start: int, sample: int) -> Vec:
-    """Add the radiance of a sample to that of the samples before it, which `sums` holds from index `start` on."""
+def accumulate(radiance: Vec, sums: Any, estimate: int, sample: int) -> Vec:
+    """Add the radiance of a sample to that of the samples before it, which `sums` holds for each estimate."""
     count = width(sums)
+    start = 3 * count * estimate
     if sample > 0:
         radiance = radiance + Vec(load(sums, start), load(sums, start + count), load(sums, start + 2 * count))
+    save_sum(radiance, sums, estimate)
+    return radiance
+
+
+def save_sum(radiance: Vec, sums: Any, estimate: int) -> None:
+    """Store the radiance of an estimate in `sums`."""
+    count = width(sums)
+    start = 3 * count * estimate
     save(radiance.x, sums, start)
     save(radiance.y, sums, start + count)
     save(radiance.z, sums, start + 2 * count)
-    return radiance
 
 
 def without_non_finite(radiance: Vec, memory: Any) -> Vec:
@@ -69,23 +81,34 @@ def to_byte_range(channel: Number) -> Number:
 
 
 def frame(
-    next_row: Any, pixels: Any, linear: Any, rays: Any, packet_mask: Any, memory: Any, sums: Any, scene: SceneArrays
+    next_row: Any,
+    pixels: Any,
+    linear: Any,
+    rays: Any,
+    plan: Any,
+    errors: Any,
+    memory: Any,
+    sums: Any,
+    scene: SceneArrays,
 ) -> None:
     """Render rows of tiles, taking the next one from the counter `next_row` until none is left.
 
     Any number of threads may do so at the same time, each with its own `memory` (see `minirt.kernel.trace.unoccluded`
-    and `minirt.kernel.shading.surfaces`) and its own `sums` of samples of a tile (3 * TILE * TILE). `pixels` (h, w)
-    receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it has no rows. `rays` (samples,
+    and `minirt.kernel.shading.surfaces`) and its own `sums` of samples of a packet (`SUMS` * 3 * width). `pixels`
+    (h, w) receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it has no rows. `rays` (rows,
     3 * width) has x, y and z of the directions of a packet's rays, less the direction through the packet's upper left
-    corner. `packet_mask` (row, column) is not 0 for each packet to render; without rows all are rendered. A counter set
-    to `CANCELLED` from outside ends the frame at the next packet.
+    corner. `plan` (row, column, 3) has for each packet its first row in `rays`, its number of samples, 0 to leave the
+    packet alone, and the first row of two reference estimates with `REFERENCE_SAMPLES` times as many samples each, 0 for
+    none. Without rows every packet takes all rows of `rays`. `errors` (row, column) receives the squared errors of packets with references, see
+    `squared_error`. A counter set to `CANCELLED` from outside ends the frame at the next packet.
     """
     render_tiles(
         next_row,
         by_reference(pixels),
         by_reference(linear),
         rays,
-        by_reference(packet_mask),
+        by_reference(plan),
+        by_reference(errors),
         by_reference(memory),
         sums,
         by_reference(scene),
@@ -93,11 +116,18 @@ def frame(
 
 
 def render_tiles(
-    next_row: Any, pixels: Any, linear: Any, rays: Any, packet_mask: Any, memory: Any, sums: Any, scene: SceneArrays
+    next_row: Any,
+    pixels: Any,
+    linear: Any,
+    rays: Any,
+    plan: Any,
+    errors: Any,
+    memory: Any,
+    sums: Any,
+    scene: SceneArrays,
 ) -> None:
     """Render rows of tiles: the body of `frame`, with the arrays passed by reference."""
     height, across = pixels.shape
-    samples = rays.shape[0]
     packet_width = width(rays) // PACKET_HEIGHT
     zero = splat(0.0, load(rays[0], 0))
     black = Vec(zero, zero, zero)
@@ -108,24 +138,53 @@ def render_tiles(
         for left in range(0, across, TILE):
             tile = top // TILE * tile_count(across) + left // TILE
             empty = not has_environment(scene) and is_empty(scene, tile)
-            # All packets for each sample, not all samples for each packet: a sum kept in registers through the loop
-            # over samples took a seventh more time, since tracing then lacks those registers.
-            for sample in range(samples):
-                for y in range(top, min(top + TILE, height), PACKET_HEIGHT):
-                    for x in range(left, min(left + TILE, across), packet_width):
-                        if rarely(next_row[0] >= CANCELLED):
-                            return
-                        if rarely(packet_mask.shape[0] > 0) and packet_mask[y // PACKET_HEIGHT, x // packet_width] == 0:
+            for y in range(top, min(top + TILE, height), PACKET_HEIGHT):
+                for x in range(left, min(left + TILE, across), packet_width):
+                    first, samples, reference = 0, rays.shape[0], 0
+                    if rarely(plan.shape[0] > 0):
+                        row, column = y // PACKET_HEIGHT, x // packet_width
+                        first, samples, reference = plan[row, column, 0], plan[row, column, 1], plan[row, column, 2]
+                        if samples == 0:
                             continue
-                        if empty:
-                            store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
-                            continue
-                        radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[sample], x, y), memory)
-                        if rarely(samples > 1):
-                            place = (y - top) * TILE + (x - left) * PACKET_HEIGHT
-                            radiance = accumulate(radiance, sums, 3 * place, sample) / samples
-                        if sample == samples - 1:
-                            store_packet(pixels, linear, x, y, radiance)
+                    if empty:
+                        store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
+                        continue
+                    estimates = 1 if reference == 0 else SUMS
+                    for estimate in range(estimates):
+                        if rarely(estimate == 1):
+                            samples *= REFERENCE_SAMPLES
+                        for sample in range(samples):
+                            if rarely(next_row[0] >= CANCELLED):
+                                return
+                            radiance = packet_radiance(scene, memory, tile, rays[first + sample], x, y)
+                            radiance = without_non_finite(radiance, memory)
+                            if rarely(samples > 1):
+                                radiance = accumulate(radiance, sums, estimate, sample) / samples
+                            if sample == samples - 1:
+                                if estimate == 0:
+                                    store_packet(pixels, linear, x, y, radiance)
+                                if rarely(estimates > 1):
+                                    save_sum(radiance, sums, estimate)
+                        first = reference + (samples if estimate == 1 else 0)
+                    if rarely(estimates > 1):
+                        inside = min(height - y, PACKET_HEIGHT), min(across - x, packet_width)
+                        errors[y // PACKET_HEIGHT, x // packet_width] = squared_error(sums, inside[0], inside[1])
+
+
+def squared_error(sums: Any, height: int, across: int) -> float:
+    """Estimate the squared error of a packet's light, clamped to [0, 1], summed over its pixels and channels.
+
+    `sums` has the light and two reference estimates. Where these are independent and have no bias, the product of the
+    differences from each of them has the squared error as its mean, however large their own errors are.
+    """
+    count = width(sums)
+    total = 0.0
+    for number in range(3 * count):
+        pixel = number % count
+        if pixel // (count // PACKET_HEIGHT) < height and pixel % (count // PACKET_HEIGHT) < across:
+            light = min(sums[number], 1.0)
+            total += (light - min(sums[3 * count + number], 1.0)) * (light - min(sums[6 * count + number], 1.0))
+    return total
 
 
 def tile_count(pixels: int) -> int:
