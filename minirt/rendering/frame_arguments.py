@@ -75,8 +75,8 @@ def as_uint32(pixels: np.ndarray) -> np.ndarray:
 
 
 def sum_buffer(arrays: Any) -> np.ndarray:
-    """Allocate the buffer in which a thread sums the light of a packet."""
-    return np.empty(SUMS * 3 * width(arrays.camera), arrays.camera.dtype)
+    """Allocate the buffer in which a thread sums the light of a tile."""
+    return np.empty(SUMS, arrays.camera.dtype)
 
 
 def thread_memory(arrays: Any) -> np.ndarray:
