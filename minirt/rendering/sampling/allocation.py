@@ -6,7 +6,8 @@ a number of samples in proportion to c^0.4.
 
 c is the mean of the probes of all packets of a class, those with about as much contrast. A class of which few were
 probed may have missed something, so that some probes as one expects from the other classes, in proportion to the
-square of the contrast, are counted with its own.
+square of the contrast, are counted with its own. And since all samples of a class may have missed something, one sample
+more than they are counts as if it differed.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from minirt.rendering.sampling.contrast import CLASSES
 from minirt.rendering.sampling.sample_table import COUNTS
 
 ERROR_EXPONENT = 1.5  # squared error falls as this power of the number of samples
+# Squared error of a pixel of which one sample of a class, by a quarter in one of three colours, differs from all others.
+UNSEEN_ERROR = 1 / 16
 PRIOR = 4.0  # probes that the expectation of a class counts as
 EXPECTED = 4.0 ** np.arange(CLASSES)  # ratios of c
 SEARCHES, PRICES = 3, 24  # for the price of an error: so many times among so many prices
@@ -30,6 +33,15 @@ def coefficients(classes: np.ndarray, counts: np.ndarray, errors: np.ndarray) ->
     total = np.bincount(classes, found, CLASSES) + PRIOR * expected
     c: np.ndarray = total / (np.bincount(classes, minlength=CLASSES) + PRIOR)
     return np.maximum(c, LEAST * max(c.max(), LEAST))
+
+
+def unseen(packets: np.ndarray) -> np.ndarray:
+    """The part of c of every class that is due to what no sample met: with n samples the class has an error of
+    `UNSEEN_ERROR` / n^2. `packets` (classes, levels) counts the packets."""
+    number = np.maximum(packets.sum(axis=1), 1)
+    samples = np.maximum(packets @ COUNTS / number, 1.0)
+    part: np.ndarray = UNSEEN_ERROR * samples ** (ERROR_EXPONENT - 2) / number
+    return part
 
 
 def allocate(c: np.ndarray, packets: np.ndarray, error: float, budget: float) -> np.ndarray:

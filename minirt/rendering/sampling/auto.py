@@ -24,7 +24,7 @@ import numpy as np
 
 from minirt.kernel.frame import PACKET_HEIGHT, REFERENCE_SAMPLES
 from minirt.rendering.frame_arguments import GOLDEN_RATIO
-from minirt.rendering.sampling.allocation import EXPECTED, allocate, coefficients, places_of, squared_error
+from minirt.rendering.sampling.allocation import EXPECTED, UNSEEN_ERROR, allocate, coefficients, places_of, squared_error, unseen
 from minirt.rendering.sampling.contrast import CLASSES
 from minirt.rendering.sampling.outcome import Outcome
 from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_numbers
@@ -38,6 +38,7 @@ CHEAP = 0.5  # samples of a pixel, on average, that are not worth portions
 PORTIONS_OF_TIME = 8
 DOUBT = 4.0  # factor by which the squared errors of a class may turn out to be greater than the first sweep says
 MARGIN = 0.9  # of the squared error that is aimed at
+MOST_OF_TIME = 0.25  # of the packets of a portion to probe, where the time is limited
 SHARE_OF_TIME = 0.98  # of the remaining time, to be filled
 
 
@@ -87,7 +88,7 @@ class AutoSampler:
         errors = self.errors[self.is_probed]
         mean, doubt = errors.mean(), errors.std() / sqrt(len(errors))
         total: float | None = (mean + doubt) * self.count
-        if (mean + SURE * doubt) * self.count > FAR_BELOW * goal and perf_counter() < start + seconds:
+        if (mean + SURE * doubt) * self.count + UNSEEN_ERROR > FAR_BELOW * goal and perf_counter() < start + seconds:
             total = self.refine(goal, start + seconds)
         if total is None:
             return None
@@ -153,17 +154,19 @@ class AutoSampler:
             return True
         c, packets = self.coefficients(), self.count_packets(todo)
         others = squared_error(c, self.histogram - packets)
-        budget = SHARE_OF_TIME * seconds * self.speed * len(todo) / len(some) if seconds < inf else inf
-        places = places_of(allocate(c, packets, max(MARGIN * goal - others, goal / DOUBT), budget))
-        new = (places[self.classes[some], self.levels[some]] + self.dither(some)).astype(np.uint8)
-        more = new > self.levels[some]
-        some, new = some[more], new[more]
-        if not len(some):
-            return True
         # Packets that are drawn again are probed again, and others as long as few are known.
-        probed = self.is_probed[some] & (self.levels[some] > 0)
-        probed |= self.dither(some, 2**20) < max(PROBES - self.known, 0) / len(some)
-        return self.sweep(some, new, probed)
+        share = min(max(PROBES - self.known, 0) / len(some), 1.0 if seconds == inf else MOST_OF_TIME)
+        probed = self.is_probed[some] & (self.levels[some] > 0) | (self.dither(some, 2**20) < share)
+        probed[0] |= not np.count_nonzero(self.is_probed)
+        cost = 1 + 2 * REFERENCE_SAMPLES * probed.mean()
+        budget = SHARE_OF_TIME * seconds * self.speed / cost * len(todo) / len(some) if seconds < inf else inf
+        places = places_of(allocate(c, packets, max(MARGIN * goal - others, goal / DOUBT), budget))
+        wanted = places[self.classes[some], self.levels[some]]
+        new = (wanted + self.dither(some)).astype(np.uint8)
+        if seconds == inf and (new <= self.levels[some]).all():
+            new = np.ceil(wanted).astype(np.uint8)
+        more = new > self.levels[some]
+        return self.sweep(some[more], new[more], probed[more]) if more.any() else True
 
     def draw_first(self) -> bool:
         """Draw all packets with one sample, and probe some of them. False when cancelled."""
@@ -212,7 +215,8 @@ class AutoSampler:
     def coefficients(self) -> np.ndarray:
         """Estimate c of every class from all probes."""
         probes = np.flatnonzero(self.is_probed)
-        return coefficients(self.classes[probes], COUNTS[self.levels[probes]], self.errors[probes])
+        found = coefficients(self.classes[probes], COUNTS[self.levels[probes]], self.errors[probes])
+        return found + unseen(self.histogram)
 
     def total(self) -> float:
         """Estimate the sum of the squared errors of all packets."""

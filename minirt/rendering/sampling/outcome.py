@@ -8,6 +8,7 @@ from typing import NamedTuple
 ROUNDING = 1 / sqrt(12) / 255  # RMSE of rounding light to 8 bits, where all fractions of a level are as likely
 # Below this error rounding decides: it makes up nine tenths of the RMSE of a picture of 8 bits, and more.
 ROUNDING_DECIDES = ROUNDING / 2
+MOST_SAMPLES = 2**16  # of a pixel
 
 
 class Outcome(NamedTuple):
@@ -37,11 +38,11 @@ class Outcome(NamedTuple):
     @property
     def notice(self) -> str:
         """What to say where the goal was not reached, and why; empty where it was."""
+        if self.rounded:
+            return f"no more samples: rounding to 8 bits decides below an error of {ROUNDING_DECIDES:.2g}"
         if self.is_reached:
             return ""
-        if self.rounded:
-            reason = "rounding to 8 bits decides from there on"
-        elif self.most == MOST_SAMPLES:
+        if self.most == MOST_SAMPLES:
             reason = f"some pixels have {self.most} samples, the most there are"
         else:
             reason = "the time was over"
@@ -52,6 +53,3 @@ class Outcome(NamedTuple):
             f"{self.samples:.1f} samples a pixel on average, {self.most} at most; "
             f"estimated error {self.error:.2g}, {self.error_of_bytes:.2g} when rounded to 8 bits; {self.seconds:.2f} s"
         )
-
-
-MOST_SAMPLES = 2**16  # of a pixel
