@@ -97,9 +97,10 @@ def frame(
     (h, w) receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it has no rows. `rays` (rows,
     3 * width) has x, y and z of the directions of a packet's rays, less the direction through the packet's upper left
     corner. `plan` (row, column, 3) has for each packet its first row in `rays`, its number of samples, 0 to leave the
-    packet alone, and the first row of two reference estimates with `REFERENCE_SAMPLES` times as many samples each, 0 for
-    none. Without rows every packet takes all rows of `rays`. `errors` (row, column) receives the squared errors of packets with references, see
-    `squared_error`. A counter set to `CANCELLED` from outside ends the frame at the next packet.
+    packet alone, and the first row of two reference estimates, each of `REFERENCE_SAMPLES` times as many samples, 0 for
+    none. Without rows every packet takes all rows of `rays`. `errors` (row, column) receives the squared errors of
+    packets with references, see `squared_error`; it may be without rows where no packet has any. A counter set to
+    `CANCELLED` from outside ends the frame at the next packet.
     """
     render_tiles(
         next_row,
@@ -137,9 +138,7 @@ def render_tiles(
         for left in range(0, across, TILE):
             tile = top // TILE * tile_count(across) + left // TILE
             empty = not has_environment(scene) and is_empty(scene, tile)
-            turns = rays.shape[0]
-            if rarely(plan.shape[0] > 0):
-                turns = most_rays(plan, top // PACKET_HEIGHT, left // packet_width, packet_width)
+            turns = most_rays(plan, rays, top // PACKET_HEIGHT, left // packet_width)
             # All packets for each sample, not all samples for each packet: a sum kept in registers through the loop
             # over samples took a seventh more time, since tracing then lacks those registers.
             for turn in range(turns):
@@ -156,21 +155,18 @@ def render_tiles(
                             store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
                             continue
                         radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[row], x, y), memory)
-                        place = 3 * ((estimate * TILE + y - top) * TILE + (x - left) * PACKET_HEIGHT)
+                        place = estimate * ESTIMATE + 3 * ((y - top) * TILE + (x - left) * PACKET_HEIGHT)
                         if rarely(samples > 1):
                             radiance = accumulate(radiance, sums, place, sample) / samples
                         if sample == samples - 1:
-                            if estimate == 0:
-                                store_packet(pixels, linear, x, y, radiance)
-                            if rarely(errors.shape[0] > 0):
-                                save_sum(radiance, sums, place)
-                                if estimate == 2:
-                                    error = squared_error(sums, place, min(height - y, TILE), min(across - x, TILE))
-                                    errors[y // PACKET_HEIGHT, x // packet_width] = error
+                            store_estimate(pixels, linear, errors, sums, x, y, radiance, estimate, place)
 
 
-def most_rays(plan: Any, row: int, column: int, packet_width: int) -> int:
+def most_rays(plan: Any, rays: Any, row: int, column: int) -> int:
     """Return the most rays that any pixel takes in a tile, whose first packet is given."""
+    if not rarely(plan.shape[0] > 0):
+        return int(rays.shape[0])
+    packet_width = width(rays) // PACKET_HEIGHT
     most = 0
     for y in range(row, min(row + TILE // PACKET_HEIGHT, plan.shape[0])):
         for x in range(column, min(column + TILE // packet_width, plan.shape[1])):
@@ -192,12 +188,25 @@ def planned(plan: Any, column: int, row: int, turn: int) -> tuple[int, int, int,
     return 1 + estimate, reference + turn, turn - estimate * each, each
 
 
+def store_estimate(
+    pixels: Any, linear: Any, errors: Any, sums: Any, x: int, y: int, radiance: Vec, estimate: int, place: int
+) -> None:
+    """Store the radiance of a packet in the picture, and where references tell its squared error, that error."""
+    if estimate == 0:
+        store_packet(pixels, linear, x, y, radiance)
+    if rarely(errors.shape[0] > 0):
+        save_sum(radiance, sums, place)
+        if estimate == 2:
+            row, column = y // PACKET_HEIGHT, x * PACKET_HEIGHT // width(radiance.x)
+            errors[row, column] = squared_error(sums, place, pixels.shape[0] - y, pixels.shape[1] - x)
+
+
 def squared_error(sums: Any, start: int, height: int, across: int) -> float:
     """Estimate the squared error of a packet's light, clamped to [0, 1], summed over its pixels and channels.
 
     From `start` back, `sums` has two reference estimates and the light. Where the references are independent and have
     no bias, the product of the differences from each of them has the squared error as its mean, however large their own
-    errors are. Pixels beyond `height` lines or `across` columns are left out.
+    errors are. Of the packet's pixels, those beyond `height` lines or `across` columns are left out.
     """
     count = width(sums)
     packet_width = count // PACKET_HEIGHT

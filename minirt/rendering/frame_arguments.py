@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.kernel.frame import SUMS
-from minirt.lanes import width
 from minirt.rendering.packing.camera import packet_rays
 
 NO_LINEAR = np.zeros((0, 0, 3))

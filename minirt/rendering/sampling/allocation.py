@@ -18,7 +18,7 @@ from minirt.rendering.sampling.contrast import CLASSES
 from minirt.rendering.sampling.sample_table import COUNTS
 
 ERROR_EXPONENT = 1.5  # squared error falls as this power of the number of samples
-# Squared error of a pixel of which one sample of a class, by a quarter in one of three colours, differs from all others.
+# Squared error of a class of which one sample differs from all others, by a quarter in one of three colours.
 UNSEEN_ERROR = 1 / 16
 PRIOR = 4.0  # probes that the expectation of a class counts as
 EXPECTED = 4.0 ** np.arange(CLASSES)  # ratios of c
@@ -32,7 +32,8 @@ def coefficients(classes: np.ndarray, counts: np.ndarray, errors: np.ndarray) ->
     expected = EXPECTED * max(found.sum() / EXPECTED[classes].sum(), LEAST / EXPECTED[-1])
     total = np.bincount(classes, found, CLASSES) + PRIOR * expected
     c: np.ndarray = total / (np.bincount(classes, minlength=CLASSES) + PRIOR)
-    return np.maximum(c, LEAST * max(c.max(), LEAST))
+    positive: np.ndarray = np.maximum(c, LEAST * max(float(c.max()), LEAST))
+    return positive
 
 
 def unseen(packets: np.ndarray) -> np.ndarray:

@@ -24,7 +24,15 @@ import numpy as np
 
 from minirt.kernel.frame import PACKET_HEIGHT, REFERENCE_SAMPLES
 from minirt.rendering.frame_arguments import GOLDEN_RATIO
-from minirt.rendering.sampling.allocation import EXPECTED, UNSEEN_ERROR, allocate, coefficients, places_of, squared_error, unseen
+from minirt.rendering.sampling.allocation import (
+    EXPECTED,
+    UNSEEN_ERROR,
+    allocate,
+    coefficients,
+    places_of,
+    squared_error,
+    unseen,
+)
 from minirt.rendering.sampling.contrast import CLASSES
 from minirt.rendering.sampling.outcome import Outcome
 from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_numbers
@@ -87,7 +95,7 @@ class AutoSampler:
         # A few probes may decide: an estimate that ends rendering is one that is rather too large.
         errors = self.errors[self.is_probed]
         mean, doubt = errors.mean(), errors.std() / sqrt(len(errors))
-        total: float | None = (mean + doubt) * self.count
+        total: float | None = (mean + doubt) * self.count + UNSEEN_ERROR
         if (mean + SURE * doubt) * self.count + UNSEEN_ERROR > FAR_BELOW * goal and perf_counter() < start + seconds:
             total = self.refine(goal, start + seconds)
         if total is None:
@@ -143,7 +151,7 @@ class AutoSampler:
     def in_need(self, goal: float) -> np.ndarray:
         """The packets of all classes that might need more samples."""
         samples = allocate(self.coefficients(), self.histogram, MARGIN * goal / DOUBT, inf)
-        needs = ((samples > COUNTS) & (self.histogram > 0)).any(axis=1)
+        needs = np.count_nonzero((samples > COUNTS) & (self.histogram > 0), axis=1) > 0
         return np.flatnonzero(needs[self.classes])
 
     def draw_some(self, todo: np.ndarray, chosen: np.ndarray, goal: float, seconds: float) -> bool:
@@ -156,7 +164,8 @@ class AutoSampler:
         others = squared_error(c, self.histogram - packets)
         # Packets that are drawn again are probed again, and others as long as few are known.
         share = min(max(PROBES - self.known, 0) / len(some), 1.0 if seconds == inf else MOST_OF_TIME)
-        probed = self.is_probed[some] & (self.levels[some] > 0) | (self.dither(some, 2**20) < share)
+        probed: np.ndarray = self.dither(some, 2**20) < share
+        probed |= self.is_probed[some] & (self.levels[some] > 0)
         probed[0] |= not np.count_nonzero(self.is_probed)
         cost = 1 + 2 * REFERENCE_SAMPLES * probed.mean()
         budget = SHARE_OF_TIME * seconds * self.speed / cost * len(todo) / len(some) if seconds < inf else inf
@@ -204,19 +213,22 @@ class AutoSampler:
 
     def dither(self, packets: np.ndarray, salt: int = 2**10) -> np.ndarray:
         """A random number in [0, 1) for each of some packets, another after each sweep."""
-        dither: np.ndarray = self.random[packets] * salt + self.sweeps * GOLDEN_RATIO
-        return dither - np.floor(dither)
+        numbers = self.random[packets] * salt + self.sweeps * GOLDEN_RATIO
+        dither: np.ndarray = numbers - np.floor(numbers)
+        return dither
 
     def count_packets(self, packets: np.ndarray) -> np.ndarray:
         """Count packets by class and level."""
         slots = self.classes[packets].astype(np.intp) * len(COUNTS) + self.levels[packets]
-        return np.bincount(slots, minlength=CLASSES * len(COUNTS)).reshape(CLASSES, -1)
+        counts: np.ndarray = np.bincount(slots, minlength=CLASSES * len(COUNTS)).reshape(CLASSES, -1)
+        return counts
 
     def coefficients(self) -> np.ndarray:
         """Estimate c of every class from all probes."""
         probes = np.flatnonzero(self.is_probed)
         found = coefficients(self.classes[probes], COUNTS[self.levels[probes]], self.errors[probes])
-        return found + unseen(self.histogram)
+        c: np.ndarray = found + unseen(self.histogram)
+        return c
 
     def total(self) -> float:
         """Estimate the sum of the squared errors of all packets."""

@@ -51,7 +51,7 @@ def classes_of_strip(lines: np.ndarray, above: int, columns: int) -> np.ndarray:
         difference -= np.minimum(lines[there], lines[here])
         bits[there] |= difference
         bits[here] |= difference
-    # The highest bit of all differences is that of the greatest: "or" is as good as a maximum, and takes 8 bytes at once.
+    # The highest bit of all differences is that of the greatest: "or" is as good as a maximum, for 8 bytes at once.
     rows = (len(lines) - above) // PACKET_HEIGHT
     words = bits[above : above + rows * PACKET_HEIGHT].view(np.uint64)
     words = np.bitwise_or.reduce(words.reshape(rows, PACKET_HEIGHT, -1), axis=1)

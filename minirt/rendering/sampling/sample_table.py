@@ -1,8 +1,9 @@
 """Table of sample positions: for some numbers of samples, those that are drawn, and references that tell their error.
 
 The drawn samples are those of `--samples N`, a centred lattice, which has the least error. References are a lattice of
-`REFERENCE_SAMPLES` times as many, shifted at random in each pixel of a packet and wrapped around (Cranley and Patterson, Randomization of number
-theoretic methods for multiple integration, 1976): their mean over all shifts is the exact light.
+`REFERENCE_SAMPLES` times as many, shifted at random in each pixel of a packet and wrapped around (Cranley and
+Patterson, Randomization of number theoretic methods for multiple integration, 1976): their mean over all shifts is the
+exact light.
 """
 
 from __future__ import annotations
@@ -37,8 +38,7 @@ class SampleTable:
         self.positions = np.concatenate(parts)
 
     def plan(self, levels: np.ndarray, probed: np.ndarray) -> np.ndarray:
-        """Rows of the plan of `minirt.kernel.frame.frame` for packets, by their levels; those `probed` get references.
-        """
+        """Rows of the plan of `minirt.kernel.frame.frame` for packets of some levels; those `probed` get references."""
         plan = np.zeros((len(levels), 3), np.int32)
         plan[:, 0] = self.first[levels]
         plan[:, 1] = COUNTS[levels]

@@ -10,8 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 import minirt
-from minirt.rendering import Renderer
 from minirt.kernel.frame import REFERENCE_SAMPLES
+from minirt.rendering import Renderer
 from minirt.rendering.sampling.auto import FIRST_PROBES, AutoSampler
 from minirt.rendering.sampling.outcome import Outcome
 from minirt.scene import Ambient, Camera, Light, Scene
