@@ -110,7 +110,8 @@ def test_auto_samples_reach_the_error_or_fill_the_time(run: Run, goal: tuple[str
     assert ended.status == 0
     match = re.fullmatch(
         r"([0-9.]+) samples a pixel on average, ([0-9]+) at most; "
-        r"estimated error ([0-9.e-]+), ([0-9.e-]+) when rounded to 8 bits; ([0-9.]+) s\n(notice: no more samples: .*\n)?",
+        r"estimated error ([0-9.e-]+), ([0-9.e-]+) when rounded to 8 bits; ([0-9.]+) s\n"
+        r"(notice: no more samples: .*\n)?",
         ended.err,
     )
     assert match
