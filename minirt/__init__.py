@@ -104,6 +104,7 @@ def render(
     threads: int | None = None,
     precision: str = "double",
     depth: int | None = None,
+    linear: bool = True,
 ) -> Image:
     """Render a scene: `width` by `height` pixels, each the mean of `samples` rays.
 
@@ -114,7 +115,8 @@ def render(
 
     With `samples` "auto" each part of the picture gets as many samples as it needs, until the estimated error is at
     most `error` (DEFAULT_ERROR if neither is given) or `time` seconds have passed, compilation not counted; `.reached`
-    of the picture tells which. Errors are defined in `minirt.rendering.sampling.outcome`.
+    of the picture tells which. Errors are defined in `minirt.rendering.sampling.outcome`. Without `linear` light, the
+    picture has 8 bits alone, and sampling also ends where rounding to them decides its error.
     """
     import numpy as np
 
@@ -125,17 +127,17 @@ def render(
     if width < 1 or height < 1:
         raise RenderError(f"a picture has at least 1x1 pixels, got {width}x{height}")
     pixels = np.empty((height, width, 4), np.uint8)
-    linear = np.zeros((height, width, 3))
+    light = np.zeros((height, width, 3)) if linear else None
     chosen = renderer(threads, precision, depth)
     if samples == "auto":
         if time is not None:
             chosen.prepare(scene)
-        reached = chosen.reach(scene, pixels, *goal(error, time), linear)
-        return Image.from_bgra(pixels, linear, reached)
+        reached = chosen.reach(scene, pixels, *goal(error, time), light)
+        return Image.from_bgra(pixels, light, reached)
     if error is not None or time is not None:
         raise RenderError(f"an error or a time needs samples='auto', got {samples}")
-    chosen.render(scene, pixels, samples, linear)
-    return Image.from_bgra(pixels, linear)
+    chosen.render(scene, pixels, samples, light)
+    return Image.from_bgra(pixels, light)
 
 
 def goal(error: float | None, time: float | None) -> tuple[float, float]:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 
-import numpy as np
 import pytest
 
 from minirt import bench, timing
-from minirt.kernel.frame import PACKET_HEIGHT
+from minirt.kernel.frame import PACKET_HEIGHT, REFERENCE_SAMPLES
 from minirt.rendering import renderer
 from minirt.rendering.frame_arguments import Frame
 from minirt.rendering.running import to_error
@@ -58,11 +57,13 @@ def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
 
 
 def packets_of(frame: Frame) -> int:
-    """Count the packets of rays of a frame: one for each sample in each wanted packet of pixels."""
+    """Count the packets of rays of a frame: one for each sample in each packet of pixels that takes any."""
     height, width = frame.pixels.shape
     samples, numbers = frame.rays.shape
-    wanted = np.count_nonzero(frame.wanted) if len(frame.wanted) else packets(width, height, numbers // 3)
-    return samples * int(wanted)
+    if not len(frame.plan):
+        return samples * packets(width, height, numbers // 3)
+    drawn, probed = frame.plan[..., 1], frame.plan[..., 2] > 0
+    return int(drawn.sum() + 2 * REFERENCE_SAMPLES * drawn[probed].sum())
 
 
 def packets(width: int, height: int, rays: int = 16) -> int:

@@ -78,6 +78,8 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
         parser.error("--turntable needs the name of a file: -o spin.gif")
     if (options.error or options.time) and options.samples != "auto":
         parser.fail("--error and --time need --samples auto", USAGE)
+    if options.strict and not options.error:
+        parser.fail("--strict needs --error", USAGE)
     if options.samples == "auto" and (options.replay or options.turntable or not options.output):
         parser.fail("--samples auto makes one picture: it needs -o, and no --replay or --turntable", USAGE)
 

@@ -66,6 +66,11 @@ def argument_parser() -> Arguments:
         help=f"with --samples auto: sample until the estimated error is at most E ({DEFAULT_ERROR})",
     )
     add("--time", type=positive_number, metavar="SECONDS", help="with --samples auto: sample for that long")
+    add(
+        "--strict",
+        action="store_true",
+        help="exit with status 1 when the picture has not reached the error that --error asks for",
+    )
     add("--fallback", metavar="FILE", help="render to FILE when no window can be opened")
     add("--left-handed", action="store_true", help="mirror the picture, for scenes made for left-handed coordinates")
     add = parser.add_argument_group("window").add_argument

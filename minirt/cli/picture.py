@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from minirt.cli.arguments import SAMPLES
-from minirt.cli.exit_status import OK
+from minirt.cli.exit_status import FAILED, OK
 from minirt.cli.output import say_bytes, tell
 from minirt.gc_pause import gc_paused
 
@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 def render_to_file(scene: Scene, options: argparse.Namespace) -> int:
     """Render the scene and write the picture to the output."""
     with gc_paused():
-        write(render(scene, options), options.output)
-    return OK
+        image = render(scene, options)
+        write(image, options.output)
+    return FAILED if options.strict and image.reached and not image.reached.is_reached else OK
 
 
 def render(scene: Scene, options: argparse.Namespace) -> Image:
@@ -46,9 +47,12 @@ def render(scene: Scene, options: argparse.Namespace) -> Image:
         threads=options.threads,
         precision=options.precision,
         depth=options.depth,
+        linear=False,
     )
     if image.reached:
         tell(image.reached)
+        if image.reached.notice:
+            tell(f"notice: {image.reached.notice}")
     if options.precision == "single":
         from minirt.report.measurements.stiffness import lost_in_single
 

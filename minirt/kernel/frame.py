@@ -14,7 +14,12 @@ from minirt.lanes import Vec, lane, load, minimum, rarely, save, splat, unit, wh
 from minirt.lanes.vec import Number
 
 PACKET_HEIGHT = 4  # pixels; a packet is as wide as makes one pixel for each of the `width` rays
+# Samples of a reference by those of what is drawn. The error of an estimate of the error is that of four times as many
+# references with as many samples, at twice the cost of one.
+REFERENCE_SAMPLES = 2
 TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles at a time
+ESTIMATE = 3 * TILE * TILE  # numbers of a tile's light: of the estimate that is drawn, or of a reference
+SUMS = 3 * ESTIMATE
 CANCELLED = 2**40  # value of the row counter that cancels a frame; no picture has so many rows
 OPAQUE = 0xFF000000  # alpha of a pixel
 
@@ -38,10 +43,16 @@ def accumulate(radiance: Vec, sums: Any, start: int, sample: int) -> Vec:
     count = width(sums)
     if sample > 0:
         radiance = radiance + Vec(load(sums, start), load(sums, start + count), load(sums, start + 2 * count))
+    save_sum(radiance, sums, start)
+    return radiance
+
+
+def save_sum(radiance: Vec, sums: Any, start: int) -> None:
+    """Store a radiance in `sums` from index `start` on."""
+    count = width(sums)
     save(radiance.x, sums, start)
     save(radiance.y, sums, start + count)
     save(radiance.z, sums, start + 2 * count)
-    return radiance
 
 
 def without_non_finite(radiance: Vec, memory: Any) -> Vec:
@@ -69,23 +80,35 @@ def to_byte_range(channel: Number) -> Number:
 
 
 def frame(
-    next_row: Any, pixels: Any, linear: Any, rays: Any, packet_mask: Any, memory: Any, sums: Any, scene: SceneArrays
+    next_row: Any,
+    pixels: Any,
+    linear: Any,
+    rays: Any,
+    plan: Any,
+    errors: Any,
+    memory: Any,
+    sums: Any,
+    scene: SceneArrays,
 ) -> None:
     """Render rows of tiles, taking the next one from the counter `next_row` until none is left.
 
     Any number of threads may do so at the same time, each with its own `memory` (see `minirt.kernel.trace.unoccluded`
-    and `minirt.kernel.shading.surfaces`) and its own `sums` of samples of a tile (3 * TILE * TILE). `pixels` (h, w)
-    receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it has no rows. `rays` (samples,
+    and `minirt.kernel.shading.surfaces`) and its own `sums` of samples of a tile (`SUMS` numbers). `pixels`
+    (h, w) receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it has no rows. `rays` (rows,
     3 * width) has x, y and z of the directions of a packet's rays, less the direction through the packet's upper left
-    corner. `packet_mask` (row, column) is not 0 for each packet to render; without rows all are rendered. A counter set
-    to `CANCELLED` from outside ends the frame at the next packet.
+    corner. `plan` (row, column, 3) has for each packet its first row in `rays`, its number of samples, 0 to leave the
+    packet alone, and the first row of two reference estimates, each of `REFERENCE_SAMPLES` times as many samples, 0 for
+    none. Without rows every packet takes all rows of `rays`. `errors` (row, column) receives the squared errors of
+    packets with references, see `squared_error`; it may be without rows where no packet has any. A counter set to
+    `CANCELLED` from outside ends the frame at the next packet.
     """
     render_tiles(
         next_row,
         by_reference(pixels),
         by_reference(linear),
         rays,
-        by_reference(packet_mask),
+        by_reference(plan),
+        by_reference(errors),
         by_reference(memory),
         sums,
         by_reference(scene),
@@ -93,11 +116,18 @@ def frame(
 
 
 def render_tiles(
-    next_row: Any, pixels: Any, linear: Any, rays: Any, packet_mask: Any, memory: Any, sums: Any, scene: SceneArrays
+    next_row: Any,
+    pixels: Any,
+    linear: Any,
+    rays: Any,
+    plan: Any,
+    errors: Any,
+    memory: Any,
+    sums: Any,
+    scene: SceneArrays,
 ) -> None:
     """Render rows of tiles: the body of `frame`, with the arrays passed by reference."""
     height, across = pixels.shape
-    samples = rays.shape[0]
     packet_width = width(rays) // PACKET_HEIGHT
     zero = splat(0.0, load(rays[0], 0))
     black = Vec(zero, zero, zero)
@@ -108,24 +138,86 @@ def render_tiles(
         for left in range(0, across, TILE):
             tile = top // TILE * tile_count(across) + left // TILE
             empty = not has_environment(scene) and is_empty(scene, tile)
+            turns = most_rays(plan, rays, top // PACKET_HEIGHT, left // packet_width)
             # All packets for each sample, not all samples for each packet: a sum kept in registers through the loop
             # over samples took a seventh more time, since tracing then lacks those registers.
-            for sample in range(samples):
+            for turn in range(turns):
                 for y in range(top, min(top + TILE, height), PACKET_HEIGHT):
                     for x in range(left, min(left + TILE, across), packet_width):
                         if rarely(next_row[0] >= CANCELLED):
                             return
-                        if rarely(packet_mask.shape[0] > 0) and packet_mask[y // PACKET_HEIGHT, x // packet_width] == 0:
-                            continue
+                        estimate, row, sample, samples = 0, turn, turn, turns
+                        if rarely(plan.shape[0] > 0):
+                            estimate, row, sample, samples = planned(plan, x // packet_width, y // PACKET_HEIGHT, turn)
+                            if samples == 0:
+                                continue
                         if empty:
                             store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
                             continue
-                        radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[sample], x, y), memory)
+                        radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[row], x, y), memory)
+                        place = estimate * ESTIMATE + 3 * ((y - top) * TILE + (x - left) * PACKET_HEIGHT)
                         if rarely(samples > 1):
-                            place = (y - top) * TILE + (x - left) * PACKET_HEIGHT
-                            radiance = accumulate(radiance, sums, 3 * place, sample) / samples
+                            radiance = accumulate(radiance, sums, place, sample) / samples
                         if sample == samples - 1:
-                            store_packet(pixels, linear, x, y, radiance)
+                            store_estimate(pixels, linear, errors, sums, x, y, radiance, estimate, place)
+
+
+def most_rays(plan: Any, rays: Any, row: int, column: int) -> int:
+    """Return the most rays that any pixel takes in a tile, whose first packet is given."""
+    if not rarely(plan.shape[0] > 0):
+        return int(rays.shape[0])
+    packet_width = width(rays) // PACKET_HEIGHT
+    most = 0
+    for y in range(row, min(row + TILE // PACKET_HEIGHT, plan.shape[0])):
+        for x in range(column, min(column + TILE // packet_width, plan.shape[1])):
+            references = 0 if plan[y, x, 2] == 0 else 2 * REFERENCE_SAMPLES
+            most = max(most, plan[y, x, 1] * (1 + references))
+    return most
+
+
+def planned(plan: Any, column: int, row: int, turn: int) -> tuple[int, int, int, int]:
+    """Return what a packet takes when a pixel has taken `turn` rays before: the number of the estimate, the row of
+    `rays`, the number of the sample in that estimate, and the number of its samples, which is 0 if it takes none."""
+    first, samples, reference = plan[row, column, 0], plan[row, column, 1], plan[row, column, 2]
+    if turn < samples:
+        return 0, first + turn, turn, samples
+    each, turn = REFERENCE_SAMPLES * samples, turn - samples
+    if reference == 0 or turn >= 2 * each:
+        return 0, 0, 0, 0
+    estimate = turn // each
+    return 1 + estimate, reference + turn, turn - estimate * each, each
+
+
+def store_estimate(
+    pixels: Any, linear: Any, errors: Any, sums: Any, x: int, y: int, radiance: Vec, estimate: int, place: int
+) -> None:
+    """Store the radiance of a packet in the picture, and where references tell its squared error, that error."""
+    if estimate == 0:
+        store_packet(pixels, linear, x, y, radiance)
+    if rarely(errors.shape[0] > 0):
+        save_sum(radiance, sums, place)
+        if estimate == 2:
+            row, column = y // PACKET_HEIGHT, x * PACKET_HEIGHT // width(radiance.x)
+            errors[row, column] = squared_error(sums, place, pixels.shape[0] - y, pixels.shape[1] - x)
+
+
+def squared_error(sums: Any, start: int, height: int, across: int) -> float:
+    """Estimate the squared error of a packet's light, clamped to [0, 1], summed over its pixels and channels.
+
+    From `start` back, `sums` has two reference estimates and the light. Where the references are independent and have
+    no bias, the product of the differences from each of them has the squared error as its mean, however large their own
+    errors are. Of the packet's pixels, those beyond `height` lines or `across` columns are left out.
+    """
+    count = width(sums)
+    packet_width = count // PACKET_HEIGHT
+    total = 0.0
+    for number in range(3 * count):
+        pixel = number % count
+        if pixel // packet_width < height and pixel % packet_width < across:
+            light = min(sums[start - 2 * ESTIMATE + number], 1.0)
+            one, other = min(sums[start - ESTIMATE + number], 1.0), min(sums[start + number], 1.0)
+            total += (light - one) * (light - other)
+    return total
 
 
 def tile_count(pixels: int) -> int:

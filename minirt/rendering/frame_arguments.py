@@ -7,11 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.frame import TILE
+from minirt.kernel.frame import SUMS
 from minirt.rendering.packing.camera import packet_rays
 
 NO_LINEAR = np.zeros((0, 0, 3))
-ALL_PACKETS = np.zeros((0, 0), np.uint8)
+ALL_PACKETS = np.zeros((0, 0, 3), np.int32)
+NO_ERRORS = np.zeros((0, 0))
 GOLDEN_RATIO = (5**0.5 - 1) / 2  # its conjugate, 0.618...
 
 
@@ -28,15 +29,6 @@ def sample_positions(samples: int) -> np.ndarray:
     return centred
 
 
-class SamplePass(NamedTuple):
-    """Samples to take at the same positions in the pixels of some packets."""
-
-    positions: np.ndarray  # (k, pixels of a packet, 2)
-    packets: np.ndarray  # uint8 (rows, columns), 0 where a packet gets no samples
-    light: np.ndarray  # output: their mean, as `linear` of `minirt.kernel.frame`
-    pixels: np.ndarray  # output: their mean as colours, uint8 (h, w, 4)
-
-
 class Frame(NamedTuple):
     """Arguments of `minirt.kernel.frame.frame`."""
 
@@ -44,20 +36,18 @@ class Frame(NamedTuple):
     pixels: np.ndarray
     linear: np.ndarray
     rays: np.ndarray
-    wanted: np.ndarray
+    plan: np.ndarray
+    errors: np.ndarray
     memory: np.ndarray
     sums: np.ndarray
     scene: Any
 
-    def with_pass(self, samples: SamplePass, counter: np.ndarray) -> Frame:
-        """Return the arguments for a pass of samples over the same scene."""
-        return self._replace(
-            next_row=counter,
-            pixels=as_uint32(samples.pixels),
-            linear=samples.light,
-            rays=packet_rays(self.scene.camera, samples.positions),
-            wanted=samples.packets,
-        )
+    def with_samples_where(self, packets: np.ndarray) -> Frame:
+        """Return the arguments for the same samples, but only in some packets: (rows, columns), not 0 where wanted."""
+        plan = np.zeros((*packets.shape, 3), np.int32)
+        plan[..., 1] = packets
+        plan[..., 1] *= len(self.rays)
+        return self._replace(plan=plan)
 
 
 def frame_arguments(
@@ -69,7 +59,8 @@ def frame_arguments(
         pixels=as_uint32(pixels),
         linear=linear,
         rays=packet_rays(arrays.camera, sample_positions(samples)),
-        wanted=ALL_PACKETS,
+        plan=ALL_PACKETS,
+        errors=NO_ERRORS,
         memory=thread_memory(arrays),
         sums=sum_buffer(arrays),
         scene=arrays,
@@ -84,7 +75,7 @@ def as_uint32(pixels: np.ndarray) -> np.ndarray:
 
 def sum_buffer(arrays: Any) -> np.ndarray:
     """Allocate the buffer in which a thread sums the light of a tile."""
-    return np.empty(3 * TILE * TILE, arrays.camera.dtype)
+    return np.empty(SUMS, arrays.camera.dtype)
 
 
 def thread_memory(arrays: Any) -> np.ndarray:

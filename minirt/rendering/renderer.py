@@ -178,15 +178,15 @@ class Renderer:
         linear: np.ndarray | None = None,
     ) -> Outcome | None:
         """Render into `pixels` and `linear`, as `render` does, until the estimated error is at most `error` or that
-        many seconds have passed; see `minirt.rendering.sampling.auto`. None where `cancel` ended it early; then both
-        are as before."""
+        many seconds have passed; see `minirt.rendering.sampling.auto`. Without `linear` it ends where rounding to 8
+        bits decides. None where `cancel` ended it early; then the picture is incomplete."""
         with self.busy:
             start = perf_counter()
             self.runner.not_finite = 0
             light = NO_LINEAR if linear is None else linear
             if not scene.shapes or not pixels.size:
                 draw_background(scene, pixels, light)
-                return Outcome(1.0, 1, 0.0, perf_counter() - start)
+                return Outcome(1.0, 1, 0.0, perf_counter() - start, error)
             self.kernels.make_ready(scene)
             return to_error.reach(self.runner, self.packing, scene, pixels, light, error, seconds)
 

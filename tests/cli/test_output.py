@@ -109,16 +109,40 @@ def test_auto_samples_reach_the_error_or_fill_the_time(run: Run, goal: tuple[str
     ended = run("ball.rt", "-o", "-", "--size", "80x60", "--samples", "auto", *goal)
     assert ended.status == 0
     match = re.fullmatch(
-        r"([0-9.]+) samples a pixel on average, ([0-9]+) at most; estimated error ([0-9.e-]+); ([0-9.]+) s\n", ended.err
+        r"([0-9.]+) samples a pixel on average, ([0-9]+) at most; "
+        r"estimated error ([0-9.e-]+), ([0-9.e-]+) when rounded to 8 bits; ([0-9.]+) s\n"
+        r"(notice: no more samples: .*\n)?",
+        ended.err,
     )
     assert match
-    mean, most, error, _ = map(float, match.groups())
-    assert 2 <= mean <= most
+    mean, most, error, of_bytes, _ = map(float, match.groups()[:5])
+    assert 1 <= mean <= most
+    assert of_bytes >= error
     assert error <= (0.01 if "--error" in goal else 0.0021 if not goal else 1)
     if "--time" not in goal:
         goals = {"error": float(goal[1])} if goal else {}
         image = minirt.render(minirt.load("ball.rt"), 80, 60, samples="auto", **goals)
         assert np.array_equal(pixels(ended.out), image.array)
+
+
+@pytest.mark.parametrize(("strict", "status"), [((), 0), (("--strict",), 1)])
+def test_an_error_that_rounding_hides_is_not_reached_and_that_is_said(
+    run: Run, strict: tuple[str, ...], status: int
+) -> None:
+    ended = run("ball.rt", "-o", "x.png", "--size", "80x60", "--samples", "auto", "--error", "1e-5", *strict)
+    assert ended.status == status
+    assert ended.err.splitlines()[1] == "notice: no more samples: rounding to 8 bits decides below an error of 0.00057"
+
+
+def test_a_time_that_ends_before_the_error_is_said(run: Run) -> None:
+    goals = ("--error", "0.0007", "--time", "1e-6")
+    ended = run("ball.rt", "-o", "x.png", "--size", "80x60", "--samples", "auto", *goals, "--strict")
+    assert (ended.status, ended.err.splitlines()[1]) == (1, "notice: error 0.0007 not reached: the time was over")
+
+
+def test_strict_needs_an_error(run: Run) -> None:
+    ended = run("ball.rt", "-o", "x.png", "--strict")
+    assert (ended.status, "--strict needs --error" in ended.err) == (2, True)
 
 
 def test_the_scene_may_set_the_size(run: Run, folder: Path) -> None:
@@ -142,7 +166,7 @@ def test_verbose_prints_durations_and_features(run: Run) -> None:
 def test_verbose_prints_the_samples_of_auto_only_once(run: Run) -> None:
     ended = run("ball.rt", "-o", "x.png", "--size", "40x30", "--samples", "auto", "--error", "0.1", "-v")
     _, reached, duration, finite, *_ = ended.err.splitlines()
-    assert reached.startswith("2.0 samples a pixel on average, 2 at most; ")
+    assert reached.startswith("1.0 samples a pixel on average, 1 at most; ")
     assert re.fullmatch(r"40x30, [0-9]+ threads, double precision: [0-9.]+ ms", duration)
     assert finite == "rays whose light is not finite: 0"
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from minirt.kernel.frame import CANCELLED, PACKET_HEIGHT
 from minirt.lanes import width
-from minirt.rendering.frame_arguments import ALL_PACKETS, frame_arguments
+from minirt.rendering.frame_arguments import frame_arguments
 from minirt.rendering.running.frame_runner import FrameRunner
 from minirt.rendering.sampling.adaptive import edge_packets
 from minirt.rendering.scene_packing import Packing
@@ -36,6 +36,7 @@ def render(
     if edges_only:
         strips = edge_packets(pixels, width(arrays.camera) // PACKET_HEIGHT)
         found = list(takewhile(lambda _: counter[0] < CANCELLED, strips))
-        frame = frame._replace(wanted=np.concatenate(found) if found else ALL_PACKETS)
+        if found:
+            frame = frame.with_samples_where(np.concatenate(found))
     runner.run([frame], runner.threads)
     return bool(counter[0] < CANCELLED)

@@ -8,10 +8,13 @@ import numpy as np
 
 from minirt.kernel.frame import CANCELLED, PACKET_HEIGHT
 from minirt.lanes import width
-from minirt.rendering.frame_arguments import SamplePass, frame_arguments
+from minirt.rendering.frame_arguments import frame_arguments
+from minirt.rendering.packing.camera import packet_pixels
 from minirt.rendering.running.frame_runner import FrameRunner
-from minirt.rendering.sampling.auto import SHIFT_CLASSES, AutoSampler
-from minirt.rendering.sampling.outcome import Outcome
+from minirt.rendering.sampling.auto import AutoSampler, Sweep
+from minirt.rendering.sampling.contrast import contrast_classes
+from minirt.rendering.sampling.outcome import ROUNDING_DECIDES, Outcome
+from minirt.rendering.sampling.sample_table import table_rays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 
@@ -26,22 +29,29 @@ def reach(
     seconds: float,
 ) -> Outcome | None:
     """Render a scene that has shapes; see `minirt.rendering.sampling.auto`. `pixels` and, where it has rows, `linear`
-    are written at the end. None where `cancel` ended it early; then both are as before."""
+    are incomplete where `cancel` ended it early, which returns None."""
     start, cancellations = perf_counter(), runner.cancellations
     height, across, _ = pixels.shape
     arrays = packing.pack(scene, across, height)
-    frame = frame_arguments(arrays, pixels)
-    threads = -(-runner.threads // SHIFT_CLASSES)
+    frame = frame_arguments(arrays, pixels, linear=linear)
+    packet_width = width(arrays.camera) // PACKET_HEIGHT
+    offsets = packet_pixels(width(arrays.camera))
 
-    def draw(passes: list[SamplePass]) -> bool:
-        counters = runner.new_counters(len(passes))
+    def draw(sweep: Sweep) -> bool:
+        counter = runner.new_counters(1)
         if runner.cancellations != cancellations:
             return False
-        runner.run([frame.with_pass(samples, counters[i:]) for i, samples in enumerate(passes)], threads)
-        return bool(counters.max() < CANCELLED)
+        rays = table_rays(arrays.camera, sweep.positions, offsets)
+        runner.run([frame._replace(next_row=counter, rays=rays, plan=sweep.plan, errors=sweep.errors)], runner.threads)
+        return bool(counter[0] < CANCELLED)
 
-    auto = AutoSampler(draw, height, across, width(arrays.camera) // PACKET_HEIGHT)
-    outcome = auto.reach(error, seconds - (perf_counter() - start))
-    if outcome:
-        auto.halves.finish(pixels, linear)
-    return outcome and outcome._replace(seconds=perf_counter() - start)
+    def classify() -> np.ndarray:
+        return contrast_classes(pixels, packet_width, lambda jobs: runner.pool.run(jobs, runner.cancel))
+
+    # Rounding to 8 bits, where nobody wants the light itself, makes less error useless.
+    least = 0.0 if len(linear) else ROUNDING_DECIDES
+    auto = AutoSampler(draw, classify, height, across, packet_width)
+    outcome = auto.reach(max(error, least), seconds - (perf_counter() - start))
+    return outcome and outcome._replace(
+        seconds=perf_counter() - start, goal=error, rounded=error < outcome.error <= least
+    )

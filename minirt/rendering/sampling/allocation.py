@@ -4,60 +4,81 @@ Where n samples lie evenly in a pixel with an edge, the squared error is about c
 stratified sampling in graphics, 1996). To reach a sum of such errors at the least cost, the sum of n, each packet gets
 a number of samples in proportion to c^0.4.
 
-c is estimated from the guides of a packet (see `minirt.rendering.sampling.replicates`); with few samples they know
-little. So the estimate is mixed with the judges of all packets with as many samples and as much contrast: c of a packet
-with an edge is not 0 because its halves happen to agree. And since all of them may have missed something, one sample
-more than they have counts as if it differed.
+c is the mean of the probes of all packets of a class, those with about as much contrast. A class of which few were
+probed may have missed something, so that some probes as one expects from the other classes, in proportion to the
+square of the contrast, are counted with its own. And since all samples of a class may have missed something, one sample
+more than they are counts as if it differed.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from minirt.rendering.frame_arguments import GOLDEN_RATIO
-from minirt.rendering.sampling.replicates import Replicates
+from minirt.rendering.sampling.contrast import CLASSES
+from minirt.rendering.sampling.sample_table import COUNTS
 
 ERROR_EXPONENT = 1.5  # squared error falls as this power of the number of samples
-CONTRASTS = (1, 4, 16, 64)  # levels of 255; packets are of the same class if they exceed as many of them
-PRIOR = 4.0  # samples that the mean of the class of a packet counts as
-# Sum of squares of a pixel that differs by a half in one of three colours, / 4 for the mean of two halves.
+# Squared error of a class of which one sample differs from all others, by a quarter in one of three colours.
 UNSEEN_ERROR = 1 / 16
-MOST_DOUBLINGS = 15  # 65536 samples in both halves
-DOUBLINGS_A_ROUND = 3
-BISECTIONS = 14  # of the interval of levels
+PRIOR = 4.0  # probes that the expectation of a class counts as
+EXPECTED = 4.0 ** np.arange(CLASSES)  # ratios of c
+SEARCHES, PRICES = 3, 24  # for the price of an error: so many times among so many prices
+LEAST = 1e-12  # c of a class as a share of the greatest, and the greatest c of a picture without any error
 
 
-def coefficients(halves: Replicates, doublings: np.ndarray, contrast: np.ndarray) -> np.ndarray:
-    """Estimate c of every packet, which has 2^doublings samples in each half and exceeds so many of `CONTRASTS`."""
-    samples = 2.0**doublings
-    classes = doublings * (len(CONTRASTS) + 1) + contrast
-    counts = np.bincount(classes.ravel())
-    judges = np.bincount(classes.ravel(), halves.judges.ravel())
-    class_error = judges[classes] + UNSEEN_ERROR / samples**2
-    error: np.ndarray = (samples * halves.guides + PRIOR * class_error / counts[classes]) / (samples + PRIOR)
-    return 2 * error * samples**ERROR_EXPONENT
+def coefficients(classes: np.ndarray, counts: np.ndarray, errors: np.ndarray) -> np.ndarray:
+    """Estimate c of every class from probes: their classes, numbers of samples and squared errors."""
+    found = errors * counts**ERROR_EXPONENT
+    expected = EXPECTED * max(found.sum() / EXPECTED[classes].sum(), LEAST / EXPECTED[-1])
+    total = np.bincount(classes, found, CLASSES) + PRIOR * expected
+    c: np.ndarray = total / (np.bincount(classes, minlength=CLASSES) + PRIOR)
+    positive: np.ndarray = np.maximum(c, LEAST * max(float(c.max()), LEAST))
+    return positive
 
 
-def allocate(c: np.ndarray, doublings: np.ndarray, share: float, budget: float) -> np.ndarray:
-    """The new doublings, never fewer than before, that leave a `share` of the squared error; or, if those cost more
-    than the budget, in samples of packets in a half, the most that the budget pays for."""
-    # Offsets by which packets with equal c are not all rounded in the same direction.
-    dither = (np.arange(c.size) * GOLDEN_RATIO % 1).reshape(c.shape)
-    ideal = np.log2(np.maximum(c, np.finfo(float).tiny)) / (ERROR_EXPONENT + 1) + dither - 0.5
-    limit = np.minimum(doublings + DOUBLINGS_A_ROUND, MOST_DOUBLINGS)
-    error_of, cost_of = 2.0 ** (-ERROR_EXPONENT * np.arange(MOST_DOUBLINGS + 1)), 2.0 ** np.arange(MOST_DOUBLINGS + 1)
-    error, cost = (c * error_of[doublings]).sum(), cost_of[doublings].sum()
+def unseen(packets: np.ndarray) -> np.ndarray:
+    """The part of c of every class that is due to what no sample met: with n samples the class has an error of
+    `UNSEEN_ERROR` / n^2. `packets` (classes, levels) counts the packets."""
+    number = np.maximum(packets.sum(axis=1), 1)
+    samples = np.maximum(packets @ COUNTS / number, 1.0)
+    part: np.ndarray = UNSEEN_ERROR * samples ** (ERROR_EXPONENT - 2) / number
+    return part
 
-    def at(level: float) -> np.ndarray:
-        rounded: np.ndarray = np.clip(np.rint(ideal - level), doublings, limit).astype(np.int64)
-        return rounded
 
-    low, high = (ideal - limit).min() - 1, (ideal - doublings).max() + 1  # all that is allowed, and nothing
-    for _ in range(BISECTIONS):
-        middle = (low + high) / 2
-        new = at(middle)
-        if (c * error_of[new]).sum() <= share * error or cost_of[new].sum() - cost > budget:
-            low = middle
-        else:
-            high = middle
-    return at(low) if cost_of[at(low)].sum() - cost <= budget else at(high)
+def allocate(c: np.ndarray, packets: np.ndarray, error: float, budget: float) -> np.ndarray:
+    """The numbers of samples, not whole, for the packets of each class and level, which leave a sum of squared errors;
+    or, if those cost more than the budget, in samples of a packet, the most that the budget pays for.
+
+    `packets` (classes, levels) counts the packets. Those that get no more samples than they have cost nothing; the
+    others are drawn anew.
+    """
+    group, level = np.nonzero(packets)
+    number = packets[group, level]
+    # At the lowest price the class with the most error gets one sample, at the highest that with the least gets all.
+    low, high = float(-np.log2(c.max())), float(np.log2(COUNTS[-1]) * (ERROR_EXPONENT + 1) - np.log2(c.min()))
+    for _ in range(SEARCHES):
+        prices = np.linspace(low, high, PRICES)
+        new = at_price(prices[:, None], c[group], COUNTS[level])
+        is_too_much = np.where(new > COUNTS[level], new, 0.0) @ number > budget
+        is_enough = is_too_much | (new**-ERROR_EXPONENT @ (number * c[group]) <= error)
+        first = int(is_enough.argmax()) if is_enough.any() else PRICES - 1
+        low, high = prices[max(first - 1, 0)], prices[first]
+    return at_price(np.array(low if is_too_much[first] else high), c[:, None], COUNTS)
+
+
+def at_price(price: np.ndarray, c: np.ndarray, now: np.ndarray) -> np.ndarray:
+    """The numbers of samples for classes and for packets that have some now, at the logarithm of the price of error."""
+    ideal = 2.0 ** ((price + np.log2(c)) / (ERROR_EXPONENT + 1))
+    samples: np.ndarray = np.maximum(np.minimum(ideal, COUNTS[-1]), now)
+    return samples
+
+
+def squared_error(c: np.ndarray, packets: np.ndarray) -> float:
+    """The sum of the squared errors of packets, which are counted by class and level."""
+    return float((packets * c[:, None] * COUNTS**-ERROR_EXPONENT).sum())
+
+
+def places_of(samples: np.ndarray) -> np.ndarray:
+    """Numbers of samples as fractional levels: a random number in [0, 1) is to be added before the fraction is cut."""
+    places: np.ndarray = np.interp(np.log2(samples), np.log2(COUNTS), np.arange(len(COUNTS)))
+    return places

@@ -1,10 +1,12 @@
-"""Automatic sampling: renders in rounds until an estimated error is reached or a time has passed, with most samples
-where they are needed.
+"""Automatic sampling: renders until an estimated error is reached or a time has passed, with most samples where they
+are needed.
 
-The first round has one sample in each half of every pixel, each further round the samples that
-`minirt.rendering.sampling.allocation` chooses, until the estimate of `minirt.rendering.sampling.replicates` is good
-enough. Where an error is asked for, the picture depends on nothing else; where a time is asked for, it depends on how
-fast the rounds were.
+The first sweep over the picture takes one sample a pixel, and probes some packets (see `minirt.kernel.frame.
+squared_error`). Often that is enough. Otherwise the packets are sorted into classes by their contrast, and are drawn
+anew with the samples that `minirt.rendering.sampling.allocation` chooses for their class. This is done in portions,
+random sets of packets, since the probes of each tell how many samples, or how much time, the next portions need. Where
+an error is asked for, the picture depends on nothing else; where a time is asked for, it depends on how fast the
+portions were.
 
 Limit: nothing is known of features that no sample met in any packet of a class. A few features that are smaller than a
 pixel may be missing in the picture and in the estimate.
@@ -13,101 +15,230 @@ pixel may be missing in the picture and in the estimate.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from math import inf, sqrt
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
 
-from minirt.kernel.frame import PACKET_HEIGHT
-from minirt.rendering.frame_arguments import SamplePass
-from minirt.rendering.sampling.adaptive import edge_packets
-from minirt.rendering.sampling.allocation import CONTRASTS, allocate, coefficients
+from minirt.kernel.frame import PACKET_HEIGHT, REFERENCE_SAMPLES
+from minirt.rendering.frame_arguments import GOLDEN_RATIO
+from minirt.rendering.sampling.allocation import (
+    EXPECTED,
+    UNSEEN_ERROR,
+    allocate,
+    coefficients,
+    places_of,
+    squared_error,
+    unseen,
+)
+from minirt.rendering.sampling.contrast import CLASSES
 from minirt.rendering.sampling.outcome import Outcome
-from minirt.rendering.sampling.replicates import Replicates
-from minirt.rendering.sampling.sobol import digital_shifts, shifted, sobol
+from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_numbers
 
-# Classes of packets, each with its own shifts, so that an edge along a row of pixels meets 8 times as many of them.
-SHIFT_CLASSES = 8
-LEAST_LEFT, MOST_LEFT = 0.25, 0.8  # share of the squared error that a round may leave
-SHARE_OF_TIME = 0.4  # of the remaining time, for a round
+FIRST_PROBES, PROBES = 256, 300  # packets to probe, in the first sweep and in the others
+SHARE_PROBED = 1 / 64  # in the first sweep of a large picture
+# An estimate that ends rendering after the first sweep, with so many standard errors added, is this share of the goal.
+SURE, FAR_BELOW = 2.0, 0.7
+FIRST_PORTION, SECOND_PORTION = 0.125, 0.5  # of the packets; more are drawn only when enough probes are known
+CHEAP = 0.5  # samples of a pixel, on average, that are not worth portions
+PORTIONS_OF_TIME = 8
+DOUBT = 4.0  # factor by which the squared errors of a class may turn out to be greater than the first sweep says
+MARGIN = 0.9  # of the squared error that is aimed at
+MOST_OF_TIME = 0.25  # of the packets of a portion to probe, where the time is limited
+SHARE_OF_TIME = 0.98  # of the remaining time, to be filled
 
-Draw = Callable[[list[SamplePass]], bool]  # False when cancelled
+
+class Sweep(NamedTuple):
+    """Samples to take in one sweep over the picture."""
+
+    positions: np.ndarray  # (k, pixels of a packet, 2)
+    plan: np.ndarray  # as `plan` of `minirt.kernel.frame`
+    errors: np.ndarray  # output: squared errors of the probed packets
+
+
+Draw = Callable[[Sweep], bool]  # False when cancelled
+Classify = Callable[[], np.ndarray]
 
 
 class AutoSampler:
-    """A picture in the making: its two halves, and the number of samples of each packet."""
+    """A picture in the making: the number of samples of each packet, and the probes that tell their error.
 
-    def __init__(self, draw: Draw, height: int, width: int, packet_width: int) -> None:
+    Packets are counted from 0, row by row. `draw` draws them, `classify` tells their contrast classes (rows, columns).
+    """
+
+    def __init__(self, draw: Draw, classify: Classify, height: int, width: int, packet_width: int) -> None:
         self.draw = draw
-        self.halves = Replicates(height, width, packet_width)
-        self.pixels = np.full((2, height, width, 4), 255, np.uint8)  # of the last pass in each half
-        self.doublings = np.full(self.halves.packets, -1)  # a packet has 2^doublings samples in each half
-        self.shifts = digital_shifts(2, SHIFT_CLASSES, PACKET_HEIGHT * packet_width)
-        rows, columns = map(np.arange, self.halves.packets)
-        self.classes = np.add.outer(3 * rows, columns) % SHIFT_CLASSES
+        self.classify = classify
+        self.packet_pixels = PACKET_HEIGHT * packet_width
+        self.numbers = 3 * height * width  # of the picture
+        self.shape = -(-height // PACKET_HEIGHT), -(-width // packet_width)
+        self.count = self.shape[0] * self.shape[1]
+        self.random = random_numbers(self.count)
+        self.levels, self.classes = np.zeros((2, self.count), np.uint8)
+        self.histogram = np.zeros((CLASSES, len(COUNTS)), np.int64)  # of packets, by class and level
+        self.is_probed = np.zeros(self.count, bool)  # packets whose error with the samples that they have is known
+        self.errors = np.zeros(self.count)  # of those that are probed
+        self.sweeps = 0
+        self.speed = inf  # samples of packets a second, in the last sweep
 
     def reach(self, error: float, seconds: float) -> Outcome | None:
-        """Render until the estimated error is at most `error` or `seconds` have passed, but at least the first round.
+        """Render until the estimated error is at most `error` or `seconds` have passed, but at least the first sweep.
 
         None when cancelled.
         """
-        start = before = perf_counter()
-        if not self.first_round():
+        start = perf_counter()
+        goal = error * error * self.numbers  # infinite for a huge error
+        if not self.draw_first():
             return None
-        contrast, cost = self.contrast(), self.cost(self.doublings)
-        while (squared := self.halves.squared_error) > error * error:  # infinite for a huge error
-            now = perf_counter()
-            left = start + seconds - now
-            if left <= 0:
-                break
-            budget = SHARE_OF_TIME * left * cost / (now - before) if seconds < inf else inf
-            # Go half of the way to the goal on a logarithmic scale: the next round knows more.
-            share = min(max(error / sqrt(squared), LEAST_LEFT), MOST_LEFT)
-            new = allocate(coefficients(self.halves, self.doublings, contrast), self.doublings, share, budget)
-            cost, before = self.cost(new) - self.cost(self.doublings), now
-            if not cost:
-                break
-            if not self.add_samples(new):
+        # A few probes may decide: an estimate that ends rendering is one that is rather too large.
+        errors = self.errors[self.is_probed]
+        mean, doubt = errors.mean(), errors.std() / sqrt(len(errors))
+        total: float | None = (mean + doubt) * self.count + UNSEEN_ERROR
+        if (mean + SURE * doubt) * self.count + UNSEEN_ERROR > FAR_BELOW * goal and perf_counter() < start + seconds:
+            total = self.refine(goal, start + seconds)
+        if total is None:
+            return None
+        counts = COUNTS[self.levels]
+        rms = sqrt(max(total, 0.0) / self.numbers)
+        return Outcome(float(counts.mean()), int(counts.max()), rms, perf_counter() - start)
+
+    def refine(self, goal: float, end: float) -> float | None:
+        """Draw packets with more samples until the sum of squared errors is at most `goal`, or the time is over;
+        return that sum, and None when cancelled."""
+        self.classes = self.classify().ravel()
+        self.histogram = self.count_packets(np.arange(self.count))
+        if not self.probe_classes() or not self.draw_in_portions(goal, end):
+            return None
+        while (total := self.total()) > goal and (left := end - perf_counter()) > 0:
+            sweeps = self.sweeps
+            todo = self.in_need(goal)
+            if not self.draw_some(todo, todo >= 0, goal, left):
                 return None
-        most, mean = 2 ** (1 + int(self.doublings.max())), 2 * self.cost(self.doublings) / self.doublings.size
-        return Outcome(mean, most, sqrt(squared), perf_counter() - start)
+            if self.sweeps == sweeps:
+                break
+        return total
 
-    def first_round(self) -> bool:
-        """Take the first sample of both halves in all packets. False when cancelled."""
-        first = np.zeros_like(self.doublings)
-        if not self.draw(self.passes(first, self.halves.means)):
-            return False
-        self.halves.compare()
-        self.doublings = first
+    def probe_classes(self) -> bool:
+        """Probe more packets of the classes that have most of the error. False when cancelled."""
+        packets = self.histogram.sum(axis=1)
+        c = self.coefficients()
+        part = packets * np.maximum(c, EXPECTED * (packets @ c) / (packets @ EXPECTED))
+        known = np.bincount(self.classes[self.is_probed], minlength=CLASSES)
+        share = np.maximum(FIRST_PROBES * part / part.sum() - known, 0) / np.maximum(packets - known, 1)
+        more = np.flatnonzero((share > 0)[self.classes] & ~self.is_probed)
+        more = more[self.dither(more) < share[self.classes[more]]]
+        return self.sweep(more, self.levels[more], more >= 0) if len(more) > FIRST_PROBES / 4 else True
+
+    def draw_in_portions(self, goal: float, end: float) -> bool:
+        """Draw the packets of all classes that need more samples, in portions. False when cancelled."""
+        todo = self.in_need(goal)
+        samples = allocate(self.coefficients(), self.histogram, MARGIN * goal, inf)
+        is_cheap = end == inf and (self.histogram * samples)[samples > 1].sum() < CHEAP * self.count
+        before, last = 0.0, 1.0 if is_cheap else FIRST_PORTION
+        while before < 1:
+            chosen = self.random[todo] < last
+            if not self.draw_some(todo, chosen, goal, (end - perf_counter()) * (last - before) / (1 - before)):
+                return False
+            todo, before = todo[~chosen], last
+            if end < inf:
+                last += 1 / PORTIONS_OF_TIME
+            else:
+                last = SECOND_PORTION if before < SECOND_PORTION and self.known < PROBES else 1.0
         return True
 
-    def add_samples(self, new: np.ndarray) -> bool:
-        """Add samples until the packets have the `new` doublings. False when cancelled."""
-        if not self.draw(self.passes(new, self.halves.new_means)):
+    def in_need(self, goal: float) -> np.ndarray:
+        """The packets of all classes that might need more samples."""
+        samples = allocate(self.coefficients(), self.histogram, MARGIN * goal / DOUBT, inf)
+        needs = np.count_nonzero((samples > COUNTS) & (self.histogram > 0), axis=1) > 0
+        return np.flatnonzero(needs[self.classes])
+
+    def draw_some(self, todo: np.ndarray, chosen: np.ndarray, goal: float, seconds: float) -> bool:
+        """Draw the `chosen` of the packets that are still to do, so that in the end all packets of the picture together
+        leave the squared error `goal`, or so that it takes those seconds at most. False when cancelled."""
+        some = todo[chosen]
+        if not len(some):
+            return True
+        c, packets = self.coefficients(), self.count_packets(todo)
+        others = squared_error(c, self.histogram - packets)
+        # Packets that are drawn again are probed again, and others as long as few are known.
+        share = min(max(PROBES - self.known, 0) / len(some), 1.0 if seconds == inf else MOST_OF_TIME)
+        probed: np.ndarray = self.dither(some, 2**20) < share
+        probed |= self.is_probed[some] & (self.levels[some] > 0)
+        probed[0] |= not np.count_nonzero(self.is_probed)
+        cost = 1 + 2 * REFERENCE_SAMPLES * probed.mean()
+        budget = SHARE_OF_TIME * seconds * self.speed / cost * len(todo) / len(some) if seconds < inf else inf
+        places = places_of(allocate(c, packets, max(MARGIN * goal - others, goal / DOUBT), budget))
+        wanted = places[self.classes[some], self.levels[some]]
+        new = (wanted + self.dither(some)).astype(np.uint8)
+        if seconds == inf and (new <= self.levels[some]).all():
+            new = np.ceil(wanted).astype(np.uint8)
+        more = new > self.levels[some]
+        return self.sweep(some[more], new[more], probed[more]) if more.any() else True
+
+    def draw_first(self) -> bool:
+        """Draw all packets with one sample, and probe some of them. False when cancelled."""
+        probed, table, plan = first_sweep(self.shape, self.packet_pixels)
+        return self.carry_out(Sweep(table.positions, plan, np.zeros(self.shape)), np.flatnonzero(probed))
+
+    def sweep(self, packets: np.ndarray, levels: np.ndarray, probed: np.ndarray) -> bool:
+        """Draw packets with new levels, and probe those that are `probed`. False when cancelled."""
+        table = SampleTable(np.flatnonzero(np.bincount(levels)), self.packet_pixels)
+        plan = np.zeros((self.count, 3), np.int32)
+        plan[packets] = table.plan(levels, probed)
+        self.histogram -= self.count_packets(packets)
+        self.levels[packets] = levels
+        self.histogram += self.count_packets(packets)
+        self.is_probed[packets] = False
+        sweep = Sweep(table.positions, plan.reshape(*self.shape, 3), np.zeros(self.shape))
+        return self.carry_out(sweep, packets[probed])
+
+    def carry_out(self, sweep: Sweep, probes: np.ndarray) -> bool:
+        """Take samples, and note the errors of the probes. False when cancelled."""
+        start = perf_counter()
+        if not self.draw(sweep):
             return False
-        self.halves.add(new > self.doublings, 1 - 2.0 ** (self.doublings - new))
-        self.doublings = new
+        self.sweeps += 1
+        self.is_probed[probes] = True
+        self.errors[probes] = sweep.errors.ravel()[probes]
+        samples = sweep.plan[..., 1].sum() + 2 * REFERENCE_SAMPLES * COUNTS[self.levels[probes]].sum()
+        self.speed = float(samples) / max(perf_counter() - start, 1e-9)
         return True
 
-    def passes(self, new: np.ndarray, lights: np.ndarray) -> list[SamplePass]:
-        """The missing samples of both halves as passes, which write into `lights` (2, h, w, 3)."""
-        passes: list[SamplePass] = []
-        for before, after in sorted({*zip(self.doublings.flat, new.flat, strict=True)}):
-            points = sobol(int(2.0**before), 2**after)
-            grown = (self.doublings == before) & (new == after)
-            for each in range(SHIFT_CLASSES if before < after else 0):
-                packets = (grown & (self.classes == each)).view(np.uint8)
-                positions = [shifted(points, shifts[each]) for shifts in self.shifts]
-                passes += map(SamplePass, positions, (packets, packets), lights, self.pixels)
-        return passes
+    @property
+    def known(self) -> int:
+        """The number of probed packets that have more than one sample."""
+        return int(np.count_nonzero(self.is_probed & (self.levels > 0)))
 
-    def contrast(self) -> np.ndarray:
-        """Count the `CONTRASTS` that the pixels of each packet and their neighbours exceed in the first half."""
-        exceeded = np.zeros(self.halves.packets, np.int64)
-        for contrast in CONTRASTS:
-            exceeded += np.concatenate(list(edge_packets(self.pixels[0], self.halves.packet_width, contrast)))
-        return exceeded
+    def dither(self, packets: np.ndarray, salt: int = 2**10) -> np.ndarray:
+        """A random number in [0, 1) for each of some packets, another after each sweep."""
+        numbers = self.random[packets] * salt + self.sweeps * GOLDEN_RATIO
+        dither: np.ndarray = numbers - np.floor(numbers)
+        return dither
 
-    def cost(self, doublings: np.ndarray) -> float:
-        """The total number of samples of the packets in a half."""
-        return float((2.0**doublings).sum())
+    def count_packets(self, packets: np.ndarray) -> np.ndarray:
+        """Count packets by class and level."""
+        slots = self.classes[packets].astype(np.intp) * len(COUNTS) + self.levels[packets]
+        counts: np.ndarray = np.bincount(slots, minlength=CLASSES * len(COUNTS)).reshape(CLASSES, -1)
+        return counts
+
+    def coefficients(self) -> np.ndarray:
+        """Estimate c of every class from all probes."""
+        probes = np.flatnonzero(self.is_probed)
+        found = coefficients(self.classes[probes], COUNTS[self.levels[probes]], self.errors[probes])
+        c: np.ndarray = found + unseen(self.histogram)
+        return c
+
+    def total(self) -> float:
+        """Estimate the sum of the squared errors of all packets."""
+        return squared_error(self.coefficients(), self.histogram)
+
+
+@lru_cache(2)
+def first_sweep(shape: tuple[int, int], packet_pixels: int) -> tuple[np.ndarray, SampleTable, np.ndarray]:
+    """The packets to probe in the first sweep, its table of samples and its plan."""
+    count = shape[0] * shape[1]
+    probed = random_numbers(count) < max(SHARE_PROBED, FIRST_PROBES / count)
+    table = SampleTable(np.zeros(1, np.intp), packet_pixels)
+    return probed, table, table.plan(np.zeros(count, np.uint8), probed).reshape(*shape, 3)

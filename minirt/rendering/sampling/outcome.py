@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import NamedTuple
+
+ROUNDING = 1 / sqrt(12) / 255  # RMSE of rounding light to 8 bits, where all fractions of a level are as likely
+# Below this error rounding decides: it makes up nine tenths of the RMSE of a picture of 8 bits, and more.
+ROUNDING_DECIDES = ROUNDING / 2
+MOST_SAMPLES = 2**16  # of a pixel
 
 
 class Outcome(NamedTuple):
@@ -14,11 +20,36 @@ class Outcome(NamedTuple):
 
     samples: float  # of a pixel, on average
     most: int  # of a pixel
-    error: float  # estimated
+    error: float  # estimated, of the light before it is rounded to 8 bits
     seconds: float  # run time
+    goal: float = 0.0  # the error that was asked for; 0 if none was
+    rounded: bool = False  # whether rounding to 8 bits ended it
+
+    @property
+    def error_of_bytes(self) -> float:
+        """The estimated error of the picture rounded to 8 bits."""
+        return sqrt(self.error**2 + ROUNDING**2)
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether the error that was asked for was reached, if one was."""
+        return not self.goal or self.error <= self.goal
+
+    @property
+    def notice(self) -> str:
+        """What to say where the goal was not reached, and why; empty where it was."""
+        if self.rounded:
+            return f"no more samples: rounding to 8 bits decides below an error of {ROUNDING_DECIDES:.2g}"
+        if self.is_reached:
+            return ""
+        if self.most == MOST_SAMPLES:
+            reason = f"some pixels have {self.most} samples, the most there are"
+        else:
+            reason = "the time was over"
+        return f"error {self.goal:.2g} not reached: {reason}"
 
     def __str__(self) -> str:
         return (
             f"{self.samples:.1f} samples a pixel on average, {self.most} at most; "
-            f"estimated error {self.error:.2g}; {self.seconds:.2f} s"
+            f"estimated error {self.error:.2g}, {self.error_of_bytes:.2g} when rounded to 8 bits; {self.seconds:.2f} s"
         )

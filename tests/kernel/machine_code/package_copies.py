@@ -11,7 +11,8 @@ FRAME = """
 from minirt.kernel.shading.shade import tint
 
 def frame(
-    next_row: Any, pixels: Any, linear: Any, rays: Any, packet_mask: Any, memory: Any, sums: Any, scene: SceneArrays
+    next_row: Any, pixels: Any, linear: Any, rays: Any, plan: Any, errors: Any, memory: Any, sums: Any,
+    scene: SceneArrays,
 ) -> None:
     light = tint(Vec(scene.ambient[0], scene.ambient[1], scene.ambient[2]), Vec(10.0, 20.0, 30.0))
     for y in range(pixels.shape[0]):

@@ -10,10 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 import minirt
-from minirt.kernel.frame import PACKET_HEIGHT
+from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.rendering import Renderer
-from minirt.rendering.frame_arguments import SamplePass
-from minirt.rendering.sampling.auto import AutoSampler
+from minirt.rendering.sampling.auto import FIRST_PROBES, AutoSampler
 from minirt.rendering.sampling.outcome import Outcome
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.cylinder import Cylinder
@@ -82,6 +81,12 @@ def reach(
     return reached, pixels, linear
 
 
+def minirt_picture(scene: Scene) -> NDArray[np.uint8]:
+    pixels = np.zeros((HEIGHT, WIDTH, 4), np.uint8)
+    assert TWO.render(scene, pixels)
+    return pixels
+
+
 def rms(difference: Array) -> float:
     return float(np.sqrt((difference**2).mean()))
 
@@ -94,8 +99,8 @@ def test_the_true_error_is_as_requested_and_as_estimated(name: str, requested: f
     assert reached.error <= requested
     assert 1 / FACTOR < reached.error / true < FACTOR
     assert true < FACTOR * requested
-    assert true > requested / FACTOR or reached.most == 2
-    assert 2 <= reached.samples <= reached.most
+    assert true > requested / FACTOR or reached.most <= 3
+    assert 1 <= reached.samples <= reached.most
     shown = pixels[..., 2::-1] / 255
     assert np.abs(shown - np.clip(linear, 0, 1)).max() < 0.501 / 255
 
@@ -116,12 +121,13 @@ def test_fewer_samples_are_needed_than_with_the_same_number_everywhere() -> None
         uniform += 1
     reached = reach(ALL, requested)[0]
     assert reached.samples < uniform
-    assert reached.most > 2 * uniform
+    assert reached.most > uniform
 
 
 def test_a_picture_may_be_good_enough_after_the_first_round() -> None:
     reached, pixels, _ = reach(ALL, 0.5)
-    assert (reached.samples, reached.most) == (2, 2)
+    assert (reached.samples, reached.most) == (1, 1)
+    assert np.array_equal(pixels, minirt_picture(ALL))
     assert 0 < reached.error < 0.5
     assert pixels[..., :3].any()
 
@@ -163,33 +169,34 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     return simulate_clock(monkeypatch)
 
 
-FIRST = 2 * packets(WIDTH, HEIGHT) * PACKET_SECONDS  # of the clock for the first round, a sample in each half
+COUNT = packets(WIDTH, HEIGHT)
+# Of the clock for the first sweep: a sample of each packet, and two references for those that are probed.
+FIRST = (COUNT + 2 * REFERENCE_SAMPLES * FIRST_PROBES) * PACKET_SECONDS
 
 
 @pytest.mark.parametrize("rounds", [0.0, 0.5, 1.0, 2.0, 10.0, 100.0])
 def test_a_time_is_kept_and_used(clock: Clock, rounds: float) -> None:
-    """The time is in multiples of the first round, which is always rendered."""
+    """The time is in multiples of the first sweep, which is always rendered."""
     reached = reach(ALL, seconds=rounds * FIRST)[0]
     assert reached.seconds == pytest.approx(clock.wall)
-    assert clock.wall <= max(rounds, 1.0) * FIRST * 1.0001
+    assert clock.wall <= max(1.05 * rounds, 1.1) * FIRST
     assert clock.wall >= 0.9 * rounds * FIRST
-    assert reached.samples == pytest.approx(2 * clock.wall / FIRST)
 
 
 def test_a_time_is_kept_where_each_round_is_twice_as_slow_as_the_one_before(
     clock: Clock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    add_samples, rounds = AutoSampler.add_samples, list[int]()
+    sweep, rounds = AutoSampler.sweep, list[int]()
 
-    def slower(self: AutoSampler, new: NDArray[np.int64]) -> bool:
+    def slower(self: AutoSampler, *arguments: Any) -> bool:
         rounds.append(clock.packets)
         clock.slowness *= 2
-        return add_samples(self, new)
+        return sweep(self, *arguments)
 
-    monkeypatch.setattr(AutoSampler, "add_samples", slower)
+    monkeypatch.setattr(AutoSampler, "sweep", slower)
     reach(ALL, seconds=50 * FIRST)
     assert len(rounds) >= 3
-    assert 0.8 * 50 * FIRST < clock.wall <= 50 * FIRST
+    assert 0.8 * 50 * FIRST < clock.wall <= 1.05 * 50 * FIRST
 
 
 def test_the_time_includes_packing_the_scene(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -201,46 +208,31 @@ def test_the_time_includes_packing_the_scene(clock: Clock, monkeypatch: pytest.M
 
     monkeypatch.setattr(TWO.packing, "pack", slow)
     reached = reach(ALL, seconds=10 * FIRST)[0]
-    assert 9 * FIRST < clock.wall <= 10 * FIRST * 1.0001
+    assert 9 * FIRST < clock.wall <= 1.05 * 10 * FIRST
     assert reached.seconds == pytest.approx(clock.wall)
 
 
 def test_a_time_may_end_before_an_error_is_reached(clock: Clock) -> None:
     reached = reach(ALL, 1e-7, 10 * FIRST)[0]
     assert reached.error > 1e-7
-    assert reached.seconds <= 10 * FIRST
+    assert reached.seconds <= 1.05 * 10 * FIRST
 
 
-def test_cancelling_ends_rendering_and_leaves_the_picture_as_it_was() -> None:
+def test_cancelling_ends_rendering() -> None:
     renderer = Renderer(2)
     renderer.prepare(ALL)
     pixels = np.full((720, 1280, 4), 9, np.uint8)
     assert cancelled(renderer, lambda: renderer.reach(ALL, pixels, 1e-9)) is None  # for which a day would not be enough
-    assert (pixels == 9).all()
     assert renderer.reach(ALL, pixels, 0.1)
 
 
 def test_a_cancel_between_two_frames_is_heard(monkeypatch: pytest.MonkeyPatch) -> None:
     renderer = Renderer(2)
-    add_samples = AutoSampler.add_samples
+    sweep = AutoSampler.sweep
 
-    def cancelled(self: AutoSampler, new: NDArray[np.int64]) -> bool:
+    def cancelled(self: AutoSampler, *arguments: Any) -> bool:
         renderer.cancel()
-        return add_samples(self, new)
+        return sweep(self, *arguments)
 
-    monkeypatch.setattr(AutoSampler, "add_samples", cancelled)
+    monkeypatch.setattr(AutoSampler, "sweep", cancelled)
     assert renderer.reach(ALL, np.zeros((HEIGHT, WIDTH, 4), np.uint8), 1e-6) is None
-
-
-def test_each_sample_is_taken_once_and_the_halves_have_different_shifts() -> None:
-    done: list[SamplePass] = []
-    auto = AutoSampler(lambda passes: not done.extend(passes), 32, 64, 4)
-    assert auto.first_round()
-    assert auto.add_samples(np.arange(128).reshape(8, 16) % 4)
-    count = np.zeros((2, 8, 16), int)
-    for number, each in enumerate(done):
-        assert each.positions.shape[1:] == (4 * PACKET_HEIGHT, 2)
-        count[number % 2] += each.packets * len(each.positions)
-    assert np.array_equal(count[0], 2 ** (np.arange(128).reshape(8, 16) % 4))
-    assert np.array_equal(count[0], count[1])
-    assert all(not np.isclose(a.positions, b.positions).any() for a, b in zip(done[::2], done[1::2], strict=True))
