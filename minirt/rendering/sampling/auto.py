@@ -41,6 +41,7 @@ FIRST_PROBES, PROBES = 256, 300  # packets to probe, in the first sweep and in t
 SHARE_PROBED = 1 / 64  # in the first sweep of a large picture
 # An estimate that ends rendering after the first sweep, with so many standard errors added, is this share of the goal.
 SURE, FAR_BELOW = 2.0, 0.7
+VAGUE = 0.4  # standard error, as a share of the estimate, with which so few probes met edges that more are needed
 FIRST_PORTION, SECOND_PORTION = 0.125, 0.5  # of the packets; more are drawn only when enough probes are known
 CHEAP = 0.5  # samples of a pixel, on average, that are not worth portions
 PORTIONS_OF_TIME = 8
@@ -96,7 +97,8 @@ class AutoSampler:
         errors = self.errors[self.is_probed]
         mean, doubt = errors.mean(), errors.std() / sqrt(len(errors))
         total: float | None = (mean + doubt) * self.count + UNSEEN_ERROR
-        if (mean + SURE * doubt) * self.count + UNSEEN_ERROR > FAR_BELOW * goal and perf_counter() < start + seconds:
+        is_enough = (mean + SURE * doubt) * self.count + UNSEEN_ERROR <= FAR_BELOW * goal and doubt <= VAGUE * mean
+        if not is_enough and perf_counter() < start + seconds:
             total = self.refine(goal, start + seconds)
         if total is None:
             return None
@@ -109,7 +111,11 @@ class AutoSampler:
         return that sum, and None when cancelled."""
         self.classes = self.classify().ravel()
         self.histogram = self.count_packets(np.arange(self.count))
-        if not self.probe_classes() or not self.draw_in_portions(goal, end):
+        if not self.probe_classes():
+            return None
+        if (total := self.total()) <= FAR_BELOW * goal:
+            return total
+        if not self.draw_in_portions(goal, end):
             return None
         while (total := self.total()) > goal and (left := end - perf_counter()) > 0:
             sweeps = self.sweeps
