@@ -41,7 +41,9 @@ FIRST_PROBES, PROBES = 256, 300  # packets to probe, in the first sweep and in t
 SHARE_PROBED = 1 / 64  # in the first sweep of a large picture
 # An estimate that ends rendering after the first sweep, with so many standard errors added, is this share of the goal.
 SURE, FAR_BELOW = 2.0, 0.7
-VAGUE = 0.4  # standard error, as a share of the estimate, with which so few probes met edges that more are needed
+# Where the standard error is a greater share of the estimate, so few probes met an edge that one more might have met
+# one with such a squared error.
+VAGUE, EDGE_ERROR = 0.4, 0.1
 FIRST_PORTION, SECOND_PORTION = 0.125, 0.5  # of the packets; more are drawn only when enough probes are known
 CHEAP = 0.5  # samples of a pixel, on average, that are not worth portions
 PORTIONS_OF_TIME = 8
@@ -96,9 +98,10 @@ class AutoSampler:
         # A few probes may decide: an estimate that ends rendering is one that is rather too large.
         errors = self.errors[self.is_probed]
         mean, doubt = errors.mean(), errors.std() / sqrt(len(errors))
+        if doubt >= VAGUE * mean:
+            doubt = max(doubt, EDGE_ERROR / len(errors))
         total: float | None = (mean + doubt) * self.count + UNSEEN_ERROR
-        is_enough = (mean + SURE * doubt) * self.count + UNSEEN_ERROR <= FAR_BELOW * goal and doubt <= VAGUE * mean
-        if not is_enough and perf_counter() < start + seconds:
+        if (mean + SURE * doubt) * self.count + UNSEEN_ERROR > FAR_BELOW * goal and perf_counter() < start + seconds:
             total = self.refine(goal, start + seconds)
         if total is None:
             return None
