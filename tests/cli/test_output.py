@@ -153,6 +153,7 @@ def test_the_scene_may_set_the_size(run: Run, folder: Path) -> None:
 
 
 def test_verbose_prints_durations_and_features(run: Run) -> None:
+    minirt.renderer(1).specialise(minirt.load("ball.rt"))  # else a wide kernel may draw
     ended = run("ball.rt", "-o", "x.png", "--size", "8x6", "--samples", "2", "--threads", "1", "-v")
     assert (ended.status, ended.out) == (0, b"")
     ready, duration, finite, *rest = ended.err.splitlines()
