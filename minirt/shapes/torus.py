@@ -24,6 +24,7 @@ from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.start import position_error
 from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns, longitude
 
+PAD = 16.0  # unit roundoffs of a torus' outer radius by which a computed height may be off, and more
 STEPS = 100  # of Newton's method at most; most roots take less than ten
 CORNERS = 8  # of the polygon around the circle in the middle of the tube
 
@@ -77,14 +78,16 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
 
     Between two turning points of the quartic along the ray the surface is crossed once if they lie on different sides
     of it, and not at all if they lie on the same side. So a root is searched only where there is one, and until it is
-    exact. The side of a point and its height above the surface come from its distance to the circle in the middle of
-    the tube: that keeps all digits of a thin tube, which the polynomial loses. A ray that starts on the surface, to
-    rounding, starts on the side to which it goes.
+    exact. The height of a point above the surface comes from its distance to the circle in the middle of the tube: that
+    keeps all digits of a thin tube, which the polynomial loses. The ray is cut a little outside of the ball and the
+    slab around the torus, clear of the places at which these touch it. A ray that starts on the surface, to rounding,
+    starts on the side to which it goes: that of the next turning point that is not on the surface, too.
     """
     f = origin - torus.centre
     approach = -dot(f, direction)  # t is counted from the closest approach to the centre
     g = f + approach * direction
-    rim = torus.ring + torus.tube
+    pad = PAD * unit_roundoff(approach) * (torus.ring + torus.tube)
+    rim = torus.ring + torus.tube + pad
     chord = rim * rim - dot(g, g)
     hit = chord >= 0.0
     t = approach
@@ -92,22 +95,30 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
         p = to_basis(torus.u, torus.v, torus.w, g)
         d = to_basis(torus.u, torus.v, torus.w, direction)
         per_height = 1.0 / d.z
-        bottom = (-torus.tube - p.z) * per_height
-        top = (torus.tube - p.z) * per_height
+        level = torus.tube + pad
+        bottom, top = (-level - p.z) * per_height, (level - p.z) * per_height
         half = sqrt(chord)
         enter = maximum(maximum(-half, minimum(bottom, top)), -approach)  # not before the ray's origin
         leave = minimum(half, maximum(bottom, top))
         hit = hit & (enter <= leave)
         if any(hit):
-            # The side of the surface at both ends, and at the turning points between them.
+            # The side of the surface at the start, and at the turning points between both ends.
             first, second, third = turning_points(torus, p, d, hit)
             first = minimum(maximum(first, enter), leave)
             second = minimum(maximum(second, enter), leave)
             third = minimum(maximum(third, enter), leave)
-            side_0 = side_of_start(torus, origin, to_basis(torus.u, torus.v, torus.w, f), d)
-            side_1 = where(first > enter, side(torus, p + first * d), side_0)
-            side_2 = where(second > first, side(torus, p + second * d), side_1)
-            side_3 = where(third > second, side(torus, p + third * d), side_2)
+            start = splat(height(torus, to_basis(torus.u, torus.v, torus.w, f)), t)  # of primary rays it is one number
+            height_1 = where(first > enter, height(torus, p + first * d), start)
+            height_2 = where(second > first, height(torus, p + second * d), height_1)
+            height_3 = where(third > second, height(torus, p + third * d), height_2)
+            side_0, side_1, side_2, side_3 = side(start), side(height_1), side(height_2), side(height_3)
+            error = 2.0 * position_error(origin, f) + pad
+            on = fabs(start) <= error
+            if rarely(on):
+                side_3 = where(on & (fabs(height_3) <= error), 1.0, side_3)
+                side_2 = where(on & (fabs(height_2) <= error), side_3, side_2)
+                side_1 = where(on & (fabs(height_1) <= error), side_2, side_1)
+                side_0 = where(on, side_1, side_0)
             # The first two neighbours on different sides enclose the first crossing. Behind the last turning point the
             # ray ends outside.
             by_1, by_2, by_3 = side_0 != side_1, side_1 != side_2, side_2 != side_3
@@ -120,23 +131,15 @@ def intersect(torus: PackedTorus, origin: Vec, direction: Vec) -> tuple[Mask, Nu
     return hit, t
 
 
-def side(torus: PackedTorus, p: Vec) -> Number:
-    """Side of the surface that a point is on: 1 outside of the tube, -1 inside."""
+def height(torus: PackedTorus, p: Vec) -> Number:
+    """Height of a point above the surface; negative in the tube."""
     aside = sqrt(p.x * p.x + p.y * p.y) - torus.ring
-    return where(sqrt(aside * aside + p.z * p.z) > torus.tube, 1.0, -1.0)
+    return sqrt(aside * aside + p.z * p.z) - torus.tube
 
 
-def side_of_start(torus: PackedTorus, origin: Vec, p: Vec, d: Vec) -> Number:
-    """Side of the surface on which a ray from p goes on: one that starts on the surface, to rounding, has no other."""
-    rho = sqrt(p.x * p.x + p.y * p.y)
-    aside = rho - torus.ring
-    above = splat(sqrt(aside * aside + p.z * p.z) - torus.tube, d.x)  # of primary rays it is one number
-    out = where(above > 0.0, 1.0, -1.0)
-    on = fabs(above) <= 2.0 * position_error(origin, p)  # `above` is as far off as the origin
-    if rarely(on):
-        leaving = aside * (p.x * d.x + p.y * d.y) + rho * (p.z * d.z) >= 0.0
-        out = where(on, where(leaving, 1.0, -1.0), out)
-    return out
+def side(above: Number) -> Number:
+    """Side of the surface on which a point of this height is: 1 outside of the tube, -1 inside."""
+    return where(above > 0.0, 1.0, -1.0)
 
 
 def turning_points(torus: PackedTorus, p: Vec, d: Vec, active: Mask) -> tuple[Number, Number, Number]:
@@ -180,14 +183,14 @@ def crossing(torus: PackedTorus, p: Vec, d: Vec, low: Number, high: Number, from
         rho = sqrt(q.x * q.x + q.y * q.y)
         aside = rho - torus.ring
         apart = sqrt(aside * aside + q.z * q.z)
-        height = apart - torus.tube
+        above = apart - torus.tube
         slope = (aside * (q.x * d.x + q.y * d.y) / rho + q.z * d.z) / apart
-        before = height * from_side > 0.0
+        before = above * from_side > 0.0
         low = where(before, t, low)
         high = where(before, high, t)
-        newton = t - height / slope
+        newton = t - above / slope
         nearer = where((newton > low) & (newton < high), newton, 0.5 * (low + high))
-        unconverged = unconverged & (fabs(height) > rounding * torus.ring)  # below that it is rounding
+        unconverged = unconverged & (fabs(above) > rounding * torus.ring)  # below that it is rounding
         step = where(unconverged, nearer - t, 0.0)
         t = t + step
         unconverged = fabs(step) > rounding * (fabs(t) + torus.tube)

@@ -9,7 +9,7 @@ import pytest
 
 from minirt.lanes import Vec
 from minirt.report.measurements import textbook
-from minirt.shapes import KINDS, Shape, start
+from minirt.shapes import KINDS, Shape, start, torus
 from tests.shapes import mutants
 from tests.shapes.execution_modes import Array, Intersect, kind_of, on_arrays, vec
 
@@ -48,9 +48,10 @@ def as_of_a_shadow_ray(shapes: list[Shape], origins: Array, directions: Array) -
 
 
 def hits_its_start(shapes: list[Shape], origins: Array, directions: Array) -> Array:
-    """The real formula, which trusts the rounded place where a ray starts."""
+    """The real formula of a torus, which trusts the rounded place where a ray starts."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(start, "POSITION", 0.0)
+        patch.setattr(torus, "PAD", 0.0)
         return on_arrays(shapes, origins, directions)
 
 

@@ -17,6 +17,7 @@ from minirt.shapes.sphere import PackedSphere
 from minirt.shapes.square import PackedSquare
 from tests.shapes.execution_modes import Array, Intersect, on_arrays
 from tests.shapes.mutants import with_formula
+from tests.stability import mutants
 
 
 def quadratic(a: Any, b: Any, c: Any) -> tuple[Any, Any, Any]:
@@ -138,6 +139,7 @@ VARIANTS: dict[str, tuple[str, Intersect]] = {
     "plane hit at 0": ("plane", with_formula(plane_hit_at_0)),
     "sphere hit at the start": ("sphere", with_formula(sphere_by_the_textbook)),
     "ellipsoid a hundred roundings farther": ("ellipsoid", a_rounding_farther),
+    "torus hit at the start": ("torus", mutants.hits_its_start),
     "torus missed in planes": ("torus", missed_in_planes),
     "hyperboloid missed in planes": ("hyperboloid", missed_in_planes),
 }
