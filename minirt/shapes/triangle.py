@@ -25,9 +25,8 @@ from minirt.shapes.flat_start import start_error
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.triangle_normal import plane_normal
 
-GRAZING = 2.0**-10  # slope of a ray to the plane below which its hit is clamped to the triangle
-EDGE = 2.0**-20  # and the same for the slope times the distance from an edge as seen, as a share of the triangle
-ROUNDINGS = 8.0  # by which a ray that hits a triangle may pass beside it
+GRAZING = 2.0**-13  # a hit is clamped to the triangle if the slope of the ray, times the share to an edge, is less
+ROUNDINGS = 2.0  # by which a ray that hits a triangle may pass beside it
 CLOSE = 2.0**-32  # shares of the area of a triangle, as seen: a hit whose t^2 is less may be where the ray starts
 FLAT = 16 * 2.0**-53  # least height of a triangle, as a share of its largest coordinate
 
@@ -130,16 +129,18 @@ def watertight(a: Vec, b: Vec, c: Vec, normal: Vec, origin: Vec, direction: Vec)
         slope = dot(normal, direction)
         t = dot(normal, origin - corners[0]) / -slope  # not a - origin: kept from above, it costs registers
         extent, edge = fabs(least + most), minimum(fabs(least), fabs(most))
-        grazing = hit & ((fabs(slope) < GRAZING) | (fabs(slope) * edge < EDGE * extent))
-        if rarely(grazing):
+        grazing = fabs(slope) * edge <= GRAZING * extent
+        close = t * t < CLOSE * extent
+        if rarely(hit & (grazing | close)):
             enter, leave = above(corners, normal, origin, direction)
-            t = where(grazing, minimum(maximum(t, enter), leave), t)  # `enter` where t is NaN
-            hit = hit & ~(grazing & (enter > leave))
-        hit = hit & (extent != 0.0) & (t > 0.0)  # a triangle seen edge on, where both are 0, is not hit
-        close = hit & (t * t < CLOSE * extent)
-        if rarely(close):
+            at_a, at_b, at_c = a.z * per_depth, b.z * per_depth, c.z * per_depth
+            begin = maximum(enter, minimum(minimum(at_a, at_b), at_c))
+            end = minimum(leave, maximum(maximum(at_a, at_b), at_c))
+            t = where(grazing, minimum(maximum(t, begin), end), t)  # `begin` where t is NaN
             f = origin - corners[0]
-            hit = hit & ~(close & (fabs(dot(normal, f)) <= start_error(origin, f)))
+            starts = close & (fabs(dot(normal, f)) <= start_error(origin, f))
+            hit = hit & ~(grazing & (enter > leave)) & ~starts & (extent != 0.0)  # not one that is seen edge on
+        hit = hit & (t > 0.0)
     return hit, t
 
 
