@@ -13,7 +13,7 @@ from math import hypot
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Point, Triple, declare, unit
-from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rarely, rounded_product, where
+from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rarely, rounded_product, unit_roundoff, where
 from minirt.lanes import cross as product
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
@@ -21,10 +21,13 @@ from minirt.records import record
 from minirt.shapes import pyramid
 from minirt.shapes.boundary import Boundary, triangle_boundary
 from minirt.shapes.bounds import bounds_of_points
+from minirt.shapes.flat_start import start_error
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.triangle_normal import plane_normal
 
-GRAZING = 2.0**-10  # slope of a ray to the plane below which its hit is clamped to the depths of the corners
+GRAZING = 2.0**-13  # a hit is clamped to the triangle if the slope of the ray, times the share to an edge, is less
+ROUNDINGS = 2.0  # by which a ray that hits a triangle may pass beside it
+CLOSE = 2.0**-32  # shares of the area of a triangle, as seen: a hit whose t^2 is less may be where the ray starts
 FLAT = 16 * 2.0**-53  # least height of a triangle, as a share of its largest coordinate
 
 
@@ -101,8 +104,9 @@ def watertight(a: Vec, b: Vec, c: Vec, normal: Vec, origin: Vec, direction: Vec)
     rounded by themselves, never fused with the sum that follows.
 
     The distance is that to the plane of the triangle. The mean of the corners, weighted by the edge functions, would be
-    off by roundings of the square of the longest edge over the height: for slivers, far too much. The distance of a
-    grazing ray is clamped to those of the nearest and the farthest corner, even if it is parallel to the plane.
+    off by roundings of the square of the longest edge over the height: for slivers, far too much. The hit of a grazing
+    ray is clamped to the triangle, even if the ray is parallel to the plane. A ray that starts on the triangle, within
+    rounding, does not hit it there.
     """
     x, y, z = fabs(direction.x), fabs(direction.y), fabs(direction.z)
     by_x = (x >= y) & (x >= z)
@@ -110,7 +114,7 @@ def watertight(a: Vec, b: Vec, c: Vec, normal: Vec, origin: Vec, direction: Vec)
     d = permuted_axes(by_x, by_y, direction)
     per_depth = 1.0 / d.z
     shear = Vec(d.x * per_depth, d.y * per_depth, per_depth)
-    on_plane = a
+    corners = a, b, c
     a = sheared(shear, permuted_axes(by_x, by_y, a - origin))
     b = sheared(shear, permuted_axes(by_x, by_y, b - origin))
     c = sheared(shear, permuted_axes(by_x, by_y, c - origin))
@@ -123,13 +127,51 @@ def watertight(a: Vec, b: Vec, c: Vec, normal: Vec, origin: Vec, direction: Vec)
     t = a.z
     if any(hit):
         slope = dot(normal, direction)
-        t = dot(normal, origin - on_plane) / -slope  # not on_plane - origin: kept from above, it costs registers
-        if rarely(hit & (fabs(slope) < GRAZING)):
+        t = dot(normal, origin - corners[0]) / -slope  # not a - origin: kept from above, it costs registers
+        extent, edge = fabs(least + most), minimum(fabs(least), fabs(most))
+        grazing = fabs(slope) * edge <= GRAZING * extent
+        close = t * t < CLOSE * extent
+        if rarely(hit & (grazing | close)):
+            enter, leave = above(corners, normal, origin, direction)
             at_a, at_b, at_c = a.z * per_depth, b.z * per_depth, c.z * per_depth
-            nearest, farthest = minimum(minimum(at_a, at_b), at_c), maximum(maximum(at_a, at_b), at_c)
-            t = minimum(maximum(t, nearest), farthest)  # `nearest` where t is NaN
-        hit = hit & (least + most != 0.0) & (t > 0.0)  # a triangle seen edge on, where both are 0, is not hit
+            begin = maximum(enter, minimum(minimum(at_a, at_b), at_c))
+            end = minimum(leave, maximum(maximum(at_a, at_b), at_c))
+            t = where(grazing, minimum(maximum(t, begin), end), t)  # `begin` where t is NaN
+            f = origin - corners[0]
+            starts = close & (fabs(dot(normal, f)) <= start_error(origin, f))
+            hit = hit & ~(grazing & (enter > leave)) & ~starts & (extent != 0.0)  # not one that is seen edge on
+        hit = hit & (t > 0.0)
     return hit, t
+
+
+def above(corners: tuple[Vec, Vec, Vec], normal: Vec, origin: Vec, direction: Vec) -> tuple[Number, Number]:
+    """Where a ray begins and ends to be above or below the triangle, for all that rounding lets one know.
+
+    There it is between each edge and the line through the opposite corner. That is symmetrical: the normal may be on
+    either side.
+    """
+    a, b, c = corners
+    a, b, c = a - origin, b - origin, c - origin
+    pad = ROUNDINGS * unit_roundoff(a.x) * (taxicab(a) + taxicab(b) + taxicab(c))
+    first, second = between(a, b, c, normal, direction, pad), between(b, c, a, normal, direction, pad)
+    third = between(c, a, b, normal, direction, pad)
+    return maximum(maximum(first[0], second[0]), third[0]), minimum(minimum(first[1], second[1]), third[1])
+
+
+def between(p: Vec, q: Vec, r: Vec, normal: Vec, direction: Vec, pad: Number) -> tuple[Number, Number]:
+    """Where a ray from 0 enters and leaves the strip between the edge from p to q and the corner r."""
+    edge = q - p
+    across = product(edge, normal)
+    margin, rate = pad * taxicab(edge), dot(across, direction)
+    at_edge, at_corner = dot(across, p), dot(across, r)
+    one = (minimum(at_edge, at_corner) - margin) / rate
+    other = (maximum(at_edge, at_corner) + margin) / rate
+    return minimum(one, other), maximum(one, other)
+
+
+def taxicab(v: Vec) -> Number:
+    """Sum of the absolute values of the coordinates, no less than the length."""
+    return fabs(v.x) + fabs(v.y) + fabs(v.z)
 
 
 def permuted_axes(by_x: Mask, by_y: Mask, v: Vec) -> Vec:

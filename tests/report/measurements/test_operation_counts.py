@@ -27,9 +27,9 @@ from tests.report.measurements.operation_counts import PACKET, Work, work
 KIND = {kind.element: kind for kind in KINDS}
 ELEMENTS = pytest.mark.parametrize("element", textbook.FORMULAS, ids=lambda element: element.title)
 
-# Limits of all operations, as multiples of the textbook formula's. The triangle pays for being watertight, the sphere
-# for precision with small and far shapes.
-TIMES = {Sphere: 2.0, Triangle: 1.6} | dict.fromkeys((Plane, Cylinder, Cone, Paraboloid, Hyperboloid), 1.25)
+# Limits of all operations, as multiples of the textbook formula's. The triangle pays for being watertight, for rays
+# that graze it or start on it, the sphere for precision with small and far shapes.
+TIMES = {Sphere: 2.0, Triangle: 1.8} | dict.fromkeys((Plane, Cylinder, Cone, Paraboloid, Hyperboloid), 1.25)
 # Divisions and roots more than those of the textbook's, a packet. The tenth is for packets that a formula skips: which
 # have no ray that may hit is not quite the same for both.
 SLOW = {Triangle: 1.0} | dict.fromkeys((Sphere, Plane, Cylinder, Cone, Paraboloid, Hyperboloid), 0.1)
