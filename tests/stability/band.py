@@ -27,7 +27,7 @@ from tests import oracle
 from tests.oracle.body import body, inside, meetings
 from tests.oracle.many import crossed
 from tests.shapes.regimes import Array
-from tests.stability.regime import U, lever, points, size
+from tests.stability.regime import U, points, size
 
 SLACK = 64.0
 START = 16.0  # roundings of the largest coordinate of an origin, by which it may be on a surface
@@ -99,7 +99,7 @@ def swell(shape: Shape, origins: Array, t: Array, exact: Array) -> Array:
     """64 roundings for each ray."""
     far = np.where(np.isfinite(t), t, np.where(np.isfinite(exact), exact, 0.0))
     away = np.linalg.norm(origins - points(shape)[0], axis=-1)
-    found: Array = SLACK * U * (far + away + size(shape) + lever(shape))
+    found: Array = SLACK * U * (far + away + size(shape))
     return found
 
 
