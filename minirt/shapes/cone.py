@@ -34,6 +34,8 @@ from minirt.shapes.start import (
 )
 from minirt.shapes.uv_mapping import revolved_mapping
 
+PARALLEL = 2.0**-6  # share of the slope to which a ray is as steep as the side
+
 
 @record()
 class Cone(Shape):
@@ -105,7 +107,8 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
     tip = -p.z * per_height
     base = (cone.height - p.z) * per_height
     first, last = minimum(tip, base), maximum(tip, base)
-    start = clamped_minimum(per_a, b, first, last)
+    parallel = fabs(a) <= PARALLEL * (rise * rise)
+    start = where(parallel, tip, clamped_minimum(per_a, b, first, last))
     q = p + start * d
     reach_q = cone.slope * q.z
     half_b = q.x * d.x + q.y * d.y - reach_q * rise
@@ -124,11 +127,15 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
                 exact_level = value(minus(power, times(side, side)))
                 error = position_error(origin, p)
                 low, high = between_caps(height, 0.0, cone.height, per_height, error)
-                b = p.x * d.x + p.y * d.y - cone.slope * height[0] * rise
                 first, last = where(close, low, first), where(close, high, last)
                 beside = close & beside_side(level, squared, over, half)
-                start, half_b, c = where(beside, 0.0, start), where(beside, b, half_b), where(beside, exact_level, c)
-                product = product_of_roots(beside, c, sqrt(squared * (1.0 + cone.slope * cone.slope)), error)
+                start = where(beside, 0.0, where(close & ~parallel, clamped_minimum(per_a, b, low, high), start))
+                q = p + start * d
+                reach_q = cone.slope * where(beside, height[0], q.z)
+                half_b = q.x * d.x + q.y * d.y - reach_q * rise
+                c = where(beside, exact_level, q.x * q.x + q.y * q.y - reach_q * reach_q)
+                slope = sqrt(squared * (1.0 + cone.slope * cone.slope))
+                product = product_of_roots(beside, c, slope, over, error)
     met, below, above = negative_interval(a, per_a, half_b, c, product)
     hit = met | steep
     t = start

@@ -121,7 +121,7 @@ def solve(cylinder: PackedCylinder, origin: Vec, direction: Vec, anywhere: bool 
                 first, last = where(close, low, first), where(close, high, last)
                 beside = close & beside_side(level, squared, over, cylinder.half)
                 start, half_b, c = where(beside, 0.0, start), where(beside, b, half_b), where(beside, exact_level, c)
-                product = product_of_roots(beside, c, cylinder.radius, error)
+                product = product_of_roots(beside, c, cylinder.radius, over, error)
     hit, below, above = negative_interval(a, per_a, half_b, c, product)
     t = start
     if any(hit):

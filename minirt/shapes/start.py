@@ -58,12 +58,13 @@ def position_error(origin: Vec, p: Vec) -> Number:
     return POSITION * unit_roundoff(p.x) * maximum(largest(origin), largest(p))
 
 
-def product_of_roots(beside: Mask, c: Number, slope: Number, error: Number) -> Number:
-    """Return c of a quadratic equation, or exactly 0 for rays `beside` the side that start on it.
+def product_of_roots(beside: Mask, c: Number, slope: Number, over: Number, error: Number) -> Number:
+    """Return c of a quadratic equation, or exactly 0 for rays `beside` the side that start on it, not beyond it.
 
-    `error` is that of the start, and twice the `slope` is the gradient of c.
+    `over` is the height of the start above the nearer cap, `error` that of the start, and twice the `slope` is the
+    gradient of c.
     """
-    return where(beside, zero_within(c, 2.0 * slope * error), c)
+    return where(beside & (over <= error), zero_within(c, 2.0 * slope * error), c)
 
 
 def zero_within(x: Number, error: Number) -> Number:
