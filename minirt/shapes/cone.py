@@ -27,14 +27,14 @@ from minirt.shapes.start import (
     axial,
     beside_side,
     between_caps,
-    position_error,
+    error_of_start,
     product_of_roots,
     starts_close,
     within_shell,
 )
 from minirt.shapes.uv_mapping import revolved_mapping
 
-PARALLEL = 2.0**-6  # share of the slope to which a ray is as steep as the side
+PARALLEL = 2.0**-6  # share of a steepness by which that of a ray beside a generator differs
 
 
 @record()
@@ -92,7 +92,9 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
     in one of them for an interval of t. A steeper ray, which crosses the plane between them, is in both, except for an
     interval around that plane. The result is cut to the heights between apex and base: as with the cylinder there is no
     crack at the rim, and none at the apex. A steep ray meets the double cone in every case; for one along the axis
-    rounding may deny that, and the whole interval between apex and base is left.
+    rounding may deny that, and the whole interval between apex and base is left. For a ray beside a generator t is
+    counted from the height of the apex: its deepest point is known badly, and where it passes the apex closely its
+    distance from there counts.
 
     Shadow rays pass None for `anywhere`: see `minirt.shapes.start`.
     """
@@ -125,7 +127,8 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
                 height, power = axial(origin, cone.apex, cone.w, cone.w_low, a)
                 side = times((splat(cone.slope, a), splat(cone.slope_low, a)), height)  # its distance from the axis
                 exact_level = value(minus(power, times(side, side)))
-                error = position_error(origin, p)
+                slope = sqrt(squared * (1.0 + cone.slope * cone.slope))
+                error = error_of_start(origin, p, level, slope, over)
                 low, high = between_caps(height, 0.0, cone.height, per_height, error)
                 first, last = where(close, low, first), where(close, high, last)
                 beside = close & beside_side(level, squared, over, half)
@@ -133,9 +136,11 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
                 q = p + start * d
                 reach_q = cone.slope * where(beside, height[0], q.z)
                 half_b = q.x * d.x + q.y * d.y - reach_q * rise
+                far = other_root(cone, p, d, -2.0 * half_b * per_a)
                 c = where(beside, exact_level, q.x * q.x + q.y * q.y - reach_q * reach_q)
-                slope = sqrt(squared * (1.0 + cone.slope * cone.slope))
-                product = product_of_roots(beside, c, slope, over, error)
+                better = beside & parallel & (far > low) & (far < high) & (fabs(c) <= PARALLEL * fabs(a) * far * far)
+                half_b = where(better, -0.5 * (a * far + c / far), half_b)
+                product = product_of_roots(beside, c, slope, error)
     met, below, above = negative_interval(a, per_a, half_b, c, product)
     hit = met | steep
     t = start
@@ -146,6 +151,17 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
         t = where(near > 0.0, near, far)
         hit = hit & (near <= far) & (t > 0.0)
     return hit, t
+
+
+def other_root(cone: PackedCone, p: Vec, d: Vec, t: Number) -> Number:
+    """Return the t at which a ray that starts on the side meets it again, more exact than the given -2 b / a.
+
+    Beside a generator nearly everything in a and b cancels. A step of Newton's method corrects that.
+    """
+    q = p + t * d
+    reach, rise = cone.slope * q.z, cone.slope * d.z
+    step = 0.5 * (q.x * q.x + q.y * q.y - reach * reach) / (q.x * d.x + q.y * d.y - reach * rise)
+    return where(fabs(step) <= PARALLEL * fabs(t), t - step, t)
 
 
 def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:

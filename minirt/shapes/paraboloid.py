@@ -28,7 +28,7 @@ from minirt.shapes.start import (
     axial,
     beside_side,
     between_caps,
-    position_error,
+    error_of_start,
     product_of_roots,
     starts_close,
     within_shell,
@@ -130,7 +130,8 @@ def solve(paraboloid: PackedParaboloid, origin: Vec, direction: Vec, anywhere: b
                 height, power = axial(origin, paraboloid.vertex, paraboloid.w, paraboloid.w_low, a)
                 double = splat(2.0 * paraboloid.focal, a), splat(2.0 * paraboloid.focal_low, a)
                 exact_level = value(minus(power, times(double, height)))
-                error = position_error(origin, p)
+                slope = sqrt(squared)
+                error = error_of_start(origin, p, level, slope, over)
                 low, high = between_caps(height, 0.0, paraboloid.height, per_height, error)
                 first, last = where(close, low, first), where(close, high, last)
                 beside = close & beside_side(level, squared, over, half)
@@ -138,7 +139,7 @@ def solve(paraboloid: PackedParaboloid, origin: Vec, direction: Vec, anywhere: b
                 q = p + start * d
                 half_b = q.x * d.x + q.y * d.y - slant
                 c = where(beside, exact_level, q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z)
-                product = product_of_roots(beside, c, sqrt(squared), over, error)
+                product = product_of_roots(beside, c, slope, error)
     hit, below, above = negative_interval(a, per_a, half_b, c, product)
     t = start
     if any(hit):

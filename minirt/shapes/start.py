@@ -39,10 +39,10 @@ def starts_close(
     It does not if it starts clearly above the side or a cap and goes away from it, as most mirrored rays do. `a` and
     `b` are those of its quadratic equation; it goes away from the middle between the caps if `outwards` > 0.
     """
-    u = unit_roundoff(a)
+    error = ROUNDING * unit_roundoff(a) * size
     near = (level >= -CLOSE * squared) | (over >= -CLOSE * size)
-    inwards = (a < 0.0) | (b < 0.0) | (level <= ROUNDING * u * squared)
-    return near & inwards & ((outwards < 0.0) | (over <= ROUNDING * u * size))
+    inwards = (a < 0.0) | (b < 0.0) | (level * fabs(level) <= error * error * squared)
+    return near & inwards & ((outwards < 0.0) | (over <= error))
 
 
 def beside_side(level: Number, squared: Number, over: Number, half: Number) -> Mask:
@@ -58,13 +58,21 @@ def position_error(origin: Vec, p: Vec) -> Number:
     return POSITION * unit_roundoff(p.x) * maximum(largest(origin), largest(p))
 
 
-def product_of_roots(beside: Mask, c: Number, slope: Number, over: Number, error: Number) -> Number:
-    """Return c of a quadratic equation, or exactly 0 for rays `beside` the side that start on it, not beyond it.
+def error_of_start(origin: Vec, p: Vec, level: Number, slope: Number, over: Number) -> Number:
+    """Distance below which a ray starts on the side or on a cap, 0 for rays that start beyond the edge of one.
 
-    `over` is the height of the start above the nearer cap, `error` that of the start, and twice the `slope` is the
-    gradient of c.
+    Twice the `slope` is the gradient of `level`.
     """
-    return where(beside & (over <= error), zero_within(c, 2.0 * slope * error), c)
+    error = position_error(origin, p)
+    return where((level <= 2.0 * slope * error) & (over <= error), error, 0.0)
+
+
+def product_of_roots(beside: Mask, c: Number, slope: Number, error: Number) -> Number:
+    """Return c of a quadratic equation, or exactly 0 for rays `beside` the side that start on it.
+
+    `error` is that of the start, and twice the `slope` is the gradient of c.
+    """
+    return where(beside, zero_within(c, 2.0 * slope * error), c)
 
 
 def zero_within(x: Number, error: Number) -> Number:
