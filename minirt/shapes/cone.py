@@ -116,9 +116,8 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
     half_b = q.x * d.x + q.y * d.y - reach_q * rise
     product = c = q.x * q.x + q.y * q.y - reach_q * reach_q
     if anywhere is not None:
-        squared = reach * reach
+        squared, half = reach * reach, 0.5 * cone.height
         level = p.x * p.x + p.y * p.y - squared
-        half = 0.5 * cone.height
         over, size = fabs(p.z - half) - half, (1.0 + cone.slope) * cone.height
         within = within_shell(level, squared, over, size)
         if rarely(within):
@@ -136,10 +135,8 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
                 q = p + start * d
                 reach_q = cone.slope * where(beside, height[0], q.z)
                 half_b = q.x * d.x + q.y * d.y - reach_q * rise
-                far = other_root(cone, p, d, -2.0 * half_b * per_a)
                 c = where(beside, exact_level, q.x * q.x + q.y * q.y - reach_q * reach_q)
-                better = beside & parallel & (far > low) & (far < high) & (fabs(c) <= PARALLEL * fabs(a) * far * far)
-                half_b = where(better, -0.5 * (a * far + c / far), half_b)
+                half_b = where(beside & parallel, balanced(cone, p, d, a, per_a, half_b, c), half_b)
                 product = product_of_roots(beside, c, slope, error)
     met, below, above = negative_interval(a, per_a, half_b, c, product)
     hit = met | steep
@@ -153,15 +150,19 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
     return hit, t
 
 
-def other_root(cone: PackedCone, p: Vec, d: Vec, t: Number) -> Number:
-    """Return the t at which a ray that starts on the side meets it again, more exact than the given -2 b / a.
+def balanced(cone: PackedCone, p: Vec, d: Vec, a: Number, per_a: Number, b: Number, c: Number) -> Number:
+    """Return b of the quadratic equation of a ray beside a generator that starts closely at the side, more exactly.
 
-    Beside a generator nearly everything in a and b cancels. A step of Newton's method corrects that.
+    Nearly everything cancels in a and b, and in the far root -2 b / a. A step of Newton's method corrects that, and b
+    follows from both roots: the near one is c / a by the far one.
     """
-    q = p + t * d
+    far = -2.0 * b * per_a
+    q = p + far * d
     reach, rise = cone.slope * q.z, cone.slope * d.z
     step = 0.5 * (q.x * q.x + q.y * q.y - reach * reach) / (q.x * d.x + q.y * d.y - reach * rise)
-    return where(fabs(step) <= PARALLEL * fabs(t), t - step, t)
+    far = where(fabs(step) <= PARALLEL * fabs(far), far - step, far)
+    within = (fabs(q.z - 0.5 * cone.height) <= cone.height) & (fabs(c) <= PARALLEL * fabs(a) * far * far)
+    return where(within, -0.5 * (a * far + c / far), b)
 
 
 def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:

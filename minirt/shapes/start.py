@@ -19,7 +19,7 @@ from minirt.shapes.compensated import Pair, along, minus, offset, squared_length
 
 CLOSE = 2.0**-6  # to a surface: share of a solid's size, or of the square of its radius there
 POSITION = 2.0  # unit roundoffs of the largest coordinate; rounding a point moves it by at most sqrt(3) of them
-ROUNDING = 8.0  # unit roundoffs of a solid's size by which a plain height above its surface may be off, and more
+ROUNDING = 16.0  # unit roundoffs of a solid's size by which a plain height above its surface may be off, and more
 
 
 def within_shell(level: Number, squared: Number, over: Number, size: Number) -> Mask:
