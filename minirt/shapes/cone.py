@@ -27,12 +27,14 @@ from minirt.shapes.start import (
     axial,
     beside_side,
     between_caps,
-    position_error,
+    error_of_start,
     product_of_roots,
     starts_close,
     within_shell,
 )
 from minirt.shapes.uv_mapping import revolved_mapping
+
+PARALLEL = 2.0**-6  # share of a steepness by which that of a ray beside a generator differs
 
 
 @record()
@@ -90,7 +92,9 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
     in one of them for an interval of t. A steeper ray, which crosses the plane between them, is in both, except for an
     interval around that plane. The result is cut to the heights between apex and base: as with the cylinder there is no
     crack at the rim, and none at the apex. A steep ray meets the double cone in every case; for one along the axis
-    rounding may deny that, and the whole interval between apex and base is left.
+    rounding may deny that, and the whole interval between apex and base is left. For a ray beside a generator t is
+    counted from the height of the apex: its deepest point is known badly, and where it passes the apex closely its
+    distance from there counts.
 
     Shadow rays pass None for `anywhere`: see `minirt.shapes.start`.
     """
@@ -105,15 +109,15 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
     tip = -p.z * per_height
     base = (cone.height - p.z) * per_height
     first, last = minimum(tip, base), maximum(tip, base)
-    start = clamped_minimum(per_a, b, first, last)
+    parallel = fabs(a) <= PARALLEL * (rise * rise)
+    start = where(parallel, tip, clamped_minimum(per_a, b, first, last))
     q = p + start * d
     reach_q = cone.slope * q.z
     half_b = q.x * d.x + q.y * d.y - reach_q * rise
     product = c = q.x * q.x + q.y * q.y - reach_q * reach_q
     if anywhere is not None:
-        squared = reach * reach
+        squared, half = reach * reach, 0.5 * cone.height
         level = p.x * p.x + p.y * p.y - squared
-        half = 0.5 * cone.height
         over, size = fabs(p.z - half) - half, (1.0 + cone.slope) * cone.height
         within = within_shell(level, squared, over, size)
         if rarely(within):
@@ -122,13 +126,18 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
                 height, power = axial(origin, cone.apex, cone.w, cone.w_low, a)
                 side = times((splat(cone.slope, a), splat(cone.slope_low, a)), height)  # its distance from the axis
                 exact_level = value(minus(power, times(side, side)))
-                error = position_error(origin, p)
+                slope = sqrt(squared * (1.0 + cone.slope * cone.slope))
+                error = error_of_start(origin, p, level, slope, over)
                 low, high = between_caps(height, 0.0, cone.height, per_height, error)
-                b = p.x * d.x + p.y * d.y - cone.slope * height[0] * rise
                 first, last = where(close, low, first), where(close, high, last)
                 beside = close & beside_side(level, squared, over, half)
-                start, half_b, c = where(beside, 0.0, start), where(beside, b, half_b), where(beside, exact_level, c)
-                product = product_of_roots(beside, c, sqrt(squared * (1.0 + cone.slope * cone.slope)), error)
+                start = where(beside, 0.0, where(close & ~parallel, clamped_minimum(per_a, b, low, high), start))
+                q = p + start * d
+                reach_q = cone.slope * where(beside, height[0], q.z)
+                half_b = q.x * d.x + q.y * d.y - reach_q * rise
+                c = where(beside, exact_level, q.x * q.x + q.y * q.y - reach_q * reach_q)
+                half_b = where(beside & parallel, balanced(cone, p, d, a, per_a, half_b, c), half_b)
+                product = product_of_roots(beside, c, slope, error)
     met, below, above = negative_interval(a, per_a, half_b, c, product)
     hit = met | steep
     t = start
@@ -139,6 +148,21 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
         t = where(near > 0.0, near, far)
         hit = hit & (near <= far) & (t > 0.0)
     return hit, t
+
+
+def balanced(cone: PackedCone, p: Vec, d: Vec, a: Number, per_a: Number, b: Number, c: Number) -> Number:
+    """Return b of the quadratic equation of a ray beside a generator that starts closely at the side, more exactly.
+
+    Nearly everything cancels in a and b, and in the far root -2 b / a. A step of Newton's method corrects that, and b
+    follows from both roots: the near one is c / a by the far one.
+    """
+    far = -2.0 * b * per_a
+    q = p + far * d
+    reach, rise = cone.slope * q.z, cone.slope * d.z
+    step = 0.5 * (q.x * q.x + q.y * q.y - reach * reach) / (q.x * d.x + q.y * d.y - reach * rise)
+    far = where(fabs(step) <= PARALLEL * fabs(far), far - step, far)
+    within = (fabs(q.z - 0.5 * cone.height) <= cone.height) & (fabs(c) <= PARALLEL * fabs(a) * far * far)
+    return where(within, -0.5 * (a * far + c / far), b)
 
 
 def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:

@@ -26,7 +26,7 @@ from minirt.shapes.start import (
     axial,
     beside_side,
     between_caps,
-    position_error,
+    error_of_start,
     product_of_roots,
     starts_close,
     within_shell,
@@ -116,11 +116,14 @@ def solve(cylinder: PackedCylinder, origin: Vec, direction: Vec, anywhere: bool 
                 height, power = axial(origin, cylinder.centre, cylinder.w, cylinder.w_low, a)
                 radius = splat(cylinder.radius, a)
                 exact_level = value(minus(power, two_product(radius, radius)))
-                error = position_error(origin, p)
+                error = error_of_start(origin, p, level, cylinder.radius, over)
                 low, high = between_caps(height, -cylinder.half, cylinder.half, per_height, error)
                 first, last = where(close, low, first), where(close, high, last)
                 beside = close & beside_side(level, squared, over, cylinder.half)
-                start, half_b, c = where(beside, 0.0, start), where(beside, b, half_b), where(beside, exact_level, c)
+                start = where(beside, 0.0, where(close, clamped_minimum(per_a, b, low, high), start))
+                q = p + start * d
+                half_b = q.x * d.x + q.y * d.y
+                c = where(beside, exact_level, q.x * q.x + q.y * q.y - squared)
                 product = product_of_roots(beside, c, cylinder.radius, error)
     hit, below, above = negative_interval(a, per_a, half_b, c, product)
     t = start

@@ -29,7 +29,7 @@ from minirt.shapes.start import (
     axial,
     beside_side,
     between_caps,
-    position_error,
+    error_of_start,
     product_of_roots,
     starts_close,
     within_shell,
@@ -139,13 +139,17 @@ def solve(hyperboloid: PackedHyperboloid, origin: Vec, direction: Vec, anywhere:
                 side = times((splat(hyperboloid.slope, a), splat(hyperboloid.slope_low, a)), height)
                 at_waist = splat(hyperboloid.waist, a)
                 exact_level = value(minus(minus(power, times(side, side)), two_product(at_waist, at_waist)))
-                error = position_error(origin, p)
+                slope = sqrt(squared * (1.0 + hyperboloid.slope * hyperboloid.slope))
+                error = error_of_start(origin, p, level, slope, over)
                 low, high = between_caps(height, -hyperboloid.half, hyperboloid.half, per_height, error)
-                b = p.x * d.x + p.y * d.y - hyperboloid.slope * height[0] * rise
                 first, last = where(close, low, first), where(close, high, last)
                 beside = close & beside_side(level, squared, over, hyperboloid.half)
-                start, half_b, c = where(beside, 0.0, start), where(beside, b, half_b), where(beside, exact_level, c)
-                slope = sqrt(squared * (1.0 + hyperboloid.slope * hyperboloid.slope))
+                between = where(close & ~steep, clamped_minimum(per_a, b, low, high), start)
+                start = where(beside, 0.0, between)
+                q = p + start * d
+                reach_q = hyperboloid.slope * where(beside, height[0], q.z)
+                half_b = q.x * d.x + q.y * d.y - reach_q * rise
+                c = where(beside, exact_level, q.x * q.x + q.y * q.y - reach_q * reach_q - waist)
                 product = product_of_roots(beside, c, slope, error)
     met, below, above = negative_interval(a, per_a, half_b, c, product)
     hit = met | steep

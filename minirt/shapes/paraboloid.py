@@ -28,7 +28,7 @@ from minirt.shapes.start import (
     axial,
     beside_side,
     between_caps,
-    position_error,
+    error_of_start,
     product_of_roots,
     starts_close,
     within_shell,
@@ -130,12 +130,16 @@ def solve(paraboloid: PackedParaboloid, origin: Vec, direction: Vec, anywhere: b
                 height, power = axial(origin, paraboloid.vertex, paraboloid.w, paraboloid.w_low, a)
                 double = splat(2.0 * paraboloid.focal, a), splat(2.0 * paraboloid.focal_low, a)
                 exact_level = value(minus(power, times(double, height)))
-                error = position_error(origin, p)
+                slope = sqrt(squared)
+                error = error_of_start(origin, p, level, slope, over)
                 low, high = between_caps(height, 0.0, paraboloid.height, per_height, error)
                 first, last = where(close, low, first), where(close, high, last)
                 beside = close & beside_side(level, squared, over, half)
-                start, half_b, c = where(beside, 0.0, start), where(beside, b, half_b), where(beside, exact_level, c)
-                product = product_of_roots(beside, c, sqrt(squared), error)
+                start = where(beside, 0.0, where(close, clamped_minimum(per_a, b, low, high), start))
+                q = p + start * d
+                half_b = q.x * d.x + q.y * d.y - slant
+                c = where(beside, exact_level, q.x * q.x + q.y * q.y - 2.0 * paraboloid.focal * q.z)
+                product = product_of_roots(beside, c, slope, error)
     hit, below, above = negative_interval(a, per_a, half_b, c, product)
     t = start
     if any(hit):

@@ -19,7 +19,7 @@ from minirt.shapes.compensated import Pair, along, minus, offset, squared_length
 
 CLOSE = 2.0**-6  # to a surface: share of a solid's size, or of the square of its radius there
 POSITION = 2.0  # unit roundoffs of the largest coordinate; rounding a point moves it by at most sqrt(3) of them
-ROUNDING = 8.0  # unit roundoffs of a solid's size by which a plain height above its surface may be off, and more
+ROUNDING = 16.0  # unit roundoffs of a solid's size by which a plain height above its surface may be off, and more
 
 
 def within_shell(level: Number, squared: Number, over: Number, size: Number) -> Mask:
@@ -39,10 +39,10 @@ def starts_close(
     It does not if it starts clearly above the side or a cap and goes away from it, as most mirrored rays do. `a` and
     `b` are those of its quadratic equation; it goes away from the middle between the caps if `outwards` > 0.
     """
-    u = unit_roundoff(a)
+    error = ROUNDING * unit_roundoff(a) * size
     near = (level >= -CLOSE * squared) | (over >= -CLOSE * size)
-    inwards = (a < 0.0) | (b < 0.0) | (level <= ROUNDING * u * squared)
-    return near & inwards & ((outwards < 0.0) | (over <= ROUNDING * u * size))
+    inwards = (a < 0.0) | (b < 0.0) | (level * fabs(level) <= error * error * squared)
+    return near & inwards & ((outwards < 0.0) | (over <= error))
 
 
 def beside_side(level: Number, squared: Number, over: Number, half: Number) -> Mask:
@@ -56,6 +56,15 @@ def beside_side(level: Number, squared: Number, over: Number, half: Number) -> M
 def position_error(origin: Vec, p: Vec) -> Number:
     """Distance to a surface below which a ray starts on it. p is the origin in the frame of the solid."""
     return POSITION * unit_roundoff(p.x) * maximum(largest(origin), largest(p))
+
+
+def error_of_start(origin: Vec, p: Vec, level: Number, slope: Number, over: Number) -> Number:
+    """Distance below which a ray starts on the side or on a cap, 0 for rays that start beyond the edge of one.
+
+    Twice the `slope` is the gradient of `level`.
+    """
+    error = position_error(origin, p)
+    return where((level <= 2.0 * slope * error) & (over <= error), error, 0.0)
 
 
 def product_of_roots(beside: Mask, c: Number, slope: Number, error: Number) -> Number:
