@@ -47,6 +47,7 @@ def prepared(monkeypatch: pytest.MonkeyPatch, **variables: str) -> dict[str, str
     """Return these environment variables as `prepare` completes them."""
     monkeypatch.setattr(os, "environ", variables)
     environment.prepare()
+    assert variables.pop("XDG_STATE_HOME").startswith(str(ROOT / "out"))  # journals of tests are not the user's
     return variables
 
 

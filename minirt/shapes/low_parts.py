@@ -72,4 +72,5 @@ def root_low(diameter: float, waist: float, height: float, rounded: float) -> fl
     (n, d), (m, e) = product((diameter, diameter)), product((waist, waist))
     (k, f), (h, g) = product((rounded, rounded)), product((height, height))
     above = (n * e - m * d) * g * f - k * h * d * e  # of the squares' difference
-    return above / (2 * h * d * e * f) / rounded
+    p, q = rounded.as_integer_ratio()
+    return above * q / (2 * h * d * e * f * p)

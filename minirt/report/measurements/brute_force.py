@@ -23,8 +23,8 @@ Change = Callable[[SceneArrays, int], SceneArrays]  # of the arrays of a picture
 class ChangedPacking(Packing):
     """Packs scenes and changes their arrays in one or more ways."""
 
-    def __init__(self, *changes: Change) -> None:
-        super().__init__()
+    def __init__(self, *changes: Change, precision: str = "double") -> None:
+        super().__init__(precision=precision)
         self.changes = changes
 
     def pack_double(self, scene: Scene, width: int, height: int) -> SceneArrays:

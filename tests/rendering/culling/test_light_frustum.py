@@ -17,7 +17,7 @@ from minirt.rendering.culling import light_frustum, visibility
 from minirt.rendering.culling.light_frustum import Cluster, dense_cluster, frustum_grid
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
-from minirt.report.measurements.brute_force import BruteForce
+from minirt.report.measurements.brute_force import ChangedPacking, without_light_buffers, without_tiles
 from minirt.scene import Ambient, Camera, Light, ParallelLight, Scene
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane
@@ -52,7 +52,7 @@ def scene(source: Any, *shapes: Any) -> Scene:
 def brute_force(precision: str) -> Renderer:
     """A renderer that tries every shape for every ray."""
     renderer = Renderer(2, precision)
-    renderer.packing = BruteForce(precision=precision)
+    renderer.packing = ChangedPacking(without_tiles, without_light_buffers, precision=precision)
     return renderer
 
 
