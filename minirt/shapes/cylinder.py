@@ -23,6 +23,7 @@ from minirt.shapes.low_parts import axis_low
 from minirt.shapes.quadric import clamped_minimum, negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 from minirt.shapes.start import (
+    CLOSE,
     axial,
     beside_side,
     between_caps,
@@ -108,10 +109,9 @@ def solve(cylinder: PackedCylinder, origin: Vec, direction: Vec, anywhere: bool 
     product = c = q.x * q.x + q.y * q.y - squared
     if anywhere is not None:
         level = p.x * p.x + p.y * p.y - squared
-        over, size = fabs(p.z) - cylinder.half, cylinder.radius + cylinder.half
-        within = within_shell(level, squared, over, size)
-        if rarely(within):
-            close = within & starts_close(a, b, level, squared, over, size, p.z * d.z)
+        if rarely(level <= CLOSE * squared):  # few rays start within the endless tube
+            over, size = fabs(p.z) - cylinder.half, cylinder.radius + cylinder.half
+            close = within_shell(level, squared, over, size) & starts_close(a, b, level, squared, over, size, p.z * d.z)
             if any(close):
                 height, power = axial(origin, cylinder.centre, cylinder.w, cylinder.w_low, a)
                 radius = splat(cylinder.radius, a)
