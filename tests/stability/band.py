@@ -36,7 +36,7 @@ Mask = np.ndarray
 
 
 class Facts(NamedTuple):
-    """What is true of n rays, of solids and of sheets."""
+    """Facts about n rays, of solids and of sheets."""
 
     exact: Array  # the nearest hits, infinity where there is none
     thicker: Array  # of a sheet: where the ray leaves the band of its plane

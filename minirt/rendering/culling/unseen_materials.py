@@ -16,7 +16,7 @@ from minirt.rendering.packing.materials import Materials
 
 
 class Effective(NamedTuple):
-    """Which of n shapes a material changes, (n,) each; None where the scene lacks the feature."""
+    """Masks of the shapes that a material changes, (n,) each; None where the scene lacks the feature."""
 
     specular: np.ndarray | None
     reflective: np.ndarray | None

@@ -53,7 +53,7 @@ class Rays(NamedTuple):
 
 
 class Certificate(NamedTuple):
-    """How exact n hits are; NaN where nothing was hit."""
+    """Errors and condition numbers of n hits; NaN where nothing was hit."""
 
     backward_error: Array  # (n,) distance of o + t d from the surface, in units of 2^-53 (t + |o - c| + size)
     condition: Array  # (n,) relative change of t per relative change of the data

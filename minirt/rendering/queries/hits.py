@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Traced(NamedTuple):
-    """What certificates are computed from."""
+    """Rays and shapes from which certificates are computed."""
 
     shapes: tuple[Shape, ...]
     first_primitive: NDArray[np.int64]  # of each shape

@@ -37,7 +37,7 @@ class Outcome(NamedTuple):
 
     @property
     def notice(self) -> str:
-        """What to say where the goal was not reached, and why; empty where it was."""
+        """The sentence that says that the goal was not reached, and why; empty where it was."""
         if self.rounded:
             return f"no more samples: rounding to 8 bits decides below an error of {ROUNDING_DECIDES:.2g}"
         if self.is_reached:

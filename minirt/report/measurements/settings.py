@@ -25,7 +25,7 @@ ERRORS = (0.01, 0.005, 0.002, 0.001, 0.0005)  # asked of automatic sampling
 
 
 class Drawn(NamedTuple):
-    """How a picture was drawn."""
+    """Settings with which a picture was drawn."""
 
     samples: float  # per pixel
     not_finite: int  # rays that brought light that is not finite

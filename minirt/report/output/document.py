@@ -1,4 +1,4 @@
-"""What the report of a scene says."""
+"""Text, tables and pictures of the report of a scene, in their order."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a work-precision diagram shows, and where."""
+"""Contents of a work-precision diagram, and their places."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Floor(NamedTuple):
 
 
 class Diagram(NamedTuple):
-    """What a diagram shows."""
+    """Contents of a diagram."""
 
     title: str
     lines: dict[str, list[Row]]  # render option -> rows that did not fail

@@ -25,7 +25,7 @@ class FoundChanges(NamedTuple):
 
     @property
     def title(self) -> str:
-        """What a message calls them: time of day, with the date unless it is today."""
+        """Their name in messages: time of day, with the date unless it is today."""
         when = datetime.fromtimestamp(self.time)  # in the user's own time
         date = "" if when.date() == datetime.now().date() else f"{when:%Y-%m-%d} "
         name = "" if self.is_journal else f" ({self.path.name})"

@@ -20,7 +20,7 @@ LARGEST = 2**30  # bytes
 
 
 class Contents(NamedTuple):
-    """What a journal says."""
+    """Contents of a journal."""
 
     file: Path  # the scene file
     text: str  # its text with all changes
