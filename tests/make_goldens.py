@@ -10,11 +10,11 @@ from pathlib import Path
 from minirt.image import Image
 from minirt.scene import Scene, load
 from tests.compare import Bytes
-from tests.paths import ROOT
+from tests.paths import scene_files
 from tests.reference import render, to_bytes
 
 GOLDENS = Path(__file__).parent / "goldens"
-SCENES = sorted(path for path in (ROOT / "scenes").glob("*.rt") if path.stem != "subject-as-printed")
+SCENES = sorted(path for path in scene_files() if path.stem != "subject-as-printed")
 SIZE = (320, 180)
 
 

@@ -19,7 +19,7 @@ from minirt.shapes.sphere import Sphere
 from tests import reference
 from tests.compare import edges
 from tests.kernel.pictures import linear, picture
-from tests.paths import SCENES
+from tests.paths import scene_files
 from tests.shapes.examples import example
 from tests.shapes.regimes import log_uniform, random_directions
 from tests.stability.test_properties import SEED, fixed, powers
@@ -93,7 +93,7 @@ def test_long_pictures(width: int, height: int) -> None:
     assert np.abs(linear(scene, width, height) - reference.render(scene, width, height)).max() <= 1e-9
 
 
-@pytest.mark.parametrize("path", sorted(SCENES.glob("*.rt")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", scene_files(), ids=lambda path: path.stem)
 def test_the_light_of_every_ray_of_every_scene_is_finite(path: Path) -> None:
     renderer = Renderer(2)
     for samples in (1, 3):

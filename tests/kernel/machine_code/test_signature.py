@@ -18,7 +18,7 @@ from minirt.kernel.machine_code.signature import dtype_of, key_of, signature_of,
 from minirt.rendering.frame_arguments import frame_arguments
 from minirt.rendering.running.kernel_features import minimal_scene
 from minirt.rendering.scene_packing import Packing
-from tests.paths import SCENES
+from tests.paths import scene_files
 
 Arguments = tuple[Any, ...]
 
@@ -46,7 +46,7 @@ class Recorder:
 def arguments_of_scenes() -> list[Arguments]:
     """Return the arguments of all functions that draw the scenes of this project, in both precisions."""
     found = []
-    for path in sorted(SCENES.glob("*.rt")):
+    for path in scene_files():
         scene = minimal_scene(minirt.load(path, lenient=True))
         for precision in ("double", "single"):
             recorder = Recorder()

@@ -18,11 +18,11 @@ from minirt.rendering.queries.preview import BUDGET, FEWEST, RAY, SHAPE, preview
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.sphere import Sphere
 from tests.kernel import pictures
-from tests.paths import SCENES as FOLDER_OF_SCENES
+from tests.paths import scene_files
 
 MIRRORS = ("material-mirror",)
 PLAIN = Renderer(2, depth=0)
-SCENES = sorted(FOLDER_OF_SCENES.glob("*.rt"))
+SCENES = scene_files()
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
