@@ -72,13 +72,9 @@ class PackedBox(NamedTuple):
 
 
 def intersect(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
-    """Whether and where a ray meets the box.
+    """Whether and where a ray meets the box, wherever it starts.
 
-    Slab test: the ray is between each pair of faces for an interval of t, and in the box where all three overlap (Kay
-    and Kajiya, Ray Tracing Complex Scenes, 1986). For a ray exactly in the plane of a face 0 times infinity is NaN: in
-    that of x = half, y = half or z = half the ray passes between this pair of faces, in that of -half it passes beside
-    them. So one of two boxes that share a face is hit by the rays in it. `maximum` and `minimum` ignore NaN in their
-    first argument alone. A face on which a ray starts, within rounding, is neither entered nor left there again.
+    A face on which a ray starts, within rounding, is neither entered nor left there again.
     """
     f = origin - box.centre
     p = to_basis(box.u, box.v, box.w, f)
@@ -95,6 +91,23 @@ def intersect(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number
         enter_z, leave_z = beyond_start(p.z, d.z, box.half.z, error, enter_z, leave_z)
         hit, t = first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
     return hit, t
+
+
+def occludes(box: PackedBox, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a shadow ray, which starts clear of all surfaces, meets the box.
+
+    Slab test: the ray is between each pair of faces for an interval of t, and in the box where all three overlap (Kay
+    and Kajiya, Ray Tracing Complex Scenes, 1986). For a ray exactly in the plane of a face 0 times infinity is NaN: in
+    that of x = half, y = half or z = half the ray passes between this pair of faces, in that of -half it passes beside
+    them. So one of two boxes that share a face is hit by the rays in it. `maximum` and `minimum` ignore NaN in their
+    first argument alone.
+    """
+    p = to_basis(box.u, box.v, box.w, origin - box.centre)
+    d = to_basis(box.u, box.v, box.w, direction)
+    enter_x, leave_x = slab_interval(p.x, d.x, box.half.x)
+    enter_y, leave_y = slab_interval(p.y, d.y, box.half.y)
+    enter_z, leave_z = slab_interval(p.z, d.z, box.half.z)
+    return first_in_all(enter_x, enter_y, enter_z, leave_x, leave_y, leave_z)
 
 
 def first_in_all(

@@ -11,14 +11,14 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, dot, fabs, rarely, unit_roundoff
+from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import facing_frame
 from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.bounds import bounds_of_disc
-from minirt.shapes.flat_start import CLOSE, start_error
+from minirt.shapes.flat_start import least_t
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
@@ -58,16 +58,23 @@ def intersect(disc: PackedDisc, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     """Whether and where a ray meets the disc; one that is parallel to it, or starts on it, within rounding, does
     not."""
     f = origin - disc.centre
-    slope = dot(disc.normal, direction)
     height = dot(disc.normal, f)
+    return crossing(disc, f, height, direction, least_t(origin, f, height, disc.radius))
+
+
+def occludes(disc: PackedDisc, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a shadow ray, which starts clear of all surfaces, meets the disc."""
+    f = origin - disc.centre
+    return crossing(disc, f, dot(disc.normal, f), direction, 0.0)
+
+
+def crossing(disc: PackedDisc, f: Vec, height: Number, direction: Vec, least: Number) -> tuple[Mask, Number]:
+    """Whether and where a ray from f, relative to the centre, meets the disc, at a t of more than the `least`."""
+    slope = dot(disc.normal, direction)
     t = -height / slope
     p = f + t * direction
-    hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0)
-    hit = hit & (dot(p, p) <= disc.radius * disc.radius)
-    close = hit & (t < CLOSE * disc.radius)
-    if rarely(close):
-        hit = hit & ~(close & (fabs(height) <= start_error(origin, f)))
-    return hit, t
+    hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > least)
+    return hit & (dot(p, p) <= disc.radius * disc.radius), t
 
 
 def surface(disc: PackedDisc, point: Vec) -> tuple[Vec, Vec]:

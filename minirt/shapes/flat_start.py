@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from minirt.lanes import Vec, fabs, unit_roundoff
+from minirt.lanes import Vec, fabs, unit_roundoff, where
 from minirt.lanes.largest import largest
 from minirt.lanes.vec import Number
 
@@ -17,3 +17,11 @@ def start_error(origin: Vec, f: Vec) -> Number:
     shape's centre.
     """
     return ROUNDINGS * unit_roundoff(f.x) * (largest(origin) + (fabs(f.x) + fabs(f.y) + fabs(f.z)))
+
+
+def least_t(origin: Vec, f: Vec, height: Number, size: float) -> Number:
+    """The t that a hit must exceed: not 0 for rays that start on the surface, so that they do not hit it there.
+
+    `height` is that of the origin above the surface, and `size` that of the shape.
+    """
+    return where(fabs(height) <= start_error(origin, f), CLOSE * size, 0.0)

@@ -116,7 +116,12 @@ class PackedMeshTriangle(NamedTuple):
 
 def intersect(mesh: PackedMeshTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the triangle: watertight, as for `tr`."""
-    return triangle.watertight(mesh.a, mesh.b, mesh.c, mesh.normal, origin, direction)
+    return triangle.watertight(mesh.a, mesh.b, mesh.c, mesh.normal, origin, direction, True)
+
+
+def occludes(mesh: PackedMeshTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a shadow ray, which starts clear of all surfaces, meets the triangle."""
+    return triangle.watertight(mesh.a, mesh.b, mesh.c, mesh.normal, origin, direction, None)
 
 
 def may_meet(mesh: PackedMeshTriangle, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:

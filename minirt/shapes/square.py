@@ -12,14 +12,14 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, dot, fabs, rarely, unit_roundoff
+from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.basis import facing_frame
 from minirt.shapes.boundary import Boundary, upright_frame
 from minirt.shapes.bounds import bounds_of_points, point_along
-from minirt.shapes.flat_start import CLOSE, start_error
+from minirt.shapes.flat_start import least_t
 from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
 
@@ -66,16 +66,23 @@ def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, 
     """Whether and where a ray meets the square; one that is parallel to it, or starts on it, within rounding, does
     not."""
     f = origin - square.centre
-    slope = dot(square.normal, direction)
     height = dot(square.normal, f)
+    return crossing(square, f, height, direction, least_t(origin, f, height, square.half))
+
+
+def occludes(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a shadow ray, which starts clear of all surfaces, meets the square."""
+    f = origin - square.centre
+    return crossing(square, f, dot(square.normal, f), direction, 0.0)
+
+
+def crossing(square: PackedSquare, f: Vec, height: Number, direction: Vec, least: Number) -> tuple[Mask, Number]:
+    """Whether and where a ray from f, relative to the centre, meets the square, at a t of more than the `least`."""
+    slope = dot(square.normal, direction)
     t = -height / slope
     p = f + t * direction
-    hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > 0.0)
-    hit = hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half)
-    close = hit & (t < CLOSE * square.half)
-    if rarely(close):
-        hit = hit & ~(close & (fabs(height) <= start_error(origin, f)))
-    return hit, t
+    hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > least)
+    return hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half), t
 
 
 def surface(square: PackedSquare, point: Vec) -> tuple[Vec, Vec]:

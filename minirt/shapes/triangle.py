@@ -86,7 +86,12 @@ class PackedTriangle(NamedTuple):
 
 def intersect(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a ray meets the triangle."""
-    return watertight(triangle.a, triangle.b, triangle.c, triangle.normal, origin, direction)
+    return watertight(triangle.a, triangle.b, triangle.c, triangle.normal, origin, direction, True)
+
+
+def occludes(triangle: PackedTriangle, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+    """Whether and where a shadow ray, which starts clear of all surfaces, meets the triangle."""
+    return watertight(triangle.a, triangle.b, triangle.c, triangle.normal, origin, direction, None)
 
 
 def may_meet(triangle: PackedTriangle, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
@@ -94,7 +99,9 @@ def may_meet(triangle: PackedTriangle, apex: Vec, start: Vec | None, direction: 
     return pyramid.may_meet((triangle.a, triangle.b, triangle.c), triangle.normal, apex, start, direction, active)
 
 
-def watertight(a: Vec, b: Vec, c: Vec, normal: Vec, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
+def watertight(
+    a: Vec, b: Vec, c: Vec, normal: Vec, origin: Vec, direction: Vec, anywhere: bool | None
+) -> tuple[Mask, Number]:
     """Whether and where a ray meets the triangle between three corners, without gaps between neighbours.
 
     Woop, Benthin and Wald, Watertight Ray/Triangle Intersection (2013): seen along the ray, its origin lies on the same
@@ -126,20 +133,22 @@ def watertight(a: Vec, b: Vec, c: Vec, normal: Vec, origin: Vec, direction: Vec)
     hit = (least >= 0.0) | (most <= 0.0)
     t = a.z
     if any(hit):
-        slope = dot(normal, direction)
-        t = dot(normal, origin - corners[0]) / -slope  # not a - origin: kept from above, it costs registers
+        f = origin - corners[0]  # not a - origin: kept from above, it costs registers
+        slope, height = dot(normal, direction), dot(normal, f)
+        t = -height / slope
         extent, edge = fabs(least + most), minimum(fabs(least), fabs(most))
         grazing = fabs(slope) * edge <= GRAZING * extent
-        close = t * t < CLOSE * extent
-        if rarely(hit & (grazing | close)):
+        if rarely(hit & grazing):
             enter, leave = above(corners, normal, origin, direction)
             at_a, at_b, at_c = a.z * per_depth, b.z * per_depth, c.z * per_depth
             begin = maximum(enter, minimum(minimum(at_a, at_b), at_c))
             end = minimum(leave, maximum(maximum(at_a, at_b), at_c))
             t = where(grazing, minimum(maximum(t, begin), end), t)  # `begin` where t is NaN
-            f = origin - corners[0]
-            starts = close & (fabs(dot(normal, f)) <= start_error(origin, f))
-            hit = hit & ~(grazing & (enter > leave)) & ~starts & (extent != 0.0)  # not one that is seen edge on
+            hit = hit & ~(grazing & (enter > leave)) & (extent != 0.0)  # not one that is seen edge on
+        if anywhere is not None:
+            close = hit & (t * t < CLOSE * extent)
+            if rarely(close):
+                hit = hit & ~(close & (fabs(height) <= start_error(origin, f)))
         hit = hit & (t > 0.0)
     return hit, t
 
