@@ -129,6 +129,8 @@ def render_tiles(
     """Render rows of tiles: the body of `frame`, with the arrays passed by reference."""
     height, across = pixels.shape
     packet_width = width(rays) // PACKET_HEIGHT
+    columns = TILE // packet_width
+    packets = columns * TILE // PACKET_HEIGHT  # of a tile
     zero = splat(0.0, load(rays[0], 0))
     black = Vec(zero, zero, zero)
     while True:
@@ -138,52 +140,50 @@ def render_tiles(
         for left in range(0, across, TILE):
             tile = top // TILE * tile_count(across) + left // TILE
             empty = not has_environment(scene) and is_empty(scene, tile)
-            turns = most_rays(plan, rays, top // PACKET_HEIGHT, left // packet_width)
             # All packets for each sample, not all samples for each packet: a sum kept in registers through the loop
-            # over samples took a seventh more time, since tracing then lacks those registers.
-            for turn in range(turns):
-                for y in range(top, min(top + TILE, height), PACKET_HEIGHT):
-                    for x in range(left, min(left + TILE, across), packet_width):
-                        if rarely(next_row[0] >= CANCELLED):
-                            return
-                        estimate, row, sample, samples = 0, turn, turn, turns
-                        if rarely(plan.shape[0] > 0):
-                            estimate, row, sample, samples = planned(plan, x // packet_width, y // PACKET_HEIGHT, turn)
-                            if samples == 0:
-                                continue
-                        if empty:
-                            store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
-                            continue
-                        radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[row], x, y), memory)
-                        place = estimate * ESTIMATE + 3 * ((y - top) * TILE + (x - left) * PACKET_HEIGHT)
-                        if rarely(samples > 1):
-                            radiance = accumulate(radiance, sums, place, sample) / samples
-                        if sample == samples - 1:
-                            store_estimate(pixels, linear, errors, sums, x, y, radiance, estimate, place)
+            # over samples took a seventh more time, since tracing then lacks those registers. Planned packets, of which
+            # few may be in a tile, take all of their samples one after the other.
+            is_planned = rarely(plan.shape[0] > 0)
+            for outer in range(packets if is_planned else rays.shape[0]):
+                inners = packets
+                if is_planned:
+                    inners = planned_rays(plan, top // PACKET_HEIGHT + outer // columns, left // packet_width + outer % columns)
+                for inner in range(inners):
+                    packet, turn = (outer, inner) if is_planned else (inner, outer)
+                    y, x = top + packet // columns * PACKET_HEIGHT, left + packet % columns * packet_width
+                    if y >= height or x >= across:
+                        continue
+                    if rarely(next_row[0] >= CANCELLED):
+                        return
+                    estimate, row, sample, samples = 0, turn, turn, rays.shape[0]
+                    if is_planned:
+                        estimate, row, sample, samples = planned(plan, x // packet_width, y // PACKET_HEIGHT, turn)
+                    if empty:
+                        store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
+                        continue
+                    radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[row], x, y), memory)
+                    place = estimate * ESTIMATE + 3 * packet * width(rays)
+                    if rarely(samples > 1):
+                        radiance = accumulate(radiance, sums, place, sample) / samples
+                    if sample == samples - 1:
+                        store_estimate(pixels, linear, errors, sums, x, y, radiance, estimate, place)
 
 
-def most_rays(plan: Any, rays: Any, row: int, column: int) -> int:
-    """Return the most rays that any pixel takes in a tile, whose first packet is given."""
-    if not rarely(plan.shape[0] > 0):
-        return int(rays.shape[0])
-    packet_width = width(rays) // PACKET_HEIGHT
-    most = 0
-    for y in range(row, min(row + TILE // PACKET_HEIGHT, plan.shape[0])):
-        for x in range(column, min(column + TILE // packet_width, plan.shape[1])):
-            references = 0 if plan[y, x, 2] == 0 else 2 * REFERENCE_SAMPLES
-            most = max(most, plan[y, x, 1] * (1 + references))
-    return most
+def planned_rays(plan: Any, row: int, column: int) -> int:
+    """Return the number of rays that a pixel of a packet takes by plan; 0 beyond the picture's edges."""
+    if row >= plan.shape[0] or column >= plan.shape[1]:
+        return 0
+    references = 0 if plan[row, column, 2] == 0 else 2 * REFERENCE_SAMPLES
+    return int(plan[row, column, 1] * (1 + references))
 
 
 def planned(plan: Any, column: int, row: int, turn: int) -> tuple[int, int, int, int]:
     """Return what a packet takes when a pixel has taken `turn` rays before: the number of the estimate, the row of
-    `rays`, the number of the sample in that estimate, and the number of its samples, which is 0 if it takes none."""
+    `rays`, the number of the sample in that estimate, and the number of its samples."""
     first, samples, reference = plan[row, column, 0], plan[row, column, 1], plan[row, column, 2]
     if turn < samples:
         return 0, first + turn, turn, samples
     each, turn = REFERENCE_SAMPLES * samples, turn - samples
-    if reference == 0 or turn >= 2 * each:
-        return 0, 0, 0, 0
     estimate = turn // each
     return 1 + estimate, reference + turn, turn - estimate * each, each
 
