@@ -1,9 +1,9 @@
 """Automatic sampling: renders until an estimated error is reached or a time has passed, with most samples where they
 are needed.
 
-The first sweep over the picture takes one sample a pixel, and probes some packets (see `minirt.kernel.frame.
-squared_error`). Often that is enough. Otherwise the packets are sorted into classes by their contrast, and are drawn
-anew with the samples that `minirt.rendering.sampling.allocation` chooses for their class. This is done in portions,
+The first sweep over the picture is a plain frame of one sample a pixel, beside which some packets are probed (see
+`minirt.kernel.frame.squared_error`). Often that is enough. Otherwise the packets are sorted into classes by their
+contrast, and are drawn anew with the samples that `minirt.rendering.sampling.allocation` chooses for their class. This is done in portions,
 random sets of packets, since the probes of each tell how many samples, or how much time, the next portions need. Where
 an error is asked for, the picture depends on nothing else; where a time is asked for, it depends on how fast the
 portions were.
@@ -22,23 +22,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.kernel.frame import PACKET_HEIGHT, REFERENCE_SAMPLES
-from minirt.rendering.frame_arguments import GOLDEN_RATIO
-from minirt.rendering.sampling.allocation import (
-    EXPECTED,
-    UNSEEN_ERROR,
-    allocate,
-    coefficients,
-    places_of,
-    squared_error,
-    unseen,
-)
-from minirt.rendering.sampling.contrast import CLASSES
+from minirt.kernel.frame import REFERENCE_SAMPLES
+from minirt.rendering.sampling.allocation import EXPECTED, UNSEEN_ERROR, allocate, places_of, squared_error
 from minirt.rendering.sampling.outcome import Outcome
+from minirt.rendering.sampling.packets import Packets
 from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_numbers
 
 FIRST_PROBES, PROBES = 256, 300  # packets to probe, in the first sweep and in the others
-SHARE_PROBED = 1 / 64  # in the first sweep of a large picture
 # An estimate that ends rendering after the first sweep, with so many standard errors added, is this share of the goal.
 SURE, FAR_BELOW = 2.0, 0.7
 # Where the standard error is a greater share of the estimate, so few probes met an edge that one more might have met
@@ -59,6 +49,7 @@ class Sweep(NamedTuple):
     positions: np.ndarray  # (k, pixels of a packet, 2)
     plan: np.ndarray  # as `plan` of `minirt.kernel.frame`
     errors: np.ndarray  # output: squared errors of the probed packets
+    is_first: bool = False  # whether all packets are to be drawn, too, with the first position
 
 
 Draw = Callable[[Sweep], bool]  # False when cancelled
@@ -66,24 +57,15 @@ Classify = Callable[[], np.ndarray]
 
 
 class AutoSampler:
-    """A picture in the making: the number of samples of each packet, and the probes that tell their error.
+    """A picture in the making. `draw` draws its packets, `classify` tells their contrast classes (rows, columns)."""
 
-    Packets are counted from 0, row by row. `draw` draws them, `classify` tells their contrast classes (rows, columns).
-    """
-
-    def __init__(self, draw: Draw, classify: Classify, height: int, width: int, packet_width: int) -> None:
+    def __init__(self, draw: Draw, classify: Classify, packets: Packets, numbers: int, packet_pixels: int) -> None:
+        """`numbers` of the picture: three for each pixel."""
         self.draw = draw
         self.classify = classify
-        self.packet_pixels = PACKET_HEIGHT * packet_width
-        self.numbers = 3 * height * width  # of the picture
-        self.shape = -(-height // PACKET_HEIGHT), -(-width // packet_width)
-        self.count = self.shape[0] * self.shape[1]
-        self.random = random_numbers(self.count)
-        self.levels, self.classes = np.zeros((2, self.count), np.uint8)
-        self.histogram = np.zeros((CLASSES, len(COUNTS)), np.int64)  # of packets, by class and level
-        self.is_probed = np.zeros(self.count, bool)  # packets whose error with the samples that they have is known
-        self.errors = np.zeros(self.count)  # of those that are probed
-        self.sweeps = 0
+        self.packets = packets
+        self.numbers = numbers
+        self.packet_pixels = packet_pixels
         self.speed = inf  # samples of packets a second, in the last sweep
 
     def reach(self, error: float, seconds: float) -> Outcome | None:
@@ -96,158 +78,135 @@ class AutoSampler:
         if not self.draw_first():
             return None
         # A few probes may decide: an estimate that ends rendering is one that is rather too large.
-        errors = self.errors[self.is_probed]
+        packets = self.packets
+        errors = packets.errors[packets.probes]
         mean, doubt = errors.mean(), errors.std() / sqrt(len(errors))
         if doubt >= VAGUE * mean:
             doubt = max(doubt, EDGE_ERROR / len(errors))
-        total: float | None = (mean + doubt) * self.count + UNSEEN_ERROR
-        if (mean + SURE * doubt) * self.count + UNSEEN_ERROR > FAR_BELOW * goal and perf_counter() < start + seconds:
+        total: float | None = (mean + doubt) * packets.count + UNSEEN_ERROR
+        if (mean + SURE * doubt) * packets.count + UNSEEN_ERROR > FAR_BELOW * goal and perf_counter() < start + seconds:
             total = self.refine(goal, start + seconds)
         if total is None:
             return None
-        counts = COUNTS[self.levels]
+        counts = COUNTS[packets.levels]
         rms = sqrt(max(total, 0.0) / self.numbers)
         return Outcome(float(counts.mean()), int(counts.max()), rms, perf_counter() - start)
 
     def refine(self, goal: float, end: float) -> float | None:
         """Draw packets with more samples until the sum of squared errors is at most `goal`, or the time is over;
         return that sum, and None when cancelled."""
-        self.classes = self.classify().ravel()
-        self.histogram = self.count_packets(np.arange(self.count))
+        packets = self.packets
+        packets.classify(self.classify())
+        self.plan = np.zeros((packets.count, 3), np.int32)
         if not self.probe_classes():
             return None
-        if (total := self.total()) <= FAR_BELOW * goal:
+        if (total := packets.total()) <= FAR_BELOW * goal:
             return total
         if not self.draw_in_portions(goal, end):
             return None
-        while (total := self.total()) > goal and (left := end - perf_counter()) > 0:
-            sweeps = self.sweeps
+        while (total := packets.total()) > goal and (left := end - perf_counter()) > 0:
+            turn = packets.turn
             todo = self.in_need(goal)
             if not self.draw_some(todo, todo >= 0, goal, left):
                 return None
-            if self.sweeps == sweeps:
+            if packets.turn == turn:
                 break
         return total
 
     def probe_classes(self) -> bool:
         """Probe more packets of the classes that have most of the error. False when cancelled."""
-        packets = self.histogram.sum(axis=1)
-        c = self.coefficients()
-        part = packets * np.maximum(c, EXPECTED * (packets @ c) / (packets @ EXPECTED))
-        known = np.bincount(self.classes[self.is_probed], minlength=CLASSES)
-        share = np.maximum(FIRST_PROBES * part / part.sum() - known, 0) / np.maximum(packets - known, 1)
-        more = np.flatnonzero((share > 0)[self.classes] & ~self.is_probed)
-        more = more[self.dither(more) < share[self.classes[more]]]
-        return self.sweep(more, self.levels[more], more >= 0) if len(more) > FIRST_PROBES / 4 else True
+        packets = self.packets
+        number = packets.histogram.sum(axis=1)
+        c = packets.coefficients()
+        part = number * np.maximum(c, EXPECTED * (number @ c) / (number @ EXPECTED))
+        known = np.bincount(packets.classes[packets.probes], minlength=len(number))
+        more = packets.some_of_each_class(np.maximum(FIRST_PROBES * part / part.sum() - known, 0))
+        return self.sweep(more, packets.levels[more], more >= 0) if len(more) > FIRST_PROBES / 4 else True
 
     def draw_in_portions(self, goal: float, end: float) -> bool:
         """Draw the packets of all classes that need more samples, in portions. False when cancelled."""
+        packets = self.packets
         todo = self.in_need(goal)
-        samples = allocate(self.coefficients(), self.histogram, MARGIN * goal, inf)
-        is_cheap = end == inf and (self.histogram * samples)[samples > 1].sum() < CHEAP * self.count
+        samples = allocate(packets.coefficients(), packets.histogram, MARGIN * goal, inf)
+        is_cheap = end == inf and (packets.histogram * samples)[samples > 1].sum() < CHEAP * packets.count
         before, last = 0.0, 1.0 if is_cheap else FIRST_PORTION
         while before < 1:
-            chosen = self.random[todo] < last
+            chosen = packets.random[todo] < last
             if not self.draw_some(todo, chosen, goal, (end - perf_counter()) * (last - before) / (1 - before)):
                 return False
             todo, before = todo[~chosen], last
             if end < inf:
                 last += 1 / PORTIONS_OF_TIME
             else:
-                last = SECOND_PORTION if before < SECOND_PORTION and self.known < PROBES else 1.0
+                last = SECOND_PORTION if before < SECOND_PORTION and packets.known < PROBES else 1.0
         return True
 
     def in_need(self, goal: float) -> np.ndarray:
         """The packets of all classes that might need more samples."""
-        samples = allocate(self.coefficients(), self.histogram, MARGIN * goal / DOUBT, inf)
-        needs = np.count_nonzero((samples > COUNTS) & (self.histogram > 0), axis=1) > 0
-        return np.flatnonzero(needs[self.classes])
+        packets = self.packets
+        samples = allocate(packets.coefficients(), packets.histogram, MARGIN * goal / DOUBT, inf)
+        return packets.members(np.count_nonzero((samples > COUNTS) & (packets.histogram > 0), axis=1) > 0)
 
     def draw_some(self, todo: np.ndarray, chosen: np.ndarray, goal: float, seconds: float) -> bool:
         """Draw the `chosen` of the packets that are still to do, so that in the end all packets of the picture together
         leave the squared error `goal`, or so that it takes those seconds at most. False when cancelled."""
+        packets = self.packets
         some = todo[chosen]
         if not len(some):
             return True
-        c, packets = self.coefficients(), self.count_packets(todo)
-        others = squared_error(c, self.histogram - packets)
+        c, counts = packets.coefficients(), packets.count_some(todo)
+        others = squared_error(c, packets.histogram - counts)
         # Packets that are drawn again are probed again, and others as long as few are known.
-        share = min(max(PROBES - self.known, 0) / len(some), 1.0 if seconds == inf else MOST_OF_TIME)
-        probed: np.ndarray = self.dither(some, 2**20) < share
-        probed |= self.is_probed[some] & (self.levels[some] > 0)
-        probed[0] |= not np.count_nonzero(self.is_probed)
+        share = min(max(PROBES - packets.known, 0) / len(some), 1.0 if seconds == inf else MOST_OF_TIME)
+        probed: np.ndarray = packets.dither(some, 2**20) < share
+        if packets.known:
+            probed |= (packets.levels[some] > 0) & packets.is_probe(some)
         cost = 1 + 2 * REFERENCE_SAMPLES * probed.mean()
         budget = SHARE_OF_TIME * seconds * self.speed / cost * len(todo) / len(some) if seconds < inf else inf
-        places = places_of(allocate(c, packets, max(MARGIN * goal - others, goal / DOUBT), budget))
-        wanted = places[self.classes[some], self.levels[some]]
-        new = (wanted + self.dither(some)).astype(np.uint8)
-        if seconds == inf and (new <= self.levels[some]).all():
+        places = places_of(allocate(c, counts, max(MARGIN * goal - others, goal / DOUBT), budget))
+        wanted = places[packets.classes[some], packets.levels[some]]
+        new = (wanted + packets.dither(some)).astype(np.uint8)
+        if seconds == inf and (new <= packets.levels[some]).all():
             new = np.ceil(wanted).astype(np.uint8)
-        more = new > self.levels[some]
+        more = new > packets.levels[some]
         return self.sweep(some[more], new[more], probed[more]) if more.any() else True
 
     def draw_first(self) -> bool:
         """Draw all packets with one sample, and probe some of them. False when cancelled."""
-        probed, table, plan = first_sweep(self.shape, self.packet_pixels)
-        return self.carry_out(Sweep(table.positions, plan, np.zeros(self.shape)), np.flatnonzero(probed))
+        packets = self.packets
+        probes, table, plan = first_sweep(packets.shape, self.packet_pixels)
+        sweep = Sweep(table.positions, plan, packets.errors.reshape(packets.shape), is_first=True)
+        packets.probes = probes
+        return self.carry_out(sweep, packets.count + len(probes) * (1 + 2 * REFERENCE_SAMPLES))
 
-    def sweep(self, packets: np.ndarray, levels: np.ndarray, probed: np.ndarray) -> bool:
+    def sweep(self, some: np.ndarray, levels: np.ndarray, probed: np.ndarray) -> bool:
         """Draw packets with new levels, and probe those that are `probed`. False when cancelled."""
+        packets = self.packets
         table = SampleTable(np.flatnonzero(np.bincount(levels)), self.packet_pixels)
-        plan = np.zeros((self.count, 3), np.int32)
-        plan[packets] = table.plan(levels, probed)
-        self.histogram -= self.count_packets(packets)
-        self.levels[packets] = levels
-        self.histogram += self.count_packets(packets)
-        self.is_probed[packets] = False
-        sweep = Sweep(table.positions, plan.reshape(*self.shape, 3), np.zeros(self.shape))
-        return self.carry_out(sweep, packets[probed])
+        self.plan[some] = table.plan(levels, probed)
+        packets.drawn(some, levels, probed)
+        plan = self.plan.reshape(*packets.shape, 3)
+        samples = COUNTS[levels] @ (1 + 2 * REFERENCE_SAMPLES * probed)
+        is_done = self.carry_out(Sweep(table.positions, plan, packets.errors.reshape(packets.shape)), samples)
+        self.plan[some] = 0
+        return is_done
 
-    def carry_out(self, sweep: Sweep, probes: np.ndarray) -> bool:
-        """Take samples, and note the errors of the probes. False when cancelled."""
+    def carry_out(self, sweep: Sweep, samples: float) -> bool:
+        """Take so many samples of packets. False when cancelled."""
         start = perf_counter()
-        if not self.draw(sweep):
-            return False
-        self.sweeps += 1
-        self.is_probed[probes] = True
-        self.errors[probes] = sweep.errors.ravel()[probes]
-        samples = sweep.plan[..., 1].sum() + 2 * REFERENCE_SAMPLES * COUNTS[self.levels[probes]].sum()
+        is_done = self.draw(sweep)
+        self.packets.turn += 1
         self.speed = float(samples) / max(perf_counter() - start, 1e-9)
-        return True
-
-    @property
-    def known(self) -> int:
-        """The number of probed packets that have more than one sample."""
-        return int(np.count_nonzero(self.is_probed & (self.levels > 0)))
-
-    def dither(self, packets: np.ndarray, salt: int = 2**10) -> np.ndarray:
-        """A random number in [0, 1) for each of some packets, another after each sweep."""
-        numbers = self.random[packets] * salt + self.sweeps * GOLDEN_RATIO
-        dither: np.ndarray = numbers - np.floor(numbers)
-        return dither
-
-    def count_packets(self, packets: np.ndarray) -> np.ndarray:
-        """Count packets by class and level."""
-        slots = self.classes[packets].astype(np.intp) * len(COUNTS) + self.levels[packets]
-        counts: np.ndarray = np.bincount(slots, minlength=CLASSES * len(COUNTS)).reshape(CLASSES, -1)
-        return counts
-
-    def coefficients(self) -> np.ndarray:
-        """Estimate c of every class from all probes."""
-        probes = np.flatnonzero(self.is_probed)
-        found = coefficients(self.classes[probes], COUNTS[self.levels[probes]], self.errors[probes])
-        c: np.ndarray = found + unseen(self.histogram)
-        return c
-
-    def total(self) -> float:
-        """Estimate the sum of the squared errors of all packets."""
-        return squared_error(self.coefficients(), self.histogram)
+        return is_done
 
 
 @lru_cache(2)
 def first_sweep(shape: tuple[int, int], packet_pixels: int) -> tuple[np.ndarray, SampleTable, np.ndarray]:
     """The packets to probe in the first sweep, its table of samples and its plan."""
     count = shape[0] * shape[1]
-    probed = random_numbers(count) < max(SHARE_PROBED, FIRST_PROBES / count)
+    probes = np.flatnonzero(random_numbers(count) < FIRST_PROBES / count)
+    levels = np.zeros(len(probes), np.uint8)
     table = SampleTable(np.zeros(1, np.intp), packet_pixels)
-    return probed, table, table.plan(np.zeros(count, np.uint8), probed).reshape(*shape, 3)
+    plan = np.zeros((count, 3), np.int32)
+    plan[probes] = table.plan(levels, levels == 0)
+    return probes, table, plan.reshape(*shape, 3)

@@ -1,0 +1,94 @@
+"""The packets of a picture in the making: their contrast classes, their numbers of samples, and the probes that tell
+their errors."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from minirt.kernel.frame import PACKET_HEIGHT
+from minirt.rendering.frame_arguments import GOLDEN_RATIO
+from minirt.rendering.sampling.allocation import coefficients, squared_error, unseen
+from minirt.rendering.sampling.contrast import CLASSES
+from minirt.rendering.sampling.sample_table import COUNTS, random_numbers
+
+
+class Packets:
+    """The packets of a picture, counted from 0, row by row. All of them begin in class 0, with one sample."""
+
+    def __init__(self, height: int, width: int, packet_width: int) -> None:
+        self.shape = -(-height // PACKET_HEIGHT), -(-width // packet_width)
+        self.count = self.shape[0] * self.shape[1]
+        self.random = random_numbers(self.count)
+        self.turn = 0  # times that `dither` gave other numbers
+        self.levels, self.classes = np.zeros((2, self.count), np.uint8)
+        self.histogram = np.zeros((CLASSES, len(COUNTS)), np.int64)  # packets by class and level
+        self.histogram[0, 0] = self.count
+        self.probes = np.zeros(0, np.intp)  # packets whose error with the samples that they have is known
+        self.errors = np.zeros(self.count)  # squared errors, of the probes
+        self.marks = np.zeros(self.count, bool)  # all False between calls
+
+    def classify(self, classes: np.ndarray) -> None:
+        """Sort all packets, of which none has more than one sample, into classes."""
+        self.classes = classes.ravel()
+        self.histogram[:, 0] = np.bincount(self.classes, minlength=CLASSES)
+        self.by_class = np.argsort(self.classes, kind="stable")
+
+    def members(self, classes: np.ndarray) -> np.ndarray:
+        """The packets of some classes, given as CLASSES truth values."""
+        ends = np.cumsum(self.histogram.sum(axis=1)).tolist()
+        parts = [self.by_class[first:last] for first, last, is_wanted in zip([0, *ends], ends, classes, strict=False) if is_wanted]
+        return np.concatenate(parts) if parts else self.by_class[:0]
+
+    def some_of_each_class(self, numbers: np.ndarray) -> np.ndarray:
+        """Choose packets evenly from each class, about so many, at random places."""
+        sizes = self.histogram.sum(axis=1)
+        wanted = np.minimum(np.ceil(numbers).astype(np.intp), sizes)
+        parts = []
+        for first, size, number in zip((np.cumsum(sizes) - sizes).tolist(), sizes.tolist(), wanted.tolist(), strict=True):
+            places = (np.arange(number) + self.random[:number]) * (size / max(number, 1))
+            parts.append(self.by_class[first + places.astype(np.intp)])
+        return np.concatenate(parts)
+
+    def count_some(self, packets: np.ndarray) -> np.ndarray:
+        """Count some packets by class and level."""
+        slots = self.classes[packets].astype(np.intp) * len(COUNTS) + self.levels[packets]
+        counts: np.ndarray = np.bincount(slots, minlength=CLASSES * len(COUNTS)).reshape(CLASSES, -1)
+        return counts
+
+    def drawn(self, packets: np.ndarray, levels: np.ndarray, probed: np.ndarray) -> None:
+        """Note that packets were drawn with new levels, and those that are `probed` were probed."""
+        self.histogram -= self.count_some(packets)
+        self.levels[packets] = levels
+        self.histogram += self.count_some(packets)
+        self.marks[packets] = True
+        left = self.probes[~self.marks[self.probes]]
+        self.marks[packets] = False
+        self.probes = np.concatenate([left, packets[probed]])
+
+    def is_probe(self, packets: np.ndarray) -> np.ndarray:
+        """Whether each of some packets is probed."""
+        self.marks[self.probes] = True
+        found: np.ndarray = self.marks[packets]
+        self.marks[self.probes] = False
+        return found
+
+    @property
+    def known(self) -> int:
+        """The number of probes that have more than one sample."""
+        return int(np.count_nonzero(self.levels[self.probes]))
+
+    def dither(self, packets: np.ndarray, salt: int = 2**10) -> np.ndarray:
+        """A random number in [0, 1) for each of some packets, another at each turn."""
+        numbers = self.random[packets] * salt + self.turn * GOLDEN_RATIO
+        dither: np.ndarray = numbers - np.floor(numbers)
+        return dither
+
+    def coefficients(self) -> np.ndarray:
+        """Estimate c of every class from all probes."""
+        found = coefficients(self.classes[self.probes], COUNTS[self.levels[self.probes]], self.errors[self.probes])
+        c: np.ndarray = found + unseen(self.histogram)
+        return c
+
+    def total(self) -> float:
+        """Estimate the sum of the squared errors of all packets."""
+        return squared_error(self.coefficients(), self.histogram)
