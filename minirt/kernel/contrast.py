@@ -11,13 +11,14 @@ EVERY_OTHER = 0x00FF00FF00FF00FF  # bytes of a word of 64 bits, the bits above w
 CARRIES = 0x0100010001000100
 
 
-def classify(next_row: Any, lines: Any, seen: Any, class_of: Any, classes: Any) -> None:
+def classify(next_row: Any, lines: Any, seen: Any, class_of: Any, classes: Any, counts: Any) -> None:
     """Find the contrast classes of rows of packets, taking the next one from the counter `next_row` until none is left.
 
-    Any number of threads may do so at the same time, each with its own `seen`. `lines` (lines, words) are uint64, each
+    Any number of threads may do so at the same time, each with its own `seen` and `counts`. `lines` (lines, words) are uint64, each
     two pixels of a picture that consists of whole packets. `classes` (rows, columns) receives for each packet the
     number, by the table `class_of`, that belongs to the greatest difference of a byte from that of a neighbour above,
-    below, left or right. `seen` (2, words + 1) is overwritten.
+    below, left or right, and `counts` (numbers,) has the packets with each number added, of those that this thread saw.
+    `seen` (2, words + 1) is overwritten.
     """
     height, words = lines.shape
     rows, columns = classes.shape
@@ -43,7 +44,9 @@ def classify(next_row: Any, lines: Any, seen: Any, class_of: Any, classes: Any) 
             found |= found >> 32
             found |= found >> 16
             found |= found >> 8
-            classes[row, column] = class_of[found & 255]
+            number = class_of[found & 255]
+            classes[row, column] = number
+            counts[number] += 1
 
 
 def differences_beside(line: Any, seen: Any) -> None:

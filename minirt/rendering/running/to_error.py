@@ -48,7 +48,7 @@ def reach(
         runner.run([*whole, planned], runner.threads)
         return bool((counters < CANCELLED).all())
 
-    def classify() -> np.ndarray:
+    def classify() -> tuple[np.ndarray, np.ndarray]:
         return contrast_classes(
             pixels, packet_width, lambda jobs: runner.pool.run(jobs, runner.cancel), runner.threads
         )

@@ -53,11 +53,12 @@ class Sweep(NamedTuple):
 
 
 Draw = Callable[[Sweep], bool]  # False when cancelled
-Classify = Callable[[], np.ndarray]
+Classify = Callable[[], tuple[np.ndarray, np.ndarray]]
 
 
 class AutoSampler:
-    """A picture in the making. `draw` draws its packets, `classify` tells their contrast classes (rows, columns)."""
+    """A picture in the making. `draw` draws its packets, `classify` tells their contrast classes (rows,
+    columns), and the number of packets of each."""
 
     def __init__(self, draw: Draw, classify: Classify, packets: Packets, numbers: int, packet_pixels: int) -> None:
         """`numbers` of the picture: three for each pixel."""
@@ -88,19 +89,18 @@ class AutoSampler:
             total = self.refine(goal, start + seconds)
         if total is None:
             return None
-        counts = COUNTS[packets.levels]
         rms = sqrt(max(total, 0.0) / self.numbers)
-        return Outcome(float(counts.mean()), int(counts.max()), rms, perf_counter() - start)
+        return Outcome(*packets.samples, rms, perf_counter() - start)
 
     def refine(self, goal: float, end: float) -> float | None:
         """Draw packets with more samples until the sum of squared errors is at most `goal`, or the time is over;
         return that sum, and None when cancelled."""
         packets = self.packets
-        packets.classify(self.classify())
+        packets.classify(*self.classify())
         self.plan = np.zeros((packets.count, 3), np.int32)
         if not self.probe_classes():
             return None
-        if (total := packets.total()) <= FAR_BELOW * goal:
+        if (total := packets.total()) <= goal:
             return total
         if not self.draw_in_portions(goal, end):
             return None
@@ -126,10 +126,12 @@ class AutoSampler:
     def draw_in_portions(self, goal: float, end: float) -> bool:
         """Draw the packets of all classes that need more samples, in portions. False when cancelled."""
         packets = self.packets
-        todo = self.in_need(goal)
         samples = allocate(packets.coefficients(), packets.histogram, MARGIN * goal, inf)
-        is_cheap = end == inf and (packets.histogram * samples)[samples > 1].sum() < CHEAP * packets.count
-        before, last = 0.0, 1.0 if is_cheap else FIRST_PORTION
+        if end == inf and (packets.histogram * samples)[samples > COUNTS].sum() < CHEAP * packets.count:
+            todo = self.with_more(samples)
+            return self.draw_some(todo, todo >= 0, goal, inf)
+        todo = self.in_need(goal)
+        before, last = 0.0, FIRST_PORTION
         while before < 1:
             chosen = packets.random[todo] < last
             if not self.draw_some(todo, chosen, goal, (end - perf_counter()) * (last - before) / (1 - before)):
@@ -144,8 +146,13 @@ class AutoSampler:
     def in_need(self, goal: float) -> np.ndarray:
         """The packets of all classes that might need more samples."""
         packets = self.packets
-        samples = allocate(packets.coefficients(), packets.histogram, MARGIN * goal / DOUBT, inf)
-        return packets.members(np.count_nonzero((samples > COUNTS) & (packets.histogram > 0), axis=1) > 0)
+        return self.with_more(allocate(packets.coefficients(), packets.histogram, MARGIN * goal / DOUBT, inf))
+
+    def with_more(self, samples: np.ndarray) -> np.ndarray:
+        """The packets of all classes of which some have fewer than these samples (classes, levels)."""
+        packets = self.packets
+        classes = np.flatnonzero(((samples > COUNTS) & (packets.histogram > 0)).any(axis=1))
+        return np.concatenate([np.zeros(0, np.intp), *map(packets.members, classes.tolist())])
 
     def draw_some(self, todo: np.ndarray, chosen: np.ndarray, goal: float, seconds: float) -> bool:
         """Draw the `chosen` of the packets that are still to do, so that in the end all packets of the picture together

@@ -6,6 +6,7 @@ Errors of few samples sit at edges of objects, shadows and textures, all of whic
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -20,26 +21,29 @@ CLASS_OF = np.array([value.bit_length() for value in range(256)], np.uint8)
 
 
 def contrast_classes(
-    pixels: np.ndarray, packet_width: int, run: Callable[[list[Job]], object], threads: int = 2
-) -> np.ndarray:
+    pixels: np.ndarray, packet_width: int, run: Callable[[list[Job]], object], threads: int
+) -> tuple[np.ndarray, np.ndarray]:
     """The class of each packet, uint8 (rows, columns), by the greatest difference of a colour from a neighbour above,
-    below, left or right. `pixels` is C-contiguous uint8 (h, w, 4), all equally opaque; `run` runs jobs side by side."""
+    below, left or right; and the number of packets of each class. `pixels` is C-contiguous uint8 (h, w, 4), all equally
+    opaque; `run` runs jobs, one for each of the threads, side by side."""
     height, width, _ = pixels.shape
     beyond = -height % PACKET_HEIGHT, -width % packet_width
     if any(beyond):
         pixels = np.pad(pixels, ((0, beyond[0]), (0, beyond[1]), (0, 0)), "edge")
     lines = pixels.reshape(len(pixels), -1).view(np.uint64)
     classes = np.empty((len(lines) // PACKET_HEIGHT, pixels.shape[1] // packet_width), np.uint8)
-    counter = np.zeros(1, np.int64)
+    counter, counts = np.zeros(1, np.int64), np.zeros((threads, CLASSES), np.int64)
 
-    def job() -> None:
-        functions.classify(counter, lines, np.empty((2, lines.shape[1] + 1), np.uint64), CLASS_OF, classes)
+    def job(thread: int) -> None:
+        seen = np.empty((2, lines.shape[1] + 1), np.uint64)
+        functions.classify(counter, lines, seen, CLASS_OF, classes, counts[thread])
 
-    run([job] * threads)
-    return classes
+    run([partial(job, thread) for thread in range(threads)])
+    return classes, counts.sum(axis=0)
 
 
 def classify_call() -> Call:
     """The call of the compiled function, to look for its kernel."""
     lines, bytes_ = np.zeros((0, 0), np.uint64), np.zeros((0, 0), np.uint8)
-    return functions.classify.call(np.zeros(1, np.int64), lines, lines, CLASS_OF, bytes_)
+    numbers = np.zeros(1, np.int64)
+    return functions.classify.call(numbers, lines, lines, CLASS_OF, bytes_, numbers)

@@ -26,27 +26,31 @@ class Packets:
         self.probes = np.zeros(0, np.intp)  # packets whose error with the samples that they have is known
         self.errors = np.zeros(self.count)  # squared errors, of the probes
         self.marks = np.zeros(self.count, bool)  # all False between calls
+        self.members_of: dict[int, np.ndarray] = {}
+        self.estimated: tuple[int, np.ndarray] | None = None  # the turn, and the coefficients then
 
-    def classify(self, classes: np.ndarray) -> None:
-        """Sort all packets, of which none has more than one sample, into classes."""
+    def classify(self, classes: np.ndarray, sizes: np.ndarray) -> None:
+        """Sort all packets, of which none has more than one sample, into classes of these sizes."""
         self.classes = classes.ravel()
-        self.histogram[:, 0] = np.bincount(self.classes, minlength=CLASSES)
-        self.by_class = np.argsort(self.classes, kind="stable")
+        self.histogram[:, 0] = sizes
+        self.estimated = None
+        self.members_of.clear()
 
-    def members(self, classes: np.ndarray) -> np.ndarray:
-        """The packets of some classes, given as CLASSES truth values."""
-        ends = np.cumsum(self.histogram.sum(axis=1)).tolist()
-        parts = [self.by_class[first:last] for first, last, is_wanted in zip([0, *ends], ends, classes, strict=False) if is_wanted]
-        return np.concatenate(parts) if parts else self.by_class[:0]
+    def members(self, wanted: int) -> np.ndarray:
+        """The packets of a class."""
+        if wanted not in self.members_of:
+            self.members_of[wanted] = np.flatnonzero(self.classes == wanted)
+        return self.members_of[wanted]
 
     def some_of_each_class(self, numbers: np.ndarray) -> np.ndarray:
         """Choose packets evenly from each class, about so many, at random places."""
-        sizes = self.histogram.sum(axis=1)
-        wanted = np.minimum(np.ceil(numbers).astype(np.intp), sizes)
-        parts = []
-        for first, size, number in zip((np.cumsum(sizes) - sizes).tolist(), sizes.tolist(), wanted.tolist(), strict=True):
-            places = (np.arange(number) + self.random[:number]) * (size / max(number, 1))
-            parts.append(self.by_class[first + places.astype(np.intp)])
+        parts = [np.zeros(0, np.intp)]
+        for wanted, number in enumerate(np.ceil(numbers).astype(int).tolist()):
+            if number:
+                members = self.members(wanted)
+                number = min(number, len(members))
+                places = (np.arange(number) + self.random[:number]) * (len(members) / max(number, 1))
+                parts.append(members[places.astype(np.intp)])
         return np.concatenate(parts)
 
     def count_some(self, packets: np.ndarray) -> np.ndarray:
@@ -85,10 +89,18 @@ class Packets:
 
     def coefficients(self) -> np.ndarray:
         """Estimate c of every class from all probes."""
-        found = coefficients(self.classes[self.probes], COUNTS[self.levels[self.probes]], self.errors[self.probes])
-        c: np.ndarray = found + unseen(self.histogram)
-        return c
+        if not self.estimated or self.estimated[0] != self.turn:
+            probes = self.probes
+            found = coefficients(self.classes[probes], COUNTS[self.levels[probes]], self.errors[probes])
+            self.estimated = self.turn, found + unseen(self.histogram)
+        return self.estimated[1]
 
     def total(self) -> float:
         """Estimate the sum of the squared errors of all packets."""
         return squared_error(self.coefficients(), self.histogram)
+
+    @property
+    def samples(self) -> tuple[float, int]:
+        """The average number of samples of a packet, and the greatest."""
+        packets = self.histogram.sum(axis=0)
+        return float(packets @ COUNTS / self.count), int(COUNTS[packets > 0].max())
