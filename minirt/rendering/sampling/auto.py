@@ -23,12 +23,13 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.kernel.frame import REFERENCE_SAMPLES
+from minirt.rendering.frame_arguments import plan_of
 from minirt.rendering.sampling.allocation import EXPECTED, UNSEEN_ERROR, allocate, places_of, squared_error
 from minirt.rendering.sampling.outcome import Outcome
 from minirt.rendering.sampling.packets import Packets
 from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_numbers
 
-FIRST_PROBES, PROBES = 256, 300  # packets to probe, in the first sweep and in the others
+FIRST_PROBES, PROBES = 384, 300  # packets to probe, in the first sweep and in the others
 # An estimate that ends rendering after the first sweep, with so many standard errors added, is this share of the goal.
 SURE, FAR_BELOW = 2.0, 0.7
 # Where the standard error is a greater share of the estimate, so few probes met an edge that one more might have met
@@ -48,7 +49,7 @@ class Sweep(NamedTuple):
 
     positions: np.ndarray  # (k, pixels of a packet, 2)
     plan: np.ndarray  # as `plan` of `minirt.kernel.frame`
-    errors: np.ndarray  # output: squared errors of the probed packets
+    errors: np.ndarray  # output: squared errors of the packets of the plan that are probed
     is_first: bool = False  # whether all packets are to be drawn, too, with the first position
 
 
@@ -80,7 +81,7 @@ class AutoSampler:
             return None
         # A few probes may decide: an estimate that ends rendering is one that is rather too large.
         packets = self.packets
-        errors = packets.errors[packets.probes]
+        errors = packets.errors
         mean, doubt = errors.mean(), errors.std() / sqrt(len(errors))
         if doubt >= VAGUE * mean:
             doubt = max(doubt, EDGE_ERROR / len(errors))
@@ -97,7 +98,6 @@ class AutoSampler:
         return that sum, and None when cancelled."""
         packets = self.packets
         packets.classify(*self.classify())
-        self.plan = np.zeros((packets.count, 3), np.int32)
         if not self.probe_classes():
             return None
         if (total := packets.total()) <= goal:
@@ -120,8 +120,8 @@ class AutoSampler:
         c = packets.coefficients()
         part = number * np.maximum(c, EXPECTED * (number @ c) / (number @ EXPECTED))
         known = np.bincount(packets.classes[packets.probes], minlength=len(number))
-        more = packets.some_of_each_class(np.maximum(FIRST_PROBES * part / part.sum() - known, 0))
-        return self.sweep(more, packets.levels[more], more >= 0) if len(more) > FIRST_PROBES / 4 else True
+        more = packets.some_of_each_class(np.maximum(PROBES * part / part.sum() - known, 0))
+        return self.sweep(more, packets.levels[more], more >= 0) if len(more) > PROBES / 4 else True
 
     def draw_in_portions(self, goal: float, end: float) -> bool:
         """Draw the packets of all classes that need more samples, in portions. False when cancelled."""
@@ -181,39 +181,32 @@ class AutoSampler:
     def draw_first(self) -> bool:
         """Draw all packets with one sample, and probe some of them. False when cancelled."""
         packets = self.packets
-        probes, table, plan = first_sweep(packets.shape, self.packet_pixels)
-        sweep = Sweep(table.positions, plan, packets.errors.reshape(packets.shape), is_first=True)
-        packets.probes = probes
-        return self.carry_out(sweep, packets.count + len(probes) * (1 + 2 * REFERENCE_SAMPLES))
+        probes, table, plan = first_sweep(packets.count, packets.columns, self.packet_pixels)
+        return self.carry_out(Sweep(table.positions, plan, np.zeros(len(plan)), is_first=True), probes, packets.count)
 
     def sweep(self, some: np.ndarray, levels: np.ndarray, probed: np.ndarray) -> bool:
         """Draw packets with new levels, and probe those that are `probed`. False when cancelled."""
         packets = self.packets
         table = SampleTable(np.flatnonzero(np.bincount(levels)), self.packet_pixels)
-        self.plan[some] = table.plan(levels, probed)
-        packets.drawn(some, levels, probed)
-        plan = self.plan.reshape(*packets.shape, 3)
-        samples = COUNTS[levels] @ (1 + 2 * REFERENCE_SAMPLES * probed)
-        is_done = self.carry_out(Sweep(table.positions, plan, packets.errors.reshape(packets.shape)), samples)
-        self.plan[some] = 0
-        return is_done
+        plan = plan_of(some, packets.columns, table.plan(levels, probed))
+        packets.drawn(some, levels)
+        return self.carry_out(Sweep(table.positions, plan, np.zeros(len(plan))), some)
 
-    def carry_out(self, sweep: Sweep, samples: float) -> bool:
-        """Take so many samples of packets. False when cancelled."""
+    def carry_out(self, sweep: Sweep, some: np.ndarray, besides: int = 0) -> bool:
+        """Draw some packets, and so many samples of packets besides. False when cancelled."""
         start = perf_counter()
         is_done = self.draw(sweep)
-        self.packets.turn += 1
+        probed = sweep.plan[:, 4] > 0
+        samples = besides + sweep.plan[:, 3] @ (1 + 2 * REFERENCE_SAMPLES * probed)
         self.speed = float(samples) / max(perf_counter() - start, 1e-9)
+        self.packets.probed(some[probed], sweep.errors[probed])
         return is_done
 
 
 @lru_cache(2)
-def first_sweep(shape: tuple[int, int], packet_pixels: int) -> tuple[np.ndarray, SampleTable, np.ndarray]:
+def first_sweep(count: int, columns: int, packet_pixels: int) -> tuple[np.ndarray, SampleTable, np.ndarray]:
     """The packets to probe in the first sweep, its table of samples and its plan."""
-    count = shape[0] * shape[1]
     probes = np.flatnonzero(random_numbers(count) < FIRST_PROBES / count)
     levels = np.zeros(len(probes), np.uint8)
     table = SampleTable(np.zeros(1, np.intp), packet_pixels)
-    plan = np.zeros((count, 3), np.int32)
-    plan[probes] = table.plan(levels, levels == 0)
-    return probes, table, plan.reshape(*shape, 3)
+    return probes, table, plan_of(probes, columns, table.plan(levels, levels == 0))

@@ -16,15 +16,15 @@ class Packets:
     """The packets of a picture, counted from 0, row by row. All of them begin in class 0, with one sample."""
 
     def __init__(self, height: int, width: int, packet_width: int) -> None:
-        self.shape = -(-height // PACKET_HEIGHT), -(-width // packet_width)
-        self.count = self.shape[0] * self.shape[1]
+        self.columns = -(-width // packet_width)
+        self.count = -(-height // PACKET_HEIGHT) * self.columns
         self.random = random_numbers(self.count)
         self.turn = 0  # times that `dither` gave other numbers
         self.levels, self.classes = np.zeros((2, self.count), np.uint8)
         self.histogram = np.zeros((CLASSES, len(COUNTS)), np.int64)  # packets by class and level
         self.histogram[0, 0] = self.count
         self.probes = np.zeros(0, np.intp)  # packets whose error with the samples that they have is known
-        self.errors = np.zeros(self.count)  # squared errors, of the probes
+        self.errors = np.zeros(0)  # squared errors of the probes
         self.marks = np.zeros(self.count, bool)  # all False between calls
         self.members_of: dict[int, np.ndarray] = {}
         self.estimated: tuple[int, np.ndarray] | None = None  # the turn, and the coefficients then
@@ -59,15 +59,21 @@ class Packets:
         counts: np.ndarray = np.bincount(slots, minlength=CLASSES * len(COUNTS)).reshape(CLASSES, -1)
         return counts
 
-    def drawn(self, packets: np.ndarray, levels: np.ndarray, probed: np.ndarray) -> None:
-        """Note that packets were drawn with new levels, and those that are `probed` were probed."""
+    def drawn(self, packets: np.ndarray, levels: np.ndarray) -> None:
+        """Note that packets are drawn with new levels, after which they are no probes any more."""
         self.histogram -= self.count_some(packets)
         self.levels[packets] = levels
         self.histogram += self.count_some(packets)
         self.marks[packets] = True
-        left = self.probes[~self.marks[self.probes]]
+        kept = ~self.marks[self.probes]
         self.marks[packets] = False
-        self.probes = np.concatenate([left, packets[probed]])
+        self.probes, self.errors = self.probes[kept], self.errors[kept]
+
+    def probed(self, packets: np.ndarray, errors: np.ndarray) -> None:
+        """Note that packets were probed, and their squared errors."""
+        self.probes = np.concatenate([self.probes, packets])
+        self.errors = np.concatenate([self.errors, errors])
+        self.turn += 1
 
     def is_probe(self, packets: np.ndarray) -> np.ndarray:
         """Whether each of some packets is probed."""
@@ -91,7 +97,7 @@ class Packets:
         """Estimate c of every class from all probes."""
         if not self.estimated or self.estimated[0] != self.turn:
             probes = self.probes
-            found = coefficients(self.classes[probes], COUNTS[self.levels[probes]], self.errors[probes])
+            found = coefficients(self.classes[probes], COUNTS[self.levels[probes]], self.errors)
             self.estimated = self.turn, found + unseen(self.histogram)
         return self.estimated[1]
 
