@@ -7,39 +7,34 @@ from typing import Any
 from minirt.kernel.atomic_counter import fetch_add
 from minirt.kernel.frame import PACKET_HEIGHT
 
-EVERY_OTHER = 0x00FF00FF00FF00FF  # bytes of a word of 64 bits, the bits above which are free to calculate in
-CARRIES = 0x0100010001000100
+CHANNELS = 4  # bytes of a pixel
 
 
-def classify(next_row: Any, lines: Any, seen: Any, class_of: Any, classes: Any, counts: Any) -> None:
+def classify(next_row: Any, lines: Any, seen: Any, words: Any, class_of: Any, classes: Any, counts: Any) -> None:
     """Find the contrast classes of rows of packets, taking the next one from the counter `next_row` until none is left.
 
-    Any number of threads may do so at the same time, each with its own `seen` and `counts`. `lines` (lines, words) are uint64, each
-    two pixels of a picture that consists of whole packets. `classes` (rows, columns) receives for each packet the
-    number, by the table `class_of`, that belongs to the greatest difference of a byte from that of a neighbour above,
-    below, left or right, and `counts` (numbers,) has the packets with each number added, of those that this thread saw.
-    `seen` (2, words + 1) is overwritten.
+    Any number of threads may do so at the same time, each with its own `seen`, `words` and `counts`. `lines` are the
+    bytes of a picture that consists of whole packets, (lines, bytes). `classes` (rows, columns) receives for each
+    packet the number, by the table `class_of`, that belongs to the greatest difference of a byte from that of a
+    neighbour above, below, left or right, and `counts` has the packets with each number added, of those that this
+    thread saw. `seen` (2, bytes), in the same memory as the uint64 `words` (2, bytes / 8), is overwritten.
     """
-    height, words = lines.shape
+    height = lines.shape[0]
     rows, columns = classes.shape
-    each = words // columns
+    each = words.shape[1] // columns
     while True:
         row = fetch_add(next_row, 1)
         if row >= rows:
             return
-        for i in range(words + 1):
-            seen[0, i] = 0
-            seen[1, i] = 0
-        for y in range(row * PACKET_HEIGHT, (row + 1) * PACKET_HEIGHT):
-            differences_beside(lines[y], seen[0])
-            differences_below(lines[max(y - 1, 0)], lines[y], seen[1])
-        end = (row + 1) * PACKET_HEIGHT
-        differences_below(lines[end - 1], lines[min(end, height - 1)], seen[1])
+        y = row * PACKET_HEIGHT
+        above, below = lines[max(y - 1, 0)], lines[min(y + PACKET_HEIGHT, height - 1)]
+        differences_upright(above, lines[y], lines[y + 1], lines[y + 2], lines[y + 3], below, seen[0])
+        differences_beside(lines[y], lines[y + 1], lines[y + 2], lines[y + 3], seen[1])
         for column in range(columns):
-            # The next packet's first pixel differs from the last of this one.
-            found = seen[0, (column + 1) * each] << 32
+            # The last pixel of the packet before differs from the first of this one.
+            found = words[1, max(column * each - 1, 0)] >> 32
             for i in range(column * each, (column + 1) * each):
-                found |= seen[0, i] | seen[1, i]
+                found |= words[0, i] | words[1, i]
             # The highest bit of all differences is that of the greatest.
             found |= found >> 32
             found |= found >> 16
@@ -49,27 +44,24 @@ def classify(next_row: Any, lines: Any, seen: Any, class_of: Any, classes: Any, 
             counts[number] += 1
 
 
-def differences_beside(line: Any, seen: Any) -> None:
-    """Add the bits of the differences of all pixels of a line from those to the left of them."""
-    seen[0] |= differences(line[0], (line[0] << 32) | ((line[0] << 32) >> 32))
-    for i in range(1, line.shape[0]):
-        seen[i] |= differences(line[i], (line[i] << 32) | (line[i - 1] >> 32))
+def differences_upright(above: Any, a: Any, b: Any, c: Any, d: Any, below: Any, seen: Any) -> None:
+    """Collect the bits of the differences of the lines a to d of a row of packets from those above and below them."""
+    for i in range(a.shape[0]):
+        inner = difference(a[i], b[i]) | difference(b[i], c[i]) | difference(c[i], d[i])
+        seen[i] = difference(above[i], a[i]) | inner | difference(d[i], below[i])
 
 
-def differences_below(above: Any, line: Any, seen: Any) -> None:
-    """Add the bits of the differences of all pixels of a line from those above them."""
-    for i in range(line.shape[0]):
-        seen[i] |= differences(above[i], line[i])
+def differences_beside(a: Any, b: Any, c: Any, d: Any, seen: Any) -> None:
+    """Collect the bits of the differences of the pixels of the lines a to d from those to the right of them."""
+    last = a.shape[0] - CHANNELS
+    for i in range(last):
+        k = i + CHANNELS
+        upper = difference(a[i], a[k]) | difference(b[i], b[k])
+        seen[i] = upper | difference(c[i], c[k]) | difference(d[i], d[k])
+    for i in range(last, a.shape[0]):
+        seen[i] = 0
 
 
-def differences(a: Any, b: Any) -> Any:
-    """The differences of the bytes of two words, without their signs, in the bytes of a word."""
-    even = differences_of_every_other(a & EVERY_OTHER, b & EVERY_OTHER)
-    return even | (differences_of_every_other((a >> 8) & EVERY_OTHER, (b >> 8) & EVERY_OTHER) << 8)
-
-
-def differences_of_every_other(a: Any, b: Any) -> Any:
-    """The differences of every other byte; the others are 0."""
-    difference = (a | CARRIES) - b  # plus 256
-    is_negative = (~difference & CARRIES) >> 8
-    return ((difference & EVERY_OTHER) ^ (is_negative * 255)) + is_negative
+def difference(a: Any, b: Any) -> Any:
+    """The difference of two bytes, without its sign."""
+    return max(a, b) - min(a, b)

@@ -30,13 +30,13 @@ def contrast_classes(
     beyond = -height % PACKET_HEIGHT, -width % packet_width
     if any(beyond):
         pixels = np.pad(pixels, ((0, beyond[0]), (0, beyond[1]), (0, 0)), "edge")
-    lines = pixels.reshape(len(pixels), -1).view(np.uint64)
+    lines = pixels.reshape(len(pixels), -1)
     classes = np.empty((len(lines) // PACKET_HEIGHT, pixels.shape[1] // packet_width), np.uint8)
     counter, counts = np.zeros(1, np.int64), np.zeros((threads, CLASSES), np.int64)
 
     def job(thread: int) -> None:
-        seen = np.empty((2, lines.shape[1] + 1), np.uint64)
-        functions.classify(counter, lines, seen, CLASS_OF, classes, counts[thread])
+        seen = np.empty((2, lines.shape[1]), np.uint8)
+        functions.classify(counter, lines, seen, seen.view(np.uint64), CLASS_OF, classes, counts[thread])
 
     run([partial(job, thread) for thread in range(threads)])
     return classes, counts.sum(axis=0)
@@ -44,6 +44,5 @@ def contrast_classes(
 
 def classify_call() -> Call:
     """The call of the compiled function, to look for its kernel."""
-    lines, bytes_ = np.zeros((0, 0), np.uint64), np.zeros((0, 0), np.uint8)
-    numbers = np.zeros(1, np.int64)
-    return functions.classify.call(numbers, lines, lines, CLASS_OF, bytes_, numbers)
+    numbers, none = np.zeros(1, np.int64), np.zeros((0, 0), np.uint8)
+    return functions.classify.call(numbers, none, none, np.zeros((0, 0), np.uint64), CLASS_OF, none, numbers)
