@@ -30,11 +30,10 @@ from minirt.rendering.sampling.packets import Packets
 from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_numbers
 
 FIRST_PROBES, PROBES = 384, 300  # packets to probe, in the first sweep and in the others
-# An estimate that ends rendering after the first sweep, with so many standard errors added, is this share of the goal.
-SURE, FAR_BELOW = 2.0, 0.7
-# Where the standard error is a greater share of the estimate, so few probes met an edge that one more might have met
-# one with such a squared error.
+# Where the standard error is a greater share of the estimate after the first sweep, so few probes met an edge that one
+# more might have met one with such a squared error.
 VAGUE, EDGE_ERROR = 0.4, 0.1
+SURE, FAR_BELOW = 2.0, 0.7  # then the estimate, with so many standard errors added, must be this share of the goal
 FIRST_PORTION, SECOND_PORTION = 0.125, 0.5  # of the packets; more are drawn only when enough probes are known
 CHEAP = 0.5  # samples of a pixel, on average, that are not worth portions
 PORTIONS_OF_TIME = 8
@@ -81,12 +80,12 @@ class AutoSampler:
             return None
         # A few probes may decide: an estimate that ends rendering is one that is rather too large.
         packets = self.packets
-        errors = packets.errors
-        mean, doubt = errors.mean(), errors.std() / sqrt(len(errors))
-        if doubt >= VAGUE * mean:
-            doubt = max(doubt, EDGE_ERROR / len(errors))
+        mean, doubt = packets.errors.mean(), packets.errors.std() / sqrt(len(packets.errors))
+        is_vague = doubt >= VAGUE * mean
+        doubt = max(doubt, EDGE_ERROR / len(packets.errors)) if is_vague else doubt
+        most = (mean + (SURE if is_vague else 1) * doubt) * packets.count + UNSEEN_ERROR
         total: float | None = (mean + doubt) * packets.count + UNSEEN_ERROR
-        if (mean + SURE * doubt) * packets.count + UNSEEN_ERROR > FAR_BELOW * goal and perf_counter() < start + seconds:
+        if most > (FAR_BELOW if is_vague else 1) * goal and perf_counter() < start + seconds:
             total = self.refine(goal, start + seconds)
         if total is None:
             return None
@@ -129,7 +128,7 @@ class AutoSampler:
         samples = allocate(packets.coefficients(), packets.histogram, MARGIN * goal, inf)
         if end == inf and (packets.histogram * samples)[samples > COUNTS].sum() < CHEAP * packets.count:
             todo = self.with_more(samples)
-            return self.draw_some(todo, todo >= 0, goal, inf)
+            return self.draw_with(todo, samples, self.to_probe(todo, 1.0))
         todo = self.in_need(goal)
         before, last = 0.0, FIRST_PORTION
         while before < 1:
@@ -163,19 +162,33 @@ class AutoSampler:
             return True
         c, counts = packets.coefficients(), packets.count_some(todo)
         others = squared_error(c, packets.histogram - counts)
-        # Packets that are drawn again are probed again, and others as long as few are known.
-        share = min(max(PROBES - packets.known, 0) / len(some), 1.0 if seconds == inf else MOST_OF_TIME)
+        probed = self.to_probe(some, 1.0 if seconds == inf else MOST_OF_TIME)
+        cost = 1 + 2 * REFERENCE_SAMPLES * probed.mean()
+        budget = SHARE_OF_TIME * seconds * self.speed / cost * len(todo) / len(some) if seconds < inf else inf
+        samples = allocate(c, counts, max(MARGIN * goal - others, goal / DOUBT), budget)
+        return self.draw_with(some, samples, probed, seconds == inf)
+
+    def to_probe(self, some: np.ndarray, most: float) -> np.ndarray:
+        """Choose which of some packets to probe, at most that share of them: those that were probed before, and others
+        as long as few are known."""
+        packets = self.packets
+        share = min(max(PROBES - packets.known, 0) / max(len(some), 1), most)
         probed: np.ndarray = packets.dither(some, 2**20) < share
         if packets.known:
             probed |= (packets.levels[some] > 0) & packets.is_probe(some)
-        cost = 1 + 2 * REFERENCE_SAMPLES * probed.mean()
-        budget = SHARE_OF_TIME * seconds * self.speed / cost * len(todo) / len(some) if seconds < inf else inf
-        places = places_of(allocate(c, counts, max(MARGIN * goal - others, goal / DOUBT), budget))
-        wanted = places[packets.classes[some], packets.levels[some]]
+        return probed
+
+    def draw_with(self, some: np.ndarray, samples: np.ndarray, probed: np.ndarray, is_urged: bool = True) -> bool:
+        """Draw those packets that get more samples than they have, by class and level; where that would be none and
+        `is_urged`, the numbers are rounded up. False when cancelled."""
+        packets = self.packets
+        levels = packets.levels[some]
+        wanted = places_of(samples)[packets.classes[some], levels]
         new = (wanted + packets.dither(some)).astype(np.uint8)
-        if seconds == inf and (new <= packets.levels[some]).all():
+        more = new > levels
+        if is_urged and not more.any():
             new = np.ceil(wanted).astype(np.uint8)
-        more = new > packets.levels[some]
+            more = new > levels
         return self.sweep(some[more], new[more], probed[more]) if more.any() else True
 
     def draw_first(self) -> bool:

@@ -6,7 +6,7 @@ Errors of few samples sit at edges of objects, shadows and textures, all of whic
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
@@ -42,6 +42,7 @@ def contrast_classes(
     return classes, counts.sum(axis=0)
 
 
+@cache
 def classify_call() -> Call:
     """The call of the compiled function, to look for its kernel."""
     numbers, none = np.zeros(1, np.int64), np.zeros((0, 0), np.uint8)
