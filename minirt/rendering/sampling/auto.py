@@ -30,10 +30,12 @@ from minirt.rendering.sampling.packets import Packets
 from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_numbers
 
 FIRST_PROBES, PROBES = 384, 300  # packets to probe, in the first sweep and in the others
-# Where the standard error is a greater share of the estimate after the first sweep, so few probes met an edge that one
-# more might have met one with such a squared error.
-VAGUE, EDGE_ERROR = 0.4, 0.1
-SURE, FAR_BELOW = 2.0, 0.7  # then the estimate, with so many standard errors added, must be this share of the goal
+# The mean of the probes of the first sweep is in doubt by its standard error, and by one more probe that might have met
+# an edge with such a squared error.
+EDGE_ERROR = 0.1
+# It ends rendering where it is, with the doubt added, at most the goal; and where the doubt is a greater share of it,
+# only where it is, with twice the doubt added, this share of the goal.
+VAGUE, FAR_BELOW = 0.4, 0.7
 FIRST_PORTION, SECOND_PORTION = 0.125, 0.5  # of the packets; more are drawn only when enough probes are known
 CHEAP = 0.5  # samples of a pixel, on average, that are not worth portions
 PORTIONS_OF_TIME = 8
@@ -78,14 +80,12 @@ class AutoSampler:
         goal = error * error * self.numbers  # infinite for a huge error
         if not self.draw_first():
             return None
-        # A few probes may decide: an estimate that ends rendering is one that is rather too large.
         packets = self.packets
-        mean, doubt = packets.errors.mean(), packets.errors.std() / sqrt(len(packets.errors))
-        is_vague = doubt >= VAGUE * mean
-        doubt = max(doubt, EDGE_ERROR / len(packets.errors)) if is_vague else doubt
-        most = (mean + (SURE if is_vague else 1) * doubt) * packets.count + UNSEEN_ERROR
-        total: float | None = (mean + doubt) * packets.count + UNSEEN_ERROR
-        if most > (FAR_BELOW if is_vague else 1) * goal and perf_counter() < start + seconds:
+        mean = packets.errors.mean()
+        doubt = max(packets.errors.std() / sqrt(len(packets.errors)), EDGE_ERROR / len(packets.errors))
+        total: float | None = (mean + doubt / 2) * packets.count + UNSEEN_ERROR
+        sure, share = (2.0, FAR_BELOW) if doubt >= VAGUE * mean else (1.0, 1.0)
+        if (mean + sure * doubt) * packets.count + UNSEEN_ERROR > share * goal and perf_counter() < start + seconds:
             total = self.refine(goal, start + seconds)
         if total is None:
             return None
