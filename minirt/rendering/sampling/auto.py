@@ -41,7 +41,7 @@ CHEAP = 0.5  # samples of a pixel, on average, that are not worth portions
 PORTIONS_OF_TIME = 8
 DOUBT = 4.0  # factor by which the squared errors of a class may turn out to be greater than the first sweep says
 MARGIN = 0.9  # of the squared error that is aimed at
-MOST_OF_TIME = 0.25  # of the packets of a portion to probe, where the time is limited
+MOST_OF_TIME = 0.25  # of the packets of a portion to probe, or of the time for probes alone, where the time is limited
 SHARE_OF_TIME = 0.98  # of the remaining time, to be filled
 
 
@@ -82,7 +82,8 @@ class AutoSampler:
             return None
         packets = self.packets
         mean = packets.errors.mean()
-        doubt = max(packets.errors.std() / sqrt(len(packets.errors)), EDGE_ERROR / len(packets.errors))
+        number = len(packets.errors)
+        doubt = max(packets.errors.std() / sqrt(number), EDGE_ERROR / number) * (1 - number / packets.count)
         total: float | None = (mean + doubt / 2) * packets.count + UNSEEN_ERROR
         sure, share = (2.0, FAR_BELOW) if doubt >= VAGUE * mean else (1.0, 1.0)
         if (mean + sure * doubt) * packets.count + UNSEEN_ERROR > share * goal and perf_counter() < start + seconds:
@@ -97,7 +98,7 @@ class AutoSampler:
         return that sum, and None when cancelled."""
         packets = self.packets
         packets.classify(*self.classify())
-        if not self.probe_classes():
+        if not self.probe_classes(end):
             return None
         if (total := packets.total()) <= goal:
             return total
@@ -112,15 +113,16 @@ class AutoSampler:
                 break
         return total
 
-    def probe_classes(self) -> bool:
-        """Probe more packets of the classes that have most of the error. False when cancelled."""
+    def probe_classes(self, end: float) -> bool:
+        """Probe more packets of the classes that have most of the error, if there is time. False when cancelled."""
         packets = self.packets
         number = packets.histogram.sum(axis=1)
         c = packets.coefficients()
         part = number * np.maximum(c, EXPECTED * (number @ c) / (number @ EXPECTED))
         known = np.bincount(packets.classes[packets.probes], minlength=len(number))
         more = packets.some_of_each_class(np.maximum(PROBES * part / part.sum() - known, 0))
-        return self.sweep(more, packets.levels[more], more >= 0) if len(more) > PROBES / 4 else True
+        most = MOST_OF_TIME * (end - perf_counter()) * self.speed / (1 + 2 * REFERENCE_SAMPLES)
+        return self.sweep(more, packets.levels[more], more >= 0) if 0 < len(more) <= most else True
 
     def draw_in_portions(self, goal: float, end: float) -> bool:
         """Draw the packets of all classes that need more samples, in portions. False when cancelled."""
