@@ -146,8 +146,9 @@ def render_tiles(
             # over samples took a seventh more time, since tracing then lacks those registers. Planned packets, each in
             # any tile, take all of their samples one after the other.
             for outer in range(min(TILE, end - top) if is_planned else rays.shape[0]):
-                inners, item = packets, top + outer
+                inners, item = packets, -1
                 if is_planned:
+                    item = top + outer
                     inners = planned_rays(plan, item)
                     tile = tile_at(plan[item, 0] * packet_width, plan[item, 1] * PACKET_HEIGHT, across)
                     empty = not has_environment(scene) and is_empty(scene, tile)
@@ -169,12 +170,9 @@ def render_tiles(
                     if rarely(samples > 1):
                         radiance = accumulate(radiance, sums, place, sample) / samples
                     if sample == samples - 1:
-                        if estimate == 0:
-                            store_packet(pixels, linear, x, y, radiance)
-                        if is_planned:
-                            save_sum(radiance, sums, place)
-                            if estimate == 2:
-                                errors[item] = squared_error(sums, height - y, across - x, width(rays))
+                        store_estimate(
+                            pixels, linear, errors, sums, x, y, radiance, estimate, item if is_planned else -1
+                        )
 
 
 def tile_at(x: int, y: int, across: int) -> int:
@@ -197,6 +195,19 @@ def planned(plan: Any, item: int, turn: int) -> tuple[int, int, int, int]:
     each, turn = REFERENCE_SAMPLES * samples, turn - samples
     estimate = turn // each
     return 1 + estimate, reference + turn, turn - estimate * each, each
+
+
+def store_estimate(
+    pixels: Any, linear: Any, errors: Any, sums: Any, x: int, y: int, radiance: Vec, estimate: int, item: int
+) -> None:
+    """Store the radiance of a packet in the picture, and where references tell its squared error, that error. `item` is
+    the packet's row in the plan; negative without a plan."""
+    if estimate == 0:
+        store_packet(pixels, linear, x, y, radiance)
+    if rarely(item >= 0):
+        save_sum(radiance, sums, estimate * ESTIMATE)
+        if estimate == 2:
+            errors[item] = squared_error(sums, pixels.shape[0] - y, pixels.shape[1] - x, width(radiance.x))
 
 
 def squared_error(sums: Any, height: int, across: int, count: int) -> float:

@@ -49,9 +49,7 @@ def reach(
         return bool((counters < CANCELLED).all())
 
     def classify() -> tuple[np.ndarray, np.ndarray]:
-        return contrast_classes(
-            pixels, packet_width, lambda jobs: runner.pool.run(jobs, runner.cancel), runner.threads
-        )
+        return contrast_classes(pixels, packet_width, lambda jobs: runner.pool.run(jobs, runner.cancel), runner.threads)
 
     # Rounding to 8 bits, where nobody wants the light itself, makes less error useless.
     least = 0.0 if len(linear) else ROUNDING_DECIDES

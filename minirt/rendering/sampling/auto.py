@@ -3,10 +3,10 @@ are needed.
 
 The first sweep over the picture is a plain frame of one sample a pixel, beside which some packets are probed (see
 `minirt.kernel.frame.squared_error`). Often that is enough. Otherwise the packets are sorted into classes by their
-contrast, and are drawn anew with the samples that `minirt.rendering.sampling.allocation` chooses for their class. This is done in portions,
-random sets of packets, since the probes of each tell how many samples, or how much time, the next portions need. Where
-an error is asked for, the picture depends on nothing else; where a time is asked for, it depends on how fast the
-portions were.
+contrast, and are drawn anew with the samples that `minirt.rendering.sampling.allocation` chooses for their class. Where
+that takes long it is done in portions, random sets of packets, since the probes of each tell how many samples, or how
+much time, the next portions need. Where an error is asked for, the picture depends on nothing else; where a time is
+asked for, it depends on how fast the portions were.
 
 Limit: nothing is known of features that no sample met in any packet of a class. A few features that are smaller than a
 pixel may be missing in the picture and in the estimate.

@@ -48,8 +48,8 @@ class Packets:
         for wanted, number in enumerate(np.ceil(numbers).astype(int).tolist()):
             if number:
                 members = self.members(wanted)
-                number = min(number, len(members))
-                places = (np.arange(number) + self.random[:number]) * (len(members) / max(number, 1))
+                most = min(number, len(members))
+                places = (np.arange(most) + self.random[:most]) * (len(members) / max(most, 1))
                 parts.append(members[places.astype(np.intp)])
         return np.concatenate(parts)
 
