@@ -12,7 +12,7 @@ from minirt.kernel.machine_code.argument_block import words_of
 from minirt.kernel.machine_code.entry import Entry
 from minirt.rendering.frame_arguments import Frame, sum_buffer, thread_memory
 from minirt.rendering.running.kernels import Choice, Kernels
-from minirt.rendering.running.thread_pool import ThreadPool
+from minirt.rendering.running.thread_pool import Job, ThreadPool
 
 
 class FrameRunner:
@@ -54,7 +54,7 @@ class FrameRunner:
         self.choice, scene = choice, self.scene_words
         memories = [(thread_memory(frames[0].scene), sum_buffer(frames[0].scene)) for _ in range(threads)]
         start = perf_counter()
-        jobs = []
+        jobs: list[Job] = []
         for memory, sums in memories:
             arguments = [words_of(each._replace(memory=memory, sums=sums)[:-1]) + scene for each in frames]
             jobs.append(partial(run_all, choice.entry, arguments))
