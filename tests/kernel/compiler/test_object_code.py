@@ -54,8 +54,8 @@ def code_of(function: Any, *arguments: Any) -> Any:
 
 
 def kernels_of_a_picture() -> dict[str, str]:
-    """Render all kinds of shapes, also to an error, trace rays among many shapes, and return the identities of the kernels that were
-    looked for, with the names of their functions."""
+    """Render all kinds of shapes, also to an error, trace rays among many shapes, and return the identities of the
+    kernels that were looked for, with the names of their functions."""
     found: dict[str, str] = {}
     identity_of = Library.identity
 
