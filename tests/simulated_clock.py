@@ -62,7 +62,7 @@ def packets_of(frame: Frame) -> int:
     samples, numbers = frame.rays.shape
     if not len(frame.plan):
         return samples * packets(width, height, numbers // 3)
-    drawn, probed = frame.plan[..., 1], frame.plan[..., 2] > 0
+    drawn, probed = frame.plan[:, 3], frame.plan[:, 4] > 0
     return int(drawn.sum() + 2 * REFERENCE_SAMPLES * drawn[probed].sum())
 
 

@@ -17,9 +17,9 @@ PACKET_HEIGHT = 4  # pixels; a packet is as wide as makes one pixel for each of 
 # Samples of a reference by those of what is drawn. The error of an estimate of the error is that of four times as many
 # references with as many samples, at twice the cost of one.
 REFERENCE_SAMPLES = 2
-TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles at a time
-ESTIMATE = 3 * TILE * TILE  # numbers of a tile's light: of the estimate that is drawn, or of a reference
-SUMS = 3 * ESTIMATE
+TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles, or so many rows of a plan, at a time
+SUMS = 3 * TILE * TILE  # numbers of a tile's light
+ESTIMATE = SUMS // 4  # those after which the light of the next estimate of a planned packet is kept
 CANCELLED = 2**40  # value of the row counter that cancels a frame; no picture has so many rows
 OPAQUE = 0xFF000000  # alpha of a pixel
 
@@ -90,16 +90,16 @@ def frame(
     sums: Any,
     scene: SceneArrays,
 ) -> None:
-    """Render rows of tiles, taking the next one from the counter `next_row` until none is left.
+    """Render rows of tiles, or rows of a plan, taking the next ones from the counter `next_row` until none is left.
 
     Any number of threads may do so at the same time, each with its own `memory` (see `minirt.kernel.trace.unoccluded`
     and `minirt.kernel.shading.surfaces`) and its own `sums` of samples of a tile (`SUMS` numbers). `pixels`
     (h, w) receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it has no rows. `rays` (rows,
     3 * width) has x, y and z of the directions of a packet's rays, less the direction through the packet's upper left
-    corner. `plan` (row, column, 3) has for each packet its first row in `rays`, its number of samples, 0 to leave the
-    packet alone, and the first row of two reference estimates, each of `REFERENCE_SAMPLES` times as many samples, 0 for
-    none. Without rows every packet takes all rows of `rays`. `errors` (row, column) receives the squared errors of
-    packets with references, see `squared_error`; it may be without rows where no packet has any. A counter set to
+    corner. `plan` (k, 5) has for each packet to draw its column and row among the packets, its first row in `rays`, its
+    number of samples, and the first row of two reference estimates, each of `REFERENCE_SAMPLES` times as many samples,
+    0 for none. Without rows all packets take all rows of `rays`. `errors` (k,) receives the squared errors of packets
+    with references, see `squared_error`. A counter set to
     `CANCELLED` from outside ends the frame at the next packet.
     """
     render_tiles(
@@ -129,93 +129,101 @@ def render_tiles(
     """Render rows of tiles: the body of `frame`, with the arrays passed by reference."""
     height, across = pixels.shape
     packet_width = width(rays) // PACKET_HEIGHT
+    columns = TILE // packet_width
+    packets = columns * TILE // PACKET_HEIGHT  # of a tile
     zero = splat(0.0, load(rays[0], 0))
     black = Vec(zero, zero, zero)
+    is_planned = rarely(plan.shape[0] > 0)
+    end = plan.shape[0] if is_planned else height
     while True:
         top = fetch_add(next_row, TILE)
-        if top >= height:
+        if top >= end:
             return
-        for left in range(0, across, TILE):
-            tile = top // TILE * tile_count(across) + left // TILE
+        for left in range(0, 1 if is_planned else across, TILE):
+            tile = tile_at(left, top, across)
             empty = not has_environment(scene) and is_empty(scene, tile)
-            turns = most_rays(plan, rays, top // PACKET_HEIGHT, left // packet_width)
             # All packets for each sample, not all samples for each packet: a sum kept in registers through the loop
-            # over samples took a seventh more time, since tracing then lacks those registers.
-            for turn in range(turns):
-                for y in range(top, min(top + TILE, height), PACKET_HEIGHT):
-                    for x in range(left, min(left + TILE, across), packet_width):
-                        if rarely(next_row[0] >= CANCELLED):
-                            return
-                        estimate, row, sample, samples = 0, turn, turn, turns
-                        if rarely(plan.shape[0] > 0):
-                            estimate, row, sample, samples = planned(plan, x // packet_width, y // PACKET_HEIGHT, turn)
-                            if samples == 0:
-                                continue
-                        if empty:
-                            store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
-                            continue
-                        radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[row], x, y), memory)
-                        place = estimate * ESTIMATE + 3 * ((y - top) * TILE + (x - left) * PACKET_HEIGHT)
-                        if rarely(samples > 1):
-                            radiance = accumulate(radiance, sums, place, sample) / samples
-                        if sample == samples - 1:
-                            store_estimate(pixels, linear, errors, sums, x, y, radiance, estimate, place)
+            # over samples took a seventh more time, since tracing then lacks those registers. Planned packets, each in
+            # any tile, take all of their samples one after the other.
+            for outer in range(min(TILE, end - top) if is_planned else rays.shape[0]):
+                inners, item = packets, -1
+                if is_planned:
+                    item = top + outer
+                    inners = planned_rays(plan, item)
+                    tile = tile_at(plan[item, 0] * packet_width, plan[item, 1] * PACKET_HEIGHT, across)
+                    empty = not has_environment(scene) and is_empty(scene, tile)
+                for inner in range(inners):
+                    y, x = top + inner // columns * PACKET_HEIGHT, left + inner % columns * packet_width
+                    estimate, row, sample, samples, place = 0, outer, outer, rays.shape[0], 3 * inner * width(rays)
+                    if is_planned:
+                        y, x = plan[item, 1] * PACKET_HEIGHT, plan[item, 0] * packet_width
+                        estimate, row, sample, samples = planned(plan, item, inner)
+                        place = estimate * ESTIMATE
+                    if y >= height or x >= across:
+                        continue
+                    if rarely(next_row[0] >= CANCELLED):
+                        return
+                    if empty:
+                        store_packet(pixels, linear, x, y, background_light(scene, zero > 0.0, black, black))
+                        continue
+                    radiance = without_non_finite(packet_radiance(scene, memory, tile, rays[row], x, y), memory)
+                    if rarely(samples > 1):
+                        radiance = accumulate(radiance, sums, place, sample) / samples
+                    if sample == samples - 1:
+                        store_estimate(
+                            pixels, linear, errors, sums, x, y, radiance, estimate, item if is_planned else -1
+                        )
 
 
-def most_rays(plan: Any, rays: Any, row: int, column: int) -> int:
-    """Return the most rays that any pixel takes in a tile, whose first packet is given."""
-    if not rarely(plan.shape[0] > 0):
-        return int(rays.shape[0])
-    packet_width = width(rays) // PACKET_HEIGHT
-    most = 0
-    for y in range(row, min(row + TILE // PACKET_HEIGHT, plan.shape[0])):
-        for x in range(column, min(column + TILE // packet_width, plan.shape[1])):
-            references = 0 if plan[y, x, 2] == 0 else 2 * REFERENCE_SAMPLES
-            most = max(most, plan[y, x, 1] * (1 + references))
-    return most
+def tile_at(x: int, y: int, across: int) -> int:
+    """Return the number of the tile with a pixel, in a picture of so many pixels across."""
+    return y // TILE * tile_count(across) + x // TILE
 
 
-def planned(plan: Any, column: int, row: int, turn: int) -> tuple[int, int, int, int]:
+def planned_rays(plan: Any, item: int) -> int:
+    """Return the number of rays that each pixel of a packet takes by plan."""
+    references = 0 if plan[item, 4] == 0 else 2 * REFERENCE_SAMPLES
+    return int(plan[item, 3] * (1 + references))
+
+
+def planned(plan: Any, item: int, turn: int) -> tuple[int, int, int, int]:
     """Return what a packet takes when a pixel has taken `turn` rays before: the number of the estimate, the row of
-    `rays`, the number of the sample in that estimate, and the number of its samples, which is 0 if it takes none."""
-    first, samples, reference = plan[row, column, 0], plan[row, column, 1], plan[row, column, 2]
+    `rays`, the number of the sample in that estimate, and the number of its samples."""
+    first, samples, reference = plan[item, 2], plan[item, 3], plan[item, 4]
     if turn < samples:
         return 0, first + turn, turn, samples
     each, turn = REFERENCE_SAMPLES * samples, turn - samples
-    if reference == 0 or turn >= 2 * each:
-        return 0, 0, 0, 0
     estimate = turn // each
     return 1 + estimate, reference + turn, turn - estimate * each, each
 
 
 def store_estimate(
-    pixels: Any, linear: Any, errors: Any, sums: Any, x: int, y: int, radiance: Vec, estimate: int, place: int
+    pixels: Any, linear: Any, errors: Any, sums: Any, x: int, y: int, radiance: Vec, estimate: int, item: int
 ) -> None:
-    """Store the radiance of a packet in the picture, and where references tell its squared error, that error."""
+    """Store the radiance of a packet in the picture, and where references tell its squared error, that error. `item` is
+    the packet's row in the plan; negative without a plan."""
     if estimate == 0:
         store_packet(pixels, linear, x, y, radiance)
-    if rarely(errors.shape[0] > 0):
-        save_sum(radiance, sums, place)
+    if rarely(item >= 0):
+        save_sum(radiance, sums, estimate * ESTIMATE)
         if estimate == 2:
-            row, column = y // PACKET_HEIGHT, x * PACKET_HEIGHT // width(radiance.x)
-            errors[row, column] = squared_error(sums, place, pixels.shape[0] - y, pixels.shape[1] - x)
+            errors[item] = squared_error(sums, pixels.shape[0] - y, pixels.shape[1] - x, width(radiance.x))
 
 
-def squared_error(sums: Any, start: int, height: int, across: int) -> float:
-    """Estimate the squared error of a packet's light, clamped to [0, 1], summed over its pixels and channels.
+def squared_error(sums: Any, height: int, across: int, count: int) -> float:
+    """Estimate the squared error of a packet's light, clamped to [0, 1], summed over its `count` pixels and channels.
 
-    From `start` back, `sums` has two reference estimates and the light. Where the references are independent and have
+    `sums` has the light and two reference estimates. Where the references are independent and have
     no bias, the product of the differences from each of them has the squared error as its mean, however large their own
     errors are. Of the packet's pixels, those beyond `height` lines or `across` columns are left out.
     """
-    count = width(sums)
     packet_width = count // PACKET_HEIGHT
     total = 0.0
     for number in range(3 * count):
         pixel = number % count
         if pixel // packet_width < height and pixel % packet_width < across:
-            light = min(sums[start - 2 * ESTIMATE + number], 1.0)
-            one, other = min(sums[start - ESTIMATE + number], 1.0), min(sums[start + number], 1.0)
+            light = min(sums[number], 1.0)
+            one, other = min(sums[ESTIMATE + number], 1.0), min(sums[2 * ESTIMATE + number], 1.0)
             total += (light - one) * (light - other)
     return total
 

@@ -20,12 +20,13 @@ from minirt.kernel.machine_code.processor import processor
 from minirt.rendering.packing.widening import WIDE_KERNELS
 from minirt.rendering.running.cores import usable_cores
 from minirt.rendering.running.needed_kernels import packing_calls, ray_query, wide_call
+from minirt.rendering.sampling.contrast import classify_call
 
 
 def calls() -> list[list[Call]]:
     """Return calls of the kernels to compile, in groups for one process each, the slowest first."""
     full, plain, *single = map(wide_call, sorted(WIDE_KERNELS, key=lambda each: (each.precision, each.name)))
-    return [[full], [*packing_calls(), plain], *([each] for each in single), [ray_query()]]
+    return [[full], [*packing_calls(), classify_call(), plain], *([each] for each in single), [ray_query()]]
 
 
 def build(folder: Path, target: str) -> int:

@@ -11,8 +11,8 @@ from minirt.kernel.frame import SUMS
 from minirt.rendering.packing.camera import packet_rays
 
 NO_LINEAR = np.zeros((0, 0, 3))
-ALL_PACKETS = np.zeros((0, 0, 3), np.int32)
-NO_ERRORS = np.zeros((0, 0))
+ALL_PACKETS = np.zeros((0, 5), np.int32)
+NO_ERRORS = np.zeros(0)
 GOLDEN_RATIO = (5**0.5 - 1) / 2  # its conjugate, 0.618...
 
 
@@ -44,10 +44,19 @@ class Frame(NamedTuple):
 
     def with_samples_where(self, packets: np.ndarray) -> Frame:
         """Return the arguments for the same samples, but only in some packets: (rows, columns), not 0 where wanted."""
-        plan = np.zeros((*packets.shape, 3), np.int32)
-        plan[..., 1] = packets
-        plan[..., 1] *= len(self.rays)
-        return self._replace(plan=plan)
+        places = np.flatnonzero(packets)
+        drawn = np.zeros((len(places), 3), np.int32)
+        drawn[:, 1] = len(self.rays)
+        return self._replace(plan=plan_of(places, packets.shape[1], drawn))
+
+
+def plan_of(packets: np.ndarray, columns: int, drawn: np.ndarray) -> np.ndarray:
+    """Return the plan that draws packets, counted row by row, in a picture of so many columns of packets. `drawn`
+    (k, 3) has their other numbers. A plan without any packet has one that takes no samples."""
+    plan = np.zeros((max(len(packets), 1), 5), np.int32)
+    plan[: len(packets), 1], plan[: len(packets), 0] = np.divmod(packets, columns)
+    plan[: len(packets), 2:] = drawn
+    return plan
 
 
 def frame_arguments(

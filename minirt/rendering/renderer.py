@@ -12,6 +12,7 @@ import numpy as np
 
 from minirt.errors import RenderError
 from minirt.fork_safety import renew_after_fork
+from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering.frame_arguments import NO_LINEAR
 from minirt.rendering.notes import NO_WIDE_KERNEL, kernel_notes
 from minirt.rendering.packing.features import DEPTH
@@ -19,6 +20,7 @@ from minirt.rendering.running import fixed_samples, to_error
 from minirt.rendering.running.cores import usable_cores
 from minirt.rendering.running.frame_runner import FrameRunner
 from minirt.rendering.running.kernels import Kernels
+from minirt.rendering.sampling.contrast import classify_call
 from minirt.rendering.sampling.outcome import Outcome
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
@@ -188,6 +190,7 @@ class Renderer:
                 draw_background(scene, pixels, light)
                 return Outcome(1.0, 1, 0.0, perf_counter() - start, error)
             self.kernels.make_ready(scene)
+            LIBRARY.get(classify_call())
             return to_error.reach(self.runner, self.packing, scene, pixels, light, error, seconds)
 
     def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:

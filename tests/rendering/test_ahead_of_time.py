@@ -38,7 +38,7 @@ def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def test_every_wide_kernel_is_compiled_once(compiled: list[str], tmp_path: Path) -> None:
-    number = len(WIDE_KERNELS) + FUNCTIONS + 1  # and the query for single rays
+    number = len(WIDE_KERNELS) + FUNCTIONS + 2  # and the query for single rays, and contrast
     assert ahead_of_time.build(tmp_path, PROCESSOR) == number
     assert len(set(compiled)) == len(compiled) == number == len(list(tmp_path.iterdir()))
     for wide in WIDE_KERNELS:

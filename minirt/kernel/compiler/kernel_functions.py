@@ -1,4 +1,4 @@
-"""Registration of all functions that the kernel of a frame, and that of binning, call.
+"""Registration of all functions that the kernels of a frame, of binning and of contrast call.
 
 Outside this folder they are plain Python and call each other as they stand; numba finds the compiled form of each.
 """
@@ -10,7 +10,7 @@ import sys
 from numba.extending import register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (registers the operations of the formulas)
-from minirt.kernel import atomic_counter, frame, scene_arrays, trace
+from minirt.kernel import atomic_counter, contrast, frame, scene_arrays, trace
 from minirt.kernel.compiler import frame_operations, kind_dispatch, packed_shapes, unrolled_loop  # noqa: F401
 from minirt.kernel.compiler.inlining import inline_functions_of
 from minirt.kernel.compiler.options import INLINED
@@ -29,6 +29,7 @@ REGISTERED = (
     frame.frame,
     binning.project_all,
     binning.fill_bins,
+    contrast.classify,
     scene_arrays.by_reference,
 )
 register_jitable(**INLINED)(vec.cross)
@@ -57,6 +58,7 @@ for _module in (
     environment,
     whitted,
     frame,
+    contrast,
     *(sys.modules[kind.intersect.__module__] for kind in ALL_KINDS),
 ):
     inline_functions_of(_module, besides=REGISTERED)

@@ -7,6 +7,7 @@ from typing import Any
 
 from minirt.kernel.bvh import build, queries
 from minirt.kernel.bvh import collapse as collapsing
+from minirt.kernel.contrast import classify as interpreted_classify
 from minirt.kernel.culling import binning
 from minirt.kernel.frame import frame as interpreted_frame
 from minirt.kernel.machine_code.library import LIBRARY, Call
@@ -32,3 +33,4 @@ divide, weigh = CompiledFunction(build.divide), CompiledFunction(collapsing.weig
 collapse = CompiledFunction(collapsing.collapse)
 trace_rays = CompiledFunction(queries.trace_rays)
 frame = CompiledFunction(interpreted_frame)
+classify = CompiledFunction(interpreted_classify)

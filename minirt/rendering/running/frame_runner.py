@@ -9,9 +9,10 @@ import numpy as np
 
 from minirt.kernel.frame import CANCELLED
 from minirt.kernel.machine_code.argument_block import words_of
+from minirt.kernel.machine_code.entry import Entry
 from minirt.rendering.frame_arguments import Frame, sum_buffer, thread_memory
 from minirt.rendering.running.kernels import Choice, Kernels
-from minirt.rendering.running.thread_pool import ThreadPool
+from minirt.rendering.running.thread_pool import Job, ThreadPool
 
 
 class FrameRunner:
@@ -41,25 +42,33 @@ class FrameRunner:
         return self.next_row
 
     def run(self, frames: list[Frame], threads: int) -> None:
-        """Render frames, each on so many threads, which share its rows; an error of any thread is raised.
+        """Render frames of one scene, one after the other, on so many threads, which share the rows of each; an error
+        of any thread is raised.
 
-        The caller's thread only waits, so that Ctrl+C reaches it.
+        A thread that finds no more rows of a frame goes on with the next one. The caller's thread only waits, so that
+        Ctrl+C reaches it.
         """
         choice = self.kernels.choose(frames[0])
         if not self.choice or self.choice.scene is not choice.scene:
             self.scene_words = words_of(choice.scene)  # which holds for all frames of a scene
         self.choice, scene = choice, self.scene_words
-        arguments = [
-            frame._replace(memory=thread_memory(frame.scene), sums=sum_buffer(frame.scene))
-            for frame in frames
-            for _ in range(threads)
-        ]
+        memories = [(thread_memory(frames[0].scene), sum_buffer(frames[0].scene)) for _ in range(threads)]
         start = perf_counter()
-        self.pool.run([partial(choice.entry.run, words_of(each[:-1]) + scene) for each in arguments], self.cancel)
+        jobs: list[Job] = []
+        for memory, sums in memories:
+            arguments = [words_of(each._replace(memory=memory, sums=sums)[:-1]) + scene for each in frames]
+            jobs.append(partial(run_all, choice.entry, arguments))
+        self.pool.run(jobs, self.cancel)
         self.kernels.count(choice, perf_counter() - start)
-        self.not_finite += int(sum(each.memory[-1, 1] for each in arguments))
+        self.not_finite += int(sum(memory[-1, 1] for memory, _ in memories))
 
     def cancel(self) -> None:
         """End the frames that are being rendered, soon and incomplete; callable from any thread."""
         self.cancellations += 1  # for a picture between two frames
         self.next_row[:] = CANCELLED
+
+
+def run_all(entry: Entry, arguments: list[list[int]]) -> None:
+    """Run a kernel with the words of its arguments, once for each frame."""
+    for words in arguments:
+        entry.run(words)

@@ -14,6 +14,7 @@ from minirt.rendering.running.frame_runner import FrameRunner
 from minirt.rendering.sampling.auto import AutoSampler, Sweep
 from minirt.rendering.sampling.contrast import contrast_classes
 from minirt.rendering.sampling.outcome import ROUNDING_DECIDES, Outcome
+from minirt.rendering.sampling.packets import Packets
 from minirt.rendering.sampling.sample_table import table_rays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
@@ -38,19 +39,22 @@ def reach(
     offsets = packet_pixels(width(arrays.camera))
 
     def draw(sweep: Sweep) -> bool:
-        counter = runner.new_counters(1)
+        counters = runner.new_counters(2)
         if runner.cancellations != cancellations:
             return False
         rays = table_rays(arrays.camera, sweep.positions, offsets)
-        runner.run([frame._replace(next_row=counter, rays=rays, plan=sweep.plan, errors=sweep.errors)], runner.threads)
-        return bool(counter[0] < CANCELLED)
+        planned = frame._replace(next_row=counters[1:], rays=rays, plan=sweep.plan, errors=sweep.errors)
+        whole = [frame._replace(next_row=counters[:1], rays=rays[:1])] if sweep.is_first else []
+        runner.run([*whole, planned], runner.threads)
+        return bool((counters < CANCELLED).all())
 
-    def classify() -> np.ndarray:
-        return contrast_classes(pixels, packet_width, lambda jobs: runner.pool.run(jobs, runner.cancel))
+    def classify() -> tuple[np.ndarray, np.ndarray]:
+        return contrast_classes(pixels, packet_width, lambda jobs: runner.pool.run(jobs, runner.cancel), runner.threads)
 
     # Rounding to 8 bits, where nobody wants the light itself, makes less error useless.
     least = 0.0 if len(linear) else ROUNDING_DECIDES
-    auto = AutoSampler(draw, classify, height, across, packet_width)
+    packets = Packets(height, across, packet_width)
+    auto = AutoSampler(draw, classify, packets, 3 * height * across, len(offsets[0]))
     outcome = auto.reach(max(error, least), seconds - (perf_counter() - start))
     return outcome and outcome._replace(
         seconds=perf_counter() - start, goal=error, rounded=error < outcome.error <= least

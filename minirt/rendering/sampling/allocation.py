@@ -6,8 +6,8 @@ a number of samples in proportion to c^0.4.
 
 c is the mean of the probes of all packets of a class, those with about as much contrast. A class of which few were
 probed may have missed something, so that some probes as one expects from the other classes, in proportion to the
-square of the contrast, are counted with its own. And since all samples of a class may have missed something, one sample
-more than they are counts as if it differed.
+square of the contrast, are counted with its own. And since all samples of a picture may have missed something, one
+sample more than they are counts as if it differed.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from minirt.rendering.sampling.contrast import CLASSES
 from minirt.rendering.sampling.sample_table import COUNTS
 
 ERROR_EXPONENT = 1.5  # squared error falls as this power of the number of samples
-# Squared error of a class of which one sample differs from all others, by a quarter in one of three colours.
+# Squared error of a picture of which one sample differs from all others, by a quarter in one of three colours.
 UNSEEN_ERROR = 1 / 16
 PRIOR = 4.0  # probes that the expectation of a class counts as
 EXPECTED = 4.0 ** np.arange(CLASSES)  # ratios of c
@@ -37,11 +37,11 @@ def coefficients(classes: np.ndarray, counts: np.ndarray, errors: np.ndarray) ->
 
 
 def unseen(packets: np.ndarray) -> np.ndarray:
-    """The part of c of every class that is due to what no sample met: with n samples the class has an error of
-    `UNSEEN_ERROR` / n^2. `packets` (classes, levels) counts the packets."""
+    """The part of c of every class that is due to what no sample met: with n samples in all packets, these together
+    have an error of `UNSEEN_ERROR` / n^2. `packets` (classes, levels) counts the packets."""
     number = np.maximum(packets.sum(axis=1), 1)
     samples = np.maximum(packets @ COUNTS / number, 1.0)
-    part: np.ndarray = UNSEEN_ERROR * samples ** (ERROR_EXPONENT - 2) / number
+    part: np.ndarray = UNSEEN_ERROR * samples ** (ERROR_EXPONENT - 2) / packets.sum()
     return part
 
 

@@ -8,7 +8,7 @@ exact light.
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -33,7 +33,7 @@ class SampleTable:
             count = int(COUNTS[level])
             self.first[level], self.reference[level] = rows, rows + count
             self.variants[level] = min(max(REFERENCE_ROWS // (2 * REFERENCE_SAMPLES * count), 1), VARIANTS)
-            parts += positions_of(count, int(self.variants[level]), pixels)
+            parts.append(positions_of(count, int(self.variants[level]), pixels))
             rows += count * (1 + 2 * REFERENCE_SAMPLES * int(self.variants[level]))
         self.positions = np.concatenate(parts)
 
@@ -48,13 +48,14 @@ class SampleTable:
         return plan
 
 
-def positions_of(count: int, variants: int, pixels: int) -> list[np.ndarray]:
+@lru_cache(32)
+def positions_of(count: int, variants: int, pixels: int) -> np.ndarray:
     """The positions of a number of drawn samples, and of its references."""
     drawn = np.broadcast_to(sample_positions(count)[:, None], (count, pixels, 2))
     lattice, shifts = sample_positions(REFERENCE_SAMPLES * count), random_shifts(variants, pixels)
     references = lattice[:, None] + shifts[:, None]
     references -= references >= 1.0
-    return [drawn, references.reshape(-1, pixels, 2)]
+    return np.concatenate([drawn, references.reshape(-1, pixels, 2)])
 
 
 @cache

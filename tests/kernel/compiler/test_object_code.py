@@ -54,8 +54,8 @@ def code_of(function: Any, *arguments: Any) -> Any:
 
 
 def kernels_of_a_picture() -> dict[str, str]:
-    """Render all kinds of shapes, trace rays among many shapes, and return the identities of the kernels that were
-    looked for, with the names of their functions."""
+    """Render all kinds of shapes, also to an error, trace rays among many shapes, and return the identities of the
+    kernels that were looked for, with the names of their functions."""
     found: dict[str, str] = {}
     identity_of = Library.identity
 
@@ -70,6 +70,7 @@ def kernels_of_a_picture() -> dict[str, str]:
         patch.setattr(Library, "identity", identity)
         wide_identity.cache_clear()  # earlier tests may have asked for it
         assert Renderer(1).render(ALL, np.zeros((16, 24, 4), np.uint8))
+        assert Renderer(1).reach(ALL, np.zeros((16, 24, 4), np.uint8), 0.5)
         minirt.trace(Scene((AMBIENT, EYE, *shapes)), *random_rays(random, shapes, 10))
     return found
 

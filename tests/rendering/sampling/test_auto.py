@@ -170,8 +170,8 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 COUNT = packets(WIDTH, HEIGHT)
-# Of the clock for the first sweep: a sample of each packet, and two references for those that are probed.
-FIRST = (COUNT + 2 * REFERENCE_SAMPLES * FIRST_PROBES) * PACKET_SECONDS
+# Of the clock for the first sweep: a sample of each packet, and for those that are probed another and two references.
+FIRST = (COUNT + (1 + 2 * REFERENCE_SAMPLES) * FIRST_PROBES) * PACKET_SECONDS
 
 
 @pytest.mark.parametrize("rounds", [0.0, 0.5, 1.0, 2.0, 10.0, 100.0])

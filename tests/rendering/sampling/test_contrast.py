@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from minirt.kernel.frame import PACKET_HEIGHT
-from minirt.rendering.sampling.contrast import STRIP, contrast_classes
+from minirt.rendering.sampling.contrast import CLASSES, contrast_classes
 
 Pixels = NDArray[np.uint8]
 
@@ -33,7 +33,7 @@ def by_loop(pixels: Pixels, packet_width: int) -> NDArray[np.int64]:
 
 
 @pytest.mark.parametrize("packet_width", [4, 8])
-@pytest.mark.parametrize("size", [(1, 1), (3, 50), (8, 16), (29, 31), (2 * STRIP * PACKET_HEIGHT + 5, 9)])
+@pytest.mark.parametrize("size", [(1, 1), (3, 50), (8, 16), (29, 31), (5 * PACKET_HEIGHT + 1, 9)])
 @pytest.mark.parametrize("spread", [0, 1, 7, 255])
 def test_classes_are_those_of_the_greatest_difference(size: tuple[int, int], packet_width: int, spread: int) -> None:
     random = np.random.default_rng(spread)
@@ -41,4 +41,6 @@ def test_classes_are_those_of_the_greatest_difference(size: tuple[int, int], pac
     few = random.random(size) < 0.1  # so that some packets have one pixel that differs
     pixels[..., :3] = 90
     pixels[few, :3] = random.integers(90 - spread // 3, 91 + spread // 2, (np.count_nonzero(few), 3))
-    assert np.array_equal(contrast_classes(pixels, packet_width, run), by_loop(pixels, packet_width))
+    classes, counts = contrast_classes(pixels, packet_width, run, threads=3)
+    assert np.array_equal(classes, by_loop(pixels, packet_width))
+    assert np.array_equal(counts, np.bincount(classes.ravel(), minlength=CLASSES))
