@@ -19,22 +19,12 @@ from minirt.records import record
 from minirt.shapes.basis import basis, from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
-from minirt.shapes.compensated import minus, times, value
+from minirt.shapes.cone_start import PARALLEL, apex_shell, close_start
 from minirt.shapes.low_parts import axis_low, quotient_low
 from minirt.shapes.quadric import clamped_minimum, negative_interval
 from minirt.shapes.shape import Ball, Bounds, Position, Shape
-from minirt.shapes.start import (
-    axial,
-    beside_side,
-    between_caps,
-    error_of_start,
-    product_of_roots,
-    starts_close,
-    within_shell,
-)
+from minirt.shapes.start import starts_close, within_shell
 from minirt.shapes.uv_mapping import revolved_mapping
-
-PARALLEL = 2.0**-6  # share of a steepness by which that of a ray beside a generator differs
 
 
 @record()
@@ -96,12 +86,14 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
     counted from the height of the apex: its deepest point is known badly, and where it passes the apex closely its
     distance from there counts.
 
-    Shadow rays pass None for `anywhere`: see `minirt.shapes.start`.
+    Shadow rays pass None for `anywhere`: see `minirt.shapes.start`. Other rays may start at the cone: see
+    `minirt.shapes.cone_start`.
     """
     p = to_basis(cone.u, cone.v, cone.w, origin - cone.apex)
     d = to_basis(cone.u, cone.v, cone.w, direction)
     rise = cone.slope * d.z
-    a = d.x * d.x + d.y * d.y - rise * rise
+    steepness = rise * rise
+    a = d.x * d.x + d.y * d.y - steepness
     steep = a < 0.0
     reach = cone.slope * p.z
     b = p.x * d.x + p.y * d.y - reach * rise
@@ -109,7 +101,7 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
     tip = -p.z * per_height
     base = (cone.height - p.z) * per_height
     first, last = minimum(tip, base), maximum(tip, base)
-    parallel = fabs(a) <= PARALLEL * (rise * rise)
+    parallel = fabs(a) <= PARALLEL * steepness
     start = where(parallel, tip, clamped_minimum(per_a, b, first, last))
     q = p + start * d
     reach_q = cone.slope * q.z
@@ -119,25 +111,15 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
         squared, half = reach * reach, 0.5 * cone.height
         level = p.x * p.x + p.y * p.y - squared
         over, size = fabs(p.z - half) - half, (1.0 + cone.slope) * cone.height
-        within = within_shell(level, squared, over, size)
+        shell = squared + apex_shell(cone.slope, size, a)
+        within = within_shell(level, shell, over, size)
         if rarely(within):
-            close = within & starts_close(a, b, level, squared, over, size, (p.z - half) * d.z)
+            close = within & starts_close(a, b, level, shell, over, size, (p.z - half) * d.z)
             if any(close):
-                height, power = axial(origin, cone.apex, cone.w, cone.w_low, a)
-                side = times((splat(cone.slope, a), splat(cone.slope_low, a)), height)  # its distance from the axis
-                exact_level = value(minus(power, times(side, side)))
-                slope = sqrt(squared * (1.0 + cone.slope * cone.slope))
-                error = error_of_start(origin, p, level, slope, over)
-                low, high = between_caps(height, 0.0, cone.height, per_height, error)
+                low, high, start, half_b, c, product = close_start(
+                    cone, origin, p, d, close, parallel, a, per_a, b, level, over, per_height, start, half_b, c
+                )
                 first, last = where(close, low, first), where(close, high, last)
-                beside = close & beside_side(level, squared, over, half)
-                start = where(beside, 0.0, where(close & ~parallel, clamped_minimum(per_a, b, low, high), start))
-                q = p + start * d
-                reach_q = cone.slope * where(beside, height[0], q.z)
-                half_b = q.x * d.x + q.y * d.y - reach_q * rise
-                c = where(beside, exact_level, q.x * q.x + q.y * q.y - reach_q * reach_q)
-                half_b = where(beside & parallel, balanced(cone, p, d, a, per_a, half_b, c), half_b)
-                product = product_of_roots(beside, c, slope, error)
     met, below, above = negative_interval(a, per_a, half_b, c, product)
     hit = met | steep
     t = start
@@ -148,21 +130,6 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
         t = where(near > 0.0, near, far)
         hit = hit & (near <= far) & (t > 0.0)
     return hit, t
-
-
-def balanced(cone: PackedCone, p: Vec, d: Vec, a: Number, per_a: Number, b: Number, c: Number) -> Number:
-    """Return b of the quadratic equation of a ray beside a generator that starts closely at the side, more exactly.
-
-    Nearly everything cancels in a and b, and in the far root -2 b / a. A step of Newton's method corrects that, and b
-    follows from both roots: the near one is c / a by the far one.
-    """
-    far = -2.0 * b * per_a
-    q = p + far * d
-    reach, rise = cone.slope * q.z, cone.slope * d.z
-    step = 0.5 * (q.x * q.x + q.y * q.y - reach * reach) / (q.x * d.x + q.y * d.y - reach * rise)
-    far = where(fabs(step) <= PARALLEL * fabs(far), far - step, far)
-    within = (fabs(q.z - 0.5 * cone.height) <= cone.height) & (fabs(c) <= PARALLEL * fabs(a) * far * far)
-    return where(within, -0.5 * (a * far + c / far), b)
 
 
 def surface(cone: PackedCone, point: Vec) -> tuple[Vec, Vec]:

@@ -11,10 +11,11 @@ from hypothesis import strategies as st
 
 from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests import oracle
-from tests.oracle.body import Body, body, crossings, inside, normals
+from tests.oracle.body import Body, body, crossings, gradient, inside, normals
 from tests.oracle.polynomial import Polynomial
 from tests.oracle.vectors import dot
 
@@ -110,6 +111,21 @@ def test_a_thicker_shape_is_hit_earlier() -> None:
         origin = [c - 9 * d for c, d in zip(shape.centre, way, strict=True)]
         plain, thick = oracle.nearest(shape, origin, way), oracle.nearest(shape, origin, way, 1e-20)
         assert abs(plain - thick - mpfr(1e-20)) < mpfr("1e-40")
+
+
+@pytest.mark.parametrize("sizes", [(0.2, 4, 0.2), (1e-6, 4, 0.01), (3, 4, 50), (4, 4, 4)])
+def test_the_side_of_a_hyperboloid_moves_by_at_least_the_swell(sizes: tuple[float, float, float]) -> None:
+    shape, swell = Hyperboloid((0, 0, 0), (0, 0, 1), *sizes, GREY), mpfr(1e-20)
+    waist, radius, half = (mpfr(x) / 2 for x in sizes)
+    for share in map(mpfr, (0, 1e-3, 0.1, 0.5, 1)):
+        rho = sqrt(waist**2 + (radius**2 - waist**2) * share**2)
+        slope = gradient(body(shape).walls[0], [rho, mpfr(0), share * half])
+        steepness = sqrt(dot(slope, slope))
+        for sign in (1, -1):
+            moved = -sign * body(shape, sign * swell).walls[0]([rho, mpfr(0), share * half]) / steepness
+            assert moved >= swell * (1 - mpfr(1e-6))
+    # Planted: a constant of twice the radius, by which steep rims move too little.
+    assert (2 * radius < steepness * (1 - mpfr(1e-6))) == (waist < radius)
 
 
 def test_inside() -> None:

@@ -34,7 +34,7 @@ from tests.stability.regime import posed
 from tests.stability.table import REGIMES
 
 SHARED = ("quadric", "compensated", "flat_start", "basis", "bounds")  # files that several shapes use
-TOPICS = {"uv_mapping": "mapping"}  # file -> the word in the names of its tests, if that is another
+TOPICS = {"uv_mapping": "mapping", "cone_start": "cone"}  # file -> the word in the names of its tests, if another
 FILES = (*SHARED, *TOPICS, "pyramid", *(kind.element.__module__.rpartition(".")[2] for kind in minirt.shapes.ALL_KINDS))
 TESTS = (
     "tests/shapes",

@@ -17,7 +17,18 @@ from minirt.kernel.compiler.options import INLINED
 from minirt.kernel.culling import binning, light_buffer
 from minirt.kernel.shading import environment, lights, shade, specular, surfaces, texture_lookup, texturing, whitted
 from minirt.lanes import angle, largest, power, vec
-from minirt.shapes import ALL_KINDS, basis, compensated, flat_start, pyramid, quadric, shape, start, uv_mapping
+from minirt.shapes import (
+    ALL_KINDS,
+    basis,
+    compensated,
+    cone_start,
+    flat_start,
+    pyramid,
+    quadric,
+    shape,
+    start,
+    uv_mapping,
+)
 
 REGISTERED = (
     whitted.ray_stack,
@@ -36,6 +47,7 @@ register_jitable(**INLINED)(vec.cross)
 for _module in (
     basis,
     compensated,
+    cone_start,
     flat_start,
     angle,
     largest,
