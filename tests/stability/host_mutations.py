@@ -18,6 +18,7 @@ HOST_OPERATORS: dict[type[ast.AST], type[Any]] = {
     ast.IsNot: ast.Is,
 }
 SYMMETRIC = {"min", "max", "hasattr", "getattr", "setattr", "isinstance", "zip"}  # not worth a swap of arguments
+ASSERTING = {"strict"}  # keywords of calls that only assert something
 DEFINITIONS = ast.FunctionDef, ast.ClassDef
 
 
@@ -27,6 +28,7 @@ def host_changes(source: str) -> Iterator[Callable[[], Change]]:
     tree = ast.parse(source)
     aside = untouched(tree)
     aside |= {id(inner) for each in tree.body if not isinstance(each, DEFINITIONS) for inner in ast.walk(each)}
+    aside |= {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.keyword) and node.arg in ASSERTING}
     for number, node in enumerate(ast.walk(tree)):
         if id(node) not in aside:
             yield from (partial(changed, tree, number, variant) for variant in host_variants(node))
