@@ -15,6 +15,8 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from tests.scheduling import file_of
+
 
 class Recorded(NamedTuple):
     """A test that passes: its name, its seconds, and the lines of the package that it runs, by file."""
@@ -98,13 +100,13 @@ class Choice:
 
 def distance(test: str, path: Path) -> int:
     """Return 0 for a test of the file, 1 for one of its folder, 2 for others."""
-    file = Path(test.split("::")[0])
+    file = Path(file_of(test))
     return 0 if file.name == f"test_{path.name}" else 1 if file.parent == Path("tests") / path.parent else 2
 
 
 def is_near(test: str, path: Path) -> bool:
     """Whether a test is in the folder of a file's tests, or in the closest one that there is."""
-    return Path("tests") / (path.parts[0] if len(path.parts) > 1 else "") in Path(test.split("::")[0]).parents
+    return Path("tests") / (path.parts[0] if len(path.parts) > 1 else "") in Path(file_of(test)).parents
 
 
 def executable_line(path: Path, line: int) -> int:

@@ -16,6 +16,7 @@ import numpy as np  # noqa: F401  (loaded once for all processes)
 import PIL.Image  # noqa: F401
 import pytest
 
+from tests.scheduling import file_of
 from tests.stability.host_copy import LIMITS, ProjectCopy
 from tests.stability.host_tests import Recorder
 
@@ -39,7 +40,7 @@ class Order:
 
 def outcome(project: ProjectCopy, names: Sequence[str], seconds: float) -> str:
     """Run tests in a copy of the project: "survived", "killed", or "late" if they take longer than the seconds."""
-    files = [*dict.fromkeys(name.split("::")[0] for name in names)]
+    files = [*dict.fromkeys(file_of(name) for name in names)]
     status = ended(project, [*OPTIONS, *files], [Order(names)], project.fresh_cache(), seconds) if names else 0
     return {0: "survived", LATE: "late"}.get(status, "killed")
 
