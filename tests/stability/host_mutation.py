@@ -32,7 +32,7 @@ from tests.stability.host_tests import Choice
 from tests.stability.host_trial import outcome, record
 from tests.stability.mutations import Change
 
-TESTS = ("cli", "fields", "materials", "meshes", "rendering", "scene", "viewer", "test_library.py", "test_image.py")
+TESTS = ("cli", "kernel", "materials", "meshes", "rendering", "scene", "viewer", "test_library.py", "test_image.py")
 Work = tuple[Path, Callable[[], Change]]  # a file, relative to the package, and what makes its change
 
 
@@ -46,6 +46,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument(
         "--marks", default="not window and not slow", help="tests that take part (default: %(default)s)"
     )
+    parser.add_argument("--tests", nargs="+", default=TESTS, help="folders and files of tests (default: %(default)s)")
     parser.add_argument("--record", type=Path, help="file of the record, written if it does not exist")
     parser.add_argument(
         "--again", type=Path, help="test the survivors and late ones in this output of an earlier run alone"
@@ -77,8 +78,7 @@ def chosen(project: ProjectCopy, given: argparse.Namespace) -> Choice:
     if path.exists():
         shutil.copytree(kernels, project.kernels)
     else:
-        paths = [f"tests/{each}" for each in TESTS if (project.root / "tests" / each).exists()]
-        record(project, paths, given.marks, 3600.0, path)
+        record(project, [f"tests/{each}" for each in given.tests], given.marks, float("inf"), path)
         project.kernels.mkdir(exist_ok=True)
         shutil.copytree(project.kernels, kernels)
     choice = Choice(project.root / "minirt", path)

@@ -17,7 +17,8 @@ HOST_OPERATORS: dict[type[ast.AST], type[Any]] = {
     ast.Is: ast.IsNot,
     ast.IsNot: ast.Is,
 }
-SYMMETRIC = {"min", "max", "hasattr", "getattr", "setattr", "isinstance", "zip"}  # not worth a swap of arguments
+SYMMETRIC = {"min", "max", "clamp", "dot", "hypot", "dist", "np.minimum", "np.maximum", "zip"}
+ASKED = {"hasattr", "getattr", "setattr", "isinstance"}  # not worth a swap of arguments either
 ASSERTING = {"strict"}  # keywords of calls that only assert something
 DEFINITIONS = ast.FunctionDef, ast.ClassDef
 
@@ -63,7 +64,7 @@ def host_variants(node: ast.AST) -> Iterator[ast.AST]:
             yield ast.Constant(value + 1)
         case ast.IfExp(test, body, orelse):
             yield ast.IfExp(test, orelse, body)
-        case ast.Call(function, [first, second, *others], keywords) if ast.unparse(function) not in SYMMETRIC:
+        case ast.Call(function, [first, second, *others], keywords) if is_ordered(function, first, second):
             yield ast.Call(function, [second, first, *others], keywords)
         case ast.Expr(ast.Call()) | ast.AugAssign() | ast.Raise():
             yield ast.Pass()
@@ -71,3 +72,8 @@ def host_variants(node: ast.AST) -> Iterator[ast.AST]:
             yield ast.Continue()
         case ast.Continue():
             yield ast.Break()
+
+
+def is_ordered(function: ast.expr, first: ast.expr, second: ast.expr) -> bool:
+    """Whether it makes a difference that is worth a test which of two arguments of a call comes first."""
+    return ast.unparse(function) not in SYMMETRIC | ASKED and ast.unparse(first) != ast.unparse(second)

@@ -27,17 +27,21 @@ class Recorded(NamedTuple):
 
 
 class Recorder:
-    """Plugin of pytest: notes the lines of a package that each test runs, in all threads but in no other process."""
+    """Plugin of pytest: notes the lines of a package that each test runs, in all threads but in no other process.
+
+    Formulas are left out: a test runs their lines thousands of times."""
 
     def __init__(self, package: Path) -> None:
         self.prefix = f"{package}/"
+        self.formulas = tuple(f"{package}/{name}/" for name in ("kernel", "lanes", "shapes"))
         self.lines: dict[str, set[int]] = defaultdict(set)
         self.tests: list[Recorded] = []
         self.failed: list[str] = []
 
     def enter(self, frame: FrameType, event: str, value: object) -> Any:
         """Trace the lines of functions of the package."""
-        return self.line if frame.f_code.co_filename.startswith(self.prefix) else None
+        file = frame.f_code.co_filename
+        return self.line if file.startswith(self.prefix) and not file.startswith(self.formulas) else None
 
     def line(self, frame: FrameType, event: str, value: object) -> Any:
         """Note a line."""

@@ -8,6 +8,8 @@ import pytest
 from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera
 from minirt.shapes import KINDS, Shape
+from minirt.shapes.sphere import Sphere
+from minirt.viewer.display import outline
 from minirt.viewer.display.icons import elements_with_icon, place_icons
 from minirt.viewer.display.marks import AXIS_COLOURS, GOLD, bgra, draw_line
 from minirt.viewer.display.outline import outline_pixels
@@ -56,6 +58,19 @@ def test_few_rays_find_most_of_the_outline() -> None:
             known += outside.sum()
             found += (mask_of(outline_pixels(shape, scene.camera, WIDTH, HEIGHT, 300)[0]) & outside).sum()
     assert found > 0.9 * known > 0
+
+
+def test_the_coarse_grid_of_an_outline_has_the_given_number_of_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    counts: list[int] = []
+
+    def counted(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        counts.append(np.broadcast(x, y).size)
+        return covers(shape, camera, width, height, x, y)
+
+    monkeypatch.setattr(outline, "covers", counted)
+    ball = Sphere((-3, -3, 10), 6, (1, 2, 3))  # in the lower right part of the picture
+    outline_pixels(ball, Camera((0, 0, 0), (0, 0, 1), 70), 800, 800, 1000)
+    assert 500 < counts[0] < 1100
 
 
 def test_the_random_scenes_have_several_kinds() -> None:

@@ -7,7 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from minirt.viewer.display.overlay import HudLevel, draw_help, draw_hud, draw_message, element_line, status, text_size
+from minirt.viewer.display.overlay import (
+    HudLevel,
+    bracketed,
+    draw_help,
+    draw_hud,
+    draw_message,
+    element_line,
+    status,
+    text_size,
+)
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state
@@ -36,6 +45,13 @@ def test_the_line_of_the_selected_element_marks_the_active_value(actions, text):
     for action in actions:
         state = apply(state, action)
     assert element_line(state) == text
+
+
+@pytest.mark.parametrize(
+    ("part", "text"), [(None, "[a,b,c]"), (0, "[a],b,c"), (1, "a,[b],c"), (2, "a,b,[c]"), (3, "[a,b,c]")]
+)
+def test_brackets_are_around_one_component_or_the_whole_value(part, text):
+    assert bracketed("a,b,c", part) == text
 
 
 def test_the_status_line():
