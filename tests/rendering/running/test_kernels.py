@@ -98,6 +98,17 @@ def test_without_any_the_narrow_one_is_compiled(monkeypatch: pytest.MonkeyPatch)
     assert library.compiled == [narrow_identity(BALL)]
 
 
+def test_specialising_compiles_the_narrow_kernel_though_a_wide_one_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    compiled: list[str] = []
+    library: Any = FakeLibrary(*WIDE.values())
+    library.compile = lambda identities, _process: compiled.extend(identities)
+    monkeypatch.setattr(kernels, "LIBRARY", library)
+    renderer = Renderer(1)
+    monkeypatch.setattr(renderer, "prepare", lambda _scene: None)
+    renderer.specialise(BALL)
+    assert narrow_identity(BALL) in compiled
+
+
 def test_a_narrow_kernel_is_compiled_once_that_is_worth_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
     choice = choose(monkeypatch, BALL, *WIDE.values())
     asked: list[str] = []
