@@ -11,11 +11,11 @@ LIST = Path(__file__).with_name("explained_changes.toml")
 
 
 class Explanation(NamedTuple):
-    """A change that may survive: the file in the package, the text of the line, what becomes what, and why."""
+    """Changes that may survive: the file in the package, the text of the line, what becomes what, and why."""
 
     file: str
     line: str
-    change: str
+    changes: list[str]
     reason: str
 
 
@@ -27,4 +27,4 @@ def explanations() -> tuple[Explanation, ...]:
 
 def is_explained(file: Path, line: str, change: str) -> bool:
     """Whether the list names a change."""
-    return any((each.file, each.line, each.change) == (file.as_posix(), line, change) for each in explanations())
+    return any((each.file, each.line) == (file.as_posix(), line) and change in each.changes for each in explanations())

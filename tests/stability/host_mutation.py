@@ -42,7 +42,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("names", nargs="+", help="folders and files of the package")
     parser.add_argument("--count", type=int, help="test so many changes, drawn at random (default: all)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--seconds", type=float, default=10.0, help="test a change for so long at most (default: 10)")
+    parser.add_argument("--seconds", type=float, default=3.0, help="test a change for so long at most (default: 3)")
     parser.add_argument(
         "--marks", default="not window and not slow", help="tests that take part (default: %(default)s)"
     )

@@ -7,13 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from minirt.mlx.text import measure
 from minirt.viewer.display.overlay import (
+    MARGIN,
     HudLevel,
     bracketed,
     draw_help,
     draw_hud,
     draw_message,
     element_line,
+    fit_width,
     status,
     text_size,
 )
@@ -100,6 +103,13 @@ def test_a_message_is_wrapped_and_drawn_above_the_status():
     pixels = blank()
     draw_message(pixels, "", 0, 16)
     assert (pixels == 255).all()
+
+
+def test_groups_of_words_are_dropped_from_a_line_that_is_a_pixel_too_long():
+    text = "640x480    12.3 ms    1 sample"
+    width = measure(text, 16)[0] + 2 * MARGIN
+    assert fit_width(text, width, 16) == text
+    assert fit_width(text, width - 1, 16) == "640x480    12.3 ms"
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 720), (640, 480), (200, 100), (1, 1)])
