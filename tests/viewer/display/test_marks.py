@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from minirt.rendering.queries.pick import covers
-from minirt.scene import Camera
+from minirt.scene import Camera, Light
 from minirt.shapes import KINDS, Shape
 from minirt.shapes.sphere import Sphere
-from minirt.viewer.display import outline
+from minirt.viewer.display import icons, outline
 from minirt.viewer.display.icons import elements_with_icon, place_icons
 from minirt.viewer.display.marks import AXIS_COLOURS, GOLD, bgra, draw_line
 from minirt.viewer.display.outline import outline_pixels
@@ -170,6 +170,11 @@ def test_lights_have_icons_that_can_be_clicked() -> None:
     moved = played("resize 300x200", "press G", drag, text=text).state.scene
     seen = projection_of(moved.camera, 300, 200)
     assert seen.pixel(moved.lights[0].position) == pytest.approx((light.x - 20, light.y), abs=1)
+
+
+def test_an_icon_has_the_colour_of_its_light() -> None:
+    assert icons.colour_of(Light((0, 0, 5), 1, (255, 128, 1))) == 0xFF8001
+    assert icons.colour_of(Camera((0, 0, 0), (0, 0, 1), 70)) == 0xFFFFFF
 
 
 def test_the_text_size_fits_window_and_screen() -> None:
