@@ -36,13 +36,19 @@ def host_changes(source: str) -> Iterator[Callable[[], Change]]:
 
 
 def changed(tree: ast.Module, number: int, variant: ast.AST) -> Change:
-    """Return the change that replaces node `number` of a tree."""
+    """Return the change that replaces node `number` of a tree; a constant is described with what it is part of."""
     new = copy.deepcopy(tree)
     node = next(each for i, each in enumerate(ast.walk(new)) if i == number)
-    before, after = (ast.unparse(each).splitlines()[0] for each in (node, variant))
-    line = getattr(node, "lineno", 0)
+    parent = next((each for each in ast.walk(new) if node in ast.iter_child_nodes(each)), node)
+    whole = parent if isinstance(node, ast.Constant) and isinstance(parent, ast.expr) else node
+    before, line = first_line(whole), getattr(node, "lineno", 0)
     replace(new, node, variant)
-    return Change(line, before, after, ast.fix_missing_locations(new))
+    return Change(line, before, first_line(variant if whole is node else whole), ast.fix_missing_locations(new))
+
+
+def first_line(node: ast.AST) -> str:
+    """Return the source of a node, or the first line of a statement."""
+    return ast.unparse(node).splitlines()[0]
 
 
 def host_variants(node: ast.AST) -> Iterator[ast.AST]:

@@ -10,8 +10,8 @@ from minirt.scene import Camera, Light
 from minirt.shapes import KINDS, Shape
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.display import icons, outline
-from minirt.viewer.display.icons import elements_with_icon, place_icons
-from minirt.viewer.display.marks import AXIS_COLOURS, GOLD, bgra, draw_line
+from minirt.viewer.display.icons import Icon, elements_with_icon, place_icons
+from minirt.viewer.display.marks import AXIS_COLOURS, BLACK, GOLD, WHITE, bgra, draw_icon, draw_line
 from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.display.overlay import text_size
 from minirt.viewer.display.painter import paint
@@ -175,6 +175,15 @@ def test_lights_have_icons_that_can_be_clicked() -> None:
 def test_an_icon_has_the_colour_of_its_light() -> None:
     assert icons.colour_of(Light((0, 0, 5), 1, (255, 128, 1))) == 0xFF8001
     assert icons.colour_of(Camera((0, 0, 0), (0, 0, 1), 70)) == 0xFFFFFF
+
+
+@pytest.mark.parametrize(("colour", "letters"), [(0x0050FB, BLACK), (0x0050F9, WHITE), (0xFB5000, BLACK), (0, WHITE)])
+def test_letters_are_black_on_bright_icons(colour: int, letters: int) -> None:
+    pixels = np.zeros((40, 40, 4), np.uint8)
+    draw_icon(pixels, Icon(0, 20, 20, "L", colour), 1.0, selected=True)
+    drawn = {tuple(each) for each in pixels[10:30, 10:30].reshape(-1, 4).tolist()}
+    assert bgra(letters) in drawn
+    assert bgra(BLACK + WHITE - letters) not in drawn - {bgra(colour)}
 
 
 def test_the_text_size_fits_window_and_screen() -> None:
