@@ -11,7 +11,7 @@ from minirt.shapes import KINDS, Shape
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.display import icons, outline
 from minirt.viewer.display.icons import Icon, elements_with_icon, place_icons
-from minirt.viewer.display.marks import AXIS_COLOURS, BLACK, GOLD, WHITE, bgra, draw_icon, draw_line
+from minirt.viewer.display.marks import AXIS_COLOURS, BLACK, GOLD, WHITE, bgra, draw_icon, draw_line, draw_outline
 from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.display.overlay import text_size
 from minirt.viewer.display.painter import paint
@@ -92,6 +92,17 @@ def test_the_outline_is_drawn_in_the_frame_but_not_in_the_picture() -> None:
     assert (session.picture == colour_of(session.state.scene)).all()
     assert not golden(played("resize 160x90", "click 82,44", "press C")).any()
     assert not golden(played("resize 160x90", "click 82,44", "press I", "press I")).any()
+
+
+@pytest.mark.parametrize("corner", [0, 3])
+def test_an_outline_at_a_corner_of_the_picture_has_black_beside_it_and_none_beyond(corner: int) -> None:
+    pixels, inward = np.full((4, 4, 4), 9, np.uint8), 1 if corner == 0 else -1
+    row, rows = np.array([corner]), np.array([corner + inward])
+    draw_outline(pixels, (row, row), (rows, row))
+    black = np.zeros((4, 4), bool)
+    black[[corner, corner + inward, corner + 2 * inward], [corner + inward, corner + inward, corner]] = True
+    assert ((pixels == np.array(bgra(BLACK), np.uint8)).all(axis=2) == black).all()
+    assert (pixels[[corner, corner + inward], corner] == GOLDEN).all()
 
 
 def test_the_outline_matches_the_shown_picture_while_the_next_is_rendered() -> None:
