@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-import numpy as np  # noqa: F401  (loaded once for all processes)
+import hypothesis  # noqa: F401  (loaded once for all processes)
+import numpy as np  # noqa: F401
 import PIL.Image  # noqa: F401
 import pytest
 
@@ -21,6 +22,7 @@ from tests.stability.host_copy import LIMITS, ProjectCopy
 from tests.stability.host_tests import Recorder
 
 OPTIONS = ("-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:randomly", "--hypothesis-seed=0")
+LOADED = ("-W", "ignore:Module already imported:pytest.PytestAssertRewriteWarning")  # hypothesis, which has no asserts
 POLL = 0.02  # seconds between two looks at a process
 LATE = -1000  # stands for the exit status of a process that took too long
 
@@ -67,7 +69,7 @@ def ended(
     status = 99
     try:
         enter(project, cache, seconds, quiet=into is None)
-        status = int(pytest.main(arguments, plugins))
+        status = int(pytest.main([*LOADED, *arguments], plugins))
         for each in plugins:
             if into is not None and isinstance(each, Recorder):
                 each.write(into)
