@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 import sys
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 
 from minirt.element import fields_of
 from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, Real, Whole, number, spelled, unit, whole
+from minirt.fields.numerals import LONGEST
 from minirt.scene import Camera, Light
 from minirt.shapes.sphere import Sphere
 
@@ -23,6 +25,15 @@ PIXELS = Whole(doc="pixels", low=1, high=100)
 POINT = Point(doc="a point")
 DIRECTION = Direction(doc="a direction")
 COLOUR = Colour(doc="a colour")
+
+
+@pytest.mark.parametrize("read", [number, whole])
+def test_a_number_of_too_many_characters_is_quoted_with_their_number(read: Callable[[str], float]) -> None:
+    assert read("0" * LONGEST) == 0
+    with pytest.raises(FieldError, match="got 'x"):
+        read("x" * LONGEST)
+    with pytest.raises(FieldError, match=f"got {LONGEST + 1} characters: '0"):
+        read("0" * (LONGEST + 1))
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))

@@ -23,15 +23,16 @@ ASSERTING = {"strict"}  # keywords of calls that only assert something
 DEFINITIONS = ast.FunctionDef, ast.ClassDef
 
 
-def host_changes(source: str) -> Iterator[Callable[[], Change]]:
-    """Yield all single changes of the functions of a source, each to be made by a call; docstrings, signatures and
-    class bodies stay."""
+def host_changes(source: str, text: str | None = None) -> Iterator[Callable[[], Change]]:
+    """Yield all single changes of the functions of a source, or of its lines with that text, each to be made by a call;
+    docstrings, signatures and class bodies stay."""
+    at = {number for number, line in enumerate(source.splitlines(), 1) if text in (None, line.strip())}
     tree = ast.parse(source)
     aside = untouched(tree)
     aside |= {id(inner) for each in tree.body if not isinstance(each, DEFINITIONS) for inner in ast.walk(each)}
     aside |= {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.keyword) and node.arg in ASSERTING}
     for number, node in enumerate(ast.walk(tree)):
-        if id(node) not in aside:
+        if id(node) not in aside and getattr(node, "lineno", 0) in at:
             yield from (partial(changed, tree, number, variant) for variant in host_variants(node))
 
 
@@ -41,9 +42,9 @@ def changed(tree: ast.Module, number: int, variant: ast.AST) -> Change:
     node = next(each for i, each in enumerate(ast.walk(new)) if i == number)
     parent = next((each for each in ast.walk(new) if node in ast.iter_child_nodes(each)), node)
     whole = parent if isinstance(node, ast.Constant) and isinstance(parent, ast.expr) else node
-    before, line = first_line(whole), getattr(node, "lineno", 0)
+    before = first_line(whole)
     replace(new, node, variant)
-    return Change(line, before, first_line(variant if whole is node else whole), ast.fix_missing_locations(new))
+    return Change(node.lineno, before, first_line(variant if whole is node else whole), ast.fix_missing_locations(new))
 
 
 def first_line(node: ast.AST) -> str:

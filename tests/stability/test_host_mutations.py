@@ -44,11 +44,8 @@ def test_every_place_of_a_function_is_changed() -> None:
 def places_of(explanation: Explanation) -> Iterator[str]:
     """Yield the changes that can be made in the lines of an explanation."""
     source = (PACKAGE / explanation.file).read_text(encoding="utf-8")
-    lines = source.splitlines()
-    for make in host_changes(source):
-        change = make()
-        if lines[change.line - 1].strip() == explanation.line:
-            yield f"{change.before} -> {change.after}"
+    for change in (make() for make in host_changes(source, explanation.line)):
+        yield f"{change.before} -> {change.after}"
 
 
 @pytest.mark.parametrize("file", sorted({each.file for each in explanations()}))
