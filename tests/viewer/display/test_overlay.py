@@ -50,6 +50,16 @@ def test_the_line_of_the_selected_element_marks_the_active_value(actions, text):
     assert element_line(state) == text
 
 
+def test_the_active_part_of_a_material_is_marked():
+    state = initial_state(scene("A 1 9,9,9\nC 0,0,9 0,0,-1 60\nsp 0,0,0 2 9,9,9 specular:0.5,20\n"))
+    lines = []
+    for action in ["select next", *["next value"] * 3]:
+        state = apply(state, action)
+        lines.append(element_line(state))
+    assert "sp 0,0,0 2 9,9,9 [specular:0.5],20" in lines
+    assert "sp 0,0,0 2 9,9,9 specular:0.5,[20]" in lines
+
+
 @pytest.mark.parametrize(
     ("part", "text"), [(None, "[a,b,c]"), (0, "[a],b,c"), (1, "a,[b],c"), (2, "a,b,[c]"), (3, "[a,b,c]")]
 )
