@@ -57,7 +57,7 @@ def brute_force(precision: str) -> Renderer:
 
 
 def test_a_cluster_leaves_out_as_many_shapes_as_it_may_and_no_more() -> None:
-    inner = [Sphere((0, 0, i / LEAST_SHAPES), 0.1, GREY) for i in range(LEAST_SHAPES)]
+    inner = [Sphere((0, 0, i / LEAST_SHAPES), 0.1, GREY) for i in range(LEAST_SHAPES - MOST_OUTSIDE)]
     for outside, is_left_out in ((MOST_OUTSIDE, True), (MOST_OUTSIDE + 1, False)):
         shape_arrays = ShapeArrays()
         shape_arrays.update((*inner, *(Sphere((0, 1000, 0), 1, GREY) for _ in range(outside))))

@@ -164,6 +164,22 @@ def test_lines_are_clipped_to_the_picture(start, end, some) -> None:
     assert pixels.any() == some
 
 
+@pytest.mark.parametrize(
+    ("start", "end", "rows", "columns"),
+    [
+        ((2, 0), (9, 0), (0, 2), (2, 10)),
+        ((2, 19), (9, 19), (19, 20), (2, 10)),
+        ((0, 2), (0, 9), (2, 10), (0, 2)),
+        ((29, 2), (29, 9), (2, 10), (29, 30)),
+    ],
+)
+def test_lines_are_two_pixels_wide_but_at_the_last_row_and_column(start, end, rows, columns) -> None:
+    pixels, expected = np.zeros((20, 30, 4), np.uint8), np.zeros((20, 30), bool)
+    draw_line(pixels, start, end, 0xFFFFFF)
+    expected[slice(*rows), slice(*columns)] = True
+    assert np.array_equal(pixels.any(axis=2), expected)
+
+
 def test_lights_have_icons_that_can_be_clicked() -> None:
     text = TEXT.replace("L 5,5,5", "L 2,2,5")
     hidden, shown = played("resize 300x200", text=text), played("resize 300x200", "press G", text=text)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.mlx.text import measure
+from minirt.viewer.display import overlay
 from minirt.viewer.display.overlay import (
     MARGIN,
     HudLevel,
@@ -113,6 +114,16 @@ def test_a_message_is_wrapped_and_drawn_above_the_status():
     pixels = blank()
     draw_message(pixels, "", 0, 16)
     assert (pixels == 255).all()
+
+
+def test_the_columns_of_the_help_are_side_by_side(monkeypatch):
+    drawn = []
+    monkeypatch.setattr(overlay, "draw_text", lambda _, x, y, text, colour, size: drawn.append((x, text, size)))
+    draw_help(blank(), "qwerty", 16)
+    ends = [x + measure(text, size)[0] for x, text, size in drawn]
+    assert all(end < x for end, (x, _, _) in zip(ends, drawn[1:], strict=False))
+    assert len(drawn) == 4
+    assert ends[-1] <= 640 - MARGIN
 
 
 def test_groups_of_words_are_dropped_from_a_line_that_is_a_pixel_too_long():
