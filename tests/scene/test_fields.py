@@ -15,13 +15,14 @@ from hypothesis import strategies as st
 from minirt.element import fields_of
 from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, Real, Whole, number, spelled, unit, whole
 from minirt.fields.numerals import LONGEST
-from minirt.fields.scalars import Factor
+from minirt.fields.scalars import Factor, Flag
 from minirt.scene import Camera, Light
 from minirt.shapes.sphere import Sphere
 
 U = 2.0**-53
 RATIO = Real(doc="a ratio", low=0.0, high=1.0, step=0.05)
 SIZE = Length(doc="a size")
+FLAG = Flag(doc="a flag")
 FACTOR = Factor(doc="a factor", high=50.0)
 PIXELS = Whole(doc="pixels", low=1, high=100)
 POINT = Point(doc="a point")
@@ -137,6 +138,8 @@ def test_an_element_normalises_its_values() -> None:
         (FACTOR, 2.0, 1e9, 50.0),
         (COLOUR, (0, 100, 255), 1, (8, 108, 255)),
         (COLOUR, (0, 100, 255), -1, (0, 92, 247)),
+        (FLAG, False, 1, True),
+        (FLAG, True, -1, False),
         (POINT, (1.0, 2.0, 3.0), 5, (1.0, 2.0, 3.0)),
     ],
 )

@@ -184,6 +184,10 @@ def test_the_narrow_kernel_is_swapped_in_and_draws_the_same_bits(
     assert renderer.notes[0] == "kernel for spheres"
 
 
+def test_the_background_compiler_has_the_lowest_priority() -> None:
+    assert background_compiler.BackgroundCompiler().process.patient
+
+
 def test_a_wide_kernel_stays_where_the_narrow_one_cannot_be_compiled(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
