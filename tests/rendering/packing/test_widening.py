@@ -66,6 +66,11 @@ def every_form(scene: Scene) -> list[tuple[SceneArrays, WideKernel]]:
     return [(arrays, wide) for arrays in forms.values() for wide in fitting(arrays)]
 
 
+def test_the_arrays_of_a_wide_kernel_have_its_precision() -> None:
+    for wide in WIDE_KERNELS:
+        assert empty_arrays(wide).lights.dtype == (np.float32 if wide.precision == "single" else np.float64)
+
+
 def test_the_arrays_of_a_wide_kernel_are_those_of_a_scene_without_lights_and_shapes() -> None:
     arrays = empty_arrays(next(each for each in WIDE_KERNELS if (each.name, each.precision) == ("full", "double")))
     packed = Packing().pack(minirt.load(paths.SCENES / "figure-v4-everything.rt"), 8, 8)

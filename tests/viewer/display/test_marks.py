@@ -204,6 +204,20 @@ def test_an_icon_has_the_colour_of_its_light() -> None:
     assert icons.colour_of(Camera((0, 0, 0), (0, 0, 1), 70)) == 0xFFFFFF
 
 
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+def test_an_icon_is_a_square_with_a_frame(scale: float) -> None:
+    pixels = np.full((100, 100, 4), 9, np.uint8)
+    draw_icon(pixels, Icon(0, 50, 50, "L", 0x123456), scale, selected=True)
+    for of_square, side in ((pixels != 9).any(axis=2), 24), (~framed(pixels), 20):
+        rows, columns = np.nonzero(of_square)
+        assert (np.ptp(rows) + 1, np.ptp(columns) + 1) == (side * scale, side * scale)
+
+
+def framed(pixels: np.ndarray) -> np.ndarray:
+    """Return a mask of the pixels that are golden or untouched."""
+    return (pixels == GOLDEN).all(axis=2) | (pixels == 9).all(axis=2)
+
+
 @pytest.mark.parametrize(("colour", "letters"), [(0x0050FB, BLACK), (0x0050F9, WHITE), (0xFB5000, BLACK), (0, WHITE)])
 def test_letters_are_black_on_bright_icons(colour: int, letters: int) -> None:
     pixels = np.zeros((40, 40, 4), np.uint8)
