@@ -86,6 +86,7 @@ def test_the_arrays_of_a_wide_kernel_are_those_of_a_scene_without_lights_and_sha
     for group, leaves in zip(arrays.groups, arrays.bvh.groups, strict=True):
         assert (len(group.rows), group.tile_starts.shape, group.light_starts.shape) == (0, (0,), (0, 0))
         assert (len(leaves.rows), len(leaves.blocks), leaves.labels.shape) == (0, 0, (0, WIDTH, 2))
+        assert leaves.rows.dtype == group.rows.dtype
         assert leaves.unbounded is None or leaves.unbounded.shape == (0,)
 
 
