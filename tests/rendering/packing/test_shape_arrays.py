@@ -83,6 +83,8 @@ def test_adding_or_removing_a_kind_allocates_all_arrays_anew() -> None:
             sum(type(each) is kind for each in shapes) for kind in arrays.group_numbers
         ]
         assert sum(map(len, arrays.rows)) == len(shapes)
+        assert arrays.first_primitive.tolist() == [*range(len(shapes) + 1)]
+        assert (len(arrays.first_ball), arrays.first_ball[-1]) == (len(shapes) + 1, len(arrays.balls))
 
 
 def test_a_mesh_takes_the_place_of_one_with_other_triangles() -> None:
