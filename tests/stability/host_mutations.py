@@ -17,7 +17,7 @@ HOST_OPERATORS: dict[type[ast.AST], type[Any]] = {
     ast.Is: ast.IsNot,
     ast.IsNot: ast.Is,
 }
-SYMMETRIC = {"min", "max", "clamp", "dot", "hypot", "dist", "np.minimum", "np.maximum", "np.clip", "zip"}
+SYMMETRIC = {"min", "max", "clamp", "dot", "hypot", "dist", "np.minimum", "np.maximum", "np.clip", "two_sum", "zip"}
 ASKED = {"hasattr", "getattr", "setattr", "isinstance"}  # not worth a swap of arguments either
 ASSERTING = {"strict"}  # keywords of calls that only assert something
 DEFINITIONS = ast.FunctionDef, ast.ClassDef
