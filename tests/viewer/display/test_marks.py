@@ -94,6 +94,14 @@ def test_the_outline_is_drawn_in_the_frame_but_not_in_the_picture() -> None:
     assert not golden(played("resize 160x90", "click 82,44", "press I", "press I")).any()
 
 
+def test_an_outline_has_black_on_four_sides() -> None:
+    pixels, place = np.full((5, 5, 4), 9, np.uint8), (np.array([2]), np.array([2]))
+    draw_outline(pixels, place, place)
+    black = (pixels == np.array(bgra(BLACK), np.uint8)).all(axis=2)
+    assert np.argwhere(black).tolist() == [[1, 2], [2, 1], [2, 3], [3, 2]]
+    assert np.argwhere((pixels == GOLDEN).all(axis=2)).tolist() == [[2, 2]]
+
+
 @pytest.mark.parametrize("corner", [0, 3])
 def test_an_outline_at_a_corner_of_the_picture_has_black_beside_it_and_none_beyond(corner: int) -> None:
     pixels, inward = np.full((4, 4, 4), 9, np.uint8), 1 if corner == 0 else -1
