@@ -20,6 +20,9 @@ WAITS = {"wait", "join", "communicate", "acquire", "result"}  # methods with sec
 LIMITS = {"timeout", "patience", "deadline"}  # arguments in seconds
 EXEMPT = {  # files that measure time, or run for a given time
     "waiting.py",
+    "stability/host_mutation.py",
+    "stability/host_tests.py",
+    "stability/host_trial.py",
     "stability/mutation.py",
     "viewer/monkey.py",
     "mlx/maze.py",  # programs that run in simulated time

@@ -52,7 +52,7 @@ class Compound(Field):
         start = 0
         for field in fields_of(self.record):
             for each in field.pictures(getattr(value, field.name)):
-                yield each._replace(part=start + (each.part or 0))
+                yield each._replace(part=start)
             start += field.width
 
     def feature_of(self, value: Material) -> str:

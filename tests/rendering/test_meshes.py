@@ -172,6 +172,12 @@ def test_an_outline_encloses_the_pixels_whose_rays_hit(name: str) -> None:
     assert not covers(shape, camera, 80, 60, np.array([-1, 80, 3]), np.array([3, 3, 60])).any()
 
 
+def test_a_mesh_that_fills_the_picture_covers_no_pixel_beside_it() -> None:
+    x, y = np.array([3, -1, 8, 3, 3]), np.array([3, 3, 3, -1, 6])
+    found = covers(named("icosphere", scale=5.0), Camera((0, 0, -9), (0, 0, 1), 20), 8, 6, x, y)
+    assert found.tolist() == [True, False, False, False, False]
+
+
 def test_a_mesh_around_the_eye_has_no_outline() -> None:
     camera = Camera((0, 0, 0), (0, 0, 1), 70)
     x, y = np.meshgrid(np.arange(8), np.arange(6))

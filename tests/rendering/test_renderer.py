@@ -42,3 +42,13 @@ def test_several_threads_may_render_at_once() -> None:
 def test_the_number_of_threads_is_as_given_or_at_least_one() -> None:
     assert Renderer(5).threads == 5
     assert Renderer().threads >= 1
+
+
+def test_a_child_process_leaves_busy_locks_and_compiling_to_its_parent() -> None:
+    renderer = Renderer(1)
+    compiling, background = renderer.kernels.compile_process, renderer.kernels.background
+    renderer.busy.acquire()
+    renderer.after_fork()
+    assert not renderer.busy.locked()
+    assert renderer.kernels.compile_process is not compiling
+    assert renderer.kernels.background is not background

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from minirt.kernel.rows import read
+from minirt.materials import Checker
 from minirt.rendering import Renderer
 from minirt.rendering.packing import primitives
 from minirt.rendering.packing.primitives import extent
@@ -56,6 +59,10 @@ def test_a_scene_may_have_no_ambient_light_and_no_lights() -> None:
     arrays = Packing().pack(Scene((EYE, *SHAPES)), 24, 16)
     assert arrays.ambient.tolist() == [0, 0, 0]
     assert arrays.lights.shape == (0, 6)
+    assert arrays.light_buffers.shape == (0, 11)
+    assert arrays.light_cones.shape == (0, len(SHAPES), 5)
+    assert len(arrays.light_shapes) == 0
+    assert all(group.light_starts.shape == (0, 1) for group in arrays.groups)
 
 
 @pytest.mark.parametrize(
@@ -123,6 +130,18 @@ def test_using_the_arrays_of_another_scene_does_no_harm() -> None:
         assert_same(packing.pack(other, 24, 16), other)
         packing.shape_arrays_for(scene.shapes)
         assert_same(packing.pack(other, 24, 16), other)
+
+
+def test_single_precision_draws_checkers_but_no_pictures(tmp_path: Path) -> None:
+    Image.new("RGB", (2, 2), (9, 9, 9)).save(tmp_path / "grey.png")
+    ball = Sphere((0, 0, 5), 2, (1, 2, 3))
+    for shape, number in (
+        (ball.replace(checker=Checker(1, (4, 5, 6))), np.float32),
+        (ball.replace(texture="grey.png"), np.float64),
+    ):
+        packing = Packing(precision="single")
+        assert packing.pack(Scene((EYE, shape), tmp_path / "scene.rt"), 24, 16).camera.dtype == number
+        assert any("double precision" in each for each in packing.notes) is (number is np.float64)
 
 
 def test_pictures_follow_edits() -> None:

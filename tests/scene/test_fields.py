@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 import sys
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -13,16 +14,31 @@ from hypothesis import strategies as st
 
 from minirt.element import fields_of
 from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, Real, Whole, number, spelled, unit, whole
+from minirt.fields.numerals import LONGEST
+from minirt.fields.scalars import Factor, Flag
+from minirt.fields.triples import Lengths
 from minirt.scene import Camera, Light
 from minirt.shapes.sphere import Sphere
 
 U = 2.0**-53
 RATIO = Real(doc="a ratio", low=0.0, high=1.0, step=0.05)
 SIZE = Length(doc="a size")
+LENGTHS = Lengths(doc="lengths")
+FLAG = Flag(doc="a flag")
+FACTOR = Factor(doc="a factor", high=50.0)
 PIXELS = Whole(doc="pixels", low=1, high=100)
 POINT = Point(doc="a point")
 DIRECTION = Direction(doc="a direction")
 COLOUR = Colour(doc="a colour")
+
+
+@pytest.mark.parametrize("read", [number, whole])
+def test_a_number_of_too_many_characters_is_quoted_with_their_number(read: Callable[[str], float]) -> None:
+    assert read("0" * LONGEST) == 0
+    with pytest.raises(FieldError, match="got 'x"):
+        read("x" * LONGEST)
+    with pytest.raises(FieldError, match=f"got {LONGEST + 1} characters: '0"):
+        read("0" * (LONGEST + 1))
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
@@ -82,6 +98,7 @@ def test_normalising_again_changes_no_bit() -> None:
     [
         *((RATIO, value) for value in (-0.1, 1.1, math.nan, math.inf)),
         *((SIZE, value) for value in (0, -1, math.nan, math.inf, 1.1e15)),
+        *((LENGTHS, value) for value in ((1, 0, 1), (1, 1, -1), (math.nan, 1, 1), (1, 1, 1.1e15), (1, 1))),
         *((PIXELS, value) for value in (0, 101, 1.5, math.nan, math.inf)),
         *((POINT, value) for value in ((0, 0), (0, 0, 0, 0), 5, (0, math.nan, 0), (0, 0, 1.1e15), ("a", 0, 0))),
         *((DIRECTION, value) for value in ((0, 0, 0), (0, 1.1, 0), (math.nan, 0, 1), (1, 0))),
@@ -91,6 +108,12 @@ def test_normalising_again_changes_no_bit() -> None:
 def test_a_field_refuses_wrong_values(field: Field, value: Any) -> None:
     with pytest.raises(FieldError):
         field.check(value)
+
+
+def test_the_error_names_the_length_that_is_not_positive() -> None:
+    with pytest.raises(FieldError, match=r"^y must be > 0, got -2$") as caught:
+        LENGTHS.check((1.0, -2.0, 3.0))
+    assert caught.value.part == 1
 
 
 def test_the_error_names_the_element_and_the_field() -> None:
@@ -118,8 +141,14 @@ def test_an_element_normalises_its_values() -> None:
         (SIZE, 2.0, -1e9, 1e-9),
         (SIZE, 1e-12, -1, 1e-12),
         (SIZE, 2.0, 1e9, 1e15),
+        (FACTOR, 2.0, 1, 2.2),
+        (FACTOR, 2.2, -1, 2.0),
+        (FACTOR, 2.0, -1e9, 1.0),
+        (FACTOR, 2.0, 1e9, 50.0),
         (COLOUR, (0, 100, 255), 1, (8, 108, 255)),
         (COLOUR, (0, 100, 255), -1, (0, 92, 247)),
+        (FLAG, False, 1, True),
+        (FLAG, True, -1, False),
         (POINT, (1.0, 2.0, 3.0), 5, (1.0, 2.0, 3.0)),
     ],
 )

@@ -178,6 +178,11 @@ def test_a_file_that_is_not_utf8_text_is_refused_at_its_first_wrong_byte(
     assert (problem.line, problem.column, problem.message) == (line, column, message)
 
 
+def test_a_byte_order_mark_is_no_part_of_the_line_that_is_quoted() -> None:
+    (problem,) = problems(b"\xef\xbb\xbf# a\x80")
+    assert (problem.text, problem.column) == ("# a\ufffd", 4)
+
+
 def test_a_lone_surrogate_is_not_text() -> None:
     (problem,) = problems("# é\ud800\n")
     assert (problem.line, problem.column) == (1, 4)

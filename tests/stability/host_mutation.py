@@ -3,57 +3,67 @@
     python -m tests.stability.host_mutation scene viewer/editing rendering/running/cores.py
     python -m tests.stability.host_mutation rendering --count 40 --seed 2
 
-A name is a folder or a file of the package. `--count` draws so many of its changes at random. Each change is tested in
-a copy of the project, by the tests of its own file and then by those of its folder, but for slow ones and windows. The
-formulas have a tool of their own, `tests.stability.mutation`, which needs no new process for a change.
+A name is a folder or a file of the package. `--count` draws so many of its changes at random. The tests run once
+without a change, which records the lines that each runs (`--record` keeps that for later runs). Then each change is
+tested in a copy of the project by the tests that run its line, near and quick ones first, until one fails. Tests that
+open windows take no part, nor those that fail without a change. The formulas have a tool of their own,
+`tests.stability.mutation`.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
-import os
 import random
+import re
 import shutil
-import subprocess
 import sys
 import tempfile
+import time
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from queue import SimpleQueue
-from threading import Thread
 
-from minirt.rendering.running.cores import usable_cores
 from tests.paths import PACKAGE, ROOT
+from tests.stability.host_copy import ProjectCopy
+from tests.stability.host_explained import is_explained
 from tests.stability.host_mutations import host_changes
+from tests.stability.host_tests import Choice
+from tests.stability.host_trial import outcome, record
 from tests.stability.mutations import Change
-from tests.waiting import HANG_LIMIT
 
-COPIED = ("minirt", "tests", "scenes", "assets", "pyproject.toml", "Makefile", "README.md", "CHANGELOG.md")
-QUICK = ("-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not window and not slow")
+TESTS = ("cli", "kernel", "materials", "meshes", "rendering", "scene", "viewer", "test_library.py", "test_image.py")
 Work = tuple[Path, Callable[[], Change]]  # a file, relative to the package, and what makes its change
 
 
 def main(arguments: list[str]) -> int:
-    """Print the surviving changes, and return whether there are any."""
+    """Print the surviving changes and a summary by folder, and return whether there are any."""
     parser = argparse.ArgumentParser(prog="python -m tests.stability.host_mutation")
     parser.add_argument("names", nargs="+", help="folders and files of the package")
     parser.add_argument("--count", type=int, help="test so many changes, drawn at random (default: all)")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seconds", type=float, default=3.0, help="test a change for so long at most (default: 3)")
+    parser.add_argument(
+        "--marks", default="not window and not slow", help="tests that take part (default: %(default)s)"
+    )
+    parser.add_argument("--tests", nargs="+", default=TESTS, help="folders and files of tests (default: %(default)s)")
+    parser.add_argument("--record", type=Path, help="file of the record, written if it does not exist")
+    parser.add_argument(
+        "--again", type=Path, help="test the survivors and late ones in this output of an earlier run alone"
+    )
     given = parser.parse_args(arguments)
     files = [path for name in given.names for path in files_of(PACKAGE / name)]
     work = [(path.relative_to(PACKAGE), make) for path in files for make in host_changes(path.read_text())]
+    if given.again:
+        survived = set(re.findall(r"^(?:survived|late) .* s: minirt/(.*)$", given.again.read_text(), re.MULTILINE))
+        work = [(path, make) for path, make in work if described(path, make()) in survived]
     if given.count is not None:
         work = random.Random(given.seed).sample(work, min(given.count, len(work)))
     (ROOT / "out").mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(dir=ROOT / "out") as folder:
-        whole = project_copy(Path(folder) / "whole")
-        for path in sorted({path for path, _ in work}):
-            if not passes(whole, path):
-                raise SystemExit(f"the tests of {path} fail without any change")
-        survivors = run(work, Path(folder))
-    print(f"{survivors} of {len(work)} changes pass their tests")
-    return survivors > 0
+        project = ProjectCopy(Path(folder))
+        results = test_all(work, project, chosen(project, given), given.seconds)
+    return summary(results)
 
 
 def files_of(path: Path) -> list[Path]:
@@ -61,62 +71,63 @@ def files_of(path: Path) -> list[Path]:
     return sorted(path.rglob("*.py")) if path.is_dir() else [path]
 
 
-def project_copy(folder: Path) -> Path:
-    """Copy the project by hard links."""
-    for name in COPIED:
-        source = ROOT / name
-        if source.is_dir():
-            shutil.copytree(source, folder / name, copy_function=os.link)
-        elif source.exists():
-            os.link(source, folder / name)
-    return folder
+def chosen(project: ProjectCopy, given: argparse.Namespace) -> Choice:
+    """Record the unchanged tests, unless that was done before, and return what chooses among them."""
+    path = (given.record or project.root.parent / "record.json").resolve()
+    kernels = path.with_suffix(".kernels")
+    if path.exists():
+        shutil.copytree(kernels, project.kernels)
+    else:
+        record(project, [f"tests/{each}" for each in given.tests], given.marks, float("inf"), path)
+        project.kernels.mkdir(exist_ok=True)
+        shutil.copytree(project.kernels, kernels)
+    choice = Choice(project.root / "minirt", path)
+    for name in choice.failed:
+        print(f"left out, since it fails without any change: {name}", flush=True)
+    return choice
 
 
-def run(work: list[Work], folder: Path) -> int:
-    """Test all changes, one on each core at a time; print the survivors, and return their number."""
-    waiting: SimpleQueue[Work | None] = SimpleQueue()
-    survivors: SimpleQueue[Change] = SimpleQueue()
-    cores = usable_cores()
-    for each in [*work, *[None] * cores]:
-        waiting.put(each)
-    threads = [Thread(target=test_all, args=(waiting, survivors, folder / str(i))) for i in range(cores)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    return survivors.qsize()
+def test_all(work: list[Work], project: ProjectCopy, choice: Choice, seconds: float) -> Counter[tuple[str, str]]:
+    """Test changes one after the other; return the number of each result in each folder."""
+    results: Counter[tuple[str, str]] = Counter()
+    for path, make in work:
+        change = make()
+        line = (PACKAGE / path).read_text(encoding="utf-8").splitlines()[change.line - 1].strip()
+        started = time.monotonic()
+        explained = is_explained(path, line, f"{change.before} -> {change.after}")
+        result = "explained" if explained else tested(path, change, project, choice, seconds)
+        took = time.monotonic() - started
+        print(f"{result} {took:.1f} s: minirt/{described(path, change)}", flush=True)
+        results[path.parent.as_posix(), result] += 1
+    return results
 
 
-def test_all(waiting: SimpleQueue[Work | None], survivors: SimpleQueue[Change], folder: Path) -> None:
-    """Test changes in a copy of the project until none is waiting."""
-    project_copy(folder)
-    while (each := waiting.get()) is not None:
-        path, change = each[0], each[1]()
-        target = folder / "minirt" / path
-        target.unlink()
-        target.write_text(ast.unparse(change.tree))
-        if passes(folder, path):
-            survivors.put(change)
-            print(f"minirt/{path}:{change.line}: {change.before}  ->  {change.after}", flush=True)
-        target.unlink()
-        os.link(PACKAGE / path, target)
+def described(path: Path, change: Change) -> str:
+    """Return a change in words."""
+    return f"{path}:{change.line}: {change.before}  ->  {change.after}"
 
 
-def passes(folder: Path, path: Path) -> bool:
-    """Whether the tests of a file pass in a copy of the project; a hang is a failure."""
-    command = [sys.executable, "-m", "pytest", *QUICK, *selected_tests(path)]
+def tested(path: Path, change: Change, project: ProjectCopy, choice: Choice, seconds: float) -> str:
+    """Run the tests of a line with a change of it: killed, survived, or late if the tests take far too long."""
+    tests = choice.tests_of(path, change.line, seconds)
+    target = project.root / "minirt" / path
+    target.write_text(ast.unparse(change.tree), encoding="utf-8")
+    limit = 20.0 + 3.0 * sum(test.seconds for test in tests)
     try:
-        ended = subprocess.run(command, check=False, cwd=folder, capture_output=True, timeout=HANG_LIMIT)
-    except subprocess.TimeoutExpired:
-        return False
-    return ended.returncode == 0
+        return outcome(project, [test.name for test in tests], limit)
+    finally:
+        shutil.copy2(PACKAGE / path, target)
 
 
-def selected_tests(path: Path) -> list[str]:
-    """Return the tests of a file of the package: its own first, then those of the closest folder that has tests."""
-    own = Path("tests") / path.parent / f"test_{path.name}"
-    folder = next(each for each in own.parents if (ROOT / each).is_dir())
-    return [str(own), str(folder)] if (ROOT / own).exists() else [str(folder)]
+def summary(results: Counter[tuple[str, str]]) -> int:
+    """Print the results by folder, and return whether a change survived."""
+    kinds = ("killed", "late", "survived", "explained")
+    print(f"{'folder':<24}", *(f"{kind:>9}" for kind in kinds))
+    for folder in sorted({folder for folder, _ in results}):
+        print(f"{folder:<24}", *(f"{results[folder, kind]:>9}" for kind in kinds))
+    totals = [sum(number for (_, kind), number in results.items() if kind == each) for each in kinds]
+    print(f"{'all':<24}", *(f"{total:>9}" for total in totals))
+    return totals[2] > 0
 
 
 if __name__ == "__main__":

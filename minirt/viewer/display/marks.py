@@ -123,7 +123,7 @@ def draw_icon(pixels: Pixels, icon: Icon, scale: float, selected: bool) -> None:
     fill_square(pixels, icon, half + frame, GOLD if selected else BLACK)
     fill_square(pixels, icon, half, icon.colour)
     bright = sum(icon.colour >> shift & 0xFF for shift in (0, 8, 16)) > 3 * 110
-    size = max(8, round(14 * scale))
+    size = round(14 * scale)
     width, height = measure(icon.code, size)
     draw_text(pixels, icon.x - width // 2, icon.y - height // 2, icon.code, BLACK if bright else WHITE, size=size)
 

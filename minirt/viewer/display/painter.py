@@ -157,8 +157,6 @@ def paint(renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: I
     """Render a job: all pixels, or only the edges in a copy of `base`."""
     pixels = np.empty(job.shape, np.uint8) if base is None else base.copy()
     try:
-        if not renderer.is_ready(job.scene):
-            renderer.prepare(job.scene)
         render = renderer.render if base is None else renderer.refine
         done = render(job.scene, pixels, job.samples, is_wanted=is_wanted)
     except Exception as error:  # of any kind: the session raises it in the main thread

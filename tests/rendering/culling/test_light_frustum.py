@@ -14,7 +14,7 @@ from minirt.kernel.machine_code import functions
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.culling import light_frustum, visibility
-from minirt.rendering.culling.light_frustum import Cluster, dense_cluster, frustum_grid
+from minirt.rendering.culling.light_frustum import LEAST_SHAPES, MOST_OUTSIDE, Cluster, dense_cluster, frustum_grid
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.brute_force import ChangedPacking, without_light_buffers, without_tiles
@@ -54,6 +54,16 @@ def brute_force(precision: str) -> Renderer:
     renderer = Renderer(2, precision)
     renderer.packing = ChangedPacking(without_tiles, without_light_buffers, precision=precision)
     return renderer
+
+
+def test_a_cluster_leaves_out_as_many_shapes_as_it_may_and_no_more() -> None:
+    inner = [Sphere((0, 0, i / LEAST_SHAPES), 0.1, GREY) for i in range(LEAST_SHAPES - MOST_OUTSIDE)]
+    for outside, is_left_out in ((MOST_OUTSIDE, True), (MOST_OUTSIDE + 1, False)):
+        shape_arrays = ShapeArrays()
+        shape_arrays.update((*inner, *(Sphere((0, 1000, 0), 1, GREY) for _ in range(outside))))
+        cluster = dense_cluster(shape_arrays)
+        assert cluster is not None
+        assert (cluster.radius < 20) is is_left_out
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])

@@ -13,6 +13,7 @@ from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests.kernel.pictures import SHAPES
+from tests.meshes.examples import named
 
 MANY = tuple(Sphere((i, 2.0 * i, 3), 1 + i, (i % 256, 0, 0)) for i in range(3 * shape_arrays.CHUNK))
 
@@ -82,6 +83,18 @@ def test_adding_or_removing_a_kind_allocates_all_arrays_anew() -> None:
             sum(type(each) is kind for each in shapes) for kind in arrays.group_numbers
         ]
         assert sum(map(len, arrays.rows)) == len(shapes)
+        assert arrays.first_primitive.tolist() == [*range(len(shapes) + 1)]
+        assert (len(arrays.first_ball), arrays.first_ball[-1]) == (len(shapes) + 1, len(arrays.balls))
+
+
+def test_a_mesh_takes_the_place_of_one_with_other_triangles() -> None:
+    arrays, fresh = ShapeArrays(), ShapeArrays()
+    arrays.update((named("icosphere"), *SHAPES))
+    arrays.update((named("knot"), *SHAPES))
+    fresh.update((named("knot"), *SHAPES))
+    for kept_rows, fresh_rows in zip(arrays.rows, fresh.rows, strict=True):
+        assert np.array_equal(kept_rows, fresh_rows)
+    assert np.array_equal(arrays.first_primitive, fresh.first_primitive)
 
 
 def test_extents_and_boxes_of_several_shapes() -> None:

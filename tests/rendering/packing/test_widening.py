@@ -11,6 +11,7 @@ from numba import typeof
 
 import minirt
 from minirt.kernel import frame, interpreted
+from minirt.kernel.bvh.nodes import WIDTH
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.materials import Checker, Specular
@@ -21,6 +22,7 @@ from minirt.rendering.scene_packing import Packing
 from minirt.scene import Background, ParallelLight, Scene, SpotLight
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
+from tests import paths
 from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, LAMP, WHITE
 from tests.make_goldens import SCENES
 from tests.meshes.examples import soup
@@ -30,6 +32,8 @@ PRECISIONS = ("double", "single")
 SUN = ParallelLight((0.3, -0.9, 0.2), 0.3)
 BALLS = tuple(Sphere((i - 5, 0.5 * (i % 3), i % 4), 1.5, (200, 20 * i, 90)) for i in range(12))
 FLOOR = Plane((0, -1, 0), (0, 1, 0), WHITE)
+
+ROWS = ("lights", "colours_and_extents", "slots", "tile_shapes", "cones", "light_buffers", "light_shapes")
 
 
 def packed(scene: Scene, precision: str = "double", depth: int = 8, width: int = 96, height: int = 72) -> SceneArrays:
@@ -60,6 +64,30 @@ def every_form(scene: Scene) -> list[tuple[SceneArrays, WideKernel]]:
     """Return a packed scene in each precision, with each wide kernel that fits it."""
     forms = {packed(scene, precision).camera.dtype: packed(scene, precision) for precision in PRECISIONS}
     return [(arrays, wide) for arrays in forms.values() for wide in fitting(arrays)]
+
+
+def test_the_arrays_of_a_wide_kernel_have_its_precision() -> None:
+    for wide in WIDE_KERNELS:
+        assert empty_arrays(wide).lights.dtype == (np.float32 if wide.precision == "single" else np.float64)
+
+
+def test_the_arrays_of_a_wide_kernel_are_those_of_a_scene_without_lights_and_shapes() -> None:
+    arrays = empty_arrays(next(each for each in WIDE_KERNELS if (each.name, each.precision) == ("full", "double")))
+    packed = Packing().pack(minirt.load(paths.SCENES / "figure-v4-everything.rt"), 8, 8)
+    for name in ROWS:
+        assert getattr(arrays, name).shape == (0, *getattr(packed, name).shape[1:]), name
+    assert (arrays.spots.shape, arrays.specular.shape, arrays.reflective.shape) == ((0, 7), (0, 3), (0, 3))
+    maps = arrays.surface_maps
+    assert (maps.checks.shape, maps.bumps.shape) == ((0, 4), (0, 2))
+    assert (maps.textures.shape, maps.normals.shape, maps.used.shape) == ((0,), (0,), (0,))
+    assert (arrays.camera.shape, arrays.ambient.shape, arrays.background.shape) == ((12,), (3,), (3,))
+    assert (arrays.light_buffer_cells, arrays.light_cones.shape) == (1, (0, 0, 5))
+    assert (arrays.bvh.nodes.shape, arrays.bvh.extents.shape, arrays.bvh.slots.shape) == ((0,), (0,), (0, 2))
+    for group, leaves in zip(arrays.groups, arrays.bvh.groups, strict=True):
+        assert (len(group.rows), group.tile_starts.shape, group.light_starts.shape) == (0, (0,), (0, 0))
+        assert (len(leaves.rows), len(leaves.blocks), leaves.labels.shape) == (0, 0, (0, WIDTH, 2))
+        assert leaves.rows.dtype == group.rows.dtype
+        assert leaves.unbounded is None or leaves.unbounded.shape == (0,)
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)

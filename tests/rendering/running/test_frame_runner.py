@@ -9,6 +9,7 @@ import pytest
 
 from minirt.kernel.frame import CANCELLED
 from minirt.rendering import Renderer
+from minirt.rendering.running import frame_runner
 from tests.kernel.pictures import ALL, picture
 from tests.rendering.cancelling import ENDLESS, SAMPLES, cancelled
 from tests.waiting import until
@@ -31,6 +32,16 @@ def test_cancelling_when_nothing_is_rendered_does_nothing() -> None:
     assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
     renderer.cancel()
     assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
+
+
+def test_the_seconds_of_a_frame_are_counted_for_its_kernel(monkeypatch: pytest.MonkeyPatch) -> None:
+    renderer, counted = Renderer(1), list[float]()
+    renderer.prepare(ALL)
+    times = iter((7.0, 7.25))
+    monkeypatch.setattr(frame_runner, "perf_counter", lambda: next(times))
+    monkeypatch.setattr(renderer.kernels, "count", lambda _choice, seconds: counted.append(seconds))
+    assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
+    assert counted == [0.25]
 
 
 def test_an_error_in_one_thread_reaches_the_caller() -> None:

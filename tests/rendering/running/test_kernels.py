@@ -98,6 +98,17 @@ def test_without_any_the_narrow_one_is_compiled(monkeypatch: pytest.MonkeyPatch)
     assert library.compiled == [narrow_identity(BALL)]
 
 
+def test_specialising_compiles_the_narrow_kernel_though_a_wide_one_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    compiled: list[str] = []
+    library: Any = FakeLibrary(*WIDE.values())
+    library.compile = lambda identities, _process: compiled.extend(identities)
+    monkeypatch.setattr(kernels, "LIBRARY", library)
+    renderer = Renderer(1)
+    monkeypatch.setattr(renderer, "prepare", lambda _scene: None)
+    renderer.specialise(BALL)
+    assert narrow_identity(BALL) in compiled
+
+
 def test_a_narrow_kernel_is_compiled_once_that_is_worth_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
     choice = choose(monkeypatch, BALL, *WIDE.values())
     asked: list[str] = []
@@ -171,6 +182,10 @@ def test_the_narrow_kernel_is_swapped_in_and_draws_the_same_bits(
     assert picture(renderer) == before
     assert renderer.runner.choice.wide is None
     assert renderer.notes[0] == "kernel for spheres"
+
+
+def test_the_background_compiler_has_the_lowest_priority() -> None:
+    assert background_compiler.BackgroundCompiler().process.patient
 
 
 def test_a_wide_kernel_stays_where_the_narrow_one_cannot_be_compiled(

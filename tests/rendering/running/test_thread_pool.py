@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 
 import pytest
 
 from minirt.rendering.running.thread_pool import NICENESS, ThreadPool
+from tests.waiting import HANG_LIMIT
 
 
 def nicenesses(pool: ThreadPool) -> list[int]:
@@ -28,3 +30,13 @@ def test_only_the_threads_of_the_pool_give_way() -> None:
     assert nicenesses(pool) == [NICENESS, NICENESS]
     assert nicenesses(other) == [0, 0]
     assert os.getpriority(os.PRIO_PROCESS, 0) == before
+
+
+def test_the_threads_of_a_dropped_pool_end() -> None:
+    pool = ThreadPool(2)
+    threads = pool.threads
+    del pool
+    gc.collect()
+    for thread in threads:
+        thread.join(HANG_LIMIT)
+        assert not thread.is_alive()

@@ -117,14 +117,15 @@ def test_the_first_divisor_of_a_movement_learns_from_the_movements_before():
     assert first_divisors(AdaptiveResolution(), [1.0, 1.0, 50.0, 1.0]) == [3, 3, 3, 3]  # a single slow picture
 
 
-def test_near_the_limit_the_resolution_does_not_flicker():
-    resolution = AdaptiveResolution()
-    resolution.record(outcome(FRAME_TIME * 0.98))
-    used = [render_moving(resolution, FRAME_TIME * (1.02 if n // 3 % 2 else 0.98)) for n in range(200)]
-    assert set(used) == {1, 2}
+@pytest.mark.parametrize(("finer", "coarser"), [(1, 2), (2, 3), (3, 4)])
+def test_near_the_limit_the_resolution_does_not_flicker(finer, coarser):
+    resolution, limit = AdaptiveResolution(), FRAME_TIME * finer**2
+    resolution.record(outcome(limit * 0.98))
+    used = [render_moving(resolution, limit * (1.02 if n // 3 % 2 else 0.98)) for n in range(200)]
+    assert set(used) == {finer, coarser}
     assert sum(a != b for a, b in itertools.pairwise(used)) <= 5
-    used = [render_moving(resolution, FRAME_TIME * 0.7) for _ in range(5)]
-    assert used[-1] == 1  # it fits into FINER_SHARE of the time
+    used = [render_moving(resolution, limit * 0.7) for _ in range(5)]
+    assert used[-1] == finer  # it fits into FINER_SHARE of the time
 
 
 def test_a_finer_picture_is_tried_where_coarse_ones_mislead():

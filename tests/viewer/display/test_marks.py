@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from minirt.rendering.queries.pick import covers
-from minirt.scene import Camera
+from minirt.scene import Camera, Light
 from minirt.shapes import KINDS, Shape
-from minirt.viewer.display.icons import elements_with_icon, place_icons
-from minirt.viewer.display.marks import AXIS_COLOURS, GOLD, bgra, draw_line
+from minirt.shapes.sphere import Sphere
+from minirt.viewer.display import icons, outline
+from minirt.viewer.display.icons import Icon, elements_with_icon, place_icons
+from minirt.viewer.display.marks import AXIS_COLOURS, BLACK, GOLD, WHITE, bgra, draw_icon, draw_line, draw_outline
 from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.display.overlay import text_size
 from minirt.viewer.display.painter import paint
@@ -58,6 +60,19 @@ def test_few_rays_find_most_of_the_outline() -> None:
     assert found > 0.9 * known > 0
 
 
+def test_the_coarse_grid_of_an_outline_has_the_given_number_of_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    counts: list[int] = []
+
+    def counted(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        counts.append(np.broadcast(x, y).size)
+        return covers(shape, camera, width, height, x, y)
+
+    monkeypatch.setattr(outline, "covers", counted)
+    ball = Sphere((-3, -3, 10), 6, (1, 2, 3))  # in the lower right part of the picture
+    outline_pixels(ball, Camera((0, 0, 0), (0, 0, 1), 70), 800, 800, 1000)
+    assert 500 < counts[0] < 1100
+
+
 def test_the_random_scenes_have_several_kinds() -> None:
     kinds = {type(shape) for seed in range(8) for shape in random_scene(seed).shapes}
     assert len(kinds) >= 3
@@ -77,6 +92,25 @@ def test_the_outline_is_drawn_in_the_frame_but_not_in_the_picture() -> None:
     assert (session.picture == colour_of(session.state.scene)).all()
     assert not golden(played("resize 160x90", "click 82,44", "press C")).any()
     assert not golden(played("resize 160x90", "click 82,44", "press I", "press I")).any()
+
+
+def test_an_outline_has_black_on_four_sides() -> None:
+    pixels, place = np.full((5, 5, 4), 9, np.uint8), (np.array([2]), np.array([2]))
+    draw_outline(pixels, place, place)
+    black = (pixels == np.array(bgra(BLACK), np.uint8)).all(axis=2)
+    assert np.argwhere(black).tolist() == [[1, 2], [2, 1], [2, 3], [3, 2]]
+    assert np.argwhere((pixels == GOLDEN).all(axis=2)).tolist() == [[2, 2]]
+
+
+@pytest.mark.parametrize("corner", [0, 3])
+def test_an_outline_at_a_corner_of_the_picture_has_black_beside_it_and_none_beyond(corner: int) -> None:
+    pixels, inward = np.full((4, 4, 4), 9, np.uint8), 1 if corner == 0 else -1
+    row, rows = np.array([corner]), np.array([corner + inward])
+    draw_outline(pixels, (row, row), (rows, row))
+    black = np.zeros((4, 4), bool)
+    black[[corner, corner + inward, corner + 2 * inward], [corner + inward, corner + inward, corner]] = True
+    assert ((pixels == np.array(bgra(BLACK), np.uint8)).all(axis=2) == black).all()
+    assert (pixels[[corner, corner + inward], corner] == GOLDEN).all()
 
 
 def test_the_outline_matches_the_shown_picture_while_the_next_is_rendered() -> None:
@@ -138,6 +172,22 @@ def test_lines_are_clipped_to_the_picture(start, end, some) -> None:
     assert pixels.any() == some
 
 
+@pytest.mark.parametrize(
+    ("start", "end", "rows", "columns"),
+    [
+        ((2, 0), (9, 0), (0, 2), (2, 10)),
+        ((2, 19), (9, 19), (19, 20), (2, 10)),
+        ((0, 2), (0, 9), (2, 10), (0, 2)),
+        ((29, 2), (29, 9), (2, 10), (29, 30)),
+    ],
+)
+def test_lines_are_two_pixels_wide_but_at_the_last_row_and_column(start, end, rows, columns) -> None:
+    pixels, expected = np.zeros((20, 30, 4), np.uint8), np.zeros((20, 30), bool)
+    draw_line(pixels, start, end, 0xFFFFFF)
+    expected[slice(*rows), slice(*columns)] = True
+    assert np.array_equal(pixels.any(axis=2), expected)
+
+
 def test_lights_have_icons_that_can_be_clicked() -> None:
     text = TEXT.replace("L 5,5,5", "L 2,2,5")
     hidden, shown = played("resize 300x200", text=text), played("resize 300x200", "press G", text=text)
@@ -155,6 +205,34 @@ def test_lights_have_icons_that_can_be_clicked() -> None:
     moved = played("resize 300x200", "press G", drag, text=text).state.scene
     seen = projection_of(moved.camera, 300, 200)
     assert seen.pixel(moved.lights[0].position) == pytest.approx((light.x - 20, light.y), abs=1)
+
+
+def test_an_icon_has_the_colour_of_its_light() -> None:
+    assert icons.colour_of(Light((0, 0, 5), 1, (255, 128, 1))) == 0xFF8001
+    assert icons.colour_of(Camera((0, 0, 0), (0, 0, 1), 70)) == 0xFFFFFF
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+def test_an_icon_is_a_square_with_a_frame(scale: float) -> None:
+    pixels = np.full((100, 100, 4), 9, np.uint8)
+    draw_icon(pixels, Icon(0, 50, 50, "L", 0x123456), scale, selected=True)
+    for of_square, side in ((pixels != 9).any(axis=2), 24), (~framed(pixels), 20):
+        rows, columns = np.nonzero(of_square)
+        assert (np.ptp(rows) + 1, np.ptp(columns) + 1) == (side * scale, side * scale)
+
+
+def framed(pixels: np.ndarray) -> np.ndarray:
+    """Return a mask of the pixels that are golden or untouched."""
+    return (pixels == GOLDEN).all(axis=2) | (pixels == 9).all(axis=2)
+
+
+@pytest.mark.parametrize(("colour", "letters"), [(0x0050FB, BLACK), (0x0050F9, WHITE), (0xFB5000, BLACK), (0, WHITE)])
+def test_letters_are_black_on_bright_icons(colour: int, letters: int) -> None:
+    pixels = np.zeros((40, 40, 4), np.uint8)
+    draw_icon(pixels, Icon(0, 20, 20, "L", colour), 1.0, selected=True)
+    drawn = {tuple(each) for each in pixels[10:30, 10:30].reshape(-1, 4).tolist()}
+    assert bgra(letters) in drawn
+    assert bgra(BLACK + WHITE - letters) not in drawn - {bgra(colour)}
 
 
 def test_the_text_size_fits_window_and_screen() -> None:

@@ -7,7 +7,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from minirt.viewer.display.overlay import HudLevel, draw_help, draw_hud, draw_message, element_line, status, text_size
+from minirt.mlx.text import measure
+from minirt.viewer.display import overlay
+from minirt.viewer.display.overlay import (
+    MARGIN,
+    HudLevel,
+    bracketed,
+    draw_help,
+    draw_hud,
+    draw_message,
+    element_line,
+    fit_width,
+    status,
+    text_size,
+)
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state
@@ -36,6 +49,23 @@ def test_the_line_of_the_selected_element_marks_the_active_value(actions, text):
     for action in actions:
         state = apply(state, action)
     assert element_line(state) == text
+
+
+def test_the_active_part_of_a_material_is_marked():
+    state = initial_state(scene("A 1 9,9,9\nC 0,0,9 0,0,-1 60\nsp 0,0,0 2 9,9,9 specular:0.5,20\n"))
+    lines = []
+    for action in ["select next", *["next value"] * 3]:
+        state = apply(state, action)
+        lines.append(element_line(state))
+    assert "sp 0,0,0 2 9,9,9 [specular:0.5],20" in lines
+    assert "sp 0,0,0 2 9,9,9 specular:0.5,[20]" in lines
+
+
+@pytest.mark.parametrize(
+    ("part", "text"), [(None, "[a,b,c]"), (0, "[a],b,c"), (1, "a,[b],c"), (2, "a,b,[c]"), (3, "[a,b,c]")]
+)
+def test_brackets_are_around_one_component_or_the_whole_value(part, text):
+    assert bracketed("a,b,c", part) == text
 
 
 def test_the_status_line():
@@ -84,6 +114,23 @@ def test_a_message_is_wrapped_and_drawn_above_the_status():
     pixels = blank()
     draw_message(pixels, "", 0, 16)
     assert (pixels == 255).all()
+
+
+def test_the_columns_of_the_help_are_side_by_side(monkeypatch):
+    drawn = []
+    monkeypatch.setattr(overlay, "draw_text", lambda _, x, y, text, colour, size: drawn.append((x, text, size)))
+    draw_help(blank(), "qwerty", 16)
+    ends = [x + measure(text, size)[0] for x, text, size in drawn]
+    assert all(end < x for end, (x, _, _) in zip(ends, drawn[1:], strict=False))
+    assert len(drawn) == 4
+    assert ends[-1] <= 640 - MARGIN
+
+
+def test_groups_of_words_are_dropped_from_a_line_that_is_a_pixel_too_long():
+    text = "640x480    12.3 ms    1 sample"
+    width = measure(text, 16)[0] + 2 * MARGIN
+    assert fit_width(text, width, 16) == text
+    assert fit_width(text, width - 1, 16) == "640x480    12.3 ms"
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 720), (640, 480), (200, 100), (1, 1)])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import stat
+import sys
 
 import pytest
 
@@ -98,12 +99,26 @@ def test_a_save_and_an_undo_delete_the_journal(book, path):
         assert book.path is None
 
 
-def test_a_file_that_another_program_changed_is_not_taken_for_the_saved_scene(book, path):
+@pytest.mark.parametrize("changed", ["# something else\n" + TEXT, TEXT.replace("L 5,5,5", "L 6,6,6")])
+def test_a_file_that_another_program_changed_is_not_taken_for_the_saved_scene(book, path, changed):
     saved, known = load(path).scene, signature(path)
-    path.write_text("# something else\n" + TEXT)
+    path.write_text(changed)
+    assert signature(path) != known
     book.keep(Version(grown(saved, 3.0), saved, path, known))
     book.flush()
     assert journal_file.read(book.path).text == dump(grown(saved, 3.0))
+
+
+@pytest.mark.parametrize(
+    ("platform", "folder"),
+    [("linux", ".local/state"), ("darwin", "Library/Application Support"), ("win32", "AppData/Local")],
+)
+def test_journals_are_where_the_system_keeps_the_state_of_programs(platform, folder, tmp_path, monkeypatch):
+    monkeypatch.delenv("XDG_STATE_HOME")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "AppData/Local"))
+    monkeypatch.setattr(sys, "platform", platform)
+    assert journal_folder() == tmp_path / folder / "minirt" / "journals"
 
 
 def test_others_cannot_read_a_journal(book, path):
