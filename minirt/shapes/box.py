@@ -19,16 +19,17 @@ from minirt.lanes import Vec, copysign, fabs, maximum, minimum, rarely, splat, w
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
-from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.bounds import bounds_of_points, point_along
 from minirt.shapes.flat_start import CLOSE, start_error
-from minirt.shapes.shape import Ball, Position, Shape
+from minirt.shapes.oriented import Axial
+from minirt.shapes.shape import Ball, Position
 from minirt.shapes.shape import Bounds as Corners
 
 
 @record()
-class Box(Shape):
+class Box(Axial):
     """A line `bo` of a scene file."""
 
     code, title, plural = "bo", "box", "boxes"
@@ -39,7 +40,7 @@ class Box(Shape):
 
     def axes(self) -> tuple[Vec, Vec, Vec]:
         """The own x, y and z axes of the box."""
-        z, x, y = basis(self.axis)
+        z, x, y = self.frame()
         return x, y, z
 
     def pack(self) -> PackedBox:
@@ -161,5 +162,5 @@ def mapping(box: PackedBox, point: Vec, normal: Vec) -> tuple[Number, Number, Ve
 
 def boundary(box: Any, point: Vec) -> Boundary:
     """Distances from the three pairs of faces."""
-    x, y, z = own_coordinates(box.axis, point - box.centre)
+    x, y, z = own_coordinates(box.axis, box.roll, point - box.centre)
     return Boundary((abs(x) - box.sizes.x / 2, abs(y) - box.sizes.y / 2, abs(z) - box.sizes.z / 2))

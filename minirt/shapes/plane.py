@@ -18,18 +18,18 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.materials import BOARD, Checker, Compound
 from minirt.records import record
-from minirt.shapes.basis import facing_frame
 from minirt.shapes.boundary import Boundary
-from minirt.shapes.shape import Ball, Position, Shape
+from minirt.shapes.oriented import Flat
+from minirt.shapes.shape import Ball, Position
 
 PARALLEL = 4  # error of the scalar product of two unit vectors, in unit roundoffs
 
 
 @record()
-class Plane(Shape):
+class Plane(Flat):
     """A line `pl` of a scene file."""
 
-    code, title, plural, infinite = "pl", "plane", "planes", True
+    code, title, plural, infinite, revolved = "pl", "plane", "planes", True, True
     point: Triple = declare(Point, "a point of the plane")
     normal: Triple = declare(Direction, "normal")
     colour: Triple = declare(Colour, "colour")
@@ -37,7 +37,7 @@ class Plane(Shape):
     checker: Checker | None = declare(Compound, "checkerboard", bare="1", **BOARD)
 
     def pack(self) -> PackedPlane:
-        right, up = facing_frame(self.normal)
+        right, up, _ = self.frame()
         return PackedPlane(Position(Vec(*self.point)), Vec(*self.normal), right, up)
 
     def balls(self) -> tuple[Ball, ...]:
