@@ -99,7 +99,7 @@ def _(cylinder: Cylinder, origins: Array, directions: Array) -> list[Array]:
 
 @crossings.register(Box)
 def _(box: Box, origins: Array, directions: Array) -> list[Array]:
-    x, z = own_x_and_z(np.array(box.axis))
+    x, z = own_x_and_z(np.array(box.axis), box.roll)
     y = np.cross(z, x)
     to_centre = np.array(box.centre) - origins
     slabs = [

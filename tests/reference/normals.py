@@ -62,13 +62,13 @@ def _(ellipsoid: Ellipsoid, points: Array) -> Array:
 def scaled_axes(ellipsoid: Ellipsoid) -> Array:
     """The own x, y and z axes of an ellipsoid, each divided by its semi-axis, as the rows of a matrix (3, 3)."""
     y = np.array(ellipsoid.axis)
-    _, z = own_x_and_z(y)
+    _, z = own_x_and_z(y, ellipsoid.roll)
     return np.stack([np.cross(y, z), y, z]) / (np.array(ellipsoid.sizes)[:, None] / 2)
 
 
 @normals.register(Box)
 def _(box: Box, points: Array) -> Array:
-    x, z = own_x_and_z(np.array(box.axis))
+    x, z = own_x_and_z(np.array(box.axis), box.roll)
     axes = np.stack([x, np.cross(z, x), z])
     p = (points - np.array(box.centre)) @ axes.T
     face = np.argmax(np.abs(p) - np.array(box.sizes) / 2, axis=-1)

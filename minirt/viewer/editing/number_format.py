@@ -60,10 +60,9 @@ def round_value(field: Field, before: Any, after: Any, stride: float) -> Any:
         return tuple(b if a == b else round(b, places) for a, b in zip(before, after, strict=True))
     if isinstance(field, Direction):
         return neat_direction(after, keep_heading=True)
-    if isinstance(field, Angle):
-        return round_angle(after)
     if isinstance(field, Real):
-        return round(after, leading_decimal(field.step) + REAL_DECIMALS)
+        places = leading_decimal(field.step) + REAL_DECIMALS
+        return round_angle(after) if isinstance(field, Angle) else round(after, places)
     return after
 
 

@@ -7,14 +7,12 @@ from typing import Any
 
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Point, Triple
-from minirt.lanes import Vec, dot
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.shapes.oriented import Oriented
+from minirt.viewer.editing.projection import dot
 
-LEVEL = (
-    0.5  # vertical part of a camera's up, above which left and right turn about the vertical: pitch up to 60 degrees
-)
+LEVEL = 0.5  # vertical part of a camera's up; above it, which is up to a pitch of 60 degrees, left and right are level
 
 
 def can_turn(element: Element) -> bool:
@@ -49,14 +47,16 @@ def with_directions(element: Element, directions: dict[str, Any], about: Triple,
     """
     if not (isinstance(element, Oriented) and shows_roll(element)):
         return directions
-    u = rodrigues(as_triple(element.frame()[0]), about, angle)
-    right, up, _ = element.replace(**directions, roll=0.0).frame()
-    return directions | {"roll": degrees(atan2(dot(Vec(*u), up), dot(Vec(*u), right)))}
+    first, _ = across(element)
+    rotated = rodrigues(first, about, angle)
+    u, v = across(element.replace(**directions, roll=0.0))
+    return directions | {"roll": degrees(atan2(dot(rotated, v), dot(rotated, u)))}
 
 
-def as_triple(v: Vec) -> Triple:
-    """A vector as a tuple."""
-    return v.x, v.y, v.z
+def across(shape: Oriented) -> tuple[Triple, Triple]:
+    """The two vectors of the frame of a shape that are perpendicular to its axis or normal."""
+    u, v, _ = shape.frame()
+    return (u.x, u.y, u.z), (v.x, v.y, v.z)
 
 
 def rodrigues(vector: Triple, axis: Triple, degrees: float) -> Triple:
