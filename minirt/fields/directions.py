@@ -48,7 +48,8 @@ class Direction(Three):
 
     @property
     def notation(self) -> str:
-        return ",".join(self.name[:1] + axis for axis in "xyz")
+        components = ",".join(self.name[:1] + axis for axis in "xyz")
+        return f"{self.keys[0]}:{components}" if self.keyed else components
 
     @property
     def range(self) -> str:

@@ -16,7 +16,9 @@ from minirt.fields import Length, Real, declare
 from minirt.materials.material import Material
 from minirt.records import record
 
+FARTHEST = 1e6  # in u or v
 Scale = partial(Length, unit="", initial=2.0)
+Shift = partial(Real, low=-FARTHEST, high=FARTHEST, step=0.05)
 
 
 @record()
@@ -26,10 +28,17 @@ class Placement(Material):
     title, feature = "uv", "placements"
     scale_u: float = declare(Scale, "pictures in a unit of u", placeholder="su")
     scale_v: float = declare(Scale, "pictures in a unit of v", placeholder="sv")
-    shift_u: float = declare(Real, "u of the lower left corner", placeholder="ou", step=0.05, default=0.0)
-    shift_v: float = declare(Real, "v of the lower left corner", placeholder="ov", step=0.05, default=0.0)
+    shift_u: float = declare(Shift, "u of the lower left corner", placeholder="ou", default=0.0)
+    shift_v: float = declare(Shift, "v of the lower left corner", placeholder="ov", default=0.0)
     turn: float = declare(
-        Real, "turn", unit="degree", placeholder="degrees", low=-360.0, high=360.0, step=5.0, default=0.0
+        Real,
+        "turn, counter-clockwise",
+        unit="degree",
+        placeholder="degrees",
+        low=-360.0,
+        high=360.0,
+        step=5.0,
+        default=0.0,
     )
 
     def has_effect(self) -> bool:

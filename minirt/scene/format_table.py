@@ -25,7 +25,8 @@ def element_row(kind: type[Element]) -> str:
 def attribute_row(field: Field) -> str:
     """Return the table row of a shared attribute."""
     parts = fields_of(field.record) if isinstance(field, Compound) else ()
-    text = "<br>".join([description(field), *map(field_entry, parts)])
+    entries = (f"`{part.placeholder or part.notation}` {description(part)}" for part in parts)
+    text = "<br>".join([description(field), *entries])
     alone = f", or `{field.keys[0]}` for `{field.keys[0]}:{field.bare}`" if field.bare else ""
     for kind in ELEMENTS.values():
         own = next((other for other in fields_of(kind) if other.name == field.name and other.bare != field.bare), None)

@@ -1,9 +1,9 @@
 """Box: `bo x,y,z ax,ay,az w,h,d R,G,B`.
 
 A solid block. `x,y,z` is its centre, `ax,ay,az` its own y axis, and `w,h,d` are its sizes along its own x, y and z
-axes. Its axes are those of the scene, turned no further than it takes to bring y to `ax,ay,az`, or to its opposite.
-Each face has a picture of its own: upright on the four standing faces, with its upper edge towards -z above and z
-below.
+axes. Its axes are those of the scene, turned no further than it takes to bring y to `ax,ay,az`, or to its opposite;
+`roll:degrees` then turns the box about its own y axis. Each face has a picture of its own: upright on the four standing
+faces, with its upper edge towards -z above and z below.
 
     bo 0,1,20  0,1,0  4,2,6  160,160,170    an upright block four wide, two high and six deep
 """

@@ -2,7 +2,8 @@
 
 A solid ellipsoid. `x,y,z` is its centre, `ax,ay,az` its own y axis, and `w,h,d` are its diameters along its own x, y
 and z axes. As for a box these are the axes of the scene, turned no further than it takes to bring y to `ax,ay,az`, or
-to its opposite. A picture lies on it as on a sphere that is stretched together with it.
+to its opposite, and `roll:degrees` then turns it about its own y axis. A picture lies on it as on a sphere that is
+stretched together with it.
 
     el 0,1,20  0,1,0  6,2,4  200,120,160    a pebble six wide, two high and four deep
 """

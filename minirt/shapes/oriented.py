@@ -20,7 +20,9 @@ class Oriented(Shape):
     """A shape that can be turned about an axis or a normal of its own."""
 
     revolved: ClassVar[bool] = False  # whether it looks the same after such a turn if nothing lies on it
-    roll: float = declare(Angle, ROLL, keyed=True, default=0.0, sort="shapes with an axis or a normal")
+    roll: float = declare(
+        Angle, ROLL, placeholder="degrees", keyed=True, default=0.0, sort="shapes with an axis or a normal"
+    )
 
     def frame(self) -> Frame:
         """Its own frame, which turns with it."""

@@ -2,7 +2,8 @@
 
 An infinite plane, seen from both sides: all points p for which `p - (x,y,z)` is perpendicular to the normal `nx,ny,nz`.
 Pictures are one unit wide and high and repeated without end, the lower left corner of one at `x,y,z`. They stand
-upright; on a floor u, to the right, runs along x and v, upwards, along -z, on a ceiling along x and z.
+upright; on a floor u, to the right, runs along x and v, upwards, along -z, on a ceiling along x and z. `uv:0.25,0.25`
+makes them four units wide and high, `roll:degrees` turns them about the normal.
 
     pl 0,-1,0  0,1,0  200,200,200    a floor one unit below the origin
 """

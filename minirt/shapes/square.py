@@ -1,8 +1,9 @@
 """Square: `sq x,y,z nx,ny,nz side R,G,B`.
 
 A flat square, seen from both sides. `x,y,z` is its centre and `nx,ny,nz` its normal. It stands upright: one pair of
-edges is horizontal; on a floor and a ceiling the edges are along x and z. A picture fills it once, upright for
-a viewer who faces it; on a floor its upper edge is towards -z, on a ceiling towards z.
+edges is horizontal; on a floor and a ceiling the edges are along x and z. `roll:degrees` turns it about its normal. A
+picture fills it once, upright for a viewer who faces it; on a floor its upper edge is towards -z, on a ceiling towards
+z.
 
     sq 0,2,20  0,0,-1  4  200,200,120    a board four units wide and high that faces the origin
 """

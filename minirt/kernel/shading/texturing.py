@@ -23,10 +23,10 @@ class SurfaceMaps(NamedTuple):
     textures: Any  # (n,) the picture that replaces the colour
     bumps: Any  # (n, 2) the picture whose first channel is the height, and the strength of the bumps
     normals: Any  # (n,) the picture of a normal map
-    placements: Any  # (n, 15) scale, shift, cosine and sine of u and v, and own axes of a sphere; 0 for most shapes
     used: Any  # (n,) 0 for shapes without any map
     texels: Any  # all pictures one after the other: rows from the top, pixels from the left, channels in [0, 1]
     pictures: Any  # (k, 4) for each picture its first index in `texels`, its width, height and channels
+    placements: Any = None  # (n, 15) scale, shift, cosine and sine of u and v, own axes of a sphere; 0 for most shapes
 
 
 Mapped = tuple[Number, Number, Vec, Vec]  # u, v and the tangents along them
