@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from decimal import Decimal
+from itertools import product
 
 from minirt.errors import FieldError
 from minirt.fields.field import Repair
@@ -72,11 +72,14 @@ def unit(vector: Triple) -> Triple:
     return x / length, y / length, z / length
 
 
+def places(part: float) -> int:
+    """Decimals of a component that has `DIGITS` significant digits."""
+    return DIGITS - 1 - math.floor(math.log10(abs(part)))
+
+
 def rounded(direction: Triple) -> Triple:
     """Round the components to `DIGITS` significant digits, and those below `LEAST` to 0."""
-    x, y, z = (
-        round(part, DIGITS - 1 - math.floor(math.log10(abs(part)))) if abs(part) >= LEAST else 0.0 for part in direction
-    )
+    x, y, z = (round(part, places(part)) if abs(part) >= LEAST else 0.0 for part in direction)
     return x, y, z
 
 
@@ -90,12 +93,26 @@ def neat(direction: Triple) -> Triple:
 
 
 def shortest(direction: Triple) -> Triple:
-    """Return the components with nine digits if they are read as the same direction, or else all digits."""
+    """Return nine digits of each component that are read as the same direction, or all digits where there are none.
+
+    The rounded components may be off by one in the last digit: scaled to unit length, others are read as the direction.
+    """
     short = rounded(direction)
-    return short if any(short) and unit(short) == direction else direction
+    if not any(short):
+        return direction
+    around = product(*map(neighbours, short))
+    return next(((x, y, z) for x, y, z in around if unit((x, y, z)) == direction), direction)
+
+
+def neighbours(part: float) -> list[float]:
+    """A rounded component, and what differs from it by one in the last digit."""
+    return [part, *(round(part + step * 10.0 ** -places(part), places(part)) for step in (-1, 1) if part)]
 
 
 def plain_decimal(value: float) -> str:
     """Format a number without an exponent, unless it is smaller than `LEAST`."""
     text = spelled(value)
-    return format(Decimal(text), "f") if "e" in text and abs(value) >= LEAST else text
+    if "e-" not in text or abs(value) < LEAST:
+        return text
+    digits, _, places = text.removeprefix("-").partition("e-")
+    return f"{'-' * (value < 0)}0.{'0' * (int(places) - 1)}{digits.replace('.', '')}"

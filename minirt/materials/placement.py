@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from minirt.fields import Length, Real, declare
+from minirt.fields import Angle, Length, Real, declare
 from minirt.materials.material import Material
 from minirt.records import record
 
@@ -31,14 +31,7 @@ class Placement(Material):
     shift_u: float = declare(Shift, "u of the lower left corner", placeholder="ou", default=0.0)
     shift_v: float = declare(Shift, "v of the lower left corner", placeholder="ov", default=0.0)
     turn: float = declare(
-        Real,
-        "turn, counter-clockwise",
-        unit="degree",
-        placeholder="degrees",
-        low=-360.0,
-        high=360.0,
-        step=5.0,
-        default=0.0,
+        Angle, "turn about that corner, counter-clockwise", placeholder="degrees", step=5.0, default=0.0
     )
 
     def has_effect(self) -> bool:
