@@ -20,7 +20,7 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from tests.reference.revolved import profile
-from tests.reference.vectors import Array, dot, length, own_x_and_z, unit
+from tests.reference.vectors import Array, dot, length, own_x_and_z, right_and_up, turned, unit
 
 
 @singledispatch
@@ -102,3 +102,10 @@ def _(torus: Torus, points: Array) -> Array:
     p = points - np.array(torus.centre)
     ring = unit(p - dot(p, axis)[..., None] * axis) * torus.diameter / 2
     return unit(p - ring)
+
+
+def right_and_up_on(flat: Plane | Square | Disc) -> tuple[Array, Array]:
+    """Right and up of a picture on a flat shape."""
+    normal = np.array(flat.normal)
+    right, up = right_and_up(-normal)
+    return turned(right, normal, flat.roll), turned(up, normal, flat.roll)

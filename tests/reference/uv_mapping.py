@@ -21,9 +21,9 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
-from tests.reference.normals import normals, scaled_axes
+from tests.reference.normals import normals, right_and_up_on, scaled_axes
 from tests.reference.revolved import profile
-from tests.reference.vectors import Array, dot, length, own_x_and_z, right_and_up, turned, unit
+from tests.reference.vectors import Array, dot, length, own_x_and_z, unit
 
 
 class SurfacePoint(NamedTuple):
@@ -58,13 +58,6 @@ def flat_point(points: Array, corner: Array, right: Array, up: Array) -> Surface
     p = points - corner
     edges = [np.broadcast_to(edge, points.shape) for edge in (right, up)]
     return SurfacePoint(dot(p, right) / dot(right, right), dot(p, up) / dot(up, up), *edges)
-
-
-def right_and_up_on(flat: Plane | Square | Disc) -> tuple[Array, Array]:
-    """Right and up of a picture on a flat shape."""
-    normal = np.array(flat.normal)
-    right, up = right_and_up(-normal)
-    return turned(right, normal, flat.roll), turned(up, normal, flat.roll)
 
 
 @surface_point.register

@@ -27,7 +27,7 @@ from minirt.viewer.editing.motion import neat_rotation, rotate
 from minirt.viewer.editing.number_format import round_changes
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.values import values
-from tests.reference.uv_mapping import right_and_up_on
+from tests.reference.normals import right_and_up_on
 from tests.reference.vectors import own_x_and_z
 from tests.viewer.fake import played
 
