@@ -10,7 +10,7 @@ import pytest
 
 import minirt
 from minirt.element import Element
-from minirt.materials import Bump, Checker, Glass, Specular
+from minirt.materials import Bump, Checker, Glass, Placement, Specular
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes import Shape
 from minirt.shapes.box import Box
@@ -19,6 +19,7 @@ from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
 from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
+from minirt.shapes.oriented import Oriented
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
@@ -88,6 +89,7 @@ def material_scene(seed: int) -> Scene:
         tuple(4 * own.normal(size=3)), (0, 1, 0), tuple(np.exp(own.normal(size=3))), tuple(own.integers(30, 256, 3))
     )
     with_materials.append(ellipsoid.replace(**materials[own.integers(len(materials))]))
+    with_materials = [oriented(shape, own) for shape in with_materials]
     eye = np.array(point(9))
     lights: list[Element] = [
         Light(point(7), 0.4, colour()),
@@ -99,6 +101,16 @@ def material_scene(seed: int) -> Scene:
     return Scene(
         [Ambient(0.2, colour()), camera, Background("textures/evening.png"), *lights, *with_materials], SCENES / "x.rt"
     )
+
+
+def oriented(shape: Shape, random: np.random.Generator) -> Shape:
+    """Turn a shape about its own axis, half of the spheres about another one, and half of the pictures on shapes."""
+    if random.random() < 0.5:
+        scale = np.exp(0.5 * random.normal(size=2))  # finer pictures show how bumpy glass amplifies rounding
+        shape = shape.replace(uv=Placement(*scale, *random.normal(size=2), random.uniform(-360, 360)))
+    if isinstance(shape, Sphere) and random.random() < 0.5:
+        shape = shape.replace(axis=tuple(random.uniform(-1, 1, 3)))
+    return shape.replace(roll=random.uniform(-360, 360)) if isinstance(shape, Oriented) else shape
 
 
 @pytest.mark.parametrize("batch", range(4))

@@ -3,17 +3,19 @@ documentation derive from the declaration.
 """
 
 from minirt.errors import FieldError
+from minirt.fields.directions import Direction, neat, unit
 from minirt.fields.field import Field, PictureFile, Repair, declare
 from minirt.fields.meshes import MeshField, MeshFile
 from minirt.fields.numerals import number, spelled, whole
-from minirt.fields.orientation import upright
+from minirt.fields.orientation import cos_and_sin, upright
 from minirt.fields.pictures import Paint, Picture
-from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Factor, Flag, Length, Real, Whole, clamp
-from minirt.fields.triples import Colour, Direction, Lengths, Point, Three, Triple, unit
+from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Angle, Factor, Flag, Length, Real, Whole, clamp
+from minirt.fields.triples import Colour, Lengths, Point, Three, Triple
 
 __all__ = [
     "FARTHEST",
     "LEAST_LENGTH",
+    "Angle",
     "Colour",
     "Direction",
     "Factor",
@@ -34,7 +36,9 @@ __all__ = [
     "Triple",
     "Whole",
     "clamp",
+    "cos_and_sin",
     "declare",
+    "neat",
     "number",
     "spelled",
     "unit",

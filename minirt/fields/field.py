@@ -51,6 +51,7 @@ class Field(Immutable, ABC):
     sort: str = ""  # of an attribute that all elements of a sort have: the name of the sort
     placeholder: str = ""  # of an attribute: stands for its value in the format of a line; the unit if empty
     feature: str = ""  # of an attribute of shapes: the feature of the kernel that draws it
+    mapped: bool = False  # of an attribute of shapes: whether it lies on their surface, and turns with them
     initial: Any = None  # the editor's first value; of a length in the scene, as a factor of the usual one
     name: str = ""
     default: Any = None  # None: the field must be given, or as an attribute is absent

@@ -1,8 +1,8 @@
-"""Right and up vectors of a view direction."""
+"""Right and up vectors of a view direction, and cosines and sines of angles in degrees."""
 
 from __future__ import annotations
 
-from math import hypot
+from math import cos, hypot, radians, sin
 
 from minirt.fields.triples import Triple
 
@@ -21,3 +21,11 @@ def upright(x: float, y: float, z: float) -> tuple[Triple, Triple]:
     length = hypot(a, b)
     a, b = a / length, b / length
     return (-b, 0.0, a), (-a * y, hypot(x, z), -b * y)
+
+
+def cos_and_sin(degrees: float) -> tuple[float, float]:
+    """Cosine and sine of an angle; exact for multiples of a right angle."""
+    quarters = round(degrees / 90)
+    rest = radians(degrees - 90 * quarters)
+    c, s = cos(rest), sin(rest)
+    return ((c, s), (-s, c), (-c, -s), (s, -c))[quarters % 4]

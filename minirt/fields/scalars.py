@@ -63,6 +63,15 @@ class Real(Scalar):
 
 
 @record(kw_only=True)
+class Angle(Real):
+    """A turn of an element about its own axis."""
+
+    unit: str = "degree"
+    low: float = -360.0
+    high: float = 360.0
+
+
+@record(kw_only=True)
 class Length(Scalar):
     """A size greater than 0; a key press multiplies it by `step`."""
 

@@ -1,4 +1,4 @@
-"""Fields of three numbers: points, directions, colours."""
+"""Fields of three numbers: points, sizes, colours."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, clamp
 from minirt.records import record
 
 Triple = tuple[float, float, float]
-
-SLACK = 1e-3  # by which the length of a direction may differ from 1 without a notice
 
 
 @record(kw_only=True)
@@ -131,40 +129,6 @@ class Lengths(Three):
 
 
 @record(kw_only=True)
-class Direction(Three):
-    """A direction with components in [-1, 1]; kept at unit length."""
-
-    instead: Triple = (0.0, 1.0, 0.0)  # the direction that a lenient reader takes for 0,0,0
-
-    def check(self, value: Triple) -> Triple:
-        self.within(value, -1.0, 1.0)
-        if not any(value):
-            raise FieldError("must not be 0,0,0: it points nowhere")
-        return unit(value)
-
-    def check_all(self, values: Sequence[Triple]) -> Sequence[Triple] | None:
-        return None if any(map(self.remark, values)) else list(map(self.check, values))
-
-    def remark(self, value: Triple) -> str:
-        length = math.hypot(*value)
-        return f"has length {length:.4g}, and is scaled to 1" if abs(length - 1) > SLACK else ""
-
-    def repair(self, text: str) -> Repair | None:
-        if reads(self.parse, text):
-            instead = self.format(self.instead)
-            return None if any(self.parse(text)) else Repair(instead, f"takes {instead}")
-        return super().repair(text)
-
-    @property
-    def notation(self) -> str:
-        return ",".join(self.name[:1] + axis for axis in "xyz")
-
-    @property
-    def range(self) -> str:
-        return "[-1, 1]"
-
-
-@record(kw_only=True)
 class Colour(Three):
     """Red, green and blue, whole numbers from 0 to 255; a key press changes all three."""
 
@@ -216,19 +180,3 @@ def reads(parse: Callable[[str], Any], text: str) -> bool:
     except FieldError:
         return False
     return True
-
-
-def unit(vector: Triple) -> Triple:
-    """Scale `vector` to length 1, even if its squares would underflow or overflow.
-
-    A vector of length 1 within rounding is returned unchanged, so that saving and loading change nothing, unless a
-    component is beyond 1, which no file may have. The quotient below is off by at most 2u in length and `hypot` by 2u
-    more (u = 2^-53), so that scaling once is enough.
-    """
-    x, y, z = vector
-    largest = max(abs(x), abs(y), abs(z))
-    if largest <= 1.0 and abs(math.hypot(x, y, z) - 1.0) <= 4 * 2.0**-53:
-        return float(x), float(y), float(z)
-    x, y, z = x / largest, y / largest, z / largest
-    length = math.hypot(x, y, z)
-    return x / length, y / length, z / length

@@ -15,12 +15,14 @@ from minirt.materials.compound import Compound as Compound
 from minirt.materials.glass import Glass as Glass
 from minirt.materials.mirror import Mirror as Mirror
 from minirt.materials.normal_map import NormalMap as NormalMap
+from minirt.materials.placement import Placement as Placement
 from minirt.materials.specular import Specular as Specular
 from minirt.materials.texture import Texture as Texture
 from minirt.records import record
 
 SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
-BOARD: dict[str, Any] = {"record": Checker, "aliases": ("pat",)} | SHARED
+MAPPED: dict[str, Any] = {"mapped": True} | SHARED
+BOARD: dict[str, Any] = {"record": Checker, "aliases": ("pat",)} | MAPPED
 
 
 @record(kw_only=True)
@@ -31,9 +33,18 @@ class Attributes(Element):
     mirror: float | None = declare(Mirror, "share of mirrored light", aliases=("mir",), **SHARED)
     glass: Glass | None = declare(Compound, "refracted light", record=Glass, aliases=("ref",), **SHARED)
     checker: Checker | None = declare(Compound, "checkerboard", bare="0.125", **BOARD)
-    texture: str | None = declare(Texture, "picture in the place of the colour", aliases=("txm", "tx"), **SHARED)
-    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)
-    normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **SHARED)
+    texture: str | None = declare(Texture, "picture in the place of the colour", aliases=("txm", "tx"), **MAPPED)
+    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **MAPPED)
+    normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **MAPPED)
+    uv: Placement | None = declare(Compound, "scale, shift and turn of u and v", record=Placement, **SHARED)
+
+    @property
+    def is_mapped(self) -> bool:
+        """Whether something lies on the surface that turns with the shape, such as a texture."""
+        return any(getattr(self, name) is not None for name in MAPS)
+
+
+MAPS = tuple(field.name for field in fields_of(Attributes) if field.mapped)
 
 
 PUBLIC: dict[str, type] = {

@@ -25,13 +25,14 @@ def element_row(kind: type[Element]) -> str:
 def attribute_row(field: Field) -> str:
     """Return the table row of a shared attribute."""
     parts = fields_of(field.record) if isinstance(field, Compound) else ()
-    text = "<br>".join([description(field), *map(field_entry, parts)])
+    entries = (f"`{part.placeholder or part.notation}` {description(part)}" for part in parts)
+    text = "<br>".join([description(field), *entries])
     alone = f", or `{field.keys[0]}` for `{field.keys[0]}:{field.bare}`" if field.bare else ""
     for kind in ELEMENTS.values():
         own = next((other for other in fields_of(kind) if other.name == field.name and other.bare != field.bare), None)
         alone += f" ({kind.plural}: `{field.keys[0]}:{own.bare}`)" if own else ""
-    aliases = ", ".join(f"`{alias}:`" for alias in field.aliases)
-    return f"| `{field.notation}`{alone}; also {aliases} | {field.sort} | {text} |"
+    aliases = "; also " + ", ".join(f"`{alias}:`" for alias in field.aliases) if field.aliases else ""
+    return f"| `{field.notation}`{alone}{aliases} | {field.sort} | {text} |"
 
 
 def name_and_count(kind: type[Element]) -> str:

@@ -11,7 +11,7 @@ length. Numbers are `minirt.shapes.double_double.DoubleDouble`: use + - * /, abs
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from minirt.lanes import Vec, cross, dot
 
 if TYPE_CHECKING:  # for annotations alone: who checks no hits does not load it
     from minirt.shapes.double_double import DoubleDouble
+
+Roll = tuple[Any, Any]  # cosine and sine of a shape's turn about its own axis; their squares add up to exactly 1
 
 
 class Boundary:
@@ -59,21 +61,25 @@ def along_and_off_axis(axis: Vec, p: Vec) -> tuple[DoubleDouble, DoubleDouble]:
     return height, length(p - height * axis)
 
 
-def own_coordinates(axis: Vec, p: Vec) -> tuple[DoubleDouble, DoubleDouble, DoubleDouble]:
+def own_coordinates(axis: Vec, roll: Roll, p: Vec) -> tuple[DoubleDouble, DoubleDouble, DoubleDouble]:
     """Return p in the frame of a shape whose own y axis is `axis`: as `minirt.shapes.basis.basis`, exactly."""
     x, y, z = axis.x, axis.y, axis.z
     sign = np.copysign(1.0, y.high)
     a = -1.0 / (sign + y)
     b = z * x * a
     own_x, own_z = Vec(sign + x * x * a, -x, b), Vec(sign * b, -sign * z, 1.0 + sign * (z * z * a))
-    return dot(own_x, p), dot(axis, p), dot(own_z, p)
+    c, s = roll
+    x, z = dot(own_x, p), dot(own_z, p)
+    return c * x - s * z, dot(axis, p), c * z + s * x
 
 
-def upright_frame(normal: Vec) -> tuple[Vec, Vec]:
+def upright_frame(normal: Vec, roll: Roll) -> tuple[Vec, Vec]:
     """Return right and up of a flat surface, as `minirt.shapes.basis.facing_frame`, exactly."""
     level = (normal.x.high == 0.0) & (normal.z.high == 0.0)
     right = unit(Vec(normal.z + np.where(level, 1.0, 0.0), 0.0 * normal.y, -normal.x))
-    return right, cross(normal, right)
+    up = cross(normal, right)
+    c, s = roll
+    return c * right + s * up, c * up - s * right
 
 
 def facing(way: Vec, height: DoubleDouble) -> DoubleDouble:

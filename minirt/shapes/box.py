@@ -1,9 +1,9 @@
 """Box: `bo x,y,z ax,ay,az w,h,d R,G,B`.
 
 A solid block. `x,y,z` is its centre, `ax,ay,az` its own y axis, and `w,h,d` are its sizes along its own x, y and z
-axes. Its axes are those of the scene, turned no further than it takes to bring y to `ax,ay,az`, or to its opposite.
-Each face has a picture of its own: upright on the four standing faces, with its upper edge towards -z above and z
-below.
+axes. Its axes are those of the scene, turned no further than it takes to bring y to `ax,ay,az`, or to its opposite;
+`roll:degrees` then turns the box about its own y axis. Each face has a picture of its own: upright on the four standing
+faces, with its upper edge towards -z above and z below.
 
     bo 0,1,20  0,1,0  4,2,6  160,160,170    an upright block four wide, two high and six deep
 """
@@ -19,16 +19,17 @@ from minirt.lanes import Vec, copysign, fabs, maximum, minimum, rarely, splat, w
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
-from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.bounds import bounds_of_points, point_along
 from minirt.shapes.flat_start import CLOSE, start_error
-from minirt.shapes.shape import Ball, Position, Shape
+from minirt.shapes.oriented import Axial
+from minirt.shapes.shape import Ball, Position
 from minirt.shapes.shape import Bounds as Corners
 
 
 @record()
-class Box(Shape):
+class Box(Axial):
     """A line `bo` of a scene file."""
 
     code, title, plural = "bo", "box", "boxes"
@@ -39,7 +40,7 @@ class Box(Shape):
 
     def axes(self) -> tuple[Vec, Vec, Vec]:
         """The own x, y and z axes of the box."""
-        z, x, y = basis(self.axis)
+        z, x, y = self.frame()
         return x, y, z
 
     def pack(self) -> PackedBox:
@@ -174,5 +175,5 @@ def mapping(box: PackedBox, point: Vec, normal: Vec) -> tuple[Number, Number, Ve
 
 def boundary(box: Any, point: Vec) -> Boundary:
     """Distances from the three pairs of faces."""
-    x, y, z = own_coordinates(box.axis, point - box.centre)
+    x, y, z = own_coordinates(box.axis, box.roll, point - box.centre)
     return Boundary((abs(x) - box.sizes.x / 2, abs(y) - box.sizes.y / 2, abs(z) - box.sizes.z / 2))

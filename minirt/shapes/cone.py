@@ -16,22 +16,23 @@ from minirt.lanes import Vec, any, fabs, inverse_root, maximum, minimum, rarely,
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
-from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
 from minirt.shapes.cone_start import PARALLEL, apex_shell, close_start
 from minirt.shapes.low_parts import axis_low, quotient_low
+from minirt.shapes.oriented import Axial
 from minirt.shapes.quadric import clamped_minimum, negative_interval
-from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.shape import Ball, Bounds, Position
 from minirt.shapes.start import starts_close, within_shell
 from minirt.shapes.uv_mapping import revolved_mapping
 
 
 @record()
-class Cone(Shape):
+class Cone(Axial):
     """A line `co` of a scene file."""
 
-    code, title, plural, aliases = "co", "cone", "cones", ("cn", "cone")
+    code, title, plural, aliases, revolved = "co", "cone", "cones", ("cn", "cone"), True
     apex: Triple = declare(Point, "apex")
     axis: Triple = declare(Direction, "axis, from the apex to the base")
     diameter: float = declare(Length, "diameter of the base")
@@ -39,7 +40,7 @@ class Cone(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedCone:
-        u, v, w = basis(self.axis)
+        u, v, w = self.frame()
         slope = self.diameter / 2 / self.height
         slope_low = quotient_low((self.diameter,), (2.0, self.height), slope)
         return PackedCone(Position(Vec(*self.apex)), u, v, w, axis_low(self.axis), slope, slope_low, self.height)

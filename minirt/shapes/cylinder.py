@@ -15,13 +15,14 @@ from minirt.lanes import Vec, any, copysign, fabs, maximum, minimum, rarely, spl
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
-from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
 from minirt.shapes.compensated import minus, two_product, value
 from minirt.shapes.low_parts import axis_low
+from minirt.shapes.oriented import Axial
 from minirt.shapes.quadric import clamped_minimum, negative_interval
-from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.shape import Ball, Bounds, Position
 from minirt.shapes.start import (
     CLOSE,
     axial,
@@ -36,10 +37,10 @@ from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
 @record()
-class Cylinder(Shape):
+class Cylinder(Axial):
     """A line `cy` of a scene file."""
 
-    code, title, plural = "cy", "cylinder", "cylinders"
+    code, title, plural, revolved = "cy", "cylinder", "cylinders", True
     centre: Triple = declare(Point, "centre, half-way up")
     axis: Triple = declare(Direction, "axis")
     diameter: float = declare(Length, "diameter")
@@ -47,7 +48,7 @@ class Cylinder(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedCylinder:
-        u, v, w = basis(self.axis)
+        u, v, w = self.frame()
         return PackedCylinder(
             Position(Vec(*self.centre)), u, v, w, axis_low(self.axis), self.diameter / 2, self.height / 2
         )

@@ -15,26 +15,26 @@ from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
-from minirt.shapes.basis import facing_frame
 from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.bounds import bounds_of_disc
 from minirt.shapes.flat_start import least_t
+from minirt.shapes.oriented import Flat
 from minirt.shapes.plane import PARALLEL
-from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.shape import Ball, Bounds, Position
 
 
 @record()
-class Disc(Shape):
+class Disc(Flat):
     """A line `di` of a scene file."""
 
-    code, title, plural = "di", "disc", "discs"
+    code, title, plural, revolved = "di", "disc", "discs", True
     centre: Triple = declare(Point, "centre")
     normal: Triple = declare(Direction, "normal")
     diameter: float = declare(Length, "diameter")
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedDisc:
-        right, up = facing_frame(self.normal)
+        right, up, _ = self.frame()
         return PackedDisc(Position(Vec(*self.centre)), right, up, Vec(*self.normal), self.diameter / 2)
 
     def balls(self) -> tuple[Ball, ...]:

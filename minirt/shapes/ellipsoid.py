@@ -2,7 +2,8 @@
 
 A solid ellipsoid. `x,y,z` is its centre, `ax,ay,az` its own y axis, and `w,h,d` are its diameters along its own x, y
 and z axes. As for a box these are the axes of the scene, turned no further than it takes to bring y to `ax,ay,az`, or
-to its opposite. A picture lies on it as on a sphere that is stretched together with it.
+to its opposite, and `roll:degrees` then turns it about its own y axis. A picture lies on it as on a sphere that is
+stretched together with it.
 
     el 0,1,20  0,1,0  6,2,4  200,120,160    a pebble six wide, two high and four deep
 """
@@ -18,13 +19,14 @@ from minirt.lanes import Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_ro
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
-from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, own_coordinates
 from minirt.shapes.bounds import point_along
 from minirt.shapes.compensated import along, divided, minus, offset, plus, times, value
 from minirt.shapes.low_parts import basis_low
+from minirt.shapes.oriented import Axial
 from minirt.shapes.quadric import negative_interval
-from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.shape import Ball, Bounds, Position
 from minirt.shapes.start import CLOSE, ROUNDING, position_error, splat_vec, zero_within
 from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns
 
@@ -32,7 +34,7 @@ SHORTEST = float_info.min  # semi-axis, in scene units: half of a subnormal size
 
 
 @record()
-class Ellipsoid(Shape):
+class Ellipsoid(Axial):
     """A line `el` of a scene file."""
 
     code, title, plural = "el", "ellipsoid", "ellipsoids"
@@ -42,9 +44,9 @@ class Ellipsoid(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedEllipsoid:
-        z, x, y = basis(self.axis)
+        z, x, y = self.frame()
         a, b, c = self.semi_axes()
-        z_low, x_low, y_low = basis_low(self.axis, z, x, y)
+        z_low, x_low, y_low = basis_low(self.axis, self.roll, z, x, y)
         centre, semi, scale = Position(Vec(*self.centre)), Vec(a, b, c), Vec(1 / a, 1 / b, 1 / c)
         return PackedEllipsoid(centre, x, y, z, x_low, y_low, z_low, semi, scale)
 
@@ -54,7 +56,7 @@ class Ellipsoid(Shape):
 
     def axes(self) -> list[tuple[float, Triple]]:
         """The semi-axes in ascending order, each with its unit direction."""
-        z, x, y = basis(self.axis)
+        z, x, y = self.frame()
         directions = ((axis.x, axis.y, axis.z) for axis in (x, y, z))
         return sorted(zip(self.semi_axes(), directions, strict=True))
 
@@ -178,6 +180,6 @@ def scaled(v: Vec, scale: Vec) -> Vec:
 
 def boundary(ellipsoid: Any, point: Vec) -> Boundary:
     """(x / a)^2 + (y / b)^2 + (z / c)^2 - 1 along its own axes, for the semi-axes a, b and c."""
-    x, y, z = own_coordinates(ellipsoid.axis, point - ellipsoid.centre)
+    x, y, z = own_coordinates(ellipsoid.axis, ellipsoid.roll, point - ellipsoid.centre)
     x, y, z = 2 * x / ellipsoid.sizes.x, 2 * y / ellipsoid.sizes.y, 2 * z / ellipsoid.sizes.z
     return Boundary((x * x + y * y + z * z - 1.0,))

@@ -18,13 +18,14 @@ from minirt.lanes import Vec, any, copysign, fabs, inverse_root, maximum, minimu
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
-from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
 from minirt.shapes.compensated import minus, times, two_product, value
 from minirt.shapes.low_parts import axis_low, root_low
+from minirt.shapes.oriented import Axial
 from minirt.shapes.quadric import clamped_minimum, negative_interval
-from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.shape import Ball, Bounds, Position
 from minirt.shapes.start import (
     axial,
     beside_side,
@@ -38,10 +39,10 @@ from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
 @record()
-class Hyperboloid(Shape):
+class Hyperboloid(Axial):
     """A line `hy` of a scene file."""
 
-    code, title, plural = "hy", "hyperboloid", "hyperboloids"
+    code, title, plural, revolved = "hy", "hyperboloid", "hyperboloids", True
     centre: Triple = declare(Point, "centre, half-way up")
     axis: Triple = declare(Direction, "axis")
     waist: float = declare(Length, "diameter at the centre, at most that of the ends", initial=0.5)
@@ -55,7 +56,7 @@ class Hyperboloid(Shape):
         return "waist", f"must be at most the diameter, {spelled(self.diameter)}, got {spelled(self.waist)}"
 
     def pack(self) -> PackedHyperboloid:
-        u, v, w = basis(self.axis)
+        u, v, w = self.frame()
         thinner, thicker = self.diameter - self.waist, self.diameter + self.waist
         slope = root(thinner / self.height) * root(thicker / self.height)
         slope_low = root_low(self.diameter, self.waist, self.height, slope)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import copysign, inf, isfinite, isqrt, ldexp, prod
 
-from minirt.fields import Triple
+from minirt.fields import Triple, cos_and_sin
 from minirt.lanes import Vec
 
 BITS = 160  # after the binary point
@@ -40,7 +40,14 @@ def axis_low(axis: Triple) -> Vec:
     return vec_low(exact_axis(axis), Vec(*axis))
 
 
-def basis_low(axis: Triple, u: Vec, v: Vec, w: Vec) -> tuple[Vec, Vec, Vec]:
+def exact_turn(degrees: float) -> tuple[int, int]:
+    """The rounded cosine and sine of an angle, scaled so that their squares add up to exactly 1, in units of 2^-160."""
+    c, s = (fixed(part) for part in cos_and_sin(degrees))
+    length = isqrt(c * c + s * s)
+    return c * ONE // length, s * ONE // length
+
+
+def basis_low(axis: Triple, roll: float, u: Vec, v: Vec, w: Vec) -> tuple[Vec, Vec, Vec]:
     """What the vectors u, v, w of `minirt.shapes.basis.basis` lack."""
     x, y, z = exact_axis(axis)
     sign = int(copysign(1.0, axis[1]))
@@ -48,7 +55,15 @@ def basis_low(axis: Triple, u: Vec, v: Vec, w: Vec) -> tuple[Vec, Vec, Vec]:
     b = z * x * a // (ONE * ONE)
     exact_u = sign * b, -sign * z, ONE + sign * z * z * a // (ONE * ONE)
     exact_v = sign * ONE + x * x * a // (ONE * ONE), -x, b
-    return vec_low(exact_u, u), vec_low(exact_v, v), vec_low((x, y, z), w)
+    c, s = exact_turn(roll)
+    rolled_u, rolled_v = combined(c, exact_u, s, exact_v), combined(c, exact_v, -s, exact_u)
+    return vec_low(rolled_u, u), vec_low(rolled_v, v), vec_low((x, y, z), w)
+
+
+def combined(a: int, u: tuple[int, int, int], b: int, v: tuple[int, int, int]) -> tuple[int, int, int]:
+    """Return a u + b v, in units of 2^-160."""
+    x, y, z = ((a * p + b * q) // ONE for p, q in zip(u, v, strict=True))
+    return x, y, z
 
 
 def product(factors: tuple[float, ...]) -> tuple[int, int]:

@@ -3,13 +3,15 @@
 Triangles from a Wavefront .obj file, whose path begins at the folder of the scene file. The origin of the file is at
 `x,y,z` in the scene, and lengths of the file are multiplied by `scale`. Triangles that share corners have no gap
 between them. Normals of the file make the surface look smooth (Phong shading), and its texture coordinates place
-pictures.
+pictures. With `axis:ax,ay,az` the file's y axis points there, turned as for a box, and with `roll:degrees` the mesh is
+turned about it.
 
     ob meshes/knot.obj 0,1,20 2.5 220,180,90    a knot, two and a half times as large as in its file
 """
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,7 +24,8 @@ from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes import pyramid, triangle
 from minirt.shapes.boundary import Boundary, facing, triangle_boundary
-from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.oriented import Turnable
+from minirt.shapes.shape import Ball, Bounds, Position
 from minirt.shapes.triangle_normal import plane_normals
 
 BARYCENTRIC = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)  # u and v at the three corners where the file has none
@@ -30,7 +33,7 @@ OPPOSED = 1e-3  # squared length of a mean of unit normals; below it they cancel
 
 
 @record()
-class Mesh(Shape):
+class Mesh(Turnable):
     """A line `ob` of a scene file."""
 
     code, title, plural, aliases, batched = "ob", "mesh", "meshes", ("obj",), True
@@ -46,7 +49,7 @@ class Mesh(Shape):
             super().__post_init__()  # now that its size is known
 
     def conflict(self) -> tuple[str, str] | None:
-        if self.file.triangles is None or np.abs(self.placed(self.triangles.box)).max() <= FARTHEST:
+        if self.file.triangles is None or np.abs(self.box).max() <= FARTHEST:
             return None
         return "scale", f"must not be so large that the mesh reaches beyond {FARTHEST:g}"
 
@@ -65,19 +68,36 @@ class Mesh(Shape):
 
     def placed(self, points: np.ndarray) -> np.ndarray:
         """Transform points of the file into the scene. Equal points stay equal."""
-        placed: np.ndarray = self.scale * points + self.position
+        placed: np.ndarray = self.scale * self.turned(points) + self.position
         return placed
+
+    def turned(self, vectors: np.ndarray) -> np.ndarray:
+        """Turn vectors of the file, (n, 3), as the mesh is turned. Equal vectors stay equal."""
+        if not self.is_turned:
+            return vectors
+        own_z, own_x, own_y = (np.array((axis.x, axis.y, axis.z)) for axis in self.frame())
+        x, y, z = (vectors[:, i : i + 1] for i in range(3))
+        turned: np.ndarray = x * own_x + y * own_y + z * own_z  # no matrix product, which may round row by row
+        return turned
+
+    @cached_property
+    def box(self) -> np.ndarray:
+        """Bounding box in the scene: least and greatest corner, (2, 3)."""
+        if not self.is_turned:
+            return self.placed(self.triangles.box)
+        placed = self.placed(self.triangles.points[self.triangles.used])
+        return np.stack([placed.min(axis=0), placed.max(axis=0)])
 
     def rows(self) -> np.ndarray:
         """The packed triangles, (m, 27): the numbers of one `PackedMeshTriangle` a row."""
         triangles = self.triangles
         rows = np.zeros((len(triangles), 27))
         rows[:, :9].reshape(-1, 3, 3)[...] = self.placed(triangles.points)[triangles.corners]
-        rows[:, 9:12] = plane_normals(rows[:, :9], triangles.flat_normals)
+        rows[:, 9:12] = plane_normals(rows[:, :9], self.turned(triangles.flat_normals))
         if triangles.normals is None:
             rows[:, 12:21].reshape(-1, 3, 3)[...] = rows[:, None, 9:12]
         else:
-            rows[:, 12:21] = triangles.normals.reshape(-1, 9)
+            rows[:, 12:21] = self.turned(triangles.normals.reshape(-1, 3)).reshape(-1, 9)
         rows[:, 21:] = BARYCENTRIC if triangles.uvs is None else triangles.uvs.reshape(-1, 6)
         return rows
 
@@ -92,7 +112,7 @@ class Mesh(Shape):
         return tuple(((u, v, w), 0.0) for u in (a, x) for v in (b, y) for w in (c, z))
 
     def bounds(self) -> Bounds:
-        low, high = self.placed(self.triangles.box).tolist()
+        low, high = self.box.tolist()
         return tuple(low), tuple(high)
 
 

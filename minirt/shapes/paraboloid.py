@@ -17,13 +17,14 @@ from minirt.lanes import Vec, any, fabs, inverse_root, maximum, minimum, rarely,
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
-from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis
 from minirt.shapes.bounds import bounds_of_disc, disc_extents, point_along, union_of_bounds
 from minirt.shapes.compensated import minus, times, value
 from minirt.shapes.low_parts import axis_low, quotient_low
+from minirt.shapes.oriented import Axial
 from minirt.shapes.quadric import clamped_minimum, negative_interval
-from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.shape import Ball, Bounds, Position
 from minirt.shapes.start import (
     axial,
     beside_side,
@@ -37,10 +38,10 @@ from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
 @record()
-class Paraboloid(Shape):
+class Paraboloid(Axial):
     """A line `pa` of a scene file."""
 
-    code, title, plural = "pa", "paraboloid", "paraboloids"
+    code, title, plural, revolved = "pa", "paraboloid", "paraboloids", True
     vertex: Triple = declare(Point, "vertex")
     axis: Triple = declare(Direction, "axis, along which it opens")
     diameter: float = declare(Length, "diameter of the rim")
@@ -48,7 +49,7 @@ class Paraboloid(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedParaboloid:
-        u, v, w = basis(self.axis)
+        u, v, w = self.frame()
         radius = self.diameter / 2
         focal = radius * (radius / self.height) / 2
         focal_low = quotient_low((radius, radius), (2.0, self.height), focal)

@@ -2,7 +2,8 @@
 
 An infinite plane, seen from both sides: all points p for which `p - (x,y,z)` is perpendicular to the normal `nx,ny,nz`.
 Pictures are one unit wide and high and repeated without end, the lower left corner of one at `x,y,z`. They stand
-upright; on a floor u, to the right, runs along x and v, upwards, along -z, on a ceiling along x and z.
+upright; on a floor u, to the right, runs along x and v, upwards, along -z, on a ceiling along x and z. `uv:0.25,0.25`
+makes them four units wide and high, `roll:degrees` turns them about the normal.
 
     pl 0,-1,0  0,1,0  200,200,200    a floor one unit below the origin
 """
@@ -18,18 +19,18 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.materials import BOARD, Checker, Compound
 from minirt.records import record
-from minirt.shapes.basis import facing_frame
 from minirt.shapes.boundary import Boundary
-from minirt.shapes.shape import Ball, Position, Shape
+from minirt.shapes.oriented import Flat
+from minirt.shapes.shape import Ball, Position
 
 PARALLEL = 4  # error of the scalar product of two unit vectors, in unit roundoffs
 
 
 @record()
-class Plane(Shape):
+class Plane(Flat):
     """A line `pl` of a scene file."""
 
-    code, title, plural, infinite = "pl", "plane", "planes", True
+    code, title, plural, infinite, revolved = "pl", "plane", "planes", True, True
     point: Triple = declare(Point, "a point of the plane")
     normal: Triple = declare(Direction, "normal")
     colour: Triple = declare(Colour, "colour")
@@ -37,7 +38,7 @@ class Plane(Shape):
     checker: Checker | None = declare(Compound, "checkerboard", bare="1", **BOARD)
 
     def pack(self) -> PackedPlane:
-        right, up = facing_frame(self.normal)
+        right, up, _ = self.frame()
         return PackedPlane(Position(Vec(*self.point)), Vec(*self.normal), right, up)
 
     def balls(self) -> tuple[Ball, ...]:

@@ -73,6 +73,11 @@ class Shape(Attributes):
     def pack(self) -> Any:
         """Convert the shape to its packed form for the kernel: the NamedTuple of its `Kind`."""
 
+    def map_frame(self) -> tuple[Vec, Vec, Vec] | None:
+        """The frame in which `mapping` computes where it takes the directions z, x and y of the scene for the shape's
+        own; None where the packed form says how the shape is turned."""
+        return None
+
     @abstractmethod
     def balls(self) -> tuple[Ball, ...]:
         """Bounding balls: the shape lies in their convex hull. All shapes of a kind have as many; an infinite one has

@@ -1,7 +1,8 @@
 """Sphere: `sp x,y,z diameter R,G,B`.
 
 A solid ball: `x,y,z` is its centre. A picture lies around it once like a map of the earth, in equal steps of longitude
-and latitude (equirectangular projection): its upper edge at the pole +y, its middle towards -z.
+and latitude (equirectangular projection): its upper edge at the pole +y, its middle towards -z. `axis:ax,ay,az` puts
+the upper edge elsewhere, and `roll:degrees` turns the picture about that axis.
 
     sp 0,0,20  12.6  10,0,255       a blue ball 20 units along z from the origin
 """
@@ -17,7 +18,8 @@ from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.compensated import power_of_point
-from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.oriented import Frame, Turnable
+from minirt.shapes.shape import Ball, Bounds, Position
 from minirt.shapes.start import position_error, zero_within
 from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns
 
@@ -26,16 +28,23 @@ ROUNDING = 16  # unit roundoffs by which |f|^2 / radius^2 - 1 may be off, and mo
 
 
 @record()
-class Sphere(Shape):
+class Sphere(Turnable):
     """A line `sp` of a scene file."""
 
-    code, title, plural = "sp", "sphere", "spheres"
+    code, title, plural, revolved = "sp", "sphere", "spheres", True
     centre: Triple = declare(Point, "centre")
     diameter: float = declare(Length, "diameter")
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedSphere:
         return PackedSphere(Position(Vec(*self.centre)), self.diameter / 2)
+
+    @property
+    def shows_axis(self) -> bool:
+        return self.is_mapped
+
+    def map_frame(self) -> Frame | None:
+        return self.frame() if self.is_turned else None
 
     def balls(self) -> tuple[Ball, ...]:
         return ((self.centre, self.diameter / 2),)

@@ -1,8 +1,9 @@
 """Square: `sq x,y,z nx,ny,nz side R,G,B`.
 
 A flat square, seen from both sides. `x,y,z` is its centre and `nx,ny,nz` its normal. It stands upright: one pair of
-edges is horizontal; on a floor and a ceiling the edges are along x and z. A picture fills it once, upright for
-a viewer who faces it; on a floor its upper edge is towards -z, on a ceiling towards z.
+edges is horizontal; on a floor and a ceiling the edges are along x and z. `roll:degrees` turns it about its normal. A
+picture fills it once, upright for a viewer who faces it; on a floor its upper edge is towards -z, on a ceiling towards
+z.
 
     sq 0,2,20  0,0,-1  4  200,200,120    a board four units wide and high that faces the origin
 """
@@ -16,16 +17,16 @@ from minirt.lanes import Vec, dot, fabs, unit_roundoff
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
-from minirt.shapes.basis import facing_frame
 from minirt.shapes.boundary import Boundary, upright_frame
 from minirt.shapes.bounds import bounds_of_points, point_along
 from minirt.shapes.flat_start import least_t
+from minirt.shapes.oriented import Flat
 from minirt.shapes.plane import PARALLEL
-from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.shape import Ball, Bounds, Position
 
 
 @record()
-class Square(Shape):
+class Square(Flat):
     """A line `sq` of a scene file."""
 
     code, title, plural = "sq", "square", "squares"
@@ -35,12 +36,12 @@ class Square(Shape):
     colour: Triple = declare(Colour, "colour")
 
     def pack(self) -> PackedSquare:
-        right, up = facing_frame(self.normal)
+        right, up, _ = self.frame()
         return PackedSquare(Position(Vec(*self.centre)), right, up, Vec(*self.normal), self.side / 2)
 
     def corners(self) -> tuple[Triple, ...]:
         half = self.side / 2
-        right, up = ((axis.x, axis.y, axis.z) for axis in facing_frame(self.normal))
+        right, up, _ = ((axis.x, axis.y, axis.z) for axis in self.frame())
         return tuple(
             point_along(point_along(self.centre, right, x), up, y) for x in (-half, half) for y in (-half, half)
         )
@@ -103,6 +104,6 @@ def mapping(square: PackedSquare, point: Vec, normal: Vec) -> tuple[Number, Numb
 def boundary(square: Any, point: Vec) -> Boundary:
     """Height above the square, and distances beyond its two pairs of edges."""
     p = point - square.centre
-    right, up = upright_frame(square.normal)
+    right, up = upright_frame(square.normal, square.roll)
     half = square.side / 2
     return Boundary((dot(square.normal, p),), (abs(dot(right, p)) - half, abs(dot(up, p)) - half))

@@ -17,10 +17,11 @@ from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rarely, splat, s
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
-from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
 from minirt.shapes.bounds import bounds_of_disc, point_along
-from minirt.shapes.shape import Ball, Bounds, Position, Shape
+from minirt.shapes.oriented import Axial
+from minirt.shapes.shape import Ball, Bounds, Position
 from minirt.shapes.start import position_error
 from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns, longitude
 
@@ -30,10 +31,10 @@ CORNERS = 8  # of the polygon around the circle in the middle of the tube
 
 
 @record()
-class Torus(Shape):
+class Torus(Axial):
     """A line `to` of a scene file."""
 
-    code, title, plural = "to", "torus", "tori"
+    code, title, plural, revolved = "to", "torus", "tori", True
     centre: Triple = declare(Point, "centre")
     axis: Triple = declare(Direction, "axis")
     diameter: float = declare(Length, "diameter of the circle in the middle of the tube")
@@ -46,11 +47,11 @@ class Torus(Shape):
         return "tube", f"must be at most the diameter, {spelled(self.diameter)}, got {spelled(self.tube)}"
 
     def pack(self) -> PackedTorus:
-        u, v, w = basis(self.axis)
+        u, v, w = self.frame()
         return PackedTorus(Position(Vec(*self.centre)), u, v, w, self.diameter / 2, self.tube / 2)
 
     def balls(self) -> tuple[Ball, ...]:
-        u, v, _ = basis(self.axis)
+        u, v, _ = self.frame()
         reach = self.diameter / 2 / cos(pi / CORNERS)
         turns = [2 * pi * corner / CORNERS for corner in range(CORNERS)]
         directions = [cos(turn) * u + sin(turn) * v for turn in turns]

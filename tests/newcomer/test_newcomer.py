@@ -60,7 +60,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     add_line(
         registry,
-        '    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)',
+        '    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **MAPPED)',
         '    sheen: Sheen | None = declare(Compound, "soft highlight", record=Sheen, **SHARED)',
     )
     add_line(

@@ -17,5 +17,5 @@ def _(box: Box, swell: Any = 0) -> Body:
         return lambda p: dot(minus(p, centre), axis) - half - swell
 
     halves = [mpfr(size) / 2 for size in box.sizes]
-    pairs = [(v, h) for v, h in zip(own_axes(box.axis), halves, strict=True)]
+    pairs = [(v, h) for v, h in zip(own_axes(box.axis, box.roll), halves, strict=True)]
     return Body(tuple(face([side * x for x in v], h) for v, h in pairs for side in (1, -1)))

@@ -13,7 +13,7 @@ from tests.oracle.vectors import Vector, dot, exact, minus, own_axes
 def _(ellipsoid: Ellipsoid, swell: Any = 0) -> Body:
     centre = exact(ellipsoid.centre)
     semi_axes = [mpfr(size) / 2 + swell for size in ellipsoid.sizes]
-    axes = list(zip(own_axes(ellipsoid.axis), semi_axes, strict=True))
+    axes = list(zip(own_axes(ellipsoid.axis, ellipsoid.roll), semi_axes, strict=True))
 
     def wall(p: Vector) -> Any:
         out = minus(p, centre)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from gmpy2 import get_context, mpfr, sqrt
+from gmpy2 import const_pi, cos, get_context, mpfr, sin, sqrt
 
 Vector = list[Any]
 
@@ -38,9 +38,9 @@ def cross(a: Vector, b: Vector) -> Vector:
     return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
-def own_axes(axis: Iterable[Any]) -> list[Vector]:
+def own_axes(axis: Iterable[Any], roll: float) -> list[Vector]:
     """The x, y and z axes of a shape whose own y axis is `axis`: those of the scene, turned about x and z as little as
-    brings y to the axis or to its opposite."""
+    brings y to the axis or to its opposite, and then about y by `roll` degrees."""
     y = unit(axis)
     sign = 1 if y[1] >= 0 else -1
     # Half a turn about the bisector of the axis and the scene's y, or its opposite, brings that y to the axis, and x
@@ -50,4 +50,13 @@ def own_axes(axis: Iterable[Any]) -> list[Vector]:
     def turned(v: Vector) -> Vector:
         return [2 * dot(v, middle) * m - x for x, m in zip(v, middle, strict=True)]
 
-    return [turned(exact((1, 0, 0))), y, turned(exact((0, 0, 1)))]
+    x = turned(exact((1, 0, 0)))
+    z, x = rolled(cross(x, y), x, roll)
+    return [x, y, z]
+
+
+def rolled(a: Vector, b: Vector, degrees: float) -> tuple[Vector, Vector]:
+    """Turn two perpendicular unit vectors in their plane, from a towards b."""
+    angle = mpfr(degrees) * const_pi() / 180
+    c, s = cos(angle), sin(angle)
+    return [c * x + s * y for x, y in zip(a, b, strict=True)], [c * y - s * x for x, y in zip(a, b, strict=True)]

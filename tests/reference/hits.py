@@ -21,9 +21,9 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
-from tests.reference.normals import scaled_axes
+from tests.reference.normals import right_and_up_on, scaled_axes
 from tests.reference.revolved import profile
-from tests.reference.vectors import Array, dot, length, own_x_and_z, right_and_up
+from tests.reference.vectors import Array, dot, length, own_x_and_z
 
 SAME_SURFACE = 1e-10  # relative difference of distances below which two surfaces count as coincident
 
@@ -99,7 +99,7 @@ def _(cylinder: Cylinder, origins: Array, directions: Array) -> list[Array]:
 
 @crossings.register(Box)
 def _(box: Box, origins: Array, directions: Array) -> list[Array]:
-    x, z = own_x_and_z(np.array(box.axis))
+    x, z = own_x_and_z(np.array(box.axis), box.roll)
     y = np.cross(z, x)
     to_centre = np.array(box.centre) - origins
     slabs = [
@@ -171,7 +171,7 @@ def _(sheet: Square | Disc, origins: Array, directions: Array) -> list[Array]:
         if isinstance(sheet, Disc):
             inside = length(p) <= sheet.diameter / 2
         else:
-            inside = np.max([np.abs(dot(p, edge)) for edge in right_and_up(-normal)], axis=0) <= sheet.side / 2
+            inside = np.max([np.abs(dot(p, edge)) for edge in right_and_up_on(sheet)], axis=0) <= sheet.side / 2
     return [np.where(inside, t, np.nan)]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from minirt.shapes.mesh import Mesh
 from tests.reference.hits import crossings
 from tests.reference.normals import normals, shading
-from tests.reference.vectors import Array, dot, length
+from tests.reference.vectors import Array, dot, length, own_x_and_z
 
 EDGE = 1e-12  # tolerance of barycentric coordinates, so that neighbours have no gap
 
@@ -18,10 +18,17 @@ EDGE = 1e-12  # tolerance of barycentric coordinates, so that neighbours have no
 @lru_cache(4)
 def corners_and_balls(mesh: Mesh) -> tuple[Array, Array]:
     """Corners of the triangles, (m, 3, 3), and a bounding ball of each, (m, 4)."""
-    corners = np.array(mesh.position) + mesh.scale * mesh.triangles.points[mesh.triangles.corners]
+    corners = np.array(mesh.position) + mesh.scale * mesh.triangles.points[mesh.triangles.corners] @ own_axes(mesh)
     middles = corners.mean(axis=1)
     radii = length(corners - middles[:, None]).max(axis=1)
     return corners, np.concatenate([middles, 1.001 * radii[:, None]], axis=1)
+
+
+def own_axes(mesh: Mesh) -> Array:
+    """The own x, y and z axes of a mesh, as the rows of a matrix."""
+    y = np.array(mesh.axis)
+    x, z = own_x_and_z(y, mesh.roll)
+    return np.stack([x, y, z])
 
 
 @crossings.register
@@ -92,5 +99,7 @@ def _(mesh: Mesh, points: Array, normal: Array) -> Array:
     area = dot(np.cross(b - a, c - a), normal)
     of_b = dot(np.cross(points - a, c - a), normal) / area
     of_c = dot(np.cross(b - a, points - a), normal) / area
-    blended = np.einsum("ij,ijk->ik", np.stack([1 - of_b - of_c, of_b, of_c], axis=1), corner_normals[owner])
+    blended = np.einsum(
+        "ij,ijk->ik", np.stack([1 - of_b - of_c, of_b, of_c], axis=1), corner_normals[owner] @ own_axes(mesh)
+    )
     return blended / length(blended)[:, None]

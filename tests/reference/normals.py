@@ -20,7 +20,7 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from tests.reference.revolved import profile
-from tests.reference.vectors import Array, dot, length, own_x_and_z, unit
+from tests.reference.vectors import Array, dot, length, own_x_and_z, right_and_up, turned, unit
 
 
 @singledispatch
@@ -62,13 +62,13 @@ def _(ellipsoid: Ellipsoid, points: Array) -> Array:
 def scaled_axes(ellipsoid: Ellipsoid) -> Array:
     """The own x, y and z axes of an ellipsoid, each divided by its semi-axis, as the rows of a matrix (3, 3)."""
     y = np.array(ellipsoid.axis)
-    _, z = own_x_and_z(y)
+    _, z = own_x_and_z(y, ellipsoid.roll)
     return np.stack([np.cross(y, z), y, z]) / (np.array(ellipsoid.sizes)[:, None] / 2)
 
 
 @normals.register(Box)
 def _(box: Box, points: Array) -> Array:
-    x, z = own_x_and_z(np.array(box.axis))
+    x, z = own_x_and_z(np.array(box.axis), box.roll)
     axes = np.stack([x, np.cross(z, x), z])
     p = (points - np.array(box.centre)) @ axes.T
     face = np.argmax(np.abs(p) - np.array(box.sizes) / 2, axis=-1)
@@ -102,3 +102,10 @@ def _(torus: Torus, points: Array) -> Array:
     p = points - np.array(torus.centre)
     ring = unit(p - dot(p, axis)[..., None] * axis) * torus.diameter / 2
     return unit(p - ring)
+
+
+def right_and_up_on(flat: Plane | Square | Disc) -> tuple[Array, Array]:
+    """Right and up of a picture on a flat shape."""
+    normal = np.array(flat.normal)
+    right, up = right_and_up(-normal)
+    return turned(right, normal, flat.roll), turned(up, normal, flat.roll)

@@ -11,7 +11,7 @@ from PIL import Image
 from minirt.scene import Scene
 from minirt.shapes.shape import Shape
 from tests.reference.normals import shading
-from tests.reference.uv_mapping import surface_point
+from tests.reference.uv_mapping import placed, surface_point
 from tests.reference.vectors import Array, dot, length, rgb, unit
 
 
@@ -45,7 +45,7 @@ def colour_and_normal(scene: Scene, shape: Shape, points: Array, normal: Array) 
     colour, normal = np.broadcast_to(rgb(shape.colour), points.shape), shading(shape, points, normal)
     if not (shape.checker or shape.texture or shape.bump or shape.normal_map):
         return colour, normal
-    at = surface_point(shape, points)
+    at = placed(surface_point(shape, points), shape.uv)
     if shape.texture:
         colour = bilinear(picture(scene.beside(shape.texture)), at.u, at.v)
     if shape.checker:

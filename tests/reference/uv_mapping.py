@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from minirt.materials import Placement
 from minirt.shapes.box import Box
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
@@ -20,9 +21,9 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
-from tests.reference.normals import normals, scaled_axes
+from tests.reference.normals import normals, right_and_up_on, scaled_axes
 from tests.reference.revolved import profile
-from tests.reference.vectors import Array, dot, length, own_x_and_z, right_and_up, unit
+from tests.reference.vectors import Array, dot, length, own_x_and_z, unit
 
 
 class SurfacePoint(NamedTuple):
@@ -40,6 +41,18 @@ def surface_point(shape: Shape, points: Array) -> SurfacePoint:
     raise TypeError(f"the reference renderer knows no {shape.title}")
 
 
+def placed(at: SurfacePoint, uv: Placement | None) -> SurfacePoint:
+    """Coordinates on a picture that is scaled, turned and shifted, by the inverse of that map."""
+    if uv is None:
+        return at
+    angle = np.radians(uv.turn)
+    right, up = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    edges = np.stack([right / uv.scale_u, up / uv.scale_v], axis=-1)  # of the picture, in the surface's u and v
+    u, v = np.linalg.solve(edges, np.stack([at.u - uv.shift_u, at.v - uv.shift_v]).reshape(2, -1))
+    tangents = (edge[0] * at.along_u + edge[1] * at.along_v for edge in edges.T)
+    return SurfacePoint(u.reshape(at.u.shape), v.reshape(at.u.shape), *tangents)
+
+
 def flat_point(points: Array, corner: Array, right: Array, up: Array) -> SurfacePoint:
     """Coordinates on a rectangular picture with this lower left corner and these edges, perpendicular to each other."""
     p = points - corner
@@ -49,14 +62,14 @@ def flat_point(points: Array, corner: Array, right: Array, up: Array) -> Surface
 
 @surface_point.register
 def _(plane: Plane, points: Array) -> SurfacePoint:
-    return flat_point(points, np.array(plane.point), *right_and_up(-np.array(plane.normal)))
+    return flat_point(points, np.array(plane.point), *right_and_up_on(plane))
 
 
 @surface_point.register(Square)
 @surface_point.register(Disc)
 def _(sheet: Square | Disc, points: Array) -> SurfacePoint:
     size = sheet.diameter if isinstance(sheet, Disc) else sheet.side
-    right, up = right_and_up(-np.array(sheet.normal))
+    right, up = right_and_up_on(sheet)
     return flat_point(points, np.array(sheet.centre) - size * (right + up) / 2, size * right, size * up)
 
 
@@ -73,7 +86,7 @@ def _(triangle: Triangle, points: Array) -> SurfacePoint:
 @surface_point.register
 def _(box: Box, points: Array) -> SurfacePoint:
     y = np.array(box.axis)
-    _, z = own_x_and_z(y)
+    _, z = own_x_and_z(y, box.roll)
     x = np.cross(y, z)
     wide, tall, deep = box.sizes
     normal = normals(box, points)
@@ -98,15 +111,17 @@ def longitude(p: Array, up: Array, middle: Array) -> Array:
 
 @surface_point.register
 def _(sphere: Sphere, points: Array) -> SurfacePoint:
-    up = np.array([0.0, 1.0, 0.0])
+    up = np.array(sphere.axis)
+    _, south = own_x_and_z(up, sphere.roll)
     p = points - np.array(sphere.centre)
     normal = unit(p)
-    latitude = np.arcsin(np.clip(normal[..., 1], -1, 1))
-    north = up - normal[..., 1:2] * normal
+    height = dot(normal, up)
+    latitude = np.arcsin(np.clip(height, -1, 1))
+    north = up - height[..., None] * normal
     far = length(north)[..., None]
     along_v = np.where(far > 0, np.pi * sphere.diameter / 2 * north / np.where(far > 0, far, 1), 0)
     around = 2 * np.pi * np.cross(up, p)
-    return SurfacePoint(longitude(p, up, np.array([0.0, 0.0, -1.0])), 0.5 + latitude / np.pi, around, along_v)
+    return SurfacePoint(longitude(p, up, -south), 0.5 + latitude / np.pi, around, along_v)
 
 
 @surface_point.register
@@ -121,7 +136,7 @@ def _(ellipsoid: Ellipsoid, points: Array) -> SurfacePoint:
 @surface_point.register
 def _(torus: Torus, points: Array) -> SurfacePoint:
     axis = np.array(torus.axis)
-    _, z = own_x_and_z(axis)
+    _, z = own_x_and_z(axis, torus.roll)
     p = points - np.array(torus.centre)
     outwards = unit(p - dot(p, axis)[..., None] * axis)
     normal = normals(torus, points)
@@ -138,7 +153,7 @@ def _(torus: Torus, points: Array) -> SurfacePoint:
 @surface_point.register(Hyperboloid)
 def _(shape: Cone | Cylinder | Paraboloid | Hyperboloid, points: Array) -> SurfacePoint:
     form = profile(shape)
-    _, z = own_x_and_z(form.axis)
+    _, z = own_x_and_z(form.axis, shape.roll)
     axis = -form.axis if isinstance(shape, Cone) else form.axis  # a cone has its apex above
     across_axis = np.cross(axis, z)
     p = points - form.origin

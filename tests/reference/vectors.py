@@ -34,9 +34,15 @@ def right_and_up(forward: Array) -> tuple[Array, Array]:
     return right, np.cross(right, forward)
 
 
-def own_x_and_z(axis: Array) -> tuple[Array, Array]:
-    """The scene's x and z after the smallest rotation that takes y to the axis or, if that points down, to its
-    opposite."""
+def turned(v: Array, about: Array, degrees: float) -> Array:
+    """Turn vectors about a unit vector, right-handed (Rodrigues)."""
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return np.asarray(v * c + np.cross(about, v) * s + dot(v, about)[..., None] * about * (1 - c))
+
+
+def own_x_and_z(axis: Array, roll: float) -> tuple[Array, Array]:
+    """A right-handed frame's x and z, where y is the axis: z is the scene's after the smallest rotation that takes y to
+    the axis or, if that points down, to its opposite, and after a turn about the axis."""
     to = axis if axis[1] >= 0 else -axis
     y = np.array([0.0, 1.0, 0.0])
     about, cosine = np.cross(y, to), to[1]
@@ -44,4 +50,5 @@ def own_x_and_z(axis: Array) -> tuple[Array, Array]:
     def turn(v: Array) -> Array:  # Rodrigues
         return np.asarray(v * cosine + np.cross(about, v) + about * dot(about, v) / (1 + cosine))
 
-    return turn(np.array([1.0, 0.0, 0.0])), turn(np.array([0.0, 0.0, 1.0]))
+    z = turned(turn(np.array([0.0, 0.0, 1.0])), axis, roll)
+    return np.cross(axis, z), z

@@ -63,7 +63,15 @@ COUNTS: list[Case] = [
     ("R 640 480 32", 11, "resolution has no further field '32'"),
     (f"{SPHERE} {PLANE}", 25, "sphere has no further field 'pl' (one element a line)"),
     ("sp 0,0,20 5 255 0 0", 13, "sphere colour must be R,G,B"),
-    ("sp 0,0,20 5 255,0,0 roll:5", 21, "sphere has no attribute 'roll': it belongs to camera"),
+    ("L 0,0,20 0.5 roll:5", 14, "light has no attribute 'roll': it belongs to camera, shapes with an axis or a normal"),
+    ("tr 0,0,0 1,0,0 0,1,0 9,9,9 roll:5", 28, "triangle has no attribute 'roll': it belongs to camera, shapes with an"),
+    ("bo 0,0,0 0,1,0 1,1,1 9,9,9 axis:1,0,0", 28, "box has no attribute 'axis': it belongs to spheres and meshes"),
+    ("sp 0,0,20 5 255,0,0 axis:0,2,0", 28, "sphere axis y must be in [-1, 1], got 2"),
+    ("bo 0,0,0 0,1,0 1,1,1 9,9,9 roll:361", 33, "box roll must be in [-360, 360], got 361"),
+    ("sp 0,0,20 5 255,0,0 uv:2", 24, "sphere uv must be su,sv[,ou][,ov][,degrees], got '2'"),
+    ("sp 0,0,20 5 255,0,0 uv:2,0", 26, "sphere uv scale v must be > 0, got 0"),
+    ("sp 0,0,20 5 255,0,0 uv:1,1,0,0,400", 32, "sphere uv turn must be in [-360, 360], got 400"),
+    ("sp 0,0,20 5 255,0,0 uv:1,1,0,0,4,7", 34, "sphere uv must be su,sv[,ou][,ov][,degrees]"),
     ("sp 0,0,20 5 255,0,0 rol:5", 21, "unknown attribute 'rol', did you mean 'roll'?"),
     ("sp 0,0,20 5 255,0,0 zzz:5", 21, "unknown attribute 'zzz'"),
     ("sp roll:5 0,0,20 5 255,0,0", 3, "sphere centre and diameter and colour are missing"),
@@ -71,6 +79,7 @@ COUNTS: list[Case] = [
 ]
 
 VECTORS: list[Case] = [
+    ("sp 0,0,20 5 255,0,0 axis:0,0,0", 26, "sphere axis must not be 0,0,0: it points nowhere"),
     ("sp 0,20 5 255,0,0", 4, "sphere centre must be x,y,z, three numbers with commas between them, got '0,20'"),
     ("sp 0,0,20,1 5 255,0,0", 11, "must be x,y,z, three numbers with commas between them, got '0,0,20,1'"),
     ("sp 0,0,20, 5 255,0,0", 10, "no blanks may stand around a comma"),

@@ -4,16 +4,31 @@ from __future__ import annotations
 
 import math
 import random
+import re
 import sys
 from collections.abc import Callable
 from typing import Any
 
 import pytest
-from hypothesis import example, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from minirt.element import fields_of
-from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, Real, Whole, number, spelled, unit, whole
+from minirt.fields import (
+    Colour,
+    Direction,
+    Field,
+    FieldError,
+    Length,
+    Point,
+    Real,
+    Whole,
+    neat,
+    number,
+    spelled,
+    unit,
+    whole,
+)
 from minirt.fields.numerals import LONGEST
 from minirt.fields.scalars import Factor, Flag
 from minirt.fields.triples import Lengths
@@ -161,3 +176,25 @@ def test_the_fields_of_an_element_have_names_and_defaults() -> None:
     assert [field.name for field in fields_of(Camera)] == ["position", "direction", "fov", "roll"]
     assert [field.keyed for field in fields_of(Camera)] == [False, False, False, True]
     assert [field.default for field in fields_of(Light)] == [None, None, (255, 255, 255), None]
+
+
+@given(st.lists(st.floats(-1, 1), min_size=3, max_size=3), st.lists(st.integers(-9, 0), min_size=3, max_size=3))
+def test_a_neat_direction_is_written_with_nine_digits_and_read_with_the_same_bits(
+    parts: list[float], powers: list[int]
+) -> None:
+    vector = tuple(part * 10.0**power for part, power in zip(parts, powers, strict=True))
+    assume(max(map(abs, vector)) > 1e-9)
+    direction = unit(vector)  # type: ignore[arg-type]
+    found = neat(direction)
+    assert math.dist(found, direction) <= 2e-9
+    text = DIRECTION.format(found)
+    assert unit(tuple(map(float, text.split(",")))) == found  # type: ignore[arg-type]
+    for part in text.split(","):
+        assert re.fullmatch(r"-?(0|1|0\.[0-9]+)", part), text
+        assert len(part.lstrip("-0.")) <= 9
+    assert neat(found) == found or math.dist(neat(found), found) <= 2e-9
+
+
+def test_a_direction_with_all_digits_is_written_with_them() -> None:
+    for direction in (unit((math.pi / 10, math.e / 10, 0.7)), (1.0, 1e-300, 0.0), (6.12e-17, 1.0, 0.0)):
+        assert DIRECTION.format(direction) == ",".join(map(spelled, direction))

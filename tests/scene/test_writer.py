@@ -96,7 +96,7 @@ def test_a_copy_of_the_first_line_has_no_byte_order_mark() -> None:
             SPHERE + " # \0",
             SPHERE + "\rx",
             SPHERE + " 7",
-            SPHERE + " roll:1",
+            SPHERE + " fov:1",
             "\ufeff\ufeff" + SPHERE,
         ),
     ],

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from gmpy2 import mpfr, sqrt
 
+from minirt.fields import cos_and_sin
 from minirt.lanes import Vec
 from minirt.shapes.basis import basis
 from minirt.shapes.low_parts import axis_low, basis_low, quotient_low, root_low
@@ -29,12 +31,17 @@ def test_an_axis_is_known_to_32_digits() -> None:
         assert missing(unit(axis), Vec(*axis), axis_low(axis)) <= 2.0**-104
 
 
-def test_a_basis_is_known_to_32_digits() -> None:
+@pytest.mark.parametrize("roll", [0.0, 90.0, -270.0, 1e-7, 33.3, -200.0])
+def test_a_basis_is_known_to_32_digits(roll: float) -> None:
+    c, s = unit((*cos_and_sin(roll), 0.0))[:2]  # the turn that is meant has exactly this tangent
     for axis in AXES:
-        z, x, y = basis(axis)
-        z_low, x_low, y_low = basis_low(axis, z, x, y)
+        z, x, y = basis(axis, roll)
+        z_low, x_low, y_low = basis_low(axis, roll, z, x, y)
         found = (x, x_low), (y, y_low), (z, z_low)
-        for exact, (high, low) in zip(own_axes(axis), found, strict=True):
+        own_x, own_y, own_z = own_axes(axis, 0.0)
+        rolled_x = [c * a - s * b for a, b in zip(own_x, own_z, strict=True)]
+        rolled_z = [c * b + s * a for a, b in zip(own_x, own_z, strict=True)]
+        for exact, (high, low) in zip((rolled_x, own_y, rolled_z), found, strict=True):
             opposite = [-part for part in exact]  # may be meant just as well
             assert min(missing(exact, high, low), missing(opposite, high, low)) <= 2.0**-102
 

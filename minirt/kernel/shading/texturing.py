@@ -26,6 +26,7 @@ class SurfaceMaps(NamedTuple):
     used: Any  # (n,) 0 for shapes without any map
     texels: Any  # all pictures one after the other: rows from the top, pixels from the left, channels in [0, 1]
     pictures: Any  # (k, 4) for each picture its first index in `texels`, its width, height and channels
+    placements: Any = None  # (n, 15) scale, shift, cosine and sine of u and v, own axes of a sphere; 0 for most shapes
 
 
 Mapped = tuple[Number, Number, Vec, Vec]  # u, v and the tangents along them
@@ -37,8 +38,9 @@ def apply_maps(
     """Apply the maps of shape `index`, in `slot` (group, row), to its shading normals and colours at some points."""
     if has_rows(maps.used) and maps.used[index] != 0:
         zero = splat(0.0, point.x)
-        arguments = slot[0], slot[1], point, normal
+        arguments = slot[0], slot[1], point, in_own_frame(maps.placements, index, normal)
         u, v, along_u, along_v = for_each_kind(mapping_of_kind, groups, (zero, zero, point, point), arguments)
+        u, v, along_u, along_v = placed(maps.placements, index, u, v, along_u, along_v)
         colour = checkered(maps.checks, index, u, v, textured(maps.textures, maps, index, u, v, colour))
         normal = bump_mapped(maps.bumps, maps, index, u, v, along_u, along_v, normal)
         normal = normal_mapped(maps.normals, maps, index, u, v, along_u, along_v, normal)
@@ -54,6 +56,45 @@ def mapping_of_kind(group: Group, state: Mapped, arguments: tuple[int, int, Vec,
         along_u = Vec(splat(dp_du.x, point.x), splat(dp_du.y, point.x), splat(dp_du.z, point.x))
         along_v = Vec(splat(dp_dv.x, point.x), splat(dp_dv.y, point.x), splat(dp_dv.z, point.x))
     return u, v, along_u, along_v
+
+
+def in_own_frame(placements: Any, index: int, normal: Vec) -> Vec:
+    """Return a normal in the axes of a turned shape whose `mapping` takes those of the scene for its own."""
+    if placements is None or not has_rows(placements):
+        return normal
+    if placements[index, 0] == 0.0:
+        return normal
+    x, y, z = own_axes(placements, index)
+    return Vec(dot(normal, x), dot(normal, y), dot(normal, z))
+
+
+def own_axes(placements: Any, index: int) -> tuple[Vec, Vec, Vec]:
+    """Return the own x, y and z axes of a shape; those of the scene where its `mapping` knows how it is turned."""
+    return (
+        Vec(placements[index, 6], placements[index, 7], placements[index, 8]),
+        Vec(placements[index, 9], placements[index, 10], placements[index, 11]),
+        Vec(placements[index, 12], placements[index, 13], placements[index, 14]),
+    )
+
+
+def placed(placements: Any, index: int, u: Number, v: Number, along_u: Vec, along_v: Vec) -> Mapped:
+    """Shift, turn and scale u and v, and give the tangents along the new ones, in the scene's axes."""
+    if placements is None or not has_rows(placements):
+        return u, v, along_u, along_v
+    if placements[index, 0] == 0.0:
+        return u, v, along_u, along_v
+    scale_u, scale_v = placements[index, 0], placements[index, 1]
+    u, v = u - placements[index, 2], v - placements[index, 3]
+    c, s = placements[index, 4], placements[index, 5]
+    x, y, z = own_axes(placements, index)
+    along_u = along_u.x * x + along_u.y * y + along_u.z * z
+    along_v = along_v.x * x + along_v.y * y + along_v.z * z
+    return (
+        scale_u * (c * u + s * v),
+        scale_v * (c * v - s * u),
+        (1.0 / scale_u) * (c * along_u + s * along_v),
+        (1.0 / scale_v) * (c * along_v - s * along_u),
+    )
 
 
 def checkered(checks: Any, index: int, u: Number, v: Number, colour: Vec) -> Vec:

@@ -19,6 +19,7 @@ FEATURES = {
     "textures": "textures",
     "bumps": "bumps",
     "normals": "maps of normals",
+    "placements": "scaled and turned maps",
     "spots": "spots, parallel and fading light",
     "background": "a coloured background",
     "environment": "a picture as background",
@@ -67,4 +68,7 @@ def features_of(item: Element | str) -> Iterable[Hashable]:
 def material_features(shape: Shape) -> Iterable[str]:
     """The features that the materials of a shape need."""
     values = zip(MATERIALS, ATTRIBUTES(shape), strict=True)
-    return dict.fromkeys(filter(None, (field.feature_of(value) for (_, field), value in values if value is not None)))
+    used = [field.feature_of(value) for (_, field), value in values if value is not None]
+    if shape.is_mapped and shape.map_frame():
+        used.append("placements")
+    return dict.fromkeys(filter(None, used))

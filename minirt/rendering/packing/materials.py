@@ -8,15 +8,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from minirt.fields import cos_and_sin
 from minirt.kernel.shading.environment import Environment
 from minirt.kernel.shading.texturing import SurfaceMaps
-from minirt.materials import picture_cache
+from minirt.materials import Placement, picture_cache
 from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
 from minirt.scene import Scene
 from minirt.shapes import Shape
+from minirt.shapes.basis import basis
+from minirt.shapes.oriented import UPRIGHT
 
 NumberedShapes = list[tuple[int, Shape]]  # shapes that have materials, with their indices
-MAP_FEATURES = {"checks", "textures", "bumps", "normals"}  # features that `pack_surface_maps` packs
+MAP_FEATURES = {"checks", "textures", "bumps", "normals", "placements"}  # features that `pack_surface_maps` packs
 Reader = Callable[[Path], np.ndarray]
 
 
@@ -73,7 +76,7 @@ def pack_surface_maps(
     count, pool = len(scene.shapes), TexturePool(scene)
     checks = np.zeros((count, 4))
     textures, normals, is_mapped = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count, np.int64)
-    bumps = np.zeros((count, 2))
+    bumps, placements = np.zeros((count, 2)), np.zeros((count, 15))
     for i, shape in with_materials:
         if shape.checker:
             checks[i] = shape.checker.size, *np.divide(shape.checker.colour, 255)
@@ -83,15 +86,26 @@ def pack_surface_maps(
             bumps[i] = pool.number(shape.bump.file, picture_cache.heights), shape.bump.strength
         if shape.normal_map:
             normals[i] = pool.number(shape.normal_map, picture_cache.picture)
+        if shape.uv or shape.map_frame():
+            placements[i] = placement_numbers(shape)
         is_mapped[i] = bool(shape.checker or shape.texture or bumps[i, 0] or shape.normal_map)
     return SurfaceMaps(
         checks=checks[owner] if "checks" in used else None,
         textures=textures[owner] if "textures" in used else None,
         bumps=bumps[owner] if "bumps" in used else None,
         normals=normals[owner] if "normals" in used else None,
+        placements=placements[owner] if "placements" in used else None,
         used=is_mapped[owner],
         **pool.arrays(),
     )
+
+
+def placement_numbers(shape: Shape) -> tuple[float, ...]:
+    """Scale, shift and turn of u and v, and own axes of a shape: a row of `SurfaceMaps.placements`."""
+    uv = shape.uv or Placement(1.0, 1.0)
+    z, x, y = shape.map_frame() or basis(UPRIGHT)
+    frame = (part for axis in (x, y, z) for part in (axis.x, axis.y, axis.z))
+    return uv.scale_u, uv.scale_v, uv.shift_u, uv.shift_v, *cos_and_sin(uv.turn), *frame
 
 
 def pack_environment(scene: Scene, file: str) -> Environment:

@@ -37,7 +37,10 @@ def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
         spots=optional_single(arrays.spots),
         specular=optional_single(arrays.specular),
         surface_maps=arrays.surface_maps
-        and arrays.surface_maps._replace(checks=optional_single(arrays.surface_maps.checks)),
+        and arrays.surface_maps._replace(
+            checks=optional_single(arrays.surface_maps.checks),
+            placements=optional_single(arrays.surface_maps.placements),
+        ),
         background=optional_single(arrays.background),
     )
 

@@ -37,9 +37,10 @@ class WideKernel(NamedTuple):
 
 
 OPTIONAL = tuple(name for name, default in SceneArrays._field_defaults.items() if default is None)
-MAPS = ("checks", "textures", "bumps", "normals")
+MAPS = ("checks", "textures", "bumps", "normals", "placements")
 FULL = frozenset(OPTIONAL + MAPS)
-FULL_SINGLE = frozenset({"spots", "specular", "surface_maps", "background", "checks"})  # see `fits_single`
+# See `fits_single`.
+FULL_SINGLE = frozenset({"spots", "specular", "surface_maps", "background", "checks", "placements"})
 
 FULL_DOUBLE = WideKernel("full", "double", FULL)
 # The narrowest first.
@@ -107,6 +108,7 @@ def empty_arrays(wide: WideKernel) -> SceneArrays:
         textures=integers(0),
         bumps=np.zeros((0, 2)),
         normals=integers(0),
+        placements=numbers((0, 15)),
         used=integers(0),
         texels=NO_TEXELS,
         pictures=NO_PICTURES,

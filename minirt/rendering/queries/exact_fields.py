@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.element import fields_of
-from minirt.fields import Direction, Length, Lengths, Point
+from minirt.fields import Angle, Direction, Length, Lengths, Point, cos_and_sin
 from minirt.lanes import Vec
 from minirt.shapes import Kind, Shape
-from minirt.shapes.boundary import unit
+from minirt.shapes.boundary import hypotenuse, unit
 from minirt.shapes.compensated import two_sum
 from minirt.shapes.double_double import DoubleDouble
 from minirt.shapes.shape import Position
@@ -28,6 +28,7 @@ class ExactFields(NamedTuple):
     points: Columns  # (n, 3)
     lengths: Columns  # (n,) or (n, 3)
     directions: Columns  # (n, 3), of unit length but for rounding
+    turns: Columns  # (n, 2) cosine and sine of an angle
     sizes: Array  # (n,) sum of the lengths and of the distances of the points from the first one
     first_row: Integers  # of each shape
 
@@ -43,7 +44,8 @@ class ExactFields(NamedTuple):
         points = {name: exact_point(each[rows], first, power) for name, each in self.points.items()}
         lengths = {name: exact_length(each[rows], power) for name, each in self.lengths.items()}
         directions = {name: exact_direction(each[rows]) for name, each in self.directions.items()}
-        return SimpleNamespace(**points, **lengths, **directions)
+        turns = {name: exact_turn(each[rows]) for name, each in self.turns.items()}
+        return SimpleNamespace(**points, **lengths, **directions, **turns)
 
 
 def exact_fields(kind: Kind, shapes: list[Shape]) -> ExactFields:
@@ -59,6 +61,11 @@ def exact_fields(kind: Kind, shapes: list[Shape]) -> ExactFields:
             }
             for sort in (Point, (Length, Lengths), Direction)
         )
+    turns = {
+        each.name: np.array([cos_and_sin(getattr(shape, each.name)) for shape in shapes])
+        for each in fields_of(kind.element)
+        if isinstance(each, Angle) and not kind.batched
+    }
     first, *others = points.values()
     sizes = np.zeros(len(first))
     for each in lengths.values():
@@ -66,7 +73,7 @@ def exact_fields(kind: Kind, shapes: list[Shape]) -> ExactFields:
     for each in others:
         sizes += lengths_of(each - first)
     first_row = np.concatenate([[0], np.cumsum([shape.parts for shape in shapes])[:-1]])
-    return ExactFields(points, lengths, directions, sizes, first_row)
+    return ExactFields(points, lengths, directions, turns, sizes, first_row)
 
 
 def lengths_of(vectors: Array) -> Array:
@@ -100,3 +107,10 @@ def exact_length(lengths: Array, power: Integers) -> DoubleDouble | Vec:
 def exact_direction(directions: Array) -> Vec:
     """Directions of exactly unit length."""
     return unit(Vec(*map(DoubleDouble, directions.T)))
+
+
+def exact_turn(turns: Array) -> tuple[DoubleDouble, DoubleDouble]:
+    """Cosine and sine of angles, their squares adding up to exactly 1."""
+    c, s = map(DoubleDouble, turns.T)
+    length = hypotenuse(c, s)
+    return c / length, s / length

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from minirt.element import Element
-from minirt.fields import Direction, Triple
+from minirt.fields import Triple
 from minirt.scene import Camera
-from minirt.scene.camera_frame import camera_frame, linear_combination
+from minirt.scene.camera_frame import linear_combination
 from minirt.viewer.editing.measure import extent, scene_centre
 from minirt.viewer.editing.motion import (
     WORLD_AXES,
@@ -23,8 +23,9 @@ from minirt.viewer.editing.motion import (
     translate,
     turn_camera,
 )
+from minirt.viewer.editing.orientation import can_turn, turn_axis
 from minirt.viewer.editing.projection import Projection, projection_of, subtract
-from minirt.viewer.editing.state import State, field_names
+from minirt.viewer.editing.state import State
 
 PIXEL_CENTRE = 0.5  # pixels
 CHANGE = ("drag", 0.0)  # kind and time of its changes: the constant time merges them for undo
@@ -80,13 +81,13 @@ def turn(state: State, start: DragStart, x: int, y: int) -> State:
     """Turn the element about the picture's vertical and horizontal axes, or about an axis of the scene."""
     if isinstance(start.element, Camera):
         return look(state, start, x, y)
-    if not field_names(type(start.element), Direction):
+    if not can_turn(start.element):
         return state.with_message(f"{start.element.title} looks the same from all sides: nothing to turn")
     right, down = drag_angles(start, x, y)
     axis = WORLD_AXES.get(state.frame)
     if axis:
         return state.edit_element(rotate(start.element, axis, right), *CHANGE)
-    across, up, _ = camera_frame(start.camera)
+    across, up = turn_axis(start.camera, 0), turn_axis(start.camera, 1)
     hand = handedness(start.camera)
     return state.edit_element(rotate(rotate(start.element, up, right * hand), across, down * hand), *CHANGE)
 

@@ -11,11 +11,12 @@ from dataclasses import replace
 from functools import partial
 
 from minirt.errors import ElementError
-from minirt.fields import Direction, MeshFile, Point
+from minirt.fields import MeshFile, Point
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame
 from minirt.viewer.editing import attributes, framing, history, selection, structure
 from minirt.viewer.editing.motion import WORLD_AXES, handedness, roll_camera, rotate, translate, turn_camera
+from minirt.viewer.editing.orientation import can_turn, turn_axis
 from minirt.viewer.editing.state import Frame, State, field_names
 from minirt.viewer.editing.values import values
 from minirt.viewer.files import asset_files
@@ -54,14 +55,17 @@ def turn(axis: int, sign: float, state: State, amount: float, now: float) -> Sta
         if axis == FORWARD:
             return state.edit_element(roll_camera(element, angle), "roll", now)
         return state.edit_element(turn_camera(element, angle * (axis == UP), angle * (axis == RIGHT)), "turn", now)
-    if not field_names(type(element), Direction) and len(field_names(type(element), Point)) < 2:
+    if not can_turn(element):
         return state.with_message(f"{element.title} looks the same from all sides: nothing to turn")
-    world = WORLD_AXES.get(state.frame)
-    if world:
-        return state.edit_element(rotate(element, world, angle), "turn", now)
-    # Seen from the camera the front goes right, up or clockwise: only up is opposite to the right-handed rotation.
-    direction, angle = camera_frame(state.scene.camera)[axis], angle * handedness(state.scene.camera)
-    return state.edit_element(rotate(element, direction, -angle if axis == RIGHT else angle), "turn", now)
+    about = WORLD_AXES.get(state.frame)
+    if not about:
+        # Seen from the camera the front goes right, up or clockwise: only up is opposite to the right-handed rotation.
+        about, angle = turn_axis(state.scene.camera, axis), angle * handedness(state.scene.camera)
+        angle = -angle if axis == RIGHT else angle
+    turned = state.edit_element(rotate(element, about, angle), "turn", now)
+    if turned is state:
+        return state.with_message(f"{element.title} looks the same after a turn about its own axis")
+    return turned
 
 
 def change_value(sign: float, state: State, amount: float, now: float) -> State:

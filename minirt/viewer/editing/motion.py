@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, fmod, fsum, hypot, pi, radians, sin
+from math import atan2, cos, dist, fmod, fsum, hypot, pi, radians, sin
 
 from minirt.element import Element
 from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit, upright
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame, linear_combination
+from minirt.viewer.editing.number_format import NOISE, neat_direction
+from minirt.viewer.editing.orientation import can_turn, rodrigues, with_directions
 from minirt.viewer.editing.state import Frame, field_names
 
+STEEPEST = pi / 2 - 1e-8  # radians: nobody sees the difference to straight up, which would have no heading
 WORLD_AXES: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
 
 
@@ -35,9 +38,15 @@ def clamp_point(point: Triple) -> Triple:
 
 
 def rotate(element: Element, axis: Triple, degrees: float) -> Element:
-    """Rotate the directions of an element about a unit vector, right-handed, and its points about their mean."""
+    """Rotate the directions of an element about a unit vector, right-handed, and its points about their mean.
+
+    An element that looks the same from all sides stays as it is.
+    """
+    if not can_turn(element):
+        return element
     directions = {name: getattr(element, name) for name in field_names(type(element), Direction)}
-    changes = {name: rotate_direction(direction, axis, degrees) for name, direction in directions.items()}
+    rotated = {name: neat_rotation(direction, axis, degrees) for name, direction in directions.items()}
+    changes = with_directions(element, rotated, axis, degrees)
     points = {name: getattr(element, name) for name in field_names(type(element), Point)}
     if len(points) > 1:
         x, y, z = (fsum(part) / len(points) for part in zip(*points.values(), strict=True))
@@ -52,25 +61,22 @@ def rotate_direction(direction: Triple, axis: Triple, degrees: float) -> Triple:
     return unit(rodrigues(direction, axis, degrees))
 
 
-def rodrigues(vector: Triple, axis: Triple, degrees: float) -> Triple:
-    """Rotate a vector about the unit vector `axis` by Rodrigues' formula (1840)."""
-    c, s = cos(radians(degrees)), sin(radians(degrees))
-    (x, y, z), (a, b, d) = vector, axis
-    cross = b * z - d * y, d * x - a * z, a * y - b * x
-    along = (x * a + y * b + z * d) * (1 - c)
-    return linear_combination(1.0, linear_combination(c, vector, s, cross), along, axis)
+def neat_rotation(direction: Triple, axis: Triple, degrees: float) -> Triple:
+    """Rotate a unit vector about another, and round it; a direction along the axis keeps all its digits."""
+    rotated = rotate_direction(direction, axis, degrees)
+    return direction if dist(rotated, direction) < NOISE else neat_direction(rotated, keep_heading=False)
 
 
 def turn_camera(camera: Camera, right: float, up: float) -> Camera:
     """Turn the camera by degrees: to the right about the world's y axis, and up, at most to straight up.
 
-    A direction straight up keeps a horizontal part of about 1e-16: too little for any picture, but enough to keep the
-    heading, so that turning down leads back.
+    A direction straight up keeps a horizontal part of 1e-8: too little for any picture, but enough to keep the heading,
+    so that turning down leads back.
     """
     x, y, z = camera.direction
     (a, _, b), _ = upright(x, y, z)
     heading = atan2(-a, b) + radians(right) * handedness(camera)
-    height = clamp(atan2(y, hypot(x, z)) + radians(up), -pi / 2, pi / 2)
+    height = clamp(atan2(y, hypot(x, z)) + radians(up), -STEEPEST, STEEPEST)
     direction = cos(height) * cos(heading), sin(height), cos(height) * sin(heading)
     return camera.replace(direction=unit(direction))
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from math import floor, log10
+from math import floor, hypot, log10
 from typing import Any, TypeVar
 
 from minirt.element import Record, fields_of
-from minirt.fields import Factor, Field, Length, Point, Real
+from minirt.fields import Angle, Direction, Factor, Field, Length, Point, Real, Triple, neat
 
 POINT_DECIMALS = 5  # decimals that are kept, counted from the leading digit of a step of movement
 LENGTH_DIGITS = 5  # significant digits of a length that are kept
 REAL_DECIMALS = 3  # decimals of any other number that are kept, counted likewise from its own step
+ANGLE_DECIMALS = 6  # decimals of degrees that are kept of a turn
+ANGLE_NOISE = 5e-6  # degrees: a turn this close to thousandths of a degree is rounded to them
+NOISE = 1e-7  # component of a direction that is what rounding has left of 0: no picture shows it
 SLACK = 1 + 1e-9  # allows for the rounding of a power of ten
 
 RecordType = TypeVar("RecordType", bound=Record)
@@ -55,6 +58,25 @@ def round_value(field: Field, before: Any, after: Any, stride: float) -> Any:
     if isinstance(field, Point):
         places = leading_decimal(stride) + POINT_DECIMALS
         return tuple(b if a == b else round(b, places) for a, b in zip(before, after, strict=True))
+    if isinstance(field, Direction):
+        return neat_direction(after, keep_heading=True)
     if isinstance(field, Real):
-        return round(after, leading_decimal(field.step) + REAL_DECIMALS)
+        places = leading_decimal(field.step) + REAL_DECIMALS
+        return round_angle(after) if isinstance(field, Angle) else round(after, places)
     return after
+
+
+def neat_direction(direction: Triple, keep_heading: bool) -> Triple:
+    """Round a direction to nine digits, and components that are only rounding to 0.
+
+    Both horizontal components of a view straight up or down are the heading of a camera, if it is to be kept.
+    """
+    is_vertical = hypot(direction[0], direction[2]) < NOISE
+    x, y, z = (part if abs(part) >= NOISE else 0.0 for part in direction)
+    return neat((direction[0], y, direction[2]) if is_vertical and keep_heading else (x, y, z))
+
+
+def round_angle(degrees: float) -> float:
+    """Round an angle, to thousandths of a degree if it is that within rounding."""
+    short = round(degrees, 3)
+    return short if abs(short - degrees) <= ANGLE_NOISE else round(degrees, ANGLE_DECIMALS)

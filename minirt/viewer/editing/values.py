@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from minirt.element import Element, Record, fields_of
-from minirt.fields import Colour, Field, MeshField, MeshFile, Picture
+from minirt.fields import Angle, Colour, Field, MeshField, MeshFile, Picture
+from minirt.viewer.editing.orientation import shows_roll
 
 CHANNELS = "red", "green", "blue"
 
@@ -57,7 +58,10 @@ class Value(NamedTuple):
 def values(element: Element) -> tuple[Value, ...]:
     """All values of an element; channels of colours come last."""
     unsplit = [
-        value for field in fields_of(type(element)) for value in values_of_field(field, getattr(element, field.name))
+        value
+        for field in fields_of(type(element))
+        if not isinstance(field, Angle) or shows_roll(element)
+        for value in values_of_field(field, getattr(element, field.name))
     ]
     unsplit.sort(key=lambda value: isinstance(value.field, MeshField))  # the size of a mesh comes before its file
     fields = ((value, value.inner or value.field) for value in unsplit)

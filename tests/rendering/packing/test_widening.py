@@ -225,4 +225,4 @@ def test_kinds_are_in_the_order_of_the_registry() -> None:
 def test_every_feature_has_a_wide_kernel() -> None:
     optional = [name for name, default in SceneArrays._field_defaults.items() if default is None]
     double = [wide for wide in WIDE_KERNELS if wide.precision == "double"]
-    assert double[-1].features == {*optional, "checks", "textures", "bumps", "normals"}
+    assert double[-1].features == {*optional, "checks", "textures", "bumps", "normals", "placements"}

@@ -1,0 +1,118 @@
+"""The field of a direction, and how directions are scaled to unit length, rounded and written."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import product
+
+from minirt.errors import FieldError
+from minirt.fields.field import Repair
+from minirt.fields.numerals import spelled
+from minirt.fields.triples import Three, Triple, reads
+from minirt.records import record
+
+SLACK = 1e-3  # by which the length of a direction may differ from 1 without a notice
+DIGITS = 9  # significant digits of a neat component
+LEAST = 1e-12  # a neat component that is smaller is 0
+ROUNDS = 8  # of rounding and scaling in turn; two or three are enough
+
+
+@record(kw_only=True)
+class Direction(Three):
+    """A direction with components in [-1, 1]; kept at unit length."""
+
+    instead: Triple = (0.0, 1.0, 0.0)  # the direction that a lenient reader takes for 0,0,0
+
+    def check(self, value: Triple) -> Triple:
+        self.within(value, -1.0, 1.0)
+        if not any(value):
+            raise FieldError("must not be 0,0,0: it points nowhere")
+        return unit(value)
+
+    def check_all(self, values: Sequence[Triple]) -> Sequence[Triple] | None:
+        return None if any(map(self.remark, values)) else list(map(self.check, values))
+
+    def remark(self, value: Triple) -> str:
+        length = math.hypot(*value)
+        return f"has length {length:.4g}, and is scaled to 1" if abs(length - 1) > SLACK else ""
+
+    def format(self, value: Triple) -> str:
+        return ",".join(map(plain_decimal, shortest(value)))
+
+    def repair(self, text: str) -> Repair | None:
+        if reads(self.parse, text):
+            instead = self.format(self.instead)
+            return None if any(self.parse(text)) else Repair(instead, f"takes {instead}")
+        return super().repair(text)
+
+    @property
+    def notation(self) -> str:
+        components = ",".join(self.name[:1] + axis for axis in "xyz")
+        return f"{self.keys[0]}:{components}" if self.keyed else components
+
+    @property
+    def range(self) -> str:
+        return "[-1, 1]"
+
+
+def unit(vector: Triple) -> Triple:
+    """Scale `vector` to length 1, even if its squares would underflow or overflow.
+
+    A vector of length 1 within rounding is returned unchanged, so that saving and loading change nothing, unless a
+    component is beyond 1, which no file may have. The quotient below is off by at most 2u in length and `hypot` by 2u
+    more (u = 2^-53), so that scaling once is enough.
+    """
+    x, y, z = vector
+    largest = max(abs(x), abs(y), abs(z))
+    if largest <= 1.0 and abs(math.hypot(x, y, z) - 1.0) <= 4 * 2.0**-53:
+        return float(x), float(y), float(z)
+    x, y, z = x / largest, y / largest, z / largest
+    length = math.hypot(x, y, z)
+    return x / length, y / length, z / length
+
+
+def places(part: float) -> int:
+    """Decimals of a component that has `DIGITS` significant digits."""
+    return DIGITS - 1 - math.floor(math.log10(abs(part)))
+
+
+def rounded(direction: Triple) -> Triple:
+    """Round the components to `DIGITS` significant digits, and those below `LEAST` to 0."""
+    x, y, z = (round(part, places(part)) if abs(part) >= LEAST else 0.0 for part in direction)
+    return x, y, z
+
+
+def neat(direction: Triple) -> Triple:
+    """Return the unit vector that nine digits in a file stand for, next to a direction."""
+    for _ in range(ROUNDS):
+        before, direction = direction, unit(rounded(direction))
+        if direction == before:
+            break
+    return direction
+
+
+def shortest(direction: Triple) -> Triple:
+    """Return nine digits of each component that are read as the same direction, or all digits where there are none.
+
+    The rounded components may be off by one in the last digit: scaled to unit length, others are read as the direction.
+    """
+    short = rounded(direction)
+    if not any(short):
+        return direction
+    around = product(*map(neighbours, short))
+    return next(((x, y, z) for x, y, z in around if unit((x, y, z)) == direction), direction)
+
+
+def neighbours(part: float) -> list[float]:
+    """A rounded component, and what differs from it by one in the last digit."""
+    return [part, *(round(part + step * 10.0 ** -places(part), places(part)) for step in (-1, 1) if part)]
+
+
+def plain_decimal(value: float) -> str:
+    """Format a number without an exponent, unless it is smaller than `LEAST`."""
+    text = spelled(value)
+    if "e-" not in text or abs(value) < LEAST:
+        return text
+    digits, _, places = text.removeprefix("-").partition("e-")
+    return f"{'-' * (value < 0)}0.{'0' * (int(places) - 1)}{digits.replace('.', '')}"

@@ -1,0 +1,175 @@
+"""Shapes that are turned about their own axis, against 60 digits and against the same shapes unturned."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from gmpy2 import const_pi, cos, mpfr, sin
+
+from minirt.fields import cos_and_sin
+from minirt.lanes import Vec
+from minirt.shapes import KINDS, Kind
+from minirt.shapes.box import Box
+from minirt.shapes.mesh import Mesh
+from minirt.shapes.oriented import Flat, Oriented
+from minirt.shapes.sphere import Sphere
+from tests import oracle
+from tests.meshes.examples import named
+from tests.reference.vectors import own_x_and_z, turned
+from tests.shapes.examples import example
+from tests.shapes.execution_modes import MODES, kind_of, on_arrays, shape_rows, surfaces
+from tests.shapes.mapping_checks import interpreted
+from tests.shapes.regimes import Array, Rays, random_directions
+from tests.stability.certificates import BOUND, certified, normals_of
+
+U = 2.0**-53
+ROLLS = (90.0, 33.3, -200.0, 1e-3)
+ORIENTED = [kind for kind in KINDS if issubclass(kind.element, Oriented) and kind.element is not Sphere]
+ANGULAR = [kind for kind in ORIENTED if not kind.element.revolved]  # type: ignore[attr-defined]
+
+
+def rolled(kind: Kind) -> list[Oriented]:
+    """Random shapes of a kind, each turned by one of ROLLS."""
+    random = np.random.default_rng(5)
+    shapes = [example(kind, random).replace(roll=roll) for roll in ROLLS]
+    assert all(isinstance(shape, Oriented) for shape in shapes)
+    return shapes  # type: ignore[return-value]
+
+
+def rays_at(shapes: list[Oriented], count: int) -> tuple[Array, Array]:
+    """Rays from around some shapes towards points near their middles, (m, count, 3)."""
+    random = np.random.default_rng(6)
+    middles = np.array([np.mean([centre for centre, _ in shape.balls()], axis=0) for shape in shapes])[:, None]
+    origins = middles + 6 * random_directions(random, len(shapes) * count).reshape(len(shapes), count, 3)
+    directions = middles + random.uniform(-1, 1, origins.shape) - origins
+    return origins, directions / np.linalg.norm(directions, axis=-1, keepdims=True)
+
+
+def opposite(shapes: list[Oriented]) -> list[Oriented]:
+    """The shapes turned the other way."""
+    return [shape.replace(roll=-shape.roll) for shape in shapes]
+
+
+def times_by_oracle(shapes: list[Oriented], origins: Array, directions: Array) -> Array:
+    """t of the hits to 60 digits, infinite where there is none."""
+    found = [
+        [oracle.nearest(shape, o.tolist(), d.tolist()) for o, d in zip(starts, ways, strict=True)]
+        for shape, starts, ways in zip(shapes, origins, directions, strict=True)
+    ]
+    return np.array([[np.inf if t is None else float(t) for t in row] for row in found])
+
+
+@pytest.mark.parametrize("kind", ANGULAR, ids=lambda kind: kind.element.title)
+def test_hits_of_turned_shapes_are_those_of_the_oracle(kind: Kind) -> None:
+    shapes = rolled(kind)
+    origins, directions = rays_at(shapes, 64)
+    right = times_by_oracle(shapes, origins, directions)
+    assert 40 < np.isfinite(right).sum() < right.size
+    for name, intersect in MODES.items():
+        t = intersect(shapes, origins, directions)  # type: ignore[arg-type]
+        assert np.array_equal(np.isfinite(t), np.isfinite(right)), name
+        hit = np.isfinite(t)
+        assert np.abs(t[hit] / right[hit] - 1).max() <= 1e-13
+    wrong = on_arrays(opposite(shapes)[1:3], origins[1:3], directions[1:3])  # type: ignore[arg-type]
+    assert not np.allclose(wrong, right[1:3])
+
+
+@pytest.mark.parametrize("kind", ORIENTED, ids=lambda kind: kind.element.title)
+def test_hits_of_turned_shapes_are_certified(kind: Kind) -> None:
+    shapes = rolled(kind)
+    if kind.infinite:
+        return
+    origins, directions = rays_at(shapes, 256)
+    t = on_arrays(shapes, origins, directions)  # type: ignore[arg-type]
+    rays = Rays(shapes, origins, directions)  # type: ignore[arg-type]
+    hit = np.isfinite(t)
+    assert (certified(rays, t, normals_of(rays, t)).backward_error[hit] <= BOUND).all()
+    if kind in ANGULAR:
+        rays = Rays(opposite(shapes), origins, directions)  # type: ignore[arg-type]
+        assert (certified(rays, t).backward_error[1:3][hit[1:3]] > BOUND).any()
+
+
+@pytest.mark.parametrize("kind", ORIENTED, ids=lambda kind: kind.element.title)
+def test_pictures_turn_with_their_shapes(kind: Kind) -> None:
+    for shape in rolled(kind):
+        plain = shape.replace(roll=0.0)
+        u, v, axis = (np.array([each.x, each.y, each.z]) for each in plain.frame())
+        centre = next(getattr(plain, name) for name in ("point", "centre", "apex", "vertex") if hasattr(plain, name))
+        random = np.random.default_rng(7)
+        near = np.array(centre) + random.normal(size=(16, 3))
+        points, normals = (each[0] for each in surfaces([plain], near[None]))
+        here = interpreted(plain, points, normals)
+        there = interpreted(
+            shape, centre + turned(points - centre, axis, shape.roll), turned(normals, axis, shape.roll)
+        )
+        beside = np.abs((there.u - here.u + 0.5) % 1 - 0.5)  # a longitude of 0 may become 1
+        assert max(beside.max(), np.abs(there.v - here.v).max()) <= 1e-12
+        for before, after in ((here.along_u, there.along_u), (here.along_v, there.along_v)):
+            assert np.abs(turned(before, axis, shape.roll) - after).max() <= 1e-11 * max(1, np.abs(before).max())
+        assert np.allclose(np.cross(u, v), axis)
+
+
+def test_without_a_turn_the_packed_form_has_the_same_bits() -> None:
+    for kind in ORIENTED:
+        shape = example(kind, np.random.default_rng(8))
+        assert all(np.array_equal(shape_rows([shape]), shape_rows([shape.replace(roll=roll)])) for roll in (0.0, -0.0))
+
+
+@pytest.mark.parametrize("degrees", [0, 90, -90, 180, 270, 360, -360])
+def test_right_angles_are_exact(degrees: float) -> None:
+    c, s = cos_and_sin(degrees)
+    assert (c, s) == (round(np.cos(np.radians(degrees))), round(np.sin(np.radians(degrees))))
+    box = Box((0, 0, 0), (0, 1, 0), (1, 2, 3), (9, 9, 9), roll=degrees)
+    assert {abs(part) for corner in box.corners() for part in corner} == {0.5, 1.0, 1.5}
+
+
+@pytest.mark.parametrize("degrees", [1e-9, 30, 45.1, -77, 135, 359.999])
+def test_cosine_and_sine_are_those_of_the_angle(degrees: float) -> None:
+    angle = mpfr(degrees) * const_pi() / 180
+    assert cos_and_sin(degrees) == pytest.approx((float(cos(angle)), float(sin(angle))), rel=4 * U, abs=0)
+
+
+TURNS: list[tuple[tuple[float, float, float], float]] = [
+    ((0.0, 1.0, 0.0), 30.0),
+    ((0.6, 0.0, 0.8), 0.0),
+    ((0.48, -0.6, 0.64), -100.0),
+]
+
+
+def by_matrix(mesh: Mesh) -> Callable[[Array], Array]:
+    """The rotation of vectors of the file into the scene, as a product with a matrix."""
+    x, z = own_x_and_z(np.array(mesh.axis), mesh.roll)
+    matrix = np.stack([x, np.array(mesh.axis), z])
+    return lambda vectors: np.asarray(vectors @ matrix)
+
+
+@pytest.mark.parametrize(("axis", "roll"), TURNS)
+def test_a_mesh_is_turned_about_its_origin(axis: tuple[float, float, float], roll: float) -> None:
+    plain = named("knot", (1.0, 2.0, 3.0), 2.0)
+    mesh = plain.replace(axis=axis, roll=roll)
+    rotate = by_matrix(mesh)
+    before, after = plain.rows(), mesh.rows()
+    corners = rotate(before[:, :9].reshape(-1, 3) - plain.position) + plain.position
+    assert np.abs(after[:, :9].reshape(-1, 3) - corners).max() <= 1e-14 * 10
+    for column in (9, 12, 15, 18):
+        assert np.abs(after[:, column : column + 3] - rotate(before[:, column : column + 3])).max() <= 1e-9
+    assert np.array_equal(after[:, 21:], before[:, 21:])
+    (low, high), placed = mesh.bounds(), after[:, :9].reshape(-1, 3)
+    assert (low, high) == (tuple(placed.min(axis=0)), tuple(placed.max(axis=0)))
+
+
+def test_equal_points_of_a_turned_mesh_stay_equal() -> None:
+    mesh = named("icosphere").replace(axis=(0.48, -0.6, 0.64), roll=12.3)
+    for count in range(1, 40):
+        placed = mesh.placed(np.tile([0.1, 0.7, -0.3], (count, 1)))
+        assert (placed == placed[0]).all()
+        assert (placed[0] == mesh.placed(np.array([[0.1, 0.7, -0.3]]))[0]).all()
+
+
+def test_the_kind_of_each_oriented_shape_is_in_the_registry() -> None:
+    assert {kind.element.title for kind in ANGULAR} == {"box", "square", "ellipsoid"}
+    assert all(kind_of(example(kind, np.random.default_rng(1))) is kind for kind in ORIENTED)
+    assert all(isinstance(shape.frame()[2], Vec) for kind in ORIENTED for shape in rolled(kind))
+    assert sum(issubclass(kind.element, Flat) for kind in ORIENTED) == 3
