@@ -105,4 +105,6 @@ def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
     scene, notices = load(options.scene[0], options.lenient, options.left_handed)
     for notice in notices:
         tell(f"notice: {notice}", stream)
-    return scene
+    given = {"tone": options.tone, "exposure": options.exposure}
+    changes = {name: value for name, value in given.items() if value is not None}
+    return scene.replace(scene.camera, **changes) if changes else scene

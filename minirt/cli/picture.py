@@ -31,7 +31,7 @@ def render(scene: Scene, options: argparse.Namespace) -> Image:
 
     width, height = options.size or minirt.size_of(scene)
     start = perf_counter()
-    renderer = minirt.renderer(options.threads, options.precision, options.depth)
+    renderer = minirt.renderer(options.threads, options.precision, options.depth, options.dither)
     if options.verbose:
         renderer.prepare(scene)
         tell(f"kernel ready after {perf_counter() - start:.2f} s")
@@ -48,6 +48,7 @@ def render(scene: Scene, options: argparse.Namespace) -> Image:
         precision=options.precision,
         depth=options.depth,
         linear=False,
+        dither=options.dither,
     )
     if image.reached:
         tell(image.reached)

@@ -33,7 +33,7 @@ def show(scene: Scene, options: argparse.Namespace) -> int:
             lenient=options.lenient,
             samples=options.samples or WINDOW_SAMPLES,
             watch=options.watch,
-            renderer=minirt.renderer(options.threads, options.precision, options.depth),
+            renderer=minirt.renderer(options.threads, options.precision, options.depth, options.dither),
         )
     except MlxError as error:
         if not options.fallback:
@@ -53,7 +53,7 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
     lines = read_lines(options.replay)
     settings: dict[str, Any] = {
         "file": options.replay,
-        "renderer": minirt.renderer(options.threads, options.precision, options.depth),
+        "renderer": minirt.renderer(options.threads, options.precision, options.depth, options.dither),
         "size": options.size or minirt.size_of(scene),
         "path": options.scene[0],
         "keys": "qwerty" if options.keys == "auto" else options.keys,  # the same on every machine

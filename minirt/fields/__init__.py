@@ -10,10 +10,12 @@ from minirt.fields.orientation import upright
 from minirt.fields.pictures import Paint, Picture
 from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Factor, Flag, Length, Real, Whole, clamp
 from minirt.fields.triples import Colour, Direction, Lengths, Point, Three, Triple, unit
+from minirt.fields.words import Choice
 
 __all__ = [
     "FARTHEST",
     "LEAST_LENGTH",
+    "Choice",
     "Colour",
     "Direction",
     "Factor",

@@ -25,6 +25,7 @@ class PictureFile(NamedTuple):
     name: str
     heights: bool = False  # whether it is read as a height map
     part: int | None = None  # index of the component of the value that names it
+    sky: bool = False  # whether it is read as a sky, which may be a Radiance picture
 
 
 class Repair(NamedTuple):

@@ -226,14 +226,14 @@ def load_files(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log
             message = f"must be a mesh file, got {quoted(value.name)}: {error.reason}"
             log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
             return None
-    for name, heights, part in slot.field.pictures(value):
+    for file in slot.field.pictures(value):
         from minirt.materials import picture_cache
 
         try:
-            (picture_cache.heights if heights else picture_cache.picture)(log.folder / name)
+            picture_cache.reader(file.heights, file.sky)(log.folder / file.name)
         except FileError as error:
-            column, length = slot.span(part)
-            message = f"must be a picture file, got {quoted(name)}: {error.reason}"
+            column, length = slot.span(file.part)
+            message = f"must be a picture file, got {quoted(file.name)}: {error.reason}"
             log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
     return value if len(log.errors) == errors else None
 

@@ -27,9 +27,11 @@ def reach(
     linear: np.ndarray,
     error: float,
     seconds: float,
+    least: float | None = None,
 ) -> Outcome | None:
     """Render a scene that has shapes; see `minirt.rendering.sampling.auto`. `pixels` and, where it has rows, `linear`
-    are incomplete where `cancel` ended it early, which returns None."""
+    are incomplete where `cancel` ended it early, which returns None. `least` is the error below which more samples are
+    useless: where it is not given, that at which rounding to 8 bits decides, and 0 with `linear`."""
     start, cancellations = perf_counter(), runner.cancellations
     height, across, _ = pixels.shape
     arrays = packing.pack(scene, across, height)
@@ -48,8 +50,8 @@ def reach(
     def classify() -> np.ndarray:
         return contrast_classes(pixels, packet_width, lambda jobs: runner.pool.run(jobs, runner.cancel))
 
-    # Rounding to 8 bits, where nobody wants the light itself, makes less error useless.
-    least = 0.0 if len(linear) else ROUNDING_DECIDES
+    if least is None:
+        least = 0.0 if len(linear) else ROUNDING_DECIDES
     auto = AutoSampler(draw, classify, height, across, packet_width)
     outcome = auto.reach(max(error, least), seconds - (perf_counter() - start))
     return outcome and outcome._replace(
