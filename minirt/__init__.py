@@ -119,8 +119,8 @@ def render(
     of the picture tells which. Errors are defined in `minirt.rendering.sampling.outcome`. Without `linear` light, the
     picture has 8 bits alone, and sampling also ends where rounding to them decides its error.
 
-    The tone and the exposure are those of the camera; light is exposed, but has no tone. `dither` replaces rounding to 8
-    bits by blue noise, so that smooth shades have no steps.
+    Tone and exposure are those of the camera; light is exposed, but has no tone. `dither` replaces rounding to 8 bits
+    by blue noise, so that smooth shades have no steps.
     """
     import numpy as np
 

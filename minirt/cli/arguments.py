@@ -73,7 +73,7 @@ def argument_parser() -> Arguments:
         help="exit with status 1 when the picture has not reached the error that --error asks for",
     )
     add("--tone", choices=TONES, help="how light becomes colour, in place of the camera's tone (plain)")
-    add("--exposure", type=exposure, metavar="EV", help="multiply light by two to this power, in place of the camera's (0)")
+    add("--exposure", type=exposure, metavar="EV", help="light times two to this power, in place of the camera's (0)")
     add("--dither", action="store_true", help="dither with blue noise instead of rounding to 8 bits")
     add("--fallback", metavar="FILE", help="render to FILE when no window can be opened")
     add("--left-handed", action="store_true", help="mirror the picture, for scenes made for left-handed coordinates")

@@ -129,6 +129,7 @@ def decode(path: Path) -> np.ndarray:
     except Exception as error:  # damaged files make decoders raise anything
         raise FileError(path, f"is a damaged picture ({error})") from None
 
+
 def shown_pixels(image: PillowImage) -> np.ndarray:
     """The pixels of a decoded image: 16-bit grey, or 8-bit red, green and blue."""
     if image.mode.startswith("I"):

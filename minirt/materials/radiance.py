@@ -1,7 +1,7 @@
 """Reader of Radiance pictures (`.hdr`, `.pic`): light without a limit, as red, green, blue and a common exponent.
 
-The format is that of Ward, Real Pixels (Graphics Gems II, 1991), with the run-length encodings of the Radiance programs:
-pixels as they are, the old one by repeated pixels, and the new one by components of a scanline.
+The format is that of Ward, Real Pixels (Graphics Gems II, 1991), with the encodings of the Radiance programs: pixels as
+they are, runs of equal pixels (old), and runs of equal components of a scanline (new).
 """
 
 from __future__ import annotations

@@ -33,9 +33,9 @@ class Ambient(Element):
 class Camera(Element):
     """`C x,y,z dx,dy,dz fov [roll:degrees] [tone:word] [exposure:EV]`: a pinhole camera.
 
-    Light is multiplied by two to the power of `exposure`. With the `tone` plain the levels of colours and of the picture
-    are in proportion to light, as the notes have it; srgb decodes colours and encodes light by the sRGB curve; filmic
-    does the same, and compresses bright light before it encodes it.
+    Light is multiplied by two to the power of `exposure`. With the `tone` plain the levels of colours and of the
+    picture are in proportion to light. srgb decodes colours, and encodes light, by the curve of sRGB; filmic does the
+    same, and compresses bright light before it encodes it.
     `left_handed` mirrors the picture, for scenes made for left-handed coordinates; it is not written to a file.
     """
 
@@ -54,7 +54,9 @@ class Camera(Element):
     roll: float = declare(
         Real, "turn about the direction, clockwise", unit="degree", low=-360.0, high=360.0, keyed=True, default=0.0
     )
-    tone: str = declare(Choice, "how light becomes colour: plain, srgb or filmic", words=TONES, keyed=True, default=TONES[0])
+    tone: str = declare(
+        Choice, "how light becomes colour: plain, srgb or filmic", words=TONES, keyed=True, default=TONES[0]
+    )
     exposure: float = declare(
         Real,
         "light times two to this power",

@@ -27,7 +27,7 @@ class Steps:
     def count(self, numbers: np.ndarray) -> np.ndarray:
         """Return how many thresholds each number is not below, uint8; numbers are float64, and NaN gives anything."""
         cells = cells_of(np.clip(numbers, self.low, self.high)) - self.first
-        counts = self.reached.take(cells, mode="clip")
+        counts: np.ndarray = self.reached.take(cells, mode="clip")
         counts += numbers >= self.next.take(counts)
         return counts
 

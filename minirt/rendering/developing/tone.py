@@ -33,9 +33,13 @@ class Tone(NamedTuple):
 @cache
 def tone_named(name: str) -> Tone:
     """Return the tone curve with a name; KeyError for an unknown one."""
-    inverse = {PLAIN: np.asarray, SRGB: decode_srgb, FILMIC: lambda levels: uncompressed(decode_srgb(levels))}[name]
     levels = np.arange(LEVELS)
-    return Tone(inverse(levels / 255), inverse((levels[1:] - 0.5) / 255), name != PLAIN)
+    return Tone(light_of(levels / 255, name), light_of((levels[1:] - 0.5) / 255, name), name != PLAIN)
+
+
+def light_of(levels: np.ndarray, name: str) -> np.ndarray:
+    """Return the light that levels in [0, 1] stand for on a tone curve."""
+    return {PLAIN: levels, SRGB: decode_srgb(levels), FILMIC: uncompressed(decode_srgb(levels))}[name]
 
 
 def decode_srgb(levels: np.ndarray) -> np.ndarray:
