@@ -29,10 +29,14 @@ class PictureFile(NamedTuple):
 
 
 class Repair(NamedTuple):
-    """A correct spelling that a lenient reader takes instead, and what that does: "rounds it to 1,2,3"."""
+    """A correct spelling that a lenient reader takes instead, and what that does: "rounds it to 1,2,3".
+
+    Where nothing else can be meant it is `certain`, and every reader takes it.
+    """
 
     text: str
     deed: str
+    certain: bool = False
 
 
 @record(kw_only=True)

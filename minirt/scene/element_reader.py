@@ -78,7 +78,9 @@ def split_line(line: Line, log: Log) -> list[Word] | None:
         return None
     slashes = SLASHES.search(body) if "//" in body else None
     if slashes:
-        if not log.tolerate(line, slashes.start() + 1, "a comment begins with '#', got '//'", "takes '//', too", 2):
+        if not log.tolerate(
+            line, slashes.start() + 1, "a comment begins with '#', got '//'", "takes '//', too", length=2
+        ):
             return None
         body = body[: slashes.start()]
     words = split_at_blanks(body)
@@ -86,7 +88,7 @@ def split_line(line: Line, log: Log) -> list[Word] | None:
     if blank:
         joined = join_at_commas(words, body)
         message = "no blanks may stand around a comma"
-        if len(joined) < len(words) and not log.tolerate(line, blank.start() + 1, message, "leaves them out", 2):
+        if len(joined) < len(words) and not log.tolerate(line, blank.start() + 1, message, "leaves them out", length=2):
             return None
         return joined
     return words
@@ -203,8 +205,7 @@ def parse_slot(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
         if tolerated is None:
             log.error(line, column, message, length)
             return None
-        checked, remedy = tolerated
-        return checked if log.tolerate(line, column, message, remedy, length) else None
+        return tolerated[0] if log.tolerate(line, column, message, *tolerated[1:], length=length) else None
     if remark:
         column, length = slot.span(None)
         log.notice(line, column, f"{kind.title} {field.title} {remark}", length)
@@ -238,14 +239,15 @@ def load_files(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log
     return value if len(log.errors) == errors else None
 
 
-def repaired_value(field: Field, text: str) -> tuple[Any, str] | None:
-    """Return the value that a lenient reader takes for a wrong text, and the remedies; None without a remedy."""
-    remedies = []
+def repaired_value(field: Field, text: str) -> tuple[Any, str, bool] | None:
+    """Return the value for a wrong text that can be mended, the remedies, and whether they are certain; or None."""
+    remedies, certain = [], True
     while repaired := field.repair(text):
-        text, remedy = repaired
-        remedies.append(remedy)
+        text = repaired.text
+        remedies.append(repaired.deed)
+        certain &= repaired.certain
         try:
-            return field.check(field.parse(text)), " and ".join(remedies)
+            return field.check(field.parse(text)), " and ".join(remedies), certain
         except FieldError:
             continue
     return None

@@ -41,7 +41,7 @@ class Camera(Element):
 
     code, title, plural, once, required = "C", "camera", "cameras", True, True
     position: Triple = declare(Point, "position of the eye")
-    direction: Triple = declare(Direction, "viewing direction", instead=(0.0, 0.0, 1.0))
+    direction: Triple = declare(Direction, "viewing direction", instead=(0.0, 0.0, 1.0), may_be_zero=True)
     fov: float = declare(
         Real,
         "horizontal field of view",
