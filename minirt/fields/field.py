@@ -105,6 +105,20 @@ class Field(Immutable, ABC):
         """The spelling that a lenient reader takes instead of the wrong `text`; None if there is none."""
         return None
 
+    def mend(self, text: str) -> tuple[Any, str, bool] | None:
+        """The checked value that repairs give to the wrong `text`, what they do, and whether they are certain; None
+        where they do not help."""
+        deeds, certain = [], True
+        while repaired := self.repair(text):
+            text = repaired.text
+            deeds.append(repaired.deed)
+            certain &= repaired.certain
+            try:
+                return self.check(self.parse(text)), " and ".join(deeds), certain
+            except FieldError:
+                continue
+        return None
+
     def nudge(self, value: Any, steps: float) -> Any:
         """`value` after `steps` key presses, clamped to its range."""
         return value

@@ -201,7 +201,7 @@ def parse_slot(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
         column, length = slot.span(error.part)
         message = f"{kind.title} {field.title} {error}"
         # The last of four components with blanks between them may be the next field.
-        tolerated = repaired_value(field, text) if word.raw == word.text or text.count(",") == 2 else None
+        tolerated = field.mend(text) if word.raw == word.text or text.count(",") == 2 else None
         if tolerated is None:
             log.error(line, column, message, length)
             return None
@@ -237,17 +237,3 @@ def load_files(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log
             message = f"must be a picture file, got {quoted(file.name)}: {error.reason}"
             log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
     return value if len(log.errors) == errors else None
-
-
-def repaired_value(field: Field, text: str) -> tuple[Any, str, bool] | None:
-    """Return the value for a wrong text that can be mended, the remedies, and whether they are certain; or None."""
-    remedies, certain = [], True
-    while repaired := field.repair(text):
-        text = repaired.text
-        remedies.append(repaired.deed)
-        certain &= repaired.certain
-        try:
-            return field.check(field.parse(text)), " and ".join(remedies), certain
-        except FieldError:
-            continue
-    return None

@@ -88,6 +88,7 @@ class Session:
         self._described: Scene | None = None  # the scene that the words in the window describe
         self._drawn: Outcome | None = None  # the picture in the window
         self._drawn_at = -inf
+        self._judged: Scene | None = None  # the scene of the file whose first picture was searched for shapes
         self.watch_file()
 
     def show(self, state: State) -> None:
@@ -127,6 +128,17 @@ class Session:
             self.screenshot_pending = False
             file = save_picture(Image.from_bgra(self.picture), self.path)
             self.state = self.state.with_message(f"picture: {file}")
+
+    def judge_view(self) -> None:
+        """Say so, and what to do, if the first picture of a scene that was read shows nothing of it."""
+        latest = self.refinement.latest
+        if self._judged is self.saved or latest is None or latest.preview or latest.job.scene is not self.saved:
+            return
+        self._judged = self.saved
+        if latest.pixels is not None and not self.state.message:
+            from minirt.rendering.queries.in_view import notice_about
+
+            self.state = self.state.with_message(notice_about(self.saved, latest.pixels[..., :3]))
 
     def attempt(self, command: Callable[[Session], None]) -> None:
         """Run a command; if it fails, show the reason over the picture."""
