@@ -95,7 +95,8 @@ def read_pixels(data: bytes, header: Header) -> np.ndarray:
     if header.by_columns:
         rgbe = rgbe.swapaxes(0, 1)
     rgbe = rgbe[:: 1 if header.down else -1, :: 1 if header.right else -1]
-    scale = np.ldexp(1.0 / header.exposure, np.arange(256) - 136)  # Ward: mantissas are fractions of 256, 128 is 2^0
+    with np.errstate(over="ignore"):  # mantissas are fractions of 256, and an exponent of 128 is 2^0
+        scale = np.minimum(np.ldexp(1.0 / header.exposure, np.arange(256) - 136), BRIGHTEST)
     scale[0] = 0.0  # black, whatever the mantissas are
     light = rgbe[..., :3] * scale.take(rgbe[..., 3])[..., None]
     return np.minimum(light, BRIGHTEST).astype(np.float32)

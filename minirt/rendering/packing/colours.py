@@ -51,7 +51,10 @@ class Colours(NamedTuple):
         pixels = picture_cache.sky(path)
         if pixels.dtype == np.uint8 and (self.decodes or self.gain != 1):
             pixels = self.of_bytes.take(pixels)
-        return pixels if self.gain == 1 else pixels * np.float32(self.gain)
+        if self.gain == 1:
+            return pixels
+        with np.errstate(over="ignore"):
+            return np.minimum(pixels * np.float32(self.gain), np.finfo(np.float32).max)
 
     @property
     def of_bytes(self) -> np.ndarray:
