@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import atan2, ceil, cos, dist, floor, log10, pi, radians, sin, tan
 from typing import Any
 
@@ -19,7 +20,7 @@ from minirt.scene import Camera, Scene, describe
 COLUMNS, ROWS = 32, 18  # rays that look for shapes
 MOST_PRIMITIVES = 20_000  # that are looked for: in a second
 TESTS = 4_000_000  # of rays against primitives, which choose a camera
-FEW_SHAPES = 64  # of a scene whose brightness chooses, too
+FEW_SHAPES, FEW_CAMERAS = 64, 4  # of a scene whose brightness chooses, too, and how many are compared
 AZIMUTHS, ELEVATIONS = 8, (25.0, -25.0, 70.0)  # degrees: places around the scene from which a camera may look
 NARROWEST, WIDEST, USUAL = 20.0, 100.0, 60.0  # degrees of the field of view: others are replaced by the usual one
 MARGIN = 1.15  # of the distance at which the bounding ball of the scene fills the picture
@@ -80,14 +81,12 @@ def showing_camera(scene: Scene, arrays: ShapeArrays, width: int, height: int) -
     """Return the line of the camera that shows most shapes, and of those the one with most light; or an empty text."""
     centre, radius = bounding_ball(scene)
     count = max(1, TESTS // (COLUMNS * ROWS * len(arrays.slots)))
-    best, line = (0, 0.0), ""
-    for camera in candidates(scene.camera, centre, radius, height / width)[:count]:
-        shapes = len(visible_shapes(arrays, camera, width, height))
-        if shapes >= max(best[0], 1):
-            light = brightness(scene, camera) if len(scene.shapes) <= FEW_SHAPES else 0.0
-            if (shapes, light) > best:
-                best, line = (shapes, light), line_of(camera)
-    return line
+    cameras = candidates(scene.camera, centre, radius, height / width)[:count]
+    shown = [len(visible_shapes(arrays, camera, width, height)) for camera in cameras]
+    best = [camera for camera, shapes in zip(cameras, shown, strict=True) if shapes == max(shown) > 0]
+    if len(best) > 1 and len(scene.shapes) <= FEW_SHAPES:
+        return line_of(max(best[:FEW_CAMERAS], key=partial(brightness, scene)))
+    return line_of(best[0]) if best else ""
 
 
 def brightness(scene: Scene, camera: Camera) -> float:
