@@ -12,7 +12,7 @@ import numpy as np
 
 from minirt.errors import RenderError
 from minirt.fork_safety import renew_after_fork
-from minirt.rendering.developing.darkroom import Darkroom
+from minirt.rendering.darkroom import Darkroom
 from minirt.rendering.notes import NO_WIDE_KERNEL, kernel_notes
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.running import fixed_samples, to_error

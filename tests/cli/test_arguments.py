@@ -39,6 +39,8 @@ BAD_ARGUMENTS = [
     ["ball.rt", "-o", "x.png", "--samples", "4", "--time", "1"],
     ["ball.rt", "--samples", "auto"],
     ["ball.rt", "--replay", "keys.txt", "-o", "x.png", "--samples", "auto"],
+    *(["ball.rt", "-o", "x.png", "--exposure", ev] for ev in ("x", "nan", "inf", "20.1", "-21", "1_0", "")),
+    ["ball.rt", "-o", "x.png", "--tone", "gamma"],
     ["ball.rt", "--threads", "0"],
     ["ball.rt", "--keys", "dvorak"],
 ]

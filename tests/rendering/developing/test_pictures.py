@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.rendering import Renderer
-from minirt.rendering.developing import darkroom
+from minirt.rendering import Renderer, darkroom
 from minirt.rendering.developing.develop import develop
 from minirt.rendering.developing.tone import tone_named
 from minirt.rendering.queries.preview import render_interpreted
