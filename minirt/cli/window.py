@@ -19,8 +19,11 @@ if TYPE_CHECKING:
 MAX_RECORDING = 16 * 2**20  # bytes of a file of recorded keys
 
 
-def show(scene: Scene, options: argparse.Namespace) -> int:
-    """Show the scene in a window until it is closed; without a display, render to the fallback file if there is one."""
+def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) -> int:
+    """Show the scene in a window until it is closed; without a display, render to the fallback file if there is one.
+
+    `saved` is the scene of the file, where options have changed it.
+    """
     import minirt
     from minirt import viewer
 
@@ -33,6 +36,7 @@ def show(scene: Scene, options: argparse.Namespace) -> int:
             lenient=options.lenient,
             samples=options.samples or WINDOW_SAMPLES,
             watch=options.watch,
+            saved=saved,
             renderer=minirt.renderer(options.threads, options.precision, options.depth, options.dither),
         )
     except MlxError as error:
