@@ -16,7 +16,7 @@ from minirt.rendering.developing.blue_noise import SIZE, blue_noise
 from minirt.rendering.developing.steps import Steps
 from minirt.rendering.developing.tone import LEVELS, PLAIN, tone_named
 
-STRIP = 16  # lines at once: their data fits a processor's cache
+STRIP = 64  # lines at once: their data fits a processor's cache
 CLIPPED = 1 + 2.0**-20  # light above this share of that of the highest level is clipped, and not only rounded
 
 Job = Callable[[], object]
