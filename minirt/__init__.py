@@ -105,6 +105,7 @@ def render(
     precision: str = "double",
     depth: int | None = None,
     linear: bool = True,
+    dither: bool = False,
 ) -> Image:
     """Render a scene: `width` by `height` pixels, each the mean of `samples` rays.
 
@@ -117,6 +118,9 @@ def render(
     most `error` (DEFAULT_ERROR if neither is given) or `time` seconds have passed, compilation not counted; `.reached`
     of the picture tells which. Errors are defined in `minirt.rendering.sampling.outcome`. Without `linear` light, the
     picture has 8 bits alone, and sampling also ends where rounding to them decides its error.
+
+    Tone and exposure are those of the camera; light is exposed, but has no tone. `dither` replaces rounding to 8 bits
+    by blue noise, so that smooth shades have no steps.
     """
     import numpy as np
 
@@ -128,7 +132,7 @@ def render(
         raise RenderError(f"a picture has at least 1x1 pixels, got {width}x{height}")
     pixels = np.empty((height, width, 4), np.uint8)
     light = np.zeros((height, width, 3)) if linear else None
-    chosen = renderer(threads, precision, depth)
+    chosen = renderer(threads, precision, depth, dither)
     if samples == "auto":
         if time is not None:
             chosen.prepare(scene)
@@ -151,8 +155,10 @@ def goal(error: float | None, time: float | None) -> tuple[float, float]:
 
 
 @cache
-def renderer(threads: int | None, precision: str = "double", depth: int | None = None) -> Renderer:
-    """A renderer with these threads, precision and depth, cached for the next picture."""
+def renderer(
+    threads: int | None, precision: str = "double", depth: int | None = None, dither: bool = False
+) -> Renderer:
+    """A renderer with these threads, precision and depth, that dithers or not, cached for the next picture."""
     from minirt.rendering import Renderer
 
-    return Renderer(threads, precision, depth)
+    return Renderer(threads, precision, depth, dither)

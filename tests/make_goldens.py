@@ -20,7 +20,7 @@ SIZE = (320, 180)
 
 def golden(scene: Scene) -> Bytes:
     """Render the golden picture of a scene."""
-    return to_bytes(render(scene, *SIZE))
+    return to_bytes(render(scene, *SIZE), scene.camera.tone)
 
 
 if __name__ == "__main__":

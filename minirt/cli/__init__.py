@@ -62,7 +62,9 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
         command = command_for(options)
         # A picture may go to standard output. A window leaves it free, and standard error stays empty without errors.
         scene = read_scene(options, sys.stdout if command is show else sys.stderr)
-    return command(scene, options)
+    if command is show:  # which compares what it shows with the file
+        return show(with_camera_options(scene, options), options, scene)
+    return command(with_camera_options(scene, options), options)
 
 
 def check_options(parser: Arguments, options: argparse.Namespace) -> None:
@@ -96,6 +98,13 @@ def keys() -> str:
     from minirt.viewer import keys_text
 
     return keys_text()
+
+
+def with_camera_options(scene: Scene, options: argparse.Namespace) -> Scene:
+    """Return the scene with the tone and the exposure that the options ask for."""
+    given = {"tone": options.tone, "exposure": options.exposure}
+    changes = {name: value for name, value in given.items() if value is not None}
+    return scene.replace(scene.camera, **changes) if changes else scene
 
 
 def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:

@@ -6,6 +6,7 @@ from argparse import ArgumentTypeError
 from math import inf
 
 MAX_SIDE = 16384  # pixels
+MAX_EXPOSURE = 20.0  # EV, up and down
 
 
 def size(text: str) -> tuple[int, int]:
@@ -31,4 +32,15 @@ def positive_number(text: str) -> float:
         number = 0.0
     if not 0 < number < inf:
         raise ArgumentTypeError(f"must be a number > 0, got '{text[:40]}'")
+    return number
+
+
+def exposure(text: str) -> float:
+    """Parse an exposure: a number of doublings of light."""
+    try:
+        number = float(text) if text.isascii() and "_" not in text else inf
+    except ValueError:
+        number = inf
+    if not -MAX_EXPOSURE <= number <= MAX_EXPOSURE:
+        raise ArgumentTypeError(f"must be a number from {-MAX_EXPOSURE:g} to {MAX_EXPOSURE:g}, got '{text[:40]}'")
     return number

@@ -7,11 +7,12 @@ import sys
 from typing import Any, NoReturn
 
 from minirt import DEFAULT_ERROR
-from minirt.cli.argument_values import positive_number, size, whole_number
+from minirt.cli.argument_values import exposure, positive_number, size, whole_number
 from minirt.cli.exit_status import USAGE
 from minirt.cli.output import say, tell
 
 SAMPLES, WINDOW_SAMPLES = 1, 16  # default samples a pixel: of a file, of the window
+TONES = ("plain", "srgb", "filmic")
 DEPTH, MAX_DEPTH = 8, 32  # bounces of light: default and limit
 
 
@@ -71,6 +72,9 @@ def argument_parser() -> Arguments:
         action="store_true",
         help="exit with status 1 when the picture has not reached the error that --error asks for",
     )
+    add("--tone", choices=TONES, help="how light becomes colour, in place of the camera's tone (plain)")
+    add("--exposure", type=exposure, metavar="EV", help="light times two to this power, in place of the camera's (0)")
+    add("--dither", action="store_true", help="dither with blue noise instead of rounding to 8 bits")
     add("--fallback", metavar="FILE", help="render to FILE when no window can be opened")
     add("--left-handed", action="store_true", help="mirror the picture, for scenes made for left-handed coordinates")
     add = parser.add_argument_group("window").add_argument

@@ -12,6 +12,7 @@ from minirt.gc_pause import gc_paused
 
 if TYPE_CHECKING:
     from minirt.image import Image
+    from minirt.rendering import Renderer
     from minirt.scene import Scene
 
 
@@ -28,10 +29,11 @@ def render(scene: Scene, options: argparse.Namespace) -> Image:
     from time import perf_counter
 
     import minirt
+    from minirt.rendering.queries.in_view import notice_about
 
     width, height = options.size or minirt.size_of(scene)
     start = perf_counter()
-    renderer = minirt.renderer(options.threads, options.precision, options.depth)
+    renderer = minirt.renderer(options.threads, options.precision, options.depth, options.dither)
     if options.verbose:
         renderer.prepare(scene)
         tell(f"kernel ready after {perf_counter() - start:.2f} s")
@@ -48,6 +50,7 @@ def render(scene: Scene, options: argparse.Namespace) -> Image:
         precision=options.precision,
         depth=options.depth,
         linear=False,
+        dither=options.dither,
     )
     if image.reached:
         tell(image.reached)
@@ -67,7 +70,25 @@ def render(scene: Scene, options: argparse.Namespace) -> Image:
         tell(f"rays whose light is not finite: {renderer.not_finite}")
         for note in renderer.notes:
             tell(note)
+        tell(clipped(scene, renderer, width, height))
+    if notice := notice_about(scene, image.array):
+        tell(f"notice: {notice}")
     return image
+
+
+def clipped(scene: Scene, renderer: Renderer, width: int, height: int) -> str:
+    """Count the pixels that are brighter than the picture can show, by their light with one sample each."""
+    import numpy as np
+
+    from minirt.rendering.developing.develop import clipped_pixels
+
+    light = np.zeros((height, width, 3))
+    renderer.render(scene, np.empty((height, width, 4), np.uint8), 1, light)
+    count = clipped_pixels(light, scene.camera.tone)
+    share = f"{100 * count / (width * height):.2g} %"
+    return (
+        f"clipped pixels, brighter than the picture can show: {count} of {width * height} ({share}), by one sample each"
+    )
 
 
 def write(image: Image, output: str) -> None:

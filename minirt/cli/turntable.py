@@ -29,6 +29,7 @@ def render_turntable(scene: Scene, options: argparse.Namespace) -> int:
             threads=options.threads,
             precision=options.precision,
             depth=options.depth,
+            dither=options.dither,
         )
         for view in with_progress(turntable(scene, options.turntable), options.turntable, "picture")
     )

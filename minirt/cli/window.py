@@ -19,8 +19,11 @@ if TYPE_CHECKING:
 MAX_RECORDING = 16 * 2**20  # bytes of a file of recorded keys
 
 
-def show(scene: Scene, options: argparse.Namespace) -> int:
-    """Show the scene in a window until it is closed; without a display, render to the fallback file if there is one."""
+def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) -> int:
+    """Show the scene in a window until it is closed; without a display, render to the fallback file if there is one.
+
+    `saved` is the scene of the file, where options have changed it.
+    """
     import minirt
     from minirt import viewer
 
@@ -33,7 +36,8 @@ def show(scene: Scene, options: argparse.Namespace) -> int:
             lenient=options.lenient,
             samples=options.samples or WINDOW_SAMPLES,
             watch=options.watch,
-            renderer=minirt.renderer(options.threads, options.precision, options.depth),
+            saved=saved,
+            renderer=minirt.renderer(options.threads, options.precision, options.depth, options.dither),
         )
     except MlxError as error:
         if not options.fallback:
@@ -53,7 +57,7 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
     lines = read_lines(options.replay)
     settings: dict[str, Any] = {
         "file": options.replay,
-        "renderer": minirt.renderer(options.threads, options.precision, options.depth),
+        "renderer": minirt.renderer(options.threads, options.precision, options.depth, options.dither),
         "size": options.size or minirt.size_of(scene),
         "path": options.scene[0],
         "keys": "qwerty" if options.keys == "auto" else options.keys,  # the same on every machine

@@ -11,11 +11,13 @@ from minirt.fields.orientation import cos_and_sin, upright
 from minirt.fields.pictures import Paint, Picture
 from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Angle, Factor, Flag, Length, Real, Whole, clamp
 from minirt.fields.triples import Colour, Lengths, Point, Three, Triple
+from minirt.fields.words import Choice
 
 __all__ = [
     "FARTHEST",
     "LEAST_LENGTH",
     "Angle",
+    "Choice",
     "Colour",
     "Direction",
     "Factor",

@@ -8,7 +8,7 @@ from itertools import product
 
 from minirt.errors import FieldError
 from minirt.fields.field import Repair
-from minirt.fields.numerals import spelled
+from minirt.fields.numerals import number, spelled
 from minirt.fields.triples import Three, Triple, reads
 from minirt.records import record
 
@@ -23,6 +23,7 @@ class Direction(Three):
     """A direction with components in [-1, 1]; kept at unit length."""
 
     instead: Triple = (0.0, 1.0, 0.0)  # the direction that a lenient reader takes for 0,0,0
+    may_be_zero: bool = False  # whether every reader takes it, as in the example that the subject prints
 
     def check(self, value: Triple) -> Triple:
         self.within(value, -1.0, 1.0)
@@ -43,8 +44,9 @@ class Direction(Three):
     def repair(self, text: str) -> Repair | None:
         if reads(self.parse, text):
             instead = self.format(self.instead)
-            return None if any(self.parse(text)) else Repair(instead, f"takes {instead}")
-        return super().repair(text)
+            return None if any(self.parse(text)) else Repair(instead, f"takes {instead}", self.may_be_zero)
+        repair = super().repair(text)  # a fourth component of 0 makes a direction in homogeneous coordinates
+        return repair and repair._replace(certain=number(text.rpartition(",")[2]) == 0)
 
     @property
     def notation(self) -> str:

@@ -25,13 +25,18 @@ class PictureFile(NamedTuple):
     name: str
     heights: bool = False  # whether it is read as a height map
     part: int | None = None  # index of the component of the value that names it
+    sky: bool = False  # whether it is read as a sky, which may be a Radiance picture
 
 
 class Repair(NamedTuple):
-    """A correct spelling that a lenient reader takes instead, and what that does: "rounds it to 1,2,3"."""
+    """A correct spelling that a lenient reader takes instead, and what that does: "rounds it to 1,2,3".
+
+    Where nothing else can be meant it is `certain`, and every reader takes it.
+    """
 
     text: str
     deed: str
+    certain: bool = False
 
 
 @record(kw_only=True)
@@ -99,6 +104,20 @@ class Field(Immutable, ABC):
 
     def repair(self, text: str) -> Repair | None:
         """The spelling that a lenient reader takes instead of the wrong `text`; None if there is none."""
+        return None
+
+    def mend(self, text: str) -> tuple[Any, str, bool] | None:
+        """The checked value that repairs give to the wrong `text`, what they do, and whether they are certain; None
+        where they do not help."""
+        deeds, certain = [], True
+        while repaired := self.repair(text):
+            text = repaired.text
+            deeds.append(repaired.deed)
+            certain &= repaired.certain
+            try:
+                return self.check(self.parse(text)), " and ".join(deeds), certain
+            except FieldError:
+                continue
         return None
 
     def nudge(self, value: Any, steps: float) -> Any:

@@ -60,7 +60,7 @@ class Paint(Colour):
 
     def pictures(self, value: Triple | str) -> Iterator[PictureFile]:
         if isinstance(value, str):
-            yield PictureFile(value)
+            yield PictureFile(value, sky=True)
 
     @property
     def notation(self) -> str:

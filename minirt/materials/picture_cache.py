@@ -14,6 +14,7 @@ import numpy as np
 from minirt import regular_files
 from minirt.errors import FileError
 from minirt.fork_safety import ForkSafeLock
+from minirt.materials import radiance
 
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
@@ -35,9 +36,19 @@ def picture(path: str | os.PathLike[str]) -> np.ndarray:
     return cached(colours, path)
 
 
+def sky(path: str | os.PathLike[str]) -> np.ndarray:
+    """A picture file as a sky: as `picture`, or of a Radiance picture its light, float32 (h, w, 3); read-only."""
+    return cached(light_or_colours, path)
+
+
 def heights(path: str | os.PathLike[str]) -> np.ndarray:
     """A picture file as a height map, float32 (h, w): its luminance from 0 to 1, with up to 16 bits; read-only."""
     return cached(brightness, path)
+
+
+def reader(heights_wanted: bool, sky_wanted: bool) -> Callable[[Path], np.ndarray]:
+    """The function that reads a picture file as a height map, as a sky, or as colours."""
+    return heights if heights_wanted else sky if sky_wanted else picture
 
 
 def cached(read: Callable[[Path], np.ndarray], path: str | os.PathLike[str]) -> np.ndarray:
@@ -63,6 +74,27 @@ def colours(path: Path) -> np.ndarray:
     return np.ascontiguousarray(pixels if pixels.ndim == 3 else np.repeat(pixels[..., None], 3, axis=2))
 
 
+def light_or_colours(path: Path) -> np.ndarray:
+    """The light of a Radiance picture; red, green and blue of any other file."""
+    data = regular_files.read(path, LARGEST)
+    if not data.startswith(radiance.MAGIC):
+        return colours(path)
+    try:
+        header = radiance.read_header(data)
+        check_size(path, header.width, header.height)
+        return radiance.read_pixels(data, header)
+    except radiance.RadianceError as error:
+        raise FileError(path, f"is a damaged Radiance picture: {error}") from None
+
+
+def check_size(path: Path, width: int, height: int) -> None:
+    """Check the size of a picture; FileError when it has no pixels or too many."""
+    if max(width, height) > SIDE:
+        raise FileError(path, f"has {width}x{height} pixels, more than {SIDE}x{SIDE}")
+    if not width or not height:
+        raise FileError(path, f"has {width}x{height} pixels")
+
+
 def brightness(path: Path) -> np.ndarray:
     """Luminance of a file from 0 to 1, float32 (h, w)."""
     pixels = decode(path)
@@ -80,20 +112,22 @@ def decode(path: Path) -> np.ndarray:
     data = regular_files.read(path, LARGEST)
     if not data:
         raise FileError(path, "is empty")
+    if data.startswith(radiance.MAGIC):
+        raise FileError(path, "is a Radiance picture, which only a sky may be: 'bg file'")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the size is checked here
             image = pillow.open(io.BytesIO(data), formats=FORMATS)
-            size = image.size
-            if max(size) <= SIDE:
-                return shown_pixels(image)
+            check_size(path, *image.size)
+            return shown_pixels(image)
+    except FileError:
+        raise
     except pillow.DecompressionBombError:
         raise FileError(path, f"has more than {SIDE}x{SIDE} pixels") from None
     except UnidentifiedImageError:
         raise FileError(path, "is not a picture") from None
     except Exception as error:  # damaged files make decoders raise anything
         raise FileError(path, f"is a damaged picture ({error})") from None
-    raise FileError(path, f"has {size[0]}x{size[1]} pixels, more than {SIDE}x{SIDE}")
 
 
 def shown_pixels(image: PillowImage) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from math import inf
 from threading import Lock
 from time import perf_counter
@@ -13,7 +13,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.fork_safety import renew_after_fork
 from minirt.kernel.machine_code.library import LIBRARY
-from minirt.rendering.frame_arguments import NO_LINEAR
+from minirt.rendering.darkroom import Darkroom
 from minirt.rendering.notes import NO_WIDE_KERNEL, kernel_notes
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.running import fixed_samples, to_error
@@ -33,9 +33,12 @@ PATIENCE, TRIES = 0.05, 4  # seconds that a click waits for the picture being ma
 class Renderer:
     """Keeps threads and packed shapes from picture to picture. Any thread may call it; pictures are made one by one."""
 
-    def __init__(self, threads: int | None = None, precision: str = "double", depth: int | None = None) -> None:
+    def __init__(
+        self, threads: int | None = None, precision: str = "double", depth: int | None = None, dither: bool = False
+    ) -> None:
         """Use as many threads as there are usable processors unless `threads` is given; `precision` is "double" or
-        "single", or RenderError; light is reflected or refracted at most `depth` times, `DEPTH` by default."""
+        "single", or RenderError; light is reflected or refracted at most `depth` times, `DEPTH` by default. `dither`
+        replaces rounding to 8 bits by blue noise."""
         if precision not in PRECISIONS:
             raise RenderError(f"precision must be double or single, got '{precision}'")
         self.threads = threads or usable_cores()
@@ -44,6 +47,7 @@ class Renderer:
         self.busy = Lock()
         self.kernels = Kernels(precision, self.depth)
         self.runner = FrameRunner(self.threads, self.kernels)
+        self.darkroom = Darkroom(self.runner, dither)
         renew_after_fork(self)
 
     def after_fork(self) -> None:
@@ -162,14 +166,18 @@ class Renderer:
         if samples < 1:
             raise RenderError(f"a pixel needs at least 1 sample, got {samples}")
         self.runner.not_finite = 0
-        light = NO_LINEAR if linear is None else linear
+        light = self.darkroom.light_for(scene, pixels, linear, edges_only)
+        is_done = True
         if not scene.shapes or not pixels.size:
             draw_background(scene, pixels, light)
-            return True
-        self.kernels.make_ready(scene)
-        return fixed_samples.render(
-            self.runner, self.packing, scene, pixels, light, samples, is_wanted, edges_only=edges_only
-        )
+        else:
+            self.kernels.make_ready(scene)
+            is_done = fixed_samples.render(
+                self.runner, self.packing, scene, pixels, light, samples, is_wanted, edges_only=edges_only
+            )
+        if is_done:
+            self.darkroom.develop(scene, pixels, light)
+        return is_done
 
     def reach(
         self,
@@ -185,13 +193,20 @@ class Renderer:
         with self.busy:
             start = perf_counter()
             self.runner.not_finite = 0
-            light = NO_LINEAR if linear is None else linear
+            light = self.darkroom.light_for(scene, pixels, linear)
             if not scene.shapes or not pixels.size:
                 draw_background(scene, pixels, light)
-                return Outcome(1.0, 1, 0.0, perf_counter() - start, error)
-            self.kernels.make_ready(scene)
-            LIBRARY.get(classify_call())
-            return to_error.reach(self.runner, self.packing, scene, pixels, light, error, seconds)
+                outcome: Outcome | None = Outcome(1.0, 1, 0.0, perf_counter() - start, error)
+            else:
+                self.kernels.make_ready(scene)
+                LIBRARY.get(classify_call())
+                least = None
+                if linear is None and self.darkroom.needed(scene):
+                    first = partial(self._draw, scene, pixels, 1, None, lambda: True, edges_only=False)
+                    least = self.darkroom.floor(scene, pixels, error, first)
+                left = seconds - (perf_counter() - start)
+                outcome = to_error.reach(self.runner, self.packing, scene, pixels, light, error, left, least)
+            return self.darkroom.finish(scene, pixels, light, outcome)
 
     def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
         """Return the shape that a pixel of a picture shows, see `minirt.rendering.queries.pick`.

@@ -23,6 +23,7 @@ from minirt.rendering.culling.visibility import (
 from minirt.rendering.notes import notes
 from minirt.rendering.packing.bvh import build_bvh
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.colours import colours_of
 from minirt.rendering.packing.features import DEPTH, features
 from minirt.rendering.packing.lights import emitting_lights, intensity, positions_and_intensities, spot_parameters
 from minirt.rendering.packing.materials import pack_environment, pack_materials
@@ -73,7 +74,8 @@ class Packing:
 
         used = features(scene) - (set() if self.depth else {"reflective"})
         camera, sources = camera_numbers(scene.camera, width, height), emitting_lights(scene)
-        lights = positions_and_intensities(sources)
+        colours = colours_of(scene.camera)
+        lights = positions_and_intensities(sources, colours)
         eye = cached((camera.tobytes(), width, height), seen_by_eye, self.kernel, shapes, camera, width, height)
         cells, dense = light_buffer_cells(shapes), cached("cluster", dense_cluster, shapes)
         binned: list[BinnedShapes] = []
@@ -87,15 +89,17 @@ class Packing:
                 keys.append((position.tobytes(), skipped.tobytes()))
                 binned.append(cached(keys[-1], seen_by_light, self.kernel, shapes, dense, position, cells, skipped))
         light_starts, light_shapes, light_cones, light_buffers = cached(tuple(keys), joined_light_buffers, binned, eye)
-        materials = cached(("materials", used), pack_materials, scene, shapes.owner, used)
+        materials = cached(("materials", used, colours.decodes), pack_materials, scene, shapes.owner, used)
         materials = without_unseen(materials, cached(("effective", used), effective, materials), eye.members)
         needs_bvh = "reflective" in used or ("parallel" in used and cells > 1)
         paint: Any = scene.background and scene.background.paint
         return SceneArrays(
             camera=pixel_rays(camera, width, height),
-            ambient=intensity(scene.ambient) if scene.ambient else np.zeros(3),
+            ambient=intensity(scene.ambient, colours) if scene.ambient else np.zeros(3),
             lights=lights,
-            colours_and_extents=shapes.colours_and_extents,
+            colours_and_extents=cached(
+                ("colours", colours.decodes), colours.surface_colours, shapes.colours_and_extents
+            ),
             slots=shapes.slots,
             tile_shapes=eye.members,
             cones=eye.cones,
@@ -106,8 +110,8 @@ class Packing:
             groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count())),
             spots=spot_parameters(sources) if "spots" in used else None,
             depth=self.depth,
-            background=np.divide(paint, 255) if "background" in used else None,
-            environment=cached(("environment", paint), pack_environment, scene, paint)
+            background=colours.light(paint) if "background" in used else None,
+            environment=cached(("environment", paint, colours), pack_environment, scene, paint)
             if "environment" in used
             else None,
             bvh=cached("bvh", build_bvh, shapes, self.kernel) if needs_bvh else None,

@@ -37,11 +37,16 @@ class Log:
         """Add a notice about a file that is accepted."""
         self.notices.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
 
-    def tolerate(self, line: Line, column: int, message: str, remedy: str, length: int = 1) -> bool:
+    def tolerate(
+        self, line: Line, column: int, message: str, remedy: str, certain: bool = False, length: int = 1
+    ) -> bool:
         """Add a notice if the reader is lenient, an error if it is strict; return whether it is lenient.
 
-        `remedy` says what a lenient reader does: "rounds it to 10,0,255".
+        `remedy` says what a lenient reader does: "rounds it to 10,0,255". A `certain` one is that of every reader.
         """
+        if certain:
+            self.notice(line, column, f"{message} (miniRT {remedy})", length)
+            return True
         add = self.notice if self.lenient else self.error
         add(line, column, f"{message} (--lenient {remedy})", length)
         return self.lenient

@@ -78,7 +78,9 @@ def split_line(line: Line, log: Log) -> list[Word] | None:
         return None
     slashes = SLASHES.search(body) if "//" in body else None
     if slashes:
-        if not log.tolerate(line, slashes.start() + 1, "a comment begins with '#', got '//'", "takes '//', too", 2):
+        if not log.tolerate(
+            line, slashes.start() + 1, "a comment begins with '#', got '//'", "takes '//', too", length=2
+        ):
             return None
         body = body[: slashes.start()]
     words = split_at_blanks(body)
@@ -86,7 +88,7 @@ def split_line(line: Line, log: Log) -> list[Word] | None:
     if blank:
         joined = join_at_commas(words, body)
         message = "no blanks may stand around a comma"
-        if len(joined) < len(words) and not log.tolerate(line, blank.start() + 1, message, "leaves them out", 2):
+        if len(joined) < len(words) and not log.tolerate(line, blank.start() + 1, message, "leaves them out", length=2):
             return None
         return joined
     return words
@@ -199,12 +201,11 @@ def parse_slot(slot: Slot, kind: type[Element], line: Line, log: Log) -> Any:
         column, length = slot.span(error.part)
         message = f"{kind.title} {field.title} {error}"
         # The last of four components with blanks between them may be the next field.
-        tolerated = repaired_value(field, text) if word.raw == word.text or text.count(",") == 2 else None
+        tolerated = field.mend(text) if word.raw == word.text or text.count(",") == 2 else None
         if tolerated is None:
             log.error(line, column, message, length)
             return None
-        checked, remedy = tolerated
-        return checked if log.tolerate(line, column, message, remedy, length) else None
+        return tolerated[0] if log.tolerate(line, column, message, *tolerated[1:], length=length) else None
     if remark:
         column, length = slot.span(None)
         log.notice(line, column, f"{kind.title} {field.title} {remark}", length)
@@ -226,26 +227,13 @@ def load_files(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log
             message = f"must be a mesh file, got {quoted(value.name)}: {error.reason}"
             log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
             return None
-    for name, heights, part in slot.field.pictures(value):
+    for file in slot.field.pictures(value):
         from minirt.materials import picture_cache
 
         try:
-            (picture_cache.heights if heights else picture_cache.picture)(log.folder / name)
+            picture_cache.reader(file.heights, file.sky)(log.folder / file.name)
         except FileError as error:
-            column, length = slot.span(part)
-            message = f"must be a picture file, got {quoted(name)}: {error.reason}"
+            column, length = slot.span(file.part)
+            message = f"must be a picture file, got {quoted(file.name)}: {error.reason}"
             log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
     return value if len(log.errors) == errors else None
-
-
-def repaired_value(field: Field, text: str) -> tuple[Any, str] | None:
-    """Return the value that a lenient reader takes for a wrong text, and the remedies; None without a remedy."""
-    remedies = []
-    while repaired := field.repair(text):
-        text, remedy = repaired
-        remedies.append(remedy)
-        try:
-            return field.check(field.parse(text)), " and ".join(remedies)
-        except FieldError:
-            continue
-    return None

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import field
 
 from minirt.element import Element
-from minirt.fields import Colour, Direction, Paint, Point, Real, Triple, Whole, declare, unit
+from minirt.fields import Choice, Colour, Direction, Paint, Point, Real, Triple, Whole, declare, unit
 from minirt.records import record
+
+TONES = ("plain", "srgb", "filmic")  # how light becomes the levels of a picture, see `minirt.rendering.developing.tone`
 
 
 @record()
@@ -29,14 +31,17 @@ class Ambient(Element):
 
 @record()
 class Camera(Element):
-    """`C x,y,z dx,dy,dz fov [roll:degrees]`: a pinhole camera.
+    """`C x,y,z dx,dy,dz fov [roll:degrees] [tone:word] [exposure:EV]`: a pinhole camera.
 
+    Light is multiplied by two to the power of `exposure`. With the `tone` plain the levels of colours and of the
+    picture are in proportion to light. srgb decodes colours, and encodes light, by the curve of sRGB; filmic does the
+    same, and compresses bright light before it encodes it.
     `left_handed` mirrors the picture, for scenes made for left-handed coordinates; it is not written to a file.
     """
 
     code, title, plural, once, required = "C", "camera", "cameras", True, True
     position: Triple = declare(Point, "position of the eye")
-    direction: Triple = declare(Direction, "viewing direction", instead=(0.0, 0.0, 1.0))
+    direction: Triple = declare(Direction, "viewing direction", instead=(0.0, 0.0, 1.0), may_be_zero=True)
     fov: float = declare(
         Real,
         "horizontal field of view",
@@ -48,6 +53,19 @@ class Camera(Element):
     )
     roll: float = declare(
         Real, "turn about the direction, clockwise", unit="degree", low=-360.0, high=360.0, keyed=True, default=0.0
+    )
+    tone: str = declare(
+        Choice, "how light becomes colour: plain, srgb or filmic", words=TONES, keyed=True, default=TONES[0]
+    )
+    exposure: float = declare(
+        Real,
+        "light times two to this power",
+        unit="EV",
+        low=-20.0,
+        high=20.0,
+        step=0.25,
+        keyed=True,
+        default=0.0,
     )
     left_handed: bool = field(default=False, kw_only=True)
 

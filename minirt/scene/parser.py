@@ -114,7 +114,7 @@ def read_element(code: str, words: list[Word], first: int, line: Line, log: Log)
         message = f"a second {kind.title}: the first is in line {first}, and there may be one"
         if kind is not Light:
             log.error(line, words[0].column, message, len(code))
-        elif log.tolerate(line, words[0].column, message, f"reads it as '{FurtherLight.code}'", len(code)):
+        elif log.tolerate(line, words[0].column, message, f"reads it as '{FurtherLight.code}'", length=len(code)):
             kind = FurtherLight
     slots = assign_words(kind, words, line, log)
     values = parse_slots(kind, slots, line, log) if slots else None

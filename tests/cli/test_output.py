@@ -172,6 +172,36 @@ def test_verbose_prints_the_samples_of_auto_only_once(run: Run) -> None:
     assert finite == "rays whose light is not finite: 0"
 
 
+def test_tone_exposure_and_dithering_are_options(run: Run, folder: Path) -> None:
+    plain = pixels(run("ball.rt", "-o", "-", "--size", "80x60").out)
+    assert np.array_equal(
+        pixels(run("ball.rt", "-o", "-", "--size", "80x60", "--tone", "plain", "--exposure", "0").out), plain
+    )
+    (folder / "toned.rt").write_text(SCENE.replace("0,0,1 70", "0,0,1 70 tone:filmic exposure:-1.5"))
+    asked = pixels(run("ball.rt", "-o", "-", "--size", "80x60", "--tone", "filmic", "--exposure", "-1.5").out)
+    assert np.array_equal(asked, pixels(run("toned.rt", "-o", "-", "--size", "80x60").out))
+    assert not np.array_equal(asked, plain)
+    back = pixels(run("toned.rt", "-o", "-", "--size", "80x60", "--tone", "plain", "--exposure", "0").out)
+    assert np.array_equal(back, plain)
+    dithered = pixels(run("ball.rt", "-o", "-", "--size", "80x60", "--dither").out).astype(int)
+    assert 0 < np.abs(dithered - plain).max() <= 1
+    assert abs((dithered - plain).mean()) < 0.02
+    assert run("ball.rt", "-o", "still.png", "--size", "80x60", "--dither").status == 0
+    assert run("ball.rt", "-o", "turn.png", "--turntable", "2", "--size", "80x60", "--dither").status == 0
+    assert (folder / "turn-0001.png").read_bytes() == (folder / "still.png").read_bytes()
+
+
+@pytest.mark.parametrize(("exposure", "tone"), [("0", "plain"), ("2", "plain"), ("2", "filmic")])
+def test_verbose_counts_clipped_pixels(run: Run, exposure: str, tone: str) -> None:
+    ended = run("ball.rt", "-o", "x.png", "--size", "40x30", "-v", "--exposure", exposure, "--tone", tone)
+    *_, line = ended.err.splitlines()
+    scene = minirt.load("ball.rt")
+    light = minirt.render(scene.replace(scene.camera, exposure=float(exposure), tone=tone), 40, 30).linear
+    count = (light.max(axis=-1) > (7.2417 if tone == "filmic" else 1)).sum()
+    assert (count > 0) == ((exposure, tone) == ("2", "plain"))
+    assert line.startswith(f"clipped pixels, brighter than the picture can show: {count} of 1200 (")
+
+
 def test_precision_is_an_option(run: Run) -> None:
     for precision in ("double", "single"):
         ended = run("ball.rt", "-o", f"{precision}.png", "--size", "80x60", "--precision", precision, "-v")

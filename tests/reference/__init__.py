@@ -17,7 +17,7 @@ from tests.reference.hits import first_hits
 from tests.reference.light import OFF_SURFACE, shaded
 from tests.reference.normals import normals
 from tests.reference.texturing import bilinear, colour_and_normal, picture
-from tests.reference.vectors import Array, dot, length, rgb, right_and_up
+from tests.reference.vectors import DECODED, Array, dot, length, rgb, right_and_up
 
 DEPTH = 8  # reflections and refractions along a path, at most
 LEAST = 2.0**-10  # share of the light of a pixel up to which rays are not followed
@@ -26,13 +26,20 @@ LEAST = 2.0**-10  # share of the light of a pixel up to which rays are not follo
 def render(scene: Scene, width: int, height: int, depth: int = DEPTH) -> Array:
     """Render a scene: linear light, (height, width, 3), not clamped. The field of view must be between 0 and 180."""
     origins, directions = camera_rays(scene.camera, width, height)
+    before = DECODED.set(scene.camera.tone != "plain")
     radiance = light_along(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), np.ones(width * height), depth)
-    return radiance.reshape(height, width, 3)
+    DECODED.reset(before)
+    return radiance.reshape(height, width, 3) * 2.0**scene.camera.exposure
 
 
-def to_bytes(linear: Array) -> NDArray[np.uint8]:
+def to_bytes(linear: Array, tone: str = "plain") -> NDArray[np.uint8]:
     """Quantise linear light to bytes: clamped to [0, 1] and rounded to the nearest of 256 steps, halves upwards."""
-    return np.floor(np.clip(linear, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+    if tone == "filmic":
+        linear = linear * (2.51 * linear + 0.03) / (linear * (2.43 * linear + 0.59) + 0.14)
+    shown = np.clip(linear, 0.0, 1.0)
+    if tone != "plain":
+        shown = np.where(shown > 0.0031308, 1.055 * shown ** (1 / 2.4) - 0.055, 12.92 * shown)
+    return np.floor(shown * 255.0 + 0.5).astype(np.uint8)
 
 
 def camera_rays(camera: Camera, width: int, height: int) -> tuple[Array, Array]:
@@ -105,7 +112,7 @@ def sky(scene: Scene, directions: Array) -> Array:
         return np.zeros_like(directions)
     if not isinstance(scene.background.paint, str):
         return np.broadcast_to(rgb(scene.background.paint), directions.shape)
-    pixels = picture(scene.beside(scene.background.paint))
+    pixels = rgb(255 * picture(scene.beside(scene.background.paint)))
     x, y, z = np.moveaxis(directions, -1, 0)
     edge = 0.5 / len(pixels)  # no interpolation beyond the upper and lower rows of pixels
     v = np.clip(0.5 + np.arcsin(np.clip(y, -1, 1)) / np.pi, edge, 1 - edge)

@@ -47,7 +47,7 @@ def colour_and_normal(scene: Scene, shape: Shape, points: Array, normal: Array) 
         return colour, normal
     at = placed(surface_point(shape, points), shape.uv)
     if shape.texture:
-        colour = bilinear(picture(scene.beside(shape.texture)), at.u, at.v)
+        colour = bilinear(rgb(255 * picture(scene.beside(shape.texture))), at.u, at.v)
     if shape.checker:
         odd = (np.floor(at.u / shape.checker.size) + np.floor(at.v / shape.checker.size)) % 2 == 1
         colour = np.where(odd[..., None], rgb(shape.checker.colour), colour)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextvars import ContextVar
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,8 +24,14 @@ def unit(a: Array) -> Array:
         return np.asarray(a / length(a)[..., None])
 
 
-def rgb(colour: tuple[float, float, float]) -> Array:
-    return np.array(colour) / 255.0
+DECODED: ContextVar[bool] = ContextVar("DECODED", default=False)  # whether colours are decoded by the curve of sRGB
+
+
+def rgb(colour: tuple[float, float, float] | Array) -> Array:
+    values = np.array(colour) / 255.0
+    if not DECODED.get():
+        return values
+    return np.where(values > 0.04045, ((values + 0.055) / 1.055) ** 2.4, values / 12.92)  # IEC 61966-2-1
 
 
 def right_and_up(forward: Array) -> tuple[Array, Array]:

@@ -15,6 +15,7 @@ from minirt.element import Record, fields_of
 from minirt.errors import ElementError
 from minirt.fields import (
     FARTHEST,
+    Choice,
     Colour,
     Direction,
     Field,
@@ -53,6 +54,7 @@ VALUES: dict[type[Field], Callable[[Any], st.SearchStrategy[object]]] = {
     Compound: lambda field: built(field.record),
     Picture: lambda _: st.sampled_from(PICTURES),
     MeshField: lambda _: st.just(MESH),
+    Choice: lambda field: st.sampled_from(field.words),
     Flag: lambda _: st.booleans(),
     Real: lambda field: st.floats(field.low, field.high),
     Length: lambda _: st.floats(0, FARTHEST, exclude_min=True),
@@ -116,7 +118,7 @@ def texts(draw: st.DrawFn) -> str:
         lines += [indent + comment + draw(ENDS) for indent, comment in blank]
         words = describe(element).split(" ")
         if isinstance(element, Camera) and draw(COIN):
-            words = [*words[:4], f"roll:{element.roll!r}"]
+            words = [*words[:4], f"roll:{element.roll!r}", f"exposure:{element.exposure!r}", f"tone:{element.tone}"]
         body = "".join(word + draw(BLANKS) for word in words[:-1]) + words[-1]
         lines.append(draw(INDENTS) + body + draw(INDENTS) + draw(COMMENTS) + draw(ENDS))
     return draw(BEGINS) + "\n".join(lines) + draw(ENDINGS)

@@ -9,11 +9,11 @@ from tests.scene.examples import CAMERA, CYLINDER
 
 
 def test_the_pattern_of_an_element_shows_its_line() -> None:
-    assert pattern(ELEMENTS["C"]) == "C x,y,z dx,dy,dz fov [roll:degree]"
+    assert pattern(ELEMENTS["C"]) == "C x,y,z dx,dy,dz fov [roll:degree] [tone:word] [exposure:EV]"
     assert pattern(ELEMENTS["cy"]) == "cy x,y,z ax,ay,az diameter height R,G,B"
     assert pattern(ELEMENTS["pl"]) == "pl x,y,z nx,ny,nz R,G,B"
     assert pattern(ELEMENTS["L"]) == "L x,y,z brightness [R,G,B] [fade:distance]"
-    assert len(pattern(ELEMENTS["C"]).split()) == len(CAMERA.split()) + 1
+    assert len(pattern(ELEMENTS["C"]).split()) == len(CAMERA.split()) + 3
     assert len(pattern(ELEMENTS["cy"]).split()) == len(CYLINDER.split())
 
 
@@ -49,4 +49,4 @@ def test_the_row_of_the_camera_has_count_ranges_units_and_defaults() -> None:
     row = next(row for row in format_table().splitlines() if row.startswith("| `C "))
     assert "| camera (exactly one) |" in row
     assert "`fov` horizontal field of view, in [0, 180], unit: degree<br>" in row
-    assert "`roll:degree` turn about the direction, clockwise, in [-360, 360], unit: degree, 0 when left out |" in row
+    assert "`roll:degree` turn about the direction, clockwise, in [-360, 360], unit: degree, 0 when left out<br>" in row

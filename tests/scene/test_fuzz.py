@@ -49,7 +49,9 @@ ODD += [
     "255,255,255",
     "C 0,0,0 0,0,1 7",
 ]
-LIGHTS = "C 0,0,0 0,0,0 7 roll:3\nL 0,0,0 1\nL 0, 0, 0 1 2.5,0,0 // a\nL 0,0,0,0 .5 1,2,3\nl 0,0,0 1\n"  # lenient only
+LIGHTS = (
+    "C 0,0,0,1 0,0,1 7 roll:3\nL 0,0,0 1\nL 0, 0, 0 1 2.5,0,0 // a\nL 0,0,0,0 .5 1,2,3\nl 0,0,0 1\n"  # lenient only
+)
 
 UNDAMAGED = st.one_of(st.sampled_from([WHOLE, SUBJECT, LIGHTS]), texts())
 HOW_OFTEN, LENGTHS = st.integers(1, 4), st.integers(0, 5)

@@ -13,7 +13,7 @@ CASES = [
     ("sp 0,0,20 12.6 10.4,-0.3,254.5", SPHERE, 16, "a whole number, got '10.4' (--lenient rounds it to 10,0,255)"),
     ("sp 0,0,20 12.6 10,0,254.5e0", SPHERE, 21, "(--lenient rounds it to 10,0,255)"),
     ("sp 0,0,20,1 12.6 10,0,255", SPHERE, 11, "got '0,0,20,1' (--lenient drops the fourth component)"),
-    ("pl 0,-1,0 0,1,0,0 200,200,200", PLANE, 17, "(--lenient drops the fourth component)"),
+    ("pl 0,-1,0 0,1,0,1 200,200,200", PLANE, 17, "(--lenient drops the fourth component)"),
     ("pl 0,-1,0 0,0,0 200,200,200", PLANE, 11, "it points nowhere (--lenient takes 0,1,0)"),
     ("pl 0,-1,0 0,0,0,0 200,200,200", PLANE, 17, "(--lenient drops the fourth component and takes 0,1,0)"),
     ("cy 0,0,0 0,0,0 1 1 1,1,1", "cy 0,0,0 0,1,0 1 1 1,1,1", 10, "(--lenient takes 0,1,0)"),
@@ -42,10 +42,25 @@ def test_one_line_may_have_several_tolerated_mistakes() -> None:
     assert len(notices) == 4
 
 
-def test_a_camera_without_a_direction_looks_along_z() -> None:
-    text = f"{AMBIENT}\nC 0,0,0 0,0,0 70\n"
-    assert "(--lenient takes 0,0,1)" in problems(text)[0].message
-    assert parse(text, lenient=True).scene.camera.direction == (0, 0, 1)
+@pytest.mark.parametrize("lenient", [False, True])
+def test_a_camera_without_a_direction_looks_along_z(lenient: bool) -> None:
+    for direction, column in (("0,0,0", 9), ("0,0,0,0", 15)):
+        scene, (notice,) = parse(f"{AMBIENT}\nC 0,0,0 {direction} 70\n", "test.rt", lenient)
+        assert scene.camera.direction == (0, 0, 1)
+        assert (notice.line, notice.column) == (2, column)
+        assert notice.message.endswith("takes 0,0,1)")
+        assert "--lenient" not in notice.message
+
+
+@pytest.mark.parametrize("lenient", [False, True])
+@pytest.mark.parametrize("last", ["0", "-0", "0.0", "0e9"])
+def test_a_direction_in_homogeneous_coordinates_is_read(last: str, lenient: bool) -> None:
+    line = f"pl 0,-1,0 0,1,0,{last} 200,200,200"
+    scene, (notice,) = parse(scene_with(line), "test.rt", lenient)
+    assert scene.elements == read(PLANE).elements
+    assert (notice.line, notice.column) == (3, 17)
+    assert notice.message.endswith(f"got '0,1,0,{last}' (miniRT drops the fourth component)")
+    assert dump(scene) == scene_with(line)
 
 
 def test_later_lights_become_further_lights() -> None:
@@ -79,10 +94,10 @@ def test_a_comment_line_of_two_slashes_is_kept() -> None:
     assert dump(scene) == text
 
 
-def test_the_example_of_the_subject_is_tolerated() -> None:
-    assert [(each.line, each.column) for each in problems(SUBJECT)] == [(2, 12), (4, 16)]
-    scene, notices = parse(SUBJECT, lenient=True)
-    assert len(notices) == 2
+@pytest.mark.parametrize("lenient", [False, True])
+def test_the_example_of_the_subject_is_read(lenient: bool) -> None:
+    scene, notices = parse(SUBJECT, "test.rt", lenient)
+    assert [(each.line, each.column) for each in notices] == [(2, 12), (4, 16)]
     assert scene.camera.direction == (0, 0, 1)
     assert scene.planes[0].normal == (0, 1, 0)
     assert dump(scene) == SUBJECT

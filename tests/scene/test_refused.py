@@ -41,7 +41,12 @@ def test_lenient_accepts_no_bad_number_identifier_or_count(line: str, column: in
 @pytest.mark.parametrize(
     ("text", "line", "column", "message"),
     [
-        (f"{AMBIENT}\n{SPHERE}\n", 2, 1, "no camera: a scene needs one line 'C x,y,z dx,dy,dz fov [roll:degree]'"),
+        (
+            f"{AMBIENT}\n{SPHERE}\n",
+            2,
+            1,
+            "no camera: a scene needs one line 'C x,y,z dx,dy,dz fov [roll:degree] [tone:word] [exposure:EV]'",
+        ),
         (f"{AMBIENT}\n{SPHERE}", 2, 1, "no camera"),
         (f"{CAMERA}\n{SPHERE}\n# end\n", 3, 1, "no ambient light: a scene needs one line 'A brightness R,G,B'"),
         (f"{AMBIENT}\n{CAMERA}\n{AMBIENT}\n", 3, 1, "a second ambient light: the first is in line 1"),
@@ -54,7 +59,8 @@ def test_lenient_accepts_no_bad_number_identifier_or_count(line: str, column: in
         (f"{CAMERA}\nA 0.2\n", 2, 6, "ambient light colour is missing: expected 'A brightness R,G,B'"),
         (f"{AMBIENT}\nC 0,0,0 0,0,1 181\n", 2, 15, "camera fov must be in [0, 180], got 181"),
         (f"{AMBIENT}\nC 0,0,0 0,0,1 -1\n", 2, 15, "camera fov must be in [0, 180], got -1"),
-        (f"{AMBIENT}\nC 0,0,0 0,0,0 70\n", 2, 9, "camera direction must not be 0,0,0"),
+        (f"{AMBIENT}\nC 0,0,0 0,0,1 70 tone:sRGB\n", 2, 23, "camera tone must be plain, srgb or filmic, got 'sRGB'"),
+        (f"{AMBIENT}\nC 0,0,0 0,0,1 70 exposure:21\n", 2, 27, "camera exposure must be in [-20, 20], got 21"),
         (f"{AMBIENT}\nC 0,0,0 0,0,1\n", 2, 14, "camera fov is missing"),
         (f"{AMBIENT}\nC 0,0,0 0,0,1 70 roll:5 roll:5\n", 2, 25, "camera has 'roll' twice"),
         (f"{AMBIENT}\nC 0,0,0 0,0,1 70 roll:400\n", 2, 23, "camera roll must be in [-360, 360], got 400"),

@@ -6,15 +6,16 @@ from math import cos, radians
 
 import numpy as np
 
+from minirt.rendering.packing.colours import Colours
 from minirt.scene import Ambient, Lamp, Light, ParallelLight, Scene, SpotLight
 
 ALL_DIRECTIONS = (0.0, 0.0, 0.0, -2.0, 1.0)  # axis, end and steepness of a light that shines in all directions
 STEEPEST = 1e30  # the steepness of a spot whose rim has no width
 
 
-def intensity(source: Ambient | Lamp) -> np.ndarray:
+def intensity(source: Ambient | Lamp, colours: Colours) -> np.ndarray:
     """The light of a source at full incidence: red, green, blue."""
-    return np.divide(source.colour, 255) * source.brightness
+    return colours.light(source.colour, source.brightness)
 
 
 def emitting_lights(scene: Scene) -> list[Lamp]:
@@ -22,9 +23,9 @@ def emitting_lights(scene: Scene) -> list[Lamp]:
     return [light for light in scene.lights if light.brightness and any(light.colour)]
 
 
-def positions_and_intensities(lights: list[Lamp]) -> np.ndarray:
+def positions_and_intensities(lights: list[Lamp], colours: Colours) -> np.ndarray:
     """A row for each of m lights, (m, 6): position and intensity."""
-    rows = [(*light_position(light), *intensity(light)) for light in lights]
+    rows = [(*light_position(light), *intensity(light, colours)) for light in lights]
     return np.array(rows, np.float64).reshape(len(lights), 6)
 
 

@@ -12,6 +12,7 @@ from minirt.fields import cos_and_sin
 from minirt.kernel.shading.environment import Environment
 from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import Placement, picture_cache
+from minirt.rendering.packing.colours import colours_of
 from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
 from minirt.scene import Scene
 from minirt.shapes import Shape
@@ -73,15 +74,15 @@ def pack_surface_maps(
     scene: Scene, with_materials: NumberedShapes, owner: np.ndarray, used: Set[Hashable]
 ) -> SurfaceMaps:
     """Checkers, textures, bump maps and normal maps: see `minirt.kernel.shading.texturing`."""
-    count, pool = len(scene.shapes), TexturePool(scene)
+    count, pool, colours = len(scene.shapes), TexturePool(scene), colours_of(scene.camera)
     checks = np.zeros((count, 4))
     textures, normals, is_mapped = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count, np.int64)
     bumps, placements = np.zeros((count, 2)), np.zeros((count, 15))
     for i, shape in with_materials:
         if shape.checker:
-            checks[i] = shape.checker.size, *np.divide(shape.checker.colour, 255)
+            checks[i] = shape.checker.size, *colours.shares(shape.checker.colour)
         if shape.texture:
-            textures[i] = pool.number(shape.texture, picture_cache.picture)
+            textures[i] = pool.number(shape.texture, colours.texture)
         if shape.bump and shape.bump.strength:
             bumps[i] = pool.number(shape.bump.file, picture_cache.heights), shape.bump.strength
         if shape.normal_map:
@@ -111,7 +112,7 @@ def placement_numbers(shape: Shape) -> tuple[float, ...]:
 def pack_environment(scene: Scene, file: str) -> Environment:
     """Pack the environment map of a background."""
     pool = TexturePool(scene)
-    pool.number(file, picture_cache.picture)
+    pool.number(file, colours_of(scene.camera).sky)
     return Environment(**pool.arrays())
 
 

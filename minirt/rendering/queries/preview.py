@@ -14,6 +14,8 @@ from minirt.kernel.frame import ray_direction, to_byte_range
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.lanes import Vec, unit
+from minirt.rendering.developing.develop import develop
+from minirt.rendering.developing.tone import PLAIN
 from minirt.rendering.frame_arguments import thread_memory
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
@@ -44,6 +46,8 @@ def render_interpreted(scene: Scene, width: int, height: int) -> tuple[np.ndarra
     light = np.stack([colour.x, colour.y, colour.z], axis=-1).reshape(height, width, 3)
     pixels = np.full((height, width, 4), 255, np.uint8)
     pixels[..., :3] = to_byte_range(light[..., ::-1])
+    if scene.camera.tone != PLAIN:
+        develop(light, pixels, scene.camera.tone)
     return pixels, light
 
 
@@ -54,6 +58,7 @@ def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray) -> Non
         linear[...] = light if len(linear) else linear
     else:
         pixels[...] = (0, 0, 0, 255)
+        linear[...] = 0.0
 
 
 def without_culling(arrays: SceneArrays) -> SceneArrays:

@@ -28,9 +28,11 @@ def reach(
     linear: np.ndarray,
     error: float,
     seconds: float,
+    least: float | None = None,
 ) -> Outcome | None:
     """Render a scene that has shapes; see `minirt.rendering.sampling.auto`. `pixels` and, where it has rows, `linear`
-    are incomplete where `cancel` ended it early, which returns None."""
+    are incomplete where `cancel` ended it early, which returns None. `least` is the error below which more samples are
+    useless: where it is not given, that at which rounding to 8 bits decides, and 0 with `linear`."""
     start, cancellations = perf_counter(), runner.cancellations
     height, across, _ = pixels.shape
     arrays = packing.pack(scene, across, height)
@@ -51,8 +53,8 @@ def reach(
     def classify() -> tuple[np.ndarray, np.ndarray]:
         return contrast_classes(pixels, packet_width, lambda jobs: runner.pool.run(jobs, runner.cancel), runner.threads)
 
-    # Rounding to 8 bits, where nobody wants the light itself, makes less error useless.
-    least = 0.0 if len(linear) else ROUNDING_DECIDES
+    if least is None:  # rounding to 8 bits, where nobody wants the light itself, makes less error useless
+        least = 0.0 if len(linear) else ROUNDING_DECIDES
     packets = Packets(height, across, packet_width)
     auto = AutoSampler(draw, classify, packets, 3 * height * across, len(offsets[0]))
     outcome = auto.reach(max(error, least), seconds - (perf_counter() - start))

@@ -15,7 +15,8 @@ class Outcome(NamedTuple):
     """Samples and estimated error of a picture.
 
     The error is the RMSE against the converged picture, over all pixels and channels, with light clamped to [0, 1]:
-    0.004 is one of 255 levels.
+    0.004 is one of 255 levels. It is that of light, exposure included, before a tone curve; the error of rounded levels
+    is that of the light that they stand for on the curve.
     """
 
     samples: float  # of a pixel, on average
@@ -24,11 +25,12 @@ class Outcome(NamedTuple):
     seconds: float  # run time
     goal: float = 0.0  # the error that was asked for; 0 if none was
     rounded: bool = False  # whether rounding to 8 bits ended it
+    rounding: float = ROUNDING  # RMSE of rounding, or of dithering, to 8 bits
 
     @property
     def error_of_bytes(self) -> float:
         """The estimated error of the picture rounded to 8 bits."""
-        return sqrt(self.error**2 + ROUNDING**2)
+        return sqrt(self.error**2 + self.rounding**2)
 
     @property
     def is_reached(self) -> bool:
@@ -39,7 +41,7 @@ class Outcome(NamedTuple):
     def notice(self) -> str:
         """The sentence that says that the goal was not reached, and why; empty where it was."""
         if self.rounded:
-            return f"no more samples: rounding to 8 bits decides below an error of {ROUNDING_DECIDES:.2g}"
+            return f"no more samples: rounding to 8 bits decides below an error of {self.rounding / 2:.2g}"
         if self.is_reached:
             return ""
         if self.most == MOST_SAMPLES:

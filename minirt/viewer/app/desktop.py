@@ -40,11 +40,13 @@ def run(
     renderer: Renderer | None = None,
     mlx: Mlx | None = None,
     watch: bool = True,
+    saved: Scene | None = None,
 ) -> int:
     """Show a scene until the user quits; return the exit status: 0, or 128 + n after signal n (Ctrl+C: 130).
 
-    `path` is the scene's file; with `watch` it is read again when another program changes it. Unsaved changes are
-    kept in a recovery file, whose name is printed; those of a program that was killed are offered at the next start.
+    `path` is the scene's file, which holds `saved` if not the scene itself; with `watch` it is read again when another
+    program changes it. Unsaved changes are kept in a recovery file, whose name is printed; those of a program that was
+    killed are offered at the next start.
     When nothing moves, the edges in the picture are refined to `samples` rays per pixel.
 
     MlxError if no window can be opened, RenderError if the pictures cannot be rendered.
@@ -52,7 +54,7 @@ def run(
     If the renderer cannot be stopped (inside the compiler), the process ends here at once.
     """
     renderer = renderer or minirt.renderer(threads)
-    session = open_session(scene, Path(path), size, renderer, mlx or Mlx(), keys, lenient, samples, watch)
+    session = open_session(scene, Path(path), size, renderer, mlx or Mlx(), keys, lenient, samples, watch, saved)
     recovery.begin(session)
     session.mlx.mlx_lost_hook(session.display, recovery.end_at_once, session)
     try:
@@ -73,13 +75,14 @@ def view(
     precision: str = "double",
     keys: str = "auto",
     mlx: Mlx | None = None,
+    dither: bool = False,
 ) -> Scene:
     """Show a scene in a window until it is closed; return the scene as it was edited there.
 
     Ctrl+S in the window writes the file that the scene was read from, or `scene.rt`. The other arguments are those of
     `run` and `minirt.render`.
     """
-    renderer = minirt.renderer(threads, precision)
+    renderer = minirt.renderer(threads, precision, dither=dither)
     path = scene.file or Path("scene.rt")
     session = open_session(scene, path, size, renderer, mlx or Mlx(), keys, lenient=False, samples=samples, watch=False)
     status, _ = run_event_loop(session)
@@ -98,6 +101,7 @@ def open_session(
     lenient: bool,
     samples: int,
     watch: bool,
+    saved: Scene | None = None,
 ) -> Session:
     """Open a session with its window, connected to the window's events. MlxError."""
     mlx.mlx_set_options(strict=True)
@@ -116,6 +120,7 @@ def open_session(
                 lenient=lenient,
                 samples=samples,
                 watch=watch,
+                saved=saved,
             )
             EventDispatcher(session).connect()
             return session

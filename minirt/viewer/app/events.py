@@ -82,6 +82,7 @@ class EventDispatcher:
         for error in session.refinement.collect():
             session.show_error(error)
         session.attempt(Session.take_screenshot)
+        session.judge_view()
         session.refresh()
         session.update()
 

@@ -58,10 +58,12 @@ class Session:
         lenient: bool = False,
         samples: int = 1,
         watch: bool = False,
+        saved: Scene | None = None,
     ) -> None:
         """Open the window.
 
         `samples`: rays per pixel of a picture that does not move. `watch`: read the file when it changes.
+        `saved`: the scene as the file holds it, if not `scene`.
         """
         self.mlx = mlx
         self.display = display
@@ -69,7 +71,8 @@ class Session:
         self.lenient = lenient
         self.pick = pick
         self.state = initial_state(scene)
-        self.saved = scene  # the scene as the file holds it
+        self.opened = scene  # the first scene
+        self.saved = saved or scene  # the scene as the file holds it
         self.file = WatchedFile(path)
         self.watches_file = watch
         self.journal: Journal | None = None  # of unsaved changes
@@ -88,6 +91,7 @@ class Session:
         self._described: Scene | None = None  # the scene that the words in the window describe
         self._drawn: Outcome | None = None  # the picture in the window
         self._drawn_at = -inf
+        self._judged: Scene | None = None  # the scene of the file whose first picture was searched for shapes
         self.watch_file()
 
     def show(self, state: State) -> None:
@@ -127,6 +131,19 @@ class Session:
             self.screenshot_pending = False
             file = save_picture(Image.from_bgra(self.picture), self.path)
             self.state = self.state.with_message(f"picture: {file}")
+
+    def judge_view(self) -> None:
+        """Say so, and what to do, if the first picture of a scene that was read shows nothing of it."""
+        latest = self.refinement.latest
+        if self._judged is self.saved or latest is None or latest.preview:
+            return
+        if latest.job.scene is not self.saved and latest.job.scene is not self.opened:
+            return
+        self._judged = self.saved
+        if latest.pixels is not None and not self.state.message:
+            from minirt.rendering.queries.in_view import notice_about
+
+            self.state = self.state.with_message(notice_about(latest.job.scene, latest.pixels[..., :3]))
 
     def attempt(self, command: Callable[[Session], None]) -> None:
         """Run a command; if it fails, show the reason over the picture."""

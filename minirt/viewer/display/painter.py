@@ -166,7 +166,8 @@ def paint(renderer: Renderer, job: Job, base: Pixels | None = None, is_wanted: I
     about = () if job.urgent else tuple(renderer.about)
     if base is None:
         return Outcome(job, pixels, about=about)
-    estimate = estimated_error(base, pixels, job.base_samples, job.samples, is_wanted)
+    tone = job.scene.camera.tone
+    estimate = estimated_error(base, pixels, job.base_samples, job.samples, is_wanted, tone)
     return Outcome(job) if estimate is None else Outcome(job, pixels, error_estimate=estimate, about=about)
 
 

@@ -126,6 +126,7 @@ EDITS: dict[str, Edit] = {
     "next value": next_value,
     "add attribute": attributes.add_attribute,
     "remove attribute": attributes.remove_attribute,
+    "next tone": framing.next_tone,
     "look at": framing.look_at,
     "reset camera": framing.reset_camera,
     "undo": history.undo,

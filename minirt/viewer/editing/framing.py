@@ -1,4 +1,4 @@
-"""Frame the selected element in the picture, and reset the camera."""
+"""Frame the selected element in the picture, change the tone, and reset the camera."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from math import atan, radians, sin, tan
 from minirt.fields import clamp
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame, linear_combination
+from minirt.scene.elements import TONES
 from minirt.viewer.editing.measure import extent
 from minirt.viewer.editing.motion import clamp_point
 from minirt.viewer.editing.state import State
@@ -28,6 +29,13 @@ def look_at(state: State, _amount: float, now: float) -> State:
     _, _, forward = camera_frame(camera)
     moved = camera.replace(position=clamp_point(linear_combination(1.0, centre, -distance, forward)))
     return state.edit_camera(moved, "", now)
+
+
+def next_tone(state: State, _amount: float, now: float) -> State:
+    """Switch to the next tone of the picture."""
+    camera = state.scene.camera
+    tone = TONES[(TONES.index(camera.tone) + 1) % len(TONES)]
+    return state.edit_camera(camera.replace(tone=tone), "tone", now).with_message(f"tone: {tone}")
 
 
 def reset_camera(state: State, _amount: float, now: float) -> State:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from minirt.element import Element, Record, fields_of
-from minirt.fields import Angle, Colour, Field, MeshField, MeshFile, Picture
+from minirt.fields import Angle, Choice, Colour, Field, MeshField, MeshFile, Picture
 from minirt.viewer.editing.orientation import shows_roll
 
 CHANNELS = "red", "green", "blue"
@@ -44,7 +44,9 @@ class Value(NamedTuple):
     def stepped(self, element: Element, steps: float, next_file: NextFile) -> Any:
         """The field's value after a number of steps."""
         old = self.get(element)
-        new = next_file(old, steps) if isinstance(old, str | MeshFile) else (self.inner or self.field).nudge(old, steps)
+        field = self.inner or self.field
+        is_file = isinstance(old, str | MeshFile) and not isinstance(field, Choice)
+        new = next_file(old, steps) if is_file else field.nudge(old, steps)
         if self.channel is not None:
             new = (*old[: self.channel], new[self.channel], *old[self.channel + 1 :])
         return getattr(element, self.field.name).replace(**{self.inner.name: new}) if self.inner else new

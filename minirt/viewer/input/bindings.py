@@ -78,6 +78,7 @@ BINDINGS = (
     on_press(CHANGE, "next value", "next value: diameter, height, colour, ...", "V"),
     on_press(CHANGE, "add attribute", "add an attribute: highlight, mirror, ...; again: the next", "M"),
     on_press(CHANGE, "remove attribute", "remove the attribute of the active value", "Shift+M"),
+    on_press(CHANGE, "next tone", "next tone: plain, srgb, filmic", "T"),
     on_press(CHANGE, "look at", "bring the selected element into view", "F"),
     on_press(CHANGE, "reset camera", "reset the camera to that of the file", "Home", "R"),
     on_press(EDIT, "undo", "undo", "Ctrl+Z"),

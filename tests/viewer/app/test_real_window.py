@@ -114,6 +114,26 @@ def test_with_one_sample_the_window_shows_the_picture_of_the_library(desktop, tm
         assert viewer.end() == (0, "", "")
 
 
+def test_the_window_shows_the_tone_and_the_dithering_of_the_file_and_a_key_changes_the_tone(desktop, tmp_path):
+    options = ("--samples", "1", "--tone", "filmic", "--exposure", "1", "--dither")
+    with viewing(desktop, tmp_path / "scene.rt", options=options) as viewer:
+        scene = minirt.load(viewer.path)
+        viewer.key("i", "i")
+        for tone in ("filmic", "plain", "srgb"):
+            toned = scene.replace(scene.camera, tone=tone, exposure=1)
+            expected = minirt.render(toned, *SIZE, dither=True).array
+            assert not np.array_equal(expected, minirt.render(toned, *SIZE).array)
+            if tone == "plain":  # another program changes the file: the tone that the options gave stays
+                viewer.path.write_text(viewer.path.read_text() + "# changed\n")
+                viewer.key("t")
+            elif tone == "srgb":
+                viewer.key("t")
+            viewer.key("i", "i", "i")
+            viewer.shows(expected)
+        viewer.key("Escape")
+        assert viewer.end() == (0, "", "")
+
+
 def test_escape_right_after_the_start_ends_the_program(viewer):
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")

@@ -11,6 +11,7 @@ from minirt.mlx import Key
 from minirt.viewer.display.adaptive_resolution import FRAME_TIME
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.editing.state import initial_state
 from tests.viewer.fake import FakeRenderer, colour_of, scene
 from tests.viewer.session_harness import SIZE, SessionHarness
 from tests.waiting import HANG_LIMIT, until
@@ -152,3 +153,27 @@ def test_a_screenshot_waits_for_the_final_picture(tmp_path):
         assert list(tmp_path.iterdir()) == []
     harness.finish(FRAME_TIME)
     assert [file.name for file in tmp_path.iterdir()] == ["scene-1.png"]
+
+
+AWAY = "A 0.2 255,255,255\nC 0,0,0 0,0,-1 60\nsp 0,0,9 1 255,0,0\n"
+
+
+def test_a_first_picture_with_nothing_in_view_is_remarked_on_once():
+    harness = SessionHarness()
+    session = harness.session
+    session.saved = scene(AWAY)
+    session.state = initial_state(session.saved)
+    session.update()
+    harness.finish(0.001)
+    harness.finish(0.001)
+    assert session.state.message.startswith("nothing is in view; this line would show the scene: C ")
+    harness.tap(Key.D)
+    assert session.state.message == ""
+    harness.finish(0.001)
+    assert session.state.message == ""
+
+
+def test_a_picture_that_shows_something_is_not_remarked_on():
+    harness = SessionHarness()
+    harness.finish(0.001)
+    assert harness.session.state.message == ""

@@ -121,6 +121,7 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "next value": (SPHERE, lambda _, after: after.state.active.name == "colour"),
     "add attribute": (SPHERE, lambda _, after: after.state.element.specular is not None),
     "remove attribute": ((*SPHERE, "press M"), lambda _, after: after.state.element.specular is None),
+    "next tone": ((), lambda _, after: camera(after).tone == "srgb"),
     "look at": (("press Tab",), centred),
     "reset camera": (("press D", "press Left"), lambda _, after: camera(after) == scene().camera),
     "undo": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),

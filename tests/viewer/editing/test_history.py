@@ -48,7 +48,7 @@ def test_changes_of_different_kinds_are_undone_separately():
 
 
 def test_another_selection_or_value_separates_changes():
-    for between in (["select next", "select camera"], ["next value", "next value"]):
+    for between in (["select next", "select camera"], ["next value"] * 4):
         state = initial_state(scene())
         for action in ("grow", *between, "grow"):
             state = apply(state, action, now=0.0)
