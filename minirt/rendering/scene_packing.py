@@ -23,7 +23,8 @@ from minirt.rendering.culling.visibility import (
 from minirt.rendering.notes import notes
 from minirt.rendering.packing.bvh import build_bvh
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
-from minirt.rendering.packing.features import DEPTH, features
+from minirt.rendering.packing.eye_medium import medium_at
+from minirt.rendering.packing.features import DEPTH, SECONDARY, features
 from minirt.rendering.packing.lights import emitting_lights, intensity, positions_and_intensities, spot_parameters
 from minirt.rendering.packing.materials import pack_environment, pack_materials
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -71,7 +72,7 @@ class Packing:
             self.cache[key] = before[key] if key in before else compute(*arguments)
             return self.cache[key]
 
-        used = features(scene) - (set() if self.depth else {"reflective"})
+        used = features(scene) - (set() if self.depth else SECONDARY)
         camera, sources = camera_numbers(scene.camera, width, height), emitting_lights(scene)
         lights = positions_and_intensities(sources)
         eye = cached((camera.tobytes(), width, height), seen_by_eye, self.kernel, shapes, camera, width, height)
@@ -105,6 +106,7 @@ class Packing:
             light_cones=light_cones,
             groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count())),
             spots=spot_parameters(sources) if "spots" in used else None,
+            eye_medium=medium_at(camera[:3], scene.shapes) if "media" in used else None,
             depth=self.depth,
             background=np.divide(paint, 255) if "background" in used else None,
             environment=cached(("environment", paint), pack_environment, scene, paint)

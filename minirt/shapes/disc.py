@@ -27,7 +27,7 @@ from minirt.shapes.shape import Ball, Bounds, Position, Shape
 class Disc(Shape):
     """A line `di` of a scene file."""
 
-    code, title, plural = "di", "disc", "discs"
+    code, title, plural, solid = "di", "disc", "discs", False
     centre: Triple = declare(Point, "centre")
     normal: Triple = declare(Direction, "normal")
     diameter: float = declare(Length, "diameter")

@@ -39,7 +39,7 @@ class WideKernel(NamedTuple):
 OPTIONAL = tuple(name for name, default in SceneArrays._field_defaults.items() if default is None)
 MAPS = ("checks", "textures", "bumps", "normals")
 FULL = frozenset(OPTIONAL + MAPS)
-FULL_SINGLE = frozenset({"spots", "specular", "surface_maps", "background", "checks"})  # see `fits_single`
+FULL_SINGLE = frozenset({"spots", "specular", "glow", "surface_maps", "background", "checks"})  # see `fits_single`
 
 FULL_DOUBLE = WideKernel("full", "double", FULL)
 # The narrowest first.
@@ -127,6 +127,12 @@ def empty_arrays(wide: WideKernel) -> SceneArrays:
         spots=numbers((0, 7)),
         specular=numbers((0, 3)),
         reflective=numbers((0, 3)),
+        transparent=numbers((0, 4)),
+        media=numbers((0, 6)),
+        eye_medium=numbers(3),
+        fresnel=numbers(0),
+        fades=numbers((0, 2)),
+        glow=numbers(0),
         surface_maps=maps._replace(**without(MAPS, wide)),
         background=numbers(3),
         environment=Environment(NO_TEXELS, NO_PICTURES),
