@@ -72,7 +72,8 @@ class Compound(Field):
         fields = fields_of(self.record)
         first, *rest = (field.placeholder or field.notation for field in fields)
         optional = [not field.required for field in fields[1:]]
-        return first + "".join(f"[,{each}]" if last else f",{each}" for each, last in zip(rest, optional, strict=True))
+        parts = "".join(f"[,{each}" if last else f",{each}" for each, last in zip(rest, optional, strict=True))
+        return first + parts + "]" * sum(optional)
 
     @property
     def notation(self) -> str:

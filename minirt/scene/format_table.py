@@ -31,7 +31,7 @@ def attribute_row(field: Field) -> str:
         own = next((other for other in fields_of(kind) if other.name == field.name and other.bare != field.bare), None)
         alone += f" ({kind.plural}: `{field.keys[0]}:{own.bare}`)" if own else ""
     aliases = ", ".join(f"`{alias}:`" for alias in field.aliases)
-    return f"| `{field.notation}`{alone}; also {aliases} | {field.sort} | {text} |"
+    return f"| `{field.notation}`{alone}{'; also ' if aliases else ''}{aliases} | {field.sort} | {text} |"
 
 
 def name_and_count(kind: type[Element]) -> str:
