@@ -32,4 +32,4 @@ def shares_at_angle(reflective: Vec, fresnel: Number, cosine: Number, against: N
     is_glass = refracted > 0.0
     share = reflectance(cosine, where(is_glass & (against < 0.0), ior, 1.0 / ior))
     reflected = constant + fresnel * (share * where(is_glass, constant + refracted, 1.0) - constant)
-    return Vec(reflected, where(is_glass, constant + refracted - reflected, 0.0), ior)
+    return Vec(reflected, where(is_glass, constant + refracted - reflected, 0.0), where(is_glass, ior, 1.0))
