@@ -10,7 +10,7 @@ import pytest
 
 import minirt
 from minirt.element import Element
-from minirt.materials import Bump, Checker, Glass, Placement, Specular
+from minirt.materials import Bump, Checker, Glass, Mirror, Placement, Specular, Tint
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes import Shape
 from minirt.shapes.box import Box
@@ -90,6 +90,16 @@ def material_scene(seed: int) -> Scene:
     )
     with_materials.append(ellipsoid.replace(**materials[own.integers(len(materials))]))
     with_materials = [oriented(shape, own) for shape in with_materials]
+    glass = [shape for shape in with_materials if shape.glass]
+    for shape in glass:  # tinted, and with Fresnel reflection, both of all strengths
+        changed = shape.replace(
+            tint=Tint(tuple(own.integers(0, 256, 3)), float(np.exp(own.normal()))),
+            fresnel=float(own.choice([0, 1, own.random()])),
+            glass=shape.glass.replace(fade=float(own.choice([0, 0, 30]))) if shape.glass else None,
+        )
+        with_materials[with_materials.index(shape)] = changed
+    which = own.integers(12)
+    with_materials[which] = with_materials[which].replace(glow=own.random(), mirror=Mirror(0.3, 12.0), fresnel=1.0)
     eye = np.array(point(9))
     lights: list[Element] = [
         Light(point(7), 0.4, colour()),

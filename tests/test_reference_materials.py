@@ -35,7 +35,7 @@ def middle(*elements: Element, depth: int = 8) -> np.ndarray:
 
 def radiance(scene: Scene, direction: tuple[float, float, float]) -> np.ndarray:
     """Return the radiance along a ray from the origin."""
-    return light_along(scene, np.zeros((1, 3)), unit(np.array([direction])), np.ones(1), 8)[0]
+    return light_along(scene, np.zeros((1, 3)), unit(np.array([direction])), np.ones((1, 3)), 8)[0]
 
 
 def test_parallel_light_has_no_distance() -> None:

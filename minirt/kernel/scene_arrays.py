@@ -43,6 +43,12 @@ class SceneArrays(NamedTuple):
     spots: Any = None  # (m, 7) spot, parallel and fading lights, see `minirt.kernel.shading.lights`
     specular: Any = None  # (n, 3) specular highlights, see `minirt.kernel.shading.specular`
     reflective: Any = None  # (n, 3) mirrors and glass, see `minirt.kernel.shading.whitted`
+    transparent: Any = None  # (n, 4) glass as light from light sources meets it, `minirt.kernel.shading.transmission`
+    media: Any = None  # (n, 6) tinted glass, see `minirt.kernel.shading.media`
+    eye_medium: Any = None  # (3,) absorption at the eye, likewise
+    fresnel: Any = None  # (n,) how far the shares of mirrors and glass are those of Fresnel's equations, from 0 to 1
+    fades: Any = None  # (n, 2) one over the distances at which reflected and refracted rays are gone, or 0
+    glow: Any = None  # (n,) share of its colour that a shape emits
     surface_maps: Any = None  # `minirt.kernel.shading.texturing.SurfaceMaps`
     depth: int = 0  # most reflections and refractions along a path
     background: Any = None  # (3,) radiance along rays that hit nothing

@@ -12,12 +12,15 @@ from minirt.fields import declare
 from minirt.materials.bump import Bump as Bump
 from minirt.materials.checker import Checker as Checker
 from minirt.materials.compound import Compound as Compound
+from minirt.materials.fresnel import Fresnel as Fresnel
 from minirt.materials.glass import Glass as Glass
+from minirt.materials.glow import Glow as Glow
 from minirt.materials.mirror import Mirror as Mirror
 from minirt.materials.normal_map import NormalMap as NormalMap
 from minirt.materials.placement import Placement as Placement
 from minirt.materials.specular import Specular as Specular
 from minirt.materials.texture import Texture as Texture
+from minirt.materials.tint import Tint as Tint
 from minirt.records import record
 
 SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
@@ -30,8 +33,11 @@ class Attributes(Element):
     """The materials that every shape may have; None where it has not."""
 
     specular: Specular | None = declare(Compound, "highlight", record=Specular, aliases=("spc",), **SHARED)
-    mirror: float | None = declare(Mirror, "share of mirrored light", aliases=("mir",), **SHARED)
+    mirror: Mirror | float | None = declare(Compound, "mirrored light", record=Mirror, aliases=("mir",), **SHARED)
     glass: Glass | None = declare(Compound, "refracted light", record=Glass, aliases=("ref",), **SHARED)
+    tint: Tint | None = declare(Compound, "colour that glass gives to light", record=Tint, **SHARED)
+    fresnel: float | None = declare(Fresnel, "how far Fresnel's equations count", bare="1", **SHARED)
+    glow: float | None = declare(Glow, "light of its own", **SHARED)
     checker: Checker | None = declare(Compound, "checkerboard", bare="0.125", **BOARD)
     texture: str | None = declare(Texture, "picture in the place of the colour", aliases=("txm", "tx"), **MAPPED)
     bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **MAPPED)

@@ -14,7 +14,10 @@ from minirt.records import record
 
 @record(kw_only=True)
 class Compound(Field):
-    """A material, its values in the order of its fields; the last ones may be left out where they have a default."""
+    """A material, its values in the order of its fields; the last ones may be left out where they have a default.
+
+    A program may give a number in place of a material whose other values may be left out: it is the first value.
+    """
 
     record: type[Material]
 
@@ -44,6 +47,11 @@ class Compound(Field):
         return ",".join(spelled)
 
     def check(self, value: Any) -> Material:
+        if isinstance(value, float | int) and not any(field.required for field in fields_of(self.record)[1:]):
+            try:
+                return self.record(value)
+            except ValueError as error:
+                raise FieldError(str(error).removeprefix(f"{self.record.title} ")) from None
         if not isinstance(value, self.record):
             raise FieldError(f"must be a {self.record.__name__}, got {value!r}")
         return value
@@ -64,7 +72,8 @@ class Compound(Field):
         fields = fields_of(self.record)
         first, *rest = (field.placeholder or field.notation for field in fields)
         optional = [not field.required for field in fields[1:]]
-        return first + "".join(f"[,{each}]" if last else f",{each}" for each, last in zip(rest, optional, strict=True))
+        parts = "".join(f"[,{each}" if last else f",{each}" for each, last in zip(rest, optional, strict=True))
+        return first + parts + "]" * sum(optional)
 
     @property
     def notation(self) -> str:

@@ -17,3 +17,7 @@ class Material(Record):
     def has_effect(self) -> bool:
         """Whether the picture shows it: a material without effect costs no feature of the kernel."""
         return True
+
+    def further_features(self) -> tuple[str, ...]:
+        """Features of the kernel that these values need beside `feature`."""
+        return ()

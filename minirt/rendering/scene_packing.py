@@ -24,7 +24,8 @@ from minirt.rendering.notes import notes
 from minirt.rendering.packing.bvh import build_bvh
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.colours import colours_of
-from minirt.rendering.packing.features import DEPTH, features
+from minirt.rendering.packing.eye_medium import medium_at
+from minirt.rendering.packing.features import DEPTH, SECONDARY, features
 from minirt.rendering.packing.lights import emitting_lights, intensity, positions_and_intensities, spot_parameters
 from minirt.rendering.packing.materials import pack_environment, pack_materials
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -72,7 +73,7 @@ class Packing:
             self.cache[key] = before[key] if key in before else compute(*arguments)
             return self.cache[key]
 
-        used = features(scene) - (set() if self.depth else {"reflective"})
+        used = features(scene) - (set() if self.depth else SECONDARY)
         camera, sources = camera_numbers(scene.camera, width, height), emitting_lights(scene)
         colours = colours_of(scene.camera)
         lights = positions_and_intensities(sources, colours)
@@ -109,6 +110,7 @@ class Packing:
             light_cones=light_cones,
             groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count())),
             spots=spot_parameters(sources) if "spots" in used else None,
+            eye_medium=medium_at(camera[:3], scene.shapes, colours) if "media" in used else None,
             depth=self.depth,
             background=colours.light(paint) if "background" in used else None,
             environment=cached(("environment", paint, colours), pack_environment, scene, paint)

@@ -27,7 +27,7 @@ from minirt.shapes.shape import Ball, Bounds, Position
 class Disc(Flat):
     """A line `di` of a scene file."""
 
-    code, title, plural, revolved = "di", "disc", "discs", True
+    code, title, plural, revolved, solid = "di", "disc", "discs", True, False
     centre: Triple = declare(Point, "centre")
     normal: Triple = declare(Direction, "normal")
     diameter: float = declare(Length, "diameter")

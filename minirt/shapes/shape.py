@@ -57,6 +57,7 @@ class Shape(Attributes):
 
     batched: ClassVar[bool] = False  # whether one element is many primitives, as a mesh is many triangles
     infinite: ClassVar[bool] = False  # whether the shapes of this kind have no bounding box, as planes
+    solid: ClassVar[bool] = True  # whether it has an inside, that of a plane being below it
     if TYPE_CHECKING:
         colour: Triple
 

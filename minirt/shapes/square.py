@@ -29,7 +29,7 @@ from minirt.shapes.shape import Ball, Bounds, Position
 class Square(Flat):
     """A line `sq` of a scene file."""
 
-    code, title, plural = "sq", "square", "squares"
+    code, title, plural, solid = "sq", "square", "squares", False
     centre: Triple = declare(Point, "centre")
     normal: Triple = declare(Direction, "normal")
     side: float = declare(Length, "side")

@@ -35,7 +35,7 @@ FLAT = 16 * 2.0**-53  # least height of a triangle, as a share of its largest co
 class Triangle(Shape):
     """A line `tr` of a scene file."""
 
-    code, title, plural, aliases = "tr", "triangle", "triangles", ("tri",)
+    code, title, plural, aliases, solid = "tr", "triangle", "triangles", ("tri",), False
     a: Triple = declare(Point, "a corner")
     b: Triple = declare(Point, "the next corner")
     c: Triple = declare(Point, "the last corner")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image as pillow  # noqa: N813
 
-from minirt.materials import Bump, Checker, Glass, Specular
+from minirt.materials import Bump, Checker, Glass, Mirror, Specular, Tint
 from minirt.scene import Background, FurtherLight, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -34,9 +34,17 @@ def scene(tmp_path: Path) -> Scene:
         SpotLight((0, 7, -3), (0, -1, 0.3), 50, 0.8, rim=0.4),
         Plane((0, -1, 0), (0, 1, 0), WHITE, checker=Checker(0.7, (90, 60, 60)), mirror=0.2),
         Sphere((-1.5, 0.2, 0), 2.4, RED, specular=Specular(0.6, 30)),
-        Sphere((1, 0, -3), 1.5, WHITE, glass=Glass(1.5, 0.8), specular=Specular(0.6, 90, blinn=True)),
+        Sphere(
+            (1, 0, -3),
+            1.5,
+            WHITE,
+            glass=Glass(1.5, 0.8, 20.0),
+            tint=Tint((250, 200, 120)),
+            fresnel=1.0,
+            specular=Specular(0.6, 90, blinn=True),
+        ),
         Cylinder((1.5, 0.3, 1.5), (0.3, 0.9, -0.2), 1.6, 2.5, GREEN, texture="colours.png"),
-        Sphere((0.3, 1.6, 0), 1.2, BLUE, bump=Bump("heights.png", 0.1), mirror=0.3),
+        Sphere((0.3, 1.6, 0), 1.2, BLUE, bump=Bump("heights.png", 0.1), mirror=Mirror(0.3, 9.0), glow=0.1),
         Sphere((3, 0.5, -1), 1.4, WHITE, normal_map="normals.png", checker=Checker(0.125)),
         *(Sphere((-4 + i, -0.7, -2 - i % 2), 0.6, (200, 40 * i, 90)) for i in range(6)),
     )

@@ -11,8 +11,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from minirt.materials import Mirror
 from minirt.scene import Camera, Scene
 from tests.reference import meshes  # noqa: F401  (what is said of each shape in the other files, of these alone)
+from tests.reference.glass import is_sheet, is_tinted, left_by_media, mirror_and_glass, shares
 from tests.reference.hits import first_hits
 from tests.reference.light import OFF_SURFACE, shaded
 from tests.reference.normals import normals
@@ -27,7 +29,8 @@ def render(scene: Scene, width: int, height: int, depth: int = DEPTH) -> Array:
     """Render a scene: linear light, (height, width, 3), not clamped. The field of view must be between 0 and 180."""
     origins, directions = camera_rays(scene.camera, width, height)
     before = DECODED.set(scene.camera.tone != "plain")
-    radiance = light_along(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), np.ones(width * height), depth)
+    weights = np.ones((width * height, 3))
+    radiance = light_along(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), weights, depth)
     DECODED.reset(before)
     return radiance.reshape(height, width, 3) * 2.0**scene.camera.exposure
 
@@ -61,12 +64,20 @@ def camera_frame(camera: Camera) -> tuple[Array, Array, Array]:
     return np.cos(turn) * right - np.sin(turn) * up, np.cos(turn) * up + np.sin(turn) * right, forward
 
 
-def light_along(scene: Scene, origins: Array, directions: Array, weights: Array, depth: int) -> Array:
-    """The radiance along n rays times their weights, (n, 3), by recursive ray tracing (Whitted 1980)."""
+def light_along(
+    scene: Scene, origins: Array, directions: Array, weights: Array, depth: int, fade: float = 0.0
+) -> Array:
+    """The radiance along n rays times their weights (n, 3), by recursive ray tracing (Whitted 1980).
+
+    With `fade` it has lost all strength at that distance.
+    """
     distances, owners = first_hits(scene.shapes, origins, directions)
     light = np.zeros_like(origins)
     missed = owners < 0
-    light[missed] = weights[missed, None] * sky(scene, directions[missed])
+    weights = weights * left_by_media(scene, origins, directions, distances)
+    if fade:
+        weights = weights * np.maximum(0, 1 - distances / fade)[:, None]
+    light[missed] = weights[missed] * sky(scene, directions[missed])
     for index in np.unique(owners[~missed]):
         rays, shape = owners == index, scene.shapes[index]
         direction, weight = directions[rays], weights[rays]
@@ -76,32 +87,35 @@ def light_along(scene: Scene, origins: Array, directions: Array, weights: Array,
         colour, bent = colour_and_normal(scene, shape, points, normal)
         outside = dot(normal, direction) <= 0
         facing, bent = (np.where(outside[:, None], n, -n) for n in (normal, bent))
-        light[rays] += weight[:, None] * shaded(scene, shape, points, facing, bent, colour, direction, far)
-        through = shape.glass.share if shape.glass else 0.0
-        back = shape.mirror or 0.0
-        sum_of_shares = max(1.0, back + through)
-        if depth == 0 or back + through == 0:
-            continue
         leaving = points + far[:, None] * facing, points - far[:, None] * facing
         # The bumped normal counts, unless the mirrored ray would go through the surface.
         mirrored = direction - 2 * dot(bent, direction)[:, None] * bent
         sound = (dot(bent, direction) < 0) & (dot(mirrored, facing) > 0)
         tilted = np.where(sound[:, None], bent, facing)
         cosine = -dot(tilted, direction)[:, None]
+        back, through = shares(shape, cosine[:, 0], outside)
+        own = (1 - back - through)[:, None]
+        light[rays] += weight * shaded(scene, shape, points, facing, bent, colour, direction, far, own)
+        if depth == 0 or not sum(mirror_and_glass(shape)):
+            continue
         mirrored = direction + 2 * cosine * tilted
         ratio = np.where(outside, 1 / shape.glass.ior, shape.glass.ior) if shape.glass else np.ones(len(direction))
         sine = ratio[:, None] * (direction + cosine * tilted)  # Snell's law: the component along the surface
         squared = dot(sine, sine)
         total = squared > 1  # total internal reflection
         refracted = sine - np.sqrt(np.maximum(0, 1 - squared))[:, None] * tilted
-        shares = (
-            (leaving[0], mirrored, weight * (back + np.where(total, through, 0)) / sum_of_shares),
-            (leaving[1], refracted, weight * np.where(total, 0, through) / sum_of_shares),
+        tint = rgb(shape.tint.colour) if shape.tint and is_tinted(shape) and is_sheet(shape) else np.ones(3)
+        mirror_fade = shape.mirror.fade if isinstance(shape.mirror, Mirror) else 0.0
+        glass_fade = shape.glass.fade if shape.glass else 0.0
+        sent = (
+            (~total, leaving[0], mirrored, back[:, None] * weight, mirror_fade),
+            (total, leaving[0], mirrored, (back + through)[:, None] * weight, glass_fade),
+            (~total, leaving[1], refracted, through[:, None] * weight * tint, glass_fade),
         )
-        for starts, towards, share in shares:
-            followed = share > LEAST
+        for which, starts, towards, share, end in sent:
+            followed = which & (share.max(axis=1) > LEAST)
             part = np.zeros_like(points)
-            part[followed] = light_along(scene, starts[followed], towards[followed], share[followed], depth - 1)
+            part[followed] = light_along(scene, starts[followed], towards[followed], share[followed], depth - 1, end)
             light[rays] += part
     return light
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from minirt.scene import Lamp, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes.shape import Shape
-from tests.reference.hits import first_in_front
+from tests.reference.glass import light_through
 from tests.reference.vectors import Array, dot, length, rgb, unit
 
 OFF_SURFACE = 1e-10  # offset from a surface at which rays start, relative to the coordinates
@@ -35,25 +35,30 @@ def from_lamp(lamp: Lamp, points: Array) -> tuple[Array, Array, Array]:
 
 
 def shaded(
-    scene: Scene, shape: Shape, points: Array, normal: Array, bent: Array, colour: Array, direction: Array, far: Array
+    scene: Scene,
+    shape: Shape,
+    points: Array,
+    normal: Array,
+    bent: Array,
+    colour: Array,
+    direction: Array,
+    far: Array,
+    own: Array,
 ) -> Array:
-    """Diffuse light and highlights that points of a `shape` send back against `direction`.
+    """Diffuse light and highlights that points of a `shape` send back against `direction`, and its glow.
 
-    `normal` points towards the viewer, and `bent` is the bumped normal. Shadow rays start `far` above the surface.
+    `normal` points towards the viewer, and `bent` is the bumped normal. Shadow rays start `far` above the surface. Of
+    the diffuse light the share `own` (n, 1) is seen.
     """
-    through = shape.glass.share if shape.glass else 0.0
-    own = 1 - min(1.0, (shape.mirror or 0.0) + through)
-    total = np.zeros_like(points)
+    total = (shape.glow or 0.0) * colour * np.ones_like(points)
     if scene.ambient is not None:
         total += own * colour * scene.ambient.brightness * rgb(scene.ambient.colour)
     starts = points + far[:, None] * normal
     for lamp in scene.lights:
         towards, distance, share = from_lamp(lamp, starts)
         cosine = dot(bent, towards)
-        reached = cosine > 0
-        for each in scene.shapes:
-            reached &= first_in_front(each, starts, towards) >= distance * (1 - OFF_SURFACE)
-        light = (lamp.brightness * share * reached)[:, None] * rgb(lamp.colour)
+        reached = np.where((cosine > 0)[:, None], light_through(scene, starts, towards, distance), 0.0)
+        light = lamp.brightness * share[:, None] * reached * rgb(lamp.colour)
         total += own * cosine[:, None] * colour * light
         if shape.specular:
             if shape.specular.blinn:

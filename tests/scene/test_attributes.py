@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from minirt.errors import SceneError
-from minirt.materials import Bump, Checker, Glass, Specular
+from minirt.materials import Bump, Checker, Glass, Mirror, Specular, Tint
 from minirt.scene import Background, FurtherLight, Light, ParallelLight, Scene, SpotLight, describe, dump, load, parse
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.plane import Plane
@@ -19,7 +19,9 @@ from tests.scene.bad_attributes import BACKGROUNDS, LIGHTS, SHAPES, Case
 from tests.scene.examples import AMBIENT, CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, notices, problems, read, scene_with
 from tests.shapes.examples import example
 
-ABSENT = dict.fromkeys(("specular", "mirror", "glass", "checker", "texture", "bump", "normal_map"))
+ABSENT = dict.fromkeys(
+    ("specular", "mirror", "glass", "tint", "fresnel", "glow", "checker", "texture", "bump", "normal_map")
+)
 
 
 @pytest.fixture
@@ -42,9 +44,16 @@ def attributes(shape: Any) -> dict[str, Any]:
         ("", {}),
         ("specular:0.5,30", {"specular": Specular(0.5, 30.0)}),
         ("spc:.5,3e1,blinn", {"specular": Specular(0.5, 30.0, blinn=True)}),
-        ("mirror:0.3", {"mirror": 0.3}),
-        ("mir:1", {"mirror": 1.0}),
-        ("mirror:0", {"mirror": 0.0}),
+        ("mirror:0.3", {"mirror": Mirror(0.3)}),
+        ("mir:1", {"mirror": Mirror(1.0)}),
+        ("mirror:0", {"mirror": Mirror(0.0)}),
+        ("mir:0.25,9", {"mirror": Mirror(0.25, 9.0)}),
+        ("glass:1.5,0.5,20", {"glass": Glass(1.5, 0.5, 20.0)}),
+        ("tint:250,120,60", {"tint": Tint((250, 120, 60))}),
+        ("tint:0,1,2,.5", {"tint": Tint((0, 1, 2), 0.5)}),
+        ("fresnel", {"fresnel": 1.0}),
+        ("fresnel:0.5", {"fresnel": 0.5}),
+        ("glow:0.25", {"glow": 0.25}),
         ("glass:1.5", {"glass": Glass(1.5, 1.0)}),
         ("ref:1,0.25", {"glass": Glass(1.0, 0.25)}),
         ("checker:2.5", {"checker": Checker(2.5)}),
@@ -55,7 +64,7 @@ def attributes(shape: Any) -> dict[str, Any]:
 )
 @pytest.mark.parametrize("line", [SPHERE, PLANE, CYLINDER])
 def test_every_shape_takes_attributes_in_any_order(line: str, words: str, values: dict[str, Any] | None) -> None:
-    together = {"specular": Specular(0.5, 30.0), "mirror": 0.3, "glass": Glass(2.0), "checker": Checker(1.0)}
+    together = {"specular": Specular(0.5, 30.0), "mirror": Mirror(0.3), "glass": Glass(2.0), "checker": Checker(1.0)}
     (plain, shape) = read(line, f"{line} {words}").shapes
     assert attributes(plain) == {}
     assert attributes(shape) == (together if values is None else values)

@@ -42,7 +42,7 @@ def test_a_second_table_has_the_shared_attributes_of_shapes() -> None:
         "| `specular:share,exponent[,blinn]`; also `spc:` | shapes | highlight<br>`share` share of the light, in [0, 1]"
         "<br>`exponent` how smooth, in [1, 1000000]<br>`blinn` from the halfway direction |"
     )
-    assert "| `checker:size[,R,G,B]`, or `checker` for `checker:0.125` (planes: `checker:1`); also `pat:` |" in rows[3]
+    assert "| `checker:size[,R,G,B]`, or `checker` for `checker:0.125` (planes: `checker:1`); also `pat:` |" in rows[6]
 
 
 def test_the_row_of_the_camera_has_count_ranges_units_and_defaults() -> None:

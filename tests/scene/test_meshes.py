@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from minirt.errors import SceneError
+from minirt.materials import Mirror
 from minirt.scene import describe, dump, load, parse
 from minirt.shapes.mesh import Mesh
 from tests.scene.examples import AMBIENT, CAMERA
@@ -36,7 +37,7 @@ def test_mesh_paths_are_relative_to_the_folder_of_the_scene(folder: Path, monkey
     one, other = load(path).scene.shapes
     assert isinstance(one, Mesh)
     assert one.bounds() == ((1, 2, 3), (3, 4, 3))
-    assert (one.mirror, one.colour, one.parts) == (0.5, (255, 0, 0), 1)
+    assert (one.mirror, one.colour, one.parts) == (Mirror(0.5), (255, 0, 0), 1)
     assert one.file.triangles is other.file.triangles  # the file is read once
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from minirt.errors import SceneError
-from minirt.materials import Bump, Checker, Glass, Specular
+from minirt.materials import Bump, Checker, Glass, Mirror, Specular
 from minirt.scene import Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight, load
 from minirt.shapes.cone import Cone
 from minirt.shapes.disc import Disc
@@ -105,7 +105,7 @@ def test_a_stage_with_spots() -> None:
     )
     assert scene.cylinders[0].checker == Checker(0.125, (200, 30, 30))
     assert scene.spheres[0].specular == Specular(0.7, 90, blinn=True)
-    assert (scene.planes[0].checker, scene.planes[0].mirror) == (Checker(2), 0.15)
+    assert (scene.planes[0].checker, scene.planes[0].mirror) == (Checker(2), Mirror(0.15))
 
 
 def test_an_atom_with_all_spellings_of_numbers() -> None:
@@ -113,7 +113,7 @@ def test_an_atom_with_all_spellings_of_numbers() -> None:
     nucleus, electron, mirrored = scene.spheres
     assert nucleus.specular == Specular(1, 8)
     assert electron.glass == Glass(1.33)
-    assert (mirrored.glass, mirrored.mirror) == (Glass(1.33, 0.5), 0.5)
+    assert (mirrored.glass, mirrored.mirror) == (Glass(1.33, 0.5), Mirror(0.5))
     assert scene.camera == Camera((0, 0, -12), (0, 0, 1), 70)
     assert [ring.tube for ring in scene.tori] == [0.1] * 3
     assert scene.lights == (Light((5, 5, -5), 0.6, fade=40.0),)

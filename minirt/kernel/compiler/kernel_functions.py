@@ -15,7 +15,20 @@ from minirt.kernel.compiler import frame_operations, kind_dispatch, packed_shape
 from minirt.kernel.compiler.inlining import inline_functions_of
 from minirt.kernel.compiler.options import INLINED
 from minirt.kernel.culling import binning, light_buffer
-from minirt.kernel.shading import environment, lights, shade, specular, surfaces, texture_lookup, texturing, whitted
+from minirt.kernel.shading import (
+    environment,
+    fresnel,
+    lights,
+    media,
+    ray_stack,
+    shade,
+    specular,
+    surfaces,
+    texture_lookup,
+    texturing,
+    transmission,
+    whitted,
+)
 from minirt.lanes import angle, largest, power, vec
 from minirt.shapes import (
     ALL_KINDS,
@@ -31,7 +44,7 @@ from minirt.shapes import (
 )
 
 REGISTERED = (
-    whitted.ray_stack,
+    ray_stack.ray_stack,
     trace.for_each_kind,
     trace.closest_of_kind,
     trace.unoccluded_by_kind,
@@ -65,9 +78,13 @@ for _module in (
     lights,
     texture_lookup,
     texturing,
+    fresnel,
+    media,
     surfaces,
+    transmission,
     shade,
     environment,
+    ray_stack,
     whitted,
     frame,
     contrast,

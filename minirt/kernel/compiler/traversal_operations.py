@@ -9,7 +9,7 @@ from numba import types
 from numba.core import cgutils
 
 from minirt.kernel.bvh import nodes
-from minirt.kernel.shading import whitted
+from minirt.kernel.shading import ray_stack
 from minirt.lanes import operations
 from minirt.lanes.compiled import reductions
 from minirt.lanes.compiled.registration import register
@@ -30,9 +30,9 @@ def _packet_memory(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> 
     return memory
 
 
-@register(whitted.ray_stack, lambda: MEMORY, [()])
+@register(ray_stack.ray_stack, lambda: MEMORY, [()])
 def _ray_stack(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return cgutils.alloca_once(builder, ir.DoubleType(), size=whitted.STACK_SIZE)
+    return cgutils.alloca_once(builder, ir.DoubleType(), size=ray_stack.STACK_SIZE)
 
 
 def address_at(context: Any, builder: ir.IRBuilder, sig: Any, args: Any, kind: ir.Type) -> Any:

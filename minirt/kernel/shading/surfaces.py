@@ -6,9 +6,11 @@ from typing import Any, NamedTuple
 
 from minirt.kernel.rows import read, shading, surface
 from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows
+from minirt.kernel.shading.media import filter_of
 from minirt.kernel.shading.texturing import apply_maps
-from minirt.kernel.trace import for_each_kind
-from minirt.lanes import Vec, any, first, lane, rarely, splat, where
+from minirt.kernel.trace import ROUNDING, for_each_kind
+from minirt.lanes import Vec, any, first, lane, rarely, splat, unit_roundoff, where
+from minirt.lanes.largest import largest
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 
@@ -22,6 +24,16 @@ class Surface(NamedTuple):
     colour: Vec  # red, green, blue in [0, 1]
     specular: Vec  # the shape's row of `SceneArrays.specular`
     reflective: Vec  # the shape's row of `SceneArrays.reflective`
+    glow: Number  # the shape's row of `SceneArrays.glow`
+    fresnel: Number  # the shape's row of `SceneArrays.fresnel`
+    fades: Vec  # the shape's row of `SceneArrays.fades`, and 0
+    absorption: Vec  # inside the shape, see `minirt.kernel.shading.media`
+    filter: Vec  # shares of the light that the surface lets through, likewise
+
+
+def clearance(point: Vec, extent: Number) -> Number:
+    """Return the offset from a surface at which a ray starts: clear of it, and of surfaces that coincide with it."""
+    return ROUNDING * unit_roundoff(extent) * (largest(point) + extent)
 
 
 def surfaces(scene: SceneArrays, memory: Any, owner: Number, point: Vec, hit: Mask) -> Surface:
@@ -47,6 +59,11 @@ def surfaces(scene: SceneArrays, memory: Any, owner: Number, point: Vec, hit: Ma
             where(owned, other.colour, result.colour),
             where(owned, other.specular, result.specular),
             where(owned, other.reflective, result.reflective),
+            where(owned, other.glow, result.glow),
+            where(owned, other.fresnel, result.fresnel),
+            where(owned, other.fades, result.fades),
+            where(owned, other.absorption, result.absorption),
+            where(owned, other.filter, result.filter),
         )
         remaining = remaining & ~owned
     memory[scene.lights.shape[0], 0] = index
@@ -60,7 +77,8 @@ def surface_at(scene: SceneArrays, index: int, point: Vec) -> Surface:
         surface_of_kind, scene.groups, (point, point, point), (slot[0], slot[1], point)
     )
     zero = splat(0.0, point.x)
-    specular = reflective = Vec(zero, zero, zero)
+    specular = reflective = fades = absorption = through = Vec(zero, zero, zero)
+    glow = fresnel = zero
     colour = row_of(scene.colours_and_extents, index, point.x)
     if scene.surface_maps is not None:
         shading_normal, colour = apply_maps(scene.surface_maps, scene.groups, index, slot, on, shading_normal, colour)
@@ -68,7 +86,15 @@ def surface_at(scene: SceneArrays, index: int, point: Vec) -> Surface:
         specular = row_of(scene.specular, index, point.x)
     if scene.reflective is not None and has_rows(scene.reflective):
         reflective = row_of(scene.reflective, index, point.x)
-    return Surface(on, normal, shading_normal, colour, specular, reflective)
+    if scene.glow is not None and has_rows(scene.glow):
+        glow = splat(scene.glow[index], point.x)
+    if scene.fresnel is not None and has_rows(scene.fresnel):
+        fresnel = splat(scene.fresnel[index], point.x)
+    if scene.fades is not None and has_rows(scene.fades):
+        fades = Vec(splat(scene.fades[index, 0], point.x), splat(scene.fades[index, 1], point.x), zero)
+    if scene.media is not None and has_rows(scene.media):
+        absorption, through = row_of(scene.media, index, point.x), filter_of(scene.media, index, point.x)
+    return Surface(on, normal, shading_normal, colour, specular, reflective, glow, fresnel, fades, absorption, through)
 
 
 def surface_of_kind(group: Group, state: tuple[Vec, Vec, Vec], arguments: tuple[int, int, Vec]) -> tuple[Vec, Vec, Vec]:
@@ -86,3 +112,8 @@ def surface_of_kind(group: Group, state: tuple[Vec, Vec, Vec], arguments: tuple[
 def row_of(table: Any, index: int, like: Number) -> Vec:
     """Return the first three numbers of a row of a table, the same for all rays."""
     return Vec(splat(table[index, 0], like), splat(table[index, 1], like), splat(table[index, 2], like))
+
+
+def tint(light: Vec, colour: Vec) -> Vec:
+    """Multiply light by the colour of a surface, channel by channel."""
+    return Vec(light.x * colour.x, light.y * colour.y, light.z * colour.z)

@@ -2,8 +2,8 @@
 1980).
 
 A surface with reflectance k and transmittance g sends on a reflected and a refracted ray, and contributes 1 - k - g of
-its own shading. `SceneArrays.reflective` (n, 3) has k, g and the index of refraction of each shape. Shadows of glass
-are those of an opaque shape: caustics and tinted shadows are left out.
+its own shading. `SceneArrays.reflective` (n, 3) has k, g and the index of refraction of each shape. With Fresnel's
+equations k and g depend on the angle; secondary rays may fade with their length, and tinted glass absorbs them.
 """
 
 from __future__ import annotations
@@ -11,24 +11,18 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-import numpy as np
-
 from minirt.kernel.bvh import queries
-from minirt.kernel.bvh.nodes import put, put_vec
 from minirt.kernel.scene_arrays import SceneArrays, has_rows
 from minirt.kernel.shading.environment import background_light, weighted_background
-from minirt.kernel.shading.shade import clearance, direct_light, tint
-from minirt.kernel.shading.surfaces import Surface, surfaces
+from minirt.kernel.shading.fresnel import shares_at_angle
+from minirt.kernel.shading.media import absorbed, brightest, medium_behind
+from minirt.kernel.shading.ray_stack import MIN_WEIGHT, Ray, load_rays, push_rays, ray_stack
+from minirt.kernel.shading.shade import direct_light, own_share
+from minirt.kernel.shading.surfaces import Surface, clearance, surfaces, tint
 from minirt.kernel.trace import closest_hit
-from minirt.lanes import Vec, any, dot, lane, load, maximum, rarely, splat, sqrt, unit, where, width
-from minirt.lanes.operations import BYTES, Mask
+from minirt.lanes import Vec, any, dot, maximum, rarely, splat, sqrt, unit, where
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
-
-MAX_DEPTH = 32  # the largest depth that a scene may ask for
-MIN_WEIGHT = 2.0**-10  # rays that would add less than this share of their light to a pixel are not traced
-ORIGIN, DIRECTION, WEIGHT, LEVEL = 0, 3, 6, 7  # where a packet of waiting rays has its parts, in rows of lanes
-RAY_ROWS = 8  # rows of lanes of a packet of waiting rays
-STACK_SIZE = (MAX_DEPTH + 2) * RAY_ROWS * BYTES // 8
 
 
 def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
@@ -40,27 +34,57 @@ def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, d
     zero = splat(0.0, t)
     radiance = Vec(zero, zero, zero)
     if any(hit):
-        radiance, _ = shade(scene, memory, t, owner, extent, origin, direction, hit)
+        radiance, _ = shade(scene, memory, t, owner, extent, origin, direction, radiance, hit)
     return background_light(scene, hit, radiance, direction)
 
 
 def shade(
-    scene: SceneArrays, memory: Any, t: Number, owner: Number, extent: Number, origin: Vec, direction: Vec, hit: Mask
+    scene: SceneArrays,
+    memory: Any,
+    t: Number,
+    owner: Number,
+    extent: Number,
+    origin: Vec,
+    direction: Vec,
+    medium: Vec,
+    hit: Mask,
 ) -> tuple[Vec, Surface]:
-    """Shade the hits of rays without following reflections; returns their radiance and their surfaces."""
+    """Shade the hits of rays in a medium without following reflections; returns their radiance and their surfaces."""
     surface = surfaces(scene, memory, owner, origin + t * direction, hit)
     normal, shading_normal = surface.normal, surface.shading_normal
     back_side = hit & (dot(normal, direction) > 0.0)
     if rarely(back_side):  # both sides of a surface are shaded alike
         normal = where(back_side, -normal, normal)
         shading_normal = where(back_side, -shading_normal, shading_normal)
-    light, highlight = direct_light(scene, memory, surface, normal, shading_normal, direction, extent, hit)
+    if scene.fresnel is not None and has_rows(scene.fresnel):
+        surface = with_fresnel(surface, reflecting_normal(shading_normal, normal, direction), direction)
+    light, highlight = direct_light(scene, memory, surface, normal, shading_normal, direction, extent, medium, hit)
     radiance = tint(light, surface.colour)
     if scene.reflective is not None:
-        radiance = radiance * maximum(1.0 - surface.reflective.x - surface.reflective.y, 0.0)
+        radiance = radiance * own_share(surface)
     if scene.specular is not None and has_rows(scene.specular):
         radiance = radiance + highlight
+    if scene.glow is not None and has_rows(scene.glow):
+        radiance = radiance + surface.glow * surface.colour
     return radiance, surface
+
+
+def with_fresnel(surface: Surface, normal: Vec, direction: Vec) -> Surface:
+    """Return a surface with the shares of reflection and refraction of rays that are reflected by a `normal`."""
+    cosine, against = -dot(normal, direction), -dot(surface.normal, direction)
+    return Surface(
+        surface.point,
+        surface.normal,
+        surface.shading_normal,
+        surface.colour,
+        surface.specular,
+        shares_at_angle(surface.reflective, surface.fresnel, maximum(cosine, 0.0), against),
+        surface.glow,
+        surface.fresnel,
+        surface.fades,
+        surface.absorption,
+        surface.filter,
+    )
 
 
 def whitted(
@@ -68,17 +92,21 @@ def whitted(
 ) -> Vec:
     """Return the radiance along rays with known hits, following reflected and refracted rays depth first."""
     stack = ray_stack()
-    weight = splat(1.0, t)
+    zero = splat(0.0, t)
+    ray = primary_ray(scene, origin, direction, zero)
     level = 0
     waiting = 0  # packets on the stack
-    radiance = Vec(splat(0.0, t), splat(0.0, t), splat(0.0, t))
+    radiance = Vec(zero, zero, zero)
     while True:
+        origin, direction, medium = ray.origin, ray.direction, ray.medium
+        weight, colour = attenuated(scene, ray, t)
         active = weight > 0.0
         hit = active & (t < inf)
         if any(hit):
-            own, surface = shade(scene, memory, t, owner, extent, origin, direction, hit)
+            own, surface = shade(scene, memory, t, owner, extent, origin, direction, medium, hit)
             point, normal, reflective = surface.point, surface.normal, surface.reflective
-            radiance = where(hit, radiance + weight * own, radiance)  # `own` may be NaN for rays that do not hit
+            # `own` may be NaN for rays that do not hit
+            radiance = where(hit, radiance + weight * coloured(scene, own, colour), radiance)
             if level < scene.depth and has_rows(scene.reflective):
                 rounding = clearance(point, extent)
                 against = -dot(normal, direction)
@@ -92,24 +120,67 @@ def whitted(
                 total = squared < 0.0  # total internal reflection
                 refracted = where(hit & ~total, weight * reflective.y, 0.0)
                 reflected = where(hit, weight * reflective.x + where(total, weight * reflective.y, 0.0), 0.0)
-                if any(reflected > MIN_WEIGHT):
+                kept = worth_tracing(scene, reflected, colour)
+                if any(kept > 0.0):
                     onward = unit(direction + 2.0 * cosine * mirror_normal)
-                    kept = where(reflected > MIN_WEIGHT, reflected, 0.0)
-                    waiting = push_rays(stack, waiting, point + rounding * facing, onward, kept, level)
-                if any(refracted > MIN_WEIGHT):
+                    fade = where(total, surface.fades.y, surface.fades.x)
+                    mirrored = Ray(point + rounding * facing, onward, kept, fade, colour, medium)
+                    waiting = push_rays(scene, stack, waiting, mirrored, level)
+                left, inside = behind_surface(scene, surface, colour, medium, against < 0.0)
+                kept = worth_tracing(scene, refracted, left)
+                if any(kept > 0.0):
                     onward = unit(ratio * direction + (ratio * cosine - sqrt(maximum(squared, 0.0))) * mirror_normal)
-                    kept = where(refracted > MIN_WEIGHT, refracted, 0.0)
-                    waiting = push_rays(stack, waiting, point - rounding * facing, onward, kept, level)
-        radiance = radiance + weighted_background(scene, where(active & ~hit, weight, 0.0), direction)
+                    through = Ray(point - rounding * facing, onward, kept, surface.fades.y, left, inside)
+                    waiting = push_rays(scene, stack, waiting, through, level)
+        beyond = weighted_background(scene, where(active & ~hit, weight, 0.0), direction)
+        radiance = radiance + coloured(scene, beyond, colour)
         if waiting == 0:
             break
         waiting -= 1
-        at = waiting * RAY_ROWS * width(t)
-        origin, direction = load_vec(stack, at, t), load_vec(stack, at + DIRECTION * width(t), t)
-        weight = load(stack, at + WEIGHT * width(t))
-        level = int(lane(load(stack, at + LEVEL * width(t)), 0))
-        t, owner, extent = queries.closest_hit(scene.bvh, origin, direction, weight > 0.0)
+        ray, level = load_rays(scene, stack, waiting, zero)
+        t, owner, extent = queries.closest_hit(scene.bvh, ray.origin, ray.direction, ray.weight > 0.0)
     return radiance
+
+
+def primary_ray(scene: SceneArrays, origin: Vec, direction: Vec, zero: Number) -> Ray:
+    """Return primary rays, which start in the medium of the eye."""
+    one = zero + 1.0
+    medium = Vec(zero, zero, zero)
+    if scene.eye_medium is not None:
+        medium = medium + Vec(scene.eye_medium[0], scene.eye_medium[1], scene.eye_medium[2])
+    return Ray(origin, direction, one, zero, Vec(one, one, one), medium)
+
+
+def attenuated(scene: SceneArrays, ray: Ray, t: Number) -> tuple[Number, Vec]:
+    """Return weight and colour of rays after a distance t, which is infinite for rays that hit nothing."""
+    weight, colour = ray.weight, ray.colour
+    if scene.fades is not None and has_rows(scene.fades):
+        weight = where(ray.fade > 0.0, weight * maximum(1.0 - ray.fade * t, 0.0), weight)
+    if scene.media is not None and has_rows(scene.media):
+        colour = absorbed(colour, ray.medium, t)
+    return weight, colour
+
+
+def coloured(scene: SceneArrays, radiance: Vec, colour: Vec) -> Vec:
+    """Multiply radiance by the colour of a ray, where rays can have one."""
+    if scene.media is None:
+        return radiance
+    return tint(radiance, colour)
+
+
+def worth_tracing(scene: SceneArrays, weight: Number, colour: Vec) -> Number:
+    """Return the weights of rays, but 0 for rays whose share of a pixel is too small to trace them."""
+    if scene.media is None:
+        return where(weight > MIN_WEIGHT, weight, 0.0)
+    return where(weight * brightest(colour) > MIN_WEIGHT, weight, 0.0)
+
+
+def behind_surface(scene: SceneArrays, surface: Surface, colour: Vec, medium: Vec, leaves: Mask) -> tuple[Vec, Vec]:
+    """Return colour and medium of rays that are refracted by a surface of tinted glass."""
+    if scene.media is not None and has_rows(scene.media):
+        colour = tint(colour, surface.filter)
+        medium = medium_behind(medium, surface.absorption, leaves)
+    return colour, medium
 
 
 def reflecting_normal(shading_normal: Vec, facing: Vec, direction: Vec) -> Vec:
@@ -120,25 +191,3 @@ def reflecting_normal(shading_normal: Vec, facing: Vec, direction: Vec) -> Vec:
     cosine = -dot(shading_normal, direction)
     height = dot(direction, facing) + 2.0 * cosine * dot(shading_normal, facing)
     return where((cosine > 0.0) & (height > 0.0), shading_normal, facing)
-
-
-def ray_stack() -> Any:
-    """Allocate the stack of rays still to trace; compiled, it lies on the stack of the thread."""
-    return np.zeros(STACK_SIZE)
-
-
-def push_rays(stack: Any, waiting: int, origin: Vec, direction: Vec, weight: Number, level: int) -> int:
-    """Push a packet of rays, one level deeper, onto the stack, and return the new number of packets on it."""
-    count = width(weight)
-    at = waiting * RAY_ROWS * count
-    put_vec(stack, at, origin)
-    put_vec(stack, at + DIRECTION * count, direction)
-    put(stack, at + WEIGHT * count, weight)
-    put(stack, at + LEVEL * count, splat(level + 1.0, weight))
-    return waiting + 1
-
-
-def load_vec(stack: Any, at: int, like: Number) -> Vec:
-    """Load the vectors of a packet of rays from index `at` of the stack."""
-    count = width(like)
-    return Vec(load(stack, at), load(stack, at + count), load(stack, at + 2 * count))

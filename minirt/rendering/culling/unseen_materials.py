@@ -40,7 +40,7 @@ def without_unseen(materials: Materials, changed: Effective, seen: np.ndarray) -
     if changed.reflective is not None:
         if changed.reflective[seen].any():
             return materials
-        materials = materials._replace(reflective=materials.reflective[:0])
+        materials = materials._replace(reflective=materials.reflective[:0])  # light still shines through glass
     if changed.specular is not None and not changed.specular[seen].any():
         materials = materials._replace(specular=materials.specular[:0])
     return materials

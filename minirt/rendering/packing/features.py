@@ -8,6 +8,7 @@ from typing import Any
 
 from minirt.element import Element, fields_of
 from minirt.materials import Attributes
+from minirt.materials.material import Material
 from minirt.scene import Background, Lamp, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes import Shape
 
@@ -15,6 +16,9 @@ from minirt.shapes import Shape
 FEATURES = {
     "specular": "highlights",
     "reflective": "mirrors and glass",
+    "media": "tinted glass",
+    "fresnel": "Fresnel's equations",
+    "glow": "glow",
     "checks": "checkerboards",
     "textures": "textures",
     "bumps": "bumps",
@@ -24,6 +28,8 @@ FEATURES = {
     "background": "a coloured background",
     "environment": "a picture as background",
 }
+NEEDS = {"media": "transparent", "fresnel": "reflective"}  # features without effect where a shape lacks the other one
+SECONDARY = frozenset({"reflective", "transparent", "media", "fresnel", "fades"})  # features of secondary rays
 DEPTH = 8  # reflections and refractions of a ray, at most
 MATERIALS = tuple((field.name, field) for field in fields_of(Attributes))
 ATTRIBUTES = attrgetter(*(name for name, _ in MATERIALS))
@@ -31,7 +37,10 @@ PLAIN = (None,) * len(MATERIALS)
 
 
 def features(scene: Scene) -> frozenset[Hashable]:
-    """The kinds of shapes in a scene, "parallel" if it has parallel light, and the keys of `FEATURES` that it uses."""
+    """The kinds of shapes in a scene, and the keys of `FEATURES` that it uses.
+
+    Of these "parallel", "transparent" and "fades" are parts: parallel light, glass, and fading reflections.
+    """
     return frozenset().union(*(page.cached(features_of_items) for page in scene.pages))
 
 
@@ -67,8 +76,13 @@ def features_of(item: Element | str) -> Iterable[Hashable]:
 
 def material_features(shape: Shape) -> Iterable[str]:
     """The features that the materials of a shape need."""
-    values = zip(MATERIALS, ATTRIBUTES(shape), strict=True)
-    used = [field.feature_of(value) for (_, field), value in values if value is not None]
+    values = [
+        (field, value) for (_, field), value in zip(MATERIALS, ATTRIBUTES(shape), strict=True) if value is not None
+    ]
+    found = dict.fromkeys(filter(None, (field.feature_of(value) for field, value in values)))
+    for _, value in values:
+        if isinstance(value, Material) and value.has_effect():
+            found.update(dict.fromkeys(value.further_features()))
     if shape.is_mapped and shape.map_frame():
-        used.append("placements")
-    return dict.fromkeys(filter(None, used))
+        found["placements"] = None
+    return [feature for feature in found if NEEDS.get(feature, feature) in found]

@@ -12,14 +12,15 @@ from minirt.fields import cos_and_sin
 from minirt.kernel.shading.environment import Environment
 from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import Placement, picture_cache
-from minirt.rendering.packing.colours import colours_of
+from minirt.rendering.packing import secondary_rays
+from minirt.rendering.packing.colours import Colours, colours_of
 from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
+from minirt.rendering.packing.secondary_rays import NumberedShapes
 from minirt.scene import Scene
 from minirt.shapes import Shape
 from minirt.shapes.basis import basis
 from minirt.shapes.oriented import UPRIGHT
 
-NumberedShapes = list[tuple[int, Shape]]  # shapes that have materials, with their indices
 MAP_FEATURES = {"checks", "textures", "bumps", "normals", "placements"}  # features that `pack_surface_maps` packs
 Reader = Callable[[Path], np.ndarray]
 
@@ -27,18 +28,26 @@ Reader = Callable[[Path], np.ndarray]
 class Materials(NamedTuple):
     """The fields of `minirt.kernel.scene_arrays.SceneArrays` about materials."""
 
-    specular: Any
-    reflective: Any
-    surface_maps: Any
+    specular: Any = None
+    reflective: Any = None
+    transparent: Any = None
+    media: Any = None
+    fresnel: Any = None
+    fades: Any = None
+    glow: Any = None
+    surface_maps: Any = None
 
 
 def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
     """Pack the materials of n primitives for the features that a scene uses; `owner` (n,) has the shape of each."""
-    if not used & {*ROW_PACKERS, *MAP_FEATURES}:  # without a look at each of a million shapes
-        return Materials(None, None, None)
+    if not used & {*ROW_PACKERS, *COLOUR_PACKERS, *MAP_FEATURES}:  # without a look at each of a million shapes
+        return Materials()
     with_materials = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
-    count = len(scene.shapes)
-    rows = {name: pack(with_materials, count)[owner] if name in used else None for name, pack in ROW_PACKERS.items()}
+    count, colours = len(scene.shapes), colours_of(scene.camera)
+    rows = {name: pack(with_materials, count)[owner] for name, pack in ROW_PACKERS.items() if name in used}
+    for name, pack_colours in COLOUR_PACKERS.items():
+        if name in used:
+            rows[name] = pack_colours(with_materials, count, colours)[owner]
     maps = pack_surface_maps(scene, with_materials, owner, used) if used & MAP_FEATURES else None
     return Materials(**rows, surface_maps=maps)
 
@@ -52,22 +61,22 @@ def pack_specular(with_materials: NumberedShapes, count: int) -> np.ndarray:
     return rows
 
 
-def pack_reflective(with_materials: NumberedShapes, count: int) -> np.ndarray:
-    """Share of reflection, share of refraction and refractive index of each of `count` shapes: see
-    `minirt.kernel.shading.whitted`. Shares that exceed 1 together are scaled down to 1."""
-    rows = np.tile([0.0, 0.0, 1.0], (count, 1))
+def pack_glow(with_materials: NumberedShapes, count: int, colours: Colours) -> np.ndarray:
+    """Share of its colour that each of `count` shapes emits, exposed."""
+    rows = np.zeros(count)
     for i, shape in with_materials:
-        refracted, ior = (shape.glass.share, shape.glass.ior) if shape.glass else (0.0, 1.0)
-        reflected = shape.mirror or 0.0
-        total = max(1.0, reflected + refracted)
-        rows[i] = reflected / total, refracted / total, ior
+        rows[i] = (shape.glow or 0.0) * colours.gain
     return rows
 
 
 ROW_PACKERS = {  # by feature, a field of `Materials`
     "specular": pack_specular,
-    "reflective": pack_reflective,
+    "reflective": secondary_rays.pack_reflective,
+    "transparent": secondary_rays.pack_transparent,
+    "fresnel": secondary_rays.pack_fresnel,
+    "fades": secondary_rays.pack_fades,
 }
+COLOUR_PACKERS = {"media": secondary_rays.pack_media, "glow": pack_glow}  # those that read colours, or emit light
 
 
 def pack_surface_maps(

@@ -36,6 +36,7 @@ def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
         groups=tuple(group._replace(rows=rows_relative_to(group.rows, eye)) for group in arrays.groups),
         spots=optional_single(arrays.spots),
         specular=optional_single(arrays.specular),
+        glow=optional_single(arrays.glow),
         surface_maps=arrays.surface_maps
         and arrays.surface_maps._replace(
             checks=optional_single(arrays.surface_maps.checks),

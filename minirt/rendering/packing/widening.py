@@ -40,7 +40,7 @@ OPTIONAL = tuple(name for name, default in SceneArrays._field_defaults.items() i
 MAPS = ("checks", "textures", "bumps", "normals", "placements")
 FULL = frozenset(OPTIONAL + MAPS)
 # See `fits_single`.
-FULL_SINGLE = frozenset({"spots", "specular", "surface_maps", "background", "checks", "placements"})
+FULL_SINGLE = frozenset({"spots", "specular", "glow", "surface_maps", "background", "checks", "placements"})
 
 FULL_DOUBLE = WideKernel("full", "double", FULL)
 # The narrowest first.
@@ -129,6 +129,12 @@ def empty_arrays(wide: WideKernel) -> SceneArrays:
         spots=numbers((0, 7)),
         specular=numbers((0, 3)),
         reflective=numbers((0, 3)),
+        transparent=numbers((0, 4)),
+        media=numbers((0, 6)),
+        eye_medium=numbers(3),
+        fresnel=numbers(0),
+        fades=numbers((0, 2)),
+        glow=numbers(0),
         surface_maps=maps._replace(**without(MAPS, wide)),
         background=numbers(3),
         environment=Environment(NO_TEXELS, NO_PICTURES),

@@ -13,6 +13,7 @@ from minirt.errors import RenderError
 from minirt.materials import Attributes
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import DEPTH
+from minirt.rendering.packing.secondary_rays import mirror_of
 from minirt.scene import Ambient, Lamp, Light, Scene
 from minirt.shapes import Shape
 from minirt.shapes.cone import Cone
@@ -78,7 +79,9 @@ def finish(shape: Shape) -> str:
     for field in fields_of(Attributes):
         if field.name not in TRANSLATED and getattr(shape, field.name) is not None:
             raise NotExactError(f"the material {field.title} is not translated")
-    mirror, highlight = shape.mirror or 0.0, ""
+    if mirror_of(shape).fade:
+        raise NotExactError("fading mirrors are not translated")
+    mirror, highlight = mirror_of(shape).share, ""
     if shape.specular:
         share, exponent, blinn = shape.specular.share, shape.specular.exponent, shape.specular.blinn
         names = (

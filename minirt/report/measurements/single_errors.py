@@ -11,7 +11,7 @@ import numpy as np
 from minirt.element import fields_of
 from minirt.materials import Attributes
 from minirt.rendering import Renderer
-from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, PLAIN, features
+from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, NEEDS, PLAIN, features
 from minirt.rendering.packing.widening import precision_of
 from minirt.report.measurements.metrics import Picture, changed, clamped, rmse
 from minirt.scene import Background, FurtherLight, Light, Scene, SpotLight
@@ -66,7 +66,8 @@ def reduced_element(element: Any, feature: Hashable) -> Iterator[Any]:
     match element:
         case Shape() if ATTRIBUTES(element) != PLAIN:
             fields = (field for field in fields_of(Attributes) if getattr(element, field.name) is not None)
-            others = [each.name for each in fields if each.feature_of(getattr(element, each.name)) != feature]
+            kept = {feature, "reflective"} if feature in NEEDS else {feature}
+            others = [each.name for each in fields if each.feature_of(getattr(element, each.name)) not in kept]
             yield element.replace(**dict.fromkeys(others))
         case Background():
             if feature == ("environment" if isinstance(element.paint, str) else "background"):

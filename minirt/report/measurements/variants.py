@@ -14,9 +14,9 @@ import numpy as np
 from minirt.element import fields_of
 from minirt.fields import Colour, Direction, Length, Lengths, MeshField, Picture, Point, Triple
 from minirt.image import Image
-from minirt.materials import Attributes, Compound
+from minirt.materials import Attributes, Compound, Glass
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.packing.features import FEATURES, features
+from minirt.rendering.packing.features import FEATURES, NEEDS, features
 from minirt.report.measurements.brute_force import Change, without_boxes, without_light_buffers, without_tiles
 from minirt.scene import Background, Scene, SpotLight
 from minirt.shapes import ALL_KINDS, Shape
@@ -83,6 +83,8 @@ class InvisibleElements:
         for field in fields_of(Attributes):
             value = self.value(field)
             found.setdefault(field.feature_of(value), plain.replace(**{field.name: value}))
+        glass = self.record(Glass)
+        found |= {feature: found[feature].replace(glass=glass) for feature in NEEDS}
         found["spots"] = SpotLight(position=vector(self.place), direction=self.back, angle=10.0, brightness=0.5)
         found["background"] = Background(DARK)
         found["environment"] = Background(self.picture())

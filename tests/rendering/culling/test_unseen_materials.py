@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from minirt.kernel.scene_arrays import SceneArrays
-from minirt.materials import Glass, Specular
+from minirt.materials import Glass, Specular, Tint
 from minirt.rendering import Renderer
 from minirt.rendering.culling import unseen_materials
 from minirt.rendering.scene_packing import Packing
-from minirt.scene import Scene
+from minirt.scene import FurtherLight, Scene
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
 from tests.kernel.pictures import ALL, EYE, ONE, TWO, interpreted, linear
 
 SIZE = (48, 32)
@@ -86,6 +87,19 @@ def test_single_precision() -> None:
     assert packed(SHINING, "single").specular.dtype == np.float32
 
 
+def test_light_shines_through_glass_that_is_not_seen() -> None:
+    """A pane behind the eye, before the lamp: without its rows its shadow would be black."""
+    lamp = FurtherLight((1, 3, -30), 1.0, (255, 255, 255))
+    pane = Square((1, 2.5, -14), (0, 0, 1), 30, GREY, glass=Glass(1.0, 0.5), tint=Tint((255, 128, 0)))
+    dark, lit = (
+        interpreted(Scene((*ALL.elements, lamp, *more)), *SIZE)[1] for more in ((pane.replace(glass=None),), (pane,))
+    )
+    bright = interpreted(Scene((*ALL.elements, lamp)), *SIZE)[1]
+    assert len(packed(Scene((*ALL.elements, lamp, pane))).reflective) == 0
+    assert np.allclose(lit - dark, (bright - dark) * 0.5 * np.divide((255, 128, 0), 255), atol=1e-12)
+    assert (lit != dark).any()
+
+
 def test_the_notes_tell() -> None:
     packing = Packing()
     packing.pack(HIDDEN, *SIZE)
@@ -93,6 +107,6 @@ def test_the_notes_tell() -> None:
 
 
 def test_effective_materials() -> None:
-    nothing = unseen_materials.Materials(None, None, None)
+    nothing = unseen_materials.Materials()
     assert unseen_materials.effective(nothing) == (None, None)
     assert unseen_materials.without_unseen(nothing, unseen_materials.effective(nothing), np.arange(3)) is nothing

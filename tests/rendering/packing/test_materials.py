@@ -10,13 +10,14 @@ from PIL import Image as pillow  # noqa: N813
 
 from minirt.element import fields_of
 from minirt.errors import FileError
-from minirt.materials import Attributes, Bump, Checker, Compound, Glass, Specular
-from minirt.rendering.packing import materials
+from minirt.materials import Attributes, Bump, Checker, Compound, Glass, Mirror, Specular, Tint
+from minirt.rendering.packing import materials, secondary_rays
 from minirt.rendering.packing.features import FEATURES, features
-from minirt.rendering.packing.materials import pack_environment, pack_materials
+from minirt.rendering.packing.materials import Materials, pack_environment, pack_materials
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
 from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
 
 GREY = (128, 128, 128)
 BALL = Sphere((0, 0, 0), 1, GREY)
@@ -44,7 +45,7 @@ def test_every_material_names_a_feature_that_is_packed() -> None:
 
 def test_plain_shapes_have_no_material_arrays(tmp_path: Path) -> None:
     plain = scene_of(tmp_path, BALL, BALL.replace(mirror=0.0))
-    assert pack_materials(plain, np.arange(2), features(plain)) == (None, None, None)
+    assert pack_materials(plain, np.arange(2), features(plain)) == Materials()
 
 
 def test_shapes_are_not_inspected_if_all_are_plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -65,18 +66,38 @@ def test_each_shape_has_its_row(tmp_path: Path) -> None:
         BALL.replace(mirror=0.5, glass=Glass(1.25)),
     )
     scene = scene_of(tmp_path, *shapes)
-    specular, reflective, maps = pack_materials(scene, np.arange(4), features(scene))
-    assert np.array_equal(specular, [[0, 0, 0], [0.5, 20, 1], [0, 0, 0], [0, 0, 0]])
+    packed = pack_materials(scene, np.arange(4), features(scene))
+    reflective, maps = packed.reflective, packed.surface_maps
+    assert np.array_equal(packed.specular, [[0, 0, 0], [0.5, 20, 1], [0, 0, 0], [0, 0, 0]])
     assert np.allclose(reflective, [[0, 0, 1], [0, 0, 1], [0.25, 0.5, 1.5], [1 / 3, 2 / 3, 1.25]])
     assert np.allclose(maps.checks, [[0] * 4, [0.25, 1, 0, 0.2], [0] * 4, [0] * 4])
     assert np.array_equal(maps.used, [0, 1, 0, 0])
     assert (maps.textures, maps.bumps, maps.normals) == (None, None, None)
 
 
+def test_mirrors_and_glass_have_their_rows(tmp_path: Path) -> None:
+    shapes = (
+        BALL.replace(mirror=Mirror(0.25, 4.0), fresnel=0.5),
+        BALL.replace(glass=Glass(1.5, 0.9, 8.0), tint=Tint((51, 255, 0), 2.0)),
+        Square((0, 0, 0), (0, 1, 0), 1, GREY, glass=Glass(1.5), mirror=1.0, tint=Tint((51, 255, 0), 2.0)),
+        BALL.replace(glow=0.75, tint=Tint((9, 9, 9)), fresnel=1.0),
+    )
+    scene = scene_of(tmp_path, *shapes)
+    packed = pack_materials(scene, np.arange(4), features(scene))
+    assert np.allclose(packed.reflective, [[0.25, 0, 3], [0, 0.9, 1.5], [0.5, 0.5, 1.5], [0, 0, 1]])
+    assert np.allclose(packed.transparent, [[0, 0, 1, 0], [0, 0.9, 1.5, 0], [0.5, 0.5, 1.5, 0], [0, 0, 1, 0]])
+    assert np.allclose(packed.media[1], [np.log2(5) / 2, 0, secondary_rays.BLACK, 1, 1, 1])
+    assert np.allclose(packed.media[[0, 2, 3]], [[0, 0, 0, 1, 1, 1], [0, 0, 0, 0.2, 1, 0], [0, 0, 0, 1, 1, 1]])
+    assert np.array_equal(packed.fresnel, [0.5, 0, 0, 1])
+    assert np.allclose(packed.fades, [[0.25, 0], [0, 0.125], [0, 0], [0, 0]])
+    assert np.array_equal(packed.glow, [0, 0, 0, 0.75])
+
+
 def test_the_primitives_of_a_shape_have_its_row(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, BALL, BALL.replace(mirror=0.5, checker=Checker(0.5)))
-    _, reflective, maps = pack_materials(scene, np.array([0, 1, 1, 1]), features(scene))
-    assert np.array_equal(reflective[:, 0], [0, 0.5, 0.5, 0.5])
+    packed = pack_materials(scene, np.array([0, 1, 1, 1]), features(scene))
+    maps = packed.surface_maps
+    assert np.array_equal(packed.reflective[:, 0], [0, 0.5, 0.5, 0.5])
     assert np.array_equal(maps.checks[:, 0], [0, 0.5, 0.5, 0.5])
     assert np.array_equal(maps.used, [0, 1, 1, 1])
 

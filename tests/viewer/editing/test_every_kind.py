@@ -15,7 +15,7 @@ from PIL import Image
 
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Picture, Point
-from minirt.materials import Compound
+from minirt.materials import Compound, Mirror
 from minirt.rendering.queries.pick import covers
 from minirt.scene import Background, Camera, Resolution, Scene, dump, load, parse
 from minirt.scene.camera_frame import camera_frame, linear_combination
@@ -222,7 +222,7 @@ def test_repeating_replaces_an_attribute_only_directly_after_adding_it() -> None
     state = apply(state, "select next")
     shiny = apply(apply(state, "add attribute"), "grow")
     both = apply(shiny, "add attribute")
-    assert (both.element.specular, both.element.mirror) == (shiny.element.specular, 0.3)
+    assert (both.element.specular, both.element.mirror) == (shiny.element.specular, Mirror(0.3))
     assert shiny.element.specular.share == pytest.approx(0.55)
     assert "no attribute" in apply(shiny.select(0), "remove attribute").message
     assert apply(both, "remove attribute").element == shiny.element

@@ -1,0 +1,194 @@
+"""Absorption along known chords, fading at known distances, and glow, by the interpreted kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import asin, cos, radians, sin, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.kernel.shading import transmission, whitted
+from minirt.kernel.shading.media import medium_behind
+from minirt.lanes import Vec
+from minirt.materials import Glass, Mirror, Tint
+from minirt.rendering.packing.eye_medium import encloses
+from minirt.scene import Ambient, Background, Camera, Light, Scene
+from minirt.shapes import KINDS
+from minirt.shapes.box import Box
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
+from tests.kernel.pictures import Array, interpreted
+from tests.shapes.examples import example
+
+WHITE, GREEN, ROSE = (255, 255, 255), (102, 204, 153), (230, 128, 140)
+SKY = Background((204, 153, 102))
+LIGHT = Ambient(1.0, WHITE)
+CLEAR = Glass(1.0)
+BALL = Sphere((0, 0, 0), 4, WHITE, glass=CLEAR, tint=Tint(GREEN, 3.0))
+LEFT, RED_LEFT, BEYOND = np.divide(GREEN, 255), np.divide(ROSE, 255), np.array([0.8, 0.6, 0.4])
+
+
+def seen(*elements: Any, eye: tuple[float, ...] = (0, 0, -9), towards: tuple[float, ...] = (0, 0, 1)) -> Array:
+    """Light along the ray from an eye into a direction."""
+    return interpreted(Scene((Camera(eye, towards, 1e-6), *elements)), 4, 4)[1][0, 0]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("off", [0.0, 1.0, 1.9])
+def test_a_ball_absorbs_along_its_chord(off: float) -> None:
+    chord = 2 * sqrt(4 - off * off)
+    assert np.allclose(seen(SKY, BALL, eye=(off, 0, -9)), LEFT ** (chord / 3) * BEYOND, rtol=1e-6)
+
+
+@pytest.mark.parametrize("angle", [0.0, 40.0, 70.0])
+def test_a_pane_absorbs_along_the_refracted_ray(angle: float) -> None:
+    pane = Box((0, 0, 0), (0, 1, 0), (90, 90, 0.5), WHITE, glass=Glass(1.5, 0.9), tint=Tint(GREEN, 0.25))
+    direction = sin(radians(angle)), 0.0, cos(radians(angle))
+    way = 0.5 / cos(asin(sin(radians(angle)) / 1.5))
+    # Black in its own colour, so that only what comes through is seen.
+    black = pane.replace(colour=(0, 0, 0))
+    eye = tuple(-9 * part for part in direction)
+    assert np.allclose(seen(SKY, black, eye=eye, towards=direction), 0.81 * LEFT ** (way / 0.25) * BEYOND, rtol=1e-6)
+
+
+def test_an_eye_inside_and_shapes_inside() -> None:
+    core = Sphere((0, 0, 0), 1, (0, 0, 255))
+    assert np.allclose(seen(LIGHT, SKY, BALL, core), LEFT**0.5 * (0, 0, 1), rtol=1e-9)
+    assert np.allclose(seen(SKY, BALL, eye=(0, 0, 0.5)), LEFT**0.5 * BEYOND, rtol=1e-9)
+    assert np.allclose(seen(LIGHT, SKY, BALL, core, eye=(0, 0, -1.4)), LEFT**0.3 * (0, 0, 1), rtol=1e-9)
+
+
+def test_overlapping_solids_both_absorb() -> None:
+    other = Sphere((0, 0, 1.5), 4, WHITE, glass=CLEAR, tint=Tint(ROSE, 1.0))
+    assert np.allclose(seen(SKY, BALL, other), LEFT ** (4 / 3) * RED_LEFT**4 * BEYOND, rtol=1e-9)
+    assert np.allclose(seen(SKY, BALL, other, eye=(0, 0, 0)), LEFT ** (2 / 3) * RED_LEFT**3.5 * BEYOND, rtol=1e-9)
+
+
+def test_the_side_below_a_plane_is_inside() -> None:
+    water = Plane((0, 0, 0), (0, 0, -1), (0, 0, 0), glass=Glass(1.33), tint=Tint(GREEN, 2.0))
+    ground = Plane((0, 0, 5), (0, 0, -1), ROSE)
+    for eye, way in ((-9, 5), (3, 2)):
+        assert np.allclose(seen(LIGHT, SKY, water, ground, eye=(0, 0, eye)), LEFT ** (way / 2) * RED_LEFT, rtol=1e-9)
+    assert not seen(SKY, water).any()  # nothing is left after an endless way
+
+
+def test_sheets_tint_once_each() -> None:
+    panes = [Square((0, 0, z), (0, 0, 1), 9, WHITE, glass=CLEAR, tint=Tint(GREEN, 7.0)) for z in (0, 1, 5)]
+    assert np.allclose(seen(SKY, *panes), LEFT**3 * BEYOND, rtol=1e-9)
+
+
+def test_black_tint_and_white_tint() -> None:
+    assert np.allclose(seen(SKY, BALL.replace(tint=Tint((0, 255, 255)))), (0, 0.6, 0.4), rtol=1e-9)
+    assert np.array_equal(seen(SKY, BALL.replace(tint=None)), seen(SKY, BALL.replace(tint=Tint(WHITE))))
+
+
+# Light that falls straight down from (0, 9, 0) onto the floor below the balls.
+FLOOR, LAMP = Plane((0, -3, 0), (0, 1, 0), WHITE), Light((0, 9, 0), 1.0)
+SECOND = Sphere((0, 5, 0), 2, (0, 0, 0), glass=Glass(1.5, 0.5), tint=Tint(ROSE, 1.0))
+
+
+def lit_below(*shapes: Any, lamp: Light = LAMP) -> Array:
+    """Light of the floor below the balls, seen from beside them."""
+    return seen(lamp, FLOOR, *shapes, eye=(8, -1, 0), towards=(-8 / sqrt(68), -2 / sqrt(68), 0))
+
+
+def test_light_through_glass() -> None:
+    assert np.allclose(lit_below(), 1.0)
+    assert np.allclose(lit_below(BALL), LEFT ** (4 / 3), rtol=1e-6)
+    assert np.allclose(lit_below(BALL, SECOND), 0.25 * LEFT ** (4 / 3) * RED_LEFT**2, rtol=1e-6)
+    assert np.allclose(lit_below(SECOND.replace(fresnel=1.0)), (0.5 * 0.96) ** 2 * RED_LEFT**2, rtol=1e-6)
+    pane = Square((0, 3, 0), (0, 1, 0), 2, WHITE, glass=Glass(1.5, 0.7), tint=Tint(GREEN, 1.0))
+    assert np.allclose(lit_below(pane), 0.7 * LEFT, rtol=1e-6)
+    assert not lit_below(BALL, Sphere((0, 5, 0), 2, WHITE)).any()
+    assert not lit_below(BALL, Sphere((0, 5, 0), 2, WHITE, mirror=1.0)).any()
+
+
+def test_a_lamp_inside_and_one_behind_the_floor_and_glass_behind_the_lamp() -> None:
+    assert np.allclose(lit_below(BALL, lamp=Light((0, 1, 0), 1.0)), LEFT, rtol=1e-6)
+    all_inside = BALL.replace(diameter=40.0, tint=Tint(GREEN, 20.0))
+    expected = LEFT ** (4 / 20) * LEFT ** (sqrt(68) / 20)  # from the lamp, and to the eye
+    assert np.allclose(lit_below(all_inside, lamp=Light((0, 1, 0), 1.0)), expected, rtol=1e-6)
+    assert np.allclose(lit_below(BALL.replace(centre=(0, 20, 0))), 1.0)
+
+
+def chords_are_right() -> None:
+    test_a_ball_absorbs_along_its_chord(1.0)
+    test_light_through_glass()
+
+
+def outside_in(medium: Vec, rates: Vec, leaves: Any) -> Vec:
+    return medium_behind(medium, rates, ~leaves)
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "wrong"),
+    [
+        (whitted, "medium_behind", outside_in),  # absorbs on the way outside
+        (transmission, "medium_behind", outside_in),
+        (transmission, "MOST_SURFACES", 3),  # the second of two balls
+        (whitted, "absorbed", lambda light, medium, distance: light),
+    ],
+)
+def test_wrong_absorption_is_noticed(module: Any, name: str, wrong: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    chords_are_right()
+    monkeypatch.setattr(module, name, wrong)
+    with pytest.raises(AssertionError):
+        chords_are_right()
+
+
+def fade_is_right() -> None:
+    """A wall behind the eye is seen in a mirror that ends the light at a distance."""
+    wall, mirror = Plane((0, 0, -12), (0, 0, 1), ROSE), Plane((0, 0, 0), (0, 0, -1), (0, 0, 0))
+    for fade, share in ((0.0, 1.0), (48.0, 0.75), (16.0, 0.25), (12.0, 0.0), (6.0, 0.0)):
+        light = seen(LIGHT, wall, mirror.replace(mirror=Mirror(0.5, fade)))
+        assert np.allclose(light, 0.5 * share * RED_LEFT, rtol=1e-9, atol=1e-12)
+        through = Square((0, 0, -24), (0, 0, -1), 9, (0, 0, 0), glass=Glass(1.0, 0.5, fade))
+        assert np.allclose(seen(LIGHT, wall, through, eye=(0, 0, -30)), 0.5 * share * RED_LEFT, atol=1e-12)
+
+
+def test_reflected_and_refracted_light_fades_with_the_distance() -> None:
+    fade_is_right()
+    assert not seen(SKY, Plane((0, 0, 0), (0, 0, -1), (0, 0, 0), mirror=Mirror(1.0, 1e9))).any()
+
+
+@pytest.mark.parametrize(
+    "share", [lambda t: np.maximum(1.0 - t, 0.05), lambda t: np.abs(1.0 - t), lambda t: np.maximum(1.0 - t * t, 0.0)]
+)
+def test_a_wrong_fade_is_noticed(share: Callable[[Array], Array], monkeypatch: pytest.MonkeyPatch) -> None:
+    def wrong(scene: Any, ray: Any, t: Array) -> tuple[Array, Vec]:
+        return np.where(ray.fade > 0.0, ray.weight * share(ray.fade * t), ray.weight), ray.colour
+
+    monkeypatch.setattr(whitted, "attenuated", wrong)
+    with pytest.raises(AssertionError):
+        fade_is_right()
+
+
+def test_glow_is_added_to_all_other_light() -> None:
+    ball = BALL.replace(glass=None, tint=None, colour=GREEN)
+    glowing, shade = ball.replace(glow=0.25), Sphere((-3, 0, -6), 2, WHITE)
+    lamp = Light((-6, 0, -9), 1.0)
+    for lights in ((), (LIGHT,), (lamp,), (lamp, shade)):
+        assert np.allclose(seen(*lights, glowing), seen(*lights, ball) + 0.25 * LEFT, rtol=1e-12)
+    assert np.allclose(lit_below(glowing), lit_below(ball))  # lights nothing else
+    mirror = Plane((0, 0, 3), (0, 0, -1), (0, 0, 0), mirror=0.5)
+    assert np.allclose(seen(mirror, glowing.replace(centre=(0, 0, -15))), 0.125 * LEFT, rtol=1e-9)
+    assert np.array_equal(seen(LIGHT, ball.replace(glow=0.0)), seen(LIGHT, ball))
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+def test_a_solid_encloses_the_points_before_its_surface(kind: Any) -> None:
+    shape = example(kind, np.random.default_rng(5))
+    bounds = shape.bounds()
+    if not shape.solid or bounds is None:
+        assert not encloses(shape, np.array([1e9, 1e9, 1e9])) or bounds is None
+        return
+    random = np.random.default_rng(1)
+    points = random.uniform(*bounds, (40, 3))
+    inside = [encloses(shape, point) for point in points]
+    scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), shape))
+    hits = minirt.trace(scene, points, np.tile([0.1, 0.7, -0.7], (40, 1)))
+    leaving = np.einsum("ij,j->i", np.nan_to_num(hits.normal), [0.1, 0.7, -0.7]) > 0
+    assert inside == leaving.tolist()
