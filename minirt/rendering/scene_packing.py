@@ -90,7 +90,13 @@ class Packing:
                 keys.append((position.tobytes(), skipped.tobytes()))
                 binned.append(cached(keys[-1], seen_by_light, self.kernel, shapes, dense, position, cells, skipped))
         light_starts, light_shapes, light_cones, light_buffers = cached(tuple(keys), joined_light_buffers, binned, eye)
-        materials = cached(("materials", used, colours.decodes), pack_materials, scene, shapes.owner, used)
+        materials = cached(
+            ("materials", used, colours.decodes, colours.gain if "glow" in used else 1.0),
+            pack_materials,
+            scene,
+            shapes.owner,
+            used,
+        )
         materials = without_unseen(materials, cached(("effective", used), effective, materials), eye.members)
         needs_bvh = "reflective" in used or ("parallel" in used and cells > 1)
         paint: Any = scene.background and scene.background.paint
