@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import copysign
 
 from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field
@@ -120,6 +121,9 @@ class Whole(Scalar):
         if not (self.low <= value <= self.high and value == int(value)):
             raise FieldError(f"must be a whole number in {self.range}, got {value}")
         return int(value)
+
+    def nudge(self, value: int, steps: float) -> int:
+        return int(clamp(value + round(copysign(max(abs(steps), 1.0), steps)), self.low, self.high))
 
     @property
     def range(self) -> str:

@@ -44,6 +44,7 @@ class SceneArrays(NamedTuple):
     specular: Any = None  # (n, 3) specular highlights, see `minirt.kernel.shading.specular`
     reflective: Any = None  # (n, 3) mirrors and glass, see `minirt.kernel.shading.whitted`
     surface_maps: Any = None  # `minirt.kernel.shading.texturing.SurfaceMaps`
+    patterns: Any = None  # `minirt.kernel.shading.patterns.Patterns`
     depth: int = 0  # most reflections and refractions along a path
     background: Any = None  # (3,) radiance along rays that hit nothing
     environment: Any = None  # `minirt.kernel.shading.environment.Environment`

@@ -11,12 +11,15 @@ from minirt.element import Element, fields_of
 from minirt.fields import declare
 from minirt.materials.bump import Bump as Bump
 from minirt.materials.checker import Checker as Checker
+from minirt.materials.clouds import Clouds as Clouds
 from minirt.materials.compound import Compound as Compound
 from minirt.materials.glass import Glass as Glass
+from minirt.materials.marble import Marble as Marble
 from minirt.materials.mirror import Mirror as Mirror
 from minirt.materials.normal_map import NormalMap as NormalMap
 from minirt.materials.specular import Specular as Specular
 from minirt.materials.texture import Texture as Texture
+from minirt.materials.wood import Wood as Wood
 from minirt.records import record
 
 SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
@@ -34,6 +37,9 @@ class Attributes(Element):
     texture: str | None = declare(Texture, "picture in the place of the colour", aliases=("txm", "tx"), **SHARED)
     bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)
     normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **SHARED)
+    marble: Marble | None = declare(Compound, "veins of marble", record=Marble, bare="1", **SHARED)
+    wood: Wood | None = declare(Compound, "rings of wood", record=Wood, bare="1", **SHARED)
+    clouds: Clouds | None = declare(Compound, "clouds", record=Clouds, bare="1", **SHARED)
 
 
 PUBLIC: dict[str, type] = {

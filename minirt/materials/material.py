@@ -17,3 +17,7 @@ class Material(Record):
     def has_effect(self) -> bool:
         """Whether the picture shows it: a material without effect costs no feature of the kernel."""
         return True
+
+    def used_feature(self) -> str:
+        """The feature that the kernel needs to draw it; empty if it has no effect."""
+        return self.feature if self.has_effect() else ""

@@ -15,8 +15,20 @@ from minirt.kernel.compiler import frame_operations, kind_dispatch, packed_shape
 from minirt.kernel.compiler.inlining import inline_functions_of
 from minirt.kernel.compiler.options import INLINED
 from minirt.kernel.culling import binning, light_buffer
-from minirt.kernel.shading import environment, lights, shade, specular, surfaces, texture_lookup, texturing, whitted
-from minirt.lanes import angle, largest, power, vec
+from minirt.kernel.shading import (
+    environment,
+    fractal_noise,
+    lights,
+    pattern_shares,
+    patterns,
+    shade,
+    specular,
+    surfaces,
+    texture_lookup,
+    texturing,
+    whitted,
+)
+from minirt.lanes import angle, largest, noise, power, vec
 from minirt.shapes import ALL_KINDS, basis, compensated, flat_start, pyramid, quadric, shape, start, uv_mapping
 
 REGISTERED = (
@@ -38,6 +50,7 @@ for _module in (
     flat_start,
     angle,
     largest,
+    noise,
     power,
     quadric,
     uv_mapping,
@@ -52,6 +65,9 @@ for _module in (
     lights,
     texture_lookup,
     texturing,
+    fractal_noise,
+    pattern_shares,
+    patterns,
     surfaces,
     shade,
     environment,

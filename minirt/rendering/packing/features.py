@@ -19,6 +19,8 @@ FEATURES = {
     "textures": "textures",
     "bumps": "bumps",
     "normals": "maps of normals",
+    "patterns": "marble, wood and clouds",
+    "raised_patterns": "raised patterns",
     "spots": "spots, parallel and fading light",
     "background": "a coloured background",
     "environment": "a picture as background",

@@ -12,6 +12,7 @@ from minirt.kernel.shading.environment import Environment
 from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import picture_cache
 from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
+from minirt.rendering.packing.patterns import PATTERN_FEATURES, pack_patterns
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
@@ -26,17 +27,19 @@ class Materials(NamedTuple):
     specular: Any
     reflective: Any
     surface_maps: Any
+    patterns: Any
 
 
 def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
     """Pack the materials of n primitives for the features that a scene uses; `owner` (n,) has the shape of each."""
-    if not used & {*ROW_PACKERS, *MAP_FEATURES}:  # without a look at each of a million shapes
-        return Materials(None, None, None)
+    if not used & {*ROW_PACKERS, *MAP_FEATURES, *PATTERN_FEATURES}:  # without a look at each of a million shapes
+        return Materials(None, None, None, None)
     with_materials = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     count = len(scene.shapes)
     rows = {name: pack(with_materials, count)[owner] if name in used else None for name, pack in ROW_PACKERS.items()}
     maps = pack_surface_maps(scene, with_materials, owner, used) if used & MAP_FEATURES else None
-    return Materials(**rows, surface_maps=maps)
+    patterns = pack_patterns(with_materials, owner, used) if used & PATTERN_FEATURES else None
+    return Materials(**rows, surface_maps=maps, patterns=patterns)
 
 
 def pack_specular(with_materials: NumberedShapes, count: int) -> np.ndarray:

@@ -1,0 +1,28 @@
+"""Base of solid textures: `marble:`, `wood:` and `clouds:` have the same values.
+
+They are formulas of space in the frame of the shape: they move and turn with it, and have no seam. A second colour is
+mixed into that of the surface, with its texture and checkerboard; a shape may have several patterns, and gets them in
+the order of this page. Details that are finer than a pixel fade to their mean.
+"""
+
+from __future__ import annotations
+
+from minirt.fields import Colour, Length, Real, Triple, Whole, declare
+from minirt.materials.material import Material
+from minirt.records import record
+
+MOST_OCTAVES = 12
+
+
+@record()
+class Pattern(Material):
+    """The values of a pattern."""
+
+    feature = "patterns"
+    size: float = declare(Length, "size of the pattern")
+    colour: Triple = declare(Colour, "the second colour", default=(0, 0, 0))
+    octaves: int = declare(Whole, "levels of detail", low=1, high=MOST_OCTAVES, default=6)
+    height: float = declare(Real, "height of the second colour, in sizes", low=-10.0, high=10.0, step=0.01, default=0.0)
+
+    def used_feature(self) -> str:
+        return "raised_patterns" if self.height else self.feature
