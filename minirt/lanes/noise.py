@@ -6,7 +6,7 @@ all corners, and its first and second derivatives are continuous.
 
 Perlin looks up the gradient of a corner in a table. Here it is a formula, after McEwan and others (Efficient
 Computational Noise in GLSL, 2012): cubing permutes the remainders of a prime number p if 3 does not divide p - 1. A
-table would have to be gathered lane by lane, which took 1.9 times the time of the formula.
+table would have to be gathered lane by lane: noise took 1.4 times as long with AVX-512, 2.3 times in float32.
 """
 
 from __future__ import annotations
@@ -62,9 +62,7 @@ def corner_gradient(h: Number) -> Vec:
     one = copysign(splat(1.0, h), part)
     other = copysign(splat(1.0, h), fabs(part) - 0.25)
     first, second = third < 1.0, third < 2.0
-    return Vec(
-        where(second, one, 0.0), where(first, other, where(second, 0.0, one)), where(first, 0.0, other)
-    )
+    return Vec(where(second, one, 0.0), where(first, other, where(second, 0.0, one)), where(first, 0.0, other))
 
 
 def scrambled(s: Number) -> Number:

@@ -37,9 +37,9 @@ class Attributes(Element):
     texture: str | None = declare(Texture, "picture in the place of the colour", aliases=("txm", "tx"), **SHARED)
     bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **SHARED)
     normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **SHARED)
-    marble: Marble | None = declare(Compound, "veins of marble", record=Marble, bare="1", **SHARED)
-    wood: Wood | None = declare(Compound, "rings of wood", record=Wood, bare="1", **SHARED)
-    clouds: Clouds | None = declare(Compound, "clouds", record=Clouds, bare="1", **SHARED)
+    marble: Marble | None = declare(Compound, "veins of marble", record=Marble, **SHARED)
+    wood: Wood | None = declare(Compound, "rings of wood", record=Wood, **SHARED)
+    clouds: Clouds | None = declare(Compound, "clouds", record=Clouds, **SHARED)
 
 
 PUBLIC: dict[str, type] = {

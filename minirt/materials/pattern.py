@@ -1,8 +1,6 @@
 """Base of solid textures: `marble:`, `wood:` and `clouds:` have the same values.
 
-They are formulas of space in the frame of the shape: they move and turn with it, and have no seam. A second colour is
-mixed into that of the surface, with its texture and checkerboard; a shape may have several patterns, and gets them in
-the order of this page. Details that are finer than a pixel fade to their mean.
+They are formulas of space in the frame of the shape, computed by `minirt.kernel.shading.patterns`.
 """
 
 from __future__ import annotations

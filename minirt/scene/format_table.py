@@ -30,8 +30,8 @@ def attribute_row(field: Field) -> str:
     for kind in ELEMENTS.values():
         own = next((other for other in fields_of(kind) if other.name == field.name and other.bare != field.bare), None)
         alone += f" ({kind.plural}: `{field.keys[0]}:{own.bare}`)" if own else ""
-    aliases = ", ".join(f"`{alias}:`" for alias in field.aliases)
-    return f"| `{field.notation}`{alone}; also {aliases} | {field.sort} | {text} |"
+    aliases = "; also " + ", ".join(f"`{alias}:`" for alias in field.aliases) if field.aliases else ""
+    return f"| `{field.notation}`{alone}{aliases} | {field.sort} | {text} |"
 
 
 def name_and_count(kind: type[Element]) -> str:

@@ -16,6 +16,7 @@ from tests.reference import meshes  # noqa: F401  (what is said of each shape in
 from tests.reference.hits import first_hits
 from tests.reference.light import OFF_SURFACE, shaded
 from tests.reference.normals import normals
+from tests.reference.patterns import footprint, patterned, patterns_of
 from tests.reference.texturing import bilinear, colour_and_normal, picture
 from tests.reference.vectors import Array, dot, length, rgb, right_and_up
 
@@ -26,7 +27,9 @@ LEAST = 2.0**-10  # share of the light of a pixel up to which rays are not follo
 def render(scene: Scene, width: int, height: int, depth: int = DEPTH) -> Array:
     """Render a scene: linear light, (height, width, 3), not clamped. The field of view must be between 0 and 180."""
     origins, directions = camera_rays(scene.camera, width, height)
-    radiance = light_along(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), np.ones(width * height), depth)
+    pixel = 2 * np.tan(np.radians(scene.camera.fov) / 2) / width
+    starts, towards = origins.reshape(-1, 3), directions.reshape(-1, 3)
+    radiance = light_along(scene, starts, towards, np.ones(width * height), depth, pixel)
     return radiance.reshape(height, width, 3)
 
 
@@ -54,8 +57,13 @@ def camera_frame(camera: Camera) -> tuple[Array, Array, Array]:
     return np.cos(turn) * right - np.sin(turn) * up, np.cos(turn) * up + np.sin(turn) * right, forward
 
 
-def light_along(scene: Scene, origins: Array, directions: Array, weights: Array, depth: int) -> Array:
-    """The radiance along n rays times their weights, (n, 3), by recursive ray tracing (Whitted 1980)."""
+def light_along(
+    scene: Scene, origins: Array, directions: Array, weights: Array, depth: int, pixel: float = 0.0
+) -> Array:
+    """The radiance along n rays times their weights, (n, 3), by recursive ray tracing (Whitted 1980).
+
+    `pixel` is the width of a pixel at distance 1 from the eye.
+    """
     distances, owners = first_hits(scene.shapes, origins, directions)
     light = np.zeros_like(origins)
     missed = owners < 0
@@ -67,6 +75,9 @@ def light_along(scene: Scene, origins: Array, directions: Array, weights: Array,
         far = OFF_SURFACE * (distances[rays] + length(origins[rays]) + length(points))
         normal = normals(shape, points)
         colour, bent = colour_and_normal(scene, shape, points, normal)
+        if patterns_of(shape):
+            wide = footprint(scene.camera, pixel, points, distances[rays], direction, normal)
+            colour, bent = patterned(shape, points, wide, colour, bent)
         outside = dot(normal, direction) <= 0
         facing, bent = (np.where(outside[:, None], n, -n) for n in (normal, bent))
         light[rays] += weight[:, None] * shaded(scene, shape, points, facing, bent, colour, direction, far)
@@ -94,7 +105,7 @@ def light_along(scene: Scene, origins: Array, directions: Array, weights: Array,
         for starts, towards, share in shares:
             followed = share > LEAST
             part = np.zeros_like(points)
-            part[followed] = light_along(scene, starts[followed], towards[followed], share[followed], depth - 1)
+            part[followed] = light_along(scene, starts[followed], towards[followed], share[followed], depth - 1, pixel)
             light[rays] += part
     return light
 

@@ -1,7 +1,7 @@
 """Fractal noise: octaves of gradient noise, each twice as fine and half as high as the one before.
 
-Octaves that are finer than a pixel fade to their mean (Apodaca and Gritz, Advanced RenderMan, 2000, chapter 12), so that
-distant patterns neither flicker nor show a moire.
+Octaves that are finer than a pixel fade to their mean, as in Advanced RenderMan (Apodaca and Gritz 1999): distant
+patterns neither flicker nor show a moire.
 """
 
 from __future__ import annotations
@@ -9,13 +9,17 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from minirt.kernel.shading.lights import clamp_to_unit, smoothstep
-from minirt.lanes import Vec, copysign, fabs, splat
+from minirt.lanes import Vec, any, copysign, fabs, splat
 from minirt.lanes.noise import noise_and_gradient
 from minirt.lanes.vec import Number
 
 SHARP, GONE = 0.2, 0.75  # footprints, in cells of the noise, at which an octave begins to fade and has faded
 MEAN_FOLD = 0.218118  # mean of the absolute noise
-SHIFT_X, SHIFT_Y, SHIFT_Z = 19.37, 6.13, 14.71  # cells from octave to octave, so that their cells have no corner in common
+SHIFT_X, SHIFT_Y, SHIFT_Z = (
+    19.37,
+    6.13,
+    14.71,
+)  # cells from octave to octave, so that their cells have no corner in common
 FINE = 2  # octaves from this one on are fine
 
 
@@ -38,10 +42,12 @@ def fractal_noise(p: Vec, footprint: Number, octaves: int, frequency: float, str
     total, fine, slope, fine_slope = zero, zero, Vec(zero, zero, zero), Vec(zero, zero, zero)
     along, amplitude = frequency / stretch, 1.0
     for octave in range(octaves):
+        kept = 1.0 - faded(footprint * frequency)
+        if not any(kept > 0.0):
+            break
         x, y, z = p.x * frequency, p.y * frequency, p.z * along
         noise, gradient = noise_and_gradient(Vec(x + SHIFT_X * octave, y + SHIFT_Y * octave, z + SHIFT_Z * octave))
         gradient = Vec(frequency * gradient.x, frequency * gradient.y, along * gradient.z)
-        kept = 1.0 - faded(footprint * frequency)
         folded = noise + fold * (fabs(noise) - MEAN_FOLD - noise)
         total = total + (amplitude * kept) * folded
         slope = slope + (amplitude * kept * (1.0 + fold * (copysign(1.0, noise) - 1.0))) * gradient

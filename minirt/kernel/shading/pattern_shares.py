@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from minirt.kernel.shading.fractal_noise import Fractal, faded
 from minirt.kernel.shading.lights import clamp_to_unit, smoothstep
-from minirt.lanes import Vec, copysign, fabs, floor, minimum, sqrt, where
+from minirt.lanes import Vec, copysign, fabs, floor, inverse_root, minimum, sqrt, where
 from minirt.lanes.vec import Number
 
 # Of the noise: cells of the first octave in a size, their stretch along the grain, and whether it is turbulence.
@@ -25,14 +25,14 @@ EARLY = 0.8  # share of a ring in which it becomes darker
 LIGHT, RING, GRAIN = 0.2, 0.55, 0.17  # share of the second colour at least, in late wood in addition, and by the grain
 MEAN_RING = EARLY * 13.0 / 35.0 + (1.0 - EARLY) * 0.5
 
-CONTRAST = 1.1  # of clouds
+CONTRAST = 3.5  # of clouds
 
 
 def marble(p: Vec, noise: Fractal, footprint: Number) -> tuple[Number, Vec]:
     """Veins one size apart, dark in their middle, that turbulence moves (Perlin 1985)."""
     phase = ACROSS_X * p.x + ACROSS_Y * p.y + ACROSS_Z * p.z + TURBULENCE * noise.total
     part = phase - floor(phase) - 0.5
-    wave = 2.0 * fabs(part)  # 1 in the middle of a vein
+    wave = minimum(2.0 * fabs(part), 1.0)  # 1 in the middle of a vein, and for NaN, which rays that hit nothing have
     vein = smoothstep(wave)
     second = vein * vein
     seventh = second * second * second * vein
@@ -62,6 +62,8 @@ def wood(p: Vec, noise: Fractal, footprint: Number) -> tuple[Number, Vec]:
 
 
 def clouds(noise: Fractal) -> tuple[Number, Vec]:
-    """Soft clouds: the noise itself, with more contrast."""
-    cover = clamp_to_unit(0.5 + CONTRAST * noise.total)
-    return smoothstep(cover), 6.0 * CONTRAST * cover * (1.0 - cover) * noise.slope
+    """Soft clouds: the noise with more contrast in the middle, and less towards 0 and 1, which it never reaches."""
+    cover = CONTRAST * noise.total
+    per_length = inverse_root(1.0 + cover * cover)
+    rise = 0.5 * CONTRAST * (per_length * per_length * per_length)
+    return clamp_to_unit(0.5 + 0.5 * (cover * per_length)), rise * noise.slope

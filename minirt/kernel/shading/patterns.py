@@ -1,6 +1,6 @@
-"""Solid textures: marble, wood and clouds in the frame of a shape, by fractal noise (Perlin, An Image Synthesizer, 1985).
+"""Solid textures: marble, wood and clouds in the frame of a shape (Perlin, An Image Synthesizer, 1985).
 
-A pattern gives each point of space a share from 0 to 1. By this share a second colour replaces the surface's colour, and
+A pattern gives each point of space a share from 0 to 1. By this share a second colour replaces that of the surface, and
 the surface is raised, as a bump map raises it. A texture of space needs no coordinates on the surface: it has no seam.
 """
 
@@ -17,7 +17,7 @@ from minirt.lanes.vec import Number
 MARBLE, WOOD, CLOUDS = 0, 1, 2  # kinds of patterns
 KIND, COLOUR, OCTAVES, PER_SIZE, ORIGIN, FRAME = 0, 1, 4, 5, 6, 9  # columns of `Patterns.rows`
 COLUMNS = 18
-FLATTEST = 2.0**-10  # cosine between a ray and a surface; the footprint of a flatter one is that of this
+FLATTEST = 2.0**-10  # least cosine between a ray and a normal for the footprint of a pixel
 
 
 class Patterns(NamedTuple):
@@ -59,14 +59,14 @@ def raised(normal: Vec, gradient: Vec) -> Vec:
 
 
 def pixel_footprint(camera: Any, point: Vec, t: Number, direction: Vec, normal: Vec) -> Number:
-    """Return the width of a pixel on a surface that a ray meets after the distance t, along its longest side.
+    """Return the width of a pixel on a surface that a ray meets after the distance t: of a square of the same area.
 
-    The ray of a mirror began elsewhere: its way is at least the distance of the point from the eye.
+    The way of a ray that was mirrored is not known, but it is at least the distance of the point from the eye.
     """
     offset = point - Vec(camera[0], camera[1], camera[2])
-    way = sqrt(maximum(t * t, dot(offset, offset)))
+    squared = maximum(t * t, dot(offset, offset)) / maximum(fabs(dot(normal, direction)), FLATTEST)
     right = Vec(camera[6], camera[7], camera[8])
-    return way * sqrt(dot(right, right)) / maximum(fabs(dot(normal, direction)), FLATTEST)
+    return sqrt(squared * dot(right, right))
 
 
 def pattern_at(row: Any, point: Vec, footprint: Number) -> tuple[Number, Vec]:

@@ -19,7 +19,6 @@ from minirt.shapes.triangle import Triangle
 
 PATTERN_FEATURES = {"patterns", "raised_patterns"}
 KINDS = {"marble": MARBLE, "wood": WOOD, "clouds": CLOUDS}  # in the order in which a shape gets them
-FLAT = (Plane, Square, Disc, Triangle)
 UPRIGHT: Triple = (0.0, 1.0, 0.0)
 BEHIND = 3.5  # sizes from a flat surface to the middle of its rings
 
@@ -51,7 +50,7 @@ def frame(shape: Shape, size: float) -> Frame:
     """
     origin = Vec(*next(getattr(shape, field.name) for field in fields_of(type(shape)) if isinstance(field, Point)))
     x, y, z = own_axes(shape)
-    if isinstance(shape, FLAT):
+    if isinstance(shape, Plane | Square | Disc | Triangle):
         return origin - BEHIND * size * z, y, z, x
     return origin, x, y, z
 
@@ -61,6 +60,6 @@ def own_axes(shape: Shape) -> tuple[Vec, Vec, Vec]:
     if isinstance(shape, Triangle):
         along, normal = Vec(*np.subtract(shape.b, shape.a)), Vec(*shape.normal())
         return unit(along), unit(cross(normal, along)), normal
-    if isinstance(shape, FLAT):
+    if isinstance(shape, Plane | Square | Disc):
         return *facing_frame(shape.normal), Vec(*shape.normal)
     return basis(getattr(shape, "axis", UPRIGHT))

@@ -38,13 +38,13 @@ def test_every_material_names_a_feature_that_is_packed() -> None:
     for field in fields_of(Attributes):
         feature = field.record.feature if isinstance(field, Compound) else field.feature
         assert feature in FEATURES, f"{field.name} needs a feature in minirt/rendering/packing/features.py"
-        packed = {*materials.ROW_PACKERS, *materials.MAP_FEATURES}
+        packed = {*materials.ROW_PACKERS, *materials.MAP_FEATURES, *materials.PATTERN_FEATURES}
         assert feature in packed, f"{feature} needs a function in minirt/rendering/packing/materials.py"
 
 
 def test_plain_shapes_have_no_material_arrays(tmp_path: Path) -> None:
     plain = scene_of(tmp_path, BALL, BALL.replace(mirror=0.0))
-    assert pack_materials(plain, np.arange(2), features(plain)) == (None, None, None)
+    assert pack_materials(plain, np.arange(2), features(plain)) == (None, None, None, None)
 
 
 def test_shapes_are_not_inspected_if_all_are_plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -65,7 +65,8 @@ def test_each_shape_has_its_row(tmp_path: Path) -> None:
         BALL.replace(mirror=0.5, glass=Glass(1.25)),
     )
     scene = scene_of(tmp_path, *shapes)
-    specular, reflective, maps = pack_materials(scene, np.arange(4), features(scene))
+    specular, reflective, maps, patterns = pack_materials(scene, np.arange(4), features(scene))
+    assert patterns is None
     assert np.array_equal(specular, [[0, 0, 0], [0.5, 20, 1], [0, 0, 0], [0, 0, 0]])
     assert np.allclose(reflective, [[0, 0, 1], [0, 0, 1], [0.25, 0.5, 1.5], [1 / 3, 2 / 3, 1.25]])
     assert np.allclose(maps.checks, [[0] * 4, [0.25, 1, 0, 0.2], [0] * 4, [0] * 4])
@@ -75,7 +76,7 @@ def test_each_shape_has_its_row(tmp_path: Path) -> None:
 
 def test_the_primitives_of_a_shape_have_its_row(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, BALL, BALL.replace(mirror=0.5, checker=Checker(0.5)))
-    _, reflective, maps = pack_materials(scene, np.array([0, 1, 1, 1]), features(scene))
+    _, reflective, maps, _ = pack_materials(scene, np.array([0, 1, 1, 1]), features(scene))
     assert np.array_equal(reflective[:, 0], [0, 0.5, 0.5, 0.5])
     assert np.array_equal(maps.checks[:, 0], [0, 0.5, 0.5, 0.5])
     assert np.array_equal(maps.used, [0, 1, 1, 1])
