@@ -8,13 +8,14 @@ from minirt.fields.meshes import MeshField, MeshFile
 from minirt.fields.numerals import number, spelled, whole
 from minirt.fields.orientation import upright
 from minirt.fields.pictures import Paint, Picture
-from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Factor, Flag, Length, Real, Whole, clamp
+from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Count, Factor, Flag, Length, Real, Whole, clamp
 from minirt.fields.triples import Colour, Direction, Lengths, Point, Three, Triple, unit
 
 __all__ = [
     "FARTHEST",
     "LEAST_LENGTH",
     "Colour",
+    "Count",
     "Direction",
     "Factor",
     "Field",

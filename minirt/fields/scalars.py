@@ -122,12 +122,17 @@ class Whole(Scalar):
             raise FieldError(f"must be a whole number in {self.range}, got {value}")
         return int(value)
 
-    def nudge(self, value: int, steps: float) -> int:
-        return int(clamp(value + round(copysign(max(abs(steps), 1.0), steps)), self.low, self.high))
-
     @property
     def range(self) -> str:
         return f"[{self.low}, {self.high}]"
+
+
+@record(kw_only=True)
+class Count(Whole):
+    """A whole number in [low, high] that a key press changes by one or more."""
+
+    def nudge(self, value: int, steps: float) -> int:
+        return int(clamp(value + round(copysign(max(abs(steps), 1.0), steps)), self.low, self.high))
 
 
 @record(kw_only=True)

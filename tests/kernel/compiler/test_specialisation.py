@@ -15,7 +15,8 @@ from minirt.kernel.compiler.options import FLAGS
 from minirt.kernel.frame import frame
 from minirt.kernel.machine_code.signature import signature_of
 from minirt.lanes.angle import ATAN_HALF
-from minirt.materials import Checker
+from minirt.lanes.noise import PERIOD
+from minirt.materials import Checker, Clouds
 from minirt.rendering.frame_arguments import frame_arguments
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
@@ -74,6 +75,18 @@ def test_texture_coordinates_are_computed_for_textured_scenes_only() -> None:
     constant = f"0x{np.float64(ATAN_HALF).view(np.uint64):X}"
     assert constant not in code(plain)
     assert constant in code(checkered)
+
+
+def test_noise_is_computed_for_patterns_only_and_its_slope_for_raised_ones_only() -> None:
+    plain = scene_of(Sphere)
+    ball = plain.elements[-1]
+    patterned, raised = (
+        Scene((*plain.elements[:-1], ball.replace(clouds=Clouds(1.0, height=height)))) for height in (0.0, 0.1)
+    )
+    constant = f"0x{np.float64(1.0 / PERIOD).view(np.uint64):X}"
+    assert constant not in code(plain)
+    assert constant in code(patterned)
+    assert code(plain).count("\n") < code(patterned).count("\n") < code(raised).count("\n")
 
 
 def test_shapes_out_of_sight_change_nothing() -> None:
