@@ -10,7 +10,7 @@ import pytest
 
 import minirt
 from minirt.element import Element
-from minirt.materials import Bump, Checker, Glass, Mirror, Placement, Specular, Tint
+from minirt.materials import Bump, Checker, Clouds, Glass, Marble, Mirror, Placement, Specular, Tint, Wood
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes import Shape
 from minirt.shapes.box import Box
@@ -29,6 +29,12 @@ from minirt.shapes.triangle import Triangle
 from tests.compare import off
 from tests.paths import SCENES
 from tests.reference import render, to_bytes
+
+
+def colour_of(random: np.random.Generator) -> tuple[int, int, int]:
+    """Return a random colour."""
+    red, green, blue = random.integers(30, 256, 3)
+    return int(red), int(green), int(blue)
 
 
 def material_scene(seed: int) -> Scene:
@@ -85,6 +91,12 @@ def material_scene(seed: int) -> Scene:
         for index, shape in enumerate(shapes)
     ]
     own = np.random.default_rng([seed, 1])
+    with_patterns = int(own.integers(len(shapes)))
+    with_materials[with_patterns] = with_materials[with_patterns].replace(
+        marble=Marble(own.uniform(0.5, 3), colour_of(own), height=own.uniform(-0.1, 0.1)),
+        wood=Wood(own.uniform(0.2, 1), colour_of(own), 4),
+    )
+    with_materials[0] = with_materials[0].replace(clouds=Clouds(own.uniform(1, 5), colour_of(own)))
     ellipsoid = Ellipsoid(
         tuple(4 * own.normal(size=3)), (0, 1, 0), tuple(np.exp(own.normal(size=3))), tuple(own.integers(30, 256, 3))
     )

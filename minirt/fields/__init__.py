@@ -9,7 +9,7 @@ from minirt.fields.meshes import MeshField, MeshFile
 from minirt.fields.numerals import number, spelled, whole
 from minirt.fields.orientation import cos_and_sin, upright
 from minirt.fields.pictures import Paint, Picture
-from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Angle, Factor, Flag, Length, Real, Whole, clamp
+from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Angle, Count, Factor, Flag, Length, Real, Whole, clamp
 from minirt.fields.triples import Colour, Lengths, Point, Three, Triple
 from minirt.fields.words import Choice
 
@@ -19,6 +19,7 @@ __all__ = [
     "Angle",
     "Choice",
     "Colour",
+    "Count",
     "Direction",
     "Factor",
     "Field",

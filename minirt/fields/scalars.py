@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import copysign
 
 from minirt.errors import FieldError, quoted
 from minirt.fields.field import Field
@@ -133,6 +134,14 @@ class Whole(Scalar):
     @property
     def range(self) -> str:
         return f"[{self.low}, {self.high}]"
+
+
+@record(kw_only=True)
+class Count(Whole):
+    """A whole number in [low, high] that a key press changes by one or more."""
+
+    def nudge(self, value: int, steps: float) -> int:
+        return int(clamp(value + round(copysign(max(abs(steps), 1.0), steps)), self.low, self.high))
 
 
 @record(kw_only=True)

@@ -50,6 +50,7 @@ class SceneArrays(NamedTuple):
     fades: Any = None  # (n, 2) one over the distances at which reflected and refracted rays are gone, or 0
     glow: Any = None  # (n,) share of its colour that a shape emits
     surface_maps: Any = None  # `minirt.kernel.shading.texturing.SurfaceMaps`
+    patterns: Any = None  # `minirt.kernel.shading.patterns.Patterns`
     depth: int = 0  # most reflections and refractions along a path
     background: Any = None  # (3,) radiance along rays that hit nothing
     environment: Any = None  # `minirt.kernel.shading.environment.Environment`

@@ -11,16 +11,19 @@ from minirt.element import Element, fields_of
 from minirt.fields import declare
 from minirt.materials.bump import Bump as Bump
 from minirt.materials.checker import Checker as Checker
+from minirt.materials.clouds import Clouds as Clouds
 from minirt.materials.compound import Compound as Compound
 from minirt.materials.fresnel import Fresnel as Fresnel
 from minirt.materials.glass import Glass as Glass
 from minirt.materials.glow import Glow as Glow
+from minirt.materials.marble import Marble as Marble
 from minirt.materials.mirror import Mirror as Mirror
 from minirt.materials.normal_map import NormalMap as NormalMap
 from minirt.materials.placement import Placement as Placement
 from minirt.materials.specular import Specular as Specular
 from minirt.materials.texture import Texture as Texture
 from minirt.materials.tint import Tint as Tint
+from minirt.materials.wood import Wood as Wood
 from minirt.records import record
 
 SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
@@ -43,6 +46,9 @@ class Attributes(Element):
     bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **MAPPED)
     normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **MAPPED)
     uv: Placement | None = declare(Compound, "scale, shift and turn of u and v", record=Placement, **SHARED)
+    marble: Marble | None = declare(Compound, "veins of marble", record=Marble, **MAPPED)
+    wood: Wood | None = declare(Compound, "rings of wood", record=Wood, **MAPPED)
+    clouds: Clouds | None = declare(Compound, "clouds", record=Clouds, **MAPPED)
 
     @property
     def is_mapped(self) -> bool:

@@ -64,7 +64,7 @@ class Compound(Field):
             start += field.width
 
     def feature_of(self, value: Material) -> str:
-        return self.record.feature if value.has_effect() else ""
+        return value.used_feature()
 
     @property
     def pattern(self) -> str:

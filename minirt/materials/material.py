@@ -21,3 +21,7 @@ class Material(Record):
     def further_features(self) -> tuple[str, ...]:
         """Features of the kernel that these values need beside `feature`."""
         return ()
+
+    def used_feature(self) -> str:
+        """The feature that the kernel needs to draw it; empty if it has no effect."""
+        return self.feature if self.has_effect() else ""

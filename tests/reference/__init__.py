@@ -18,6 +18,7 @@ from tests.reference.glass import is_sheet, is_tinted, left_by_media, mirror_and
 from tests.reference.hits import first_hits
 from tests.reference.light import OFF_SURFACE, shaded
 from tests.reference.normals import normals
+from tests.reference.patterns import footprint, patterned, patterns_of
 from tests.reference.texturing import bilinear, colour_and_normal, picture
 from tests.reference.vectors import DECODED, Array, dot, length, rgb, right_and_up
 
@@ -29,8 +30,9 @@ def render(scene: Scene, width: int, height: int, depth: int = DEPTH) -> Array:
     """Render a scene: linear light, (height, width, 3), not clamped. The field of view must be between 0 and 180."""
     origins, directions = camera_rays(scene.camera, width, height)
     before = DECODED.set(scene.camera.tone != "plain")
-    weights = np.ones((width * height, 3))
-    radiance = light_along(scene, origins.reshape(-1, 3), directions.reshape(-1, 3), weights, depth)
+    pixel = 2 * np.tan(np.radians(scene.camera.fov) / 2) / width
+    starts, towards, weights = origins.reshape(-1, 3), directions.reshape(-1, 3), np.ones((width * height, 3))
+    radiance = light_along(scene, starts, towards, weights, depth, pixel=pixel)
     DECODED.reset(before)
     return radiance.reshape(height, width, 3) * 2.0**scene.camera.exposure
 
@@ -65,11 +67,17 @@ def camera_frame(camera: Camera) -> tuple[Array, Array, Array]:
 
 
 def light_along(
-    scene: Scene, origins: Array, directions: Array, weights: Array, depth: int, fade: float = 0.0
+    scene: Scene,
+    origins: Array,
+    directions: Array,
+    weights: Array,
+    depth: int,
+    fade: float = 0.0,
+    pixel: float = 0.0,
 ) -> Array:
     """The radiance along n rays times their weights (n, 3), by recursive ray tracing (Whitted 1980).
 
-    With `fade` it has lost all strength at that distance.
+    With `fade` it has lost all strength at that distance. `pixel` is the width of a pixel at distance 1 from the eye.
     """
     distances, owners = first_hits(scene.shapes, origins, directions)
     light = np.zeros_like(origins)
@@ -85,6 +93,9 @@ def light_along(
         far = OFF_SURFACE * (distances[rays] + length(origins[rays]) + length(points))
         normal = normals(shape, points)
         colour, bent = colour_and_normal(scene, shape, points, normal)
+        if patterns_of(shape):
+            wide = footprint(scene.camera, pixel, points, distances[rays], direction, normal)
+            colour, bent = patterned(shape, points, wide, colour, bent)
         outside = dot(normal, direction) <= 0
         facing, bent = (np.where(outside[:, None], n, -n) for n in (normal, bent))
         leaving = points + far[:, None] * facing, points - far[:, None] * facing
@@ -115,7 +126,8 @@ def light_along(
         for which, starts, towards, share, end in sent:
             followed = which & (share.max(axis=1) > LEAST)
             part = np.zeros_like(points)
-            part[followed] = light_along(scene, starts[followed], towards[followed], share[followed], depth - 1, end)
+            rays_sent = starts[followed], towards[followed], share[followed]
+            part[followed] = light_along(scene, *rays_sent, depth - 1, end, pixel)
             light[rays] += part
     return light
 

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from minirt.errors import SceneError
-from minirt.materials import Bump, Checker, Glass, Mirror, Specular, Tint
+from minirt.materials import Bump, Checker, Clouds, Glass, Marble, Mirror, Specular, Tint, Wood
 from minirt.scene import Background, FurtherLight, Light, ParallelLight, Scene, SpotLight, describe, dump, load, parse
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.plane import Plane
@@ -20,7 +20,10 @@ from tests.scene.examples import AMBIENT, CAMERA, CYLINDER, LIGHT, PLANE, SPHERE
 from tests.shapes.examples import example
 
 ABSENT = dict.fromkeys(
-    ("specular", "mirror", "glass", "tint", "fresnel", "glow", "checker", "texture", "bump", "normal_map")
+    (
+        *("specular", "mirror", "glass", "tint", "fresnel", "glow", "checker", "texture", "bump", "normal_map"),
+        *("marble", "wood", "clouds"),
+    )
 )
 
 
@@ -58,6 +61,12 @@ def attributes(shape: Any) -> dict[str, Any]:
         ("ref:1,0.25", {"glass": Glass(1.0, 0.25)}),
         ("checker:2.5", {"checker": Checker(2.5)}),
         ("pat:2.5,1,2,3", {"checker": Checker(2.5, (1, 2, 3))}),
+        ("marble:2", {"marble": Marble(2.0)}),
+        ("wood:0.5,1,2,3", {"wood": Wood(0.5, (1, 2, 3))}),
+        (
+            "clouds:3,1,2,3,7 marble:1,9,8,7,6,-0.5",
+            {"clouds": Clouds(3.0, (1, 2, 3), 7), "marble": Marble(1.0, (9, 8, 7), 6, -0.5)},
+        ),
         ("mirror:0.3 spc:0.5,30  checker:1\tglass:2", None),
         ("pat:1 spc:0.5,30 glass:2 mirror:0.3 # all", None),
     ],

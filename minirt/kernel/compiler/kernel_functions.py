@@ -17,9 +17,12 @@ from minirt.kernel.compiler.options import INLINED
 from minirt.kernel.culling import binning, light_buffer
 from minirt.kernel.shading import (
     environment,
+    fractal_noise,
     fresnel,
     lights,
     media,
+    pattern_shares,
+    patterns,
     ray_stack,
     shade,
     specular,
@@ -29,7 +32,7 @@ from minirt.kernel.shading import (
     transmission,
     whitted,
 )
-from minirt.lanes import angle, largest, power, vec
+from minirt.lanes import angle, largest, noise, power, vec
 from minirt.shapes import (
     ALL_KINDS,
     basis,
@@ -64,6 +67,7 @@ for _module in (
     flat_start,
     angle,
     largest,
+    noise,
     power,
     quadric,
     uv_mapping,
@@ -80,6 +84,9 @@ for _module in (
     texturing,
     fresnel,
     media,
+    fractal_noise,
+    pattern_shares,
+    patterns,
     surfaces,
     transmission,
     shade,

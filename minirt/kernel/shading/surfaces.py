@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from minirt.kernel.rows import read, shading, surface
 from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows
 from minirt.kernel.shading.media import filter_of
+from minirt.kernel.shading.patterns import apply_patterns, pixel_footprint
 from minirt.kernel.shading.texturing import apply_maps
 from minirt.kernel.trace import ROUNDING, for_each_kind
 from minirt.lanes import Vec, any, first, lane, rarely, splat, unit_roundoff, where
@@ -36,7 +37,9 @@ def clearance(point: Vec, extent: Number) -> Number:
     return ROUNDING * unit_roundoff(extent) * (largest(point) + extent)
 
 
-def surfaces(scene: SceneArrays, memory: Any, owner: Number, point: Vec, hit: Mask) -> Surface:
+def surfaces(
+    scene: SceneArrays, memory: Any, owner: Number, point: Vec, t: Number, direction: Vec, hit: Mask
+) -> Surface:
     """Compute the surfaces that rays hit, from the shapes that own the hits and from the points within rounding.
 
     The rays of a packet hit few different shapes, mostly one. The shape that the packet before hit last, which `memory`
@@ -47,11 +50,11 @@ def surfaces(scene: SceneArrays, memory: Any, owner: Number, point: Vec, hit: Ma
     if rarely(remaining) and not any(hit & (owner == index)):
         index = int(lane(owner, first(hit)))
         remaining = hit & (owner != index)
-    result = surface_at(scene, index, point)
+    result = surface_at(scene, index, point, t, direction)
     while rarely(remaining):
         index = int(lane(owner, first(remaining)))
         owned = remaining & (owner == index)
-        other = surface_at(scene, index, point)
+        other = surface_at(scene, index, point, t, direction)
         result = Surface(
             where(owned, other.point, result.point),
             where(owned, other.normal, result.normal),
@@ -70,8 +73,8 @@ def surfaces(scene: SceneArrays, memory: Any, owner: Number, point: Vec, hit: Ma
     return result
 
 
-def surface_at(scene: SceneArrays, index: int, point: Vec) -> Surface:
-    """Compute the surface of one shape for all rays of the packet."""
+def surface_at(scene: SceneArrays, index: int, point: Vec, t: Number, direction: Vec) -> Surface:
+    """Compute the surface of one shape for all rays of the packet, which come in a `direction` from a distance t."""
     slot = scene.slots[index]
     on, normal, shading_normal = for_each_kind(
         surface_of_kind, scene.groups, (point, point, point), (slot[0], slot[1], point)
@@ -82,6 +85,9 @@ def surface_at(scene: SceneArrays, index: int, point: Vec) -> Surface:
     colour = row_of(scene.colours_and_extents, index, point.x)
     if scene.surface_maps is not None:
         shading_normal, colour = apply_maps(scene.surface_maps, scene.groups, index, slot, on, shading_normal, colour)
+    if scene.patterns is not None:
+        footprint = pixel_footprint(scene.camera, on, t, direction, normal)
+        shading_normal, colour = apply_patterns(scene.patterns, index, on, footprint, shading_normal, colour)
     if scene.specular is not None and has_rows(scene.specular):
         specular = row_of(scene.specular, index, point.x)
     if scene.reflective is not None and has_rows(scene.reflective):

@@ -50,7 +50,7 @@ def shade(
     hit: Mask,
 ) -> tuple[Vec, Surface]:
     """Shade the hits of rays in a medium without following reflections; returns their radiance and their surfaces."""
-    surface = surfaces(scene, memory, owner, origin + t * direction, hit)
+    surface = surfaces(scene, memory, owner, origin + t * direction, t, direction, hit)
     normal, shading_normal = surface.normal, surface.shading_normal
     back_side = hit & (dot(normal, direction) > 0.0)
     if rarely(back_side):  # both sides of a surface are shaded alike

@@ -24,6 +24,8 @@ FEATURES = {
     "bumps": "bumps",
     "normals": "maps of normals",
     "placements": "scaled and turned maps",
+    "patterns": "marble, wood and clouds",
+    "raised_patterns": "raised patterns",
     "spots": "spots, parallel and fading light",
     "background": "a coloured background",
     "environment": "a picture as background",

@@ -15,6 +15,7 @@ from minirt.materials import Placement, picture_cache
 from minirt.rendering.packing import secondary_rays
 from minirt.rendering.packing.colours import Colours, colours_of
 from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
+from minirt.rendering.packing.patterns import PATTERN_FEATURES, pack_patterns
 from minirt.rendering.packing.secondary_rays import NumberedShapes
 from minirt.scene import Scene
 from minirt.shapes import Shape
@@ -36,11 +37,12 @@ class Materials(NamedTuple):
     fades: Any = None
     glow: Any = None
     surface_maps: Any = None
+    patterns: Any = None
 
 
 def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
     """Pack the materials of n primitives for the features that a scene uses; `owner` (n,) has the shape of each."""
-    if not used & {*ROW_PACKERS, *COLOUR_PACKERS, *MAP_FEATURES}:  # without a look at each of a million shapes
+    if not used & PACKED:  # without a look at each of a million shapes
         return Materials()
     with_materials = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
     count, colours = len(scene.shapes), colours_of(scene.camera)
@@ -49,7 +51,8 @@ def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Mate
         if name in used:
             rows[name] = pack_colours(with_materials, count, colours)[owner]
     maps = pack_surface_maps(scene, with_materials, owner, used) if used & MAP_FEATURES else None
-    return Materials(**rows, surface_maps=maps)
+    patterns = pack_patterns(with_materials, owner, used, colours) if used & PATTERN_FEATURES else None
+    return Materials(**rows, surface_maps=maps, patterns=patterns)
 
 
 def pack_specular(with_materials: NumberedShapes, count: int) -> np.ndarray:
@@ -77,6 +80,7 @@ ROW_PACKERS = {  # by feature, a field of `Materials`
     "fades": secondary_rays.pack_fades,
 }
 COLOUR_PACKERS = {"media": secondary_rays.pack_media, "glow": pack_glow}  # those that read colours, or emit light
+PACKED = {*ROW_PACKERS, *COLOUR_PACKERS, *MAP_FEATURES, *PATTERN_FEATURES}
 
 
 def pack_surface_maps(

@@ -11,6 +11,7 @@ import numpy as np
 from minirt.kernel.culling.light_buffer import TOLERANCE
 from minirt.kernel.rows import kind_of, point_fields, row_type
 from minirt.kernel.scene_arrays import SceneArrays
+from minirt.kernel.shading.patterns import ORIGIN, Patterns
 
 MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
 
@@ -42,6 +43,7 @@ def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
             checks=optional_single(arrays.surface_maps.checks),
             placements=optional_single(arrays.surface_maps.placements),
         ),
+        patterns=arrays.patterns and patterns_relative_to(arrays.patterns, eye),
         background=optional_single(arrays.background),
     )
 
@@ -49,6 +51,13 @@ def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
 def optional_single(numbers: np.ndarray | None) -> np.ndarray | None:
     """Round an optional array to float32; None stays None."""
     return None if numbers is None else as_single(numbers)
+
+
+def patterns_relative_to(patterns: Patterns, eye: np.ndarray) -> Patterns:
+    """Move the frames of patterns so that the eye is the origin, and round them to float32."""
+    rows = patterns.rows.copy()
+    rows[:, ORIGIN : ORIGIN + 3] -= eye
+    return patterns._replace(rows=as_single(rows), heights=optional_single(patterns.heights))
 
 
 def as_single(numbers: np.ndarray) -> np.ndarray:

@@ -20,6 +20,7 @@ from minirt.kernel.bvh.nodes import WIDTH, Tree
 from minirt.kernel.rows import row_type
 from minirt.kernel.scene_arrays import Group, SceneArrays
 from minirt.kernel.shading.environment import Environment
+from minirt.kernel.shading.patterns import COLUMNS, Patterns
 from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.rendering.packing.bvh import block_type
 from minirt.shapes import ALL_KINDS, Kind
@@ -40,7 +41,7 @@ OPTIONAL = tuple(name for name, default in SceneArrays._field_defaults.items() i
 MAPS = ("checks", "textures", "bumps", "normals", "placements")
 FULL = frozenset(OPTIONAL + MAPS)
 # See `fits_single`.
-FULL_SINGLE = frozenset({"spots", "specular", "glow", "surface_maps", "background", "checks", "placements"})
+FULL_SINGLE = frozenset({"spots", "specular", "glow", "surface_maps", "patterns", "background", "checks", "placements"})
 
 FULL_DOUBLE = WideKernel("full", "double", FULL)
 # The narrowest first.
@@ -71,6 +72,8 @@ def widened(arrays: SceneArrays, wide: WideKernel) -> SceneArrays:
     whole: SceneArrays = filled(arrays, empty)
     if empty.surface_maps is not None:
         whole = whole._replace(surface_maps=filled(whole.surface_maps, empty.surface_maps))
+    if empty.patterns is not None:
+        whole = whole._replace(patterns=filled(whole.patterns, empty.patterns))
     if empty.bvh is not None:
         whole = whole._replace(bvh=widened_tree(whole.bvh))
     return whole._replace(groups=all_groups(arrays.groups, empty.groups))
@@ -135,6 +138,7 @@ def empty_arrays(wide: WideKernel) -> SceneArrays:
         fresnel=numbers(0),
         fades=numbers((0, 2)),
         glow=numbers(0),
+        patterns=Patterns(integers((0, 2)), numbers((0, COLUMNS)), numbers(0)),
         surface_maps=maps._replace(**without(MAPS, wide)),
         background=numbers(3),
         environment=Environment(NO_TEXELS, NO_PICTURES),

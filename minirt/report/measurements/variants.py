@@ -14,7 +14,7 @@ import numpy as np
 from minirt.element import fields_of
 from minirt.fields import Colour, Direction, Length, Lengths, MeshField, Picture, Point, Triple
 from minirt.image import Image
-from minirt.materials import Attributes, Compound, Glass
+from minirt.materials import Attributes, Clouds, Compound, Glass
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import FEATURES, NEEDS, features
 from minirt.report.measurements.brute_force import Change, without_boxes, without_light_buffers, without_tiles
@@ -85,6 +85,7 @@ class InvisibleElements:
             found.setdefault(field.feature_of(value), plain.replace(**{field.name: value}))
         glass = self.record(Glass)
         found |= {feature: found[feature].replace(glass=glass) for feature in NEEDS}
+        found["raised_patterns"] = plain.replace(clouds=Clouds(self.size, height=0.1))
         found["spots"] = SpotLight(position=vector(self.place), direction=self.back, angle=10.0, brightness=0.5)
         found["background"] = Background(DARK)
         found["environment"] = Background(self.picture())

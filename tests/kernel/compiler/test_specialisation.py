@@ -15,7 +15,8 @@ from minirt.kernel.compiler.options import FLAGS
 from minirt.kernel.frame import frame
 from minirt.kernel.machine_code.signature import signature_of
 from minirt.lanes.angle import ATAN_HALF
-from minirt.materials import Checker
+from minirt.lanes.noise import PERIOD
+from minirt.materials import Checker, Clouds
 from minirt.rendering.frame_arguments import frame_arguments
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
@@ -74,6 +75,14 @@ def test_texture_coordinates_are_computed_for_textured_scenes_only() -> None:
     constant = f"0x{np.float64(ATAN_HALF).view(np.uint64):X}"
     assert constant not in code(plain)
     assert constant in code(checkered)
+
+
+def test_noise_is_computed_for_scenes_with_patterns_only() -> None:
+    plain = scene_of(Sphere)
+    patterned = Scene((*plain.elements[:-1], plain.elements[-1].replace(clouds=Clouds(1.0))))
+    constant = f"0x{np.float64(1.0 / PERIOD).view(np.uint64):X}"
+    assert constant not in code(plain)
+    assert constant in code(patterned)
 
 
 def test_shapes_out_of_sight_change_nothing() -> None:

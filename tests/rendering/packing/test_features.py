@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from minirt.materials import Checker, Glass, Mirror, Specular, Tint
+from minirt.materials import Checker, Clouds, Glass, Marble, Mirror, Specular, Tint, Wood
 from minirt.rendering.packing.features import features
 from minirt.scene import Ambient, Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes.plane import Plane
@@ -34,6 +34,8 @@ def test_each_feature_is_found_where_it_is_used() -> None:
     assert features_of(glass.replace(tint=Tint((9, 9, 9)))) == {Sphere, "reflective", "transparent", "media"}
     assert features_of(BALL.replace(glow=0.5)) == {Sphere, "glow"}
     assert features_of(BALL.replace(checker=Checker(0.5)), BALL) == {Sphere, "checks"}
+    assert features_of(BALL.replace(marble=Marble(1.0), wood=Wood(1.0))) == {Sphere, "patterns"}
+    assert features_of(BALL.replace(clouds=Clouds(1.0, height=0.1))) == {Sphere, "raised_patterns"}
     assert features_of(Background((0, 0, 9))) == {"background"}
     assert features_of(SUN) == {"spots", "parallel"}
     assert features_of(SpotLight((0, 9, 0), (0, -1, 0), 40, 1)) == {"spots"}

@@ -79,6 +79,7 @@ def test_all_kinds_and_attributes_are_covered() -> None:
     assert {*ADDED, *(type(each) for each in parse(BARE).scene.elements)} == set(EDITABLE)
     assert len(EDITABLE) > 15
     assert {name for _, name in KEYED} >= {"specular", "mirror", "glass", "checker", "texture", "bump", "normal_map"}
+    assert {name for _, name in KEYED} >= {"marble", "wood", "clouds"}
 
 
 @pytest.mark.parametrize("kind", ADDED[:-1], ids=lambda kind: kind.code)

@@ -1,0 +1,232 @@
+"""Marble, wood and clouds: shares and slopes against the reference, frames of shapes, seams, and distance."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from numba import njit
+
+import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
+from minirt.kernel.compiler.options import FLAGS
+from minirt.kernel.shading import fractal_noise, pattern_shares, patterns
+from minirt.kernel.shading.patterns import CLOUDS, MARBLE, WOOD, Patterns, apply_patterns, share_and_slope
+from minirt.lanes import Vec, load, save, width
+from minirt.materials import Clouds, Marble, Wood
+from minirt.rendering.packing.patterns import frame, pack_patterns
+from minirt.shapes import KINDS, Kind
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from minirt.shapes.torus import Torus
+from tests.reference import patterns as reference
+from tests.shapes.examples import example
+
+NUMBERS = {Marble: MARBLE, Wood: WOOD, Clouds: CLOUDS}
+EACH = pytest.mark.parametrize("kind", NUMBERS)
+RANDOM = np.random.default_rng(1)
+POINTS = RANDOM.uniform(-9, 9, (3, 1024))
+FOOTPRINTS = np.where(np.arange(1024) % 2, RANDOM.uniform(0, 0.8, 1024), 0.0)
+WHITE = (255, 255, 255)
+
+
+@njit(**FLAGS)
+def share_lanes(kind: Any, octaves: Any, p: Any, footprints: Any, out: Any) -> None:
+    for i in range(0, p.shape[1], width(p)):
+        at = Vec(load(p[0], i), load(p[1], i), load(p[2], i))
+        share, slope = share_and_slope(kind, octaves, at, load(footprints, i))
+        save(share, out[0], i)
+        save(slope.x, out[1], i)
+        save(slope.y, out[2], i)
+        save(slope.z, out[3], i)
+
+
+def compiled(kind: type, octaves: int, p: Any, footprints: Any) -> Any:
+    """Return shares and slopes at points (3, n), (4, n)."""
+    out = np.empty((4, p.shape[1]), p.dtype)
+    share_lanes(float(NUMBERS[kind]), octaves, p, footprints, out)
+    return out
+
+
+def interpreted(kind: type, octaves: int, p: Any, footprints: Any) -> Any:
+    """Return the same by the plain formula."""
+    share, slope = share_and_slope(NUMBERS[kind], octaves, Vec(*p), footprints)
+    return np.stack([share, slope.x, slope.y, slope.z])
+
+
+BOTH = pytest.mark.parametrize("shares_of", [interpreted, compiled])
+
+
+def largest_difference(shares_of: Any, kind: Any, octaves: int = 6, dtype: Any = np.float64) -> float:
+    """Return the largest difference of shares from those of the reference."""
+    p, footprints = POINTS.astype(dtype), FOOTPRINTS.astype(dtype)
+    expected = reference.share(kind(1.0, octaves=octaves), p.T.astype(np.float64), footprints.astype(np.float64))
+    return float(np.abs(shares_of(kind, octaves, p, footprints)[0] - expected).max())
+
+
+@EACH
+@BOTH
+@pytest.mark.parametrize("octaves", [1, 3, 6, 12])
+def test_shares_are_those_of_the_reference(shares_of: Any, kind: Any, octaves: int) -> None:
+    assert largest_difference(shares_of, kind, octaves) < 1e-10
+
+
+@EACH
+@BOTH
+def test_shares_of_float32_are_nearly_those(shares_of: Any, kind: Any) -> None:
+    assert largest_difference(shares_of, kind, dtype=np.float32) < 2e-3
+
+
+WRONG: dict[str, tuple[Any, str, Any]] = {
+    "no fading": (fractal_noise, "GONE", 1e9),
+    "octaves at one place": (fractal_noise, "SHIFT_X", 0.0),
+    "mean of folds": (fractal_noise, "MEAN_FOLD", 0.0),
+    "no turbulence": (pattern_shares, "TURBULENCE", 0.0),
+    "straight rings": (pattern_shares, "WARP", 0.0),
+    "no grain": (pattern_shares, "GRAIN", 0.0),
+    "hard clouds": (pattern_shares, "CONTRAST", 9.0),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_patterns_are_noticed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(*WRONG[name])
+    assert max(largest_difference(interpreted, kind) for kind in NUMBERS) > 0.02
+
+
+@EACH
+@BOTH
+def test_shares_are_between_0_and_1_and_finite_for_rays_that_hit_nothing(shares_of: Any, kind: Any) -> None:
+    for p in (1e3 * POINTS, 1e14 * POINTS, np.full((3, 32), np.nan)):
+        footprints = np.full(p.shape[1], np.nan if np.isnan(p).any() else 0.0)
+        with np.errstate(invalid="ignore"):
+            shares = shares_of(kind, 6, p, footprints)[0]
+        assert ((shares >= 0) & (shares <= 1)).all()
+
+
+@EACH
+def test_slopes_are_those_of_differences_of_50_digits(kind: Any) -> None:
+    p, footprints = POINTS[:, :32], FOOTPRINTS[:32]
+    with mpmath.workdps(50):
+        exact = np.vectorize(mpmath.mpf, otypes=[object])(p.T)
+        step = mpmath.mpf(10) ** -20
+        for axis in range(3):
+            aside = np.array([step if axis == i else mpmath.mpf(0) for i in range(3)], object)
+            before, behind = (reference.share(kind(1.0), each, footprints) for each in (exact - aside, exact + aside))
+            slope = ((behind - before) / (2 * step)).astype(float)
+            for shares_of in (interpreted, compiled):
+                found = shares_of(kind, 6, p, footprints)[1 + axis]
+                assert np.abs(found - slope).max() < 1e-9 * max(1.0, np.abs(slope).max())
+                assert np.abs(slope).max() > 0.1
+
+
+def packed(shape: Any) -> Patterns:
+    """Return the patterns of one shape."""
+    return pack_patterns([(0, shape)], np.zeros(1, np.int64), {"patterns"})
+
+
+def colours(shape: Any, points: np.ndarray) -> np.ndarray:
+    """Return the colours of a black shape at points (n, 3) seen from nearby."""
+    black = np.zeros(len(points))
+    p = Vec(*points.T)
+    _, colour = apply_patterns(packed(shape), 0, p, black, Vec(black, black, black + 1), Vec(black, black, black))
+    return np.stack([colour.x, colour.y, colour.z], axis=-1)
+
+
+ALL_PATTERNS = {"marble": Marble(0.7, (255, 0, 0)), "wood": Wood(0.5, (0, 255, 0)), "clouds": Clouds(0.9, (0, 0, 255))}
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+def test_the_frame_of_every_kind_moves_with_it(kind: Kind) -> None:
+    shape = example(kind, np.random.default_rng(2))
+    origin, x, y, z = (np.array([v.x, v.y, v.z]) for v in frame(shape, 1.0))
+    axes = np.stack([x, y, z])
+    assert np.abs(axes @ axes.T - np.eye(3)).max() < 1e-12
+    assert np.linalg.det(axes) > 0
+    known, expected = reference.frame(shape)
+    assert np.abs(axes - expected).max() < 1e-12
+    if hasattr(shape, "axis"):
+        assert np.abs(z - shape.axis).max() < 1e-12
+    else:
+        assert np.abs(np.cross(origin - known, y)).max() < 1e-12
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
+def test_patterns_of_every_kind_are_those_of_the_reference(kind: Kind) -> None:
+    shape = example(kind, np.random.default_rng(3)).replace(**ALL_PATTERNS)
+    points = np.random.default_rng(4).normal(size=(64, 3)) + reference.frame(shape)[0]
+    none = np.zeros_like(points)
+    expected, _ = reference.patterned(shape, points, none[:, 0], none, none + np.array([0, 0, 1]))
+    assert np.abs(colours(shape, points) - expected).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        Sphere((1, 2, 3), 4, WHITE, **ALL_PATTERNS),
+        Cylinder((1, 2, 3), (0.6, 0, 0.8), 4, 5, WHITE, **ALL_PATTERNS),
+        Torus((1, 2, 3), (0.6, 0, 0.8), 4, 1, WHITE, **ALL_PATTERNS),
+    ],
+    ids=lambda shape: shape.title,
+)
+def test_there_is_no_seam_and_no_pole(shape: Any) -> None:
+    # Around circles about the axis, and towards it, colours change by no more than their steepest slope.
+    origin, axes = reference.frame(shape)
+    turns = np.linspace(0, 2 * np.pi, 20_000)
+    for radius, height in ((2.0, 0.1), (1.3, -1.5), (1e-3, 2.0)):
+        circle = np.stack([radius * np.cos(turns), radius * np.sin(turns), np.full_like(turns, height)], axis=-1)
+        found = colours(shape, origin + circle @ axes)
+        assert np.abs(np.diff(found, axis=0)).max() < 40 * radius * turns[1]
+        assert np.abs(found[0] - found[-1]).max() < 1e-9
+
+
+def floor_shares(kind: Any, x: np.ndarray, z: np.ndarray, footprints: np.ndarray) -> np.ndarray:
+    """Return the shares of a floor at points."""
+    floor = Plane((0, -2, 0), (0, 1, 0), WHITE)
+    origin, axes = reference.frame(floor)
+    p = (np.stack([x, np.full_like(x, -2.0), z], axis=-1) - origin) @ axes.T + (0, 3.5, 0)
+    flat = np.ascontiguousarray(p.reshape(-1, 3).T)
+    return np.asarray(compiled(kind, 6, flat, footprints.ravel())[0].reshape(x.shape))
+
+
+def far_floor(kind: Any, rows: tuple[int, int], samples: int, pixel: float) -> np.ndarray:
+    """Return the mean shares of pixels of a floor, `rows` below the horizon; a `pixel` of 0 fades no octave."""
+    side = 0.7 / 48
+    y, x = np.mgrid[rows[0] : rows[1], 0:96].astype(float)
+    total = np.zeros_like(x)
+    for i in range(samples):
+        for j in range(samples):
+            down, aside = side * (y + (i + 0.5) / samples), side * (x - 48 + (j + 0.5) / samples)
+            t = 2.0 / down
+            way = t * np.sqrt(1 + aside**2 + down**2)
+            total += floor_shares(kind, aside * t, t, pixel * side * way / np.sqrt(2.0 / way))
+    return total / samples**2
+
+
+@EACH
+def test_a_far_floor_has_its_mean_colour_and_no_moire(kind: Any) -> None:
+    rows = 1, 4
+    truth = far_floor(kind, rows, 32, 0.0)  # 1024 samples a pixel
+    faded = far_floor(kind, rows, 1, 1.0)
+    assert np.ptp(faded) < 0.02
+    assert abs(faded.mean() - truth.mean()) < 0.02
+    aliased = np.sqrt(np.mean((far_floor(kind, rows, 1, 0.0) - truth) ** 2))
+    assert np.sqrt(np.mean((faded - truth) ** 2)) < 0.3 * aliased
+
+
+@EACH
+def test_fading_is_nearer_to_the_truth_at_every_distance_at_which_it_begins(kind: Any) -> None:
+    for rows in ((2, 4), (4, 8), (8, 14)):
+        truth = far_floor(kind, rows, 8, 0.0)
+        faded, aliased = (np.mean((far_floor(kind, rows, 1, pixel) - truth) ** 2) for pixel in (1.0, 0.0))
+        assert faded < aliased
+
+
+def test_a_mesh_of_many_primitives_has_one_row() -> None:
+    ball = Sphere((0, 0, 0), 1, WHITE, marble=Marble(1.0))
+    found = pack_patterns([(1, ball), (3, ball.replace(**ALL_PATTERNS))], np.array([0, 1, 1, 2, 3]), {"patterns"})
+    assert found.ranges.tolist() == [[0, 0], [0, 1], [0, 1], [0, 0], [1, 4]]
+    assert found.rows.shape == (4, patterns.COLUMNS)
+    assert found.heights is None
