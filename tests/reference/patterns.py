@@ -21,6 +21,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.shape import Shape
 from minirt.shapes.square import Square
 from minirt.shapes.triangle import Triangle
+from tests.reference.normals import right_and_up_on
 from tests.reference.vectors import Array, dot, length, own_x_and_z, rgb, unit
 
 PRIME = 149
