@@ -41,11 +41,11 @@ def reach(
     offsets = packet_pixels(width(arrays.camera))
 
     def draw(sweep: Sweep) -> bool:
-        counters = runner.new_counters(2)
+        counters = runner.new_counters(1 + sweep.is_first)
         if runner.cancellations != cancellations:
             return False
         rays = table_rays(arrays.camera, sweep.positions, offsets)
-        planned = frame._replace(next_row=counters[1:], rays=rays, plan=sweep.plan, errors=sweep.errors)
+        planned = frame._replace(next_row=counters[-1:], rays=rays, plan=sweep.plan, errors=sweep.errors)
         whole = [frame._replace(next_row=counters[:1], rays=rays[:1])] if sweep.is_first else []
         runner.run([*whole, planned], runner.threads)
         return bool((counters < CANCELLED).all())

@@ -83,7 +83,8 @@ class AutoSampler:
         packets = self.packets
         mean = packets.errors.mean()
         number = len(packets.errors)
-        doubt = max(packets.errors.std() / sqrt(number), EDGE_ERROR / number) * (1 - number / packets.count)
+        # References are uncertain where all packets are probed, too; a missed edge is only in one that is not.
+        doubt = max(packets.errors.std() / sqrt(number), EDGE_ERROR / number * (1 - number / packets.count))
         total: float | None = (mean + doubt / 2) * packets.count + UNSEEN_ERROR
         sure, share = (2.0, FAR_BELOW) if doubt >= VAGUE * mean else (1.0, 1.0)
         if (mean + sure * doubt) * packets.count + UNSEEN_ERROR > share * goal and perf_counter() < start + seconds:
