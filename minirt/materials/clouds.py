@@ -1,4 +1,4 @@
-"""Clouds: `clouds:size[,R,G,B][,octaves][,height]`.
+"""Clouds: `clouds:size[,R,G,B[,octaves[,height]]]`.
 
 Soft spots of a second colour, about `size` scene units wide: fractal noise (Perlin 1985, An Image Synthesizer). They
 move and turn with the shape, and have no seam. They cover its texture, checkerboard and all other patterns.

@@ -1,4 +1,4 @@
-"""Marble: `marble:size[,R,G,B][,octaves][,height]`.
+"""Marble: `marble:size[,R,G,B[,octaves[,height]]]`.
 
 Veins of a second colour, about `size` scene units apart, run through the shape and are moved by turbulence: fractal
 noise of absolute values (Perlin 1985, An Image Synthesizer). They move and turn with the shape, and have no seam. They

@@ -1,4 +1,4 @@
-"""Placement of pictures: `uv:su,sv[,ou][,ov][,degrees]`.
+"""Placement of pictures: `uv:su,sv[,ou[,ov[,degrees]]]`.
 
 Scales, turns and shifts the surface's u and v for its checkerboard, texture, bump map and normal map. A picture becomes
 `su` times narrower and `sv` times lower, so that there are `su` times `sv` pictures where one was; it is turned by

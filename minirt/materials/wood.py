@@ -1,4 +1,4 @@
-"""Wood: `wood:size[,R,G,B][,octaves][,height]`.
+"""Wood: `wood:size[,R,G,B[,octaves[,height]]]`.
 
 Rings of a second colour around the axis of the shape, `size` scene units apart, with fine grain along it. On flat
 shapes the grain runs to the right, and the middle of the rings lies behind the surface. The rings move and turn with

@@ -138,16 +138,18 @@ def watertight(
         t = -height / slope
         extent, edge = fabs(least + most), minimum(fabs(least), fabs(most))
         grazing = fabs(slope) * edge <= GRAZING * extent
-        if rarely(hit & grazing):
+        unclear = grazing
+        if anywhere is not None:
+            close = t * t < CLOSE * extent
+            unclear = grazing | close
+        if rarely(hit & unclear):
             enter, leave = above(corners, normal, origin, direction)
             at_a, at_b, at_c = a.z * per_depth, b.z * per_depth, c.z * per_depth
             begin = maximum(enter, minimum(minimum(at_a, at_b), at_c))
             end = minimum(leave, maximum(maximum(at_a, at_b), at_c))
             t = where(grazing, minimum(maximum(t, begin), end), t)  # `begin` where t is NaN
             hit = hit & ~(grazing & (enter > leave)) & (extent != 0.0)  # not one that is seen edge on
-        if anywhere is not None:
-            close = hit & (t * t < CLOSE * extent)
-            if rarely(close):
+            if anywhere is not None:
                 hit = hit & ~(close & (fabs(height) <= start_error(origin, f)))
         hit = hit & (t > 0.0)
     return hit, t

@@ -125,7 +125,9 @@ def test_a_renderer_counts_rays_whose_light_is_not_finite(monkeypatch: pytest.Mo
     assert renderer.not_finite == 0
     rows = scene_packing.positions_and_intensities
     factors = [1, 1, 1, np.nan, 1, 1]
-    monkeypatch.setattr(scene_packing, "positions_and_intensities", lambda lights: rows(lights) * factors)
+    monkeypatch.setattr(
+        scene_packing, "positions_and_intensities", lambda lights, colours: rows(lights, colours) * factors
+    )
     spoiled = Renderer(2)
     assert spoiled.render(ALL, pixels)
     assert 100 < spoiled.not_finite <= 32 * 32

@@ -10,6 +10,9 @@ import pytest
 from minirt.lanes import Vec
 from minirt.report.measurements import textbook
 from minirt.shapes import KINDS, Shape, start, torus
+from minirt.shapes.box import Box
+from minirt.shapes.oriented import Flat
+from minirt.shapes.triangle import Triangle
 from tests.shapes import mutants
 from tests.shapes.execution_modes import Array, Intersect, kind_of, on_arrays, vec
 
@@ -90,4 +93,5 @@ OWN: dict[str, tuple[Intersect, tuple[str, ...]]] = {
     "triangle": (mutants.with_formula(mutants.mean_of_corners), ("a sliver", "a sliver next to none")),
     "plane": (mutants.with_formula(mutants.hits_behind), ("usual", "at a slope of 1e-6 to 0.01")),
 }
-CARELESS = [kind for kind in KINDS if kind.occludes]
+# Curved kinds, whose formula for shadow rays knows little of where a ray starts.
+CARELESS = [kind for kind in KINDS if kind.occludes and not issubclass(kind.element, Flat | Box | Triangle)]

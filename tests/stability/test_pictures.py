@@ -10,10 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import minirt
+from minirt.element import fields_of
+from minirt.fields import Point
 from minirt.materials import Specular
 from minirt.rendering import Renderer
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
-from minirt.shapes import KINDS
+from minirt.shapes import KINDS, Shape
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests import reference
@@ -109,6 +111,11 @@ def test_light_is_finite(seed: int, size: float, offset: float | None) -> None:
     assert (light >= 0).all()
 
 
+def first_point(shape: Shape) -> str:
+    """The name of the field that says where a shape is."""
+    return next(field.name for field in fields_of(type(shape)) if isinstance(field, Point))
+
+
 def stiff(seed: int, size: float, offset: float) -> Scene:
     """A scene of overlapping shapes of every kind, with lights and the eye among them, often exactly at a shape."""
     random = np.random.default_rng(seed)
@@ -117,12 +124,11 @@ def stiff(seed: int, size: float, offset: float) -> Scene:
     for kind in KINDS:
         for _ in range(2):
             each = example(kind, random, size * float(log_uniform(random, 1e-3, 1)[()]))
-            name = next(name for name, value in vars(each).items() if isinstance(value, tuple))
-            shapes.append(each.replace(**{name: tuple(middle + size * random.normal(size=3))}))
+            shapes.append(each.replace(**{first_point(each): tuple(middle + size * random.normal(size=3))}))
 
     def anywhere() -> tuple[float, ...]:
         shape = shapes[random.integers(len(shapes))]
-        exactly = next(value for value in vars(shape).values() if isinstance(value, tuple))
+        exactly = getattr(shape, first_point(shape))
         return exactly if random.random() < 0.4 else tuple(middle + 3 * size * random.normal(size=3))
 
     lamps = [FurtherLight(anywhere(), 1.0) for _ in range(3)]

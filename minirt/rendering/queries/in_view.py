@@ -14,7 +14,6 @@ from minirt.kernel.rows import kind_of
 from minirt.lanes import Vec, unit
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.preview import render_interpreted
 from minirt.scene import Camera, Scene, describe
 
 COLUMNS, ROWS = 32, 18  # rays that look for shapes
@@ -91,6 +90,8 @@ def showing_camera(scene: Scene, arrays: ShapeArrays, width: int, height: int) -
 
 def brightness(scene: Scene, camera: Camera) -> float:
     """Return the mean light of a picture, clamped to [0, 1]."""
+    from minirt.rendering.queries.preview import render_interpreted
+
     _, light = render_interpreted(scene.replace(scene.camera, camera), COLUMNS, ROWS)
     return float(np.minimum(light, 1.0).mean())
 

@@ -82,9 +82,12 @@ def paraboloid(shape: Any, swell: Decimal) -> Solid:
 def hyperboloid(shape: Any, swell: Decimal) -> Solid:
     """d^2 <= waist^2 + slope h^2 between both caps; the side moves by at least `swell`."""
     waist, radius, half = (Decimal(each) / 2 for each in (shape.waist, shape.diameter, shape.height))
-    slope, square = (radius * radius - waist * waist) / (half * half), waist * waist + 2 * radius * swell
+    slope = (radius * radius - waist * waist) / (half * half)
+    mean = (waist * (radius * radius + slope * half * slope * half).sqrt()).sqrt()  # of the gradient's halves
+    square = waist * waist + swell * (waist * waist / mean + mean)
+    bend = slope + swell * (slope + slope * slope) / mean
     axis, end = unit(exact(shape.axis)), half + swell
-    return Solid(exact(shape.centre), axis, square, quadratic=slope, low=-end, high=end)
+    return Solid(exact(shape.centre), axis, square, quadratic=bend, low=-end, high=end)
 
 
 def disc(shape: Any, swell: Decimal) -> Solid:

@@ -77,7 +77,7 @@ def test_the_next_process_loads_the_kernel_and_edited_sources_compile_it_anew(co
     assert render_in_new_process(copy, tmp_path) == [name, KERNELS, "0", pixel]
     assert modification_times(tmp_path) == kept
 
-    shade = copy / "minirt" / "kernel" / "shading" / "shade.py"
+    shade = copy / "minirt" / "kernel" / "shading" / "surfaces.py"
     source = shade.read_text()
     replace_once(shade, "light.y * colour.y", "2.0 * light.y * colour.y")
     edited, loaded, compiled, pixel = render_in_new_process(copy, tmp_path)

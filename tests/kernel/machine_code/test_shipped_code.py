@@ -152,7 +152,7 @@ def test_a_package_with_kernels_never_compiles_and_changes_nothing(tmp_path: Pat
     for path in shipped.iterdir():
         path.write_bytes(path.read_bytes()[:-1])
     assert render_in_new_process(tmp_path, home) == [name, "0", KERNELS, str(rendered)]
-    replace_once(package / "kernel" / "shading" / "shade.py", "light.y * colour.y", "2.0 * light.y * colour.y")
+    replace_once(package / "kernel" / "shading" / "surfaces.py", "light.y * colour.y", "2.0 * light.y * colour.y")
     other, *counts = render_in_new_process(tmp_path, home)
     assert other != name
     assert counts == ["0", KERNELS, "[10, 40, 30]"]

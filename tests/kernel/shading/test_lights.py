@@ -9,6 +9,7 @@ import pytest
 
 from minirt.kernel.shading.lights import incident_light
 from minirt.lanes import Vec
+from minirt.rendering.packing.colours import Colours
 from minirt.rendering.packing.lights import emitting_lights, light_position, positions_and_intensities, spot_parameters
 from minirt.scene import Ambient, Camera, FurtherLight, Lamp, Light, ParallelLight, Scene, SpotLight
 
@@ -75,4 +76,5 @@ def test_lights_without_brightness_are_left_out() -> None:
     lights = Light((1, 2, 3), 0.5, (255, 0, 51)), FurtherLight((0, 0, 0), 0), SPOT.replace(colour=(0, 0, 0)), SPOT
     scene = Scene((Ambient(0.1, (255, 255, 255)), EYE, *lights))
     assert emitting_lights(scene) == [lights[0], SPOT]
-    assert np.allclose(positions_and_intensities(emitting_lights(scene)), [[1, 2, 3, 0.5, 0, 0.1], [0, 9, 0, 1, 1, 1]])
+    found = positions_and_intensities(emitting_lights(scene), Colours())
+    assert np.allclose(found, [[1, 2, 3, 0.5, 0, 0.1], [0, 9, 0, 1, 1, 1]])

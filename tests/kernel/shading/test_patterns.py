@@ -15,6 +15,7 @@ from minirt.kernel.shading import fractal_noise, pattern_shares, patterns
 from minirt.kernel.shading.patterns import CLOUDS, MARBLE, WOOD, Patterns, apply_patterns, share_and_slope
 from minirt.lanes import Vec, load, save, width
 from minirt.materials import Clouds, Marble, Wood
+from minirt.rendering.packing.colours import Colours
 from minirt.rendering.packing.patterns import frame, pack_patterns
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.cylinder import Cylinder
@@ -124,7 +125,7 @@ def test_slopes_are_those_of_differences_of_50_digits(kind: Any) -> None:
 
 def packed(shape: Any) -> Patterns:
     """Return the patterns of one shape."""
-    return pack_patterns([(0, shape)], np.zeros(1, np.int64), {"patterns"})
+    return pack_patterns([(0, shape)], np.zeros(1, np.int64), {"patterns"}, Colours())
 
 
 def colours(shape: Any, points: np.ndarray) -> np.ndarray:
@@ -226,7 +227,8 @@ def test_fading_is_nearer_to_the_truth_at_every_distance_at_which_it_begins(kind
 
 def test_a_mesh_of_many_primitives_has_one_row() -> None:
     ball = Sphere((0, 0, 0), 1, WHITE, marble=Marble(1.0))
-    found = pack_patterns([(1, ball), (3, ball.replace(**ALL_PATTERNS))], np.array([0, 1, 1, 2, 3]), {"patterns"})
+    shapes = [(1, ball), (3, ball.replace(**ALL_PATTERNS))]
+    found = pack_patterns(shapes, np.array([0, 1, 1, 2, 3]), {"patterns"}, Colours())
     assert found.ranges.tolist() == [[0, 0], [0, 1], [0, 1], [0, 0], [1, 4]]
     assert found.rows.shape == (4, patterns.COLUMNS)
     assert found.heights is None

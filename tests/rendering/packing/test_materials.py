@@ -39,7 +39,7 @@ def test_every_material_names_a_feature_that_is_packed() -> None:
     for field in fields_of(Attributes):
         feature = field.record.feature if isinstance(field, Compound) else field.feature
         assert feature in FEATURES, f"{field.name} needs a feature in minirt/rendering/packing/features.py"
-        packed = {*materials.ROW_PACKERS, *materials.MAP_FEATURES, *materials.PATTERN_FEATURES}
+        packed = materials.PACKED
         assert feature in packed, f"{feature} needs a function in minirt/rendering/packing/materials.py"
 
 

@@ -149,7 +149,7 @@ def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) ->
     """Two lights brighter than any file may say: where both shine straight down, their sum is infinite."""
     bright = Scene((AMBIENT, EYE, LAMP, FurtherLight(LAMP.position, 1.0), *SHAPES))
     monkeypatch.setattr(
-        scene_packing, "positions_and_intensities", lambda lamps: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps))
+        scene_packing, "positions_and_intensities", lambda lamps, _: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps))
     )
     stage = SettingRenderer(bright, WIDTH, HEIGHT, 1)
     wanted = list(settings(bright, 4, 1.0))
