@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from itertools import islice
+from itertools import count, islice
 
 import pytest
 
@@ -48,6 +48,12 @@ def test_random_input_in_a_window_causes_no_error_and_no_leak(desktop, tmp_path)
 
 @pytest.mark.window
 def test_random_input_with_full_screen_causes_no_error(desktop, tmp_path) -> None:
-    report = monkey.run_monkey(desktop, lambda done: done / 105, 2, tmp_path)
+    seed = next(seed for seed in count() if full_screens(seed, 105) >= 2)  # another one with each key that is added
+    report = monkey.run_monkey(desktop, lambda done: done / 105, seed, tmp_path)
     assert (report.status, report.errors) == (0, "")
     assert report.full_screens >= 2
+
+
+def full_screens(seed: int, lines: int) -> int:
+    """How often random input enters or leaves full screen."""
+    return sum(line in monkey.FULL_SCREEN for line in islice(monkey.lines(random.Random(seed)), lines))
