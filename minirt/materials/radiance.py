@@ -21,11 +21,11 @@ BRIGHTEST = 2.0**127  # that a float32 holds
 
 
 class RadianceError(ValueError):
-    """What is wrong with a picture, and where."""
+    """An error in a Radiance picture, and its place."""
 
 
 class Header(NamedTuple):
-    """What stands before the pixels."""
+    """The header of a Radiance picture."""
 
     width: int
     height: int

@@ -67,7 +67,7 @@ def smooth(x: Any) -> Any:
 
 
 def kept(footprint: Any) -> Any:
-    """What a pixel shows of a wave, by its width in wavelengths."""
+    """Share of a wave that a pixel shows, by its width in wavelengths."""
     return 1 - smooth((footprint - SHARP) / (GONE - SHARP))
 
 

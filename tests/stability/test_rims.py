@@ -70,7 +70,7 @@ def test_a_crack_is_found() -> None:
 
 
 def sharpness(shape: Hyperboloid) -> float:
-    """How far the rim of a hyperboloid moves if its side and its caps move by 1: the sharper, the farther."""
+    """Distance by which the rim of a hyperboloid moves if its side and its caps move by 1: the sharper, the farther."""
     radius, waist, half = shape.diameter / 2, shape.waist / 2, shape.height / 2
     falling = (radius**2 - waist**2) / half
     steepest = hypot(radius, falling)  # half of the gradient's length at the rim

@@ -33,7 +33,7 @@ def blue_noise() -> np.ndarray:
 
 @cache
 def crowding_of_point() -> np.ndarray:
-    """How much a point at SIZE, SIZE crowds each place, (2 SIZE, 2 SIZE): a Gaussian of the distance around the
+    """Crowding of each place by a point at SIZE, SIZE, (2 SIZE, 2 SIZE): a Gaussian of the distance around the
     square."""
     around = [min(i, SIZE - i) ** 2 for i in range(SIZE)]
     one = [[round(UNIT * exp(-(x + y) / (2 * SIGMA**2))) for x in around] for y in around]

@@ -19,7 +19,7 @@ BYTES = np.arange(256, dtype=np.float32) * np.float32(1 / 255)  # as the kernel 
 
 
 class Colours(NamedTuple):
-    """How the colours of a scene are read."""
+    """The reading of a scene's colours, as its tone and exposure ask for it."""
 
     decodes: bool = False  # whether they are decoded by the transfer function of sRGB
     gain: float = 1.0  # factor of each source of light

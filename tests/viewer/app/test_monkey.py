@@ -55,5 +55,5 @@ def test_random_input_with_full_screen_causes_no_error(desktop, tmp_path) -> Non
 
 
 def full_screens(seed: int, lines: int) -> int:
-    """How often random input enters or leaves full screen."""
+    """Count how often random input enters or leaves full screen."""
     return sum(line in monkey.FULL_SCREEN for line in islice(monkey.lines(random.Random(seed)), lines))
