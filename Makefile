@@ -55,15 +55,47 @@ quick: $(DEV)  ## run the tests that take a minute in all
 FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/test_frame.py \
             tests/kernel/test_invariances.py tests/kernel/test_single.py tests/kernel/shading/test_specular.py \
             tests/report/measurements/test_formula_errors.py tests/report/measurements/test_operation_counts.py
+# Formulas of single numbers and of numpy's arrays are the same on each processor.
+COMPILED := $(FORMULAS) -k "not numbers] and not arrays]"
 
 processors: $(DEV)  ## run the tests of compiled formulas as on processors without AVX-512 and without AVX
-	NUMBA_CPU_NAME=x86-64-v3 NUMBA_CPU_FEATURES= $(PYTEST) $(FORMULAS)
-	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(PYTEST) $(FORMULAS)
+	NUMBA_CPU_NAME=x86-64-v3 NUMBA_CPU_FEATURES= $(PYTEST) $(COMPILED)
+	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(PYTEST) $(COMPILED)
+
+LOWEST := $(VENV)/lowest
+
+# With kernels of its own, which the lowest version of numba compiles.
+lowest: $(NAME)  ## run a short part of the tests with the lowest versions of the dependencies
+	$(PYTHON) -m venv $(LOWEST)
+	$(LOWEST)/bin/python -m pip --disable-pip-version-check install --quiet pytest pytest-xdist hypothesis mpmath gmpy2 \
+	    $$($(VENV)/bin/python -m tests.lowest_versions)
+	mkdir -p $(LOWEST)/cache
+	XDG_CACHE_HOME=$(abspath $(LOWEST)/cache) $(LOWEST)/bin/python -m pytest --numprocesses $(WORKERS) \
+	    -m "not window and not slow" tests/jail tests/materials tests/formats tests/kernel/compiler \
+	    tests/kernel/test_single.py tests/mlx tests/test_image.py
 
 check: $(DEV)  ## lint and check types
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
 	$(VENV)/bin/mypy
+	$(VENV)/bin/python -m tests.typed.snippets out/snippets
+	$(VENV)/bin/mypy --strict tests/typed/every_name.py out/snippets/*.py
+
+types: $(DEV)  ## check the types of the public names with pyright, too, which needs Node.js
+	$(PIP) install --quiet pyright
+	$(VENV)/bin/python -m tests.typed.snippets out/snippets
+	$(VENV)/bin/pyright --pythonpath $(VENV)/bin/python tests/typed/every_name.py out/snippets/*.py
+
+SECONDS ?= 60
+MINUTES ?= 60
+SEED    ?= 1
+
+fuzz: $(DEV) $(KERNELS)  ## try damaged and extreme input: make fuzz SECONDS=3600 SEED=7
+	$(VENV)/bin/python -m tests.fuzz $(SECONDS) $(SEED)
+
+soak: $(DEV) $(KERNELS)  ## render, and use a window, at random for long: make soak MINUTES=60
+	$(VENV)/bin/python -m tests.fuzz.soak $(MINUTES) $(SEED)
+	$(VENV)/bin/python -m tests.viewer.monkey $(MINUTES) $(SEED)
 
 bench: $(NAME)  ## time frames beside other programs: make bench BENCH=--quick for a short run
 	$(VENV)/bin/python -m tests.bench $(BENCH)
@@ -92,7 +124,11 @@ clean:  ## remove what tests, tools and runs have left
 fclean: clean  ## remove the installed program, too
 	rm -rf $(VENV) minirt/kernel/ahead_of_time
 
+docs: $(DEV)  ## build pages on the public names in out/docs, with pdoc
+	$(PIP) install --quiet pdoc
+	$(VENV)/bin/python -m pdoc --output-directory out/docs minirt minirt.Scene
+
 re: fclean  ## install everything anew
 	$(MAKE) all
 
-.PHONY: all help bonus run test quick processors check bench bench-peers report textures gallery diagrams clean fclean re
+.PHONY: all help bonus run test quick processors lowest check fuzz soak types docs bench bench-peers report textures gallery diagrams clean fclean re

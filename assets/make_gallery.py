@@ -1,4 +1,4 @@
-"""Render the gallery, and print the table of scenes/README.md: python assets/make_gallery.py [SCENE ...]
+"""Render the gallery, and write its table in scenes/README.md: python assets/make_gallery.py [SCENE ...]
 
 A time is the processor time of one thread, without reading the scene and compiling.
 """
@@ -12,6 +12,7 @@ from pathlib import Path
 import minirt
 
 ROOT = Path(__file__).parent.parent
+PAGE = ROOT / "scenes" / "README.md"
 SHOWN = [
     "figure-iv1-planet",
     *sorted(path.stem for path in (ROOT / "scenes").glob("gallery-*.rt")),
@@ -34,6 +35,19 @@ def row(name: str) -> str:
     return f"| ![{caption}](../assets/gallery-{file}) | {caption}<br>`{command}`<br>{seconds:.1f} s |"
 
 
+def write(name: str, text: str) -> None:
+    """Write the row of a scene in the place of its former one, or as the last."""
+    table = PAGE.read_text(encoding="utf-8")
+    start = table.index("<!-- table: gallery -->")
+    end = table.index("\n<!-- end -->", start)
+    rows = table[start:end].rstrip().splitlines()
+    former = [i for i, each in enumerate(rows) if f"`miniRT scenes/{name}.rt " in each]
+    rows[former[0] if former else len(rows) : former[0] + 1 if former else len(rows)] = [text]
+    PAGE.write_text(table[:start] + "\n".join(rows) + "\n" + table[end:], encoding="utf-8")
+
+
 if __name__ == "__main__":
     for name in sys.argv[1:] or SHOWN:
-        print(row(name), flush=True)
+        text = row(name)
+        print(text, flush=True)
+        write(name, text)

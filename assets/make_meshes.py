@@ -1,6 +1,6 @@
 """Writes the meshes of scenes/meshes: python assets/make_meshes.py
 
-A ball of twenty faces and one that was made round from it, a knot, and a teapot that was turned on a lathe.
+A ball of twenty faces and one that was made round from it, a knot, a pot from a lathe, and Newell's teapot.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from newell_teapot import teapot
 
 FOLDER = Path(__file__).parent.parent / "scenes" / "meshes"
 Array = np.ndarray
@@ -115,6 +116,16 @@ def save(name: str, title: str, points: Array, places: Array, normals: Array, fa
     (FOLDER / name).write_text("\n".join(lines) + "\n", encoding="ascii")
 
 
+def save_teapot(name: str) -> None:
+    """Write Newell's teapot, whose faces have indices of points and normals."""
+    points, normals, faces = teapot()
+    lines = ["# Newell's teapot of 1975, closed"]
+    for key, rows in (("v", points), ("vn", normals)):
+        lines += [f"{key} " + " ".join(f"{number + 0.0:.4g}" for number in row) for row in rows.tolist()]
+    lines += ["f " + " ".join(f"{point}//{normal}" for point, normal in (face + 1).tolist()) for face in faces]
+    (FOLDER / name).write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
 def main() -> None:
     """Write all meshes."""
     FOLDER.mkdir(parents=True, exist_ok=True)
@@ -126,6 +137,7 @@ def main() -> None:
     save("icosphere.obj", "A ball of 1,280 faces", points, nothing, nothing, corners)
     save("knot.obj", "A trefoil knot, round and with places of a picture", *wrapped(knot, 18, 110, closed=True))
     save("pot.obj", "A pot, round and with places of a picture", *wrapped(pot, 40, 54, closed=False))
+    save_teapot("teapot.obj")
 
 
 if __name__ == "__main__":

@@ -8,67 +8,105 @@ minirt.render(scene, 640, 480, samples=4).save("demo.png")
 from __future__ import annotations
 
 import os
+import sys
 from functools import cache
 from importlib import import_module
 from math import inf
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from minirt.errors import RenderError as RenderError
 
 if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__`
+    from minirt.cluster.frames import render_all as render_all
+    from minirt.cluster.to_file import render_to as render_to
+    from minirt.element import Element as Element
+    from minirt.errors import FileError as FileError
     from minirt.errors import MiniRTError as MiniRTError
     from minirt.errors import MlxError as MlxError
     from minirt.errors import ReplayError as ReplayError
     from minirt.errors import SceneError as SceneError
+    from minirt.example_scenes import example as example
+    from minirt.example_scenes import examples as examples
+    from minirt.fields import MeshFile as MeshFile
     from minirt.image import Image as Image
+    from minirt.image import LinearImage as LinearImage
     from minirt.materials import *  # noqa: F403
-    from minirt.movie import save_movie as save_movie
-    from minirt.rendering import Renderer
+    from minirt.memory_limit import limit_memory as limit_memory
+    from minirt.notebook import view as view
+    from minirt.rendering import Renderer as Renderer
+    from minirt.rendering.buffers import Buffers as Buffers
+    from minirt.rendering.buffers import buffers as buffers
+    from minirt.rendering.queries.camera_rays import camera_rays as camera_rays
     from minirt.rendering.queries.hits import Hits as Hits
     from minirt.rendering.queries.rays import trace as trace
+    from minirt.saved_movie import save_movie as save_movie
     from minirt.scene import Ambient as Ambient
     from minirt.scene import Background as Background
     from minirt.scene import Camera as Camera
     from minirt.scene import FurtherLight as FurtherLight
+    from minirt.scene import Lamp as Lamp
     from minirt.scene import Light as Light
     from minirt.scene import ParallelLight as ParallelLight
+    from minirt.scene import Resolution as Resolution
     from minirt.scene import Scene as Scene
     from minirt.scene import SpotLight as SpotLight
+    from minirt.scene import dumps as dumps
+    from minirt.scene import loads as loads
     from minirt.shapes import *  # noqa: F403
-    from minirt.viewer import view as view
 
 __version__ = "0.1.0"
 DEFAULT_ERROR = 0.002  # half a level of 255: the least that a picture of bytes can show
+CANCELLED = "the picture was cancelled"  # by `minirt.renderer(...).cancel()`, from another thread
+PIXEL, LIGHT = 4, 24  # bytes of a pixel and of its light, while they are rendered
 DEFAULT_SIZE = (1280, 720)  # pixels, for a scene that does not name a size
 
 # Names that are imported on first use, so that `miniRT --help` need not wait for them.
-HOMES = {
-    **dict.fromkeys(("MiniRTError", "MlxError", "RenderError", "ReplayError", "SceneError"), "minirt.errors"),
-    "Image": "minirt.image",
-    **dict.fromkeys(
-        ("Ambient", "Background", "Camera", "FurtherLight", "Light", "ParallelLight", "Scene", "SpotLight"),
-        "minirt.scene",
+MODULES = {
+    "minirt.cluster.frames": ("render_all",),
+    "minirt.cluster.to_file": ("render_to",),
+    "minirt.element": ("Element",),
+    "minirt.errors": ("FileError", "MiniRTError", "MlxError", "ReplayError", "SceneError"),
+    "minirt.example_scenes": ("example", "examples"),
+    "minirt.fields": ("MeshFile",),
+    "minirt.image": ("Image", "LinearImage"),
+    "minirt.memory_limit": ("limit_memory",),
+    "minirt.notebook": ("view",),
+    "minirt.rendering": ("Renderer",),
+    "minirt.rendering.buffers": ("Buffers", "buffers"),
+    "minirt.rendering.queries.camera_rays": ("camera_rays",),
+    "minirt.rendering.queries.hits": ("Hits",),
+    "minirt.rendering.queries.rays": ("trace",),
+    "minirt.saved_movie": ("save_movie",),
+    "minirt.scene": (
+        *("Ambient", "Background", "Camera", "FurtherLight", "Lamp", "Light", "ParallelLight", "Resolution", "Scene"),
+        *("SpotLight", "dumps", "loads"),
     ),
-    "Hits": "minirt.rendering.queries.hits",
-    "trace": "minirt.rendering.queries.rays",
-    "save_movie": "minirt.movie",
-    "view": "minirt.viewer",
+    "minirt.shapes": ("Shape",),
 }
+HOMES = {name: module for module, names in MODULES.items() for name in names}
 REGISTRIES = ("minirt.shapes", "minirt.materials")  # the names in their `PUBLIC` are public here, too
+OWN = ("DEFAULT_ERROR", "DEFAULT_SIZE", "RenderError", "load", "render", "renderer", "size_of")
 
+if not TYPE_CHECKING:
 
-def __getattr__(name: str) -> Any:
-    if name in HOMES:
-        return getattr(import_module(HOMES[name]), name)
-    if name == "__all__":
-        return sorted((*HOMES, *registered(), "load", "render", "size_of"))
-    if name[:1].isupper() and name in registered():  # modules, which imports look up here, are lower case
-        return registered()[name]
-    raise AttributeError(f"module 'minirt' has no attribute '{name}'")
+    def __getattr__(name: str) -> Any:
+        if name in HOMES:
+            return getattr(import_module(HOMES[name]), name)
+        if name == "__all__":  # asked for by `from minirt import *`, and by pdoc, which then reads the names' values
+            globals().update({each: getattr(sys.modules[__name__], each) for each in public_names()})
+            return public_names()
+        if name[:1].isupper() and name in registered():  # modules, which imports look up here, are lower case
+            return registered()[name]
+        raise AttributeError(f"module 'minirt' has no attribute '{name}'")
 
 
 def __dir__() -> list[str]:
-    return [*globals(), *__getattr__("__all__")]
+    return [*(name for name in globals() if name.startswith("__")), *public_names()]
+
+
+def public_names() -> list[str]:
+    """All public names, in alphabetical order."""
+    return sorted((*OWN, *HOMES, *registered()))
 
 
 @cache
@@ -93,6 +131,7 @@ def size_of(scene: Scene) -> tuple[int, int]:
     return (scene.resolution.width, scene.resolution.height) if scene.resolution else DEFAULT_SIZE
 
 
+@overload
 def render(
     scene: Scene,
     width: int | None = None,
@@ -102,10 +141,49 @@ def render(
     error: float | None = None,
     time: float | None = None,
     threads: int | None = None,
-    precision: str = "double",
+    precision: Literal["double", "single"] = "double",
+    depth: int | None = None,
+    linear: Literal[True] = True,
+    dither: bool = False,
+    region: tuple[int, int, int, int] | None = None,
+    rows: tuple[int, int] | None = None,
+) -> LinearImage: ...
+
+
+@overload
+def render(
+    scene: Scene,
+    width: int | None = None,
+    height: int | None = None,
+    *,
+    samples: int | Literal["auto"] = 1,
+    error: float | None = None,
+    time: float | None = None,
+    threads: int | None = None,
+    precision: Literal["double", "single"] = "double",
+    depth: int | None = None,
+    linear: bool,
+    dither: bool = False,
+    region: tuple[int, int, int, int] | None = None,
+    rows: tuple[int, int] | None = None,
+) -> Image: ...
+
+
+def render(
+    scene: Scene,
+    width: int | None = None,
+    height: int | None = None,
+    *,
+    samples: int | Literal["auto"] = 1,
+    error: float | None = None,
+    time: float | None = None,
+    threads: int | None = None,
+    precision: Literal["double", "single"] = "double",
     depth: int | None = None,
     linear: bool = True,
     dither: bool = False,
+    region: tuple[int, int, int, int] | None = None,
+    rows: tuple[int, int] | None = None,
 ) -> Image:
     """Render a scene: `width` by `height` pixels, each the mean of `samples` rays.
 
@@ -121,27 +199,54 @@ def render(
 
     Tone and exposure are those of the camera; light is exposed, but has no tone. `dither` replaces rounding to 8 bits
     by blue noise, so that smooth shades have no steps.
+
+    `region` (x, y, width, height) renders that rectangle of the picture alone, at the cost of the rectangle: its pixels
+    are those of the whole picture. With `samples` "auto" the error is that of the rectangle, and so are the samples.
+    RenderError for a region that does not lie in the picture. `rows` (a, b) are the rows from a to b - 1.
+
+    RenderError for a picture, textures or lists of shapes that need more memory than `minirt.limit_memory` allows.
     """
     import numpy as np
 
-    from minirt.image import Image
+    from minirt import memory_limit
+    from minirt.image import Image, LinearImage
+    from minirt.progress import State, in_notebooks
+    from minirt.rendering.crop import cut_for
+    from minirt.scene.arguments import check_scene
 
+    check_scene(scene, "render")
     own_width, own_height = size_of(scene)
     width, height = own_width if width is None else width, own_height if height is None else height
     if width < 1 or height < 1:
         raise RenderError(f"a picture has at least 1x1 pixels, got {width}x{height}")
-    pixels = np.empty((height, width, 4), np.uint8)
-    light = np.zeros((height, width, 3)) if linear else None
+    if rows is not None:
+        if region is not None:
+            raise RenderError("a picture has a region or rows, not both")
+        region = (0, rows[0], width, rows[1] - rows[0])
+    crop, shape, kept = cut_for(region, width, height)
+    memory_limit.check_picture(*shape, PIXEL + LIGHT * (linear or dither))
+    pixels = np.empty((*shape, 4), np.uint8)
+    light = np.zeros((*shape, 3)) if linear else None
     chosen = renderer(threads, precision, depth, dither)
     if samples == "auto":
         if time is not None:
             chosen.prepare(scene)
-        reached = chosen.reach(scene, pixels, *goal(error, time), light)
-        return Image.from_bgra(pixels, light, reached)
-    if error is not None or time is not None:
+        with in_notebooks(lambda: State("sampling")):
+            reached = chosen.reach(scene, pixels, *goal(error, time), light, crop)
+        if reached is None:
+            raise RenderError(CANCELLED)
+    elif error is not None or time is not None:
         raise RenderError(f"an error or a time needs samples='auto', got {samples}")
-    chosen.render(scene, pixels, samples, light)
-    return Image.from_bgra(pixels, light)
+    else:
+        reached = None
+        with in_notebooks(lambda: State("picture", chosen.rows_done(len(pixels)))):
+            is_done = chosen.render(scene, pixels, samples, light, crop=crop)
+        if not is_done:
+            raise RenderError(CANCELLED)
+    if light is None:
+        return Image.from_bgra(pixels[kept], None, reached, scene.camera.tone, in_place=True)
+    light = np.ascontiguousarray(light[kept])
+    return LinearImage.from_bgra(pixels[kept], light, reached, scene.camera.tone, in_place=True)
 
 
 def goal(error: float | None, time: float | None) -> tuple[float, float]:
@@ -154,11 +259,13 @@ def goal(error: float | None, time: float | None) -> tuple[float, float]:
     return error, inf if time is None else time
 
 
-@cache
 def renderer(
-    threads: int | None, precision: str = "double", depth: int | None = None, dither: bool = False
+    threads: int | None = None, precision: str = "double", depth: int | None = None, dither: bool = False
 ) -> Renderer:
-    """A renderer with these threads, precision and depth, that dithers or not, cached for the next picture."""
-    from minirt.rendering import Renderer
+    """A renderer with these threads, precision and depth, that dithers or not: the one that `render` uses.
 
-    return Renderer(threads, precision, depth, dither)
+    Equal arguments, defaults included, give the same object, which keeps its threads and the packed scene.
+    """
+    from minirt.rendering.shared import shared_renderer
+
+    return shared_renderer(threads, precision, depth, dither)

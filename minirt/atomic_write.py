@@ -5,19 +5,29 @@ from __future__ import annotations
 import errno
 import os
 import stat
+import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from typing import BinaryIO
+
+from minirt import file_locks
 
 PRIVATE = 0o600
 TEMPORARY = ".minirt-*.tmp"
-ABANDONED = 3600  # seconds after which a temporary file belongs to a program that was killed
+ABANDONED = 3600  # seconds after which a temporary file belongs to a killed program, where there are no locks
+FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)  # of a file that must not exist yet
+LOOK = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0)
 CLEANED: set[Path] = set()  # folders in which this process has deleted abandoned files
 
 
-def write(path: str | os.PathLike[str], data: bytes, permissions: int | None = None) -> None:
+def write(
+    path: str | os.PathLike[str], data: bytes | Callable[[BinaryIO], object], permissions: int | None = None
+) -> None:
     """Replace the contents of a file by `data` in one step; OSError when that fails, and nothing is left behind.
+
+    `data` may be a function that writes to the file, which can seek.
 
     A symbolic link stays, and its target is replaced. An existing file keeps its permissions, unless others are asked
     for, its extended attributes and, where the system allows it, its owner. The file never has more permissions than
@@ -28,6 +38,16 @@ def write(path: str | os.PathLike[str], data: bytes, permissions: int | None = N
     with temporary_file(target, data, existing, permissions) as temporary:
         temporary.replace(target)
     delete_abandoned(target.parent)
+
+
+def probe(path: str | os.PathLike[str]) -> None:
+    """Check what can be checked of `write` without writing: OSError where the folder or the file rules it out."""
+    target = Path(os.path.realpath(path))
+    status_of_existing(target)
+    if not stat.S_ISDIR(target.parent.stat().st_mode):
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
+    if not os.access(target.parent, os.W_OK | os.X_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
 
 def create(path: str | os.PathLike[str], data: bytes) -> None:
@@ -62,35 +82,51 @@ def create_in_place(target: Path, data: bytes) -> None:
 
 @contextmanager
 def temporary_file(
-    target: Path, data: bytes, existing: os.stat_result | None, permissions: int | None
+    target: Path,
+    data: bytes | Callable[[BinaryIO], object],
+    existing: os.stat_result | None,
+    permissions: int | None,
 ) -> Iterator[Path]:
     """Write a temporary file beside the target, with the permissions and the owner of the existing file, if any.
 
-    It is deleted when the block fails.
+    It is locked until the block ends, and deleted when the block fails.
     """
-    temporary = target.with_name(TEMPORARY.replace("*", os.urandom(8).hex()))
     kept = stat.S_IMODE(existing.st_mode) if existing else None
     mode = kept if permissions is None else permissions
-    try:
-        with os.fdopen(os.open(temporary, flags_to_create(), 0o666 if mode is None else mode & PRIVATE), "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        if existing:
-            keep_owner(temporary, existing)
-            copy_extended_attributes(target, temporary)
-        if mode is not None:
-            temporary.chmod(mode)
-        yield temporary
-    except BaseException:
+    temporary, descriptor = create_temporary(target.parent, 0o666 if mode is None else mode & PRIVATE)
+    with ExitStack() as stack:
+        try:
+            with os.fdopen(descriptor, "wb") as file:
+                if sys.platform != "win32":  # where an open file could not be renamed; a duplicate shares the lock
+                    stack.callback(os.close, os.dup(descriptor))
+                if callable(data):
+                    data(file)
+                else:
+                    file.write(data)
+                file.flush()
+                os.fsync(file.fileno())
+            if existing:
+                keep_owner(temporary, existing)
+                copy_extended_attributes(target, temporary)
+            if mode is not None:
+                temporary.chmod(mode)
+            yield temporary
+        except BaseException:
+            with suppress(OSError):
+                temporary.unlink()
+            raise
+
+
+def create_temporary(folder: Path, mode: int) -> tuple[Path, int]:
+    """Create a temporary file; return its path and its descriptor, which holds its lock."""
+    while True:
+        path = folder / TEMPORARY.replace("*", os.urandom(8).hex())
+        descriptor = os.open(path, FLAGS, mode)
+        if file_locks.lock(descriptor) and path.exists():
+            return path, descriptor
+        os.close(descriptor)  # another program took it for abandoned, before it was locked
         with suppress(OSError):
-            temporary.unlink()
-        raise
-
-
-def flags_to_create() -> int:
-    """Return the flags for opening a file that must not exist yet."""
-    return os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+            path.unlink()
 
 
 def keep_owner(path: Path, existing: os.stat_result) -> None:
@@ -122,8 +158,28 @@ def delete_abandoned(folder: Path) -> None:
     with suppress(OSError):
         for each in folder.glob(TEMPORARY):
             with suppress(OSError):
-                if time.time() - each.stat().st_mtime > ABANDONED:
-                    each.unlink()
+                delete_if_abandoned(each)
+
+
+def delete_if_abandoned(path: Path) -> None:
+    """Delete a temporary file that no program writes: its lock is free. OSError.
+
+    Where locks cannot tell, the file is old, or from a future of a clock that was wrong.
+    """
+    with ExitStack() as stack:
+        free = None
+        if sys.platform != "win32":
+            with suppress(PermissionError):  # of another user's file
+                descriptor = os.open(path, LOOK)
+                stack.callback(os.close, descriptor)
+                free = file_locks.is_free(descriptor)  # and taken, so that a program that has just created it sees that
+        if is_old(path) if free is None else free:
+            path.unlink()
+
+
+def is_old(path: Path) -> bool:
+    """Whether a file was changed more than `ABANDONED` seconds ago, or is to be changed as late."""
+    return abs(time.time() - path.lstat().st_mtime) > ABANDONED
 
 
 def status_of_existing(target: Path) -> os.stat_result | None:

@@ -1,36 +1,33 @@
-"""Pictures in memory, written to PNG, and to other formats by Pillow."""
+"""Pictures in memory, written to files in the formats of `minirt.formats.table`.
+
+Formats of floating-point numbers (EXR, HDR, PFM) hold linear light: exposed, without tone, unclamped. All others hold
+levels, to which the tone curve has been applied; those of 16 bits are made of the light, without dithering.
+"""
 
 from __future__ import annotations
 
 import io
 import os
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import numpy as np
 
 from minirt import atomic_write, png
 from minirt.errors import RenderError
+from minirt.formats.table import FLOAT, check_bits, check_quality, format_of
+from minirt.png import NO_TEXTS
 
 if TYPE_CHECKING:
+    from numpy.typing import DTypeLike
     from PIL.Image import Image as PillowImage
 
     from minirt.rendering.sampling.outcome import Outcome
 
-
-def format_of(path: str | os.PathLike[str]) -> str:
-    """Return Pillow's name of the format of a file extension; RenderError when Pillow cannot write it."""
-    suffix = Path(path).suffix.lower()
-    if suffix == ".png":  # without Pillow, which loads the plug-ins of all formats to answer
-        return "PNG"
-    from PIL import Image as pillow  # noqa: N813
-
-    name = pillow.registered_extensions().get(suffix, "")
-    if name not in pillow.SAVE:
-        raise RenderError(f"{os.fspath(path)}: cannot write pictures with the extension '{suffix}', try .png")
-    return name
+DEEP = 65535  # highest level of 16 bits
+BLOCK = 2**18  # pixels that are converted at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +37,25 @@ class Image:
     array: np.ndarray  # (h, w, 3) uint8, RGB
     linear: np.ndarray | None = None  # (h, w, 3) float64, radiance before clamping and rounding
     reached: Outcome | None = None  # samples and estimated error of a picture with samples="auto"
+    tone: str = "plain"  # the curve from `linear` to `array`
 
     @classmethod
-    def from_bgra(cls, pixels: np.ndarray, linear: np.ndarray | None = None, reached: Outcome | None = None) -> Image:
-        """Make a picture of a frame buffer, (h, w, 4) in the order blue, green, red, alpha."""
-        return cls(np.ascontiguousarray(pixels[..., 2::-1]), linear, reached)
+    def from_bgra(
+        cls,
+        pixels: np.ndarray,
+        linear: np.ndarray | None = None,
+        reached: Outcome | None = None,
+        tone: str = "plain",
+        *,
+        in_place: bool = False,
+    ) -> Image:
+        """Make a picture of a frame buffer, (h, w, 4) in the order blue, green, red, alpha.
+
+        `in_place` overwrites a contiguous frame buffer, whose memory the picture then uses.
+        """
+        if in_place and pixels.flags.c_contiguous:
+            return cls(rgb_in_place(pixels), linear, reached, tone)
+        return cls(np.ascontiguousarray(pixels[..., 2::-1]), linear, reached, tone)
 
     @cached_property
     def pil(self) -> PillowImage:
@@ -53,25 +64,129 @@ class Image:
 
         return pillow.fromarray(self.array)
 
-    def encode(self, name: str = "PNG") -> bytes:
-        """Return the bytes of a file in a format of Pillow; RenderError when the format cannot hold the picture."""
+    @property
+    def deep(self) -> np.ndarray:
+        """The picture with 16 bits a channel, (h, w, 3) uint16, made of its light; RenderError without light."""
+        from minirt.rendering.developing.tone import levels_of
+
+        light = self.light("16 bits")
+        levels = np.empty(light.shape, np.uint16)
+        for rows in blocks_of_rows(light):
+            levels[rows] = np.rint(DEEP * levels_of(light[rows], self.tone))
+        return levels
+
+    def light(self, what: str) -> np.ndarray:
+        """Return the linear light; RenderError, which says that `what` needs it, where the picture has none."""
+        if self.linear is None:
+            raise RenderError(f"{what} need linear light, and this picture has levels of 8 bits alone")
+        return self.linear
+
+    def encode(
+        self,
+        name: str = "PNG",
+        *,
+        bits: int | None = None,
+        quality: int | None = None,
+        texts: Mapping[str, str] = NO_TEXTS,
+    ) -> bytes:
+        """Return the bytes of a file in a format of `minirt.formats.table`; RenderError when it cannot hold the
+        picture.
+
+        `bits` a channel are 8 or 16 for PNG and TIFF; `quality`, from 1 to 100, is for lossy formats. A PNG file
+        carries `texts`, by their keywords.
+        """
         buffer = io.BytesIO()
-        try:
-            if name == "PNG":
-                return png.encode(self.array)
-            self.pil.save(buffer, name)
-        except (OSError, ValueError, KeyError) as error:
-            raise RenderError(f"cannot write this picture as {name}: {error}") from None
+        self.write(buffer, name, bits, quality, texts)
         return buffer.getvalue()
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a file in the format of its extension, as a whole or not at all; RenderError when that fails."""
-        data = self.encode(format_of(path))
+    def write(self, file: BinaryIO, name: str, bits: int | None, quality: int | None, texts: Mapping[str, str]) -> None:
+        """Write the bytes of a file in a format, part by part where the format allows it; OSError when that fails, and
+        RenderError when the format cannot hold the picture. The arguments are those of `encode`."""
+        bits = check_bits(name, bits)
+        check_quality(name, quality)
         try:
-            atomic_write.write(path, data)
+            if name == "PNG":
+                file.writelines(png.parts(self.array if bits == 8 else self.deep, texts))
+            elif bits != 8:
+                file.write(self.encode_by_own(name))
+            else:
+                options = {} if quality is None else {"quality": quality}
+                self.pil.save(cast("Any", PlainFile(file)), "PNG" if name == "APNG" else name, **options)
+        except (OSError, ValueError, KeyError, OverflowError) as error:
+            if isinstance(error, OSError) and error.errno:
+                raise
+            raise RenderError(f"cannot write this picture as {name}: {error}") from None
+
+    def encode_by_own(self, name: str) -> bytes:
+        """Return the bytes of a format that Pillow lacks."""
+        from minirt.formats import openexr, pfm, radiance, tiff
+
+        if name == "TIFF":
+            return tiff.encode(self.deep)
+        encode = {"EXR": openexr.encode, "HDR": radiance.encode, "PFM": pfm.encode}[name]
+        return encode(self.light(f"{FLOAT} bits"))
+
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        bits: int | None = None,
+        quality: int | None = None,
+        texts: Mapping[str, str] = NO_TEXTS,
+    ) -> None:
+        """Write a file in the format of its extension, as a whole or not at all; RenderError when that fails.
+
+        The arguments are those of `encode`.
+        """
+        name = format_of(path)
+        try:
+            atomic_write.write(path, lambda file: self.write(file, name, bits, quality, texts))
         except OSError as error:
             raise RenderError(f"{os.fspath(path)}: cannot write: {error.strerror or error}") from None
 
     def _repr_png_(self) -> bytes:
         """Return the picture as PNG; notebooks call this."""
         return self.encode()
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> np.ndarray:
+        """Return `array` to `numpy.asarray`, which shares its memory."""
+        if copy:
+            return np.array(self.array, dtype)
+        return np.asarray(self.array, dtype)
+
+    def __repr__(self) -> str:
+        height, width = self.array.shape[:2]
+        return f"<Image of {width}x{height} pixels{'' if self.linear is None else ', with linear light'}>"
+
+
+class PlainFile:
+    """A file without a descriptor: Pillow would write to that by itself, and not tell why it failed."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self.write, self.flush = file.write, file.flush
+        self.seek, self.tell = file.seek, file.tell
+
+
+def rgb_in_place(pixels: np.ndarray) -> np.ndarray:
+    """Turn a contiguous frame buffer (h, w, 4), BGRA, into RGB (h, w, 3) in the first three quarters of its memory.
+
+    Block after block, each copied first, because a block's new place overlaps its old one, but no later block's.
+    """
+    height, width = pixels.shape[:2]
+    old = pixels.reshape(-1, 4)
+    new: np.ndarray = pixels.reshape(-1)[: 3 * len(old)].reshape(-1, 3)
+    for start in range(0, len(old), BLOCK):
+        new[start : start + BLOCK] = old[start : start + BLOCK, 2::-1].copy()
+    return new.reshape(height, width, 3)
+
+
+def blocks_of_rows(array: np.ndarray) -> Iterator[slice]:
+    """Yield slices of the rows of a picture, with about `BLOCK` pixels each."""
+    step = max(1, BLOCK // max(1, array.shape[1]))
+    yield from (slice(start, start + step) for start in range(0, len(array), step))
+
+
+class LinearImage(Image):
+    """A picture with its linear light."""
+
+    linear: np.ndarray  # (h, w, 3) float64, radiance before clamping and rounding

@@ -1,76 +1,132 @@
-"""Movies: an animated GIF, or numbered pictures in any other format."""
+"""Films: one file of all pictures in the formats that can hold them, numbered pictures in any other format."""
 
 from __future__ import annotations
 
 import io
 import os
-import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable
+from functools import partial
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
 from minirt import atomic_write
 from minirt.errors import RenderError
+from minirt.formats.table import FORMATS, check_quality, format_of
 
 if TYPE_CHECKING:
-    from PIL.Image import Image as PillowImage
-
+    from minirt.formats.films.film import Film
     from minirt.image import Image
 
+Recording: TypeAlias = Callable[[Callable[["Image"], None]], object]  # gives pictures to a function
+
 FPS = 25.0  # frames per second
-COLOURS = 256  # of each frame of a GIF
+FILM_CLASSES = {
+    "GIF": ("gif", "GifFilm"),
+    "APNG": ("apng", "ApngFilm"),
+    "WEBP": ("webp", "WebpFilm"),
+    "MP4": ("video", "Mp4Film"),
+    "WEBM": ("video", "WebmFilm"),
+}
 
-T = TypeVar("T")
 
+def save_movie(
+    pictures: Iterable[Image], path: str | os.PathLike[str], fps: float = FPS, *, quality: int | None = None
+) -> list[Path]:
+    """Write a film of `fps` pictures per second; return its files.
 
-def save_movie(pictures: Iterable[Image], path: str | os.PathLike[str], fps: float = FPS) -> list[Path]:
-    """Write a movie of `fps` pictures per second; return its files.
-
-    A path that ends in .gif gives one looping file, written as a whole or not at all. Any other path, such as spin.png,
-    gives a file for each picture: spin-0001.png, spin-0002.png, ... RenderError without pictures, or when a file cannot
-    be written.
+    A path that ends in .gif, .webp, .apng, .mp4 or .webm gives one file, written as a whole or not at all; the first
+    three loop for ever, the last two need PyAV. Any other path, such as spin.png, gives a file for each picture:
+    spin-0001.png, spin-0002.png, ... `quality`, from 1 to 100, is for lossy formats. RenderError without pictures, with
+    pictures of different sizes in one file, or when a file cannot be written.
     """
-    target = Path(path)
-    if target.suffix.lower() == ".gif":
-        data = encode_gif(pictures, fps)
-        try:
-            atomic_write.write(target, data)
-        except OSError as error:
-            raise RenderError(f"{target}: cannot write: {error.strerror or error}") from None
-        return [target]
+    if not FORMATS[format_of(path)].is_film:
+        check_quality(format_of(path), quality)
+        return save_numbered(pictures, Path(path), quality)
+    return [record_movie(partial(each_of, pictures), path, fps, quality=quality)]
+
+
+def record_movie(
+    record: Recording, path: str | os.PathLike[str], fps: float = FPS, *, quality: int | None = None
+) -> Path:
+    """Write a film in one file of pictures that `record` makes: it is called with a function that takes each of them.
+
+    The other arguments, errors and the result are those of `save_movie`.
+    """
+    target, name = Path(path), format_of(path)
+    check_quality(name, quality)
+    try:
+        atomic_write.write(target, lambda file: write_film(record, file, name, fps, quality))
+    except OSError as error:
+        raise RenderError(f"{target}: cannot write: {error.strerror or error}") from None
+    return target
+
+
+def each_of(pictures: Iterable[Image], add: Callable[[Image], None]) -> None:
+    """Give pictures to a function, one after the other."""
+    for picture in pictures:
+        add(picture)
+
+
+def save_numbered(pictures: Iterable[Image], target: Path, quality: int | None = None) -> list[Path]:
+    """Write a file for each picture, and return their paths; RenderError without pictures."""
     written = []
     for number, picture in enumerate(pictures, 1):
-        file = target.with_name(f"{target.stem}-{number:04}{target.suffix}")
-        picture.save(file)
+        file = numbered(target, number)
+        picture.save(file, quality=quality)
         written.append(file)
     if not written:
         raise RenderError("a movie needs a picture")
     return written
 
 
-def encode_gif(pictures: Iterable[Image], fps: float) -> bytes:
-    """Return the bytes of a looping GIF; the format counts durations in hundredths of a second."""
-    frames = [quantise(picture.pil) for picture in pictures]
-    if not frames:
-        raise RenderError("a movie needs a picture")
+def numbered(target: Path, number: int) -> Path:
+    """Return the path of a picture of a film."""
+    return target.with_name(f"{target.stem}-{number:04}{target.suffix}")
+
+
+def encode_film(pictures: Iterable[Image], name: str, fps: float, quality: int | None = None) -> bytes:
+    """Return the bytes of a film; RenderError without pictures, or when the format cannot hold them."""
     buffer = io.BytesIO()
-    duration = 10 * max(2, round(100 / fps))  # ms; many programs slow down frames shorter than 20 ms
-    frames[0].save(buffer, "GIF", save_all=True, append_images=frames[1:], duration=duration, loop=0, optimize=True)
+    try:
+        write_film(partial(each_of, pictures), buffer, name, fps, quality)
+    except OSError as error:
+        raise RenderError(f"cannot write this film as {name}: {error}") from None
     return buffer.getvalue()
 
 
-def quantise(picture: PillowImage) -> PillowImage:
-    """Reduce a picture to 256 colours by an octree, which keeps the colours of small objects and takes two thirds
-    of the bytes of a median cut."""
-    from PIL.Image import Dither, Quantize
+def write_film(record: Recording, out: BinaryIO, name: str, fps: float, quality: int | None = None) -> None:
+    """Write the pictures that `record` makes to a file that can seek; two of them are in memory at once.
 
-    return picture.quantize(COLOURS, Quantize.FASTOCTREE, dither=Dither.NONE)
+    RenderError without pictures, or when the format cannot hold them; OSError when the file cannot be written.
+    """
+    film: Film | None = None
+    sizes: set[tuple[int, int]] = set()
+
+    def add(picture: Image) -> None:
+        nonlocal film
+        film = film or film_class(name)(out, fps, quality)
+        sizes.add((picture.array.shape[1], picture.array.shape[0]))
+        if len(sizes) > 1:
+            different = " and ".join(f"{width}x{height}" for width, height in sorted(sizes))
+            raise RenderError(f"the pictures of a film have one size, got {different}")
+        try:
+            film.add(picture.array)
+        except (ValueError, KeyError, OverflowError) as error:
+            raise RenderError(f"cannot write this film as {name}: {error}") from None
+
+    try:
+        record(add)
+        if film is None:
+            raise RenderError("a movie needs a picture")
+        film.end()
+    finally:
+        if film:
+            film.close()
 
 
-def with_progress(items: Iterable[T], count: int, noun: str) -> Iterator[T]:
-    """Yield the items, and print after each how many of `count` are done, if standard error is a terminal."""
-    terminal = sys.stderr.isatty()
-    for number, item in enumerate(items, 1):
-        yield item
-        if terminal:
-            print(f"\r{noun} {number} of {count}", end="\n" if number == count else "", file=sys.stderr, flush=True)
+def film_class(name: str) -> type[Film]:
+    """Return the class that writes films in a format."""
+    home, kind = FILM_CLASSES[name]
+    found: type[Film] = getattr(import_module(f"minirt.formats.films.{home}"), kind)
+    return found

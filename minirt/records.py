@@ -7,41 +7,42 @@ the time, 6 us.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, FrozenInstanceError, dataclass, field, fields
 from functools import cache
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, TypeVar, cast, dataclass_transform
+from typing import Any, TypeVar, cast, dataclass_transform
 
-if TYPE_CHECKING:
-    from inspect import Signature
+from minirt.record_help import FieldDocumentation, FieldSignature
 
 Kind = TypeVar("Kind", bound="type[Immutable]")
 
 
-@dataclass_transform(frozen_default=True, field_specifiers=(field,))
+def declare(
+    kind: Callable[..., Any], doc: str, *, default: Any = None, shared: Mapping[str, Any] | None = None, **how: Any
+) -> Any:
+    """Declare an attribute of a record as a field of a scene: `diameter: float = declare(Length, "diameter")`.
+
+    `kind` is the class of the field, `shared` are arguments that several fields have in common. For type checkers the
+    `default` of a field that may be left out is written here, even where it is None, and no arguments are unpacked.
+    """
+    how = {**(shared or {}), **how}
+    metadata = {"field": kind(doc=doc, default=default, **how)}
+    required = default is None and not how.get("keyed")
+    return field(metadata=metadata) if required else field(default=default, metadata=metadata)
+
+
+@dataclass_transform(frozen_default=True, field_specifiers=(field, declare))
 def record(*, kw_only: bool = False) -> Callable[[Kind], Kind]:
     """Decorate a subclass of `Immutable`, as `dataclass(frozen=True)` does; all subclasses need the same decorator."""
-    decorate: Any = dataclass(init=False, repr=False, eq=False, kw_only=kw_only)
+    make: Any = dataclass(init=False, repr=False, eq=False, kw_only=kw_only)
+
+    def decorate(kind: type[Any]) -> Any:
+        made = make(kind)
+        made.__doc__ = FieldDocumentation(made.__doc__ or "")
+        return made
+
     return cast("Callable[[Kind], Kind]", decorate)
-
-
-class FieldSignature:
-    """Descriptor of `__signature__`, by which `help` and notebooks show the fields of a record."""
-
-    def __get__(self, instance: object, kind: type[Any]) -> Signature:
-        from inspect import Parameter, Signature
-
-        parameters = [
-            Parameter(
-                each.name,
-                Parameter.KEYWORD_ONLY if each.kw_only else Parameter.POSITIONAL_OR_KEYWORD,
-                default=Parameter.empty if each.default is MISSING else each.default,
-                annotation=each.type,
-            )
-            for each in sorted(fields(kind), key=lambda each: bool(each.kw_only))
-        ]
-        return Signature(parameters)
 
 
 class Immutable:

@@ -32,8 +32,10 @@ def read(path: str | os.PathLike[str], largest: int) -> bytes:
     try:
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with os.fdopen(descriptor, "rb") as file:
-            check_regular(path, os.fstat(descriptor), largest)
-            data = file.read(largest + 1)
+            size = check_regular(path, os.fstat(descriptor), largest).st_size
+            data = file.read(size + 1)  # Python reserves memory for as many bytes as it is asked for
+            if len(data) > size:  # the file grows
+                data += file.read(largest + 1 - len(data))
     except (OSError, ValueError) as error:
         raise FileError(path, f"cannot be read: {reason(error)}") from None
     check_size(path, len(data), largest)

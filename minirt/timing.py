@@ -34,3 +34,11 @@ def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[R
 def is_disturbed(run: Run, threads: int) -> bool:
     """Whether the threads of a run had to wait for a processor: its wall time exceeds their processor time."""
     return run.wall * threads > DISTURBED * run.cpu
+
+
+def in_words(seconds: float) -> str:
+    """Say a time in the unit that people would use."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"

@@ -13,6 +13,7 @@ from tests.paths import ROOT
 
 FALLBACK_CACHE = ROOT / "out" / "cache"  # cache of compiled kernels if the user's cache folder cannot be written
 STATE = ROOT / "out" / "state"  # journals of unsaved changes, apart from the user's
+CONFIGURATION = ROOT / "out" / "configuration"  # defaults of options, of which there are none
 
 
 def prepare() -> None:
@@ -22,6 +23,7 @@ def prepare() -> None:
     if not is_writable(user_cache()):
         os.environ["XDG_CACHE_HOME"] = str(FALLBACK_CACHE)
     os.environ["XDG_STATE_HOME"] = str(STATE)
+    os.environ["XDG_CONFIG_HOME"] = str(CONFIGURATION)
 
 
 def user_cache() -> Path | None:

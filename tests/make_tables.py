@@ -1,7 +1,7 @@
 """Write the generated parts of the documentation anew: python -m tests.make_tables
 
 A table stands between `<!-- table: NAME -->` and `<!-- end -->` of a page. The text for package indexes stands in
-pyproject.toml.
+pyproject.toml; the manual page is a file of its own.
 """
 
 from __future__ import annotations
@@ -13,12 +13,33 @@ from pathlib import Path
 
 from minirt.scene import format_table
 from minirt.viewer import keys_markdown
+from tests.manual_page import PAGE, manual_page
 from tests.pages import PAGES, block, name, read
 from tests.paths import ROOT, SCENES
 from tests.test_imports import MAY
 
-HELPERS = {"errors", "records", "atomic_write", "fork_safety", "gc_pause", "regular_files", "timing", "__main__"}
-HELPERS |= {"png", "image", "movie"}  # left out of the diagram, as small
+HELPERS = {
+    "errors",
+    "records",
+    "atomic_write",
+    "file_locks",
+    "user_files",
+    "fork_safety",
+    "gc_pause",
+    "regular_files",
+    "timing",
+    "__main__",
+}
+HELPERS |= {
+    "png",
+    "formats",
+    "image",
+    "movie",
+    "saved_movie",
+    "record_help",
+    "example_scenes",
+    "progress",
+}  # left out of the diagram, as small
 PLACE = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 INDEX_TEXT = re.compile(r"^(text = '''\n).*?^(''')$", re.MULTILINE | re.DOTALL)
 PICTURE = re.compile(r"^\| !\[.*?\]\((.*?)\) \| .*?<br>`miniRT (\S+)(.*)$", re.MULTILINE)
@@ -97,6 +118,7 @@ def main() -> None:
     for page in PAGES:
         write(page, renewed(read(name(page))))
     write(ROOT / "pyproject.toml", with_index_text(read("pyproject.toml")))
+    write(PAGE, manual_page())
 
 
 if __name__ == "__main__":

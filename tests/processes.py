@@ -10,6 +10,7 @@ import signal
 import subprocess
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any
 
 from tests.waiting import HANG_LIMIT
@@ -42,3 +43,12 @@ def run(command: Sequence[str], **options: Any) -> subprocess.CompletedProcess[A
     with started(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options) as process:
         out, err = process.communicate(timeout=HANG_LIMIT)
     return subprocess.CompletedProcess(command, process.returncode, out, err)
+
+
+def is_running(process: int) -> bool:
+    """Whether a process has not ended, on Linux."""
+    try:
+        status = Path(f"/proc/{process}/stat").read_text()
+    except OSError:
+        return False
+    return status.rpartition(")")[2].split()[0] not in "ZX"

@@ -7,7 +7,8 @@ from collections.abc import Callable, Collection
 import pytest
 
 from minirt import bench, timing
-from minirt.kernel.frame import PACKET_HEIGHT, REFERENCE_SAMPLES
+from minirt.kernel.frame import REFERENCE_SAMPLES
+from minirt.kernel.stored_light import PACKET_HEIGHT
 from minirt.rendering import renderer
 from minirt.rendering.frame_arguments import Frame
 from minirt.rendering.running import to_error

@@ -6,7 +6,9 @@ import os
 import stat
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
+from typing import BinaryIO
 
 import pytest
 
@@ -129,11 +131,54 @@ atomic_write.write(sys.argv[1], b"new")
 """
     path = tmp_path / "file"
     assert run([sys.executable, "-c", program, str(path)]).returncode == -9
-    (left,) = tmp_path.iterdir()
-    atomic_write.CLEANED.discard(tmp_path)
-    atomic_write.write(path, b"young files may be in use")
-    assert names(tmp_path) == sorted([left.name, "file"])
-    os.utime(left, (1, 1))
-    atomic_write.CLEANED.discard(tmp_path)
+    assert len(names(tmp_path)) == 1
     atomic_write.write(path, b"new")
     assert names(tmp_path) == ["file"]
+
+
+def test_files_that_running_programs_write_stay_however_old_they_are(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+
+    def write(file: BinaryIO) -> None:
+        (written,) = tmp_path.glob(atomic_write.TEMPORARY)
+        for seconds in (1, 2**33):  # after 1970, and in a future: clocks may be wrong
+            os.utime(written, (seconds, seconds))
+            atomic_write.CLEANED.discard(tmp_path)
+            atomic_write.write(tmp_path / "other", b"other")
+        file.write(b"new")
+
+    atomic_write.write(path, write)
+    assert path.read_bytes() == b"new"
+    assert names(tmp_path) == ["file", "other"]
+
+
+@pytest.mark.parametrize(("seconds", "is_left"), [(0, True), (-3000, True), (-4000, False), (4000, False)])
+def test_without_locks_old_files_are_deleted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float, is_left: bool
+) -> None:
+    monkeypatch.setattr(atomic_write.file_locks, "is_free", lambda _: None)
+    left = tmp_path / atomic_write.TEMPORARY.replace("*", "left")
+    left.touch()
+    now = left.stat().st_mtime
+    monkeypatch.setattr(atomic_write.time, "time", lambda: now)
+    os.utime(left, (now + seconds, now + seconds))
+    atomic_write.write(tmp_path / "file", b"new")
+    assert left.exists() == is_left
+
+
+def test_a_file_that_is_taken_for_abandoned_before_it_is_locked_is_created_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def late(descriptor: int, lock: Callable[[int], bool] = atomic_write.file_locks.lock) -> bool:
+        nonlocal tries
+        tries += 1
+        if tries == 1:
+            atomic_write.delete_abandoned(tmp_path)
+        return lock(descriptor)
+
+    tries = 0
+    monkeypatch.setattr(atomic_write.file_locks, "lock", late)
+    atomic_write.write(tmp_path / "file", b"new")
+    assert tries == 2
+    assert names(tmp_path) == ["file"]
+    assert (tmp_path / "file").read_bytes() == b"new"

@@ -20,11 +20,14 @@ WAITS = {"wait", "join", "communicate", "acquire", "result"}  # methods with sec
 LIMITS = {"timeout", "patience", "deadline"}  # arguments in seconds
 EXEMPT = {  # files that measure time, or run for a given time
     "waiting.py",
+    "fuzz/soak.py",
+    "fuzz/worker.py",
     "stability/host_mutation.py",
     "stability/host_tests.py",
     "stability/host_trial.py",
     "stability/mutation.py",
     "viewer/monkey.py",
+    "viewer/recovery/kill.py",
     "mlx/maze.py",  # programs that run in simulated time
     "mlx/two_windows.py",
     *(

@@ -47,7 +47,8 @@ def prepared(monkeypatch: pytest.MonkeyPatch, **variables: str) -> dict[str, str
     """Return these environment variables as `prepare` completes them."""
     monkeypatch.setattr(os, "environ", variables)
     environment.prepare()
-    assert variables.pop("XDG_STATE_HOME").startswith(str(ROOT / "out"))  # journals of tests are not the user's
+    for name in ("XDG_STATE_HOME", "XDG_CONFIG_HOME"):  # journals and defaults of tests are not the user's
+        assert variables.pop(name).startswith(str(ROOT / "out"))
     return variables
 
 

@@ -125,6 +125,63 @@ def test_a_scene_can_be_made_without_a_file() -> None:
     assert pickle.loads(pickle.dumps(scene)) == scene
 
 
+def test_elements_are_added_and_removed(scene: minirt.Scene, tmp_path: Path) -> None:
+    ball = minirt.Sphere((0, 0, 5), 2, (255, 0, 0))
+    larger = scene.add(ball, minirt.FurtherLight((0, 9, 0), 0.5))
+    assert larger.spheres == (*scene.spheres, ball)
+    assert len(larger.lights) == len(scene.lights) + 1
+    assert larger.remove(*larger.further_lights, ball) == scene
+    with pytest.raises(ValueError, match="at most one ambient light, got 2"):
+        scene.add(minirt.Ambient(1, (255, 255, 255)))
+    with pytest.raises(ValueError, match="not in"):
+        scene.remove(ball)
+    with pytest.raises(ValueError, match="exactly one camera, got 0"):
+        scene.remove(scene.camera)
+
+
+def test_a_scene_is_written_and_read_again(scene: minirt.Scene, tmp_path: Path) -> None:
+    text = SUBJECT.read_text(encoding="utf-8")
+    assert minirt.dumps(scene) == text
+    assert minirt.dumps(minirt.loads(text)) == text
+    path = tmp_path / "changed.rt"
+    added = scene.add(minirt.Sphere((0, 0, 5), 2, (255, 0, 0)))
+    added.save(path)
+    assert path.read_text(encoding="utf-8") == text.rstrip("\n") + "\nsp 0,0,5 2 255,0,0\n"
+    read = minirt.load(path)
+    read.remove(read.spheres[-1]).save()
+    assert path.read_text(encoding="utf-8") == text
+    with pytest.raises(ValueError, match="needs a path"):
+        minirt.loads(text).save()
+    with pytest.raises(minirt.SceneError, match=r"ends in '\.rt'"):
+        scene.save(tmp_path / "a.txt")
+
+
+@pytest.mark.parametrize("function", ["render", "buffers", "camera_rays", "view", "dumps", "trace"])
+@pytest.mark.parametrize("path", ["demo.rt", Path("demo.rt")])
+def test_the_name_of_a_file_is_refused_with_what_to_do(function: str, path: Path | str) -> None:
+    arguments = {"buffers": (8, 6), "camera_rays": (8, 6), "trace": ([[0, 0, 0]], [[0, 0, 1]])}.get(function, ())
+    with pytest.raises(TypeError, match=rf"minirt\.{function} takes a scene, .*: use minirt.load\('demo.rt'\)"):
+        getattr(minirt, function)(path, *arguments)
+
+
+def test_a_renderer_is_the_one_of_render(scene: minirt.Scene) -> None:
+    shared = minirt.renderer()
+    assert minirt.renderer(None) is shared
+    assert minirt.renderer(threads=None, precision="double", depth=None, dither=False) is shared
+    minirt.render(scene, 9, 7)
+    assert shared.packing.last
+    assert shared.packing.shape_arrays.shapes is scene.shapes
+    assert minirt.renderer(1) is not shared
+
+
+def test_numpy_takes_a_picture(scene: minirt.Scene) -> None:
+    image = minirt.render(scene, 9, 7)
+    assert np.asarray(image) is image.array
+    assert np.array(image) is not image.array
+    assert np.asarray(image, float).dtype == np.float64
+    assert np.mean(image) == image.array.mean()
+
+
 def test_an_error_has_all_problems_of_a_file(tmp_path: Path) -> None:
     path = tmp_path / "bad.rt"
     path.write_text("A 0.2 255,255,255\nC 0,0,0 0,0,1 999\nsp 0,0,0 -1 1,2,3\n")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import sys
 from math import dist
 
 import numpy as np
@@ -12,7 +10,7 @@ from PIL import Image as pillow  # noqa: N813
 
 import minirt
 from minirt.errors import RenderError
-from minirt.movie import save_movie, with_progress
+from minirt.movie import save_movie
 from minirt.viewer.app.animation import FPS as ANIMATION_FPS
 from minirt.viewer.app.animation import TICKS, animation, turntable
 from minirt.viewer.editing.measure import scene_centre
@@ -90,12 +88,3 @@ def test_an_animation_has_frames_for_its_whole_duration():
     assert np.array_equal(frames[0].array, frames[3].array)
     assert (frames[-3].array[20:40, 20:32] == 255).all(axis=2).any()  # the pointer
     assert not np.array_equal(frames[-3].array, frames[-2].array)  # the camera moves
-
-
-def test_progress_is_printed_to_a_terminal_only(monkeypatch):
-    for terminal, printed in ((True, "\rpicture 1 of 2\rpicture 2 of 2\n"), (False, "")):
-        stream = io.StringIO()
-        stream.isatty = lambda terminal=terminal: terminal
-        monkeypatch.setattr(sys, "stderr", stream)
-        assert list(with_progress("ab", 2, "picture")) == ["a", "b"]
-        assert stream.getvalue() == printed

@@ -27,11 +27,13 @@ def test_all_pages_are_here() -> None:
     assert {
         "README.md",
         "CONTRIBUTING.md",
+        "SECURITY.md",
         "CHANGELOG.md",
         "scenes/README.md",
         "minirt/README.md",
         "minirt/viewer/README.md",
         "minirt/rendering/README.md",
+        "minirt/cli/README.md",
         "minirt/mlx/README.md",
         "minirt/report/README.md",
         "tests/README.md",

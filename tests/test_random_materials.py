@@ -1,9 +1,15 @@
 """Random scenes of all shapes, lights and materials equal the reference renderer.
 
-Each scene has all kinds of shapes and all features, so that all share one kernel.
+Each scene has all kinds of shapes and all features, so that all share one kernel. The tests try a few of them;
+
+    python -m tests.test_random_materials 200
+
+tries as many as it is told.
 """
 
 from __future__ import annotations
+
+import sys
 
 import numpy as np
 import pytest
@@ -135,12 +141,21 @@ def oriented(shape: Shape, random: np.random.Generator) -> Shape:
     return shape.replace(roll=random.uniform(-360, 360)) if isinstance(shape, Oriented) else shape
 
 
-@pytest.mark.parametrize("batch", range(4))
-def test_random_scenes_with_all_features_equal_the_reference(batch: int) -> None:
+def check(seeds: range) -> None:
+    """Assert that the pictures of these seeds are those of the reference, but for a few pixels at edges."""
     wrong = total = 0
-    for seed in range(batch * 8, batch * 8 + 8):
+    for seed in seeds:
         scene = material_scene(seed)
         bad = off(minirt.render(scene, 64, 40).array, to_bytes(render(scene, 64, 40)))
         assert bad.mean() < 0.003, f"seed {seed}"
         wrong, total = wrong + bad.sum(), total + bad.size
     assert wrong < 3e-4 * total
+
+
+@pytest.mark.parametrize("batch", range(2))
+def test_random_scenes_with_all_features_equal_the_reference(batch: int) -> None:
+    check(range(batch * 6, batch * 6 + 6))
+
+
+if __name__ == "__main__":
+    check(range(int(sys.argv[1])))

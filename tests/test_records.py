@@ -144,7 +144,7 @@ def below(kind: type[Any]) -> set[type[Any]]:
 
 def test_elements_and_fields_write_no_methods_of_their_own() -> None:
     """Each method that a decorator writes would be compiled at every start."""
-    kinds = below(Record) | below(Field)
+    kinds = below(Record) - {Record} | below(Field)  # the representation of Record is one method for all elements
     assert {Sphere, Length} < kinds
     written = {"__init__", "__eq__", "__hash__", "__repr__", "__setattr__", "__delattr__"}
     assert {kind: written & vars(kind).keys() for kind in kinds if written & vars(kind).keys()} == {}

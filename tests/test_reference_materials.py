@@ -133,15 +133,21 @@ def test_a_bump_map_of_a_ramp_tilts_the_normal_by_its_slope(tmp_path: Path) -> N
     wall = Square((0, 0, 10), (0, 0, -1), 7, WHITE, bump=Bump("ramp.png", 0.5 * 255 / 256))
     scene = Scene([AHEAD, ParallelLight((0, 0, 1), 1.0), wall], tmp_path / "scene.rt")
     assert_allclose(radiance(scene, (0.1, 0.2, 10)), 1 / np.hypot(1, 0.5), rtol=1e-9)
-    lit_from_the_left = Scene([AHEAD, ParallelLight((-1, 0, 0), 1.0), wall], tmp_path / "scene.rt")
-    assert_allclose(radiance(lit_from_the_left, (0.1, 0.2, 10)), 0.5 / np.hypot(1, 0.5), rtol=1e-9)
+    lit_from_the_left = Scene([AHEAD, ParallelLight((-0.6, 0, 0.8), 1.0), wall], tmp_path / "scene.rt")
+    fading = 2 / (1 + np.sqrt(1 + 0.5**2 / 8 * 0.75**2))
+    assert_allclose(
+        radiance(lit_from_the_left, (0.1, 0.2, 10)), fading * (0.8 + 0.6 * 0.5) / np.hypot(1, 0.5), rtol=1e-9
+    )
+    setting = Scene([AHEAD, ParallelLight((-1, 0, 0), 1.0), wall], tmp_path / "scene.rt")
+    assert not radiance(setting, (0.1, 0.2, 10)).any()
 
 
 def test_a_normal_map_replaces_the_normal(tmp_path: Path) -> None:
     Image.new("RGB", (2, 2), (255, 128, 128)).save(tmp_path / "right.png")
     wall = WALL.replace(normal_map="right.png")
-    scene = Scene([AHEAD, ParallelLight((1, 0, 0), 1.0), wall], tmp_path / "scene.rt")
-    assert_allclose(radiance(scene, (0, 0, 1)), 1.0, rtol=1e-12)  # lit from the right, which is -x
+    scene = Scene([AHEAD, ParallelLight((0.8, 0, 0.6), 1.0), wall], tmp_path / "scene.rt")
+    # Lit from the right, which is -x; of this light, at a slope of 4 / 3, the roughest bumps let 3 / 4 through.
+    assert_allclose(radiance(scene, (0, 0, 1)), 0.8 * 0.75, rtol=1e-12)
 
 
 def test_directions_of_an_environment_map(tmp_path: Path) -> None:

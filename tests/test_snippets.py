@@ -11,11 +11,13 @@ from PIL import Image as pillow  # noqa: N813
 import minirt
 from minirt.cli import main
 from minirt.scene import dump, parse
+from tests.notebook.requirements import require
 from tests.pages import PAGES, block, blocks, name
 from tests.paths import PACKAGE, ROOT, TESTS
 
-RENDERING, VIEWER, SCENES_PAGE, MLX = (
+RENDERING, CLUSTER, VIEWER, SCENES_PAGE, MLX = (
     "minirt/rendering/README.md",
+    "minirt/cluster/README.md",
     "minirt/viewer/README.md",
     "scenes/README.md",
     "minirt/mlx/README.md",
@@ -23,6 +25,8 @@ RENDERING, VIEWER, SCENES_PAGE, MLX = (
 RUN = {  # a word of each Python block that a test below runs, by its page
     "README.md": ("minirt.load",),
     RENDERING: ("Camera.look_at", "minirt.save_movie", "minirt.trace"),
+    CLUSTER: ("minirt.render_to",),
+    VIEWER: ("notebook=True",),
     MLX: ("minirt.mlx",),
     "minirt/README.md": (
         "squared = ",
@@ -76,10 +80,26 @@ def test_the_animation_is_written(folder: Path) -> None:
     assert (folder / "jump.gif").read_bytes().startswith(b"GIF89a")
 
 
+def test_processes_render(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    exec(block(CLUSTER, "python", "minirt.render_to"), {"minirt": minirt})
+    assert (folder / "large.tif").read_bytes()[:4] == b"II+\0"  # BigTIFF
+    means = [float(line) for line in capsys.readouterr().out.splitlines()]
+    assert len(set(means)) == 20
+
+
 def test_rays_are_traced() -> None:
     names: dict[str, object] = {"minirt": minirt, "scene": minirt.load(ROOT / "scenes/demo.rt")}
     exec(block(RENDERING, "python", "minirt.trace"), names)
     assert names["hits"].distance.shape == (1,)  # type: ignore[attr-defined]
+
+
+def test_the_viewer_of_notebooks_opens() -> None:
+    require("anywidget")
+    names: dict[str, object] = {}
+    exec(block(VIEWER, "python", "notebook=True"), names)
+    viewer = names["viewer"]
+    viewer.close()  # type: ignore[attr-defined]
+    assert viewer.scene == minirt.example("demo")  # type: ignore[attr-defined]
 
 
 def test_the_window_program_is_the_one_that_is_tested() -> None:

@@ -1,4 +1,4 @@
-"""Wheels: kernels for both levels of x86-64 are in them, and an editable installation compiles none."""
+"""Wheels: example scenes and kernels for both levels of x86-64 are in them; an editable installation has neither."""
 
 from __future__ import annotations
 
@@ -20,6 +20,9 @@ with (ROOT / "pyproject.toml").open("rb") as _file:
     PROJECT = tomllib.load(_file)
 
 
+SCENES = {"force_include": {str(ROOT / "scenes"): "minirt/scenes"}}
+
+
 class App:
     """Records the warnings that a hook shows to the user."""
 
@@ -32,8 +35,8 @@ class App:
 
 def built(version: str = "standard") -> tuple[dict[str, Any], list[str]]:
     """Run the hook; return what it says of the wheel, and its warnings."""
-    app, data = App(), dict[str, Any](pure_python=True)
-    hook = wheel_hook.WideKernels(str(ROOT), {}, None, None, str(ROOT), "wheel", app)
+    app, data = App(), dict[str, Any](pure_python=True, force_include={})
+    hook = wheel_hook.ScenesAndKernels(str(ROOT), {}, None, None, str(ROOT), "wheel", app)
     hook.initialize(version, data)
     return data, app.warnings
 
@@ -50,7 +53,7 @@ def folders(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Path, str]]:
 def test_a_wheel_has_kernels_for_both_levels(folders: list[tuple[Path, str]]) -> None:
     data, warnings = built()
     assert [target for _, target in folders] == [processor.V3, processor.V4]
-    assert data == {"pure_python": False, "tag": wheel_hook.TAG}
+    assert data == {"pure_python": False, "tag": wheel_hook.TAG, **SCENES}
     assert warnings == []
 
 
@@ -63,7 +66,7 @@ def test_the_project_file_includes_them(folders: list[tuple[Path, str]]) -> None
 
 
 def test_an_editable_installation_compiles_none(folders: list[tuple[Path, str]]) -> None:
-    assert built("editable") == ({"pure_python": True}, [])
+    assert built("editable") == ({"pure_python": True, "force_include": {}}, [])
     assert folders == []
 
 
@@ -71,7 +74,7 @@ def test_other_machines_get_a_wheel_without_kernels(
     folders: list[tuple[Path, str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(processor, "is_linux_on_x86_64", lambda: False)
-    assert built() == ({"pure_python": True}, [])
+    assert built() == ({"pure_python": True, **SCENES}, [])
     assert folders == []
 
 
@@ -83,7 +86,7 @@ def test_a_wheel_is_made_where_nothing_can_be_compiled(
 
     monkeypatch.setattr(ahead_of_time, "build", fail)
     data, warnings = built()
-    assert data == {"pure_python": True}
+    assert data == {"pure_python": True, **SCENES}
     assert warnings == ["the wheel has no kernels, programs will compile them: no compiler"]
 
 

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd", "xwininfo", "setxkbmap")
+TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xwd", "xwininfo", "xprop", "setxkbmap")
 SCREEN = (2560, 1600)  # its size in pixels
 OPENBOX_CONFIG = """\
 <openbox_config xmlns="http://openbox.org/3.4/rc">
@@ -47,6 +47,7 @@ OPENBOX_CONFIG = """\
 </openbox_config>
 """  # without animation: a window that is being minimised or restored is not where the pointer moves to
 MANAGER_VARIABLE = "MINIRT_TEST_WINDOW_MANAGER"  # environment variable with the process id of the window manager
+SERVER_VARIABLE = "MINIRT_TEST_X_SERVER"  # environment variable with the process id of the X server
 NO_DELAY = ("--delay", "0")  # for xdotool, which otherwise pauses between press and release
 
 
@@ -57,6 +58,7 @@ class Desktop:
         self.environment = environment
         self._programs: list[subprocess.Popen[str]] = []  # running inside their `with` blocks
         self._held: list[str] = []  # keys that are down
+        self._has_server = True
 
     def run(self, *command: str) -> bytes:
         """Run a command and return its standard output. CalledProcessError if it fails, TimeoutExpired if it hangs."""
@@ -84,6 +86,11 @@ class Desktop:
             yield
         finally:
             os.kill(manager, signal.SIGCONT)
+
+    def kill_server(self) -> None:
+        """Kill the X server; nothing else can be done on this desktop afterwards."""
+        self._has_server = False
+        os.kill(int(self.environment[SERVER_VARIABLE]), signal.SIGKILL)
 
     @contextmanager
     def program(self, *command: str, **options: Any) -> Iterator[subprocess.Popen[str]]:
@@ -173,16 +180,23 @@ class Desktop:
     def minimise(self, window: int) -> None:
         """Minimise a window and wait until the window manager has done it.
 
-        A `restore` before that would mistake the focus that the window still has for the focus that it gets."""
-        self.run("xdotool", "windowminimize", str(window))
+        The window manager ignores about one request of a hundred that follow a click, so requests are repeated.
+        """
 
         def is_minimised() -> bool:
+            self.run("xdotool", "windowminimize", str(window))
             return not self._is_shown(window) and self._active() != window
 
         until(is_minimised, f"minimised window {window}")
 
     def restore(self, window: int) -> None:
-        self.activate(window)
+        """Bring back a minimised window and wait until it is shown and has the focus."""
+
+        def is_restored() -> bool:
+            self.activate(window)
+            return self._is_shown(window)
+
+        until(is_restored, f"restored window {window}")
 
     def close_button(self, window: int) -> None:
         self.run("wmctrl", "-i", "-c", hex(window))
@@ -200,8 +214,9 @@ class Desktop:
         try:
             yield
         finally:
-            self.release_keys()
-            if not self._programs:
+            if self._has_server:
+                self.release_keys()
+            if self._has_server and not self._programs:
                 until(self._is_empty, "the end of all windows")
 
     def _expect_program(self) -> None:
@@ -272,7 +287,8 @@ def open_desktop() -> Iterator[Desktop]:
         (Path(home) / "openbox" / "rc.xml").write_text(OPENBOX_CONFIG)
         environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"}
         environment |= {"PYTHONPATH": str(ROOT), "XDG_CONFIG_HOME": home}
-        environment["DISPLAY"] = stack.enter_context(_display())
+        environment["DISPLAY"], server = stack.enter_context(_display())
+        environment[SERVER_VARIABLE] = str(server)
         command = ["openbox", "--sm-disable"]
         manager = stack.enter_context(_server(command, env=environment | {"XDG_CACHE_HOME": home}))
         opened = Desktop(environment | {MANAGER_VARIABLE: str(manager.pid)})
@@ -283,8 +299,8 @@ def open_desktop() -> Iterator[Desktop]:
 
 
 @contextmanager
-def _display() -> Iterator[str]:
-    """Start an X server, whose display name is returned; it ends with the block.
+def _display() -> Iterator[tuple[str, int]]:
+    """Start an X server and return its display name and its process id; it ends with the block.
 
     Its keyboard does not repeat held keys: on a busy machine the time between a press and its release may be so long
     that a key would repeat. Tests of key repeat turn it on.
@@ -303,13 +319,13 @@ def _display() -> Iterator[str]:
                 "-arinterval",
                 "20",
             ]  # key repeat in milliseconds, if a test turns it on
-            stack.enter_context(_server(command, pass_fds=(writer,)))
+            server = stack.enter_context(_server(command, pass_fds=(writer,)))
         # Xvfb writes its number when it is ready, or closes the pipe when it ends.
         until(lambda: bool(select.select([number], [], [], 0)[0]), "Xvfb's display number")
         name = number.readline().strip()
         if not name:
             raise RuntimeError("Xvfb did not start")
-        yield f":{name}"
+        yield f":{name}", server.pid
 
 
 @contextmanager

@@ -10,15 +10,14 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, TextIO
 
+from minirt.cli import example
 from minirt.cli.arguments import Arguments, argument_parser
-from minirt.cli.exit_status import FAILED, INTERRUPTED, OK, USAGE
+from minirt.cli.exit_status import FAILED, INTERRUPTED, OK
 from minirt.cli.output import hide_warnings, prepare_streams, say, tell
 from minirt.errors import MiniRTError
 
-if TYPE_CHECKING:
-    from minirt.scene import Scene
+NO_MEMORY = "not enough memory; a smaller picture, smaller files or fewer shapes need less"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -34,8 +33,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         return FAILED
     except BrokenPipeError:  # the reader of standard output has closed it
         return FAILED
-    except KeyboardInterrupt:
-        return INTERRUPTED
+    except MemoryError:
+        tell(f"Error\n{NO_MEMORY}")
+        return FAILED
+    except KeyboardInterrupt as error:
+        return signal_status(error)
+
+
+def signal_status(error: KeyboardInterrupt) -> int:
+    """Return 128 + n for the signal n that has interrupted the program, which is SIGINT unless the error tells."""
+    number = getattr(error, "number", None)
+    return INTERRUPTED if number is None else 128 + int(number)
 
 
 def leave_blas_single_threaded() -> None:
@@ -47,71 +55,131 @@ def leave_blas_single_threaded() -> None:
 
 
 def run(parser: Arguments, argv: Sequence[str] | None) -> int:
-    """Parse the arguments and run the command that they select."""
+    """Parse the arguments and run the command that they select, for each scene."""
     options = parser.parse_args(argv)
-    if options.version or options.list_keys:
-        say(version() if options.version else keys())
+    if text := asked_text(parser, options):
+        say(text)
         return OK
+    from minirt import memory_limit
+    from minirt.cli.configuration import with_configuration
+
+    options = with_configuration(parser, options, argv)
+    options.command = sys.argv[1:] if argv is None else list(argv)
+    example.choose(parser, options, options.command)
     check_options(parser, options)
+    memory_limit.limit_memory(options.memory)
+    if len(options.scene) == 1:
+        return run_scene(parser, options, options.scene[0])
+    statuses = []
+    for scene in options.scene:
+        try:
+            statuses.append(run_scene(parser, options, scene))
+        except MiniRTError as error:  # the other scenes are read and rendered all the same
+            tell(f"Error\n{error}")
+            statuses.append(FAILED)
+    return max(statuses)
+
+
+def asked_text(parser: Arguments, options: argparse.Namespace) -> str:
+    """Return the text that an option asks for in place of any work, or ''."""
+    if options.version:
+        from minirt import __version__
+
+        return f"miniRT {__version__}"
+    if options.list_keys:
+        from minirt.viewer import keys_text
+
+        return keys_text()
+    if options.completion:
+        from minirt.cli.completion import completion
+
+        return completion(parser, options.completion)
+    return ""
+
+
+def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int:
+    """Run the command for one scene."""
     from minirt.gc_pause import gc_paused
 
     with gc_paused():  # looking for garbage among new modules takes an eighth of a warm start
         from minirt.cli.commands import command_for
+        from minirt.cli.scenes import read_scene, with_camera_options
+        from minirt.cli.settings import with_settings
+        from minirt.cli.target import output_for
         from minirt.cli.window import show
 
+        output = output_for(scene, options.output) if options.output else options.output
+        options = argparse.Namespace(**vars(options) | {"scene": [scene], "output": output})
+        options = with_settings(parser, options)
         command = command_for(options)
         # A picture may go to standard output. A window leaves it free, and standard error stays empty without errors.
-        scene = read_scene(options, sys.stdout if command is show else sys.stderr)
+        read = read_scene(options, sys.stdout if command is show else sys.stderr)
     if command is show:  # which compares what it shows with the file
-        return show(with_camera_options(scene, options), options, scene)
-    return command(with_camera_options(scene, options), options)
+        return show(with_camera_options(read, options), options, read)
+    if options.report:  # which ends itself by SIGTERM, when it has written what it has
+        return command(with_camera_options(read, options), options)
+    from minirt.cli.ending import signals_end_work
+
+    with signals_end_work():
+        return command(with_camera_options(read, options), options)
 
 
 def check_options(parser: Arguments, options: argparse.Namespace) -> None:
-    """Exit with a message when the options do not go together; RenderError for an unknown picture format."""
-    if len(options.scene) != 1:
-        found = f"{len(options.scene)}: {' '.join(options.scene)}".rstrip(": ")
-        parser.fail(f"expected one scene file, got {found}", FAILED)
-    if options.output and options.output != "-":
-        from minirt.image import format_of
+    """Exit with a message when the options do not go together; RenderError for an unknown or unfit picture format."""
+    check_scenes(parser, options)
+    if options.output or options.fallback:
+        from minirt.cli.target import check_format
 
-        format_of(options.output)  # before the work, not after it
+        check_format(options)  # before the work, not after it
     if options.turntable and options.output in (None, "-"):
         parser.error("--turntable needs the name of a file: -o spin.gif")
+    if options.frames and not options.turntable:
+        parser.error("--frames needs --turntable")
+    if options.frames and options.frames.stop - 1 > options.turntable:
+        parser.error(f"--frames: there are {options.turntable} pictures, got {options.frames.stop - 1}")
+    if options.region and (options.replay or not options.output):
+        parser.error("--region needs -o, and no --replay")
+    if options.resume and (options.replay or options.samples == "auto" or options.output in (None, "-")):
+        parser.error("--resume needs the name of a file: -o spin.gif, and no --replay or --samples auto")
     if (options.error or options.time) and options.samples != "auto":
-        parser.fail("--error and --time need --samples auto", USAGE)
+        parser.error("--error and --time need --samples auto")
     if options.strict and not options.error:
-        parser.fail("--strict needs --error", USAGE)
-    if options.samples == "auto" and (options.replay or options.turntable or not options.output):
-        parser.fail("--samples auto makes one picture: it needs -o, and no --replay or --turntable", USAGE)
+        parser.error("--strict needs --error")
+    is_film = options.replay or (options.turntable and not options.cluster)
+    if options.samples == "auto" and (is_film or not options.output):
+        parser.error("--samples auto makes one picture: it needs -o, and no --replay or --turntable")
+    check_cluster(parser, options)
 
 
-def version() -> str:
-    """Return the program's name and version."""
-    from minirt import __version__
+def check_cluster(parser: Arguments, options: argparse.Namespace) -> None:
+    """Exit with a message when the options do not go with --cluster, or need it."""
+    from minirt.cli.argument_values import MAX_SIDE
 
-    return f"miniRT {__version__}"
-
-
-def keys() -> str:
-    """Return the table of the window's key bindings."""
-    from minirt.viewer import keys_text
-
-    return keys_text()
+    if options.cluster and (not options.output or options.replay or options.time):
+        parser.error("--cluster needs -o, and no --replay or --time")
+    if options.cluster and options.resume and not options.turntable:
+        parser.error("--resume with --cluster needs --turntable; .tif pictures go on without it")
+    if options.size and not options.cluster and (side := max(options.size)) > MAX_SIDE:
+        parser.error(f"argument --size: must be a whole number from 1 to {MAX_SIDE}, got '{side}'; see --cluster")
 
 
-def with_camera_options(scene: Scene, options: argparse.Namespace) -> Scene:
-    """Return the scene with the tone and the exposure that the options ask for."""
-    given = {"tone": options.tone, "exposure": options.exposure}
-    changes = {name: value for name, value in given.items() if value is not None}
-    return scene.replace(scene.camera, **changes) if changes else scene
+def check_scenes(parser: Arguments, options: argparse.Namespace) -> None:
+    """Exit with a message when the scenes do not go with the other options."""
+    scenes, output = options.scene, options.output
+    if not scenes:
+        parser.error("expected one scene file, got 0")
+    is_headless = output or options.check or options.bench or options.report
+    if "-" in scenes and (not is_headless or options.replay or scenes.count("-") > 1):
+        parser.error("a scene on standard input needs -o or --check, and is read once")
+    if len(scenes) == 1 or options.check:
+        return
+    found = f"expected one scene file, got {len(scenes)}: {' '.join(scenes)}"
+    if not output or options.bench or options.report or options.replay:
+        parser.error(found)
+    from minirt.cli.target import PLACE, output_for
 
-
-def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
-    """Load the scene file; print its notices, one for each tolerated mistake, to `stream`."""
-    from minirt.scene import load
-
-    scene, notices = load(options.scene[0], options.lenient, options.left_handed)
-    for notice in notices:
-        tell(f"notice: {notice}", stream)
-    return scene
+    if PLACE not in output:
+        parser.error(f"{found}; several need -o with {PLACE}, such as -o out/{PLACE}.png")
+    outputs = [output_for(scene, output) for scene in scenes]
+    if twice := next((each for each in outputs if outputs.count(each) > 1), ""):
+        parser.error(f"two scenes would be written to {twice}")

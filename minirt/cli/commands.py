@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from minirt.cli.exit_status import OK
 from minirt.cli.output import say
 from minirt.cli.picture import render_to_file
+from minirt.cli.progress import State, progress
 from minirt.cli.turntable import render_turntable
 from minirt.cli.window import replay, show
 
@@ -28,8 +29,9 @@ def command_for(options: argparse.Namespace) -> Command:
         (options.bench, bench),
         (options.report, report),
         (options.replay, replay),
+        (options.cluster, render_by_workers),
         (options.turntable, render_turntable),
-        (options.output, render_to_file),
+        (options.output, render_picture),
     )
     return next((command for selected, command in commands if selected), show)
 
@@ -40,11 +42,30 @@ def check(scene: Scene, options: argparse.Namespace) -> int:
     return OK
 
 
+def render_picture(scene: Scene, options: argparse.Namespace) -> int:
+    """Render a picture to a file, in bands where it does not fit into memory and the format allows it."""
+    from minirt.cli.target import is_rendered_in_bands
+
+    return (render_by_workers if is_rendered_in_bands(scene, options) else render_to_file)(scene, options)
+
+
+def render_by_workers(scene: Scene, options: argparse.Namespace) -> int:
+    """Render a picture or a turntable in parts, by other processes or machines if the options name some."""
+    if options.turntable:
+        from minirt.cli.cluster_frames import render_frames
+
+        return render_frames(scene, options)
+    from minirt.cli.cluster import render_bands
+
+    return render_bands(scene, options)
+
+
 def bench(scene: Scene, options: argparse.Namespace) -> int:
     """Measure the frame time and print it."""
     from minirt.bench import measure, report
 
-    measured = measure(options.scene[0], scene, options.size, options.threads, options.precision)
+    with progress(lambda: State("measuring")):
+        measured = measure(options.scene[0], scene, options.size, options.threads, options.precision)
     say(report(measured, options.json))
     return OK
 

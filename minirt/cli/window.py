@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from minirt import regular_files
@@ -11,6 +12,8 @@ from minirt.cli.arguments import SAMPLES, WINDOW_SAMPLES
 from minirt.cli.exit_status import OK
 from minirt.cli.output import say
 from minirt.cli.picture import render, write
+from minirt.cli.progress import State, progress
+from minirt.cli.target import check_target, is_film
 from minirt.errors import FileError, MlxError, ReplayError
 
 if TYPE_CHECKING:
@@ -36,6 +39,7 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
             lenient=options.lenient,
             samples=options.samples or WINDOW_SAMPLES,
             watch=options.watch,
+            text_scale=options.text_scale,
             saved=saved,
             renderer=minirt.renderer(options.threads, options.precision, options.depth, options.dither),
         )
@@ -43,34 +47,45 @@ def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) 
         if not options.fallback:
             raise
         say(f"{error}\nNo window: rendering to {options.fallback} instead.")
-        write(render(scene, options), options.fallback)
+        write(render(scene, options, options.fallback), options.fallback, scene, options)
         say(f"The picture is in {os.path.abspath(options.fallback)}")  # noqa: PTH100
         return OK
 
 
 def replay(scene: Scene, options: argparse.Namespace) -> int:
-    """Play recorded keys without a window; write the last frame, or all frames as a GIF, to the output if given."""
+    """Play recorded keys without a window; write the last frame, or all frames as a film, to the output if given."""
     import minirt
-    from minirt.viewer.app.animation import FPS, animation
+    from minirt.movie import record_movie
+    from minirt.viewer.app.animation import FPS, record
     from minirt.viewer.app.replay import replay as play
 
+    width, height = options.size or minirt.size_of(scene)
+    if options.output:
+        check_target(options, options.output, width, height)
     lines = read_lines(options.replay)
     settings: dict[str, Any] = {
         "file": options.replay,
         "renderer": minirt.renderer(options.threads, options.precision, options.depth, options.dither),
-        "size": options.size or minirt.size_of(scene),
+        "size": (width, height),
         "path": options.scene[0],
         "keys": "qwerty" if options.keys == "auto" else options.keys,  # the same on every machine
         "lenient": options.lenient,
         "samples": options.samples or SAMPLES,
     }
-    if options.output and options.output.lower().endswith(".gif"):
-        minirt.save_movie(animation(scene, lines, **settings), options.output, FPS)
-        return OK
-    pixels = play(scene, lines, **settings)
-    if options.output:
-        write(minirt.Image.from_bgra(pixels), options.output)
+    with progress(lambda: State(f"playing {options.replay}")):
+        if is_film(options):
+            play_film = partial(record, scene, lines, **settings)
+            record_movie(play_film, options.output, FPS, quality=options.quality)
+            return OK
+        pixels = play(scene, lines, **settings)
+    if options.output:  # which carries no scene: keys have edited it
+        write(minirt.Image.from_bgra(pixels), options.output, scene, without_metadata(options))
     return OK
+
+
+def without_metadata(options: argparse.Namespace) -> argparse.Namespace:
+    """Return the options for a picture that carries no scene."""
+    return argparse.Namespace(**vars(options) | {"metadata": False})
 
 
 def read_lines(path: str) -> list[str]:

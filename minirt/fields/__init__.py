@@ -4,7 +4,7 @@ documentation derive from the declaration.
 
 from minirt.errors import FieldError
 from minirt.fields.directions import Direction, neat, unit
-from minirt.fields.field import Field, PictureFile, Repair, declare
+from minirt.fields.field import Field, PictureFile, Repair
 from minirt.fields.meshes import MeshField, MeshFile
 from minirt.fields.numerals import number, spelled, whole
 from minirt.fields.orientation import cos_and_sin, upright
@@ -12,6 +12,7 @@ from minirt.fields.pictures import Paint, Picture
 from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, Angle, Count, Factor, Flag, Length, Real, Whole, clamp
 from minirt.fields.triples import Colour, Lengths, Point, Three, Triple
 from minirt.fields.words import Choice
+from minirt.records import declare
 
 __all__ = [
     "FARTHEST",

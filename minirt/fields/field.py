@@ -1,4 +1,4 @@
-"""Base class of fields, and `declare`, by which an element declares one.
+"""Base class of fields; an element declares one by `declare`.
 
 A field is positional, or it is an attribute: attributes follow the other fields with a key, `mirror:0.3`, and may be
 left out; then they have their default or are absent (None).
@@ -11,8 +11,7 @@ are `FieldError`s that say what was expected, without the name of the field.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import field
+from collections.abc import Iterator, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 from minirt.errors import FieldError
@@ -156,11 +155,3 @@ class Field(Immutable, ABC):
     def range(self) -> str:
         """The range as text, for messages and documentation."""
         return ""
-
-
-def declare(kind: Callable[..., Field], doc: str, **how: Any) -> Any:
-    """Declare a dataclass attribute as a field of a scene element: `diameter: float = declare(Length, "...")`."""
-    default = how.get("default")
-    metadata = {"field": kind(doc=doc, **how)}
-    required = default is None and not how.get("keyed")
-    return field(metadata=metadata) if required else field(default=default, metadata=metadata)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from minirt.kernel.atomic_counter import fetch_add
-from minirt.kernel.frame import PACKET_HEIGHT
+from minirt.kernel.stored_light import PACKET_HEIGHT
 
 CHANNELS = 4  # bytes of a pixel
 

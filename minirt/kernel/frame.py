@@ -7,21 +7,18 @@ from typing import Any
 
 from minirt.kernel.atomic_counter import fetch_add
 from minirt.kernel.scene_arrays import SceneArrays, by_reference
+from minirt.kernel.shading.apertures import remember_sample, sampled_eye
 from minirt.kernel.shading.environment import background_light, has_environment
 from minirt.kernel.shading.whitted import incoming_radiance
+from minirt.kernel.stored_light import ESTIMATE, PACKET_HEIGHT, TILE, accumulate, store_estimate, store_packet
 from minirt.kernel.trace import is_empty
-from minirt.lanes import Vec, lane, load, minimum, rarely, save, splat, unit, where, width
+from minirt.lanes import Vec, lane, load, rarely, splat, unit, where, width
 from minirt.lanes.vec import Number
 
-PACKET_HEIGHT = 4  # pixels; a packet is as wide as makes one pixel for each of the `width` rays
 # Samples of a reference by those of what is drawn. The error of an estimate of the error is that of four times as many
 # references with as many samples, at twice the cost of one.
 REFERENCE_SAMPLES = 2
-TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles, or so many rows of a plan, at a time
-SUMS = 3 * TILE * TILE  # numbers of a tile's light
-ESTIMATE = SUMS // 4  # those after which the light of the next estimate of a planned packet is kept
 CANCELLED = 2**40  # value of the row counter that cancels a frame; no picture has so many rows
-OPAQUE = 0xFF000000  # alpha of a pixel
 
 
 def ray_direction(camera: Any, x: float, y: float) -> Vec:
@@ -34,25 +31,13 @@ def packet_radiance(scene: SceneArrays, memory: Any, tile: int, rays: Any, x: in
     """Trace one sample of each pixel of the packet whose upper left pixel is x, y; `rays` are the sample's offsets."""
     count = width(rays)
     origin = Vec(scene.camera[0], scene.camera[1], scene.camera[2])
-    direction = ray_direction(scene.camera, x, y) + Vec(load(rays, 0), load(rays, count), load(rays, 2 * count))
+    if scene.lens is not None:
+        origin = sampled_eye(scene, rays)
+    if scene.soft is not None:
+        remember_sample(scene, memory, rays)
+    corner = ray_direction(scene.camera, x + scene.camera[12], y + scene.camera[13])
+    direction = corner + Vec(load(rays, 0), load(rays, count), load(rays, 2 * count))
     return incoming_radiance(scene, memory, tile, origin, unit(direction))
-
-
-def accumulate(radiance: Vec, sums: Any, start: int, sample: int) -> Vec:
-    """Add the radiance of a sample to that of the samples before it, which `sums` holds from index `start` on."""
-    count = width(sums)
-    if sample > 0:
-        radiance = radiance + Vec(load(sums, start), load(sums, start + count), load(sums, start + 2 * count))
-    save_sum(radiance, sums, start)
-    return radiance
-
-
-def save_sum(radiance: Vec, sums: Any, start: int) -> None:
-    """Store a radiance in `sums` from index `start` on."""
-    count = width(sums)
-    save(radiance.x, sums, start)
-    save(radiance.y, sums, start + count)
-    save(radiance.z, sums, start + 2 * count)
 
 
 def without_non_finite(radiance: Vec, memory: Any) -> Vec:
@@ -74,11 +59,6 @@ def finite_or_zero(channel: Number) -> Number:
     return where(channel < inf, channel, 0.0)
 
 
-def to_byte_range(channel: Number) -> Number:
-    """Clamp a colour channel, which is not negative, to 1 and scale it so that truncation rounds it to a byte."""
-    return minimum(channel, 1.0) * 255.0 + 0.5
-
-
 def frame(
     next_row: Any,
     pixels: Any,
@@ -92,15 +72,16 @@ def frame(
 ) -> None:
     """Render rows of tiles, or rows of a plan, taking the next ones from the counter `next_row` until none is left.
 
-    Any number of threads may do so at the same time, each with its own `memory` (see `minirt.kernel.trace.unoccluded`
-    and `minirt.kernel.shading.surfaces`) and its own `sums` of samples of a tile (`SUMS` numbers). `pixels`
-    (h, w) receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it has no rows. `rays` (rows,
-    3 * width) has x, y and z of the directions of a packet's rays, less the direction through the packet's upper left
-    corner. `plan` (k, 5) has for each packet to draw its column and row among the packets, its first row in `rays`, its
-    number of samples, and the first row of two reference estimates, each of `REFERENCE_SAMPLES` times as many samples,
-    0 for none. Without rows all packets take all rows of `rays`. `errors` (k,) receives the squared errors of packets
-    with references, see `squared_error`. A counter set to
-    `CANCELLED` from outside ends the frame at the next packet.
+    Any number of threads may do so at the same time, each with its own `memory` (see
+    `minirt.kernel.shadow_rays.unoccluded` and `minirt.kernel.shading.surfaces`) and its own `sums` of samples of a tile
+    (`SUMS` numbers). `pixels` (h, w) receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it
+    has no rows. `rays` (rows, 3 * width) has x, y and z of the directions of a packet's rays, less the direction
+    through the packet's upper left corner; where the scene has a lens or light sources with a size it is longer, see
+    `minirt.kernel.shading.apertures`. `plan` (k, 5) has for each packet to draw its column and row among the packets,
+    its first row in `rays`, its number of samples, and the first row of two reference estimates, each of
+    `REFERENCE_SAMPLES` times as many samples, 0 for none. Without rows all packets take all rows of `rays`. `errors`
+    (k,) receives the squared errors of packets with references, see `squared_error`. A counter set to `CANCELLED` from
+    outside ends the frame at the next packet.
     """
     render_tiles(
         next_row,
@@ -140,7 +121,7 @@ def render_tiles(
         if top >= end:
             return
         for left in range(0, 1 if is_planned else across, TILE):
-            tile = tile_at(left, top, across)
+            tile = tile_at(left, 0 if is_planned else top, across)
             empty = not has_environment(scene) and is_empty(scene, tile)
             # All packets for each sample, not all samples for each packet: a sum kept in registers through the loop
             # over samples took a seventh more time, since tracing then lacks those registers. Planned packets, each in
@@ -170,9 +151,7 @@ def render_tiles(
                     if rarely(samples > 1):
                         radiance = accumulate(radiance, sums, place, sample) / samples
                     if sample == samples - 1:
-                        store_estimate(
-                            pixels, linear, errors, sums, x, y, radiance, estimate, item if is_planned else -1
-                        )
+                        store_estimate(pixels, linear, errors, sums, x, y, radiance, estimate, item)
 
 
 def tile_at(x: int, y: int, across: int) -> int:
@@ -197,68 +176,6 @@ def planned(plan: Any, item: int, turn: int) -> tuple[int, int, int, int]:
     return 1 + estimate, reference + turn, turn - estimate * each, each
 
 
-def store_estimate(
-    pixels: Any, linear: Any, errors: Any, sums: Any, x: int, y: int, radiance: Vec, estimate: int, item: int
-) -> None:
-    """Store the radiance of a packet in the picture, and where references tell its squared error, that error. `item` is
-    the packet's row in the plan; negative without a plan."""
-    if estimate == 0:
-        store_packet(pixels, linear, x, y, radiance)
-    if rarely(item >= 0):
-        save_sum(radiance, sums, estimate * ESTIMATE)
-        if estimate == 2:
-            errors[item] = squared_error(sums, pixels.shape[0] - y, pixels.shape[1] - x, width(radiance.x))
-
-
-def squared_error(sums: Any, height: int, across: int, count: int) -> float:
-    """Estimate the squared error of a packet's light, clamped to [0, 1], summed over its `count` pixels and channels.
-
-    `sums` has the light and two reference estimates. Where the references are independent and have
-    no bias, the product of the differences from each of them has the squared error as its mean, however large their own
-    errors are. Of the packet's pixels, those beyond `height` lines or `across` columns are left out.
-    """
-    packet_width = count // PACKET_HEIGHT
-    total = 0.0
-    for number in range(3 * count):
-        pixel = number % count
-        if pixel // packet_width < height and pixel % packet_width < across:
-            light = min(sums[number], 1.0)
-            one, other = min(sums[ESTIMATE + number], 1.0), min(sums[2 * ESTIMATE + number], 1.0)
-            total += (light - one) * (light - other)
-    return total
-
-
 def tile_count(pixels: int) -> int:
     """Return the number of tiles that cover a picture of so many pixels along one edge."""
     return (pixels + TILE - 1) // TILE
-
-
-def store_packet(pixels: Any, linear: Any, x: int, y: int, radiance: Vec) -> None:
-    """Store the radiance of a packet in the picture, except for pixels beyond the picture's edges."""
-    height, across = pixels.shape
-    has_linear = linear.shape[0] > 0
-    packet_width = width(radiance.x) // PACKET_HEIGHT
-    red, green, blue = to_byte_range(radiance.x), to_byte_range(radiance.y), to_byte_range(radiance.z)
-    if rarely(has_linear or x + packet_width > across or y + PACKET_HEIGHT > height):
-        for i in range(width(radiance.x)):
-            column, row = x + i % packet_width, y + i // packet_width
-            if column < across and row < height:
-                pixels[row, column] = argb(lane(red, i), lane(green, i), lane(blue, i))
-                if has_linear:
-                    linear[row, column, 0] = lane(radiance.x, i)
-                    linear[row, column, 1] = lane(radiance.y, i)
-                    linear[row, column, 2] = lane(radiance.z, i)
-    else:
-        store_block(pixels, x, y, red, green, blue)
-
-
-def argb(red: float, green: float, blue: float) -> int:
-    """Return an opaque pixel, 0xAARRGGBB, whose channels are truncated to bytes."""
-    return OPAQUE | int(red) << 16 | int(green) << 8 | int(blue)
-
-
-def store_block(pixels: Any, x: int, y: int, red: Number, green: Number, blue: Number) -> None:
-    """Store a packet that lies wholly in the picture; compiled, each of its rows is one store."""
-    packet_width = width(red) // PACKET_HEIGHT
-    for i in range(width(red)):
-        pixels[y + i // packet_width, x + i % packet_width] = argb(lane(red, i), lane(green, i), lane(blue, i))

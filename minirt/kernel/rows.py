@@ -73,6 +73,11 @@ def shading(shape: Any, point: Vec, normal: Vec) -> Any:
     return kind_of_packed(type(shape)).shading(shape, point, normal)
 
 
+def smooth_point(shape: Any, point: Vec, normal: Vec) -> Any:
+    """Move a point onto the smooth surface by the formula of its kind: `smooth_point` of `minirt.shapes.shape`."""
+    return kind_of_packed(type(shape)).smooth_point(shape, point, normal)
+
+
 def is_batched(rows: Rows) -> bool:
     """Whether the shapes of these rows are culled in batches, as the triangles of meshes are."""
     return kind_of(rows.dtype.names).batched

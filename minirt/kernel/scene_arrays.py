@@ -26,7 +26,9 @@ class SceneArrays(NamedTuple):
     (-2 if the cone takes in all directions) and a lower bound of the distance from the point to the shape.
     """
 
-    camera: Any  # (12,) eye; direction through the upper left corner; its change by a pixel to the right; by one down
+    # (14,) eye; direction through the upper left corner of the picture; its change by a pixel to the right, and by one
+    # down; column and row of the picture at which the rendered rectangle begins
+    camera: Any
     ambient: Any  # (3,) radiance of ambient light: red, green, blue
     lights: Any  # (m, 6) position and intensity of each light source
     colours_and_extents: Any  # (n, 4) colour of each shape, red green blue in [0, 1], and its largest coordinate
@@ -41,6 +43,8 @@ class SceneArrays(NamedTuple):
     # Features that most scenes lack. A field that is None adds no code to the kernel; an array without rows means that
     # the kernel has the feature and the scene lacks it.
     spots: Any = None  # (m, 7) spot, parallel and fading lights, see `minirt.kernel.shading.lights`
+    soft: Any = None  # (m, 4) light sources with a size, see `minirt.kernel.shading.apertures`
+    lens: Any = None  # (7,) half axes of the camera's lens, and one over the distance at which it is sharp
     specular: Any = None  # (n, 3) specular highlights, see `minirt.kernel.shading.specular`
     reflective: Any = None  # (n, 3) mirrors and glass, see `minirt.kernel.shading.whitted`
     transparent: Any = None  # (n, 4) glass as light from light sources meets it, `minirt.kernel.shading.transmission`
@@ -49,6 +53,7 @@ class SceneArrays(NamedTuple):
     fresnel: Any = None  # (n,) how far the shares of mirrors and glass are those of Fresnel's equations, from 0 to 1
     fades: Any = None  # (n, 2) one over the distances at which reflected and refracted rays are gone, or 0
     glow: Any = None  # (n,) share of its colour that a shape emits
+    smooth: Any = None  # (n,) 1 for the triangles of smooth meshes, else 0, see `minirt.kernel.shading.terminator`
     surface_maps: Any = None  # `minirt.kernel.shading.texturing.SurfaceMaps`
     patterns: Any = None  # `minirt.kernel.shading.patterns.Patterns`
     depth: int = 0  # most reflections and refractions along a path

@@ -1,7 +1,7 @@
-"""Closest-hit and shadow queries for coherent rays: primary rays of a screen tile, and shadow rays to one light source.
+"""Closest hits of coherent rays: primary rays of a tile of the picture.
 
-Rays come in packets, one ray for each SIMD lane. They are tested against the shapes that culling left for their tile or
-light-buffer cell, in order of distance, each first by its bounding cone.
+Rays come in packets, one ray for each SIMD lane. They are tested against the shapes that culling left for their tile,
+in order of distance, each first by its bounding cone.
 """
 
 from __future__ import annotations
@@ -10,15 +10,13 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.culling.light_buffer import is_close, remember_cell
-from minirt.kernel.rows import intersect, is_batched, may_meet, occludes, read, surface
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, range_in_cell, range_in_tile
+from minirt.kernel.rows import intersect, is_batched, may_meet, read, surface
+from minirt.kernel.scene_arrays import Group, SceneArrays, range_in_tile
 from minirt.lanes import (
     Vec,
     any,
     dot,
     fabs,
-    first,
     greatest,
     lowest,
     maximum,
@@ -26,7 +24,6 @@ from minirt.lanes import (
     splat,
     unit_roundoff,
     where,
-    width,
 )
 from minirt.lanes.largest import largest
 from minirt.lanes.operations import Mask
@@ -167,105 +164,3 @@ def closer_hit(
 def in_cone(cone: Any, direction: Vec) -> Mask:
     """Whether a direction from the apex of a bounding cone lies in the cone."""
     return dot(Vec(cone[0], cone[1], cone[2]), direction) >= cone[3]
-
-
-def unoccluded(
-    scene: SceneArrays,
-    memory: Any,
-    light: int,
-    origin: Vec,
-    direction: Vec,
-    distance: Number,
-    active: Mask,
-    glass: bool,
-) -> Mask:
-    """Trace shadow rays to a light source: the `active` rays that hit nothing nearer than `distance`.
-
-    Only opaque shapes count, or with `glass` only transparent ones; in kernels without glass all shapes.
-    Only shapes in the light-buffer cell of a ray are tested (Haines and Greenberg 1986). The shapes of a cell hold for
-    directions close around it too, and `memory` (m, 4) caches for each light the direction that was last looked up and
-    its cell: most rays of a packet, and of the next packet, need no other lookup.
-    """
-    if scene.light_buffer_cells == 1:
-        return for_each_kind(
-            unoccluded_by_kind, scene.groups, active, (scene, light, 0, active, origin, direction, distance, glass)
-        )
-    visible = active
-    remaining = active
-    for _ in range(width(distance)):  # at most one lookup for each ray
-        if not any(remaining):
-            break
-        in_cell = remaining & is_close(memory[light], scene.light_buffers[light], direction)
-        if rarely(not any(in_cell)):
-            remember_cell(
-                memory[light], scene.light_buffers[light], scene.light_buffer_cells, direction, first(remaining)
-            )
-            in_cell = remaining & is_close(memory[light], scene.light_buffers[light], direction)
-        arguments = (scene, light, int(memory[light, 3]), in_cell, origin, direction, distance, glass)
-        visible = for_each_kind(unoccluded_by_kind, scene.groups, visible, arguments)
-        remaining = remaining & ~in_cell
-    return visible
-
-
-def unoccluded_by_kind(
-    group: Group, visible: Mask, arguments: tuple[SceneArrays, int, int, Mask, Vec, Vec, Number, bool]
-) -> Mask:
-    """Remove the shadow rays that a shape of one kind occludes from `visible`; only rays `in_cell` are tested."""
-    return (unoccluded_batched if is_batched(group.rows) else unoccluded_one_by_one)(group, visible, arguments)
-
-
-def unoccluded_one_by_one(
-    group: Group, visible: Mask, arguments: tuple[SceneArrays, int, int, Mask, Vec, Vec, Number, bool]
-) -> Mask:
-    """Remove occluded shadow rays from `visible`, testing the shapes of one kind one after the other."""
-    scene, light, cell, in_cell, origin, direction, distance, glass = arguments
-    position = Vec(scene.lights[light, 0], scene.lights[light, 1], scene.lights[light, 2])
-    start, end = range_in_cell(group, light, cell)
-    for i in range(start, end):
-        index = scene.light_shapes[i]
-        cone = scene.light_cones[light, index]
-        if not any(visible & in_cell & (distance > cone[4])):
-            break
-        everywhere = cone[3] <= -1.0
-        if counts(scene, index, glass) and (everywhere or rarely(in_cell & in_cone(cone, -direction))):
-            shape = read(group.rows, scene.slots[index, 1])
-            if everywhere or any(may_meet(shape, position, origin, direction, visible & in_cell)):
-                hit, t = occludes(shape, origin, direction)
-                visible = visible & ~(in_cell & hit & (t < distance))
-    return visible
-
-
-def unoccluded_batched(
-    group: Group, visible: Mask, arguments: tuple[SceneArrays, int, int, Mask, Vec, Vec, Number, bool]
-) -> Mask:
-    """Remove occluded shadow rays from `visible`, testing the bounding cones of a whole batch of shapes first."""
-    scene, light, cell, in_cell, origin, direction, distance, glass = arguments
-    position = Vec(scene.lights[light, 0], scene.lights[light, 1], scene.lights[light, 2])
-    start, end = range_in_cell(group, light, cell)
-    while start < end:
-        farthest = greatest(where(visible & in_cell, distance, -inf))
-        candidates = 0
-        for i in range(start, min(start + BATCH, end)):
-            cone = scene.light_cones[light, scene.light_shapes[i]]
-            if not farthest > cone[4]:
-                end = i
-                break
-            if counts(scene, scene.light_shapes[i], glass):
-                candidates |= int(any(in_cell & in_cone(cone, -direction))) << (i - start)
-        while candidates != 0:
-            index = scene.light_shapes[start + lowest(candidates)]
-            candidates &= candidates - 1
-            shape = read(group.rows, scene.slots[index, 1])
-            everywhere = scene.light_cones[light, index, 3] <= -1.0
-            if everywhere or any(may_meet(shape, position, origin, direction, visible & in_cell)):
-                hit, t = occludes(shape, origin, direction)
-                visible = visible & ~(in_cell & hit & (t < distance))
-        start += BATCH
-    return visible
-
-
-def counts(scene: SceneArrays, index: int, glass: bool) -> bool:
-    """Whether a shape counts as an occluder: the transparent ones with `glass`, the opaque ones without."""
-    if scene.transparent is None:
-        return True
-    return (has_rows(scene.transparent) and scene.transparent[index, 1] > 0.0) == glass

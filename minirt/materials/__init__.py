@@ -35,20 +35,32 @@ BOARD: dict[str, Any] = {"record": Checker, "aliases": ("pat",)} | MAPPED
 class Attributes(Element):
     """The materials that every shape may have; None where it has not."""
 
-    specular: Specular | None = declare(Compound, "highlight", record=Specular, aliases=("spc",), **SHARED)
-    mirror: Mirror | float | None = declare(Compound, "mirrored light", record=Mirror, aliases=("mir",), **SHARED)
-    glass: Glass | None = declare(Compound, "refracted light", record=Glass, aliases=("ref",), **SHARED)
-    tint: Tint | None = declare(Compound, "colour that glass gives to light", record=Tint, **SHARED)
-    fresnel: float | None = declare(Fresnel, "how far Fresnel's equations count", bare="1", **SHARED)
-    glow: float | None = declare(Glow, "light of its own", **SHARED)
-    checker: Checker | None = declare(Compound, "checkerboard", bare="0.125", **BOARD)
-    texture: str | None = declare(Texture, "picture in the place of the colour", aliases=("txm", "tx"), **MAPPED)
-    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **MAPPED)
-    normal_map: str | None = declare(NormalMap, "picture of normals", key="normal", aliases=("nm",), **MAPPED)
-    uv: Placement | None = declare(Compound, "scale, shift and turn of u and v", record=Placement, **SHARED)
-    marble: Marble | None = declare(Compound, "veins of marble", record=Marble, **MAPPED)
-    wood: Wood | None = declare(Compound, "rings of wood", record=Wood, **MAPPED)
-    clouds: Clouds | None = declare(Compound, "clouds", record=Clouds, **MAPPED)
+    specular: Specular | None = declare(
+        Compound, "highlight", record=Specular, aliases=("spc",), default=None, shared=SHARED
+    )
+    mirror: Mirror | float | None = declare(
+        Compound, "mirrored light", record=Mirror, aliases=("mir",), default=None, shared=SHARED
+    )
+    glass: Glass | None = declare(
+        Compound, "refracted light", record=Glass, aliases=("ref",), default=None, shared=SHARED
+    )
+    tint: Tint | None = declare(Compound, "colour that glass gives to light", record=Tint, default=None, shared=SHARED)
+    fresnel: float | None = declare(Fresnel, "how far Fresnel's equations count", bare="1", default=None, shared=SHARED)
+    glow: float | None = declare(Glow, "light of its own", default=None, shared=SHARED)
+    checker: Checker | None = declare(Compound, "checkerboard", bare="0.125", default=None, shared=BOARD)
+    texture: str | None = declare(
+        Texture, "picture in the place of the colour", aliases=("txm", "tx"), default=None, shared=MAPPED
+    )
+    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), default=None, shared=MAPPED)
+    normal_map: str | None = declare(
+        NormalMap, "picture of normals", key="normal", aliases=("nm",), default=None, shared=MAPPED
+    )
+    uv: Placement | None = declare(
+        Compound, "scale, shift and turn of u and v", record=Placement, default=None, shared=SHARED
+    )
+    marble: Marble | None = declare(Compound, "veins of marble", record=Marble, default=None, shared=MAPPED)
+    wood: Wood | None = declare(Compound, "rings of wood", record=Wood, default=None, shared=MAPPED)
+    clouds: Clouds | None = declare(Compound, "clouds", record=Clouds, default=None, shared=MAPPED)
 
     @property
     def is_mapped(self) -> bool:

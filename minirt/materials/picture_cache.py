@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
-import io
 import os
-import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from weakref import WeakValueDictionary
 
 import numpy as np
 
-from minirt import regular_files
-from minirt.errors import FileError
+from minirt import jail, memory_limit, regular_files
+from minirt.errors import FileError, printable
 from minirt.fork_safety import ForkSafeLock
-from minirt.materials import radiance
+from minirt.jail.decoder import LARGEST, DecodingError, check_size
+from minirt.materials import radiance, xpm
+from minirt.memory_limit import TooLargeError
 
-if TYPE_CHECKING:
-    from PIL.Image import Image as PillowImage
-
-LARGEST = 256 * 2**20  # bytes of a file
-SIDE = 8192  # pixels
-FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TIFF", "PPM", "TGA", "WEBP", "XPM")  # raster formats: no programs, no fonts
+TEXEL = 4  # bytes of a channel of a pixel in the arrays of the kernel
+DEEP = 65535  # the highest level of 16 bits
+LEVELS = {"RGB": "u1", "I": "=i4", "I;16": "<u2", "I;16L": "<u2", "I;16B": ">u2"}  # by the mode of decoded pixels
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear red, green and blue (ITU-R BT.709)
 
-Stamp = tuple[int, int, int]  # inode, size and time of change of a file
+Stamp = tuple[int, int, int, int]  # device, inode, size and time of change of a file
 
 entries: dict[tuple[Callable[[Path], np.ndarray], str], tuple[Stamp, np.ndarray]] = {}
+shared: WeakValueDictionary[tuple[Callable[[Path], np.ndarray], Stamp], np.ndarray] = WeakValueDictionary()
 lock = ForkSafeLock()
 
 
@@ -51,19 +49,37 @@ def reader(heights_wanted: bool, sky_wanted: bool) -> Callable[[Path], np.ndarra
     return heights if heights_wanted else sky if sky_wanted else picture
 
 
+def identity(path: str | os.PathLike[str]) -> tuple[int, int]:
+    """The device and the inode of a picture file, which all links to it share. FileError if it cannot be read."""
+    status = regular_files.status(path, LARGEST)
+    return status.st_dev, status.st_ino
+
+
 def cached(read: Callable[[Path], np.ndarray], path: str | os.PathLike[str]) -> np.ndarray:
-    """The array that `read` makes from a file, read again only if the file has changed."""
+    """The array that `read` makes from a file, read again only if the file has changed; one for all links to it."""
     path = Path(path)
     status = regular_files.status(path, LARGEST)
-    stamp = (status.st_ino, status.st_size, status.st_mtime_ns)
+    stamp = (status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns)
     key = read, os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
     with lock:
         if key not in entries or entries[key][0] != stamp:
             entries.pop(key, None)
-            array = read(path)
-            array.flags.writeable = False
+            array = shared.get((read, stamp))
+            if array is None:
+                array = read(path)
+                try:
+                    check_textures([array])
+                except TooLargeError as error:
+                    raise FileError(path, str(error)) from None
+                array.flags.writeable = False
+                shared[read, stamp] = array
             entries[key] = stamp, array
         return entries[key][1]
+
+
+def check_textures(arrays: list[np.ndarray]) -> None:
+    """Check that there is room for the texels of these arrays, which a kernel reads; `TooLargeError` otherwise."""
+    memory_limit.check(TEXEL * sum(array.size for array in arrays), "the textures need", "smaller pictures need less")
 
 
 def colours(path: Path) -> np.ndarray:
@@ -81,18 +97,12 @@ def light_or_colours(path: Path) -> np.ndarray:
         return colours(path)
     try:
         header = radiance.read_header(data)
-        check_size(path, header.width, header.height)
+        check_size(header.width, header.height)
         return radiance.read_pixels(data, header)
+    except DecodingError as error:
+        raise FileError(path, str(error)) from None
     except radiance.RadianceError as error:
         raise FileError(path, f"is a damaged Radiance picture: {error}") from None
-
-
-def check_size(path: Path, width: int, height: int) -> None:
-    """Check the size of a picture; FileError when it has no pixels or too many."""
-    if max(width, height) > SIDE:
-        raise FileError(path, f"has {width}x{height} pixels, more than {SIDE}x{SIDE}")
-    if not width or not height:
-        raise FileError(path, f"has {width}x{height} pixels")
 
 
 def brightness(path: Path) -> np.ndarray:
@@ -106,34 +116,29 @@ def brightness(path: Path) -> np.ndarray:
 
 def decode(path: Path) -> np.ndarray:
     """Decode a file: uint8 (h, w, 3), or uint16 (h, w) for 16-bit grey. FileError if it holds no picture."""
-    from PIL import Image as pillow  # noqa: N813
-    from PIL import UnidentifiedImageError
-
     data = regular_files.read(path, LARGEST)
     if not data:
         raise FileError(path, "is empty")
     if data.startswith(radiance.MAGIC):
         raise FileError(path, "is a Radiance picture, which only a sky may be: 'bg file'")
+    if data.startswith(xpm.MAGIC):
+        return xpm_colours(path, data)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # the size is checked here
-            image = pillow.open(io.BytesIO(data), formats=FORMATS)
-            check_size(path, *image.size)
-            return shown_pixels(image)
-    except FileError:
-        raise
-    except pillow.DecompressionBombError:
-        raise FileError(path, f"has more than {SIDE}x{SIDE} pixels") from None
-    except UnidentifiedImageError:
-        raise FileError(path, "is not a picture") from None
-    except Exception as error:  # damaged files make decoders raise anything
-        raise FileError(path, f"is a damaged picture ({error})") from None
+        mode, width, height, pixels = jail.decode(data)
+    except DecodingError as error:
+        raise FileError(path, printable(str(error))) from None
+    array = np.frombuffer(pixels, LEVELS[mode]).reshape(height, width, -1)
+    return array if mode == "RGB" else np.clip(array[..., 0], 0, DEEP).astype(np.uint16)
 
 
-def shown_pixels(image: PillowImage) -> np.ndarray:
-    """The pixels of a decoded image: 16-bit grey, or 8-bit red, green and blue."""
-    if image.mode.startswith("I"):
-        grey: np.ndarray = np.clip(np.asarray(image), 0, 65535).astype(np.uint16)
-        return grey
-    rgb: np.ndarray = np.asarray(image.convert("RGB"))
-    return rgb
+def xpm_colours(path: Path, data: bytes) -> np.ndarray:
+    """Red, green and blue of an XPM file, uint8 (h, w, 3). FileError if it is damaged."""
+    strings = xpm.strings_of(data)
+    try:
+        header = xpm.read_header(strings)
+        check_size(header.width, header.height)
+        return xpm.read_pixels(strings, header)
+    except DecodingError as error:
+        raise FileError(path, str(error)) from None
+    except xpm.XpmError as error:
+        raise FileError(path, f"is a damaged XPM picture: {error}") from None

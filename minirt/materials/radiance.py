@@ -18,6 +18,8 @@ RESOLUTION = re.compile(rb"([-+])([XY]) ([0-9]{1,9}) ([-+])([XY]) ([0-9]{1,9})")
 LONGEST_HEADER = 2**16  # bytes
 SHORTEST, LONGEST = 8, 2**15 - 1  # pixels of a scanline in the new encoding
 BRIGHTEST = 2.0**127  # that a float32 holds
+PIXELS_AT_ONCE = 2**20  # that are converted to light in double precision
+MOST_SHIFT = 24  # bits, by which the fourth of several repeats in a row is shifted
 
 
 class RadianceError(ValueError):
@@ -98,8 +100,12 @@ def read_pixels(data: bytes, header: Header) -> np.ndarray:
     with np.errstate(over="ignore"):  # mantissas are fractions of 256, and an exponent of 128 is 2^0
         scale = np.minimum(np.ldexp(1.0 / header.exposure, np.arange(256) - 136), BRIGHTEST)
     scale[0] = 0.0  # black, whatever the mantissas are
-    light = rgbe[..., :3] * scale.take(rgbe[..., 3])[..., None]
-    return np.minimum(light, BRIGHTEST).astype(np.float32)
+    light = np.empty((header.height, header.width, 3), np.float32)
+    step = max(PIXELS_AT_ONCE // header.width, 1)
+    for start in range(0, header.height, step):
+        rows = rgbe[start : start + step]
+        light[start : start + step] = np.minimum(rows[..., :3] * scale.take(rows[..., 3])[..., None], BRIGHTEST)
+    return light
 
 
 def read_scanline(data: bytes, at: int, pixels: np.ndarray) -> int:
@@ -136,23 +142,25 @@ def read_components(data: bytes, at: int, pixels: np.ndarray) -> int:
 def read_whole_pixels(data: bytes, at: int, pixels: np.ndarray) -> int:
     """Read a scanline of whole pixels; one of 1, 1, 1, n repeats the last one n times, the next 256 n times, and so
     on."""
-    length, done, shift = len(pixels), 0, 0
-    while done < length:
-        flat = np.frombuffer(data[at : at + 4 * (length - done)], np.uint8)
+    length = len(pixels)
+    for window in (length, (2 + MOST_SHIFT // 8) * length):  # the longer one for repeats of no pixels
+        flat = np.frombuffer(data[at : at + 4 * window], np.uint8)
         flat = flat[: len(flat) // 4 * 4].reshape(-1, 4)
-        if not len(flat):
-            raise RadianceError(f"byte {len(data)}: the file ends")
         repeats = (flat[:, :3] == 1).all(axis=1)
-        if not repeats[0]:
-            count = int(repeats.argmax()) if repeats.any() else len(flat)
-            pixels[done : done + count] = flat[:count]
-            done, at, shift = done + count, at + 4 * count, 0
-            continue
-        count = int(flat[0, 3]) << shift
-        if not done:
+        if repeats[:1].any():
             raise RadianceError(f"byte {at}: no pixel to repeat")
-        if done + count > length or shift > 24:
-            raise RadianceError(f"byte {at}: {count} pixels, where {length - done} of {length} are missing")
-        pixels[done : done + count] = pixels[done - 1]
-        done, at, shift = done + count, at + 4, shift + 8
-    return at
+        places = np.arange(len(flat))
+        sources = np.maximum.accumulate(np.where(repeats, 0, places))  # of the pixels that are repeated
+        shifts = np.where(repeats, 8 * (places - sources - 1), 0)
+        counts = np.where(repeats, flat[:, 3].astype(np.int64) << np.minimum(shifts, MOST_SHIFT + 8), 1)
+        ends = np.cumsum(counts)
+        over = np.flatnonzero((ends >= length) | (shifts > MOST_SHIFT))
+        if not len(over):
+            continue
+        last = int(over[0])
+        if ends[last] > length or shifts[last] > MOST_SHIFT:
+            count, missing = int(flat[last, 3]) << int(shifts[last]), length - int(ends[last - 1])
+            raise RadianceError(f"byte {at + 4 * last}: {count} pixels, where {missing} of {length} are missing")
+        pixels[:] = np.repeat(flat[sources[: last + 1]], counts[: last + 1], axis=0)
+        return at + 4 * (last + 1)
+    raise RadianceError(f"byte {len(data)}: the file ends")

@@ -10,6 +10,7 @@ from itertools import chain
 import numpy as np
 
 from minirt.fields import FARTHEST
+from minirt.fields.numerals import LONGEST
 from minirt.meshes.block import Block, Counts
 from minirt.meshes.diagnosing import SKIPPED
 
@@ -18,6 +19,8 @@ Rows = list[list[bytes]]  # words of lines
 
 def read(lines: list[bytes], before: Counts) -> Block | None:
     """Parse lines, `before` counts what precedes them; None when they are left to the diagnosing reader."""
+    if max(map(len, lines), default=0) > LONGEST:  # a number may be too long, which `float` does not mind
+        return None
     rows = [line.split() for line in lines]
     lines_by_key: dict[bytes, list[int]] = {}
     for index, row in enumerate(rows):

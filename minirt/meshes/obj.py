@@ -2,8 +2,8 @@
 
 A line is `v x y z`, a point; `vt u v`, texture coordinates; `vn x y z`, a normal; or `f` and three or more corners of
 a face, each `v`, `v/vt`, `v//vn` or `v/vt/vn`. These are numbers of such lines, counted from 1, or backwards from -1,
-the last one before the face. A polygon becomes a fan of triangles around its first corner. Groups, materials, lines
-and points are skipped.
+the last one before the face. Groups, materials, lines and points are skipped.
+Polygons are cut into triangles, see `minirt.meshes.polygons`.
 """
 
 from __future__ import annotations
@@ -14,21 +14,24 @@ import numpy as np
 
 from minirt.meshes import diagnosing, fast
 from minirt.meshes.block import Block, Counts, ObjError
+from minirt.meshes.polygons import FaceError, triangulate
 from minirt.meshes.triangles import Triangles, non_degenerate, squared_lengths, unit
 
-BLOCK_BYTES = 4 * 2**20  # of lines that are parsed at once
+BLOCK_BYTES = 2**20  # of lines that are parsed at once; their words take up to a hundred times as much
+LONGEST_LINE = 2**24  # bytes, with the lines that continue it
 MAX_TRIANGLES = 10_000_000
+MAX_LINES = 2**24  # of 16 bytes fill the largest file
 
 __all__ = ["ObjError", "parse"]
 
 
 def parse(data: bytes) -> Triangles:
     """Parse a file; degenerate triangles are dropped. ObjError when it is not a mesh."""
+    if (lines_in_all := data.count(b"\n")) > MAX_LINES:
+        raise ObjError(f"has {lines_in_all:,} lines, more than {MAX_LINES:,}")
     file, blocks = BytesIO(data.removeprefix(b"\xef\xbb\xbf")), []
     before, triangles = Counts(), 0
-    while lines := file.readlines(BLOCK_BYTES):
-        while lines[-1].endswith((b"\\\n", b"\\\r\n")) and (more := file.readline()):
-            lines.append(more)
+    while lines := read_lines(file, before.lines):
         block = fast.read(lines, before) or diagnosing.read(lines, before)
         blocks.append(block)
         before = before.after(block, len(lines))
@@ -38,13 +41,30 @@ def parse(data: bytes) -> Triangles:
     return assemble(blocks)
 
 
+def read_lines(file: BytesIO, before: int) -> list[bytes]:
+    """Return the next lines of a file, about `BLOCK_BYTES`, with all that continue the last; ObjError."""
+    lines = file.readlines(BLOCK_BYTES)
+    size = len(lines[-1]) if lines else 0
+    while size <= LONGEST_LINE and lines and lines[-1].endswith((b"\\\n", b"\\\r\n")) and (more := file.readline()):
+        lines.append(more)
+        size += len(more)
+    if size > LONGEST_LINE:
+        raise ObjError(f"longer than {LONGEST_LINE // 2**20} MiB", before + len(lines))
+    return lines
+
+
 def assemble(blocks: list[Block]) -> Triangles:
     """Assemble the blocks of a file into triangles."""
     if not sum(len(block.sizes) for block in blocks):
         raise ObjError("has no faces")
     whole = Block(*map(np.concatenate, zip(*blocks, strict=True)))
     check_indices(whole)
-    fans = whole.corners[fan_triangulation(whole.sizes)]
+    try:
+        fans = whole.corners[triangulate(whole.points, whole.corners[:, 0], whole.sizes)]
+    except FaceError as error:
+        face = error.face
+        message = f"a face of {whole.sizes[face]:,} corners takes too long to cut into triangles"
+        raise ObjError(message, int(whole.lines[face])) from None
     corners = fans[..., 0]
     valid = non_degenerate(whole.points[corners])
     if not valid.any():
@@ -65,14 +85,6 @@ def corner_normals(normals: np.ndarray, indices: np.ndarray, flat: np.ndarray) -
     padded[squared_lengths(padded) > 0] = unit(padded[squared_lengths(padded) > 0])
     chosen = padded[indices]
     return np.where(squared_lengths(chosen)[..., None] > 0, chosen, flat[:, None])
-
-
-def fan_triangulation(sizes: np.ndarray) -> np.ndarray:
-    """Triangulate faces of `sizes` corners as fans: indices of the triangles' corners among all corners, (m, 3)."""
-    triangles = sizes - 2
-    first = np.repeat(np.cumsum(sizes) - sizes, triangles)
-    step = np.arange(len(first)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
-    return np.stack([first, first + step + 1, first + step + 2], axis=1)
 
 
 def check_indices(whole: Block) -> None:

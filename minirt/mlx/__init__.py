@@ -8,9 +8,10 @@ minirt.mlx program.py` runs a program that says `from mlx import Mlx`.
 
 from minirt.errors import MlxError
 from minirt.mlx.api import Mlx
+from minirt.mlx.cursors import Cursor
 from minirt.mlx.events import Button, Event
 from minirt.mlx.image import Image
 from minirt.mlx.keys import Key, Modifier
 from minirt.mlx.window import Window
 
-__all__ = ["Button", "Event", "Image", "Key", "Mlx", "MlxError", "Modifier", "Window"]
+__all__ = ["Button", "Cursor", "Event", "Image", "Key", "Mlx", "MlxError", "Modifier", "Window"]

@@ -102,6 +102,14 @@ class Backend(ABC):
         """Show or hide the pointer over the window."""
 
     @abstractmethod
+    def set_cursor(self, window: Window) -> None:
+        """Give the pointer the shape of `window.cursor`."""
+
+    @abstractmethod
+    def set_icons(self, window: Window) -> None:
+        """Show one of `window.icons` where the desktop shows an icon of the window."""
+
+    @abstractmethod
     def clipboard(self, window: Window) -> str:
         """The text on the clipboard, or an empty string."""
 

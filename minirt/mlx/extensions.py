@@ -8,8 +8,12 @@ from minirt.mlx.events import Event
 from minirt.mlx.hooks import bound, set_hook
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from minirt.mlx.cursors import Cursor
     from minirt.mlx.display import Display
     from minirt.mlx.hooks import Hook
+    from minirt.mlx.image import Image
     from minirt.mlx.keys import Modifier
     from minirt.mlx.window import Window
 
@@ -56,6 +60,19 @@ class Extensions:
     def mlx_set_window_title(self, win_ptr: Window, title: str) -> int:
         win_ptr.title = title
         win_ptr.display.backend.set_title(win_ptr)
+        return 0
+
+    def mlx_set_window_icon(self, win_ptr: Window, images: Sequence[Image]) -> int:
+        """Set the icon of a window: the same picture in several sizes."""
+        win_ptr.icons = tuple(images)
+        win_ptr.display.backend.set_icons(win_ptr)
+        return 0
+
+    def mlx_set_cursor(self, win_ptr: Window, cursor: Cursor) -> int:
+        """Give the pointer a shape over the window."""
+        if cursor is not win_ptr.cursor:
+            win_ptr.cursor = cursor
+            win_ptr.display.backend.set_cursor(win_ptr)
         return 0
 
     def mlx_set_fullscreen(self, win_ptr: Window, on: bool) -> int:

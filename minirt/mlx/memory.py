@@ -254,6 +254,12 @@ class Memory(Backend):
     def show_pointer(self, window: Window, on: bool) -> None:
         self.pointer_shown = on
 
+    def set_cursor(self, window: Window) -> None:
+        """Do nothing: the pointer is not drawn."""
+
+    def set_icons(self, window: Window) -> None:
+        """Do nothing: there is no title bar."""
+
     def clipboard(self, window: Window) -> str:
         return self.clipboard_text
 

@@ -16,12 +16,14 @@ class Options:
     strict: failures and exceptions of hooks raise; False reports them on standard error, and the program goes on.
     symbols: a key is reported as the symbol that it prints, Shift+1 as 33; False reports the symbol that it
         prints without modifiers, 49.
+    application: name by which the desktop knows the windows (X11's WM_CLASS); empty for their first title.
     """
 
     def __init__(self, alpha: bool, strict: bool, symbols: bool) -> None:
         self.alpha = alpha
         self.strict = strict
         self.symbols = symbols
+        self.application = ""
 
 
 def integer(value: Integer) -> int:

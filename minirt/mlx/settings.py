@@ -22,13 +22,19 @@ class Settings:
         self._mlx_options = Options(alpha, strict, symbols)
 
     def mlx_set_options(
-        self, *, alpha: bool | None = None, strict: bool | None = None, symbols: bool | None = None
+        self,
+        *,
+        alpha: bool | None = None,
+        strict: bool | None = None,
+        symbols: bool | None = None,
+        application: str | None = None,
     ) -> int:
-        """Change options, `alpha` for windows that are opened later; None leaves one as it is."""
+        """Change options, `alpha` and `application` for windows that are opened later; None leaves one as it is."""
         options = self._mlx_options
         options.alpha = options.alpha if alpha is None else alpha
         options.strict = options.strict if strict is None else strict
         options.symbols = options.symbols if symbols is None else symbols
+        options.application = options.application if application is None else application
         return 0
 
     def _mlx_failed(self, error: MlxError) -> MaybeNone:

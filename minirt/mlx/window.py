@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 from minirt.mlx.canvas import Canvas
+from minirt.mlx.cursors import Cursor
 from minirt.mlx.events import Button, Event
 from minirt.mlx.handle import Handle
 from minirt.mlx.keyboard import Keyboard
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from minirt.mlx.hooks import BoundHook
+    from minirt.mlx.image import Image
     from minirt.mlx.options import Options
 
 
@@ -25,6 +27,10 @@ class WindowControls(Protocol):
     def set_fullscreen(self, window: Window, on: bool) -> None: ...
 
     def move_pointer(self, window: Window, x: int, y: int) -> None: ...
+
+    def set_cursor(self, window: Window) -> None: ...
+
+    def set_icons(self, window: Window) -> None: ...
 
     def clipboard(self, window: Window) -> str: ...
 
@@ -62,6 +68,8 @@ class Window(Handle):
     drop_hook: BoundHook | None = None
     is_open: bool = True
     pointer: tuple[int, int] = (0, 0)
+    cursor: Cursor = Cursor.ARROW
+    icons: tuple[Image, ...] = ()
     scale: float = 1.0  # of its screen: 2 where dots are half as large as usual
 
     # Between the window and its back end:

@@ -11,6 +11,7 @@ from math import nan, sqrt
 
 import numpy as np
 
+from minirt.rendering.crop import Crop
 from minirt.rendering.developing.develop import develop, needs_developing, rounding_error
 from minirt.rendering.developing.tone import PLAIN
 from minirt.rendering.frame_arguments import NO_LINEAR
@@ -42,6 +43,7 @@ class Darkroom:
         With `edges_only` the light of pixels that are not drawn is NaN, unless it is in `linear`.
         """
         if linear is not None or not self.needed(scene):
+            self.scratch = NO_LINEAR
             return NO_LINEAR if linear is None else linear
         shape = (*pixels.shape[:2], 3)
         if self.scratch.shape != shape:
@@ -50,10 +52,11 @@ class Darkroom:
             self.scratch[...] = nan
         return self.scratch
 
-    def develop(self, scene: Scene, pixels: np.ndarray, light: np.ndarray) -> None:
-        """Write the levels of a picture from its light, if they are not those of the kernel."""
+    def develop(self, scene: Scene, pixels: np.ndarray, light: np.ndarray, crop: Crop | None = None) -> None:
+        """Write the levels of a picture, or of a crop, from its light, if they are not those of the kernel."""
         if self.needed(scene):
-            develop(light, pixels, scene.camera.tone, self.dither, self.run, self.runner.threads)
+            place = crop[2:] if crop else (0, 0)
+            develop(light, pixels, scene.camera.tone, self.dither, self.run, self.runner.threads, *place)
 
     def run(self, jobs: list[Callable[[], object]]) -> None:
         """Run jobs on the threads that render."""
@@ -73,9 +76,16 @@ class Darkroom:
             draw()
         return self.rounding(scene, pixels) / 2
 
-    def finish(self, scene: Scene, pixels: np.ndarray, light: np.ndarray, outcome: Outcome | None) -> Outcome | None:
+    def finish(
+        self,
+        scene: Scene,
+        pixels: np.ndarray,
+        light: np.ndarray,
+        outcome: Outcome | None,
+        crop: Crop | None = None,
+    ) -> Outcome | None:
         """Develop a picture that was drawn to an error, and return the outcome with the error of its levels."""
         if outcome is None or not self.needed(scene):
             return outcome
-        self.develop(scene, pixels, light)
+        self.develop(scene, pixels, light, crop)
         return outcome._replace(rounding=self.rounding(scene, pixels))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.frame import SUMS
+from minirt.kernel.stored_light import PACKET_HEIGHT, SUMS
+from minirt.lanes import width
+from minirt.rendering.crop import Crop
+from minirt.rendering.packing.aperture_rays import aperture_places, has_apertures, variants_of, with_apertures
 from minirt.rendering.packing.camera import packet_rays
 
 NO_LINEAR = np.zeros((0, 0, 3))
@@ -59,16 +62,52 @@ def plan_of(packets: np.ndarray, columns: int, drawn: np.ndarray) -> np.ndarray:
     return plan
 
 
+@lru_cache(4)
+def plan_of_variants(shape: tuple[int, ...], lanes: int, samples: int, variants: int, crop: Crop) -> np.ndarray:
+    """Return the plan that draws all packets of a rectangle of a picture, each with one of the variants of its samples.
+
+    The variant of a packet is a random number that depends on its place in the picture alone.
+    """
+    packet_width = lanes // PACKET_HEIGHT
+    rows, columns, all_columns = (
+        -(-size // step)
+        for size, step in ((shape[0], PACKET_HEIGHT), (shape[1], packet_width), (crop.width, packet_width))
+    )
+    random, left = np.random.Generator(np.random.PCG64(variants)), crop.left // packet_width
+    for _ in range(crop.top // PACKET_HEIGHT):
+        random.integers(variants, size=all_columns)
+    drawn = np.full((rows, columns, 3), (0, samples, 0), np.int32)
+    for row in drawn:
+        row[:, 0] = samples * random.integers(variants, size=all_columns)[left : left + columns]
+    return plan_of(np.arange(rows * columns), columns, drawn.reshape(-1, 3))
+
+
 def frame_arguments(
-    arrays: Any, pixels: np.ndarray, samples: int = 1, linear: np.ndarray = NO_LINEAR, counter: np.ndarray | None = None
+    arrays: Any,
+    pixels: np.ndarray,
+    samples: int = 1,
+    linear: np.ndarray = NO_LINEAR,
+    counter: np.ndarray | None = None,
+    crop: Crop | None = None,
 ) -> Frame:
-    """Return the arguments for a picture of all packets of a packed scene."""
+    """Return the arguments for all packets of a packed scene: of a picture, or of a rectangle of a larger one.
+
+    One sample is that from the centre of a lens, and of the centres of lights.
+    """
+    rays, plan = packet_rays(arrays.camera, sample_positions(samples)), ALL_PACKETS
+    if has_apertures(arrays):
+        lanes, variants = width(rays), variants_of(samples) if samples > 1 else 1
+        places = np.zeros((1, lanes, 4)) if samples == 1 else aperture_places(samples, variants, lanes, 0)
+        rays = with_apertures(np.tile(rays, (variants, 1)), places, arrays.lens)
+        if samples > 1:
+            whole = Crop(pixels.shape[1], pixels.shape[0])
+            plan = plan_of_variants(pixels.shape, lanes, samples, variants, crop or whole)
     return Frame(
         next_row=np.zeros(1, np.int64) if counter is None else counter,
         pixels=as_uint32(pixels),
         linear=linear,
-        rays=packet_rays(arrays.camera, sample_positions(samples)),
-        plan=ALL_PACKETS,
+        rays=rays,
+        plan=plan,
         errors=NO_ERRORS,
         memory=thread_memory(arrays),
         sums=sum_buffer(arrays),
@@ -89,4 +128,5 @@ def sum_buffer(arrays: Any) -> np.ndarray:
 
 def thread_memory(arrays: Any) -> np.ndarray:
     """Allocate the memory of a thread from one packet to the next, still empty: see `minirt.kernel.trace`."""
-    return np.zeros((len(arrays.lights) + 1, 4), arrays.lights.dtype)
+    kept = 2 * width(arrays.camera) if arrays.soft is not None else 0
+    return np.zeros((len(arrays.lights) + 1, 4 + kept), arrays.lights.dtype)

@@ -46,7 +46,7 @@ def kernel_notes(scene: Scene, wide: WideKernel | None, compiling: bool) -> Iter
     """Describe the kernel that drew a scene: what it leaves out; `wide` is None for the narrow kernel of the scene."""
     used = {type(shape) for shape in scene.shapes}
     if wide:
-        yield f"wide kernel for all kinds of shapes and {'all' if wide.features else 'no'} features"
+        yield f"wide kernel for all kinds of shapes and {'all' if wide.name == 'full' else 'no'} features"
         if compiling:
             yield f"the kernel for {plurals(used)} alone is being compiled"
         return

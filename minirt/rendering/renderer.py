@@ -13,6 +13,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.fork_safety import renew_after_fork
 from minirt.kernel.machine_code.library import LIBRARY
+from minirt.rendering.crop import Crop
 from minirt.rendering.darkroom import Darkroom
 from minirt.rendering.notes import NO_WIDE_KERNEL, kernel_notes
 from minirt.rendering.packing.features import DEPTH
@@ -128,15 +129,16 @@ class Renderer:
         samples: int = 1,
         linear: np.ndarray | None = None,
         is_wanted: Callable[[], bool] = lambda: True,
+        crop: Crop | None = None,
     ) -> bool:
         """Render into `pixels`, C-contiguous uint8 (h, w, 4) in the order blue, green, red, alpha, and the unclamped
-        light into `linear`, float64 (h, w, 3), if given.
+        light into `linear`, float64 (h, w, 3), if given: the whole picture, or the rectangle at `crop` of a larger one.
 
         False where `cancel` ended it early. `is_wanted` is asked once, as soon as `cancel` has an effect: whoever first
         stops wanting the picture and then cancels is heard at any time.
         """
         with self.busy:
-            return self._draw(scene, pixels, samples, linear, is_wanted, edges_only=False)
+            return self._draw(scene, pixels, samples, linear, is_wanted, edges_only=False, crop=crop)
 
     def refine(
         self,
@@ -161,6 +163,7 @@ class Renderer:
         linear: np.ndarray | None,
         is_wanted: Callable[[], bool],
         edges_only: bool,
+        crop: Crop | None = None,
     ) -> bool:
         """Render a scene, whether it has shapes or not. The caller holds `busy`."""
         if samples < 1:
@@ -169,14 +172,14 @@ class Renderer:
         light = self.darkroom.light_for(scene, pixels, linear, edges_only)
         is_done = True
         if not scene.shapes or not pixels.size:
-            draw_background(scene, pixels, light)
+            draw_background(scene, pixels, light, crop)
         else:
             self.kernels.make_ready(scene)
             is_done = fixed_samples.render(
-                self.runner, self.packing, scene, pixels, light, samples, is_wanted, edges_only=edges_only
+                self.runner, self.packing, scene, pixels, light, samples, is_wanted, edges_only, crop
             )
         if is_done:
-            self.darkroom.develop(scene, pixels, light)
+            self.darkroom.develop(scene, pixels, light, crop)
         return is_done
 
     def reach(
@@ -186,6 +189,7 @@ class Renderer:
         error: float = 0.0,
         seconds: float = inf,
         linear: np.ndarray | None = None,
+        crop: Crop | None = None,
     ) -> Outcome | None:
         """Render into `pixels` and `linear`, as `render` does, until the estimated error is at most `error` or that
         many seconds have passed; see `minirt.rendering.sampling.auto`. Without `linear` it ends where rounding to 8
@@ -195,18 +199,18 @@ class Renderer:
             self.runner.not_finite = 0
             light = self.darkroom.light_for(scene, pixels, linear)
             if not scene.shapes or not pixels.size:
-                draw_background(scene, pixels, light)
+                draw_background(scene, pixels, light, crop)
                 outcome: Outcome | None = Outcome(1.0, 1, 0.0, perf_counter() - start, error)
             else:
                 self.kernels.make_ready(scene)
                 LIBRARY.get(classify_call())
                 least = None
                 if linear is None and self.darkroom.needed(scene):
-                    first = partial(self._draw, scene, pixels, 1, None, lambda: True, edges_only=False)
+                    first = partial(self._draw, scene, pixels, 1, None, lambda: True, edges_only=False, crop=crop)
                     least = self.darkroom.floor(scene, pixels, error, first)
                 left = seconds - (perf_counter() - start)
-                outcome = to_error.reach(self.runner, self.packing, scene, pixels, light, error, left, least)
-            return self.darkroom.finish(scene, pixels, light, outcome)
+                outcome = to_error.reach(self.runner, self.packing, scene, pixels, light, error, left, least, crop)
+            return self.darkroom.finish(scene, pixels, light, outcome, crop)
 
     def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
         """Return the shape that a pixel of a picture shows, see `minirt.rendering.queries.pick`.
@@ -225,6 +229,10 @@ class Renderer:
             self.cancel()
         return pick.pick(scene, width, height, x, y)
 
+    def rows_done(self, height: int) -> float:
+        """Return the share of the rows of the picture being rendered, of `height` pixels, that threads have taken."""
+        return min(1.0, int(self.runner.next_row[0]) / height)
+
     def give_way(self) -> None:
         """Let the other threads of this process, such as an event loop, go before those that render, from now on."""
         self.runner.pool.give_way()
@@ -234,8 +242,8 @@ class Renderer:
         self.runner.cancel()
 
 
-def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray) -> None:
+def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray, crop: Crop | None = None) -> None:
     """Draw a scene without shapes, see `minirt.rendering.queries.preview`."""
     from minirt.rendering.queries import preview
 
-    preview.draw_background(scene, pixels, linear)
+    preview.draw_background(scene, pixels, linear, crop)

@@ -8,9 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from minirt import jail
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import Group, SceneArrays
+from minirt.memory_limit import TooLargeError
+from minirt.rendering.crop import Crop
 from minirt.rendering.culling.light_frustum import dense_cluster
+from minirt.rendering.culling.list_sizes import COARSEST
 from minirt.rendering.culling.planes import never_occludes
 from minirt.rendering.culling.unseen_materials import effective, without_unseen
 from minirt.rendering.culling.visibility import (
@@ -22,13 +26,21 @@ from minirt.rendering.culling.visibility import (
 )
 from minirt.rendering.notes import notes
 from minirt.rendering.packing.bvh import build_bvh
-from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.camera import camera_numbers, placed_rays
 from minirt.rendering.packing.colours import colours_of
 from minirt.rendering.packing.eye_medium import medium_at
-from minirt.rendering.packing.features import DEPTH, SECONDARY, features
-from minirt.rendering.packing.lights import emitting_lights, intensity, positions_and_intensities, spot_parameters
+from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
+from minirt.rendering.packing.lens import distance_in_the_middle, lens_numbers, radius_and_focus
+from minirt.rendering.packing.lights import (
+    emitting_lights,
+    intensity,
+    positions_and_intensities,
+    radius_of,
+    sizes,
+    spot_parameters,
+)
 from minirt.rendering.packing.materials import pack_environment, pack_materials
-from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.rendering.packing.shape_arrays import ShapeArrays, smooth_primitives
 from minirt.rendering.packing.single_precision import in_single
 from minirt.scene import ParallelLight, Scene
 from minirt.shapes import Shape
@@ -46,25 +58,28 @@ class Packing:
         self.depth = depth  # bounces at most
         self.shape_arrays = ShapeArrays()
         self.cache: dict[Hashable, Any] = {}  # results for the last scene, by what they depend on beside its shapes
-        self.last: tuple[Scene, int, int, SceneArrays] | None = None
+        self.cells_that_fit: dict[int, int] = {}  # by the number of lights, where the usual cells do not fit
+        self.last: tuple[Scene, tuple[int, int, Crop], SceneArrays] | None = None
 
     def shape_arrays_for(self, shapes: tuple[Shape, ...]) -> ShapeArrays:
         """Return the arrays of these shapes. Where the last scene had other shapes its results are dropped."""
         if self.shape_arrays.update(shapes):
-            self.cache, self.last = {}, None
+            self.cache, self.last, self.cells_that_fit = {}, None, {}
         return self.shape_arrays
 
-    def pack(self, scene: Scene, width: int, height: int) -> SceneArrays:
-        """Return the arrays of a scene for a picture of that size."""
-        if self.last and self.last[0] is scene and self.last[1:3] == (width, height):
-            return self.last[3]
-        arrays = self.pack_double(scene, width, height)
+    def pack(self, scene: Scene, width: int, height: int, crop: Crop | None = None) -> SceneArrays:
+        """Return the arrays of a scene for a picture of that size, or for a rectangle of that size of a larger one."""
+        place = width, height, crop or Crop(width, height)
+        if self.last and self.last[0] is scene and self.last[1] == place:
+            return self.last[2]
+        with jail.session():  # for textures of a scene that was not read from a file
+            arrays = self.pack_double(scene, *place)
         if self.precision == "single" and fits_single(arrays):
             arrays = in_single(arrays, self.shape_arrays.boxes)
-        self.last = scene, width, height, arrays
+        self.last = scene, place, arrays
         return arrays
 
-    def pack_double(self, scene: Scene, width: int, height: int) -> SceneArrays:
+    def pack_double(self, scene: Scene, width: int, height: int, crop: Crop) -> SceneArrays:
         """Return the arrays in double precision, packed again even if the scene is the last one."""
         shapes = self.shape_arrays_for(scene.shapes)
         before, self.cache = self.cache, {}
@@ -74,22 +89,25 @@ class Packing:
             return self.cache[key]
 
         used = features(scene) - (set() if self.depth else SECONDARY)
-        camera, sources = camera_numbers(scene.camera, width, height), emitting_lights(scene)
+        camera, sources = camera_numbers(scene.camera, crop.width, crop.height), emitting_lights(scene)
         colours = colours_of(scene.camera)
         lights = positions_and_intensities(sources, colours)
-        eye = cached((camera.tobytes(), width, height), seen_by_eye, self.kernel, shapes, camera, width, height)
+        lens = self.lens(scene, camera, cached) if "lens" in used else None
+        radius, per_focus = radius_and_focus(lens)
+        view = camera, width, height, crop, radius, per_focus
+        eye = cached((camera.tobytes(), *view[1:]), seen_by_eye, self.kernel, shapes, *view)
         cells, dense = light_buffer_cells(shapes), cached("cluster", dense_cluster, shapes)
-        binned: list[BinnedShapes] = []
-        keys: list[Hashable] = []
-        for light, position in zip(sources, lights[:, :3], strict=True):
-            skipped = never_occludes(shapes, camera[:3], light)
-            if isinstance(light, ParallelLight):
-                keys.append(("parallel", skipped.tobytes()))
-                binned.append(cached(keys[-1], seen_by_parallel_light, shapes, cells, skipped))
-            else:
-                keys.append((position.tobytes(), skipped.tobytes()))
-                binned.append(cached(keys[-1], seen_by_light, self.kernel, shapes, dense, position, cells, skipped))
-        light_starts, light_shapes, light_cones, light_buffers = cached(tuple(keys), joined_light_buffers, binned, eye)
+        cells = self.cells_that_fit.get(len(sources), cells)
+        while True:
+            try:
+                binned, keys = self.seen_by_lights(scene, cells, dense, cached, radius)
+                break
+            except TooLargeError:
+                if cells <= COARSEST:
+                    raise
+                cells //= 2
+                self.cells_that_fit[len(sources)] = cells
+        light_starts, light_shapes, light_cones, light_buffers = cached(keys, joined_light_buffers, binned, eye)
         materials = cached(
             ("materials", used, colours.decodes, colours.gain if "glow" in used else 1.0),
             pack_materials,
@@ -98,10 +116,10 @@ class Packing:
             used,
         )
         materials = without_unseen(materials, cached(("effective", used), effective, materials), eye.members)
-        needs_bvh = "reflective" in used or ("parallel" in used and cells > 1)
+        needs_bvh = "reflective" in used or (cells > 1 and not SPREAD.isdisjoint(used))
         paint: Any = scene.background and scene.background.paint
         return SceneArrays(
-            camera=pixel_rays(camera, width, height),
+            camera=placed_rays(camera, crop),
             ambient=intensity(scene.ambient, colours) if scene.ambient else np.zeros(3),
             lights=lights,
             colours_and_extents=cached(
@@ -116,7 +134,10 @@ class Packing:
             light_cones=light_cones,
             groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count())),
             spots=spot_parameters(sources) if "spots" in used else None,
+            soft=sizes(sources) if "soft" in used else None,
+            lens=lens,
             eye_medium=medium_at(camera[:3], scene.shapes, colours) if "media" in used else None,
+            smooth=cached("smooth", smooth_primitives, shapes) if "smooth" in used else None,
             depth=self.depth,
             background=colours.light(paint) if "background" in used else None,
             environment=cached(("environment", paint, colours), pack_environment, scene, paint)
@@ -126,12 +147,43 @@ class Packing:
             **materials._asdict(),
         )
 
+    def seen_by_lights(
+        self, scene: Scene, cells: int, dense: Any, cached: Callable[..., Any], radius: float
+    ) -> tuple[list[BinnedShapes], Hashable]:
+        """Bin the shapes into the light buffers of all lights, and return also what they depend on.
+
+        `TooLargeError` where memory does not suffice for so many cells.
+        """
+        shapes, sources, colours = self.shape_arrays, emitting_lights(scene), colours_of(scene.camera)
+        eye, copies = np.array(scene.camera.position, np.float64), 2 * len(sources) if len(sources) > 1 else 1
+        binned: list[BinnedShapes] = []
+        keys: list[Hashable] = []
+        for light, position in zip(sources, positions_and_intensities(sources, colours)[:, :3], strict=True):
+            skipped = never_occludes(shapes, eye, light, radius)
+            if isinstance(light, ParallelLight) or (light.size and cells > 1):  # by the BVH
+                keys.append(("spread", cells, skipped.tobytes()))
+                binned.append(cached(keys[-1], seen_by_parallel_light, shapes, cells, skipped))
+            else:
+                size = radius_of(light)
+                keys.append((cells, position.tobytes(), skipped.tobytes(), size))
+                alike = 1 if binned else copies  # lists that are estimated to be like it: the first stands for all
+                at = dense, position, cells, skipped, size, alike
+                binned.append(cached(keys[-1], seen_by_light, self.kernel, shapes, *at))
+        return binned, tuple(keys)
+
+    def lens(self, scene: Scene, camera: np.ndarray, cached: Callable[..., Any]) -> np.ndarray:
+        """Return the lens of a scene's camera."""
+        focus = scene.camera.focus or cached(
+            ("middle", camera.tobytes()), distance_in_the_middle, self.shape_arrays, camera
+        )
+        return lens_numbers(scene.camera, focus)
+
     @property
     def notes(self) -> list[str]:
         """Sentences about the decisions made for the last scene."""
         if not self.last:
             return []
-        scene, _, _, arrays = self.last
+        scene, _, arrays = self.last
         sentences = list(notes(scene, self.shape_arrays, arrays))
         if self.precision == "single" and not fits_single(arrays):
             sentences.insert(0, "double precision: single supports neither images nor a BVH")

@@ -1,6 +1,6 @@
-"""Build hook of hatchling: puts wide kernels, compiled ahead of time, into wheels for x86-64 Linux.
+"""Build hook of hatchling: puts example scenes into wheels and, for x86-64 Linux, wide kernels compiled ahead of time.
 
-They fit every such machine whose processor has level v3 or v4 of x86-64, and every version of Python.
+The kernels fit every such machine whose processor has level v3 or v4 of x86-64, and every version of Python.
 """
 
 from __future__ import annotations
@@ -14,13 +14,14 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 TAG = "py3-none-manylinux_2_17_x86_64"  # the kernels need no library at all
 
 
-class WideKernels(BuildHookInterface):  # type: ignore[misc]
+class ScenesAndKernels(BuildHookInterface):  # type: ignore[misc]
     """Compiles before the files of a wheel are collected; `artifacts` in pyproject.toml names the results."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Compile for both levels, unless the installation is editable: there `make all` compiles for the machine."""
+        """Add them before files are collected, unless the installation is editable: there `make all` compiles."""
         if version == "editable":
             return
+        build_data["force_include"][str(Path(self.root, "scenes"))] = "minirt/scenes"  # `minirt.example`
         sys.path.insert(0, self.root)
         from minirt.errors import MiniRTError
         from minirt.kernel.machine_code import shipped_code

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from minirt.errors import RenderError
 from minirt.report.formulas import formula_names, formula_rows
@@ -17,6 +16,7 @@ from minirt.report.measurements.plan import FULL, QUICK
 from minirt.report.output.document import summary
 from minirt.report.output.files import FORMULAS, PAGE, formula_files, report_files, write_files
 from minirt.report.progress import progress
+from minirt.report.temporary_folder import temporary_folder
 from minirt.scene import Scene
 from minirt.shapes import KINDS
 
@@ -41,10 +41,10 @@ def report(
     if not scene.shapes:
         raise RenderError(f"{name}: a scene without shapes has no errors to report")
     make_folder(folder)
-    with sigterm_interrupts(), TemporaryDirectory() as files, progress() as shown:
+    with sigterm_interrupts(), temporary_folder() as files, progress() as shown:
         measurement = Measurement(scene, name, QUICK if quick else FULL, threads, shown)
         try:
-            measurement.run(size, Path(files), ablation)
+            measurement.run(size, files, ablation)
         except KeyboardInterrupt:
             shown.clear()
             tell(write_report(measurement, folder, interrupted(shown.what)) or NOTHING)

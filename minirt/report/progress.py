@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from time import perf_counter
 from typing import TextIO
 
+from minirt.timing import in_words
+
 BAR = 24  # characters
 TRUST = 0.05  # share of the expected time after which the measured pace counts as much as the expected one
 
@@ -63,11 +65,3 @@ def progress(clock: Callable[[], float] = perf_counter) -> Iterator[Progress]:
         yield shown
     finally:
         shown.clear()
-
-
-def in_words(seconds: float) -> str:
-    """Say a time in the unit that people would use."""
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    minutes = round(seconds / 60)
-    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"

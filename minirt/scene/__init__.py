@@ -5,9 +5,9 @@ from minirt.scene.format_table import format_table
 from minirt.scene.lights import FurtherLight, Lamp, Light, ParallelLight, SpotLight
 from minirt.scene.line_rewriting import describe
 from minirt.scene.pages import Item
-from minirt.scene.parser import Reading, load, parse
+from minirt.scene.parser import Reading, load, loads, parse
 from minirt.scene.scene import Scene
-from minirt.scene.writer import dump, save
+from minirt.scene.writer import dump, dumps, save
 
 __all__ = [
     "Ambient",
@@ -24,8 +24,10 @@ __all__ = [
     "SpotLight",
     "describe",
     "dump",
+    "dumps",
     "format_table",
     "load",
+    "loads",
     "parse",
     "save",
 ]

@@ -8,21 +8,20 @@ from minirt.errors import Problem
 from minirt.scene.lines import Line
 
 MAX_ERRORS = 1000  # in one file; a file with more is not a scene
+MAX_NOTICES = 1000
 
 
 class Log:
     """The errors and notices of one scene file."""
 
-    def __init__(self, file: str, lenient: bool) -> None:
+    def __init__(self, file: str, lenient: bool, folder: Path | None = None) -> None:
+        """Make an empty log of a file. The scene's file names are relative to `folder`, by default that of the file;
+        without either, as for `file` '', named files are not opened."""
         self.file = file
+        self.folder = Path(file).parent if file and not folder else folder
         self.lenient = lenient
         self.errors: list[Problem] = []
         self.notices: list[Problem] = []
-
-    @property
-    def folder(self) -> Path | None:
-        """Folder to which the scene's file names are relative; None without a file: then named files are not opened."""
-        return Path(self.file).parent if self.file else None
 
     @property
     def full(self) -> bool:
@@ -34,8 +33,11 @@ class Log:
         self.errors.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
 
     def notice(self, line: Line, column: int, message: str, length: int = 1) -> None:
-        """Add a notice about a file that is accepted."""
-        self.notices.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
+        """Add a notice about a file that is accepted. The last of too many says that there are more."""
+        if len(self.notices) == MAX_NOTICES:
+            message = "too many notices: those from here on are left out"
+        if len(self.notices) <= MAX_NOTICES:
+            self.notices.append(Problem(self.file, line.number, column, line.text, message, max(1, length)))
 
     def tolerate(
         self, line: Line, column: int, message: str, remedy: str, certain: bool = False, length: int = 1

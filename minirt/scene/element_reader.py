@@ -8,12 +8,13 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
+from minirt import jail
 from minirt.element import Element, cached_per_kind, fields_of, pattern
 from minirt.errors import FieldError, FileError, quoted
 from minirt.fields import Colour, Field, MeshFile
 from minirt.fields.numerals import code_point_name
 from minirt.scene.diagnostics import Log
-from minirt.scene.lines import Line, Word, join_at_commas, split_at_blanks
+from minirt.scene.lines import Line, Word, first_unprintable, join_at_commas, split_at_blanks
 from minirt.scene.registry import ELEMENTS, SPELLINGS
 from minirt.scene.suggestions import GLUED, NUMERIC, hint, nearest_element, nearest_key
 
@@ -66,15 +67,11 @@ def split_line(line: Line, log: Log) -> list[Word] | None:
     """Return the words of a line, none for a comment or a blank line; None after an error."""
     body = line.text[: line.end]
     if "\r" in line.text or not body.replace("\t", " ").isprintable():
-        column, separator = next(
-            (column, character)
-            for column, character in enumerate(line.text, 1)
-            if character == "\r" or (column <= len(body) and character != "\t" and not character.isprintable())
-        )
+        index = first_unprintable(line)
         message = "a carriage return ends a line only together with a line feed"
-        if separator != "\r":
-            message = f"only spaces and tabs separate fields, got {code_point_name(separator)}"
-        log.error(line, column, message)
+        if line.text[index] != "\r":
+            message = f"only spaces and tabs separate fields, got {code_point_name(line.text[index])}"
+        log.error(line, index + 1, message)
         return None
     slashes = SLASHES.search(body) if "//" in body else None
     if slashes:
@@ -228,6 +225,7 @@ def load_files(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log
             log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
             return None
     for file in slot.field.pictures(value):
+        jail.expect(log.folder / file.name)
         from minirt.materials import picture_cache
 
         try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 
 from minirt.element import Element
-from minirt.fields import Choice, Colour, Direction, Paint, Point, Real, Triple, Whole, declare, unit
+from minirt.fields import Choice, Colour, Direction, Length, Paint, Point, Real, Triple, Whole, declare, unit
 from minirt.records import record
 
 TONES = ("plain", "srgb", "filmic")  # how light becomes the levels of a picture, see `minirt.rendering.developing.tone`
@@ -31,7 +31,11 @@ class Ambient(Element):
 
 @record()
 class Camera(Element):
-    """`C x,y,z dx,dy,dz fov [roll:degrees] [tone:word] [exposure:EV]`: a pinhole camera.
+    """`C x,y,z dx,dy,dz fov [roll:degrees] [tone:word] [exposure:EV] [lens:diameter] [focus:distance]`: a pinhole
+    camera, or with `lens` a thin lens of that diameter.
+
+    A lens shows what lies at the distance `focus` sharply, measured along the viewing direction; when that is left out,
+    what the middle of the picture shows. Everything else is blurred.
 
     Light is multiplied by two to the power of `exposure`. With the `tone` plain the levels of colours and of the
     picture are in proportion to light. srgb decodes colours, and encodes light, by the curve of sRGB; filmic does the
@@ -66,6 +70,17 @@ class Camera(Element):
         step=0.25,
         keyed=True,
         default=0.0,
+    )
+    lens: float | None = declare(
+        Length, "diameter of the lens; depth of field", keyed=True, default=None, placeholder="diameter", initial=0.2
+    )
+    focus: float | None = declare(
+        Length,
+        "distance, along the direction, of what is sharp",
+        keyed=True,
+        default=None,
+        placeholder="distance",
+        initial=8.0,
     )
     left_handed: bool = field(default=False, kw_only=True)
 

@@ -15,29 +15,39 @@ RATIO: dict[str, Any] = {"unit": "ratio", "low": 0.0, "high": 1.0, "step": 0.05}
 WHITE = (255, 255, 255)
 DOWN = (0.0, -1.0, 0.0)
 FADE = "distance at which its light has faded to nothing"
+SIZE = "diameter; soft shadows"
 
 
 @record()
 class Lamp(Element):
     """Base class of light sources: each has a brightness and a colour."""
 
-    if TYPE_CHECKING:
-        brightness: float
-        colour: Triple
+    if TYPE_CHECKING:  # its kinds declare them as fields
+
+        @property
+        def brightness(self) -> float: ...
+
+        @property
+        def colour(self) -> Triple: ...
+
+        @property
+        def size(self) -> float | None: ...
 
 
 @record()
 class Light(Lamp):
     """`L x,y,z ratio [R,G,B]`: the point light of the mandatory format.
 
-    With `fade` its light is multiplied by 1 - distance/fade, and by 0 beyond that distance.
+    With `fade` its light is multiplied by 1 - distance/fade, and by 0 beyond that distance. With `size` it is a ball of
+    that diameter, which shines as a disc that faces each point: shadows are soft.
     """
 
     code, title, plural, once = "L", "light", "lights", True
     position: Triple = declare(Point, "position of the light")
-    brightness: float = declare(Real, "brightness", **RATIO)
+    brightness: float = declare(Real, "brightness", shared=RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
-    fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance", initial=16.0)
+    fade: float | None = declare(Length, FADE, keyed=True, default=None, placeholder="distance", initial=16.0)
+    size: float | None = declare(Length, SIZE, keyed=True, default=None, placeholder="diameter", initial=1.0)
 
 
 @record()
@@ -49,12 +59,27 @@ class FurtherLight(Light):
 
 @record()
 class ParallelLight(Lamp):
-    """`dl dx,dy,dz ratio [R,G,B]`: light along dx,dy,dz from an infinitely distant source, such as the sun."""
+    """`dl dx,dy,dz ratio [R,G,B]`: light along dx,dy,dz from an infinitely distant source, such as the sun.
+
+    With `size` the source is a disc in the sky of that angular diameter; the sun's is 0.53 degrees.
+    """
 
     code, title, plural = "dl", "parallel light", "parallel_lights"
     direction: Triple = declare(Direction, "direction of its light", instead=DOWN)
-    brightness: float = declare(Real, "brightness", **RATIO)
+    brightness: float = declare(Real, "brightness", shared=RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
+    size: float | None = declare(
+        Real,
+        "angular diameter; soft shadows",
+        unit="degree",
+        low=0.0,
+        high=90.0,
+        step=0.25,
+        keyed=True,
+        default=None,
+        placeholder="degrees",
+        initial=2.0,
+    )
 
 
 @record()
@@ -63,14 +88,17 @@ class SpotLight(Lamp):
 
     `angle` is the full opening angle. `rim` is the outer share of the half-angle, a tenth when left out, in which the
     light grows from 0 to 1 as 3 t^2 - 2 t^3, with t from 0 to 1 linear in the cosine; a rim of 0 gives a sharp edge.
-    `fade` is as for a point light.
+    `fade` and `size` are as for a point light; cone and fading are those of its centre.
     """
 
     code, title, plural = "sl", "spot light", "spot_lights"
     position: Triple = declare(Point, "position of the light")
     direction: Triple = declare(Direction, "direction of its light", instead=DOWN)
     angle: float = declare(Real, "full opening angle", unit="degree", low=0.0, high=180.0, step=2.0)
-    brightness: float = declare(Real, "brightness", **RATIO)
+    brightness: float = declare(Real, "brightness", shared=RATIO)
     colour: Triple = declare(Colour, "colour", default=WHITE)
-    rim: float = declare(Real, "outer share of the half-angle in which light fades", keyed=True, default=0.1, **RATIO)
-    fade: float | None = declare(Length, FADE, keyed=True, placeholder="distance", initial=16.0)
+    rim: float = declare(
+        Real, "outer share of the half-angle in which light fades", keyed=True, default=0.1, shared=RATIO
+    )
+    fade: float | None = declare(Length, FADE, keyed=True, default=None, placeholder="distance", initial=16.0)
+    size: float | None = declare(Length, SIZE, keyed=True, default=None, placeholder="diameter", initial=1.0)

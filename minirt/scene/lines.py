@@ -60,6 +60,25 @@ def line_from(number: int, source: str) -> Line:
     return Line(number, source, text.removesuffix("\r"))
 
 
+def first_unprintable(line: Line) -> int:
+    """Return the index of the first carriage return, or of the first character before the comment that cannot be seen.
+
+    Tabs are seen. The search halves the line, so that no loop in Python looks at each character.
+    """
+    carriage_return = line.text.find("\r")
+    start, end = 0, carriage_return if 0 <= carriage_return < line.end else line.end
+    body = line.text[:end].replace("\t", " ")
+    if body.isprintable():
+        return carriage_return
+    while end - start > 1:
+        middle = (start + end) // 2
+        if body[start:middle].isprintable():
+            start = middle
+        else:
+            end = middle
+    return start
+
+
 def split_at_blanks(body: str) -> list[Word]:
     """Return the words of a line without its comment, `MAX_WORDS` at most."""
     return [Word(match.start() + 1, match.group()) for match in islice(WORD.finditer(body), MAX_WORDS)]

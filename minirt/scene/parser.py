@@ -6,13 +6,13 @@ import gc
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from itertools import repeat
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from minirt import jail
 from minirt.element import Element, pattern
 from minirt.errors import Problem, SceneError
-from minirt.scene import fast, files
+from minirt.scene import fast, files, in_picture
 from minirt.scene.diagnostics import Log
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.elements import Ambient
@@ -36,26 +36,42 @@ class Reading(NamedTuple):
 
 def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Reading:
     """Read a scene file; SceneError with all of its errors. `left_handed` mirrors its pictures."""
-    scene, notices = parse(files.read(path), path, lenient)
+    data = files.read(path)
+    scene, notices = parse(data, path, lenient, in_picture.folder(path) if in_picture.is_picture(path) else None)
     if left_handed:
         scene = scene.replace(scene.camera, left_handed=True)
     return Reading(scene, notices)
 
 
-def parse(text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = False) -> Reading:
+def parse(
+    text: str | bytes, file: str | os.PathLike[str] = "", lenient: bool = False, folder: Path | None = None
+) -> Reading:
     """Parse the text of a scene; SceneError with all of its errors. `file` is the name that they show.
+
+    Textures and meshes are looked for in `folder`, by default that of the file.
 
     `lenient` accepts, with notices, the habits of older scenes: several `L`, blanks around commas and the like.
     """
     name = os.fspath(file) or "scene"
     if isinstance(text, str):
         text = text.encode("utf-8", "surrogatepass")  # a lone surrogate is reported as a byte that is not UTF-8
-    log = Log(name, lenient)
-    with garbage_collection_paused():
+    log = Log(name, lenient, folder)
+    with garbage_collection_paused(), jail.session():
         items = read_lines(files.decode(text, name).split("\n"), log)
     if log.errors:
         raise SceneError(tuple(sorted(log.errors, key=lambda error: (error.line, error.column))))
-    return Reading(Scene(items, Path(file) if file else None), tuple(log.notices))
+    place = Path(file) if file else None
+    return Reading(Scene(items, folder / place.name if folder and place else place), tuple(log.notices))
+
+
+def loads(text: str | bytes, lenient: bool = False) -> Scene:
+    """Read a scene from the text of a file; SceneError, with all of its problems, if the text is no valid scene.
+
+    Textures and meshes are looked up in the current folder. `lenient` is as for `load`.
+
+        scene = minirt.loads("A 0.2 255,255,255\nC 0,0,-9 0,0,1 60\nsp 0,0,0 2 255,0,0")
+    """
+    return parse(text, lenient=lenient).scene
 
 
 @contextmanager
@@ -76,11 +92,15 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
     seen: dict[str, int] = {}  # identifier: first line that has it, or seems to mean it
     for start in range(0, len(sources), BLOCK):
         block = sources[start : start + BLOCK]
-        elements = fast.read(block) if len(sources) > FEW_LINES else repeat(None, len(block))
-        for number, (source, element) in enumerate(zip(block, elements, strict=True), start + 1):
-            if element:
-                seen.setdefault(element.code, number)
-                items.append(element)
+        plain = fast.read(block) if len(sources) > FEW_LINES else [None] * len(block)
+        if set(map(type, plain)) == {str}:
+            items += block
+            continue
+        for number, (source, read) in enumerate(zip(block, plain, strict=True), start + 1):
+            if read is not None:
+                if not isinstance(read, str):
+                    seen.setdefault(read.code, number)
+                items.append(read)
                 continue
             line = line_from(number, source)
             item = read_line(line, seen, log)

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
 from operator import indexOf
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from minirt.element import Element
 from minirt.scene.concatenation import Concatenation
 from minirt.scene.elements import Ambient, Background, Camera, Resolution
 from minirt.scene.lights import Lamp
 from minirt.scene.pages import Item, Page, replace_item, split_into_pages
+from minirt.scene.plurals import Plurals
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 
@@ -22,7 +24,7 @@ UNIQUE_KINDS = tuple(kind for kind in ELEMENTS.values() if kind.once)
 
 
 @dataclass(frozen=True, init=False)
-class Scene:
+class Scene(Plurals):
     """An immutable scene. An edit makes a new scene, which shares all pages but one with the old.
 
     `scene.spheres`, `scene.planes` and so on are the elements of one kind. ValueError without exactly one camera, or
@@ -97,16 +99,55 @@ class Scene:
             if page.of(sort):
                 yield from (index for index, element in enumerate(elements, start) if isinstance(element, sort))
 
-    def __getattr__(self, plural: str) -> tuple[Any, ...]:
-        for kind in ELEMENTS.values():
-            if kind.plural == plural:
-                return tuple(element for element in self.of(kind) if type(element) is kind)
-        raise AttributeError(f"a scene has no '{plural}'")
+    if not TYPE_CHECKING:  # which sees `Plurals`
+
+        def __getattr__(self, plural: str) -> tuple[Any, ...]:
+            for kind in ELEMENTS.values():
+                if kind.plural == plural:
+                    return tuple(element for element in self.of(kind) if type(element) is kind)
+            raise AttributeError(f"a scene has no '{plural}'")
+
+    def __dir__(self) -> list[str]:
+        plurals = {kind.plural for kind in ELEMENTS.values()}
+        return sorted(plurals.union(super().__dir__()))
+
+    def __repr__(self) -> str:
+        where = f", from {str(self.file)!r}" if self.file else ""
+        return f"<Scene of {len(self.shapes)} shapes and {len(self.lights)} lights{where}>"
 
     def replace(self, old: Element, new: Element | None = None, **changes: Any) -> Scene:
         """Return the scene with `old` replaced by `new`, or by `old` with some fields changed; ValueError when `old` is
         not in the scene."""
         return self._edited(*self.items.locate(self.index(old)), old.replace(**changes) if new is None else new)
+
+    def add(self, *elements: Element) -> Scene:
+        """Return the scene with further elements at its end; ValueError where a kind may be there only once.
+
+        scene = scene.add(minirt.Sphere((0, 1, 8), 2, (255, 0, 0)))
+        """
+        items = tuple(self.items)
+        end = len(items) - (items[-1:] == ("",))  # before the blank line that is the end of a file
+        return Scene((*items[:end], *elements, *items[end:]), self.file)
+
+    def remove(self, *elements: Element) -> Scene:
+        """Return the scene without some elements; ValueError when one is not in the scene, or is its camera."""
+        scene = self
+        for element in elements:
+            scene = scene._edited(*scene.items.locate(scene.index(element)))
+        return scene
+
+    def save(self, path: str | os.PathLike[str] | None = None) -> None:
+        """Write the scene to a file, by default the one that it was read from, as a whole or not at all.
+
+        Comments and unchanged lines stay as they were read. Textures and meshes keep their names, which are relative to
+        the folder of the file. SceneError when the file cannot be written, ValueError where there is no path.
+        """
+        from minirt.scene import file_text
+
+        target = self.file if path is None else path
+        if target is None:
+            raise ValueError("a scene that was not read from a file needs a path: scene.save('name.rt')")
+        file_text.write(self.pages, target)
 
     def index(self, element: Element) -> int:
         """Return the index in `items` of the element itself, else of the first equal one; ValueError without one."""

@@ -7,7 +7,7 @@ import re
 from minirt.scene.registry import ELEMENTS, SPELLINGS
 
 LOOKALIKES = str.maketrans("1I0", "llo")
-GLUED = re.compile(r"([A-Za-z]+)[-+.0-9]")  # an identifier without a blank before the first number
+GLUED = re.compile(r"([A-Za-z]++)[-+.0-9]")  # an identifier without a blank before the first number
 NUMERIC = re.compile(r"[-+.,]*[0-9]")
 
 # Prefixes of attribute keys in scenes of other programs: the key that is meant, where spelling does not tell it.

@@ -1,29 +1,26 @@
-"""Writer of scene files: Scene -> text. Unchanged lines are written as they were read."""
+"""Writer of scene files: Scene -> text."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 
-from minirt import atomic_write, regular_files
-from minirt.scene import fast, files
-from minirt.scene.line_rewriting import line_of
-from minirt.scene.lines import BOM
-from minirt.scene.pages import Item
+from minirt.scene import file_text
+from minirt.scene.arguments import check_scene
 from minirt.scene.scene import Scene
 
 
 def dump(scene: Scene) -> str:
     """Return the text of a scene file."""
-    lines = [line for page in scene.pages for line in lines_of(page.items)]
-    return "\n".join(lines[:1] + [line.removeprefix(BOM) for line in lines[1:]])
+    return file_text.text_of(scene.pages)
 
 
-def lines_of(items: tuple[Item, ...]) -> Iterator[str]:
-    """Yield the lines of items."""
-    sources = [item if isinstance(item, str) else item.source for item in items]
-    for item, source, read in zip(items, sources, fast.read(sources), strict=True):
-        yield source if isinstance(item, str) or item == read else line_of(item)
+def dumps(scene: Scene) -> str:
+    """Return a scene as the text of a file, the same as `Scene.save` writes.
+
+    print(minirt.dumps(scene))
+    """
+    check_scene(scene, "dumps")
+    return dump(scene)
 
 
 def save(scene: Scene, path: str | os.PathLike[str]) -> None:
@@ -31,9 +28,4 @@ def save(scene: Scene, path: str | os.PathLike[str]) -> None:
 
     An existing file keeps its permissions, and a symbolic link stays one.
     """
-    files.check_name(path)
-    data = dump(scene).encode()
-    try:
-        atomic_write.write(path, data)
-    except (OSError, ValueError) as error:
-        raise files.file_error(path, f"cannot be written: {regular_files.reason(error)}") from None
+    file_text.write(scene.pages, path)

@@ -34,7 +34,7 @@ class Cone(Axial):
 
     code, title, plural, aliases, revolved = "co", "cone", "cones", ("cn", "cone"), True
     apex: Triple = declare(Point, "apex")
-    axis: Triple = declare(Direction, "axis, from the apex to the base")
+    axis: Triple = declare(Direction, "axis, from the apex to the base", initial=(0.0, -1.0, 0.0))
     diameter: float = declare(Length, "diameter of the base")
     height: float = declare(Length, "height")
     colour: Triple = declare(Colour, "colour")
@@ -103,7 +103,9 @@ def solve(cone: PackedCone, origin: Vec, direction: Vec, anywhere: bool | None) 
     base = (cone.height - p.z) * per_height
     first, last = minimum(tip, base), maximum(tip, base)
     parallel = fabs(a) <= PARALLEL * steepness
-    start = where(parallel, tip, clamped_minimum(per_a, b, first, last))
+    start = clamped_minimum(per_a, b, first, last)
+    if rarely(parallel):
+        start = where(parallel, tip, start)
     q = p + start * d
     reach_q = cone.slope * q.z
     half_b = q.x * d.x + q.y * d.y - reach_q * rise

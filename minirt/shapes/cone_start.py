@@ -11,7 +11,10 @@ apex alone.
 The neighbourhood of the apex. Rounding decides there whether a ray touches the side, and one that starts outside must
 not hit where it starts: it passes the side unless it meets a cone which is thinner by some roundings of the distance.
 
-A start within its own rounding of both ends, as of the apex, is on both: a ray that touches the side there misses.
+A start within its own rounding of both ends, as of the apex, is on both: both are at t = 0 for a ray that is steeper
+than the side, and any other ray touches the side there and misses. So does one from the side towards the apex with
+a = 0: the level, which is linear then, is 0 at its start and not negative at the height of the apex, hence nowhere
+between; rounding alone may deny that.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.shapes.compensated import minus, times, value
 from minirt.shapes.quadric import clamped_minimum
-from minirt.shapes.start import axial, beside_side, between_caps, error_of_start, zero_within
+from minirt.shapes.start import axial, beside_side, between_caps, error_of_start, position_error, zero_within
 
 PARALLEL = 2.0**-6  # share of a steepness by which that of a ray beside a generator differs
 SHELL = 2.0**13  # unit roundoffs of the size of a cone, a shell of that thickness at the apex is close to it
@@ -68,11 +71,12 @@ def close_start(
     side = times((splat(cone.slope, a), splat(cone.slope_low, a)), height)  # its distance from the axis
     exact_level = value(minus(power, times(side, side)))
     slope = sqrt(squared * (1.0 + cone.slope * cone.slope))
-    error = error_of_start(origin, p, level, slope, over)
+    away, position = largest(p), position_error(origin, p)
+    on_apex = close & (away <= position)
+    error = where(on_apex, position, error_of_start(origin, p, level, slope, over))
     rounding = 2.0 * slope * error
     first, last = between_caps(height, 0.0, cone.height, per_height, error)
     clear = zero_within(exact_level, minimum(rounding, BLUNT * squared))
-    away = largest(p)
     alike = fabs(a * clear) > 4.0 * PARALLEL * (b * b)  # both ends are about as far away
     distant = fabs(clear) > PARALLEL * fabs(b) * away  # the nearer end is about as far away as the apex, or farther
     beside = close & beside_side(level, squared, over, 0.5 * cone.height) & ~(parallel & (alike | distant))
@@ -90,9 +94,9 @@ def close_start(
     blur = where(blunt, BLUR * unit_roundoff(a) * (1.0 + cone.slope) * away, 0.0)
     c = c + blur * (2.0 * fabs(where(parallel, reach, reach_q)) + blur)
     half_b = zero_within(half_b, maximum(blur * fabs(rise), where(on_side, fabs(a) * error, 0.0)))
-    on_apex = close & (away <= error)
-    start, half_b = where(on_apex, 0.0, start), where(on_apex, 0.0, half_b)
-    return first, last, start, half_b, where(on_apex, 0.0, c), where(on_apex, 0.0, product)
+    on_both = on_apex | (on_side & ((half_b == 0.0) | ((a == 0.0) & (d.z < 0.0))))
+    start, half_b = where(on_apex, 0.0, start), where(on_both, 0.0, half_b)
+    return first, last, start, half_b, where(on_both, where(a < 0.0, 0.0, 1.0), c), where(on_both, 0.0, product)
 
 
 def farther_end(a: Number, per_a: Number, tip: Number, b: Number, c: Number) -> Number:

@@ -11,15 +11,14 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, dot, fabs, unit_roundoff
+from minirt.lanes import Vec, dot
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.bounds import bounds_of_disc
-from minirt.shapes.flat_start import least_t
+from minirt.shapes.flat_start import crossing, least_t
 from minirt.shapes.oriented import Flat
-from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Bounds, Position
 
 
@@ -59,21 +58,18 @@ def intersect(disc: PackedDisc, origin: Vec, direction: Vec) -> tuple[Mask, Numb
     not."""
     f = origin - disc.centre
     height = dot(disc.normal, f)
-    return crossing(disc, f, height, direction, least_t(origin, f, height, disc.radius))
+    return within(disc, f, height, direction, least_t(origin, f, height, disc.radius))
 
 
 def occludes(disc: PackedDisc, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a shadow ray, which starts clear of all surfaces, meets the disc."""
     f = origin - disc.centre
-    return crossing(disc, f, dot(disc.normal, f), direction, 0.0)
+    return within(disc, f, dot(disc.normal, f), direction, 0.0)
 
 
-def crossing(disc: PackedDisc, f: Vec, height: Number, direction: Vec, least: Number) -> tuple[Mask, Number]:
+def within(disc: PackedDisc, f: Vec, height: Number, direction: Vec, least: Number) -> tuple[Mask, Number]:
     """Whether and where a ray from f, relative to the centre, meets the disc, at a t of more than the `least`."""
-    slope = dot(disc.normal, direction)
-    t = -height / slope
-    p = f + t * direction
-    hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > least)
+    hit, t, p = crossing(disc.normal, f, height, direction, least)
     return hit & (dot(p, p) <= disc.radius * disc.radius), t
 
 

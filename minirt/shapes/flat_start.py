@@ -1,10 +1,13 @@
-"""Rays that start on a flat surface, for all that rounding lets one know, and so do not hit it there."""
+"""Rays that meet the plane of a flat shape, and those that start on it, for all that rounding lets one know, and so do
+not hit it there."""
 
 from __future__ import annotations
 
-from minirt.lanes import Vec, fabs, unit_roundoff, where
+from minirt.lanes import Vec, dot, fabs, unit_roundoff, where
 from minirt.lanes.largest import largest
+from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
+from minirt.shapes.plane import PARALLEL
 
 CLOSE = 2.0**-20  # shares of the size of a shape: a hit nearer than that may be the place where the ray starts
 ROUNDINGS = 4.0
@@ -25,3 +28,13 @@ def least_t(origin: Vec, f: Vec, height: Number, size: float) -> Number:
     `height` is that of the origin above the surface, and `size` that of the shape.
     """
     return where(fabs(height) <= start_error(origin, f), CLOSE * size, 0.0)
+
+
+def crossing(normal: Vec, f: Vec, height: Number, direction: Vec, least: Number) -> tuple[Mask, Number, Vec]:
+    """Whether and where a ray meets the plane of a flat shape at a t of more than the `least`: t and the point.
+
+    The ray starts at f and at this `height`, relative to the centre, as the point is.
+    """
+    slope = dot(normal, direction)
+    t = -height / slope
+    return (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > least), t, f + t * direction

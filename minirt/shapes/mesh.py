@@ -18,7 +18,7 @@ import numpy as np
 
 from minirt import meshes
 from minirt.fields import FARTHEST, Colour, Length, MeshField, MeshFile, Point, Triple, declare
-from minirt.lanes import Vec, cross, dot, maximum, minimum, unit, where
+from minirt.lanes import Vec, copysign, cross, dot, maximum, minimum, unit, where
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
@@ -62,6 +62,11 @@ class Mesh(Turnable):
     @property
     def parts(self) -> int:
         return len(self.triangles)
+
+    @property
+    def smooth(self) -> bool:  # type: ignore[override]
+        """Whether its file has normals."""
+        return self.triangles.normals is not None
 
     def some(self, indices: np.ndarray) -> Mesh:
         return self.replace(file=MeshFile(self.file.name, self.triangles.some(indices)))
@@ -172,6 +177,22 @@ def shading(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
     of_a, of_b, of_c = barycentric_coordinates(mesh, point)
     mean = of_a * mesh.normal_a + of_b * mesh.normal_b + of_c * mesh.normal_c
     return unit(where(dot(mean, mean) > OPPOSED, mean, normal))
+
+
+def smooth_point(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> Vec:
+    """Move a point of the triangle onto the smooth surface that the normals at its corners suggest.
+
+    At each corner its normal defines a tangent plane. The point is projected onto each of those that it lies below, and
+    the mean of the projections is weighted by the barycentric coordinates (Hanika, Hacking the Shadow Terminator, Ray
+    Tracing Gems II, 2021, chapter 4). With the normals of a sphere it lies as far above the sphere as the triangle lies
+    below. "Below" is as seen from the side of the unit vector `normal`.
+    """
+    of_a, of_b, of_c = barycentric_coordinates(mesh, point)
+    side = copysign(1.0, dot(mesh.normal, normal))
+    to_a = of_a * minimum(side * dot(point - mesh.a, mesh.normal_a), 0.0)
+    to_b = of_b * minimum(side * dot(point - mesh.b, mesh.normal_b), 0.0)
+    to_c = of_c * minimum(side * dot(point - mesh.c, mesh.normal_c), 0.0)
+    return point - side * (to_a * mesh.normal_a + to_b * mesh.normal_b + to_c * mesh.normal_c)
 
 
 def mapping(mesh: PackedMeshTriangle, point: Vec, normal: Vec) -> tuple[Number, Number, Vec, Vec]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import TYPE_CHECKING, ClassVar
 
 from minirt.fields import Angle, Direction, Triple, declare
@@ -24,9 +25,9 @@ class Oriented(Shape):
         Angle, ROLL, placeholder="degrees", keyed=True, default=0.0, sort="shapes with an axis or a normal"
     )
 
+    @abstractmethod
     def frame(self) -> Frame:
         """Its own frame, which turns with it."""
-        raise NotImplementedError
 
     @property
     def shows_axis(self) -> bool:
@@ -44,7 +45,9 @@ class Axial(Oriented):
     """A shape with an axis; its own frame is z, x and y, where y is the axis."""
 
     if TYPE_CHECKING:
-        axis: Triple
+
+        @property
+        def axis(self) -> Triple: ...
 
     def frame(self) -> Frame:
         return basis(self.axis, self.roll)
@@ -55,7 +58,9 @@ class Flat(Oriented):
     """A flat shape; its own frame is right and up of a picture on it, and the normal."""
 
     if TYPE_CHECKING:
-        normal: Triple
+
+        @property
+        def normal(self) -> Triple: ...
 
     def frame(self) -> Frame:
         return *facing_frame(self.normal, self.roll), Vec(*self.normal)

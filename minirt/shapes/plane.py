@@ -35,7 +35,7 @@ class Plane(Flat):
     normal: Triple = declare(Direction, "normal")
     colour: Triple = declare(Colour, "colour")
     _: KW_ONLY
-    checker: Checker | None = declare(Compound, "checkerboard", bare="1", **BOARD)
+    checker: Checker | None = declare(Compound, "checkerboard", bare="1", default=None, shared=BOARD)
 
     def pack(self) -> PackedPlane:
         right, up, _ = self.frame()

@@ -35,11 +35,11 @@ def may_meet(
     return active & ((least >= -margin) | (most <= margin))
 
 
-def depth_behind_plane(corner: Vec, normal: Vec, height: float, start: Vec) -> Number:
+def depth_behind_plane(corner: Vec, normal: Vec, height: Number, start: Vec) -> Number:
     """The greatest depth of `start` behind a plane, as seen from the apex.
 
     `height` is the height of the plane above the apex along `normal`.
     """
-    away = where(height > 0.0, 1.0, -1.0)
+    away = where(height > 0.0, splat(1.0, height), -1.0)
     slack = BEHIND * unit_roundoff(start.x) * (largest(start) + largest(corner))
     return away * dot(normal, start - corner) + slack

@@ -15,11 +15,13 @@ and one on the fields of the scene line, which states the shape once more, for t
     boundary(shape, point)                its faces: functions of a point that are 0 on a face and grow outwards, see
                                           `minirt.shapes.boundary`
 
-Three functions are optional:
+Four functions are optional:
 
     occludes(shape, origin, direction)    a cheaper `intersect` for shadow rays, which start clear of all surfaces
     shading(shape, point, normal)         the unit normal by which the point is lit, where that is not the `normal` of
                                           the surface: smooth shading of meshes
+    smooth_point(shape, point, normal)    the point of a smooth surface above a point of its facet, on the side of
+                                          `normal`; shadow rays of `smooth` shapes start there
     may_meet(shape, apex, start, direction, active)
                                           culling: which of the active rays of a packet with a common point, the apex,
                                           may hit the shape, see `minirt.shapes.pyramid`
@@ -58,8 +60,11 @@ class Shape(Attributes):
     batched: ClassVar[bool] = False  # whether one element is many primitives, as a mesh is many triangles
     infinite: ClassVar[bool] = False  # whether the shapes of this kind have no bounding box, as planes
     solid: ClassVar[bool] = True  # whether it has an inside, that of a plane being below it
-    if TYPE_CHECKING:
-        colour: Triple
+    smooth: ClassVar[bool] = False  # whether its flat parts are shaded as if they were curved; a mesh may be
+    if TYPE_CHECKING:  # its kinds declare it as a field
+
+        @property
+        def colour(self) -> Triple: ...
 
     @property
     def parts(self) -> int:
@@ -98,6 +103,11 @@ def geometric_normal(shape: Any, point: Vec, normal: Vec) -> Vec:
     return normal
 
 
+def same_point(shape: Any, point: Vec, normal: Vec) -> Vec:
+    """`smooth_point` of a shape without facets: the point itself."""
+    return point
+
+
 def all_rays(shape: Any, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
     """`may_meet` of a shape without culling, whose `intersect` is as fast as a test: all active rays."""
     return active
@@ -113,6 +123,7 @@ class Kind(NamedTuple):
     mapping: Callable[..., Any]
     boundary: Callable[..., Boundary]
     shading: Callable[..., Any] = geometric_normal
+    smooth_point: Callable[..., Any] = same_point
     may_meet: Callable[..., Any] = all_rays
     occludes: Callable[..., Any] | None = None
     batched: bool = False  # whether one element is many small primitives side by side
@@ -122,7 +133,8 @@ class Kind(NamedTuple):
 def kind_of(element: type[Shape]) -> Kind:
     """Make the entry of the registry for a shape from the names in its file; AttributeError where one is missing."""
     module = sys.modules[element.__module__]
-    optional = {name: getattr(module, name) for name in ("shading", "may_meet", "occludes") if hasattr(module, name)}
+    names = "shading", "smooth_point", "may_meet", "occludes"
+    optional = {name: getattr(module, name) for name in names if hasattr(module, name)}
     packed = get_type_hints(element.pack)["return"]
     return Kind(
         element,

@@ -13,15 +13,14 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, dot, fabs, unit_roundoff
+from minirt.lanes import Vec, dot, fabs
 from minirt.lanes.operations import Mask
 from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, upright_frame
 from minirt.shapes.bounds import bounds_of_points, point_along
-from minirt.shapes.flat_start import least_t
+from minirt.shapes.flat_start import crossing, least_t
 from minirt.shapes.oriented import Flat
-from minirt.shapes.plane import PARALLEL
 from minirt.shapes.shape import Ball, Bounds, Position
 
 
@@ -68,21 +67,18 @@ def intersect(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, 
     not."""
     f = origin - square.centre
     height = dot(square.normal, f)
-    return crossing(square, f, height, direction, least_t(origin, f, height, square.half))
+    return within(square, f, height, direction, least_t(origin, f, height, square.half))
 
 
 def occludes(square: PackedSquare, origin: Vec, direction: Vec) -> tuple[Mask, Number]:
     """Whether and where a shadow ray, which starts clear of all surfaces, meets the square."""
     f = origin - square.centre
-    return crossing(square, f, dot(square.normal, f), direction, 0.0)
+    return within(square, f, dot(square.normal, f), direction, 0.0)
 
 
-def crossing(square: PackedSquare, f: Vec, height: Number, direction: Vec, least: Number) -> tuple[Mask, Number]:
+def within(square: PackedSquare, f: Vec, height: Number, direction: Vec, least: Number) -> tuple[Mask, Number]:
     """Whether and where a ray from f, relative to the centre, meets the square, at a t of more than the `least`."""
-    slope = dot(square.normal, direction)
-    t = -height / slope
-    p = f + t * direction
-    hit = (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > least)
+    hit, t, p = crossing(square.normal, f, height, direction, least)
     return hit & (fabs(dot(p, square.right)) <= square.half) & (fabs(dot(p, square.up)) <= square.half), t
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,6 +14,7 @@ import minirt
 from tests.cli.announcing import RENDERING
 from tests.cli.program import ANNOUNCING, Result, interrupt, start
 from tests.terminals import terminal
+from tests.waiting import until
 
 Run = Callable[..., Result]
 
@@ -52,11 +54,13 @@ def test_an_interrupt_leaves_no_half_file(folder: Path, name: str) -> None:
     arguments = "ball.rt", "-o", name, "--turntable", "3600", "--size", "640x360", "--samples", "64", "--threads", "1"
     with terminal() as screen, start(folder, *arguments, command=ANNOUNCING, stderr=screen.end) as process:
         screen.leave()
-        screen.wait_for(b"picture 2 of 3600")
+        until(lambda: re.search(rb"picture ([3-9]|\d\d+) of 3600", screen.read()), "the third picture")
         screen.wait_for(RENDERING)
         assert interrupt(process, screen) == (130, b"")
     assert b"Traceback" not in screen.text
-    written = [file for file in folder.iterdir() if file.name != "ball.rt"]
+    assert b"--threads 1 --resume goes on" in screen.text
+    assert (folder / f".{name}.part").exists()
+    written = [file for file in folder.iterdir() if file.name not in ("ball.rt", f".{name}.part")]
     assert {file.name for file in written} >= ({"spin-0001.png", "spin-0002.png"} if name == "spin.png" else set())
     assert all(file.name.startswith("spin-") for file in written)
     assert bool(written) == (name == "spin.png")

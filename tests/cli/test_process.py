@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from pathlib import Path
 
@@ -70,6 +71,18 @@ def test_rendering_to_png_imports_nothing_that_other_work_needs(folder: Path) ->
     assert OTHER_WORK & modules(RENDER.format("x.bmp"), folder) == {"PIL"}
 
 
+NO_MEMORY = "lambda *_, **__: (_ for _ in ()).throw(MemoryError())"
+WRITING = """
+import os, pathlib, signal, sys
+from minirt import cli
+
+def fsync(_):
+    print(any(path.name.endswith(".tmp") for path in pathlib.Path().iterdir()), flush=True)
+    signal.raise_signal({number})
+
+os.fsync = fsync
+sys.exit(cli.main(["ball.rt", "-o", "x.png"]))
+"""
 VERSION = "from minirt.cli import main\nimport sys\nsys.argv = ['miniRT', '--version']\nmain()\n"
 
 
@@ -81,8 +94,8 @@ def test_numpy_starts_no_threads_of_its_own_unless_asked(folder: Path, asked: st
 
 
 def test_python_m_minirt_runs_the_program(folder: Path) -> None:
-    ended = program(folder)
-    assert (ended.status, ended.out) == (1, b"")
+    ended = program(folder, "--check")
+    assert (ended.status, ended.out) == (2, b"")
     assert ended.err.startswith("Error\nexpected one scene file, got 0\n")
 
 
@@ -91,7 +104,7 @@ def test_help_and_version_start_fast(folder: Path, option: str) -> None:
     """Only the standard library and a few modules of the program are imported, and few functions called."""
     assert program(folder, option).status == 0
     allowed = {"minirt", "minirt.cli", "minirt.errors"}
-    allowed |= {f"minirt.cli.{each}" for each in ("argument_values", "arguments", "exit_status", "output")}
+    allowed |= {f"minirt.cli.{each}" for each in ("argument_values", "arguments", "example", "exit_status", "output")}
     loaded = modules(f"{QUIETLY}    with contextlib.suppress(SystemExit): main(['{option}'])", folder)
     loaded -= modules("import contextlib, io", folder)
     assert {each for each in loaded if each.split(".")[0] not in sys.stdlib_module_names} == allowed
@@ -106,9 +119,45 @@ def test_an_interrupt_ends_a_long_render_without_a_trace(folder: Path) -> None:
         screen.leave()
         screen.wait_for(RENDERING)
         assert interrupt(process, screen) == (130, b"")
-    assert screen.text.split() == [RENDERING]
+    assert screen.text.startswith(RENDERING)
+    assert b"Traceback" not in screen.text
     assert (folder / "x.png").read_bytes() == b"old"
     assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_a_signal_ends_a_long_render_with_its_status_and_without_a_trace(folder: Path, name: str) -> None:
+    number = getattr(signal, name, None) or pytest.skip(f"{name} is of Unix")
+    (folder / "x.png").write_bytes(b"old")
+    arguments = "ball.rt", "-o", "x.png", "--size", "1920x1080", "--samples", "65536", "--threads", "2"  # hours
+    with start(folder, *arguments, command=ANNOUNCING) as process:
+        assert process.stderr is not None
+        assert process.stderr.readline() == RENDERING + b"\n"
+        process.send_signal(number)
+        out, err = process.communicate(timeout=HANG_LIMIT)
+    assert (process.returncode, out, err) == (128 + number, b"", b"")
+    assert (folder / "x.png").read_bytes() == b"old"
+    assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_a_signal_while_a_file_is_written_leaves_no_temporary(folder: Path, name: str) -> None:
+    number = getattr(signal, name, None) or pytest.skip(f"{name} is of Unix")
+    (folder / "x.png").write_bytes(b"old")
+    with start(folder, command=[sys.executable, "-c", WRITING.format(number=int(number))]) as process:
+        out, err = process.communicate(timeout=HANG_LIMIT)
+    assert (process.returncode, err) == (128 + number, b"")
+    assert out.strip() == b"True"
+    assert (folder / "x.png").read_bytes() == b"old"
+    assert {path.name for path in folder.iterdir()} == {"ball.rt", "x.png"}
+
+
+def test_a_lack_of_memory_is_a_sentence(folder: Path) -> None:
+    code = f"from minirt import cli, image\nimage.Image.write = {NO_MEMORY}\nraise SystemExit(cli.main())"
+    ended = run([sys.executable, "-c", code, "ball.rt", "-o", "x.png"], cwd=folder, env=environment(), text=True)
+    assert (ended.returncode, ended.stdout) == (1, "")
+    assert ended.stderr.startswith("Error\nnot enough memory; ")
+    assert ended.stderr.count("\n") == 2
 
 
 def test_a_closed_pipe_gives_no_traceback(folder: Path) -> None:

@@ -20,6 +20,7 @@ ASKED = {  # what goes to standard output
     "version": ("--version",),
     "help": ("--help",),
     "keys": ("--list-keys",),
+    "completion": ("--completion", "bash"),
 }
 CANNOT_WRITE = "Error\nstandard output: cannot write: "
 

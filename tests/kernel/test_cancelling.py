@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from minirt.kernel import frame, interpreted
-from minirt.kernel.frame import CANCELLED, TILE
+from minirt.kernel.frame import CANCELLED
+from minirt.kernel.stored_light import TILE
 from minirt.lanes import Vec
 from minirt.rendering.frame_arguments import frame_arguments
 from minirt.rendering.scene_packing import Packing

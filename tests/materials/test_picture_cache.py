@@ -14,6 +14,9 @@ from PIL import Image
 from minirt.errors import FileError
 from minirt.materials import picture_cache
 from minirt.materials.picture_cache import heights, picture
+from minirt.rendering.packing.colours import Colours
+from minirt.rendering.packing.materials import TexturePool
+from minirt.scene import parse
 from tests.guards import must_not_open
 
 COLOURS = np.array([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [10, 20, 30]], [[255, 255, 255], [0, 0, 0]]], np.uint8)
@@ -46,6 +49,40 @@ def test_every_pixel_format_becomes_red_green_and_blue(tmp_path: Path, mode: str
     image = Image.fromarray(COLOURS).convert(mode)
     image.save(path)
     assert np.array_equal(picture(path), np.asarray(image.convert("RGB")))
+
+
+def test_a_picture_for_which_memory_is_short_is_not_called_damaged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_memory(_self: Image.Image, _mode: str) -> None:
+        raise MemoryError
+
+    Image.fromarray(COLOURS[..., 0]).save(tmp_path / "a.png")
+    monkeypatch.setattr(Image.Image, "convert", no_memory)
+    assert refusal(tmp_path / "a.png") == "needs more memory than there is to decode it"
+
+
+def test_all_links_to_a_file_share_one_array_until_one_is_replaced(tmp_path: Path) -> None:
+    Image.fromarray(COLOURS).save(tmp_path / "a.png")
+    os.link(tmp_path / "a.png", tmp_path / "hard.png")
+    first, hard = picture(tmp_path / "a.png"), picture(tmp_path / "hard.png")
+    assert first is hard
+    Image.fromarray(255 - COLOURS).save(tmp_path / "new.png")
+    (tmp_path / "new.png").replace(tmp_path / "hard.png")
+    assert np.array_equal(picture(tmp_path / "hard.png"), 255 - COLOURS)
+    assert picture(tmp_path / "a.png") is first
+
+
+@pytest.mark.parametrize("decodes", [False, True])
+def test_all_links_to_a_file_are_packed_once(tmp_path: Path, decodes: bool) -> None:
+    Image.fromarray(COLOURS).save(tmp_path / "a.png")
+    Image.fromarray(COLOURS).save(tmp_path / "same_pixels.png")
+    os.link(tmp_path / "a.png", tmp_path / "hard.png")
+    scene = parse("A 1 255,255,255\nC 0,0,-5 0,0,1 70\nL 0,9,0 1 255,255,255\n", str(tmp_path / "x.rt")).scene
+    pool = TexturePool(scene)
+    names = "a.png", "hard.png", "same_pixels.png", "hard.png"
+    assert [pool.number(name, Colours(decodes).texture) for name in names] == [1, 1, 2, 1]
+    assert pool.arrays()["texels"].size == 2 * COLOURS.size
 
 
 def test_heights_are_the_luminance_from_0_to_1(tmp_path: Path) -> None:

@@ -10,7 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from minirt.errors import FileError, SceneError
-from minirt.materials.picture_cache import SIDE, heights, picture, sky
+from minirt.jail.decoder import SIDE
+from minirt.materials.picture_cache import heights, picture, sky
 from minirt.materials.radiance import RadianceError, read_header, read_pixels
 from minirt.scene import load, parse
 from tests.kernel.pictures import linear

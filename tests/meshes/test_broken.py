@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from minirt.meshes import obj
+from minirt.meshes import ears, obj
 from minirt.meshes.block import ObjError
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\n"
@@ -67,6 +67,44 @@ def test_a_file_with_too_many_triangles_is_refused(monkeypatch: pytest.MonkeyPat
         obj.parse((SQUARE + 4 * "f 1 2 3\n").encode())
 
 
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [("f 1 2 3 1 2 3 1 2 3 1\n", 6), ("f 1 2 3 \\\n1 2 \\\n3 1 2 3 1 2 \\\n3\n", 8), ("f" + " \\\n" * 99, 12)],
+)
+def test_a_long_line_is_refused_before_all_of_it_is_read(monkeypatch: pytest.MonkeyPatch, text: str, line: int) -> None:
+    monkeypatch.setattr(obj, "BLOCK_BYTES", 1)
+    monkeypatch.setattr(obj, "LONGEST_LINE", 20)
+    with pytest.raises(ObjError, match=rf"^line {line}: longer than 0 MiB$"):
+        obj.parse((SQUARE + text).encode())
+    monkeypatch.setattr(obj, "LONGEST_LINE", 30)
+    assert len(obj.parse((SQUARE + "f 1 2 3 1 2 3 1 2 3 1\n").encode())) > 0
+
+
+def test_a_face_that_takes_too_long_to_cut_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    comb = "".join(f"v {x} {y} 0\n" for x in range(50) for y in (x % 2, 9))  # its corners are not in order
+    text = (comb + "f 1 2 3\nf " + " ".join(map(str, range(1, 101))) + "\n").encode()
+    whole = len(obj.parse(text))
+    assert whole > 50
+    monkeypatch.setattr(ears, "MOST_LOOKS", 100)
+    with pytest.raises(ObjError, match=r"^line 102: a face of 100 corners takes too long to cut into triangles$"):
+        obj.parse(text)
+
+
+def test_a_file_of_too_many_lines_is_refused_before_they_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(obj, "MAX_LINES", 100)
+    triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+    assert len(obj.parse((triangle + "#\n" * 96).encode()).corners) == 1
+    monkeypatch.setattr(obj, "BytesIO", None)
+    with pytest.raises(ObjError, match=r"^has 101 lines, more than 100$"):
+        obj.parse((triangle + "#\n" * 97).encode())
+
+
 def test_a_number_of_a_million_digits_gives_a_short_message() -> None:
     with pytest.raises(ObjError, match="got 1000000 characters"):
         obj.parse(b"v 0 0 " + b"1" * 1_000_000)
+
+
+def test_a_number_that_is_too_long_is_refused_whatever_its_value() -> None:
+    number = b"0." + b"1" * 300
+    with pytest.raises(ObjError, match=r"^line 5: v must be a number, got 302 characters"):
+        obj.parse(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 0 0 " + number + b"\n")

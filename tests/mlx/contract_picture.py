@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING
+from unittest.mock import patch
 
 import numpy as np
 
 from minirt.mlx import Event, Key
+from minirt.mlx.memory import Memory
 from minirt.mlx.text import draw_text
 from tests.mlx.contract import scenario
 
@@ -15,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from minirt.mlx import Image
+    from minirt.mlx import Image, Window
     from tests.mlx.harness import Harness
     from tests.mlx.user import User
 
@@ -180,6 +183,24 @@ def the_old_picture_is_stretched_until_the_next_is_drawn(harness: Harness) -> No
 
 @scenario(["full", [2560, 1600]], ["back", [200, 100]], ["key", 122])
 def full_screen_and_back(harness: Harness) -> None:
+    """The window stays the same one, keeps the focus and gets the release of the key that was pressed before."""
+    sizes: list[list[int]] = []
+
+    def actions(user: User) -> None:
+        for number in (1, 2):
+            user.keys("+f")
+            user.until(lambda number=number: len(sizes) >= number)  # type: ignore[misc]
+            user.keys("-f")
+        user.keys("+z -z")
+
+    harness.m.mlx_resize_hook(harness.win, log_sizes(harness, sizes))
+    harness.m.mlx_hook(harness.win, Event.FOCUS_OUT, 0, lambda _: harness.record("focus lost"), None)
+    harness.m.mlx_hook(harness.win, Event.KEY_PRESS, 0, toggle_full_screen(harness, harness.win, sizes), None)
+    harness.run(actions)
+
+
+@scenario(["full", [2560, 1600]], ["back", [200, 100]], ["key", 122])
+def full_screen_without_a_window_manager_and_back(harness: Harness) -> None:
     """Keys still work if full screen replaces the window and the release of the pressed key is lost."""
     sizes: list[list[int]] = []
 
@@ -189,19 +210,39 @@ def full_screen_and_back(harness: Harness) -> None:
             user.until(lambda number=number: len(sizes) >= number)  # type: ignore[misc]
         user.keys("+z -z")
 
-    def pressed(key: int, _: object) -> None:
-        if key == Key.F:
-            harness.m.mlx_set_fullscreen(harness.win, not sizes)
-        else:
-            harness.record("key", key)
+    without_manager(harness)
+    harness.m.mlx_resize_hook(harness.win, log_sizes(harness, sizes))
+    harness.m.mlx_hook(harness.win, Event.KEY_PRESS, 0, toggle_full_screen(harness, harness.win, sizes), None)
+    harness.run(actions)
+
+
+def log_sizes(harness: Harness, sizes: list[list[int]]) -> Callable[..., None]:
+    """Return a hook that logs the sizes of a window, first that of full screen."""
 
     def resized(width: int, height: int, _: object) -> None:
         sizes.append([width, height])
         harness.record("back" if len(sizes) > 1 else "full", [width, height])
 
-    harness.m.mlx_resize_hook(harness.win, resized)
-    harness.m.mlx_hook(harness.win, Event.KEY_PRESS, 0, pressed, None)
-    harness.run(actions)
+    return resized
+
+
+def toggle_full_screen(harness: Harness, window: Window, sizes: list[list[int]]) -> Callable[..., None]:
+    """Return a hook that lets F enter full screen, and leave it when there is a size; other keys are logged."""
+
+    def pressed(key: int, _: object) -> None:
+        if key == Key.F:
+            harness.m.mlx_set_fullscreen(window, not sizes)
+        else:
+            harness.record("key", key)
+
+    return pressed
+
+
+def without_manager(harness: Harness) -> None:
+    """Let the back end believe that no window manager has full screen."""
+    if not isinstance(harness.mlx.backend, Memory):
+        native = importlib.import_module("minirt.mlx.on_pyglet.native")
+        harness.undo.enter_context(patch.object(native, "manager_has_full_screen", lambda _: False))
 
 
 @scenario(["title", "another"])

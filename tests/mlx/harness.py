@@ -6,6 +6,7 @@ the actions become the script of `Memory`; on a screen a second thread performs 
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from minirt.mlx import Mlx, Window
@@ -28,6 +29,7 @@ class Harness:
         self.m = m
         self.mlx = m.mlx_init()
         self.expected = expected
+        self.undo = ExitStack()  # of what a scenario has changed for all programs
         self.log: list[list[Any]] = []
         self.win = m.mlx_new_window(self.mlx, 200, 100, title, resizable=True)
 
@@ -47,9 +49,10 @@ class Harness:
     def run(self, actions: Callable[[User], object]) -> None:
         """Run the loop while a user performs the actions, then end the loop."""
         backend = self.mlx.backend
-        if isinstance(backend, Memory):
-            actions(MemoryUser(self, backend))
-            backend.do(lambda: self.m.mlx_loop_exit(self.mlx))
-            self.m.mlx_loop(self.mlx)
-        else:
-            ScreenUser(self).run(actions)
+        with self.undo:
+            if isinstance(backend, Memory):
+                actions(MemoryUser(self, backend))
+                backend.do(lambda: self.m.mlx_loop_exit(self.mlx))
+                self.m.mlx_loop(self.mlx)
+            else:
+                ScreenUser(self).run(actions)

@@ -60,8 +60,8 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     add_line(
         registry,
-        '    bump: Bump | None = declare(Compound, "relief", record=Bump, aliases=("bum",), **MAPPED)',
-        '    sheen: Sheen | None = declare(Compound, "soft highlight", record=Sheen, **SHARED)',
+        '    marble: Marble | None = declare(Compound, "veins of marble", record=Marble, default=None, shared=MAPPED)',
+        '    sheen: Sheen | None = declare(Compound, "soft highlight", record=Sheen, default=None, shared=SHARED)',
     )
     add_line(
         package / "rendering/packing/materials.py",

@@ -9,7 +9,7 @@ import numpy as np
 
 from minirt.shapes.mesh import Mesh
 from tests.reference.hits import crossings
-from tests.reference.normals import normals, shading
+from tests.reference.normals import normals, shading, smooth_points
 from tests.reference.vectors import Array, dot, length, own_x_and_z
 
 EDGE = 1e-12  # tolerance of barycentric coordinates, so that neighbours have no gap
@@ -95,11 +95,33 @@ def _(mesh: Mesh, points: Array, normal: Array) -> Array:
     if corner_normals is None:
         return normal
     owner = triangle_of(mesh, points)
-    a, b, c = corners_and_balls(mesh)[0][owner].transpose(1, 0, 2)
-    area = dot(np.cross(b - a, c - a), normal)
-    of_b = dot(np.cross(points - a, c - a), normal) / area
-    of_c = dot(np.cross(b - a, points - a), normal) / area
-    blended = np.einsum(
-        "ij,ijk->ik", np.stack([1 - of_b - of_c, of_b, of_c], axis=1), corner_normals[owner] @ own_axes(mesh)
-    )
+    normals_there = corner_normals[owner] @ own_axes(mesh)
+    blended = np.einsum("ij,ijk->ik", shares_of_corners(mesh, owner, points), normals_there)
     return blended / length(blended)[:, None]
+
+
+def shares_of_corners(mesh: Mesh, owner: np.ndarray, points: Array) -> Array:
+    """The barycentric coordinates of points on triangles, (n, 3)."""
+    a, b, c = corners_and_balls(mesh)[0][owner].transpose(1, 0, 2)
+    out = np.cross(b - a, c - a)
+    of_b, of_c = dot(np.cross(points - a, c - a), out), dot(np.cross(b - a, points - a), out)
+    of_b, of_c = of_b / dot(out, out), of_c / dot(out, out)
+    return np.stack([1 - of_b - of_c, of_b, of_c], axis=1)
+
+
+@smooth_points.register
+def _(mesh: Mesh, points: Array, facing: Array) -> Array:
+    corner_normals = mesh.triangles.normals
+    if corner_normals is None:
+        return points
+    owner = triangle_of(mesh, points)
+    corners = corners_and_balls(mesh)[0][owner]
+    outward = corner_normals[owner] @ own_axes(mesh)
+    a, b, c = corners.transpose(1, 0, 2)
+    out = np.cross(b - a, c - a)
+    out *= np.sign(dot(out, outward.sum(axis=1)))[:, None]
+    outward = outward * np.sign(dot(out, facing))[:, None, None]
+    # The mean of the projections onto the tangent planes of the corners; a point above one of them stays.
+    above = np.einsum("ijk,ijk->ij", points[:, None] - corners, outward)
+    projected = points[:, None] - np.minimum(above, 0)[..., None] * outward
+    return np.asarray(np.einsum("ij,ijk->ik", shares_of_corners(mesh, owner, points), projected))

@@ -35,6 +35,12 @@ def shading(shape: Shape, points: Array, normal: Array) -> Array:
     return normal
 
 
+@singledispatch
+def smooth_points(shape: Shape, points: Array, facing: Array) -> Array:
+    """The points of the smooth surface of a shape above points of its facets, seen from the side of `facing`."""
+    return points
+
+
 @normals.register(Plane)
 @normals.register(Square)
 @normals.register(Disc)

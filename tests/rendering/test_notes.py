@@ -37,7 +37,7 @@ def test_kinds_and_features_that_a_kernel_lacks_are_named() -> None:
 def test_a_wide_kernel_is_named_with_what_it_waits_for() -> None:
     scene = Scene((EYE, Sphere((0, 0, 0), 1, GREY)))
     for wide in WIDE_KERNELS:
-        features = "all" if wide.features else "no"
+        features = "all" if wide.name == "full" else "no"
         note = f"wide kernel for all kinds of shapes and {features} features"
         assert list(kernel_notes(scene, wide, compiling=False)) == [note]
         assert list(kernel_notes(scene, wide, compiling=True)) == [

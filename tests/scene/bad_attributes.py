@@ -102,6 +102,11 @@ LIGHTS: list[Case] = [
         "further light colour must be R,G,B, three numbers with commas between them, got 'checker'",
     ),
     ("l 0,0,0 1 1,2,3 fade:0", 22, "further light fade must be > 0, got 0"),
+    ("l 0,0,0 1 size:0", 16, "further light size must be > 0, got 0"),
+    ("l 0,0,0 1 size:wide", 16, f"further light size {NUMBER} 'wide'"),
+    ("sl 0,0,0 0,-1,0 40 1 size:-2", 27, "spot light size must be > 0, got -2"),
+    ("dl 0,-1,0 1 size:91", 18, "parallel light size must be in [0, 90], got 91"),
+    ("dl 0,-1,0 1 size:-1", 18, "parallel light size must be in [0, 90], got -1"),
     ("l 0,0,0 1 fade:-1", 16, "further light fade must be > 0, got -1"),
     (
         "dl 0,-1,0 1 fade:5",
@@ -111,7 +116,7 @@ LIGHTS: list[Case] = [
     ("dl 0,0,0 1", 4, "parallel light direction must not be 0,0,0: it points nowhere (--lenient takes 0,-1,0)"),
     ("dl 0,-2,0 1", 6, "parallel light direction y must be in [-1, 1], got -2"),
     ("dl 0,-1,0 1.5", 11, "parallel light brightness must be in [0, 1], got 1.5"),
-    ("dl 0,-1,0", 10, "parallel light brightness is missing: expected 'dl dx,dy,dz brightness [R,G,B]'"),
+    ("dl 0,-1,0", 10, "parallel light brightness is missing: expected 'dl dx,dy,dz brightness [R,G,B] [size:degrees]'"),
     ("sl 0,0,0 0,-1,0 181 1", 17, "spot light angle must be in [0, 180], got 181"),
     ("sl 0,0,0 0,-1,0 -1 1", 17, "spot light angle must be in [0, 180], got -1"),
     ("sl 0,0,0 0,-1,0 40 1 rim:2", 26, "spot light rim must be in [0, 1], got 2"),
@@ -119,16 +124,16 @@ LIGHTS: list[Case] = [
         "sl 0,0,0 0,-1,0 40",
         19,
         "spot light brightness is missing: expected "
-        "'sl x,y,z dx,dy,dz angle brightness [R,G,B] [rim:ratio] [fade:distance]'",
+        "'sl x,y,z dx,dy,dz angle brightness [R,G,B] [rim:ratio] [fade:distance] [size:diameter]'",
     ),
     ("L 0,0,0 1 rim:0.5", 11, "light has no attribute 'rim': it belongs to spot light"),
     ("l 0,0,0 1 attenuation:9", 11, "unknown attribute 'attenuation', did you mean 'fade'?"),
     (
         "dl 0,-1,0 1 1,2,3 soft",
         19,
-        "parallel light has no further field 'soft': expected 'dl dx,dy,dz brightness [R,G,B]'",
+        "parallel light has no further field 'soft': expected 'dl dx,dy,dz brightness [R,G,B] [size:degrees]'",
     ),
-    ("dl 0,-1,0 1 soft:1", 13, "unknown attribute 'soft': parallel light has none"),
+    ("dl 0,-1,0 1 soft:1", 13, "unknown attribute 'soft': parallel light has size"),
     ("R 640 480 mirror:1", 11, "resolution has no attribute 'mirror': it belongs to shapes"),
 ]
 

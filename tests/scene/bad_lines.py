@@ -53,7 +53,11 @@ COUNTS: list[Case] = [
     ("sp 0,0,20 255,0,0", 18, "sphere colour is missing"),
     ("pl 0,0,0 1,2,3", 15, "plane colour is missing"),
     ("cy 0,0,20 0,1,0 2 255,0,0", 26, "cylinder colour is missing"),
-    ("L 0,0,0", 8, "light brightness is missing: expected 'L x,y,z brightness [R,G,B] [fade:distance]'"),
+    (
+        "L 0,0,0",
+        8,
+        "light brightness is missing: expected 'L x,y,z brightness [R,G,B] [fade:distance] [size:diameter]'",
+    ),
     ("R 640", 6, "resolution height is missing"),
     ("R 640x480", 10, "resolution height is missing"),
     ("sp 0,0,20 5 255,0,0 7", 21, "sphere has no further field '7': expected 'sp x,y,z diameter R,G,B'"),

@@ -20,7 +20,7 @@ from minirt.errors import SceneError
 from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, Real, Three, Whole, whole
 from minirt.fields.numerals import LONGEST, NUMBER, PLAIN, WHOLE, numbers, wholes
 from minirt.records import record
-from minirt.scene import describe, fast, parse, parser
+from minirt.scene import describe, element_reader, fast, parse, parser
 from minirt.scene.diagnostics import Log
 from minirt.scene.lines import line_from
 from minirt.scene.parser import read_lines
@@ -70,10 +70,18 @@ def test_the_fast_path_reads_plain_lines(line: str) -> None:
     assert not log.errors + log.notices
 
 
+@pytest.mark.parametrize("line", ["", "\r", " \t", "#", "\t#\r", f" # {SPHERE} // é\x85\v"])
+def test_the_fast_path_reads_comments_and_blank_lines(line: str) -> None:
+    log = Log("test.rt", lenient=False)
+    assert list(fast.read([SPHERE, line, SPHERE]))[1] == line == parser.read_line(line_from(2, line), {}, log)
+    assert not log.errors + log.notices
+
+
 @pytest.mark.parametrize(
     "line",
     [
-        *("", "#", f"# {SPHERE}", CAMERA, LIGHT, f"\ufeff{SPHERE}", "l 0,0,0 1", f"{SPHERE} 7", f"{SPHERE} roll:1"),
+        *("//", "# a\r#", "\v", "\xa0# a", "#\0", "\ufeff"),
+        *(CAMERA, LIGHT, f"\ufeff{SPHERE}", "l 0,0,0 1", f"{SPHERE} 7", f"{SPHERE} roll:1"),
         *(SPHERE + end for end in ("\r\r", "#\r\r", "\n", "# \n", "#\0", "\x85", ",", " //")),
         *(f"sp 0,0,20 {size} 1,2,3" for size in ("0", "-1", "nan", "inf", "1e999", "1_0", "٣", "1.1e15", "0x1")),
         *(f"sp {centre} 5 1,2,3" for centre in ("0,20", "0,0,20,1", "0,0,1e16", "0,,20", "0,0,20,", "0,0,nan")),
@@ -85,8 +93,8 @@ def test_the_fast_path_reads_plain_lines(line: str) -> None:
 def test_the_fast_path_skips_a_line_and_reads_its_neighbours(line: str) -> None:
     before, element, after = fast.read([SPHERE, line, SPHERE])
     assert element is None
-    assert before is not None
-    assert after is not None
+    assert not isinstance(before, str | None)
+    assert not isinstance(after, str | None)
     assert before.source == after.source == SPHERE
 
 
@@ -218,14 +226,22 @@ def test_plain_lines_skip_the_diagnosing_reader() -> None:
         seen.append(line.number)
         return original(line, log)
 
-    original = parser.split_line
+    original = element_reader.split_line
     with patch.object(parser, "split_line", split_line):
         read_lines(sources, Log("test.rt", lenient=False))
-    assert seen == [1, 2, 7003, 10_003]
+    assert seen == [1, 2, 7003]  # the last line is blank
     with patch.object(parser, "split_line", split_line), patch.object(fast, "read", no_plain_lines):
         seen.clear()
         read_lines(sources, Log("test.rt", lenient=False))
     assert len(seen) == 10_003
+
+
+def test_comments_and_blank_lines_skip_the_diagnosing_reader() -> None:
+    lines = ["# a comment", "", "\t\r"] * 5000
+    with patch.object(parser, "split_line", wraps=element_reader.split_line) as split_line:
+        items = read_lines(scene_with(*lines).split("\n"), Log("test.rt", lenient=False))
+    assert items[2:-1] == lines
+    assert [call.args[0].number for call in split_line.call_args_list] == [1, 2]
 
 
 def test_garbage_collection_is_left_as_it_was() -> None:

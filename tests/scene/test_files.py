@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -12,8 +13,11 @@ from typing import Any
 
 import pytest
 
+from minirt.element import pattern
 from minirt.errors import Problem, SceneError
-from minirt.scene import load, parse
+from minirt.scene import files, load, parse
+from minirt.scene.registry import ELEMENTS
+from minirt.shapes import Shape
 from tests.guards import must_end, must_not_open
 from tests.scene.examples import AMBIENT, CAMERA, SPHERE, WHOLE, problems, scene_with
 
@@ -203,8 +207,10 @@ def test_a_lone_surrogate_is_not_text() -> None:
         ("5" * 2**20, 1, "a line begins with one of"),
         ("/" * 2**20, 1, "a comment begins with '#'"),
         ("sp 0,0,20 5 1,2,3" + "\v" * 2**20, 18, "got U+000B"),
+        ("sp 0,0,20 5 1,2,3" + "\tx" * 2**19 + "\v\r", 2**20 + 18, "got U+000B"),
+        ("sp 0,0,20 5 1,2,3" + "x" * 2**20 + "\r\v", 2**20 + 18, "a carriage return"),
     ],
-    ids=range(12),
+    ids=range(14),
 )
 def test_a_line_of_a_megabyte_is_refused_quickly_with_a_short_message(line: str, column: int, message: str) -> None:
     with must_end(), lines_run() as count:
@@ -213,6 +219,29 @@ def test_a_line_of_a_megabyte_is_refused_quickly_with_a_short_message(line: str,
     assert (problem.line, problem.column) == (3, column)
     assert message in problem.message
     assert len(str(problem)) < 600
+
+
+@pytest.mark.parametrize("line", ["", "#", "\r", SPHERE])
+def test_a_file_of_too_many_lines_is_refused_before_its_lines_are_read(line: str) -> None:
+    text = WHOLE + f"{line}\n" * (files.MAX_LINES + 1 - WHOLE.count("\n"))
+    with pytest.raises(SceneError, match=r"has 4,194,305 lines, more than 4,194,304$"), lines_run() as count:
+        files.decode(text.encode(), "scene.rt")
+    assert count() < 100
+
+
+def test_a_file_of_as_many_lines_as_allowed_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(files, "MAX_LINES", 200)
+    text = WHOLE + "#\n" * (200 - WHOLE.count("\n"))
+    assert len(parse(text).scene.items) == 201
+    with pytest.raises(SceneError, match="201 lines"):
+        parse(text + "\n")
+
+
+@pytest.mark.parametrize("kind", [kind for kind in ELEMENTS.values() if issubclass(kind, Shape)])
+def test_a_file_of_shapes_has_fewer_lines_than_allowed(kind: type[Shape]) -> None:
+    values = pattern(kind).split(" [")[0].removeprefix(kind.code)
+    shortest = kind.code + re.sub("[A-Za-z]+", "1", values) + "\n"
+    assert len(shortest) > files.MAX_BYTES / files.MAX_LINES
 
 
 def test_messages_cannot_act_on_a_terminal() -> None:

@@ -9,11 +9,14 @@ from tests.scene.examples import CAMERA, CYLINDER
 
 
 def test_the_pattern_of_an_element_shows_its_line() -> None:
-    assert pattern(ELEMENTS["C"]) == "C x,y,z dx,dy,dz fov [roll:degree] [tone:word] [exposure:EV]"
+    assert (
+        pattern(ELEMENTS["C"])
+        == "C x,y,z dx,dy,dz fov [roll:degree] [tone:word] [exposure:EV] [lens:diameter] [focus:distance]"
+    )
     assert pattern(ELEMENTS["cy"]) == "cy x,y,z ax,ay,az diameter height R,G,B"
     assert pattern(ELEMENTS["pl"]) == "pl x,y,z nx,ny,nz R,G,B"
-    assert pattern(ELEMENTS["L"]) == "L x,y,z brightness [R,G,B] [fade:distance]"
-    assert len(pattern(ELEMENTS["C"]).split()) == len(CAMERA.split()) + 3
+    assert pattern(ELEMENTS["L"]) == "L x,y,z brightness [R,G,B] [fade:distance] [size:diameter]"
+    assert len(pattern(ELEMENTS["C"]).split()) == len(CAMERA.split()) + 5
     assert len(pattern(ELEMENTS["cy"]).split()) == len(CYLINDER.split())
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from minirt.scene import FurtherLight, Light, dump, parse
+from minirt.scene.diagnostics import MAX_NOTICES
 from tests.scene.examples import AMBIENT, CAMERA, LIGHT, PLANE, SPHERE, SUBJECT, problems, read, scene_with
 
 CASES = [
@@ -140,3 +141,12 @@ def test_other_mistakes_are_errors_also_when_lenient(line: str, column: int, mes
 def test_only_one_camera_and_one_ambient_light_also_when_lenient() -> None:
     assert [each.line for each in problems(scene_with(CAMERA, AMBIENT), lenient=True)] == [3, 4]
     assert "no camera" in problems(f"{AMBIENT}\n{SPHERE}\n", lenient=True)[0].message
+
+
+@pytest.mark.parametrize("count", [1, MAX_NOTICES, MAX_NOTICES + 1, 3 * MAX_NOTICES])
+def test_the_last_of_too_many_notices_says_that_there_are_more(count: int) -> None:
+    scene, notices = parse(scene_with(*[f"{SPHERE} //"] * count), lenient=True)
+    assert len(scene.spheres) == count
+    assert [notice.line for notice in notices] == list(range(3, 3 + min(count, MAX_NOTICES + 1)))
+    are_complete = count <= MAX_NOTICES
+    assert ("too many notices: those from here on are left out" in notices[-1].message) != are_complete

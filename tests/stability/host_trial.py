@@ -100,7 +100,7 @@ def enter(project: ProjectCopy, cache: Path, seconds: float, quiet: bool) -> Non
     os.environ.update(project.environment(cache))
     for name in ("SCENE", "DISPLAY", "WAYLAND_DISPLAY"):
         os.environ.pop(name, None)
-    sys.path[:] = [str(project.root), *(each for each in sys.path if not (Path(each) / "minirt").is_dir())]
+    sys.path[:] = [str(project.root), *(each for each in sys.path if not (Path(each) / "minirt/__init__.py").exists())]
     for name in [each for each in sys.modules if each.split(".")[0] in ("minirt", "tests")]:
         del sys.modules[name]
     sys.dont_write_bytecode = quiet

@@ -42,7 +42,7 @@ TESTS = (
 )
 # Tests that start threads cannot run after a fork.
 UNFIT = "not traced and not compiled and not reintersection and not pictures and not mutants and not length_of"
-KERNEL = {"trace": "kernel/trace.py", "shade": "kernel/shading/shade.py"}
+KERNEL = {"trace": "kernel/trace.py", "shadow_rays": "kernel/shadow_rays.py", "shade": "kernel/shading/shade.py"}
 PICTURES = (
     *(f"tests/kernel/test_{name}.py" for name in ("coincident", "extremes", "invariances")),
     *(f"tests/kernel/shading/test_{name}.py" for name in ("lights", "specular", "whitted")),

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 
 from minirt.lanes import Vec, copysign, dot, fabs, maximum, minimum, sqrt, where
 from minirt.shapes.basis import to_basis
 from minirt.shapes.box import PackedBox, slab_interval
-from minirt.shapes.cone import PackedCone
+from minirt.shapes.cone import PackedCone, intersect, occludes
+from minirt.shapes.cone_start import close_start
 from minirt.shapes.cylinder import PackedCylinder
 from minirt.shapes.disc import PackedDisc
 from minirt.shapes.plane import PackedPlane
@@ -45,6 +47,19 @@ def cone_without_its_axis(cone: PackedCone, origin: Vec, direction: Vec) -> Any:
     far = where(steep, where(rising, last, minimum(start + low, last)), minimum(start + high, last))
     t = where(near > 0.0, near, far)
     return hit & (near <= far) & (t > 0.0), t
+
+
+def cone_with_a_blurred_start(cone: PackedCone, origin: Vec, direction: Vec) -> Any:
+    """A cone whose rays that start at both ends have an end beside their start, or all of a generator for an end."""
+
+    def blurred(cone: PackedCone, origin: Vec, p: Vec, d: Vec, *others: Any) -> tuple[Any, ...]:
+        *ends, half_b, c, product = close_start(cone, origin, p, d, *others)
+        steep = d.x * d.x + d.y * d.y < (cone.slope * d.z) ** 2
+        blur = where(steep, 2.0**-52 * dot(p, p), 0.0)
+        return *ends, half_b, where((half_b == 0.0) & (product == 0.0), blur, c), product
+
+    with patch("minirt.shapes.cone.close_start", blurred):
+        return intersect(cone, origin, direction)
 
 
 def cylinder_hit_at_the_start(cylinder: PackedCylinder, origin: Vec, direction: Vec) -> Any:
@@ -131,6 +146,8 @@ def missed_in_planes(shapes: list[Any], origins: Array, directions: Array) -> Ar
 
 VARIANTS: dict[str, tuple[str, Intersect]] = {
     "cone missed along its axis": ("cone", with_formula(cone_without_its_axis)),
+    "cone with the formula of shadow rays": ("cone", with_formula(occludes)),
+    "cone with a blurred start": ("cone", with_formula(cone_with_a_blurred_start)),
     "cylinder hit at the start": ("cylinder", with_formula(cylinder_hit_at_the_start)),
     "box without the guard against NaN": ("box", with_formula(box_without_the_guard)),
     "box hit at the start": ("box", with_formula(box_hit_at_the_start)),

@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from PIL import Image
 from minirt.scene import load
 from minirt.viewer.input.bindings import BINDINGS
 from minirt.viewer.input.chords import MOUSE
+from tests.usage import Record, Usage
 from tests.viewer.idle_waits import until_at_rest, until_events_are_done
 from tests.viewer.process_tree import compilers
 from tests.viewer.scenes import WITH_CYLINDER
@@ -38,11 +40,12 @@ FILE_VERSIONS = (
     "sp",
     "",
     WITH_CYLINDER + "sp 1,1,1 0.5 9,99,200 mirror:0.4\n",
+    WITH_CYLINDER + "sp 1,1,1 0.5 9,99,200 texture:picture.png bump:picture.png\nob mesh.obj 0,1,0 1 9,9,9\n",
+    WITH_CYLINDER.replace("-0.995 60", "-0.995 60 tone:filmic lens:0.1")
+    + "bg picture.png\nob mesh.obj 0,1,0 1 9,9,9\n",
 )
 BATCH = 15  # lines between two checks of the program
 FILE_CHANGES = 0.15  # probability that another program writes the file after a batch
-WARM_UP = 0.5  # share of the run after which the program has allocated everything once
-MAX_GROWTH = 1.05  # ratio of memory at the end to memory after the warm-up
 
 
 class Report(NamedTuple):
@@ -51,8 +54,7 @@ class Report(NamedTuple):
     status: int
     output: str
     errors: str
-    before: int  # bytes of memory after the warm-up
-    after: int  # bytes of memory at the end
+    record: Record  # of what it used
     lines: int  # that were performed
     full_screens: int  # how often full screen was entered or left
 
@@ -76,8 +78,10 @@ def lines(chance: random.Random) -> Iterator[str]:
     while True:
         kind = chance.random()
         button = chance.choice(["", "", " right", " middle"])
-        if kind < 0.6:
+        if kind < 0.58:
             yield f"press {chance.choice(keys)}"
+        elif kind < 0.62:  # an element or an attribute from a list
+            yield from (f"press {chance.choice('NM')}", *["press Down"] * chance.randint(0, 24), "press Return")
         elif kind < 0.7:
             yield f"click {place()}{' right' if button == ' right' else ''}"
         elif kind < 0.8:
@@ -93,12 +97,6 @@ def lines(chance: random.Random) -> Iterator[str]:
             yield from (f"resize {width}x{height}", "wait 0.3", f"move {place()}")
 
 
-def memory(process: subprocess.Popen[str]) -> int:
-    """Return the resident memory of the program, in bytes."""
-    status = Path(f"/proc/{process.pid}/status").read_text()
-    return 1024 * int(next(line.split()[1] for line in status.splitlines() if line.startswith("VmRSS")))
-
-
 class Monkey:
     """Random input to one window."""
 
@@ -107,7 +105,7 @@ class Monkey:
         self.process = process
         self.path = path
         self.chance = random.Random(seed)
-        self.lines = lines(self.chance)
+        self.lines = lines(random.Random(seed))
         self.done = 0
         self.size = SIZE  # of the window, while it is not full screen
         self.requested_size = SIZE
@@ -178,8 +176,8 @@ class Monkey:
         new.write_text(text)
         new.replace(self.path)
 
-    def idle_memory(self) -> int:
-        """Return the memory with the first scene at the first size, in bytes; then restore the window's size."""
+    def idle_usage(self) -> Usage:
+        """Return what the program uses with the first scene at the first size; then restore the window's size."""
         size = self.requested_size
         self.desktop.restore(self.window)
         if self.full_screen:
@@ -189,32 +187,40 @@ class Monkey:
         self.do("press Ctrl+R", "resize {}x{}".format(*SIZE))
         until(lambda: not compilers(self.process.pid), "the end of the compiler")
         until_at_rest(self.process.pid)
-        used = memory(self.process)
+        used = Usage.of(self.process.pid)
         self.do("resize {}x{}".format(*size), "move 0,0")
         return used
 
 
-def run_monkey(desktop: Desktop, share: Callable[[int], float], seed: int, folder: Path) -> Report:
+def run_monkey(
+    desktop: Desktop,
+    share: Callable[[int], float],
+    seed: int,
+    folder: Path,
+    parts: int = 2,
+    show: Callable[[str], object] = lambda _: None,
+) -> Report:
     """Send random input to a window; AssertionError if the program ends before its end is requested.
 
-    `share(lines)`: the share of the run that is over after so many lines.
+    `share(lines)`: the share of the run that is over after so many lines. What the program uses is measured, and shown,
+    after each of so many `parts` of the run.
     """
     path = folder / "scene.rt"
     path.write_text(WITH_CYLINDER)
     Image.new("RGB", (8, 8), (200, 120, 40)).save(folder / "picture.png")
+    (folder / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
     command = [sys.executable, "-W", "error", "-m", "minirt", str(path), "--size", f"{SIZE[0]}x{SIZE[1]}"]
     with desktop.program(*command) as process:
         monkey = Monkey(desktop, process, path, seed)
-        before = 0
+        record = Record(parts, monkey.idle_usage, show)
         while (progress := share(monkey.done)) < 1:
             monkey.batch()
-            if progress > WARM_UP and not before:
-                before = monkey.idle_memory()
-        after = monkey.idle_memory()
+            record.note(progress)
+        record.note(1.0)
         desktop.key(monkey.window, "Escape")
         output, errors = process.communicate(timeout=HANG_LIMIT)
         load(path)  # the saved file is a valid scene
-        return Report(process.returncode, output, errors, before, after, monkey.done, monkey.full_screens)
+        return Report(process.returncode, output, errors, record, monkey.done, monkey.full_screens)
 
 
 def share_of_time(seconds: float) -> Callable[[int], float]:
@@ -226,6 +232,8 @@ def share_of_time(seconds: float) -> Callable[[int], float]:
 if __name__ == "__main__":
     minutes, seed = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1
     with open_desktop() as opened, tempfile.TemporaryDirectory() as folder:
-        report = run_monkey(opened, share_of_time(60 * minutes), seed, Path(folder))
-    print(report)
-    sys.exit(report.status != 0 or bool(report.errors) or report.after > MAX_GROWTH * report.before)
+        show = partial(print, flush=True)
+        share = share_of_time(60 * minutes)
+        report = run_monkey(opened, share, seed, Path(folder), max(6, round(minutes)), show)
+    print(f"{report.lines} lines, {report.record.verdict}", report.output, report.errors, sep="\n")
+    sys.exit(report.status != 0 or bool(report.errors) or not report.record.is_flat)

@@ -18,21 +18,30 @@ NAMES = {
 BUTTONS = {"left": "1", "middle": "2", "right": "3", "up": "4", "down": "5"}
 
 
-def name(key: str) -> str:
-    """Return xdotool's name of a key or chord: ctrl+shift+s for `Ctrl+Shift+S`."""
-    if key in NAMES:
-        return NAMES[key]
-    *modifiers, last = key.split("+")
+LETTER_KEYS = {"q": 24, "a": 38, "z": 52}  # key codes of the first letters of each row of an American keyboard
+LETTER_CODES = {
+    letter: str(LETTER_KEYS[row[0]] + n)
+    for row in ("qwertyuiop", "asdfghjkl", "zxcvbnm")
+    for n, letter in enumerate(row)
+}
+
+
+def name(key: str, codes: dict[str, str] | None = None) -> str:
+    """Return xdotool's name of a key or chord: ctrl+shift+s for `Ctrl+Shift+S`.
+
+    `codes`: key codes of letters that the keyboard does not print; xdotool would put them on a key of its own.
+    """
+    *modifiers, last = [*key[:-1].split("+")[:-1], key[-1]] if key[-1] == "+" else key.split("+")
     last = NAMES.get(last, last.lower() if len(last) == 1 else last)
-    return "+".join([*(word.lower() for word in modifiers), last])
+    return "+".join([*(word.lower() for word in modifiers), (codes or {}).get(last, last)])
 
 
-def command(window: int, words: list[str]) -> list[str]:
-    """Return the arguments of xdotool that perform a line; it waits only if the line says so."""
+def command(window: int, words: list[str], codes: dict[str, str] | None = None) -> list[str]:
+    """Return the arguments of xdotool that perform a line; it waits only if the line says so. `codes`: as in `name`."""
     at = ["mousemove", "--window", str(window)]
     match words:
         case ["press" | "down" | "up" as how, key]:
-            arguments = [{"press": "key", "down": "keydown", "up": "keyup"}[how], "--delay", "0", name(key)]
+            arguments = [{"press": "key", "down": "keydown", "up": "keyup"}[how], "--delay", "0", name(key, codes)]
         case ["move", place]:
             arguments = [*at, *place.split(",")]
         case ["click", place, *button]:
@@ -53,8 +62,8 @@ def command(window: int, words: list[str]) -> list[str]:
     return arguments
 
 
-def do(desktop: Desktop, window: int, *lines: str) -> None:
-    """Perform the lines, one after the other."""
+def do(desktop: Desktop, window: int, *lines: str, codes: dict[str, str] | None = None) -> None:
+    """Perform the lines, one after the other; `codes` as in `name`."""
     arguments: list[str] = []
     for line in lines:
         match Line("xdotool", 1, line).words:
@@ -63,7 +72,7 @@ def do(desktop: Desktop, window: int, *lines: str) -> None:
                 arguments = []
                 (desktop.minimise if how == "hide" else desktop.restore)(window)
             case words:
-                arguments += command(window, words)
+                arguments += command(window, words, codes)
     xdotool(desktop, arguments)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 
-from minirt.kernel import atomic_counter, frame
+from minirt.kernel import atomic_counter, stored_light
 from minirt.kernel.compiler.arrays_by_reference import data, length
 from minirt.kernel.compiler.by_reference import Reference
 from minirt.lanes.compiled.registration import register
@@ -28,18 +28,18 @@ def no_result(pixels: Any, x: Any, y: Any, *levels: Any) -> Any:
     return types.none if all(isinstance(each, Lanes) for each in levels) else None
 
 
-@register(frame.store_block, no_result, [(Reference, types.Integer, types.Integer, Lanes, Lanes, Lanes)])
+@register(stored_light.store_block, no_result, [(Reference, types.Integer, types.Integer, Lanes, Lanes, Lanes)])
 def _store_block(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     pixels = data(context, builder, sig.args[0], args[0])
     x, y = (context.cast(builder, args[i], sig.args[i], types.intp) for i in (1, 2))
     width = length(context, builder, sig.args[0], args[0], 1)
     count = sig.args[3].count
-    step = count // frame.PACKET_HEIGHT
-    words = splat(builder, ir.Constant(PIXEL, frame.OPAQUE), count)
+    step = count // stored_light.PACKET_HEIGHT
+    words = splat(builder, ir.Constant(PIXEL, stored_light.OPAQUE), count)
     for level, shift in zip(args[3:], (16, 8, 0), strict=True):
         byte = builder.fptosi(level, words.type)
         words = builder.or_(words, builder.shl(byte, constant(words, shift)))
-    for line in range(frame.PACKET_HEIGHT):
+    for line in range(stored_light.PACKET_HEIGHT):
         lanes = [ir.Constant(PIXEL, line * step + i) for i in range(step)]
         part = builder.shuffle_vector(words, words, ir.Constant(ir.VectorType(PIXEL, step), lanes))
         row = builder.mul(builder.add(y, ir.Constant(y.type, line)), width)

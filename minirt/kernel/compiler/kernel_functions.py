@@ -10,12 +10,13 @@ import sys
 from numba.extending import register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (registers the operations of the formulas)
-from minirt.kernel import atomic_counter, contrast, frame, scene_arrays, trace
+from minirt.kernel import atomic_counter, contrast, frame, scene_arrays, shadow_rays, stored_light, trace
 from minirt.kernel.compiler import frame_operations, kind_dispatch, packed_shapes, unrolled_loop  # noqa: F401
 from minirt.kernel.compiler.inlining import inline_functions_of
 from minirt.kernel.compiler.options import INLINED
 from minirt.kernel.culling import binning, light_buffer
 from minirt.kernel.shading import (
+    apertures,
     environment,
     fractal_noise,
     fresnel,
@@ -27,6 +28,7 @@ from minirt.kernel.shading import (
     shade,
     specular,
     surfaces,
+    terminator,
     texture_lookup,
     texturing,
     transmission,
@@ -50,9 +52,9 @@ REGISTERED = (
     ray_stack.ray_stack,
     trace.for_each_kind,
     trace.closest_of_kind,
-    trace.unoccluded_by_kind,
+    shadow_rays.unoccluded_by_kind,
     atomic_counter.fetch_add,
-    frame.store_block,
+    stored_light.store_block,
     frame.frame,
     binning.project_all,
     binning.fill_bins,
@@ -78,8 +80,10 @@ for _module in (
     light_buffer,
     scene_arrays,
     trace,
+    shadow_rays,
     specular,
     lights,
+    apertures,
     texture_lookup,
     texturing,
     fresnel,
@@ -89,10 +93,12 @@ for _module in (
     patterns,
     surfaces,
     transmission,
+    terminator,
     shade,
     environment,
     ray_stack,
     whitted,
+    stored_light,
     frame,
     contrast,
     *(sys.modules[kind.intersect.__module__] for kind in ALL_KINDS),

@@ -9,7 +9,7 @@ from typing import Any
 
 from numba.extending import overload
 
-from minirt.kernel import rows, trace
+from minirt.kernel import rows, shadow_rays, trace
 from minirt.kernel.compiler.options import INLINED
 from minirt.shapes import Kind
 
@@ -37,6 +37,11 @@ def _shading(shape, point, normal):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).shading
 
 
+@overload(rows.smooth_point, jit_options=INLINED, strict=False)
+def _smooth_point(shape, point, normal):  # type: ignore[no-untyped-def]
+    return rows.kind_of_packed(shape.instance_class).smooth_point
+
+
 @overload(rows.may_meet, jit_options=INLINED, strict=False)
 def _may_meet(shape, apex, start, direction, active):  # type: ignore[no-untyped-def]
     return rows.kind_of_packed(shape.instance_class).may_meet
@@ -52,9 +57,9 @@ def _closest_of_kind(group, state, arguments):  # type: ignore[no-untyped-def]
     return trace.closest_batched if kind_of_group(group).batched else trace.closest_one_by_one
 
 
-@overload(trace.unoccluded_by_kind, jit_options=INLINED, strict=False)
+@overload(shadow_rays.unoccluded_by_kind, jit_options=INLINED, strict=False)
 def _unoccluded_by_kind(group, visible, arguments):  # type: ignore[no-untyped-def]
-    return trace.unoccluded_batched if kind_of_group(group).batched else trace.unoccluded_one_by_one
+    return shadow_rays.unoccluded_batched if kind_of_group(group).batched else shadow_rays.unoccluded_one_by_one
 
 
 def kind_of_group(group: Any) -> Kind:

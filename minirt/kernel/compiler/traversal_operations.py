@@ -10,7 +10,6 @@ from numba.core import cgutils
 
 from minirt.kernel.bvh import nodes
 from minirt.kernel.shading import ray_stack
-from minirt.lanes import operations
 from minirt.lanes.compiled import reductions
 from minirt.lanes.compiled.registration import register
 from minirt.lanes.compiled.types import Lanes, Mask, constant
@@ -39,11 +38,6 @@ def address_at(context: Any, builder: ir.IRBuilder, sig: Any, args: Any, kind: i
     """Return the address of a value of some LLVM type that begins at an index of a memory."""
     place = builder.gep(args[0], [context.cast(builder, args[1], sig.args[1], types.intp)])
     return builder.bitcast(place, kind.as_pointer())
-
-
-@register(operations.load, lambda memory, at: LANES if memory == MEMORY else None, [(types.CPointer, types.Integer)])
-def _load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.load(address_at(context, builder, sig, args, LANES_IR), align=8)
 
 
 @register(nodes.put, lambda memory, at, x: types.none, [(types.CPointer, types.Integer, Lanes)])

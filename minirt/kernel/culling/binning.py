@@ -20,7 +20,8 @@ COSINE_MARGIN = 4e-15  # error of a scalar product of unit vectors
 
 
 class Grid(NamedTuple):
-    """A grid of directions from a point, in one frame or more: slope s is in the cell `floor(scale * s + middle)`."""
+    """A grid of directions from a point, in one frame or more: slope s is in the cell `floor(scale * s + middle)`, less
+    the first one."""
 
     frames: Any  # (f, 3, 3) unit vectors across, down and forward
     across: int  # columns of cells of each frame
@@ -32,6 +33,8 @@ class Grid(NamedTuple):
     margin: float  # by how many cells intervals grow before they are rounded to cells
     cells: int  # cells of all frames, and that of the directions elsewhere
     elsewhere: int  # the cell of all directions that are in no frame; -1 if there is none
+    first_column: int = 0  # the first of the frame that has cells, where only a rectangle of it has any
+    first_row: int = 0
 
 
 def project_all(
@@ -124,8 +127,9 @@ def projected_rectangle(
         low_y, high_y = min(low_y, low), max(high_y, high)
     if beside and end - start > 1:  # parts of the hull may project beyond all spheres
         low_x, high_x, low_y, high_y = -inf, inf, -inf, inf
-    column, columns, all_across = cell_interval(low_x, high_x, grid.scale_x, grid.middle_x, grid.margin, grid.across)
-    row, rows, all_down = cell_interval(low_y, high_y, grid.scale_y, grid.middle_y, grid.margin, grid.down)
+    middle_x, middle_y = grid.middle_x - grid.first_column, grid.middle_y - grid.first_row
+    column, columns, all_across = cell_interval(low_x, high_x, grid.scale_x, middle_x, grid.margin, grid.across)
+    row, rows, all_down = cell_interval(low_y, high_y, grid.scale_y, middle_y, grid.margin, grid.down)
     return column, row, columns, rows, all_across and all_down
 
 

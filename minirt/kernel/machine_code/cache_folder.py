@@ -10,33 +10,19 @@ import hashlib
 import logging
 import os
 import shutil
-import sys
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from minirt.kernel.machine_code.private_files import PRIVATE_FOLDER, make_private_folder
+from minirt.kernel.machine_code.private_files import make_private_folder
 from minirt.kernel.machine_code.processor import described, processor
 from minirt.kernel.machine_code.source_files import source_files
+from minirt.user_files import PRIVATE_FOLDER, user_folder
 
 PACKAGE = Path(__file__).parents[2]
 SOURCES = ("kernel", "lanes", "shapes")  # folders of all sources of a kernel
 OTHER_VERSIONS = 8  # folders of other versions that are not deleted, so that versions can be used in turn
 TOLD: set[str] = set()  # notices that were given
-
-
-def user_folder() -> Path:
-    """Return the folder for this user's files that may be deleted at any time.
-
-    The XDG Base Directory Specification tells programs to ignore an XDG_CACHE_HOME that is relative."""
-    named = Path(os.environ.get("XDG_CACHE_HOME", ""))
-    if named.is_absolute():
-        return named
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches"
-    if sys.platform == "win32" and os.environ.get("LOCALAPPDATA"):
-        return Path(os.environ["LOCALAPPDATA"])
-    return Path.home() / ".cache"
 
 
 @cache

@@ -31,11 +31,31 @@ class CompileProcess:
         """`patient`: with the lowest priority, while this process renders."""
         self.patient = patient
         self.process: subprocess.Popen[bytes] | None = None
+        self.stopped = False  # whether `stop` has been called since compiling began
 
     def compile(self, requests: list[Request], target: str | None = None) -> list[ObjectCode]:
         """Return the object code of kernels for a processor, by default the one that is compiled for.
 
-        RenderError with the reason where compiling fails, or where `stop` ended it."""
+        A process that something else than `stop` kills, such as a lack of memory, is started once more. RenderError
+        with the reason where compiling fails, or where `stop` ended it."""
+        self.stopped = False
+        status, output, messages = self.run(requests, target)
+        if status < 0 and not self.stopped:
+            status, output, messages = self.run(requests, target)
+        if status:
+            reason = messages[-1] if messages else f"the compiler ended with status {status}"
+            raise RenderError(f"the kernel cannot be compiled: {reason}")
+        for message in messages:
+            if message.startswith("notice: "):
+                notice("%s", message.removeprefix("notice: "))
+        try:
+            return unpacked(requests, output)
+        except container.DamagedError as error:
+            raise RenderError(f"the kernel cannot be compiled: what the compiler wrote is damaged, {error}") from error
+
+    def run(self, requests: list[Request], target: str | None) -> tuple[int, bytes, list[str]]:
+        """Run the process; return its exit status, its output and the lines of its standard error. RenderError where it
+        cannot be started."""
         try:
             self.process = process = subprocess.Popen(
                 (*COMMAND, *["--patient"] * self.patient),
@@ -60,20 +80,11 @@ class CompileProcess:
             reader.start()
             output = process.stdout.read()
             reader.join()
-        messages = written[0].decode(errors="replace").strip().splitlines()
-        if process.returncode:
-            reason = messages[-1] if messages else f"the compiler ended with status {process.returncode}"
-            raise RenderError(f"the kernel cannot be compiled: {reason}")
-        for message in messages:
-            if message.startswith("notice: "):
-                notice("%s", message.removeprefix("notice: "))
-        try:
-            return unpacked(requests, output)
-        except container.DamagedError as error:
-            raise RenderError(f"the kernel cannot be compiled: what the compiler wrote is damaged, {error}") from error
+        return process.returncode, output, written[0].decode(errors="replace").strip().splitlines()
 
     def stop(self) -> None:
         """Kill the process, if there is one; callable from any thread."""
+        self.stopped = True
         if self.process:
             self.process.kill()
 

@@ -21,6 +21,7 @@ from minirt.kernel.machine_code.signature import key_of, signature_of
 
 Call: TypeAlias = tuple[str, tuple[Any, ...]]  # the name of a function, "module:name", and arguments
 
+REMEMBERED = 512  # identities, of some kilobytes each; when there are more, all are forgotten and made again
 IN_MEMORY = 24  # kernels; one that was dropped is loaded from disk again
 
 
@@ -48,6 +49,8 @@ class Library:
         key = call[0], key_of(call[1])
         found = self.identities.get(key)
         if found is None:
+            if len(self.identities) >= REMEMBERED:
+                self.identities.clear()
             found = self.identities[key] = identity_of(*call, cache_folder.fingerprint())
         return found
 
@@ -74,6 +77,8 @@ class Library:
         if identity in self.missing:
             return None
         code = shipped_code.read(identity) or (self.cache.read(identity) if self.cache else None)
+        if len(self.missing) >= REMEMBERED:
+            self.missing.clear()
         (self.seen if code else self.missing).add(identity)
         return code
 

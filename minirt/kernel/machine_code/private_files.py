@@ -16,26 +16,24 @@ from pathlib import Path
 
 from minirt import atomic_write
 from minirt.kernel.machine_code.container import KEY_SIZE
+from minirt.user_files import PRIVATE_FILE, PRIVATE_FOLDER, is_private
 
 if sys.platform != "win32":
     import fcntl
 
-OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 OTHERS_USE = stat.S_IRWXG | stat.S_IRWXO
 PATIENCE = 60.0  # seconds; no kernel takes as long to compile
 POLL = 0.01  # seconds between two attempts to lock a file
-PRIVATE_FILE, PRIVATE_FOLDER = 0o600, 0o700
 READ = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)  # does not wait for a pipe's writer
 
 
 def require_own(path: Path, status: os.stat_result) -> None:
     """PermissionError where a file or a folder belongs to another user, or where others may write it."""
-    if sys.platform == "win32":
+    if is_private(status):
         return
     if status.st_uid != os.geteuid():
         raise PermissionError(f"{path} belongs to another user; XDG_CACHE_HOME can name a folder of yours")
-    if status.st_mode & OTHERS_WRITE:
-        raise PermissionError(f"other users may write {path}; chmod go-w '{path}' mends that")
+    raise PermissionError(f"other users may write {path}; chmod go-w '{path}' mends that")
 
 
 def make_private_folder(path: Path) -> None:
@@ -43,10 +41,20 @@ def make_private_folder(path: Path) -> None:
 
     PermissionError where others could have written to it before."""
     path.mkdir(mode=PRIVATE_FOLDER, exist_ok=True)
-    status = path.stat()
-    require_own(path, status)
-    if status.st_mode & OTHERS_USE:
-        path.chmod(PRIVATE_FOLDER)
+    if sys.platform == "win32":
+        return
+    link = path.lstat()
+    is_link = stat.S_ISLNK(link.st_mode)
+    if is_link and link.st_uid != os.geteuid():  # it may lead to any folder of this user, `/` of root for one
+        raise PermissionError(f"{path} is a link of another user; XDG_CACHE_HOME can name a folder of yours")
+    descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | (0 if is_link else os.O_NOFOLLOW))
+    try:
+        status = os.fstat(descriptor)  # of the folder that is closed, whatever has the name by now
+        require_own(path, status)
+        if status.st_mode & OTHERS_USE:
+            os.fchmod(descriptor, PRIVATE_FOLDER)
+    finally:
+        os.close(descriptor)
 
 
 def read(path: Path) -> bytes:

@@ -39,12 +39,9 @@ def apply_patterns(
         for i in range(patterns.ranges[index, 0], patterns.ranges[index, 1]):
             row = patterns.rows[i]
             second = Vec(row[COLOUR], row[COLOUR + 1], row[COLOUR + 2])
-            if patterns.heights is None or not has_rows(patterns.heights):
-                share, _ = pattern_at(row, point, footprint)
-                colour = colour + share * (second - colour)
-            else:
-                share, gradient = pattern_at(row, point, footprint)
-                colour = colour + share * (second - colour)
+            share, gradient = pattern_at(row, point, footprint)
+            colour = colour + share * (second - colour)
+            if patterns.heights is not None and has_rows(patterns.heights):
                 normal = raised(normal, patterns.heights[i] * gradient)
     return normal, colour
 

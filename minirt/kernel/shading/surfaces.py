@@ -22,6 +22,7 @@ class Surface(NamedTuple):
     point: Vec  # the hit, put onto the surface
     normal: Vec  # geometric normal, outward where the shape has an outside
     shading_normal: Vec  # the normal for lighting: smooth, bump mapped or normal mapped
+    base_normal: Vec  # the same without bump map and normal map
     colour: Vec  # red, green, blue in [0, 1]
     specular: Vec  # the shape's row of `SceneArrays.specular`
     reflective: Vec  # the shape's row of `SceneArrays.reflective`
@@ -59,6 +60,7 @@ def surfaces(
             where(owned, other.point, result.point),
             where(owned, other.normal, result.normal),
             where(owned, other.shading_normal, result.shading_normal),
+            where(owned, other.base_normal, result.base_normal),
             where(owned, other.colour, result.colour),
             where(owned, other.specular, result.specular),
             where(owned, other.reflective, result.reflective),
@@ -76,15 +78,16 @@ def surfaces(
 def surface_at(scene: SceneArrays, index: int, point: Vec, t: Number, direction: Vec) -> Surface:
     """Compute the surface of one shape for all rays of the packet, which come in a `direction` from a distance t."""
     slot = scene.slots[index]
-    on, normal, shading_normal = for_each_kind(
+    on, normal, base_normal = for_each_kind(
         surface_of_kind, scene.groups, (point, point, point), (slot[0], slot[1], point)
     )
     zero = splat(0.0, point.x)
     specular = reflective = fades = absorption = through = Vec(zero, zero, zero)
     glow = fresnel = zero
     colour = row_of(scene.colours_and_extents, index, point.x)
+    shading_normal = base_normal
     if scene.surface_maps is not None:
-        shading_normal, colour = apply_maps(scene.surface_maps, scene.groups, index, slot, on, shading_normal, colour)
+        shading_normal, colour = apply_maps(scene.surface_maps, scene.groups, index, slot, on, base_normal, colour)
     if scene.patterns is not None:
         footprint = pixel_footprint(scene.camera, on, t, direction, normal)
         shading_normal, colour = apply_patterns(scene.patterns, index, on, footprint, shading_normal, colour)
@@ -100,7 +103,9 @@ def surface_at(scene: SceneArrays, index: int, point: Vec, t: Number, direction:
         fades = Vec(splat(scene.fades[index, 0], point.x), splat(scene.fades[index, 1], point.x), zero)
     if scene.media is not None and has_rows(scene.media):
         absorption, through = row_of(scene.media, index, point.x), filter_of(scene.media, index, point.x)
-    return Surface(on, normal, shading_normal, colour, specular, reflective, glow, fresnel, fades, absorption, through)
+    return Surface(
+        on, normal, shading_normal, base_normal, colour, specular, reflective, glow, fresnel, fades, absorption, through
+    )
 
 
 def surface_of_kind(group: Group, state: tuple[Vec, Vec, Vec], arguments: tuple[int, int, Vec]) -> tuple[Vec, Vec, Vec]:

@@ -51,21 +51,24 @@ def shade(
 ) -> tuple[Vec, Surface]:
     """Shade the hits of rays in a medium without following reflections; returns their radiance and their surfaces."""
     surface = surfaces(scene, memory, owner, origin + t * direction, t, direction, hit)
-    normal, shading_normal = surface.normal, surface.shading_normal
+    normal, shading_normal, base_normal = surface.normal, surface.shading_normal, surface.base_normal
     back_side = hit & (dot(normal, direction) > 0.0)
     if rarely(back_side):  # both sides of a surface are shaded alike
         normal = where(back_side, -normal, normal)
         shading_normal = where(back_side, -shading_normal, shading_normal)
+        base_normal = where(back_side, -base_normal, base_normal)
     if scene.fresnel is not None and has_rows(scene.fresnel):
         surface = with_fresnel(surface, reflecting_normal(shading_normal, normal, direction), direction)
-    light, highlight = direct_light(scene, memory, surface, normal, shading_normal, direction, extent, medium, hit)
+    light, highlight = direct_light(
+        scene, memory, surface, normal, shading_normal, base_normal, direction, owner, extent, medium, hit
+    )
     radiance = tint(light, surface.colour)
     if scene.reflective is not None:
         radiance = radiance * own_share(surface)
     if scene.specular is not None and has_rows(scene.specular):
         radiance = radiance + highlight
     if scene.glow is not None and has_rows(scene.glow):
-        radiance = radiance + surface.glow * surface.colour
+        radiance = radiance + where(hit, surface.glow, 0.0) * surface.colour
     return radiance, surface
 
 
@@ -76,6 +79,7 @@ def with_fresnel(surface: Surface, normal: Vec, direction: Vec) -> Surface:
         surface.point,
         surface.normal,
         surface.shading_normal,
+        surface.base_normal,
         surface.colour,
         surface.specular,
         shares_at_angle(surface.reflective, surface.fresnel, maximum(cosine, 0.0), against),

@@ -13,15 +13,22 @@ from minirt.lanes.compiled.types import Lanes
 
 
 def load_type(values: types.Type, start: types.Type) -> types.Type | None:
-    """Return the type of lanes that are loaded from an array."""
-    return Lanes(values.dtype) if isinstance(values, types.Array) and isinstance(start, types.Integer) else None
+    """Return the type of lanes that are loaded from an array, or from a row of one."""
+    if not (isinstance(values, types.Array | types.CPointer) and isinstance(start, types.Integer)):
+        return None
+    return Lanes(values.dtype)
 
 
-@register(operations.load, load_type, [(types.Array, types.Integer)])
+def address(context: Any, builder: ir.IRBuilder, kind: types.Type, values: Any) -> Any:
+    """Return the address of the first number of an array, or of a row, which is that address."""
+    return values if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, value=values).data
+
+
+@register(operations.load, load_type, [(types.Array, types.Integer), (types.CPointer, types.Integer)])
 def load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     """Emit the load of lanes that lie one after the other."""
-    values = context.make_array(sig.args[0])(context, builder, value=args[0])
-    place = builder.gep(values.data, [context.cast(builder, args[1], sig.args[1], types.intp)])
+    values = address(context, builder, sig.args[0], args[0])
+    place = builder.gep(values, [context.cast(builder, args[1], sig.args[1], types.intp)])
     lanes = context.get_value_type(sig.return_type)
     return builder.load(builder.bitcast(place, lanes.as_pointer()), align=sig.return_type.number.bitwidth // 8)
 
@@ -51,13 +58,13 @@ def gather(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
 
 
 def save_type(x: types.Type, values: types.Type, start: types.Type) -> types.Type | None:
-    """Return the type of no result, for lanes and an array of their numbers; None for other arguments."""
-    return types.none if isinstance(values, types.Array) and x == Lanes(values.dtype) else None
+    """Return the type of no result, for lanes and an array or row of their numbers; None for other arguments."""
+    return types.none if isinstance(values, types.Array | types.CPointer) and x == Lanes(values.dtype) else None
 
 
-@register(operations.save, save_type, [(Lanes, types.Array, types.Integer)])
+@register(operations.save, save_type, [(Lanes, types.Array, types.Integer), (Lanes, types.CPointer, types.Integer)])
 def _save(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    values = context.make_array(sig.args[1])(context, builder, value=args[1])
-    place = builder.gep(values.data, [context.cast(builder, args[2], sig.args[2], types.intp)])
+    values = address(context, builder, sig.args[1], args[1])
+    place = builder.gep(values, [context.cast(builder, args[2], sig.args[2], types.intp)])
     builder.store(args[0], builder.bitcast(place, args[0].type.as_pointer()), align=sig.args[0].number.bitwidth // 8)
     return context.get_dummy_value()

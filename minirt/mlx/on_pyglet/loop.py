@@ -89,6 +89,12 @@ class PygletBackend(Backend):
     def show_pointer(self, window: Window, on: bool) -> None:
         self._natives[window].pyglet.set_mouse_visible(on)
 
+    def set_cursor(self, window: Window) -> None:
+        self._natives[window].pyglet.set_cursor(window.cursor)
+
+    def set_icons(self, window: Window) -> None:
+        self._natives[window].pyglet.set_icons(window.icons)
+
     def clipboard(self, window: Window) -> str:
         return str(self._natives[window].pyglet.get_clipboard_text())
 

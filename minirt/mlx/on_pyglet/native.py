@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-import pyglet.window
 from pyglet.window import key as pyglet_key
 from pyglet.window import mouse as pyglet_mouse
 
@@ -13,7 +12,9 @@ from minirt.mlx.events import Button, Event
 from minirt.mlx.keys import Key, Modifier
 from minirt.mlx.on_pyglet.canvas_texture import CanvasTexture
 from minirt.mlx.on_pyglet.drag_and_drop import fix_drag_enter
-from minirt.mlx.on_pyglet.key_codes import report_key_codes
+from minirt.mlx.on_pyglet.key_codes import KeyEvent, report_key_events
+from minirt.mlx.on_pyglet.pyglet_window import PygletWindow
+from minirt.mlx.on_pyglet.x11_properties import manager_has_full_screen, request_full_screen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,13 +52,15 @@ class NativeWindow:
         self._clock = clock
         self._changed = changed
         self._wheel = [0.0, 0.0]  # fractions of steps, which touch pads send
-        self.pyglet = pyglet.window.Window(
+        self.pyglet = PygletWindow(
+            window.display.options.application,
             window.width, window.height, caption=window.title, resizable=window.resizable,
             file_drops=True,
             vsync=False,  # a buffer swap of a hidden window may take a second: never wait for it
         )  # fmt: skip
         fix_drag_enter(self.pyglet)
-        self._has_key_codes = report_key_codes(self.pyglet, self._on_key_code)
+        self._is_reported = False  # the key event that pyglet handles now
+        report_key_events(self.pyglet, self._on_key_event)
         self.pyglet.push_handlers(self)
         self._texture = CanvasTexture()
         self.on_resize(window.width, window.height)
@@ -69,8 +72,16 @@ class NativeWindow:
         self.pyglet.flip()
 
     def set_fullscreen(self, on: bool) -> None:
-        """Enter or leave full screen. All keys are released: pyglet may open a new window, which gets no releases."""
+        """Enter or leave full screen: the window manager changes the size of the window, which stays the same one.
+
+        Without such a window manager, and for windows of fixed size, pyglet may replace the window. Then all keys are
+        released, because the new one gets no releases.
+        """
+        if self._window.resizable and not self.pyglet.fullscreen and manager_has_full_screen(self.pyglet):
+            request_full_screen(self.pyglet, on)
+            return
         self.pyglet.set_fullscreen(on)
+        self.pyglet.set_icons(self._window.icons)
         self._forget_keys()
         self._window.keyboard.release_all()
         self.on_resize(0, 0)
@@ -87,13 +98,13 @@ class NativeWindow:
         self._texture.draw(self._window.shown, *self._framebuffer_size())
 
     def on_key_press(self, symbol: int, modifiers: int) -> bool:
-        if not self._reports_codes:
+        if not self._is_reported:
             self._window.keyboard.press(SYMBOLS.get(symbol, symbol), self._clock(), _modifiers(modifiers))
             self._changed()
         return True
 
     def on_key_release(self, symbol: int, modifiers: int) -> bool:
-        if not self._reports_codes:
+        if not self._is_reported:
             released = self._window.keyboard.release(SYMBOLS.get(symbol, symbol), _modifiers(modifiers))
             self._forget_keys(released)
             self._changed()
@@ -174,19 +185,17 @@ class NativeWindow:
         self._changed()
         return True
 
-    @property
-    def _reports_codes(self) -> bool:
-        """Whether keys are reported by the codes of X11, not by the symbols of pyglet; elsewhere these are the same."""
-        return self._has_key_codes and not self._window.display.options.symbols
-
-    def _on_key_code(self, pressed: bool, code: int, modifiers: int) -> None:
-        """Report a key by its code, before pyglet handles its event."""
-        if self._reports_codes:
+    def _on_key_event(self, event: KeyEvent | None) -> None:
+        """Report a key event before pyglet handles it, if pyglet would report another key; None: it has handled it."""
+        self._is_reported = False
+        code = event and (event.letter if self._window.display.options.symbols else event.code)
+        if event and code:
+            self._is_reported = True
             keyboard = self._window.keyboard
-            if pressed:
-                keyboard.press(code, self._clock(), _modifiers(modifiers))
+            if event.pressed:
+                keyboard.press(code, self._clock(), _modifiers(event.modifiers))
             else:
-                keyboard.release(code, _modifiers(modifiers))
+                keyboard.release(code, _modifiers(event.modifiers))
             self._changed()
 
     def _button(self, event: Event, x: float, y: float, button: int, modifiers: int) -> None:

@@ -8,10 +8,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from minirt import memory_limit
 from minirt.kernel.culling.binning import MARGIN, Grid
-from minirt.kernel.frame import TILE, tile_count
+from minirt.kernel.frame import tile_count
+from minirt.kernel.stored_light import TILE
+from minirt.rendering.crop import Crop
+from minirt.rendering.culling.hidden_planes import is_crowd, nearest_runs
 from minirt.rendering.culling.light_frustum import SPREAD, Cluster, frustum_grid
-from minirt.rendering.culling.planes import cell_runs, signed_heights
+from minirt.rendering.culling.list_sizes import ADVICE, COARSEST, MEMBER, QUICKLY_BUILT, WHAT, check_lists
+from minirt.rendering.culling.planes import CellRuns, cell_runs, opaque_planes, rounding, signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
@@ -65,14 +70,15 @@ def light_buffer(cells: int, frustum: Grid | None) -> np.ndarray:
     return np.array([*frustum.frames.ravel(), frustum.scale_x, (SPREAD / frustum.scale_x) ** 2])
 
 
-def screen_grid(camera: np.ndarray, width: int, height: int) -> Grid:
-    """The tiles of a picture as a grid, each extended by a pixel on all sides."""
+def screen_grid(camera: np.ndarray, width: int, height: int, crop: Crop) -> Grid:
+    """The tiles of a rectangle of so many pixels of a picture as a grid, each extended by a pixel on all sides."""
     _, right, up, forward = camera.reshape(4, 3)
     half_width, half_height = float(np.linalg.norm(right)), float(np.linalg.norm(up))
-    x, y = width / (2 * TILE), height / (2 * TILE)
+    x, y = crop.width / (2 * TILE), crop.height / (2 * TILE)
     frames = np.stack([right / half_width, -up / half_height, forward])[None]
     across, down = tile_count(width), tile_count(height)
-    return Grid(frames, across, down, x / half_width, x, y / half_height, y, 1 / TILE, across * down, -1)
+    first = crop.left // TILE, crop.top // TILE
+    return Grid(frames, across, down, x / half_width, x, y / half_height, y, 1 / TILE, across * down, -1, *first)
 
 
 @cache
@@ -82,10 +88,31 @@ def cube_grid(cells: int) -> Grid:
     return Grid(FACES, cells, cells, half, half, half, half, CUBE_MARGIN, 6 * cells * cells, -1)
 
 
-def seen_by_eye(kernel: Any, shape_arrays: ShapeArrays, camera: np.ndarray, width: int, height: int) -> BinnedShapes:
-    """Bin the shapes into the tiles of a picture. `kernel` is `minirt.kernel.culling.binning` or its compiled form."""
-    nothing_skipped = np.zeros(len(shape_arrays.planes), bool)
-    return bin_shapes(kernel, shape_arrays, camera[:3], screen_grid(camera, width, height), nothing_skipped)
+def seen_by_eye(
+    kernel: Any,
+    shape_arrays: ShapeArrays,
+    camera: np.ndarray,
+    width: int,
+    height: int,
+    crop: Crop,
+    radius: float = 0.0,
+    per_focus: float = 0.0,
+) -> BinnedShapes:
+    """Bin the shapes into the tiles of a rectangle of a picture. `kernel` is `minirt.kernel.culling.binning` or its
+    compiled form.
+
+    A ray of a lens of some radius differs, at depth z, from that through its centre by the radius times
+    1 - z `per_focus` at most.
+    """
+    none = np.zeros(len(shape_arrays.planes), bool)
+    balls = shape_arrays.balls
+    if radius:
+        depth = (balls[:, :3] - camera[:3]) @ camera[9:12]
+        ends = np.maximum(depth + np.array([[-1.0], [1.0]]) * balls[:, 3], 0.0)
+        balls = balls.copy()
+        balls[:, 3] += radius * np.maximum(np.abs(1.0 - per_focus * ends).max(axis=0) - 1.0, 0.0)
+    grid = screen_grid(camera, width, height, crop)
+    return bin_shapes(kernel, shape_arrays, balls, camera[:3], grid, none, radius, radius * per_focus, hiding=~none)
 
 
 def seen_by_light(
@@ -95,11 +122,19 @@ def seen_by_light(
     light: np.ndarray,
     cells: int,
     skipped: np.ndarray,
+    radius: float = 0.0,
+    copies: int = 1,
 ) -> BinnedShapes:
-    """Bin the shapes into the light buffer of a light at a position, without the planes that are `skipped` (p,)."""
+    """Bin the shapes into the light buffer of a light of some radius, without the planes that are `skipped` (p,).
+
+    `TooLargeError` where there is no room for so many copies of its lists.
+    """
     frustum = frustum_grid(cluster, light, cells)
     grid = cube_grid(cells) if frustum is None else frustum
-    binned = bin_shapes(kernel, shape_arrays, np.array(light), grid, skipped)
+    largest = QUICKLY_BUILT if cells > COARSEST else memory_limit.UNLIMITED
+    hiding = opaque_planes(shape_arrays) if is_crowd(len(skipped), grid) else None
+    lists = copies, largest, hiding
+    binned = bin_shapes(kernel, shape_arrays, shape_arrays.balls, np.array(light), grid, skipped, radius, 0.0, *lists)
     if cells == 1:
         return in_one_cell(shape_arrays, binned.cones, skipped)
     return binned._replace(light_buffer=light_buffer(cells, frustum))
@@ -116,39 +151,59 @@ def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.nd
 
 
 def bin_shapes(
-    kernel: Any, shape_arrays: ShapeArrays, origin: np.ndarray, grid: Grid, skipped: np.ndarray
+    kernel: Any,
+    shape_arrays: ShapeArrays,
+    balls: np.ndarray,
+    origin: np.ndarray,
+    grid: Grid,
+    skipped: np.ndarray,
+    radius: float = 0.0,
+    lean: float = 0.0,
+    copies: int = 1,
+    largest: int = memory_limit.UNLIMITED,
+    hiding: np.ndarray | None = None,
 ) -> BinnedShapes:
-    """Bin the shapes into the cells of a grid of directions from a point."""
+    """Bin the shapes, which `balls` enclose, into the cells of a grid of directions from a point.
+
+    The lists hold for rays from all points within `radius`, in the directions of a cell. They hold for planes in
+    directions, not normalised, up to `lean` away, too. Nobody asks for planes behind one that is `hiding` (p,).
+    """
+    height = signed_heights(shape_arrays.planes, origin, radius)
+    shown = ~skipped
+    planes, heights = shape_arrays.planes[shown], height[shown]
+    towards = -np.sign(heights[:, None]) * planes[:, :3]
+    runs: CellRuns | None = None
+    if hiding is not None and is_crowd(len(planes), grid) and not radius and not lean:
+        runs = nearest_runs(grid, towards, np.abs(heights), 2 * rounding(planes, origin), hiding[shown])
+    check_lists(kernel, shape_arrays, balls, origin, grid, copies, largest, len(planes), runs)
     kinds, stride = len(shape_arrays.rows), grid.cells + 1
     cones, counts = np.zeros((len(shape_arrays.slots), 5)), np.zeros(kinds * stride, np.int64)
-    height = signed_heights(shape_arrays.planes, origin)
     plane_rectangles = np.zeros((0, 4), np.int64)
-    if not skipped.all():
-        shown = ~skipped
-        plane, cell, columns = cell_runs(grid, -np.sign(height[shown, None]) * shape_arrays.planes[shown, :3])
+    if len(planes):
+        plane, cell, columns = cell_runs(grid, towards, lean) if runs is None else runs
         shape = shape_arrays.plane_indices[shown][plane]
         cell += shape_arrays.slots[shape, 0] * stride
         if grid.elsewhere >= 0:
-            planes = shape_arrays.plane_indices[shown]
-            shape = np.concatenate([shape, planes])
-            cell = np.concatenate([cell, shape_arrays.slots[planes, 0] * stride + grid.elsewhere])
+            indices = shape_arrays.plane_indices[shown]
+            shape = np.concatenate([shape, indices])
+            cell = np.concatenate([cell, shape_arrays.slots[indices, 0] * stride + grid.elsewhere])
             columns = np.concatenate([columns, np.ones(shown.sum(), np.int64)])
         plane_rectangles = np.stack([shape, cell, columns, np.ones_like(cell)], axis=1)
         begins, ends = (np.bincount(each, minlength=len(counts)) for each in (cell, cell + columns))
         counts = np.cumsum(begins - ends)
     rectangles = np.empty((len(plane_rectangles) + len(cones) * max(len(grid.frames), 2), 4), np.int32)
     rectangles[: len(plane_rectangles)] = plane_rectangles
-    slack = MARGIN * float(np.abs(origin).max())
+    slack = MARGIN * float(np.abs(origin).max()) + radius
     output = rectangles, len(plane_rectangles), cones, counts
-    used = kernel.project_all(
-        origin, grid, shape_arrays.balls, slack, shape_arrays.first_ball, shape_arrays.slots, *output
-    )
+    used = kernel.project_all(origin, grid, balls, slack, shape_arrays.first_ball, shape_arrays.slots, *output)
     cones[shape_arrays.plane_indices, 3] = -2.0
     cones[shape_arrays.plane_indices, 4] = np.abs(height)
     cones[:, 4], depths = quantised_depths(cones[:, 4].copy())
     order = depth_order(depths[rectangles[:used, 0]])
     starts = np.cumsum(counts)  # the ends, until `fill_bins` has counted them down
-    members = np.empty(starts[-1] if kinds else 0, np.int32)
+    count = int(starts[-1]) if kinds else 0
+    memory_limit.check(copies * count * MEMBER, WHAT, ADVICE)
+    members = np.empty(count, np.int32)
     kernel.fill_bins(rectangles, order, grid.across, starts, members)
     return BinnedShapes(starts.reshape(kinds, stride), members, cones)
 

@@ -34,13 +34,16 @@ def develop(
     dither: bool = False,
     run: Callable[[list[Job]], object] | None = None,
     threads: int = 1,
+    left: int = 0,
+    top: int = 0,
 ) -> None:
     """Write the levels of light, float64 (h, w, 3), into pixels, uint8 (h, w, 4) in the order blue, green, red, alpha.
 
-    Pixels whose light is NaN stay as they are. `run` runs jobs side by side.
+    Pixels whose light is NaN stay as they are. `run` runs jobs side by side. The first pixel is that at column `left`
+    and row `top` of the pattern that dithers.
     """
-    tops = range(0, len(light), STRIP)
-    jobs: list[Job] = [partial(develop_strips, light, pixels, tone, dither, tops[i::threads]) for i in range(threads)]
+    tops, pattern = range(0, len(light), STRIP), (shifted_pattern(left, top) if dither else None)
+    jobs: list[Job] = [partial(develop_strips, light, pixels, tone, pattern, tops[i::threads]) for i in range(threads)]
     (run or run_in_turn)(jobs)
 
 
@@ -50,11 +53,16 @@ def run_in_turn(jobs: list[Job]) -> None:
         job()
 
 
-def develop_strips(light: np.ndarray, pixels: np.ndarray, tone: str, dither: bool, tops: range) -> None:
-    """Develop the strips of a picture whose first lines are `tops`."""
+def shifted_pattern(left: int, top: int) -> np.ndarray:
+    """Return the thresholds of dithering, shifted so that those at a column and a row come first."""
+    return np.roll(blue_noise(), (-top, -left), axis=(0, 1))
+
+
+def develop_strips(light: np.ndarray, pixels: np.ndarray, tone: str, pattern: np.ndarray | None, tops: range) -> None:
+    """Develop the strips of a picture whose first lines are `tops`; thresholds, if given, dither."""
     for top in tops:
         strip = np.ascontiguousarray(light[top : top + STRIP])
-        levels = dithered(strip, tone, top) if dither else rounding_steps(tone).count(strip)
+        levels = rounding_steps(tone).count(strip) if pattern is None else dithered(strip, tone, top, pattern)
         into, known = pixels[top : top + STRIP], strip[..., 0] == strip[..., 0]
         if known.all():
             into[..., 2::-1], into[..., 3] = levels, 255
@@ -62,13 +70,13 @@ def develop_strips(light: np.ndarray, pixels: np.ndarray, tone: str, dither: boo
             into[known] = np.insert(levels[known][:, ::-1], 3, 255, axis=-1)
 
 
-def dithered(light: np.ndarray, tone: str, top: int) -> np.ndarray:
-    """Return the dithered levels of some lines of a picture, the first of which is line `top`."""
+def dithered(light: np.ndarray, tone: str, top: int, pattern: np.ndarray) -> np.ndarray:
+    """Return the levels of some lines of a picture, the first of which is line `top`, dithered by thresholds."""
     of_level, per_light = tone_named(tone).light, light_to_levels(tone)
     levels = level_steps(tone).count(light)
     share = (light - of_level.take(levels)) * per_light.take(levels)
     rows, columns = np.arange(top, top + len(light)) % SIZE, np.arange(light.shape[1]) % SIZE
-    levels += share > blue_noise()[np.ix_(rows, columns)][..., None]
+    levels += share > pattern[np.ix_(rows, columns)][..., None]
     return levels
 
 

@@ -48,6 +48,22 @@ def decode_srgb(levels: np.ndarray) -> np.ndarray:
     return light
 
 
+def levels_of(light: np.ndarray, name: str) -> np.ndarray:
+    """Return the levels in [0, 1] of light on a tone curve: the inverse of `light_of`, clamped."""
+    if name == FILMIC:
+        bounded = np.minimum(light, 1e6)  # whose square is finite; the curve has long passed 1
+        light = bounded * (A * bounded + B) / (bounded * (C * bounded + D) + E)
+    light = np.clip(light, 0.0, 1.0)
+    return light if name == PLAIN else encode_srgb(light)
+
+
+def encode_srgb(light: np.ndarray) -> np.ndarray:
+    """Return the levels in [0, 1] of light in [0, 1]."""
+    steep = (1 + OFFSET) * light ** (1 / GAMMA) - OFFSET
+    levels: np.ndarray = np.where(light <= TOE / SLOPE, light * SLOPE, steep)
+    return levels
+
+
 def uncompressed(shown: np.ndarray) -> np.ndarray:
     """Return the light that Narkowicz's curve maps to some light in [0, 1]."""
     a, b, c = A - C * shown, B - D * shown, -E * shown

@@ -14,6 +14,7 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Kind
 
 CACHE_LINE = 64  # bytes
+NO_LEAF = -GROUPS  # a reference for the lanes to spare of a node, which rays of NaN hit, too: to a leaf of no group
 EMPTY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
@@ -66,6 +67,7 @@ def build_bvh(shape_arrays: ShapeArrays, kernel: Any) -> Tree:
     is_leaf = names < 0
     leaf = (-1 - names[is_leaf]).astype(np.int64)
     names[is_leaf] = -1 - (blocks[leaf] * GROUPS + kinds[leaf])
+    names[names == 0] = NO_LEAF
     names[...] = names.astype(np.int32).view(np.uint32).astype(np.uint64).view(np.float64)
     return Tree(nodes, extents, shape_arrays.slots, tuple(groups))
 

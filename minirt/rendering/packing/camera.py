@@ -8,8 +8,9 @@ from math import radians, tan
 import numpy as np
 
 from minirt.fields import clamp
-from minirt.kernel.frame import PACKET_HEIGHT
+from minirt.kernel.stored_light import PACKET_HEIGHT
 from minirt.lanes import width
+from minirt.rendering.crop import Crop
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame
 
@@ -31,14 +32,19 @@ def pixel_rays(camera: np.ndarray, width: int, height: int) -> np.ndarray:
     return np.concatenate([eye, forward - right + up, right * (2 / width), up * (-2 / height)])
 
 
+def placed_rays(camera: np.ndarray, crop: Crop) -> np.ndarray:
+    """Return `pixel_rays` of a picture, and the pixel at which a rectangle of it begins, (14,)."""
+    return np.append(pixel_rays(camera, crop.width, crop.height), (crop.left, crop.top))
+
+
 def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:
     """The directions of the rays of a packet for each sample, (k, 3 * width), as differences from the direction through
     the upper left corner of the packet.
 
-    `rays` are `pixel_rays`; `samples` are positions in a pixel, (k, 2), or (k, width, 2) where each pixel of a packet
-    has its own.
+    `rays` are `pixel_rays` or `placed_rays`; `samples` are positions in a pixel, (k, 2), or (k, width, 2) where each
+    pixel of a packet has its own.
     """
-    across_and_down = rays[6:].reshape(2, 3)
+    across_and_down = rays[6:12].reshape(2, 3)
     positions = packet_pixels(width(rays)) + samples.reshape(len(samples), -1, 2).swapaxes(1, 2)
     differences: np.ndarray = across_and_down.T @ positions
     return differences.reshape(len(samples), -1).astype(rays.dtype)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, radians
+from math import cos, radians, sin, tan
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from minirt.rendering.packing.colours import Colours
 from minirt.scene import Ambient, Lamp, Light, ParallelLight, Scene, SpotLight
 
 ALL_DIRECTIONS = (0.0, 0.0, 0.0, -2.0, 1.0)  # axis, end and steepness of a light that shines in all directions
+TURN = 2.4  # radians, from the samples of one light to those of the next: the golden angle, rounded
 STEEPEST = 1e30  # the steepness of a spot whose rim has no width
 
 
@@ -32,6 +33,22 @@ def positions_and_intensities(lights: list[Lamp], colours: Colours) -> np.ndarra
 def light_position(light: Lamp) -> np.ndarray:
     """The position of a light; the origin for parallel light, which has none."""
     return np.array(light.position if isinstance(light, Light | SpotLight) else (0.0, 0.0, 0.0))
+
+
+def radius_of(light: Lamp) -> float:
+    """The radius of a light with a place; 0 for a point and for parallel light."""
+    return (light.size or 0.0) / 2 if isinstance(light, Light | SpotLight) else 0.0
+
+
+def tangent_of(light: Lamp) -> float:
+    """The tangent of half the angular diameter of parallel light; 0 for other light."""
+    return tan(radians(light.size or 0.0) / 2) if isinstance(light, ParallelLight) else 0.0
+
+
+def sizes(lights: list[Lamp]) -> np.ndarray:
+    """A row for each of m lights, (m, 4): see `minirt.kernel.shading.apertures`."""
+    rows = [(radius_of(each), tangent_of(each), cos(TURN * i), sin(TURN * i)) for i, each in enumerate(lights)]
+    return np.array(rows, np.float64).reshape(len(lights), 4)
 
 
 def spot_parameters(lights: list[Lamp]) -> np.ndarray:

@@ -12,6 +12,7 @@ from minirt.fields import cos_and_sin
 from minirt.kernel.shading.environment import Environment
 from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import Placement, picture_cache
+from minirt.materials.picture_cache import check_textures
 from minirt.rendering.packing import secondary_rays
 from minirt.rendering.packing.colours import Colours, colours_of
 from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
@@ -130,29 +131,38 @@ def pack_environment(scene: Scene, file: str) -> Environment:
 
 
 class TexturePool:
-    """The images that a scene names, each loaded once."""
+    """The images that a scene names, each loaded once, whatever the number of names and links that its file has."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self.numbers: dict[tuple[Reader, str], int] = {}
+        self.numbers_of_files: dict[tuple[Reader, int, int], int] = {}  # by device and inode
         self.images: list[np.ndarray] = []
 
     def number(self, file: str, read: Reader) -> int:
         """Load an image and return its number, from 1 on. FileError where it cannot be read."""
         if (read, file) not in self.numbers:
-            self.images.append(read(self.scene.beside(file)))
-            self.numbers[read, file] = len(self.images)
+            path = self.scene.beside(file)
+            key = read, *picture_cache.identity(path)
+            if key not in self.numbers_of_files:
+                self.images.append(read(path))
+                check_textures(self.images)
+                self.numbers_of_files[key] = len(self.images)
+            self.numbers[read, file] = self.numbers_of_files[key]
         return self.numbers[read, file]
 
     def arrays(self) -> dict[str, np.ndarray]:
         """Join the images into the arrays `texels` and `pictures` of `SurfaceMaps`."""
         ends = np.cumsum([image.size for image in self.images])
-        texels = [image.ravel() * np.float32(1 / 255 if image.dtype == np.uint8 else 1) for image in self.images]
+        texels = np.empty(int(ends[-1]) if len(ends) else 0, np.float32)
+        for end, image in zip(ends, self.images, strict=True):
+            share = np.float32(1 / 255 if image.dtype == np.uint8 else 1)
+            np.multiply(image.ravel(), share, out=texels[end - image.size : end], dtype=np.float32)
         rows = [
             (end - image.size, image.shape[1], image.shape[0], image.size // (image.shape[0] * image.shape[1]))
             for end, image in zip(ends, self.images, strict=True)
         ]
         return {
-            "texels": np.concatenate(texels) if texels else np.zeros(0, np.float32),
+            "texels": texels,
             "pictures": np.array(rows, np.int64).reshape(-1, 4),
         }

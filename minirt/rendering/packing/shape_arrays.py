@@ -150,6 +150,11 @@ def same_size(old: Shape, new: Shape) -> bool:
     return type(old) is type(new) and old.parts == new.parts
 
 
+def smooth_primitives(shape_arrays: ShapeArrays) -> np.ndarray:
+    """Return 1 for each primitive of a smooth shape, 0 for all others, (n,)."""
+    return np.array([shape.smooth for shape in shape_arrays.shapes], np.int64)[shape_arrays.owner]
+
+
 def differing_indices(old: tuple[Any, ...], new: tuple[Any, ...], most: float = inf) -> list[int]:
     """Indices at which two tuples hold different objects, up to the length of the shorter one.
 

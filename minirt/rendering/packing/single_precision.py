@@ -36,6 +36,8 @@ def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
         light_cones=widened_cones(arrays.light_cones),
         groups=tuple(group._replace(rows=rows_relative_to(group.rows, eye)) for group in arrays.groups),
         spots=optional_single(arrays.spots),
+        soft=optional_single(arrays.soft),
+        lens=optional_single(arrays.lens),
         specular=optional_single(arrays.specular),
         glow=optional_single(arrays.glow),
         surface_maps=arrays.surface_maps
@@ -44,6 +46,7 @@ def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
             placements=optional_single(arrays.surface_maps.placements),
         ),
         patterns=arrays.patterns and patterns_relative_to(arrays.patterns, eye),
+        smooth=arrays.smooth,
         background=optional_single(arrays.background),
     )
 

@@ -39,16 +39,19 @@ class WideKernel(NamedTuple):
 
 OPTIONAL = tuple(name for name, default in SceneArrays._field_defaults.items() if default is None)
 MAPS = ("checks", "textures", "bumps", "normals", "placements")
+PLAIN = frozenset({"smooth"})  # as meshes are among all kinds of shapes
 FULL = frozenset(OPTIONAL + MAPS)
 # See `fits_single`.
-FULL_SINGLE = frozenset({"spots", "specular", "glow", "surface_maps", "patterns", "background", "checks", "placements"})
+FULL_SINGLE = PLAIN | {
+    *("spots", "soft", "lens", "specular", "glow", "surface_maps", "patterns", "background", "checks", "placements")
+}
 
 FULL_DOUBLE = WideKernel("full", "double", FULL)
 # The narrowest first.
 WIDE_KERNELS = (
-    WideKernel("plain", "double", frozenset()),
+    WideKernel("plain", "double", PLAIN),
     FULL_DOUBLE,
-    WideKernel("plain", "single", frozenset()),
+    WideKernel("plain", "single", PLAIN),
     WideKernel("full", "single", FULL_SINGLE),
 )
 
@@ -117,7 +120,7 @@ def empty_arrays(wide: WideKernel) -> SceneArrays:
         pictures=NO_PICTURES,
     )
     whole = SceneArrays(
-        camera=numbers(12),
+        camera=numbers(14),
         ambient=numbers(3),
         lights=numbers((0, 6)),
         colours_and_extents=numbers((0, 4)),
@@ -130,6 +133,8 @@ def empty_arrays(wide: WideKernel) -> SceneArrays:
         light_cones=numbers((0, 0, 5)),
         groups=tuple(Group(each, integers(0), integers((0, 0)), ABSENT) for each in rows),
         spots=numbers((0, 7)),
+        soft=numbers((0, 4)),
+        lens=numbers(0),
         specular=numbers((0, 3)),
         reflective=numbers((0, 3)),
         transparent=numbers((0, 4)),
@@ -139,6 +144,7 @@ def empty_arrays(wide: WideKernel) -> SceneArrays:
         fades=numbers((0, 2)),
         glow=numbers(0),
         patterns=Patterns(integers((0, 2)), numbers((0, COLUMNS)), numbers(0)),
+        smooth=integers(0),
         surface_maps=maps._replace(**without(MAPS, wide)),
         background=numbers(3),
         environment=Environment(NO_TEXELS, NO_PICTURES),

@@ -58,6 +58,28 @@ class Hits(ClosestHits):
         return found
 
     @property
+    def primitive(self) -> NDArray[np.int64]:
+        """(n,) the index among the primitives of the scene, in the order of its shapes, of which a mesh has one for
+        each triangle; 0 where nothing is hit. ValueError for hits that are not those of a call of `trace`."""
+        if self.traced is None:
+            raise ValueError("only hits that minirt.trace returned know their primitives, not parts of them or copies")
+        primitive = np.zeros(len(self.owner), np.int64)
+        primitive[self.owner >= 0] = self.traced.primitives
+        return primitive
+
+    def columns(self) -> dict[str, NDArray[np.float64] | NDArray[np.int64]]:
+        """Return the hits as columns of a table: `pandas.DataFrame(hits.columns())`.
+
+        They are distance, owner, point_x, point_y, point_z, normal_x, normal_y and normal_z, each (n,).
+        """
+        vectors = {"point": self.point, "normal": self.normal}
+        parts = {f"{name}_{axis}": vector[:, i] for name, vector in vectors.items() for i, axis in enumerate("xyz")}
+        return {"distance": self.distance, "owner": self.owner, **parts}
+
+    def __repr__(self) -> str:
+        return f"<Hits of {len(self.owner)} rays, {np.count_nonzero(self.owner >= 0)} of which hit a shape>"
+
+    @property
     def backward_error(self) -> NDArray[np.float64]:
         """(n,) distance of the hit from the exact surface, in units of 2^-53 (t + |o - c| + size): the rounding errors
         of t, of the way from the origin of the ray to the shape, and of the shape's lengths. NaN where nothing is hit.

@@ -9,11 +9,12 @@ import numpy as np
 
 from minirt.fields import Triple
 from minirt.kernel import interpreted
-from minirt.kernel.frame import TILE, ray_direction, tile_count
-from minirt.kernel.rows import kind_of
+from minirt.kernel.frame import ray_direction, tile_count
+from minirt.kernel.stored_light import TILE
 from minirt.kernel.trace import COINCIDENT, closest_hit
 from minirt.lanes import Vec, lane, splat, unit
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.lens import hit_distances
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.silhouette import covered_pixels
 from minirt.rendering.scene_packing import Packing
@@ -59,6 +60,19 @@ def surface_point(shape: Shape, camera: Camera, width: int, height: int, x: int,
     return (float(point.x), float(point.y), float(point.z)) if hit else None
 
 
+def surface_normal(shape: Shape, point: Triple, direction: Triple) -> Triple:
+    """The unit normal of a shape at a point of its surface, towards where a ray of this direction comes from."""
+    kind = next(kind for kind in ALL_KINDS if kind.element is type(shape))
+    with np.errstate(all="ignore"):
+        if isinstance(shape, Mesh):
+            hit, t = kind.intersect(shape.pack(), Vec(*point) - Vec(*direction), Vec(*direction))
+            shape = shape.some(np.array([np.argmin(np.where(hit, abs(t - 1.0), np.inf))]))
+        _, normal = kind.surface(shape.pack(), Vec(*point))
+    x, y, z = (float(np.ravel(part)[0]) for part in (normal.x, normal.y, normal.z))
+    facing = -1.0 if x * direction[0] + y * direction[1] + z * direction[2] > 0 else 1.0
+    return facing * x + 0.0, facing * y + 0.0, facing * z + 0.0
+
+
 def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Whether a shape covers the centres of pixels x, y, with no other shape in front; False everywhere for a mesh that
     reaches beside or behind the eye."""
@@ -83,15 +97,6 @@ def pixel_hits(shape: Shape, camera: Camera, width: int, height: int, x: Any, y:
 
 def nearest_primitives(shape_arrays: ShapeArrays, origin: Vec, direction: Vec) -> np.ndarray:
     """Indices of the nearest primitive that a ray hits, and of those so close behind that they may coincide with it."""
-    distance = np.full(len(shape_arrays.slots), np.inf)
-    for group, rows in enumerate(shape_arrays.rows):
-        hit, t = kind_of(rows.dtype.names).intersect(packed_columns(rows), origin, direction)
-        distance[shape_arrays.slots[:, 0] == group] = np.where(hit, t, np.inf)
+    distance = hit_distances(shape_arrays, origin, direction)
     least = distance.min(initial=np.inf)
     return np.flatnonzero(np.isfinite(distance) & (distance <= least * (1 + 2 * COINCIDENT)))
-
-
-def packed_columns(rows: Any) -> Any:
-    """Pack rows of shapes of one kind as one shape whose numbers are arrays."""
-    parts = (rows[name] for name in rows.dtype.names)
-    return kind_of(rows.dtype.names).packed(*(Vec(*part.T) if part.ndim > 1 else part for part in parts))

@@ -10,10 +10,12 @@ from math import ceil
 import numpy as np
 
 from minirt.kernel import interpreted
-from minirt.kernel.frame import ray_direction, to_byte_range
+from minirt.kernel.frame import ray_direction
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.whitted import incoming_radiance
+from minirt.kernel.stored_light import to_byte_range
 from minirt.lanes import Vec, unit
+from minirt.rendering.crop import Crop
 from minirt.rendering.developing.develop import develop
 from minirt.rendering.developing.tone import PLAIN
 from minirt.rendering.frame_arguments import thread_memory
@@ -36,12 +38,16 @@ def preview(scene: Scene, width: int, height: int) -> np.ndarray | None:
     return render_interpreted(scene, -(-width // divisor), -(-height // divisor))[0]
 
 
-def render_interpreted(scene: Scene, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the picture of a scene in that size, and its light, (h, w, 3)."""
-    y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
+def render_interpreted(
+    scene: Scene, width: int, height: int, crop: Crop | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the picture of a scene in that size, or a rectangle of that size of a larger picture, and its light,
+    (h, w, 3)."""
     with np.errstate(all="ignore"):
-        arrays = without_culling(Packing(interpreted, depth=0).pack(scene, width, height))
-        direction = unit(ray_direction(arrays.camera, x, y))
+        arrays = without_culling(Packing(interpreted, depth=0).pack(scene, width, height, crop))
+        arrays = arrays._replace(soft=None, lens=None)
+        y, x = np.mgrid[:height, :width].reshape(2, -1) + 0.5
+        direction = unit(ray_direction(arrays.camera, x + arrays.camera[12], y + arrays.camera[13]))
         colour = incoming_radiance(arrays, thread_memory(arrays), 0, Vec(*arrays.camera[:3]), direction)
     light = np.stack([colour.x, colour.y, colour.z], axis=-1).reshape(height, width, 3)
     pixels = np.full((height, width, 4), 255, np.uint8)
@@ -51,10 +57,10 @@ def render_interpreted(scene: Scene, width: int, height: int) -> tuple[np.ndarra
     return pixels, light
 
 
-def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray) -> None:
+def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray, crop: Crop | None = None) -> None:
     """Draw a scene without shapes: its background, or black. `linear` may have no rows."""
     if scene.background and pixels.size:
-        pixels[...], light = render_interpreted(scene, *pixels.shape[1::-1])
+        pixels[...], light = render_interpreted(scene, pixels.shape[1], pixels.shape[0], crop)
         linear[...] = light if len(linear) else linear
     else:
         pixels[...] = (0, 0, 0, 255)

@@ -21,6 +21,7 @@ from minirt.rendering.queries.hits import Hits, Traced
 from minirt.rendering.running.cores import usable_cores
 from minirt.rendering.running.thread_pool import ThreadPool
 from minirt.scene import Scene
+from minirt.scene.arguments import check_scene
 from minirt.shapes import Shape
 
 
@@ -34,6 +35,7 @@ def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: i
     compiles for some seconds. ValueError, naming the argument, if an array has another shape, a number is infinite or
     NaN, or a direction has length 0.
     """
+    check_scene(scene, "trace")
     starts = checked_vectors(origins, "origins")
     vectors = checked_vectors(directions, "directions")
     if len(starts) != len(vectors):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.entry import Entry
-from minirt.kernel.machine_code.library import LIBRARY
+from minirt.kernel.machine_code.library import LIBRARY, REMEMBERED
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.frame_arguments import Frame
 from minirt.rendering.packing.widening import WIDE_KERNELS, WideKernel, fitting, widened
@@ -72,6 +72,8 @@ class Kernels:
     def count(self, choice: Choice, seconds: float) -> None:
         """Count the time of rendering with a kernel; where a wide one took long have the narrow one compiled."""
         if choice.wide:
+            if len(self.wide_seconds) >= REMEMBERED:
+                self.wide_seconds.clear()
             total = self.wide_seconds[choice.narrow] = self.wide_seconds.get(choice.narrow, 0.0) + seconds
             if total >= self.narrow_after:
                 self.background.compile(choice.narrow)
@@ -110,6 +112,8 @@ class Kernels:
         features = kernel_features(scene)
         if features not in self.narrow_kernels:
             calls = calls_for(scene, self.precision, self.depth)
+            if len(self.narrow_kernels) >= REMEMBERED:
+                self.narrow_kernels.clear()
             self.narrow_kernels[features] = list(map(LIBRARY.identity, calls))
         return self.narrow_kernels[features]
 

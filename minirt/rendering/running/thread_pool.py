@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 from threading import Thread
 from typing import NamedTuple, TypeAlias
 from weakref import finalize
@@ -16,6 +16,7 @@ Job: TypeAlias = Callable[[], object]
 # Of threads that give way. The event loop composes frames sooner: the longest pause of a drag falls from 34 ms to 30.
 # With 10 it falls to 28, but that of a held key grows from 26 ms to 34.
 NICENESS = 4
+LONGEST_WAIT = 0.2  # seconds: Python does not see a signal that comes just before it waits until the wait ends
 
 
 class Task(NamedTuple):
@@ -66,7 +67,8 @@ class ThreadPool:
         interrupts: list[BaseException] = []
         while len(results) < len(jobs):
             try:
-                wake_up.get()
+                with suppress(Empty):
+                    wake_up.get(timeout=LONGEST_WAIT)
             except BaseException as interrupt:
                 interrupts.append(interrupt)
             if interrupts or any(results):

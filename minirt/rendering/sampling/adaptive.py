@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from minirt.kernel.frame import PACKET_HEIGHT
+from minirt.kernel.stored_light import PACKET_HEIGHT
 
 CONTRAST = 6  # levels of 255 by which neighbours differ at an edge
 # Lines processed at once: their data fits a processor's cache, which takes a third of the time of all lines at once.

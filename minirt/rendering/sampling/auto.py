@@ -2,10 +2,10 @@
 are needed.
 
 The first sweep over the picture is a plain frame of one sample a pixel, beside which some packets are probed (see
-`minirt.kernel.frame.squared_error`). Often that is enough. Otherwise the packets are sorted into classes by their
-contrast, and are drawn anew with the samples that `minirt.rendering.sampling.allocation` chooses for their class. Where
-that takes long it is done in portions, random sets of packets, since the probes of each tell how many samples, or how
-much time, the next portions need. Where an error is asked for, the picture depends on nothing else; where a time is
+`minirt.kernel.stored_light.squared_error`). Often that is enough. Otherwise the packets are sorted into classes by
+their contrast, and are drawn anew with the samples that `minirt.rendering.sampling.allocation` chooses for their class.
+Where that takes long it is done in portions, random sets of packets, since the probes of each tell how many samples, or
+how much time, the next portions need. Where an error is asked for, the picture depends on nothing else; where a time is
 asked for, it depends on how fast the portions were.
 
 Limit: nothing is known of features that no sample met in any packet of a class. A few features that are smaller than a
@@ -48,7 +48,7 @@ SHARE_OF_TIME = 0.98  # of the remaining time, to be filled
 class Sweep(NamedTuple):
     """Samples to take in one sweep over the picture."""
 
-    positions: np.ndarray  # (k, pixels of a packet, 2)
+    positions: np.ndarray  # (k, pixels of a packet, 2), or 6 with places in lens and lights
     plan: np.ndarray  # as `plan` of `minirt.kernel.frame`
     errors: np.ndarray  # output: squared errors of the packets of the plan that are probed
     is_first: bool = False  # whether all packets are to be drawn, too, with the first position
@@ -62,13 +62,22 @@ class AutoSampler:
     """A picture in the making. `draw` draws its packets, `classify` tells their contrast classes (rows,
     columns), and the number of packets of each."""
 
-    def __init__(self, draw: Draw, classify: Classify, packets: Packets, numbers: int, packet_pixels: int) -> None:
-        """`numbers` of the picture: three for each pixel."""
+    def __init__(
+        self,
+        draw: Draw,
+        classify: Classify,
+        packets: Packets,
+        numbers: int,
+        packet_pixels: int,
+        with_places: bool = False,
+    ) -> None:
+        """`numbers` of the picture: three for each pixel. `with_places`: as for `SampleTable`."""
         self.draw = draw
         self.classify = classify
         self.packets = packets
         self.numbers = numbers
         self.packet_pixels = packet_pixels
+        self.with_places = with_places
         self.speed = inf  # samples of packets a second, in the last sweep
 
     def reach(self, error: float, seconds: float) -> Outcome | None:
@@ -197,13 +206,13 @@ class AutoSampler:
     def draw_first(self) -> bool:
         """Draw all packets with one sample, and probe some of them. False when cancelled."""
         packets = self.packets
-        probes, table, plan = first_sweep(packets.count, packets.columns, self.packet_pixels)
+        probes, table, plan = first_sweep(packets.count, packets.columns, self.packet_pixels, self.with_places)
         return self.carry_out(Sweep(table.positions, plan, np.zeros(len(plan)), is_first=True), probes, packets.count)
 
     def sweep(self, some: np.ndarray, levels: np.ndarray, probed: np.ndarray) -> bool:
         """Draw packets with new levels, and probe those that are `probed`. False when cancelled."""
         packets = self.packets
-        table = SampleTable(np.flatnonzero(np.bincount(levels)), self.packet_pixels)
+        table = SampleTable(np.flatnonzero(np.bincount(levels)), self.packet_pixels, self.with_places)
         plan = plan_of(some, packets.columns, table.plan(levels, probed))
         packets.drawn(some, levels)
         return self.carry_out(Sweep(table.positions, plan, np.zeros(len(plan))), some)
@@ -220,9 +229,11 @@ class AutoSampler:
 
 
 @lru_cache(2)
-def first_sweep(count: int, columns: int, packet_pixels: int) -> tuple[np.ndarray, SampleTable, np.ndarray]:
+def first_sweep(
+    count: int, columns: int, packet_pixels: int, with_places: bool
+) -> tuple[np.ndarray, SampleTable, np.ndarray]:
     """The packets to probe in the first sweep, its table of samples and its plan."""
     probes = np.flatnonzero(random_numbers(count) < FIRST_PROBES / count)
     levels = np.zeros(len(probes), np.uint8)
-    table = SampleTable(np.zeros(1, np.intp), packet_pixels)
+    table = SampleTable(np.zeros(1, np.intp), packet_pixels, with_places)
     return probes, table, plan_of(probes, columns, table.plan(levels, levels == 0))

@@ -10,9 +10,9 @@ from functools import cache, partial
 
 import numpy as np
 
-from minirt.kernel.frame import PACKET_HEIGHT
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.library import Call
+from minirt.kernel.stored_light import PACKET_HEIGHT
 
 Job = Callable[[], object]
 

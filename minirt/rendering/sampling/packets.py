@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from minirt.kernel.frame import PACKET_HEIGHT
+from minirt.kernel.stored_light import PACKET_HEIGHT
 from minirt.rendering.frame_arguments import GOLDEN_RATIO
 from minirt.rendering.sampling.allocation import coefficients, squared_error, unseen
 from minirt.rendering.sampling.contrast import CLASSES

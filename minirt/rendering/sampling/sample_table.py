@@ -14,6 +14,7 @@ import numpy as np
 
 from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.rendering.frame_arguments import sample_positions
+from minirt.rendering.packing.aperture_rays import aperture_places, variants_of
 
 # Numbers of samples that a packet may have, two for each doubling; a level is an index of them.
 COUNTS = np.array([1, 2, *(size * 2**k for k in range(1, 16) for size in (1.5, 2))], np.int32)
@@ -22,19 +23,28 @@ REFERENCE_ROWS = 256  # of the table, for one number of samples, that more than 
 
 
 class SampleTable:
-    """Sample positions (rows, pixels of a packet, 2) for some levels, and where each begins."""
+    """Sample positions (rows, pixels of a packet, 2) for some levels, and where each begins.
 
-    def __init__(self, levels: np.ndarray, pixels: int) -> None:
+    `with_places` gives each sample places in the discs of lens and lights, too: (rows, pixels, 6). Drawn samples then
+    have variants, too: see `minirt.rendering.packing.aperture_rays`.
+    """
+
+    def __init__(self, levels: np.ndarray, pixels: int, with_places: bool = False) -> None:
         self.first = np.zeros(len(COUNTS), np.int32)  # row of the drawn samples of a level
         self.reference = np.zeros(len(COUNTS), np.int32)  # row of its first pair of references
         self.variants = np.ones(len(COUNTS), np.int32)
+        self.drawn_variants = np.ones(len(COUNTS), np.int32)
         parts, rows = [], 0
         for level in levels.tolist():
             count = int(COUNTS[level])
-            self.first[level], self.reference[level] = rows, rows + count
             self.variants[level] = min(max(REFERENCE_ROWS // (2 * REFERENCE_SAMPLES * count), 1), VARIANTS)
-            parts.append(positions_of(count, int(self.variants[level]), pixels))
-            rows += count * (1 + 2 * REFERENCE_SAMPLES * int(self.variants[level]))
+            self.drawn_variants[level] = variants_of(count) if with_places else 1
+            drawn, pairs = int(self.drawn_variants[level]), int(self.variants[level])
+            self.first[level], self.reference[level] = rows, rows + count * drawn
+            parts.append(
+                positions_and_places(count, drawn, pairs, pixels) if with_places else positions_of(count, pairs, pixels)
+            )
+            rows += count * (drawn + 2 * REFERENCE_SAMPLES * pairs)
         self.positions = np.concatenate(parts)
 
     def plan(self, levels: np.ndarray, probed: np.ndarray) -> np.ndarray:
@@ -42,6 +52,8 @@ class SampleTable:
         plan = np.zeros((len(levels), 3), np.int32)
         plan[:, 0] = self.first[levels]
         plan[:, 1] = COUNTS[levels]
+        if self.drawn_variants.max() > 1:
+            plan[:, 0] += COUNTS[levels] * scattered(len(levels), self.drawn_variants[levels])
         chosen = levels[probed]
         pairs = 2 * REFERENCE_SAMPLES * COUNTS[chosen] * (np.arange(len(chosen)) % self.variants[chosen])
         plan[probed, 2] = self.reference[chosen] + pairs
@@ -56,6 +68,24 @@ def positions_of(count: int, variants: int, pixels: int) -> np.ndarray:
     references = lattice[:, None] + shifts[:, None]
     references -= references >= 1.0
     return np.concatenate([drawn, references.reshape(-1, pixels, 2)])
+
+
+def scattered(count: int, variants: np.ndarray) -> np.ndarray:
+    """Choose one of its variants for each of `count` packets, at random but the same at each call."""
+    chosen: np.ndarray = (random_numbers(count) * variants).astype(np.int32)
+    return chosen
+
+
+@lru_cache(32)
+def positions_and_places(count: int, drawn: int, pairs: int, pixels: int) -> np.ndarray:
+    """The positions of variants of drawn samples, and of their references, with their places in lens and lights."""
+    positions = positions_of(count, pairs, pixels)
+    positions = np.concatenate([np.tile(positions[:count], (drawn, 1, 1)), positions[count:]])
+    places = [
+        aperture_places(count, drawn, pixels, 1),
+        aperture_places(REFERENCE_SAMPLES * count, 2 * pairs, pixels, 2),
+    ]
+    return np.concatenate([positions, np.concatenate(places)], axis=-1)
 
 
 @cache

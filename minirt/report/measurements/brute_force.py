@@ -12,6 +12,7 @@ from minirt.errors import RenderError
 from minirt.kernel.bvh.nodes import NODE, REFERENCES, Tree
 from minirt.kernel.frame import tile_count
 from minirt.kernel.scene_arrays import SceneArrays
+from minirt.rendering.crop import Crop
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 
@@ -27,9 +28,9 @@ class ChangedPacking(Packing):
         super().__init__(precision=precision)
         self.changes = changes
 
-    def pack_double(self, scene: Scene, width: int, height: int) -> SceneArrays:
+    def pack_double(self, scene: Scene, width: int, height: int, crop: Crop) -> SceneArrays:
         """Pack the scene; RenderError if its lists would fill the memory."""
-        arrays = super().pack_double(scene, width, height)
+        arrays = super().pack_double(scene, width, height, crop)
         for change in self.changes:
             arrays = change(arrays, tile_count(width) * tile_count(height))
         return arrays

@@ -7,8 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from minirt.lanes import width as lanes_of
 from minirt.rendering import Renderer
 from minirt.rendering.frame_arguments import frame_arguments, sample_positions
+from minirt.rendering.packing.aperture_rays import aperture_places, has_apertures, with_apertures
 from minirt.rendering.packing.camera import packet_rays
 from minirt.report.measurements.metrics import Picture, clamped, rmse
 from minirt.scene import Scene
@@ -36,10 +38,16 @@ def reference(
     one, other = (
         clamped(
             half_reference(
-                renderer, scene, width, height, (sample_positions(samples // 2) + random.random(2)) % 1.0, step
+                renderer,
+                scene,
+                width,
+                height,
+                (sample_positions(samples // 2) + random.random(2)) % 1.0,
+                step,
+                2 * seed + half,
             )
         )
-        for _ in range(2)
+        for half in range(2)
     )
     return Reference((one + other) / 2, samples, rmse(one, other) / 2)
 
@@ -50,9 +58,18 @@ def passes(samples: int) -> int:
 
 
 def half_reference(
-    renderer: Renderer, scene: Scene, width: int, height: int, places: np.ndarray, step: Callable[[], object]
+    renderer: Renderer,
+    scene: Scene,
+    width: int,
+    height: int,
+    places: np.ndarray,
+    step: Callable[[], object],
+    seed: int = 0,
 ) -> Picture:
-    """Render the mean radiance over sample positions `places`, (n, 2) in units of a pixel."""
+    """Render the mean radiance over sample positions `places`, (n, 2) in units of a pixel.
+
+    `seed` chooses those in lens and lights.
+    """
     total = np.zeros((height, width, 3))
     if not scene.shapes:
         return total
@@ -60,7 +77,11 @@ def half_reference(
     for start in range(0, len(places), PASS):
         some = places[start : start + PASS]
         traced = renderer.packing.pack(scene, width, height)
-        arguments = frame_arguments(traced, pixels, linear=linear)._replace(rays=packet_rays(traced.camera, some))
+        rays = packet_rays(traced.camera, some)
+        if has_apertures(traced):
+            discs = aperture_places(len(places), 1, lanes_of(traced.camera), seed)[start : start + PASS]
+            rays = with_apertures(rays, discs, traced.lens)
+        arguments = frame_arguments(traced, pixels, linear=linear)._replace(rays=rays)
         renderer.runner.next_row = arguments.next_row  # so that it can be cancelled
         renderer.runner.run([arguments], renderer.threads)
         total += linear * len(some)

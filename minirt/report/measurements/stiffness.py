@@ -12,8 +12,8 @@ from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec
 from minirt.rendering.notes import shape_name
 from minirt.rendering.packing.camera import camera_numbers
+from minirt.rendering.packing.lens import packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.pick import packed_columns
 from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.sizes import sizes
 from minirt.scene import Scene

@@ -18,7 +18,7 @@ from minirt.materials import Attributes, Clouds, Compound, Glass
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import FEATURES, NEEDS, features
 from minirt.report.measurements.brute_force import Change, without_boxes, without_light_buffers, without_tiles
-from minirt.scene import Background, Scene, SpotLight
+from minirt.scene import Background, Camera, FurtherLight, Scene, SpotLight
 from minirt.shapes import ALL_KINDS, Shape
 
 SIZE = 1e-3  # of an added shape, as a share of the distance to it
@@ -60,8 +60,10 @@ def with_more(scene: Scene, folder: Path) -> Iterator[Variant]:
 
 
 def with_element(scene: Scene, added: Any) -> Scene:
-    """Return a scene with an element more; a background replaces that of the scene."""
-    kept = (each for each in scene.elements if not (isinstance(added, Background) and isinstance(each, Background)))
+    """Return a scene with an element more; a background and a camera replace those of the scene."""
+    kept = (
+        each for each in scene.elements if not isinstance(added, Background | Camera) or type(each) is not type(added)
+    )
     return Scene((*kept, added), scene.file)
 
 
@@ -76,6 +78,7 @@ class InvisibleElements:
         self.place, self.size = eye - behind * forward, SIZE * behind
         self.back = vector(-forward)
         self.folder = folder
+        self.camera = scene.camera
 
     def features(self, plain: Shape) -> dict[str, Any]:
         """Return an element with each feature, by the feature's key; materials are those of a `plain` shape."""
@@ -87,6 +90,8 @@ class InvisibleElements:
         found |= {feature: found[feature].replace(glass=glass) for feature in NEEDS}
         found["raised_patterns"] = plain.replace(clouds=Clouds(self.size, height=0.1))
         found["spots"] = SpotLight(position=vector(self.place), direction=self.back, angle=10.0, brightness=0.5)
+        found["soft"] = FurtherLight(vector(self.place), 1e-12, size=self.size)  # so faint that no level changes
+        found["lens"] = self.camera.replace(lens=self.size, focus=1.0)
         found["background"] = Background(DARK)
         found["environment"] = Background(self.picture())
         return {feature: found[feature] for feature in FEATURES}

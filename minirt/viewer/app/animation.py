@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -28,9 +30,17 @@ def turntable(scene: Scene, count: int) -> Iterator[Scene]:
         yield scene.replace(scene.camera, camera) if number else scene
 
 
-def animation(
+def animation(scene: Scene, lines: Iterable[str], **settings: Any) -> list[Image]:
+    """Return the frames of a replay; the arguments are those of `record`."""
+    frames: list[Image] = []
+    record(scene, lines, frames.append, **settings)
+    return frames
+
+
+def record(
     scene: Scene,
     lines: Iterable[str],
+    add: Callable[[Image], object],
     *,
     renderer: Renderer,
     size: tuple[int, int],
@@ -39,24 +49,23 @@ def animation(
     keys: str = "qwerty",
     lenient: bool = False,
     samples: int = 1,
-) -> list[Image]:
-    """Return the frames of a replay, FPS per simulated second, with the pointer while it is used.
+) -> None:
+    """Give the frames of a replay to a function, FPS per simulated second, with the pointer while it is used.
 
     Errors as for `minirt.viewer.app.replay.replay`.
     """
-    frames: list[Image] = []
-    ticks = iter(range(10**9))
+    ticks = itertools.count()
 
     def add_frame(session: Session) -> None:
         if next(ticks) % (TICKS // FPS) == 0:
-            frames.append(Image.from_bgra(with_pointer(session.screen.frame, session.window.pointer)))
+            add(Image.from_bgra(with_pointer(session.screen.frame, session.window.pointer)))
 
     session = play(
         scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient, samples=samples,
         watch=add_frame,
     )  # fmt: skip
     raise_failure(session)
-    return [*frames, Image.from_bgra(session.screen.frame)]
+    add(Image.from_bgra(session.screen.frame))
 
 
 def with_pointer(pixels: Pixels, at: tuple[int, int]) -> Pixels:

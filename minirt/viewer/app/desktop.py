@@ -7,16 +7,19 @@ import sys
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Literal, NoReturn
 
 import minirt
 from minirt.gc_pause import gc_paused
 from minirt.mlx import Mlx
 from minirt.scene import Scene
+from minirt.scene.arguments import check_scene
 from minirt.viewer.app import recovery
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.signals import ended_by_signals
+from minirt.viewer.display import unused_memory
+from minirt.viewer.display.application_icon import application_icons
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Renderer
 
@@ -37,6 +40,7 @@ def run(
     keys: str = "auto",
     lenient: bool = False,
     samples: int = 1,
+    text_scale: float = 1.0,
     renderer: Renderer | None = None,
     mlx: Mlx | None = None,
     watch: bool = True,
@@ -47,14 +51,17 @@ def run(
     `path` is the scene's file, which holds `saved` if not the scene itself; with `watch` it is read again when another
     program changes it. Unsaved changes are kept in a recovery file, whose name is printed; those of a program that was
     killed are offered at the next start.
-    When nothing moves, the edges in the picture are refined to `samples` rays per pixel.
+    When nothing moves, the edges in the picture are refined to `samples` rays per pixel. `text_scale`: a factor for the
+    size of text and icons.
 
     MlxError if no window can be opened, RenderError if the pictures cannot be rendered.
 
     If the renderer cannot be stopped (inside the compiler), the process ends here at once.
     """
+    unused_memory.use_one_heap()
     renderer = renderer or minirt.renderer(threads)
     session = open_session(scene, Path(path), size, renderer, mlx or Mlx(), keys, lenient, samples, watch, saved)
+    session.screen.text_scale = text_scale
     recovery.begin(session)
     session.mlx.mlx_lost_hook(session.display, recovery.end_at_once, session)
     try:
@@ -72,7 +79,7 @@ def view(
     *,
     samples: int = 16,
     threads: int | None = None,
-    precision: str = "double",
+    precision: Literal["double", "single"] = "double",
     keys: str = "auto",
     mlx: Mlx | None = None,
     dither: bool = False,
@@ -82,6 +89,7 @@ def view(
     Ctrl+S in the window writes the file that the scene was read from, or `scene.rt`. The other arguments are those of
     `run` and `minirt.render`.
     """
+    check_scene(scene, "view")
     renderer = minirt.renderer(threads, precision, dither=dither)
     path = scene.file or Path("scene.rt")
     session = open_session(scene, path, size, renderer, mlx or Mlx(), keys, lenient=False, samples=samples, watch=False)
@@ -123,6 +131,7 @@ def open_session(
                 saved=saved,
             )
             EventDispatcher(session).connect()
+            mlx.mlx_set_window_icon(session.window, application_icons())
             return session
     except BaseException:
         mlx.mlx_release(display)

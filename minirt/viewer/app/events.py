@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from minirt.mlx import Event
+from minirt.mlx.keys import MODIFIER_KEYS
 from minirt.viewer.app import file_sync, recovery
+from minirt.viewer.app.choosing import ADDING, LISTS, Choosing
 from minirt.viewer.app.commands import COMMANDS
 from minirt.viewer.app.held_edits import HeldEdits
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.session import Session
+from minirt.viewer.app.typing import TYPE, Typing
+from minirt.viewer.editing import structure
 from minirt.viewer.editing.editor import EDITS, apply
 from minirt.viewer.input.bindings import Binding
 from minirt.viewer.input.key_repeat import Advance
+from minirt.viewer.input.keymap import SIGNIFICANT
+
+REPEATED = ("grow", "shrink")  # actions of characters that go on while their key is held
 
 
 class EventDispatcher:
@@ -23,6 +31,10 @@ class EventDispatcher:
         self.session = session
         self.mouse = Mouse(session, self.perform)
         self.held_edits = HeldEdits()
+        self.typing = Typing(session)
+        self.choosing = Choosing(session)
+        self._unbound: int | None = None  # the key without a binding that is down: it types the next character
+        self._typed: int | None = None  # the last key that repeats because its character is bound
         self._tick_hook = self.as_hook(self.on_tick)
 
     def connect(self) -> None:
@@ -33,9 +45,11 @@ class EventDispatcher:
             Event.EXPOSE: session.update,
             Event.KEY_PRESS: self.on_press,
             Event.KEY_RELEASE: self.on_release,
-            Event.BUTTON_PRESS: self.mouse.on_press,
+            Event.BUTTON_PRESS: self.on_button,
             Event.BUTTON_RELEASE: lambda button, _x, _y: self.mouse.on_release(button),
             Event.MOTION_NOTIFY: self.mouse.on_motion,
+            Event.ENTER_NOTIFY: lambda: self.mouse.on_crossing(True),
+            Event.LEAVE_NOTIFY: lambda: self.mouse.on_crossing(False),
             Event.FOCUS_OUT: session.release_button,
             Event.DESTROY_NOTIFY: session.quit,
         }
@@ -50,19 +64,62 @@ class EventDispatcher:
         """A key goes down, or a character was typed."""
         session = self.session
         if isinstance(code, str):  # one or more characters; Shift may be part of typing them
-            for binding in filter(None, map(session.keymap.find, code)):
-                self.perform(binding, 1.0)
+            for character in code:
+                self.on_character(character)
             return
         pressed = session.keymap.find(code, session.modifiers)
+        self._unbound = None if pressed or code in MODIFIER_KEYS else code
+        if self.is_for_panel(code, pressed):
+            return
         if pressed and pressed.held:
             self.hold(pressed, code)
         elif pressed:
             self.perform(pressed, session.step)
 
+    def is_for_panel(self, key: int, pressed: Binding | None) -> bool:
+        """Let the typed value or the open list take a key press; any other key that does something closes them."""
+        if self.typing.text:
+            if self.typing.on_key(key):
+                return True
+            if pressed:
+                self.typing.show("")
+        elif self.choosing.is_open:
+            again = pressed and pressed.action in LISTS and not self.choosing.is_filtered
+            if not again and not self.session.modifiers & SIGNIFICANT and self.choosing.on_key(key):
+                return True
+            if pressed and not again:
+                self.choosing.end()
+        return False
+
+    def on_button(self, button: int, x: int, y: int) -> None:
+        """A mouse button goes down, or the wheel turns: what is typed is left, and the list is closed."""
+        if self.typing.text:
+            self.typing.show("")
+        self.choosing.end()
+        self.mouse.on_press(button, x, y)
+
+    def on_character(self, character: str) -> None:
+        """A character was typed: of a value, or one that a binding names."""
+        if self.typing.text:
+            self.typing.on_text(character)
+            return
+        binding = self.session.keymap.find(character)
+        if character.isascii() and character.isdigit():
+            self.choosing.end()
+            self.typing.begin(character)
+        elif binding:
+            self.choosing.end()
+            if binding.action not in REPEATED or self._unbound is None:
+                self.perform(binding, 1.0)
+            elif not self.session.key_repeat.holds(self._unbound):
+                self._typed = self._unbound
+                self.hold(binding, self._unbound)
+
     def on_release(self, code: int) -> None:
         """A key goes up: its last steps are done, and a still picture is requested."""
         session = self.session
         self.apply_advances(session.key_repeat.release(code, session.now))
+        self._unbound = None if code == self._unbound else self._unbound
         session.update()
 
     def on_tick(self) -> None:
@@ -85,10 +142,12 @@ class EventDispatcher:
         session.judge_view()
         session.refresh()
         session.update()
+        session.give_back_memory()
 
     def on_resize(self, _width: int, _height: int) -> None:
         """The window has another size: the pointer is over another part of the picture, so a drag ends."""
         self.session.release_button()
+        self.session.has_unused_memory = True
         self.session.update()
 
     def on_drop(self, file: str) -> None:
@@ -102,8 +161,17 @@ class EventDispatcher:
         """Perform the action of a key binding: an edit of the scene, or a command."""
         session = self.session
         session.release_button()
+        if binding.action in ADDING and not structure.is_adding(session.state):
+            session.state = replace(session.state, aim=self.mouse.aim())
         if binding.action in EDITS:
-            session.show(apply(session.state, binding.action, step if binding.fine else 1.0, session.now))
+            before = session.state
+            session.state = apply(before, binding.action, step if binding.fine else 1.0, session.now)
+            if binding.action in LISTS:
+                self.choosing.begin(binding.action, before)
+            session.show(session.state)
+            return
+        if binding.action == TYPE:
+            self.typing.begin("=")
             return
         session.state = session.state.with_message("")
         session.attempt(COMMANDS[binding.action])
@@ -119,7 +187,8 @@ class EventDispatcher:
         session = self.session
         state = session.state
         for advance in advances:
-            state = self.held_edits.apply(state, advance, session.step, session.now)
+            step = 1.0 if advance.key == self._typed else session.step  # Shift may be part of typing a character
+            state = self.held_edits.apply(state, advance, step, session.now)
         if state is not session.state:
             session.show(state)
 

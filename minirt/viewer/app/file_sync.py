@@ -8,8 +8,10 @@ from pathlib import Path
 
 from minirt.errors import SceneError
 from minirt.scene import Scene, load, save
+from minirt.scene.files import check_name
 from minirt.viewer.app.session import Session
-from minirt.viewer.editing.state import MAX_UNDO, Snapshot, State, initial_state
+from minirt.viewer.editing.history import stack_after_reading
+from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.files.scene_files import back_up, contents_differ, error_summary, save_recovery
 from minirt.viewer.files.watched_file import WatchedFile, signature
 from minirt.viewer.input.chords import platform_spelling
@@ -20,6 +22,7 @@ UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and ke
 
 def save_scene(session: Session) -> None:
     """Write the scene to its file; if another program has changed the file, copy it first. SceneError."""
+    check_name(session.path)
     copy = back_up(session.path) if session.file.changed else None
     linked = has_other_links(session.path)
     save(session.state.scene, session.path)
@@ -73,6 +76,7 @@ def read_file(session: Session, keep_camera: bool = False) -> None:
     session.state = state_after_reading(session.state, scene, session.saved if keep_camera else None)
     session.saved = scene
     session.screen.banner = ""
+    session.has_unused_memory = True
 
 
 def state_after_reading(old: State, scene: Scene, saved: Scene | None) -> State:
@@ -89,7 +93,7 @@ def state_after_reading(old: State, scene: Scene, saved: Scene | None) -> State:
         selected=old.selected if same else new.selected,
         value_index=old.value_index if same else 0,
         frame=old.frame,
-        undo_stack=(*old.undo_stack[1 - MAX_UNDO :], Snapshot(old.scene, old.selected)),
+        undo_stack=stack_after_reading(old),
     )
 
 
@@ -106,4 +110,5 @@ def open_another(session: Session, path: Path) -> None:
     session.mlx.mlx_set_window_title(session.window, f"miniRT - {path.name}")
     session.saved = scene
     session.screen.banner = ""
+    session.has_unused_memory = True
     session.state = initial_state(scene).with_message(f"opened: {path}{kept}")

@@ -17,10 +17,11 @@ from typing import TYPE_CHECKING
 
 from minirt.errors import MiniRTError, RenderError
 from minirt.image import Image
-from minirt.mlx import Mlx, Modifier
+from minirt.mlx import Cursor, Mlx, Modifier
 from minirt.scene import Scene
 from minirt.shapes import Shape
 from minirt.viewer.app.pressed_button import PressedButton
+from minirt.viewer.display import unused_memory
 from minirt.viewer.display.painter import Outcome, Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
 from minirt.viewer.display.screen import Screen
@@ -80,10 +81,12 @@ class Session:
         self.keymap = Keymap(keys)
         self.key_repeat = KeyRepeat()
         self.pressed: PressedButton | None = None
+        self.pointer = size[0] // 2, size[1] // 2  # the pixel where the pointer was last
         self.failures: list[MiniRTError] = []  # of commands
         self.screenshot_pending = False
+        self.has_unused_memory = False  # of pictures or scenes that are gone
         self.full_screen = False
-        mlx.mlx_set_options(alpha=False, strict=True, symbols=True)
+        mlx.mlx_set_options(alpha=False, strict=True, symbols=True, application="miniRT")
         mlx.mlx_do_key_autorepeatoff(display)  # `key_repeat` repeats what is worth it
         self.window = mlx.mlx_new_window(display, *size, f"miniRT - {path.name}", resizable=True)
         self.refinement = Refinement(painter(lambda: mlx.mlx_wake(display)), self.window, samples)
@@ -132,6 +135,12 @@ class Session:
             file = save_picture(Image.from_bgra(self.picture), self.path)
             self.state = self.state.with_message(f"picture: {file}")
 
+    def give_back_memory(self) -> None:
+        """Give the memory of earlier sizes and files back to the system as soon as a picture of the new is complete."""
+        if self.has_unused_memory and self.refinement.complete:
+            self.has_unused_memory = False
+            unused_memory.give_back()
+
     def judge_view(self) -> None:
         """Say so, and what to do, if the first picture of a scene that was read shows nothing of it."""
         latest = self.refinement.latest
@@ -163,6 +172,7 @@ class Session:
         """Forget the mouse button that is down; the edits of a drag are then one undo step."""
         if self.pressed and self.pressed.dragging:
             self.state = self.state.end_merging()
+            self.mlx.mlx_set_cursor(self.window, Cursor.ARROW)
         self.pressed = None
 
     def watch_file(self) -> None:

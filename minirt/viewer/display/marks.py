@@ -10,6 +10,7 @@ from minirt.element import Element
 from minirt.mlx.text import draw_text, measure
 from minirt.scene import Camera, Scene
 from minirt.shapes import Shape
+from minirt.viewer.display.edge_arrow import arrow_direction, draw_arrow
 from minirt.viewer.display.icons import SIZE, Icon, elements_with_icon, place_icons
 from minirt.viewer.display.outline import PixelIndices, outline_pixels
 from minirt.viewer.display.painter import Pixels
@@ -44,6 +45,10 @@ class Marks:
                 rays = MOVING_RAYS if moving else STILL_RAYS
                 draw_outline(pixels, *self.outline(element, scene.camera, pixels, rays))
             draw_axis(pixels, element, state.frame, view)
+            around = None if isinstance(element, Camera) else extent(element)
+            outside = arrow_direction(view, *around) if around else None
+            if outside and not (isinstance(element, Shape) and element.infinite):
+                draw_arrow(pixels, outside, scale)
         for icon in self.visible_icons(scene, selected, view, scale):
             draw_icon(pixels, icon, scale, selected=icon.owner == selected)
 

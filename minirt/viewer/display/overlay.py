@@ -1,25 +1,22 @@
-"""Text over the picture: heads-up display, messages, help."""
+"""Text over the picture: heads-up display and messages."""
 
 from __future__ import annotations
 
-import re
 import textwrap
 from enum import IntEnum
-from math import ceil
 
 from minirt.element import fields_of
 from minirt.mlx.text import draw_text, measure
 from minirt.scene.line_rewriting import field_text
+from minirt.viewer.display.hints import hints, short_numbers
 from minirt.viewer.display.painter import Outcome, Pixels
-from minirt.viewer.editing.state import Frame, State
-from minirt.viewer.input.bindings import FINE_NOTE, KeyGroup, key_groups
+from minirt.viewer.editing.state import State
 
 TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACKGROUND with its opacity
 MARGIN, PADDING = 10, 4  # pixels
 TEXT_SIZE, MIN_TEXT_SIZE = 16, 8  # pixels: on a screen of scale 1, and the least that can be read
+USUAL_WINDOW = 1920, 1080  # pixels: in larger windows text is larger, too
 COLUMNS, ROWS = 40, 18  # letters for which a window must have room; if it has not, they become smaller
-
-LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
 
 
 class HudLevel(IntEnum):
@@ -30,8 +27,13 @@ class HudLevel(IntEnum):
     ALL = 2
 
 
+def overlay_scale(width: int, height: int, scale: float, wanted: float) -> float:
+    """Return the scale of text and icons in a window; `scale` is the screen's, `wanted` a factor of the user's."""
+    return max(scale, min(width / USUAL_WINDOW[0], height / USUAL_WINDOW[1])) * wanted
+
+
 def text_size(width: int, height: int, scale: float) -> int:
-    """Return the text size in pixels for a window; `scale` is the screen's, 2 for twice as many dots per inch."""
+    """Return the text size in pixels for a window; `scale` is that of `overlay_scale`."""
     return max(MIN_TEXT_SIZE, min(round(TEXT_SIZE * scale), 2 * width // COLUMNS, height // ROWS))
 
 
@@ -43,23 +45,30 @@ def draw_hud(pixels: Pixels, state: State, shown: Outcome | None, level: HudLeve
     width = pixels.shape[1]
     if level == HudLevel.NOTHING:
         return 0
-    active = state.active
-    move = f"    move: {state.frame.value}" if level == HudLevel.ALL or state.frame is not Frame.VIEW else ""
-    keys = f"{state.element.title}: {active.name if active else 'no value'}{move}    H: help"
+    keys = hints(state, every=level == HudLevel.ALL)
     if level == HudLevel.LINE:
         rendered = f"    {status(shown)}" if shown else ""
         line = fit_width(f"{element_line(state)}    {keys}{rendered}", width, size)
         draw_lines(pixels, MARGIN, line, TEXT_COLOUR, size)
         return 0
     position = f"{state.selected + 1} of {len(state.scene.elements)}    {len(state.undo_stack)} to undo"
-    top = wrap(f"{element_line(state)}\n{keys}    {position}", width, size)
-    draw_lines(pixels, MARGIN, top, TEXT_COLOUR, size)
+    max_lines = max(2, (pixels.shape[0] // 3 - 4 * PADDING) // measure(" ", size)[1])  # in a third of the window
+    top = wrap(f"{element_line(state)}\n{keys}    {position}", width, size).split("\n")[: max_lines - 1]
+    draw_lines(pixels, MARGIN, "\n".join(top), TEXT_COLOUR, size)
     bottom = wrap("\n".join((*shown.about, status(shown, rate))), width, size) if shown else ""
-    max_lines = pixels.shape[0] // 2 // measure(" ", size)[1]  # in half of the window
-    bottom = "\n".join(bottom.split("\n")[-max(max_lines, 1) :])
+    bottom = last_lines(bottom, max_lines - len(top))
     if bottom:
         draw_lines(pixels, -MARGIN, bottom, TEXT_COLOUR, size)
     return measure(bottom, size)[1] + 2 * PADDING if bottom else 0
+
+
+def last_lines(text: str, count: int) -> str:
+    """Return the last lines of a text; with two or more, the first of them says that others are missing."""
+    lines = text.split("\n")
+    missing = len(lines) - count
+    if missing > 0 and count > 1:
+        return "\n".join([f"... {missing + 1} more lines: miniRT -v", *lines[missing + 1 :]])
+    return "\n".join(lines[-count:])
 
 
 def element_line(state: State) -> str:
@@ -71,7 +80,7 @@ def element_line(state: State) -> str:
             words.append(bracketed(field_text(field, element), active.part))
         elif not field.keyed or getattr(element, field.name) != field.default:
             words.append(field_text(field, element))
-    return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", " ".join(words))
+    return short_numbers(" ".join(words))
 
 
 def bracketed(text: str, part: int | None) -> str:
@@ -121,35 +130,3 @@ def draw_lines(pixels: Pixels, y: int, text: str, colour: int, size: int) -> Non
     """Draw text at the left border; `y` is its top, or if negative the distance of its end from the bottom."""
     top = y if y >= 0 else pixels.shape[0] + y - measure(text, size)[1]
     draw_text(pixels, MARGIN, top, text, colour, size=size, background=BACKGROUND, padding=PADDING)
-
-
-def draw_help(pixels: Pixels, layout: str, max_size: int) -> None:
-    """Draw the table of key bindings over the darkened picture, in two columns, in the largest text that fits."""
-    pixels >>= 2  # 20 times as fast as the three colours alone
-    pixels[..., 3] = 255
-    listed = [*key_groups(layout), ("", [FINE_NOTE])]
-    columns = [listed[:2], listed[2:]]
-    height, width = pixels.shape[:2]
-    texts_of_columns = [column_texts(column) for column in columns]
-    size = max_size
-    while True:
-        widths = [[measure(text, size)[0] + size for text in texts] for texts in texts_of_columns]
-        heights = [measure(texts[0], size)[1] for texts in texts_of_columns]
-        excess = max((sum(map(sum, widths)) + 2 * MARGIN) / width, (max(heights) + 2 * MARGIN) / height)
-        if excess <= 1 or size < MIN_TEXT_SIZE:
-            break
-        size = max(MIN_TEXT_SIZE - 1, min(size - 1, ceil(size / excess)))  # widths are nearly proportional to the size
-    x = MARGIN
-    for texts, text_widths in zip(texts_of_columns, widths, strict=True):
-        for text, text_width, colour in zip(texts, text_widths, (MESSAGE_COLOUR, TEXT_COLOUR), strict=True):
-            draw_text(pixels, x, MARGIN, text, colour, size=size)
-            x += text_width
-
-
-def column_texts(column: list[KeyGroup]) -> tuple[str, str]:
-    """Return the keys and the help of some groups, as two texts with equally many lines."""
-    keys, helps = [], []
-    for title, rows in column:
-        keys += [title, *(f"  {key}" for key, _ in rows), ""]
-        helps += ["", *(help for _, help in rows), ""]
-    return "\n".join(keys), "\n".join(helps)

@@ -6,9 +6,11 @@ import numpy as np
 
 from minirt.mlx import Image, Mlx, Window
 from minirt.mlx.canvas import stretch
+from minirt.viewer.display.help_pages import draw_help, help_pages
 from minirt.viewer.display.marks import Marks
-from minirt.viewer.display.overlay import HudLevel, draw_help, draw_hud, draw_message, text_size
+from minirt.viewer.display.overlay import HudLevel, draw_hud, draw_message, overlay_scale, text_size
 from minirt.viewer.display.painter import Outcome, Pixels
+from minirt.viewer.display.panel import Panel, draw_panel
 from minirt.viewer.editing.state import State
 
 
@@ -20,8 +22,10 @@ class Screen:
         self.window = window
         self.layout = layout  # of the keyboard, for the help
         self.level = HudLevel.LINE
-        self.help = False
+        self.help = 0  # its page in the window, counted from 1
+        self.text_scale = 1.0  # a factor of the user's
         self.banner = ""  # a message that stays until its reason is gone
+        self.panel: Panel | None = None  # a value that is typed, or a list to choose from
         self.marks = Marks()
         self.image = mlx.mlx_new_image(window.display, 1, 1)
         self._drawn: tuple[object, ...] = ()  # the contents of the window
@@ -31,28 +35,55 @@ class Screen:
         """The pixels that were last brought to the window."""
         return self.image.pixels
 
+    @property
+    def scale(self) -> float:
+        """The scale of text and icons, 1 in a usual window."""
+        return overlay_scale(self.window.width, self.window.height, self.window.scale, self.text_scale)
+
+    @property
+    def text_size(self) -> int:
+        """The size of text, in pixels."""
+        return text_size(self.window.width, self.window.height, self.scale)
+
+    def turn_help_page(self) -> None:
+        """Show the first page of the help, the next one, or after the last one the picture."""
+        pages = help_pages(self.layout, self.window.width, self.window.height, self.text_size).pages
+        self.help = self.help + 1 if self.help < len(pages) else 0
+
     def draw(self, state: State, picture: Outcome | None, rate: float = 0.0) -> bool:
         """Draw a frame unless the window already shows it; return whether it was drawn.
 
         The words describe `state`, whose scene may be newer than the picture's; the marks fit the picture. `rate`:
         primary rays per second.
         """
-        width, height, scale = self.window.width, self.window.height, self.window.scale
+        width, height, scale, size = self.window.width, self.window.height, self.scale, self.text_size
         message = state.message or self.banner
         described = state if self.level and not self.help else None
-        contents = (described, picture, message, self.level, self.help, self.marks.icons, width, height, scale)
+        contents = (
+            described,
+            picture,
+            message,
+            self.panel,
+            self.level,
+            self.help,
+            self.marks.icons,
+            width,
+            height,
+            scale,
+        )
         if contents == self._drawn:
             return False
         self._drawn = contents
         self.image = Image(self.picture_alone(picture))
-        size = text_size(width, height, scale)
         bottom = 0
         if self.help:
-            draw_help(self.frame, self.layout, size)
+            draw_help(self.frame, self.layout, size, self.help)
         elif self.level:
             if picture and (picture.job.width, picture.job.height) == (width, height):  # not an old one, stretched
                 self.marks.draw(self.frame, state, picture.job.scene, scale, moving=picture.job.urgent)
             bottom = draw_hud(self.frame, state, picture, self.level, rate, size)
+        if self.panel and not self.help:
+            draw_panel(self.frame, self.panel, size)
         draw_message(self.frame, message, bottom, size)
         self.mlx.mlx_put_image_to_window(self.window.display, self.window, self.image, 0, 0)
         return True

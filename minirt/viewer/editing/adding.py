@@ -22,17 +22,21 @@ from minirt.fields import (
     clamp,
 )
 from minirt.materials import Compound
-from minirt.scene import Scene
+from minirt.scene import Light, Scene
 from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
+from minirt.viewer.editing.aiming import aim_ahead
+from minirt.viewer.editing.measure import UP
 from minirt.viewer.editing.motion import clamp_point
-from minirt.viewer.editing.number_format import leading_decimal, nice_number, round_length
+from minirt.viewer.editing.number_format import leading_decimal, nice_number, round_length, round_point
+from minirt.viewer.editing.standing import settled
 from minirt.viewer.editing.state import State, can_edit
 from minirt.viewer.files.asset_files import meshes, pictures
 
-DISTANCE = 1 / 2  # from the camera to a new element, as a share of the scene's size
-SIZE = 1 / 8  # of a new element, as a share of the scene's size
+SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
+LAMP_SHARE = 0.6  # of the way to a surface: where a new lamp hangs
+LAMP_BRIGHTNESS = 0.8  # of the lamp that the first shape brings
 
 RecordType = TypeVar("RecordType", bound=Record)
 
@@ -58,53 +62,67 @@ def contains_kind(scene: Scene, kind: type[Element]) -> bool:
     return any(type(each) is kind for each in scene.of(kind))
 
 
-def default_record(kind: type[RecordType], state: State) -> RecordType:
-    """Make a record of default values; an element is placed in front of the camera.
+def default_element(kind: type[Element], state: State) -> Element:
+    """Make an element of default values where the state aims; a shape stands on the surface there.
 
     LookupError if it needs a picture or mesh file and there is none beside the scene.
     """
-    return kind(**dict(required_values(kind, state)))
+    aim = state.aim or aim_ahead(state.scene.camera, state.size)
+    made = kind(**dict(required_values(kind, state, one_digit(aim.size))))
+    return settled(made, aim, state.scene, state.stride) if isinstance(made, Shape) else made
 
 
-def required_values(kind: type[Record], state: State) -> Iterator[tuple[str, Any]]:
-    """Yield names and default values of the required fields."""
+def default_record(kind: type[RecordType], state: State) -> RecordType:
+    """Make a record of default values, such as the value of an attribute. LookupError as in `default_element`."""
+    return kind(**dict(required_values(kind, state, nice_number(SIZE * state.size))))
+
+
+def one_digit(length: float) -> float:
+    """Round a length to its leading digit."""
+    return clamp(round(length, leading_decimal(length)), LEAST_LENGTH, FARTHEST)
+
+
+def required_values(kind: type[Record], state: State, length: float) -> Iterator[tuple[str, Any]]:
+    """Yield names and default values of the required fields; `length` is the usual one."""
     fields = [field for field in fields_of(kind) if field.required]
-    points = iter(default_points(state, sum(isinstance(field, Point) for field in fields)))
+    points = iter(default_points(kind, state, sum(isinstance(field, Point) for field in fields)))
     for field in fields:
-        yield field.name, next(points) if isinstance(field, Point) else default_value(field, state)
+        yield field.name, next(points) if isinstance(field, Point) else default_value(field, state, length)
 
 
-def default_points(state: State, count: int) -> list[Triple]:
-    """A point in front of the camera, or `count` points on a circle around it, parallel to the image plane.
+def default_points(kind: type[Record], state: State, count: int) -> list[Triple]:
+    """The point aimed at, or `count` points on a circle around it, parallel to the image plane.
 
-    It lies a little below the middle of the picture, so that a plane is not seen edge-on.
+    What has no surface hangs on the way there, so that a lamp lights the surface that it is aimed at.
     """
-    camera = state.scene.camera
-    right, up, forward = camera_frame(camera)
-    size = SIZE * state.size
-    middle = linear_combination(
-        1.0, linear_combination(1.0, camera.position, DISTANCE * state.size, forward), -size / 2, up
-    )
-    radius = size if count > 1 else 0.0
+    aim = state.aim or aim_ahead(state.scene.camera, state.size)
+    right, up, _ = camera_frame(state.scene.camera)
+    middle = aim.point
+    if aim.normal and not issubclass(kind, Shape):
+        middle = linear_combination(1 - LAMP_SHARE, aim.eye, LAMP_SHARE, aim.point)
+    radius = one_digit(aim.size) / 2 if count > 1 else 0.0
     angles = [pi / 2 + 2 * pi * corner / max(count, 1) for corner in range(count)]
     offsets = [linear_combination(radius * cos(angle), right, radius * sin(angle), up) for angle in angles]
     return [round_point(clamp_point(linear_combination(1.0, middle, 1.0, offset)), state.stride) for offset in offsets]
 
 
-def round_point(point: Triple, stride: float) -> Triple:
-    """Round coordinates to as many decimals as a tenth of a step has."""
-    x, y, z = (round(part, leading_decimal(stride) + 1) for part in point)
-    return x, y, z
+def first_lamp(state: State) -> Light:
+    """A lamp for a scene without any: above the camera's left shoulder, at a distance that lights what it looks at."""
+    camera = state.scene.camera
+    right, _, _ = camera_frame(camera)
+    beside = linear_combination(-LAMP_SHARE * state.size, right, LAMP_SHARE * state.size, UP)
+    position = clamp_point(linear_combination(1.0, camera.position, 1.0, beside))
+    return Light(position=round_point(position, state.stride), brightness=LAMP_BRIGHTNESS)
 
 
-def default_value(field: Field, state: State) -> Any:
+def default_value(field: Field, state: State, length: float | None = None) -> Any:
     """Default value of a field that is not a point; LookupError as in `default_record`."""
     if isinstance(field, Compound):
         return field.check(field.parse(field.bare)) if field.bare else default_record(field.record, state)
     if isinstance(field, (Picture, MeshField)):
         noun, files = ("picture", pictures) if isinstance(field, Picture) else ("mesh", meshes)
         return first_file(noun, files(state.scene))
-    length = nice_number(SIZE * state.size)
+    length = nice_number(SIZE * state.size) if length is None else length
     if isinstance(field, Lengths):
         return length, length, length
     if isinstance(field, Length) and field.unit:

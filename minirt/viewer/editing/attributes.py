@@ -17,28 +17,45 @@ from minirt.viewer.editing.values import values
 CHANGE_KIND = "attribute"  # for undo: see `State.change`
 
 
+def is_adding(state: State) -> bool:
+    """Whether the last change added an attribute, which may still be replaced by another one."""
+    return state.last_change is not None and state.last_change[0] == CHANGE_KIND and state.active is not None
+
+
+def before_adding(state: State) -> State:
+    """The state without the attribute that was just added."""
+    return history.undo(state) if is_adding(state) else state
+
+
 def add_attribute(state: State, _amount: float, now: float) -> State:
     """Add an attribute that the element does not have, and make its value active.
 
     Called again before another change, it replaces that attribute by the next one.
     """
-    again = state.last_change is not None and state.last_change[0] == CHANGE_KIND and state.active is not None
-    last = state.active.field.name if again and state.active else ""
-    before = history.undo(state) if again else state
-    element = before.element
-    missing = [(field.name, value) for field, value in missing_attributes(element, before)]
+    last = state.active.field.name if is_adding(state) and state.active else ""
+    before = before_adding(state)
+    missing = list(missing_attributes(before.element, before))
     if not missing:
-        return state.with_message(f"{element.title} has no attribute that can be added")
-    names = [name for name, _ in missing]
+        return state.with_message(f"{before.element.title} has no attribute that can be added")
+    names = [field.name for field, _ in missing]
     number = (names.index(last) + 1) % len(missing) if last in names else 0
-    name, value = missing[number]
-    changed = element.replace(**{name: value})
-    added = before.change(before.scene.edit(before.selected, changed), CHANGE_KIND, now)
+    return added(before, missing[number][0].name, missing[number][1], now)
+
+
+def add_named(name: str, state: State, now: float) -> State:
+    """Add the attribute of this name, or replace the one that was just added."""
+    before = before_adding(state)
+    value = next((value for field, value in missing_attributes(before.element, before) if field.name == name), None)
+    return state if value is None else added(before, name, value, now)
+
+
+def added(before: State, name: str, value: Any, now: float) -> State:
+    """The state whose selected element has a new attribute, which is active."""
+    changed = before.element.replace(**{name: value})
+    after = before.change(before.scene.edit(before.selected, changed), CHANGE_KIND, now)
     index = [value.field.name for value in values(changed)].index(name)
     field = values(changed)[index].field
-    return replace(added, value_index=index).with_message(
-        f"{field.doc}: {field_text(field, changed)}; again for another: {number + 1} of {len(missing)}"
-    )
+    return replace(after, value_index=index).with_message(f"{field.doc}: {field_text(field, changed)}")
 
 
 def missing_attributes(element: Element, state: State) -> Iterator[tuple[Field, Any]]:

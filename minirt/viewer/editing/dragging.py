@@ -11,9 +11,12 @@ from typing import NamedTuple
 
 from minirt.element import Element
 from minirt.fields import Triple
+from minirt.rendering.queries.pick import pick, surface_point
 from minirt.scene import Camera
 from minirt.scene.camera_frame import linear_combination
-from minirt.viewer.editing.measure import extent, scene_centre
+from minirt.shapes import Shape
+from minirt.viewer.editing.aiming import aim
+from minirt.viewer.editing.measure import UP, extent, scene_centre
 from minirt.viewer.editing.motion import (
     WORLD_AXES,
     clamp_point,
@@ -25,6 +28,7 @@ from minirt.viewer.editing.motion import (
 )
 from minirt.viewer.editing.orientation import can_turn, turn_axis
 from minirt.viewer.editing.projection import Projection, projection_of, subtract
+from minirt.viewer.editing.standing import dropped, stand
 from minirt.viewer.editing.state import State
 
 PIXEL_CENTRE = 0.5  # pixels
@@ -42,6 +46,11 @@ class DragStart(NamedTuple):
     camera: Camera  # as it was
     point: Triple | None  # on the surface under the pointer; None if there is none
 
+    @property
+    def moves_camera(self) -> bool:
+        """Whether there is no element to move or turn, so that the camera turns instead."""
+        return self.point is None or isinstance(self.element, Camera)
+
 
 def start_drag(state: State, width: int, height: int, x: int, y: int, point: Triple | None) -> DragStart:
     """Start a drag at pixel x, y of a picture of this size."""
@@ -55,7 +64,7 @@ def apply_drag(state: State, action: str, start: DragStart, x: int, y: int) -> S
 
 def move(state: State, start: DragStart, x: int, y: int) -> State:
     """Move the element parallel to the image plane, or along an axis, with its point under the pointer."""
-    if start.point is None or isinstance(start.element, Camera):
+    if start.point is None or start.moves_camera:
         return look(state, start, x, y)
     axis = WORLD_AXES.get(state.frame)
     if axis:
@@ -70,6 +79,23 @@ def move(state: State, start: DragStart, x: int, y: int) -> State:
     moved, clamped = translate(start.element, offset, 1.0)
     state = state.edit_element(moved, *CHANGE)
     return state.with_message("the end of the range: no further") if clamped else state
+
+
+def place(state: State, start: DragStart, x: int, y: int) -> State:
+    """Move a shape to the surface behind the pointer, with its middle on the grid, and drop it there."""
+    shape = start.element
+    if start.point is None or not isinstance(shape, Shape) or shape.bounds() is None:
+        return move(state, start, x, y)
+    others, view = state.scene.edit(state.selected), start.projection
+    behind = pick(others, view.width, view.height, x, y)
+    point = surface_point(behind, start.camera, view.width, view.height, x, y) if behind else None
+    there = aim(view, state.size, x + PIXEL_CENTRE, y + PIXEL_CENTRE, behind, point)
+    middle = extent(shape)
+    assert middle
+    at, _ = translate(shape, subtract(there.point, middle[0]), 1.0)
+    assert isinstance(at, Shape)
+    standing = stand(at, there.point, UP)
+    return state.edit_element(dropped(standing, others, state.stride) or standing, *CHANGE)
 
 
 def point_under_pointer(start: DragStart, x: int, y: int, point: Triple) -> Triple:
@@ -129,6 +155,7 @@ def drag_angles(start: DragStart, x: int, y: int) -> tuple[float, float]:
 DRAGS: dict[str, Callable[[State, DragStart, int, int], State]] = {
     "move by hand": move,
     "turn by hand": turn,
+    "place by hand": place,
     "orbit": orbit,
     "pan": pan,
 }

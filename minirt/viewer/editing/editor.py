@@ -14,7 +14,7 @@ from minirt.errors import ElementError
 from minirt.fields import MeshFile, Point
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame
-from minirt.viewer.editing import attributes, framing, history, selection, structure
+from minirt.viewer.editing import attributes, framing, history, selection, standing, structure
 from minirt.viewer.editing.motion import WORLD_AXES, handedness, roll_camera, rotate, translate, turn_camera
 from minirt.viewer.editing.orientation import can_turn, turn_axis
 from minirt.viewer.editing.state import Frame, State, field_names
@@ -74,11 +74,8 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
     if active is None:
         return state.with_message(f"{state.element.title} has no size")
     next_file = partial(asset_files.next_file, state.scene)
-    changed = state.edit_element(
-        state.element.replace(**{active.field.name: active.stepped(state.element, sign * amount, next_file)}),
-        f"value {active.name}",
-        now,
-    )
+    new = state.element.replace(**{active.field.name: active.stepped(state.element, sign * amount, next_file)})
+    changed = state.edit_element(standing.keep_standing(state, new), f"value {active.name}", now)
     if changed is state:
         value = active.get(state.element)
         if isinstance(value, str | MeshFile):
@@ -87,6 +84,13 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
         limits = f" ({active.range})" if active.range else ""
         return state.with_message(f"{active.name} cannot go further{limits}")
     return changed
+
+
+def turn_wheel(sign: float, state: State, amount: float, now: float) -> State:
+    """Move the camera nearer to what it shows, or change the active value of any other element."""
+    if isinstance(state.element, Camera):
+        return framing.approach(state, sign * amount, now)
+    return change_value(sign, state, amount, now)
 
 
 def next_value(state: State, _amount: float, _now: float) -> State:
@@ -123,6 +127,9 @@ EDITS: dict[str, Edit] = {
     "next frame": next_frame,
     "grow": partial(change_value, 1.0),
     "shrink": partial(change_value, -1.0),
+    "nearer": partial(turn_wheel, 1.0),
+    "farther": partial(turn_wheel, -1.0),
+    "drop": standing.drop,
     "next value": next_value,
     "add attribute": attributes.add_attribute,
     "remove attribute": attributes.remove_attribute,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import dist
+from math import dist, hypot
 from statistics import median
 from typing import TypeVar
 
@@ -15,6 +15,9 @@ from minirt.shapes import Shape
 Extent = tuple[Triple, float]  # centre and radius
 Item = TypeVar("Item")
 
+UP: Triple = (0.0, 1.0, 0.0)
+FLAT = 0.02  # slope of a view that is too level to show where it meets the ground
+UNKNOWN_SIZE = 10.0  # scene units: the size of a scene that says nothing of it
 SAMPLE_SIZE = 4096  # items; their median is within some per cent of that of a million
 
 
@@ -43,11 +46,26 @@ def extents(scene: Scene) -> list[Extent]:
 def scene_size(scene: Scene) -> float:
     """Size of a scene: the median distance of its elements from the camera.
 
-    The median ignores single distant or huge elements (a sky, a sun).
+    The median ignores single distant or huge elements (a sky, a sun). Without elements it is the distance to what the
+    camera looks at.
     """
     distances = [max(dist(scene.camera.position, centre), radius) for centre, radius in extents(scene)]
-    usual = median(distance for distance in distances if distance > 0) if any(distances) else 1.0
+    known = any(distances)
+    usual = median(distance for distance in distances if distance > 0) if known else looked_at_distance(scene.camera)
     return clamp(usual, LEAST_LENGTH, FARTHEST)
+
+
+def looked_at_distance(camera: Camera) -> float:
+    """Distance from the camera to where it looks: to the ground y = 0, or to the point of its view nearest the origin.
+
+    A camera in the origin, or one that looks away from it, tells less: the distance to the origin, or UNKNOWN_SIZE.
+    """
+    x, y, z = camera.position
+    a, b, c = camera.direction
+    if y * b < 0 and abs(b) > FLAT:
+        return -y / b
+    ahead, away = -(x * a + y * b + z * c), hypot(x, y, z)
+    return ahead if ahead > away / 2 else away or UNKNOWN_SIZE
 
 
 def scene_centre(scene: Scene) -> Triple:

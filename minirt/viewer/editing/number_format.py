@@ -49,6 +49,12 @@ def round_length(length: float) -> float:
     return round(length, leading_decimal(length) + LENGTH_DIGITS - 1)
 
 
+def round_point(point: Triple, stride: float) -> Triple:
+    """Round coordinates to as many decimals as a tenth of a step of movement has."""
+    x, y, z = (round(part, leading_decimal(stride) + 1) + 0.0 for part in point)
+    return x, y, z
+
+
 def round_value(field: Field, before: Any, after: Any, stride: float) -> Any:
     """Round the edited value of a field."""
     if isinstance(before, Record) and isinstance(after, Record):

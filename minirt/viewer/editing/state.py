@@ -10,6 +10,7 @@ from typing import Any
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Point, Triple
 from minirt.scene import Camera, Scene
+from minirt.viewer.editing.aiming import Aim
 from minirt.viewer.editing.measure import scene_size
 from minirt.viewer.editing.number_format import nice_number, round_changes
 from minirt.viewer.editing.values import Value, is_editable, values
@@ -48,6 +49,7 @@ class State:
     frame: Frame = Frame.VIEW
     message: str = ""
     kind_index: int = 0  # of the last added element in `addable_kinds`
+    aim: Aim | None = field(default=None, repr=False)  # where the next element goes; None: straight ahead
     undo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # oldest first
     redo_stack: tuple[Snapshot, ...] = field(default=(), repr=False)  # latest first
     last_change: tuple[str, float] | None = None  # its kind and time, while further changes may be merged with it
@@ -83,7 +85,7 @@ class State:
 
     def select(self, index: int) -> State:
         """Select another element. The next change is not merged with earlier ones."""
-        return replace(self, selected=index, value_index=0, last_change=None)
+        return replace(self, selected=index, value_index=0, last_change=None, aim=None)
 
     def end_merging(self) -> State:
         """End merging: the next change is undone by itself."""

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 
 from minirt.element import Element, fields_of
+from minirt.errors import ElementError
+from minirt.scene import Lamp
 from minirt.scene.registry import ELEMENTS
+from minirt.shapes import Shape
 from minirt.viewer.editing import history
-from minirt.viewer.editing.adding import addable_kinds, default_record
+from minirt.viewer.editing.adding import addable_kinds, default_element, first_lamp
 from minirt.viewer.editing.state import State, index_of
 
 CHANGE_KIND = "add"  # for undo: see `State.change`
@@ -43,24 +46,52 @@ def delete(state: State, _amount: float, now: float) -> State:
     return state.select(state.selected).with_message(f"deleted the {element.title}")
 
 
-def default_elements(kinds: list[type[Element]], numbers: list[int], state: State) -> Iterator[tuple[int, Element]]:
-    """Yield default elements of the kinds with these numbers; kinds that need a missing file are skipped."""
+def default_elements(kinds: list[type[Element]], numbers: Iterable[int], state: State) -> Iterator[tuple[int, Element]]:
+    """Yield default elements of the kinds with these numbers; kinds that need a missing file, or cannot be so small or
+    far away, are skipped."""
     for number in numbers:
-        with suppress(LookupError):
-            yield number, default_record(kinds[number], state)
+        with suppress(LookupError, ElementError):
+            yield number, default_element(kinds[number], state)
+
+
+def is_adding(state: State) -> bool:
+    """Whether the last change added an element, which may still be replaced by one of another kind."""
+    return state.last_change is not None and state.last_change[0] == CHANGE_KIND
+
+
+def before_adding(state: State) -> State:
+    """The state without the element that was just added."""
+    return history.undo(state) if is_adding(state) else state
 
 
 def add(step: int, state: State, _amount: float, now: float) -> State:
-    """Add an element in front of the camera, of the kind that was added last, and select it.
+    """Add an element where the state aims, of the kind that was added last, and select it.
 
     Called again before another change, it replaces that element by one of the next (step 1) or previous (-1) kind.
     """
-    again = state.last_change is not None and state.last_change[0] == CHANGE_KIND
-    before = history.undo(state) if again else state
+    before = before_adding(state)
     kinds = addable_kinds(before.scene)
-    numbers = [(state.kind_index + step * (again + skipped)) % len(kinds) for skipped in range(len(kinds))]
+    numbers = [(state.kind_index + step * (is_adding(state) + skipped)) % len(kinds) for skipped in range(len(kinds))]
     number, element = next(default_elements(kinds, numbers, before))
+    return added(before, number, element, now)
+
+
+def add_kind(number: int, state: State, now: float) -> State:
+    """Add an element of the kind with this number, or replace the one that was just added."""
+    before = before_adding(state)
+    return next(
+        (
+            added(before, number, made, now)
+            for _, made in default_elements(addable_kinds(before.scene), [number], before)
+        ),
+        state,
+    )
+
+
+def added(before: State, number: int, element: Element, now: float) -> State:
+    """The state with a new element, which is selected. The first shape of a scene without any lamp brings one."""
     last = len(before.scene.elements) - 1
-    scene = before.scene.edit(last, before.scene.elements[last], element)
-    added = replace(replace(before, value_index=0).change(scene, CHANGE_KIND, now, last + 1), kind_index=number)
-    return added.with_message(f"a new {element.title}; again for another kind: {number + 1} of {len(kinds)}")
+    lamps = [first_lamp(before)] if isinstance(element, Shape) and not before.scene.of(Lamp) else []
+    scene = before.scene.edit(last, before.scene.elements[last], element, *lamps)
+    after = replace(replace(before, value_index=0).change(scene, CHANGE_KIND, now, last + 1), kind_index=number)
+    return after.with_message(f"a new {element.title}{', and a light, since there was none' if lamps else ''}")

@@ -47,7 +47,12 @@ class Value(NamedTuple):
         field = self.inner or self.field
         is_file = isinstance(old, str | MeshFile) and not isinstance(field, Choice)
         new = next_file(old, steps) if is_file else field.nudge(old, steps)
+        return self.replaced(element, new)
+
+    def replaced(self, element: Element, new: Any) -> Any:
+        """The field's value with another current value; of a colour's channel, only that channel changes."""
         if self.channel is not None:
+            old = self.get(element)
             new = (*old[: self.channel], new[self.channel], *old[self.channel + 1 :])
         return getattr(element, self.field.name).replace(**{self.inner.name: new}) if self.inner else new
 

@@ -7,12 +7,12 @@ from contextlib import suppress
 from itertools import chain, count
 from pathlib import Path
 
-from minirt import atomic_write
-from minirt.errors import MiniRTError, RenderError, SceneError
+from minirt import atomic_write, regular_files
+from minirt.errors import FileError, MiniRTError, RenderError, SceneError
 from minirt.image import Image
 from minirt.regular_files import reason
 from minirt.scene import Camera, Scene, dump
-from minirt.scene.files import SUFFIX, file_error
+from minirt.scene.files import MAX_BYTES, SUFFIX, file_error
 
 
 def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = None) -> Path:
@@ -52,9 +52,9 @@ def save_picture(image: Image, path: Path) -> Path:
 def back_up(path: Path) -> Path:
     """Copy a file, byte for byte, to a new file beside it; return the new path. SceneError."""
     try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise file_error(path, f"cannot be read: {reason(error)}") from None
+        data = regular_files.read(path, MAX_BYTES)
+    except FileError as error:
+        raise file_error(path, error.reason) from None
     return create_scene_file(path, data)
 
 

@@ -1,6 +1,7 @@
 """Key chords and their spelling: `Tab`, `Shift+Tab`, `Ctrl+Z`, `+`, `wheel up`.
 
-Letters and named keys are keys; any other character is typed text, wherever a keyboard has it. Ctrl means Cmd on macOS.
+Letters and named keys are keys; any other character is typed text, wherever a keyboard has it, and with Ctrl the key
+that prints it, with or without Shift: `Ctrl++`. Ctrl means Cmd on macOS.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ MOUSE: dict[str, Button | Drag] = {
     "wheel down": Button.WHEEL_DOWN,
 }
 KEYS = {"".join(map(str.capitalize, key.name.split("_"))): key for key in Key}  # PageUp, A, F1
+PRINTED = {"+": Key.PLUS, "-": Key.MINUS, "=": Key.EQUAL, "0": Key.DIGIT_0}  # with Ctrl, by what they print
 MODIFIERS = {"Ctrl": Modifier.ACCEL, "Shift": Modifier.SHIFT}
 PLATFORM_NAMES = {"Ctrl": "Cmd"} if sys.platform == "darwin" else {}
 
@@ -48,7 +50,10 @@ def key_named(name: str) -> Key | None:
 
 def parse_chord(spelling: str) -> Chord:
     """Parse the spelling of a chord. ValueError with the unknown part as message."""
-    *modifier_names, name = spelling.split("+") if len(spelling) > 1 else [spelling]
+    before, plus, name = spelling.rpartition("+")
+    if plus and not name and before[-1:] in ("", "+"):  # the key itself is +
+        before, name = before[:-1], plus
+    modifier_names = before.split("+") if before else []
     modifiers = Modifier.NONE
     for word in modifier_names:
         if word not in MODIFIERS:
@@ -61,6 +66,8 @@ def parse_chord(spelling: str) -> Chord:
         return Chord(key, modifiers)
     if len(name) == 1 and not name.isalnum() and not modifier_names:
         return Chord(name)
+    if len(name) == 1 and modifiers == Modifier.ACCEL and name in PRINTED:
+        return Chord(PRINTED[name], modifiers)
     raise ValueError(name)
 
 

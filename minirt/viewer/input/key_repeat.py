@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-RATE = 8.0  # steps a second
+RATE = 8.0  # steps a second, at first
+PATIENCE = 1.0  # seconds after which the steps of a held key begin to grow
+GROWTH = 2.0  # of the rate in each further second, as a multiple of the first rate
 FIRST_PART = 0.5  # of the first step, which comes with the press
 
 
@@ -31,7 +33,8 @@ class KeyRepeat:
     """The held keys whose actions repeat.
 
     A part of the first step comes with the press, the rest follows until it is time for the second one: nothing stands
-    still meanwhile. A key that was held for t seconds has taken max(1, RATE t) steps when it is released.
+    still meanwhile. A key that was held for t seconds, at most PATIENCE, has taken max(1, RATE t) steps when it is
+    released; after that its rate grows with time.
     """
 
     def __init__(self) -> None:
@@ -39,6 +42,10 @@ class KeyRepeat:
 
     def __bool__(self) -> bool:
         return bool(self._held)
+
+    def holds(self, key: int) -> bool:
+        """Whether a key is held and repeats."""
+        return key in self._held
 
     def press(self, key: int, action: str, now: float) -> list[Advance]:
         """Note that a key goes down. Returns the part of its first step that comes at once."""
@@ -59,7 +66,8 @@ class KeyRepeat:
 
     def _steps(self, key: int, now: float) -> float:
         """Return the steps of a held key until now."""
-        steps = RATE * (now - self._held[key].since)
+        seconds = now - self._held[key].since
+        steps = RATE * (seconds + GROWTH / 2 * max(0.0, seconds - PATIENCE) ** 2)
         return max(FIRST_PART + (1 - FIRST_PART) * steps, steps)
 
     def _advance(self, key: int, steps: float) -> Advance:

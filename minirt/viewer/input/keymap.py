@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from minirt.mlx import Key, Modifier
 from minirt.viewer.input.bindings import BINDINGS, Binding
-from minirt.viewer.input.chords import Chord, parse_chord
+from minirt.viewer.input.chords import PRINTED, Chord, parse_chord
 from minirt.viewer.input.layouts import resolve_layout
 
 SIGNIFICANT = Modifier.ACCEL | Modifier.SHIFT
@@ -28,6 +28,8 @@ class Keymap:
         """Return the binding of a key, button or typed character with these modifiers, or None."""
         if code == Key.ESCAPE:
             modifiers = Modifier.NONE  # with any modifiers
+        if Modifier.ACCEL in modifiers and code in PRINTED.values():
+            modifiers &= ~Modifier.SHIFT  # some keyboards print the symbol only with Shift
         if modifiers & ~SIGNIFICANT:
             return None
         # Equal integers are one dictionary key, whatever their enumeration; codes of buttons and keys do not overlap.

@@ -9,6 +9,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import NamedTuple
 
+from minirt import regular_files
 from minirt.errors import FileError, SceneError
 from minirt.scene import files
 from minirt.viewer.recovery import journal_file
@@ -22,6 +23,7 @@ class FoundChanges(NamedTuple):
     time: float  # of the last change, in seconds since 1970
     text: str  # of the scene with the changes
     is_journal: bool
+    base: str | None = None  # text of the scene before the changes, where it is known
 
     @property
     def title(self) -> str:
@@ -33,19 +35,28 @@ class FoundChanges(NamedTuple):
 
 
 def find_changes(file: Path) -> FoundChanges | None:
-    """Return the last unsaved changes of a scene file that are newer than the file and differ from it."""
-    with suppress(OSError, SceneError, UnicodeDecodeError):
-        now, saved = file.read_bytes().decode(), file.stat().st_mtime
+    """Return the last unsaved changes of a scene file that are newer than the file and differ from it.
+
+    Changes of just the text that the file has are newer, whatever the times say: clocks are set back, too.
+    """
+    with suppress(OSError, FileError, SceneError, UnicodeDecodeError):
+        now, saved = regular_files.read(file, files.MAX_BYTES).decode(), file.stat().st_mtime
         newest = sorted(candidates(file), key=lambda each: each.time)
-        return next((each for each in reversed(newest) if each.time >= saved and each.text != now), None)
+        return next((each for each in reversed(newest) if is_newer(each, now, saved) and each.text != now), None)
     return None
+
+
+def is_newer(changes: FoundChanges, now: str, saved: float) -> bool:
+    """Whether changes were made after the file got its text `now`, at the time `saved`."""
+    return changes.base == now or changes.time >= saved
 
 
 def candidates(file: Path) -> Iterator[FoundChanges]:
     """Yield all journals and recovery files of a scene file that can be read."""
     for path in abandoned_journals(file):
         with suppress(OSError, FileError, ValueError, KeyError):
-            yield FoundChanges(path, path.stat().st_mtime, journal_file.read(path).text, is_journal=True)
+            contents = journal_file.read(path)
+            yield FoundChanges(path, path.stat().st_mtime, contents.text, is_journal=True, base=contents.base)
     for path in sorted(file.parent.glob(f"{glob.escape(file.stem)}.recovered*.rt")):
         with suppress(OSError, SceneError, UnicodeDecodeError):
             yield FoundChanges(path, path.stat().st_mtime, files.read(path).decode(), is_journal=False)

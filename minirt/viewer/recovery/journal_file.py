@@ -23,6 +23,7 @@ class Contents(NamedTuple):
     """Contents of a journal."""
 
     file: Path  # the scene file
+    base: str  # its text before the changes
     text: str  # its text with all changes
 
 
@@ -46,8 +47,9 @@ def read(path: Path) -> Contents:
     file, length = Path(str(values["file"])), int(values["bytes"])
     if len(rest) <= length:
         raise ValueError("ends within the text of the scene")
-    lines = rest[:length].decode().split("\n")
+    base = rest[:length].decode()
+    lines = base.split("\n")
     for change in rest[length + 1 :].split(b"\n")[:-1]:
         start, removed, new = json.loads(change)
         Splice(int(start), int(removed), [str(line) for line in new]).apply(lines)
-    return Contents(file, "\n".join(lines))
+    return Contents(file, base, "\n".join(lines))

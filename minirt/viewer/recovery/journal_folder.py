@@ -11,11 +11,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
-if sys.platform != "win32":
-    import fcntl
+from minirt.file_locks import lock
 
 PRIVATE_FILE, PRIVATE_FOLDER = 0o600, 0o700
 KEPT = 30 * 24 * 3600  # seconds that a journal is kept which nobody asks for
+EARLIEST = 1.7e9  # seconds since 1970, in November 2023: no journal is older, and a clock that said so was wrong
 
 
 def journal_folder() -> Path:
@@ -56,10 +56,23 @@ def abandoned_journals(file: Path) -> Iterator[Path]:
     with suppress(OSError, RuntimeError):
         for path in sorted(journal_folder().glob(f"{name_of(file)}-*.journal")):
             with suppress(OSError):
-                if time.time() - path.stat().st_mtime > KEPT:
-                    path.unlink()
-                elif is_abandoned(path):
-                    yield path
+                if is_abandoned(path):
+                    if is_old(path):
+                        path.unlink()
+                    else:
+                        yield path
+
+
+def is_old(path: Path) -> bool:
+    """Whether a journal is so old that it is not kept. OSError.
+
+    The time of one that a wrong clock has dated begins now.
+    """
+    changed, now = path.stat().st_mtime, time.time()
+    if not EARLIEST <= changed <= now + KEPT:
+        os.utime(path)
+        return False
+    return now - changed > KEPT
 
 
 def is_abandoned(path: Path) -> bool:
@@ -69,16 +82,3 @@ def is_abandoned(path: Path) -> bool:
         return lock(descriptor)
     finally:
         os.close(descriptor)  # which also frees the lock
-
-
-def lock(descriptor: int) -> bool:
-    """Lock an open file unless another program has; return whether none has. A system without locks never has."""
-    if sys.platform == "win32":
-        return True
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:
-        pass  # a file system without locks
-    return True

@@ -12,7 +12,7 @@ from minirt.kernel.bvh.nodes import GROUPS, LEVELS, MARGIN, MEMORY, NODE, STACK,
 from minirt.kernel.machine_code import functions
 from minirt.lanes import Vec
 from minirt.rendering.packing.bvh import wide_nodes
-from minirt.shapes import Shape
+from minirt.shapes import KINDS, Shape
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
@@ -196,6 +196,27 @@ def test_boxes_without_margins_are_noticed(monkeypatch: pytest.MonkeyPatch) -> N
     assert wrong_hits(build_tree(shapes, Interpreted), shapes, rays) == 0  # one of the two margins is enough here
     monkeypatch.setattr(collapse, "MARGIN", 0.0)
     assert wrong_hits(build_tree(shapes, Interpreted), shapes, rays) > 5
+
+
+NOT_NUMBERS = [((np.nan,) * 3, (0, 0, 1)), ((0, 0, 0), (np.nan,) * 3), ((1e308, -1e308, 1e308), (0, 1e-300, -1))]
+
+
+@pytest.mark.parametrize("ray", NOT_NUMBERS)
+@pytest.mark.parametrize("count", [0, 1, 100])
+def test_rays_of_nan_and_infinity_end(ray: tuple[Any, Any], count: int) -> None:
+    """Rays of NaN pass all box tests, even those of the lanes to spare, whose boxes no other ray hits."""
+    tree = build_tree([*random_shapes(np.random.default_rng(5), count), Plane((0, 0, 9), (0, 0, 1), GREY)])
+    with np.errstate(all="ignore"):
+        leaves_along(tree, *ray)
+    if count > len(KINDS):  # with all kinds, as in other tests: no further kernel is compiled
+        trace(tree, *(np.full((WIDTH, 3), part) for part in ray))
+
+
+def test_lanes_to_spare_that_refer_to_the_root_are_noticed() -> None:
+    tree = build_tree([sphere(0, 0, 5, 1)])
+    tree.nodes.reshape(-1, 7, WIDTH)[:, 6, 1:] = 0.0
+    with np.errstate(all="ignore"), pytest.raises(ValueError, match="could not broadcast"):  # the stack is full
+        leaves_along(tree, *NOT_NUMBERS[0])
 
 
 def axis_rays() -> tuple[list[Shape], tuple[Array, Array]]:

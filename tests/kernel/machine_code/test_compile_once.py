@@ -80,3 +80,5 @@ def test_programs_that_start_at_once_compile_once(tmp_path: Path) -> None:
     assert {each[3] for each in printed} == {"[10, 20, 30]"}
     assert sum(int(compiled) for _, _, compiled, _ in printed) == int(KERNELS)
     assert sum(int(loaded) for _, loaded, _, _ in printed) == (PROGRAMS - 1) * int(KERNELS)
+    kept = [path for path in cache.rglob("*") if path.is_file() and path.suffix != ".lock"]
+    assert sorted(path.suffix for path in kept) == ["", *[".kernel"] * int(KERNELS)], "more than kernels and a key"

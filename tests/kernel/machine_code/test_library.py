@@ -165,3 +165,14 @@ def test_get_returns_a_kernel_that_works(
     values = np.array([4.0])
     kernels.get(DOUBLE)(values)
     assert values == [8.0]
+
+
+def test_any_number_of_signatures_needs_bounded_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(library_module, "REMEMBERED", 8)
+    kernels = library(None)
+    for ndim in range(1, 30):
+        identity = kernels.identity(call(double, np.zeros((1,) * ndim)))
+        assert kernels.find(identity) is None
+        assert identity == kernels.identity(call(double, np.zeros((1,) * ndim)))
+    assert len(kernels.identities) <= 8
+    assert len(kernels.missing) <= 8

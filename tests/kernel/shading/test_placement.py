@@ -9,7 +9,7 @@ import pytest
 
 from minirt.kernel.shading.texturing import in_own_frame, placed
 from minirt.lanes import Vec
-from minirt.materials import Checker, Placement, Specular
+from minirt.materials import Checker, Marble, Placement, Specular
 from minirt.rendering.packing.features import features_of
 from minirt.rendering.packing.materials import placement_numbers
 from minirt.shapes import Shape
@@ -104,4 +104,5 @@ def test_the_kernel_has_the_feature_only_where_a_picture_is_placed() -> None:
     assert "placements" in features_of(GLOBE.replace(roll=-90.0))
     assert "placements" not in features_of(GLOBE.replace(roll=360.0))
     assert "placements" not in features_of(GLOBE.replace(checker=None, specular=Specular(0.5, 9), roll=5.0))
+    assert "placements" not in features_of(GLOBE.replace(checker=None, marble=Marble(1.0), roll=5.0))
     assert "placements" not in features_of(FLOOR.replace(checker=Checker(1), roll=5.0))

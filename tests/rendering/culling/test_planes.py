@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.kernel.frame import TILE
+from minirt.kernel.stored_light import TILE
 from minirt.rendering import Renderer, scene_packing
 from minirt.rendering.culling.planes import signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -111,8 +111,10 @@ def test_pictures_are_the_same_without_culling_of_planes(monkeypatch: pytest.Mon
     pictures = [linear(scene, 60, 40, renderer=Renderer(1)) for scene in scenes]
     dropped = []
 
-    def none(shapes: Any, eye: Any, light: Any, original: Any = scene_packing.never_occludes) -> np.ndarray:
-        dropped.append(original(shapes, eye, light).any())
+    original = scene_packing.never_occludes
+
+    def none(shapes: Any, eye: Any, light: Any, radius: float) -> np.ndarray:
+        dropped.append(original(shapes, eye, light, radius).any())
         return np.zeros(len(shapes.planes), bool)
 
     monkeypatch.setattr(scene_packing, "never_occludes", none)

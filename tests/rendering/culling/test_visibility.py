@@ -9,9 +9,10 @@ import pytest
 
 from minirt.kernel.culling import binning
 from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR, SCALE, TOLERANCE, light_buffer_cell
-from minirt.kernel.frame import TILE, ray_direction, tile_count
+from minirt.kernel.frame import ray_direction, tile_count
 from minirt.kernel.machine_code import functions
 from minirt.kernel.rows import kind_of, read
+from minirt.kernel.stored_light import TILE
 from minirt.kernel.trace import COINCIDENT, in_cone
 from minirt.lanes import Vec, unit
 from minirt.rendering.culling import light_frustum, visibility

@@ -76,6 +76,13 @@ def test_the_default_is_plain_and_has_the_bits_of_the_kernel() -> None:
     assert DITHERED.darkroom.light_for(ALL, np.zeros((4, 4, 4), np.uint8), None).size == 48
 
 
+def test_the_light_of_a_toned_picture_is_not_kept_beside_plain_ones() -> None:
+    renderer = Renderer(1)
+    for tone, size in (("srgb", 3 * WIDTH * HEIGHT), ("plain", 0)):
+        levels(toned(ALL, tone), renderer)
+        assert renderer.darkroom.scratch.size == size
+
+
 @pytest.mark.parametrize("dither", [False, True])
 @pytest.mark.parametrize("tone", TONES)
 def test_files_windows_and_refined_pictures_agree(tone: str, dither: bool) -> None:

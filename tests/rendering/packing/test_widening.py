@@ -80,7 +80,7 @@ def test_the_arrays_of_a_wide_kernel_are_those_of_a_scene_without_lights_and_sha
     maps = arrays.surface_maps
     assert (maps.checks.shape, maps.bumps.shape) == ((0, 4), (0, 2))
     assert (maps.textures.shape, maps.normals.shape, maps.used.shape) == ((0,), (0,), (0,))
-    assert (arrays.camera.shape, arrays.ambient.shape, arrays.background.shape) == ((12,), (3,), (3,))
+    assert (arrays.camera.shape, arrays.ambient.shape, arrays.background.shape) == ((14,), (3,), (3,))
     assert (arrays.light_buffer_cells, arrays.light_cones.shape) == (1, (0, 0, 5))
     assert (arrays.bvh.nodes.shape, arrays.bvh.extents.shape, arrays.bvh.slots.shape) == ((0,), (0,), (0, 2))
     for group, leaves in zip(arrays.groups, arrays.bvh.groups, strict=True):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.kernel.frame import PACKET_HEIGHT
+from minirt.kernel.stored_light import PACKET_HEIGHT
 from minirt.rendering import Renderer
 from minirt.rendering.sampling.adaptive import edge_pixels
 from minirt.scene import Scene

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import _thread
 import gc
 import os
 import sys
+from threading import Event
 
 import pytest
 
@@ -30,6 +32,19 @@ def test_only_the_threads_of_the_pool_give_way() -> None:
     assert nicenesses(pool) == [NICENESS, NICENESS]
     assert nicenesses(other) == [0, 0]
     assert os.getpriority(os.PRIO_PROCESS, 0) == before
+
+
+def test_ctrl_c_just_before_the_wait_is_seen() -> None:
+    """`interrupt_main` does what the handler of a signal does, but ends no wait of the main thread."""
+    cancelled, seen = Event(), list[bool]()
+
+    def job() -> None:
+        _thread.interrupt_main()
+        seen.append(cancelled.wait(HANG_LIMIT))
+
+    with pytest.raises(KeyboardInterrupt):
+        ThreadPool(1).run([job], cancelled.set)
+    assert seen == [True]
 
 
 def test_the_threads_of_a_dropped_pool_end() -> None:

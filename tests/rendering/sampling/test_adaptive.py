@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.kernel.frame import PACKET_HEIGHT
+from minirt.kernel.stored_light import PACKET_HEIGHT
 from minirt.rendering.sampling.adaptive import CONTRAST, STRIP, edge_packets, edge_pixels, packets_with_any
 
 Pixels = NDArray[np.uint8]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.kernel.frame import PACKET_HEIGHT
+from minirt.kernel.stored_light import PACKET_HEIGHT
 from minirt.rendering.sampling.contrast import CLASSES, contrast_classes
 
 Pixels = NDArray[np.uint8]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from minirt.kernel.frame import ESTIMATE, PACKET_HEIGHT, SUMS, squared_error
+from minirt.kernel.stored_light import ESTIMATE, PACKET_HEIGHT, SUMS, squared_error
 from minirt.rendering.sampling.contrast import CLASSES
 from minirt.rendering.sampling.packets import Packets
 

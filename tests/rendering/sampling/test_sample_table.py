@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from minirt.kernel.frame import PACKET_HEIGHT, REFERENCE_SAMPLES
+from minirt.kernel.frame import REFERENCE_SAMPLES
+from minirt.kernel.stored_light import PACKET_HEIGHT
 from minirt.rendering.frame_arguments import sample_positions
 from minirt.rendering.packing.camera import packet_pixels, packet_rays
 from minirt.rendering.sampling.outcome import MOST_SAMPLES

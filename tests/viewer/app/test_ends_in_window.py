@@ -15,7 +15,7 @@ from minirt.viewer.recovery.journal_folder import name_of
 from tests.viewer.app.test_real_window import Viewer, viewing
 from tests.viewer.scenes import WITH_CYLINDER
 from tests.waiting import until
-from tests.windows import Desktop
+from tests.windows import Desktop, open_desktop, require_tools
 
 pytestmark = pytest.mark.window
 
@@ -80,3 +80,16 @@ def test_a_lost_connection_to_the_screen_keeps_changes(desktop, tmp_path):
     assert str(copy) in output
     assert minirt.load(copy).spheres == ()
     assert journals(desktop, path) == []
+
+
+def test_a_killed_x_server_keeps_changes(tmp_path):
+    require_tools()
+    path = tmp_path / "scene.rt"
+    with open_desktop() as desktop, with_unsaved_changes(desktop, path) as viewer:
+        desktop.kill_server()
+        status, output, errors = viewer.end()
+        copy = path.with_name("scene.recovered.rt")
+        assert (status, errors) == (1, "Error\nthe connection to the X server is lost\n")
+        assert str(copy) in output
+        assert minirt.load(copy).spheres == ()
+        assert journals(desktop, path) == []

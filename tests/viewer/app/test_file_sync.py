@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from minirt.errors import SceneError
 from minirt.mlx import Key
 from minirt.scene import load
-from minirt.viewer.app.file_sync import follow_change
+from minirt.viewer.app.file_sync import follow_change, open_another, save_scene
 from minirt.viewer.files.watched_file import WatchedFile
 from tests.viewer.fake import TEXT, colour_of, scene
 from tests.viewer.session_harness import SessionHarness
@@ -199,3 +200,22 @@ def test_a_change_is_followed_without_the_watching_thread(harness, path):
     write(path, OTHER)
     follow_change(harness.session)
     assert harness.session.state.scene.spheres[0].diameter == 7
+
+
+def test_a_file_that_cannot_be_written_is_not_copied_first(harness, path):
+    harness.session.path = path.with_suffix(".txt")
+    harness.session.path.write_text(TEXT)
+    harness.session.file = WatchedFile(harness.session.path)
+    write(harness.session.path, OTHER)
+    with pytest.raises(SceneError, match=r"ends in '\.rt'"):
+        save_scene(harness.session)
+    assert {each.name for each in path.parent.iterdir()} == {"scene.rt", "scene.txt"}
+
+
+def test_another_file_is_watched_in_place_of_the_first(harness, path, monkeypatch):
+    watched = []
+    monkeypatch.setattr(harness.session, "watch_file", lambda: watched.append(harness.session.file.path))
+    other = path.with_name("other.rt")
+    other.write_text(OTHER)
+    open_another(harness.session, other)
+    assert watched == [other]

@@ -238,13 +238,15 @@ def test_a_held_key_moves_until_it_is_released(viewer):
     assert viewer.end() == (0, "", "")
 
 
-def test_full_screen_and_back_show_the_picture(viewer):
-    """Entering and leaving full screen may each replace the window by a new one."""
+def test_full_screen_and_back_show_the_picture_in_the_same_window(viewer):
     viewer.key("i", "i")
-    for size in (SCREEN, SIZE):
+    viewer.desktop.run("xdotool", "windowmove", "--sync", str(viewer.window), "300", "200")
+    place = viewer.desktop.run("xdotool", "getwindowgeometry", str(viewer.window))
+    for size in (SCREEN, SIZE, SCREEN, SIZE):
         viewer.key("F11")
-        viewer = viewer._replace(window=viewer.desktop.find("miniRT - scene.rt", size))
+        assert viewer.desktop.find("miniRT - scene.rt", size) == viewer.window
         viewer.shows(picture(viewer.path, size))
+    until(lambda: viewer.desktop.run("xdotool", "getwindowgeometry", str(viewer.window)) == place, "its place")
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
 

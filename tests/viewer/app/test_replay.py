@@ -7,6 +7,8 @@ import pytest
 
 from minirt.errors import ReplayError
 from minirt.viewer.app.replay import replay
+from minirt.viewer.display.help_pages import help_pages
+from minirt.viewer.display.overlay import text_size
 from minirt.viewer.editing.editor import TURN_STEP
 from minirt.viewer.input.key_repeat import RATE
 from tests.viewer.fake import FakeRenderer, colour_of, played, scene
@@ -83,6 +85,16 @@ def test_wheel_and_typed_characters_resize(keys, steps):
     assert sphere.diameter == pytest.approx(2 * 1.05**steps, abs=5e-5)
 
 
+@pytest.mark.parametrize("shift", [(), ("down Shift",)])
+def test_a_held_plus_goes_on_and_grows(shift):
+    """A window reports the press of the key before the character that it types."""
+    key = ("down F3", "text +", "wait 2", "text +", "up F3")  # the platform's own repeat is ignored
+    (sphere,) = played(*SELECT_SPHERE, *shift, *key).state.scene.spheres
+    assert sphere.diameter == pytest.approx(2 * 1.05 ** (RATE * (2 + 1)), rel=1e-3)
+    (tapped,) = played(*SELECT_SPHERE, *shift, "down F3", "text +", "up F3", "text +").state.scene.spheres
+    assert tapped.diameter == pytest.approx(2 * 1.05**2, abs=5e-5)
+
+
 def test_clicks_select_elements():
     assert played("click 32,24").state.element.title == "sphere"
     assert played("click 32,40").state.element.title == "plane"
@@ -116,7 +128,8 @@ def test_a_hidden_window_loses_no_input():
 
 def test_help_and_full_screen_toggle():
     assert not np.array_equal(frame("press H"), frame())
-    assert np.array_equal(frame("press H", "press F1"), frame())
+    pages = len(help_pages("qwerty", 300, 200, text_size(300, 200, 1.0)).pages)
+    assert np.array_equal(frame(*["press H"] * pages, "press F1"), frame())
     assert np.array_equal(frame("text ?"), frame("press H"))
     assert played("press F11").screen.frame.shape == (1600, 2560, 4)
     assert played("press F11", "press Ctrl+F").screen.frame.shape == (48, 64, 4)

@@ -18,6 +18,7 @@ from minirt.scene import Scene, dump, load, parse
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
+from minirt.viewer.display.help_pages import help_pages
 from minirt.viewer.display.painter import Painter
 from minirt.viewer.editing.state import State
 from minirt.viewer.input.recording import add_recording
@@ -46,14 +47,12 @@ STEPS = (
     "drag 20,30 80,60 right",
     "drag 20,30 30,20 middle",
     "drag 20,20 30,25",
-    "press N",
-    "press N",
-    "press Shift+N",
+    "press N; press Return",
+    "press N; press N; press Shift+N; press Return",
     "press d",
-    "press M",
-    "press M",
+    "press M; press M; press Return",
     "press +",
-    "press Shift+M",
+    "press M; press Shift+M; press Return",
     "press Ctrl+D",
     "press a",
     "press L",
@@ -99,6 +98,11 @@ class Twin:
     @property
     def state(self) -> State:
         return self.session.state
+
+    @property
+    def help_pages(self) -> int:
+        """The number of pages of the help, each of which a press of its key turns."""
+        return len(help_pages(self.keys, *SIZE, self.session.screen.text_size).pages)
 
     def do(self, *lines: str) -> None:
         """Perform lines of a recording in both."""
@@ -174,7 +178,7 @@ def test_a_walk(desktop, tmp_path):
         viewer.shows(still(edited))
         viewer.key("h")
         until(lambda: desktop.screenshot(viewer.window).mean() < still(edited).mean() / 2, "the help")
-        viewer.key("h")
+        viewer.key(*["h"] * twin.help_pages)
         viewer.shows(still(edited))
         resized = viewer
         for size in (SCREEN, SIZE):
@@ -211,7 +215,7 @@ LETTERS = {
     "qwertz": ("de", ["a", "d", "d", "w", "w", "w", "s", "q", "e", "e"]),
 }
 TYPED = [".", ".", ".", ",", "+", "+", "+", "-"]
-CHORDS = ["Ctrl+Z", "Ctrl+Z", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z", "Tab", "Tab", "v", "Shift+N", "n", "e"]
+CHORDS = ["Ctrl+Z", "Ctrl+Z", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z", "Tab", "Tab", "v", "Shift+N", "n", "Return", "e"]
 
 
 @pytest.mark.parametrize("keys", LETTERS)
@@ -223,13 +227,13 @@ def test_the_keys_of_a_layout_match_the_replay(desktop, tmp_path, keys):
             viewer.key("i", "i")
             viewer.shows(still(load(viewer.path).scene))
             twin = Twin(viewer, tmp_path / "twin", keys)
-            twin.do(*(f"press {key}" for key in (*letters, *TYPED, *CHORDS)))
+            twin.do("move 160,120", *(f"press {key}" for key in (*letters, *TYPED, *CHORDS)))
             played = twin.state.scene
             assert played.items == twin.replayed().scene.items
             viewer.shows(still(played))
             twin.do("press ?")
             until(lambda: desktop.screenshot(viewer.window).mean() < still(played).mean() / 2, "the help")
-            twin.do("press ?", "press Ctrl+S")
+            twin.do(*["press ?"] * twin.help_pages, "press Ctrl+S")
             until(lambda: viewer.path.read_text() == dump(played), "the saved file")
             viewer.key("Escape")
             assert viewer.end() == (0, "", "")

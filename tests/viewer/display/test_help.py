@@ -50,6 +50,23 @@ def resized(sign: float) -> Check:
     return lambda before, after: sign * (after.state.element.diameter - before.state.element.diameter) > 0.05
 
 
+def approached(sign: float) -> Check:
+    """Check that the camera came nearer to the scene by a tenth of its distance, or went away."""
+
+    def check(before: Session, after: Session) -> bool:
+        (x, y, z), (a, b, c) = camera(before).position, camera(after).position
+        return (a, b) == (x, y) and sign * (z - c) == pytest.approx(1.0, abs=0.12) and camera(after).fov == 90
+
+    return check
+
+
+def stands_on_the_plane(_: Session, after: Session) -> bool:
+    """Whether the sphere stands where the pointer was, on the plane y = -1 and on lines of the grid."""
+    x, y, z = after.state.scene.spheres[0].centre
+    lines = x / after.state.stride, z / after.state.stride
+    return y == pytest.approx(0) and x > 0.5 and lines == pytest.approx(tuple(map(round, lines)))
+
+
 def camera(session: Session) -> Camera:
     return session.state.scene.camera
 
@@ -63,6 +80,12 @@ def memory(session: Session) -> Memory:
 def centred(_: Session, after: Session) -> bool:
     """Whether the light is in the centre of the picture."""
     return projection_of(camera(after), 64, 48).pixel((5, 5, 5)) == pytest.approx((32, 24), abs=0.1)
+
+
+def focused(_: Session, after: Session) -> bool:
+    """Whether the camera has a lens that is focused on the front of the sphere, whose diameter is 4 at most."""
+    focus, there = camera(after).focus, dist(camera(after).position, (0, 0, 0))
+    return focus is not None and camera(after).lens is not None and there - 2 <= focus < there
 
 
 def orbit_camera(before: Session, after: Session) -> bool:
@@ -114,14 +137,23 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "next frame": (SPHERE, lambda _, after: after.state.frame is Frame.X),
     "move by hand": ((), lambda _, after: after.state.scene.spheres[0].centre[0] > 1),
     "turn by hand": ((), lambda _, after: after.state.scene.cylinders[0].axis != (0, 1, 0)),
+    "place by hand": ((), stands_on_the_plane),
+    "drop": (SPHERE, lambda _, after: after.state.element.centre == (0, 0, 0) and "on a grid" in after.state.message),
     "orbit": (SPHERE, orbit_camera),
     "pan": ((), panned),
     "grow": (SPHERE, resized(1)),
     "shrink": (SPHERE, resized(-1)),
+    "type value": (
+        SPHERE,
+        lambda _, after: after.screen.panel is not None and "diameter: =_" in after.screen.panel.title,
+    ),
+    "nearer": ((), approached(1)),
+    "farther": ((), approached(-1)),
     "next value": (SPHERE, lambda _, after: after.state.active.name == "colour"),
     "add attribute": (SPHERE, lambda _, after: after.state.element.specular is not None),
     "remove attribute": ((*SPHERE, "press M"), lambda _, after: after.state.element.specular is None),
     "next tone": ((), lambda _, after: camera(after).tone == "srgb"),
+    "focus": ((f"move {AT_SPHERE}",), focused),
     "look at": (("press Tab",), centred),
     "reset camera": (("press D", "press Left"), lambda _, after: camera(after) == scene().camera),
     "undo": ((*SPHERE, "press D"), lambda _, after: after.state.scene.items == scene().items),
@@ -144,6 +176,9 @@ CHECKS: dict[str, tuple[tuple[str, ...], Check]] = {
     "toggle HUD": ((), lambda before, after: after.screen.level == before.screen.level + 1 == HudLevel.ALL),
     "toggle icons": ((), lambda before, after: (before.screen.marks.icons, after.screen.marks.icons) == (False, True)),
     "toggle help": ((), lambda before, after: (before.screen.help, after.screen.help) == (False, True)),
+    "larger text": ((), lambda before, after: after.screen.text_scale > before.screen.text_scale),
+    "smaller text": ((), lambda before, after: after.screen.text_scale < before.screen.text_scale),
+    "usual text": (("press Ctrl++",), lambda before, after: before.screen.text_scale > after.screen.text_scale == 1.0),
     "toggle full screen": ((), lambda _, after: (after.window.width, after.window.height) == memory(after).screen),
     "quit": ((), lambda _, after: after.state.selected == 1),
 }
@@ -152,6 +187,7 @@ MOUSE = {
     "right click": (f"click {AT_SPHERE} right",),
     "left drag": (f"drag {AT_SPHERE} 45,30",),
     "Shift+left drag": ("down Shift", f"drag {AT_CYLINDER} 48,36", "up Shift"),
+    "Ctrl+left drag": ("down Ctrl", f"drag {AT_SPHERE} 45,40", "up Ctrl"),
     "right drag": ("drag 5,5 20,10 right",),
     "middle drag": (f"drag {AT_SPHERE} 45,30 middle",),
     "wheel up": ("wheel up",),

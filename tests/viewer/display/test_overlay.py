@@ -8,23 +8,24 @@ import numpy as np
 import pytest
 
 from minirt.mlx.text import measure
-from minirt.viewer.display import overlay
 from minirt.viewer.display.overlay import (
     MARGIN,
+    PADDING,
     HudLevel,
     bracketed,
-    draw_help,
     draw_hud,
     draw_message,
     element_line,
     fit_width,
+    last_lines,
+    overlay_scale,
     status,
     text_size,
 )
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state
-from tests.viewer.fake import scene
+from tests.viewer.fake import TEXT, scene
 
 
 def blank(width: int = 640, height: int = 480):
@@ -87,12 +88,28 @@ def test_the_hud_leaves_the_middle_free():
     assert changed[-10 - bottom : -5 - bottom].any()
 
 
-def test_many_notes_fill_at_most_half_of_the_window():
-    pixels = blank()
-    shown = Outcome(Job(scene(), 640, 480), about=tuple(f"plane {n} hides nothing from light 1" for n in range(99)))
-    draw_hud(pixels, initial_state(scene()), shown, HudLevel.ALL, 0.0, 16)
-    assert (pixels[80:200] == 255).all()
-    assert (pixels[260:460] != 255).any(axis=(1, 2)).all()
+@pytest.mark.parametrize("selected", ["select next", "next kind"])
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (640, 480), (320, 240), (1900, 300), (3840, 2160)])
+def test_the_full_information_covers_at_most_a_third_of_the_picture(width, height, selected):
+    pixels = blank(width, height)
+    text = "A 1 9,9,9\nC 0,0,9 0,0,-1 60\nsp 0,0,0 2 9,9,9 specular:0.5,20 mirror:0.123456 glass:1.5,0.25\n"
+    state = initial_state(scene(text if selected == "next kind" else TEXT))
+    for _ in range(2):
+        state = apply(state, "select next")
+    size = text_size(width, height, overlay_scale(width, height, 1.0, 1.0))
+    shown = Outcome(
+        Job(state.scene, width, height), about=tuple(f"plane {n} hides nothing from light 1" for n in range(99))
+    )
+    bottom = draw_hud(pixels, state, shown, HudLevel.ALL, 2e8, size)
+    covered = (pixels != 255).any(axis=2).sum()
+    assert 0 < covered <= width * height / 3
+    assert bottom > 2 * PADDING
+
+
+def test_lines_that_are_left_out_are_counted():
+    assert last_lines("a\nb\nc", 3) == "a\nb\nc"
+    assert last_lines("a\nb\nc\nd", 3) == "... 2 more lines: miniRT -v\nc\nd"
+    assert last_lines("a\nb\nc", 1) == "c"
 
 
 def test_the_line_level_draws_one_line():
@@ -116,16 +133,6 @@ def test_a_message_is_wrapped_and_drawn_above_the_status():
     assert (pixels == 255).all()
 
 
-def test_the_columns_of_the_help_are_side_by_side(monkeypatch):
-    drawn = []
-    monkeypatch.setattr(overlay, "draw_text", lambda _, x, y, text, colour, size: drawn.append((x, text, size)))
-    draw_help(blank(), "qwerty", 16)
-    ends = [x + measure(text, size)[0] for x, text, size in drawn]
-    assert all(end < x for end, (x, _, _) in zip(ends, drawn[1:], strict=False))
-    assert len(drawn) == 4
-    assert ends[-1] <= 640 - MARGIN
-
-
 def test_groups_of_words_are_dropped_from_a_line_that_is_a_pixel_too_long():
     text = "640x480    12.3 ms    1 sample"
     width = measure(text, 16)[0] + 2 * MARGIN
@@ -133,12 +140,18 @@ def test_groups_of_words_are_dropped_from_a_line_that_is_a_pixel_too_long():
     assert fit_width(text, width - 1, 16) == "640x480    12.3 ms"
 
 
-@pytest.mark.parametrize(("width", "height"), [(1280, 720), (640, 480), (200, 100), (1, 1)])
-def test_the_help_fits_the_window(width, height):
-    pixels = blank(width, height)
-    draw_help(pixels, "qwerty", text_size(width, height, 1.0))
-    assert pixels[..., :3].min() == 255 // 4  # darkened, with letters that are lighter
-    if width >= 640:
-        border = np.concatenate([pixels[-5:].reshape(-1, 4), pixels[:, -5:].reshape(-1, 4)])
-        assert (border[:, :3] == 255 // 4).all()
-        assert (pixels[..., :3] > 255 // 4).any()
+@pytest.mark.parametrize(
+    ("size", "screen", "wanted", "pixels"),
+    [
+        ((1280, 720), 1.0, 1.0, 16),
+        ((1920, 1080), 1.0, 1.0, 16),
+        ((3840, 2160), 1.0, 1.0, 32),  # a large window
+        ((3840, 2160), 2.0, 1.0, 32),  # the same on a screen with small dots
+        ((3840, 1080), 1.0, 1.0, 16),  # a wide one
+        ((1280, 720), 1.0, 1.5, 24),
+        ((1280, 720), 1.0, 9.0, 40),  # room for 18 lines stays
+        ((320, 240), 1.0, 0.5, 8),
+    ],
+)
+def test_text_grows_with_the_window_the_screen_and_the_wish(size, screen, wanted, pixels):
+    assert text_size(*size, overlay_scale(*size, screen, wanted)) == pixels

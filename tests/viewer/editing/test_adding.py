@@ -10,7 +10,7 @@ from minirt.scene import Camera, Resolution, dump, parse
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS
 from minirt.shapes.mesh import Mesh
-from minirt.viewer.editing.adding import addable_kinds, default_record
+from minirt.viewer.editing.adding import addable_kinds, default_element
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import State, initial_state
@@ -39,7 +39,7 @@ def test_everything_that_can_be_edited_can_be_added() -> None:
 )
 def test_each_kind_is_made_from_its_fields_and_visible(kind: type, text: str) -> None:
     state = initial_state(scene(text))
-    element = default_record(kind, state)
+    element = default_element(kind, state)
     assert type(element) is kind
     projection = projection_of(state.scene.camera, 640, 360)
     for field in fields_of(kind):

@@ -88,16 +88,26 @@ def test_an_element_is_added_by_keys_clicked_moved_and_saved(kind: type[Element]
     session = played(*add, text=BARE, path=path)
     assert type(session.state.element) is kind
     pixel = visible_pixel(session.state)
+    icons = [] if issubclass(kind, Shape) else ["press G"]  # which may lie over a shape in so small a window
     for select in ["press Tab", *([f"click {pixel[0]},{pixel[1]}"] if pixel else [])]:
-        found = played(*add, "press C", "press G", select, text=BARE, path=path).state
+        found = played(*add, "press Return", "press C", *icons, select, text=BARE, path=path).state
         assert found.element == session.state.element
     saved = played(
-        *add, "press d", "press Right", "press +", "press M", "press +", "press Ctrl+S", text=BARE, path=path
+        *add,
+        "press Return",
+        "press d",
+        "press Right",
+        "press +",
+        "press M",
+        "press +",
+        "press Ctrl+S",
+        text=BARE,
+        path=path,
     )
     lines = path.read_text().splitlines()
     assert lines[:2] == BARE.splitlines()
-    assert len(lines) == 3
-    assert lines[2].split()[0] == kind.code
+    lamps = ["L"] if issubclass(kind, Shape) else []
+    assert [line.split()[0] for line in lines[2:]] == [kind.code, *lamps]
     assert load(path).scene.items == saved.state.scene.items
 
 
@@ -107,7 +117,7 @@ def visible_pixel(state: State) -> tuple[int, int] | None:
     x, y = (each.ravel() for each in np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1])))
     if isinstance(element, Shape):
         (indices,) = np.nonzero(covers(element, camera, *SIZE, x, y))
-        assert len(indices) > 10
+        assert len(indices) > 3
         middle = indices[len(indices) // 2]
         return int(x[middle]), int(y[middle])
     place = position_of(element)

@@ -18,7 +18,7 @@ HEAD = "A 0 0,0,0\nC 0,0,10 0,0,-1 60\n"
 @pytest.mark.parametrize(
     ("lines", "size"),
     [
-        ("", 1),
+        ("", 10),  # to the point that is nearest to the origin
         ("sp 0,0,0 2 9,9,9", 10),
         ("sp 0,0,10 2 9,9,9", 1),  # the camera is in its centre
         ("sp 0,0,0 2 9,9,9\nsp 0,0,1 2 9,9,9\nsp 0,0,0 1e9 9,9,9", 10),  # with a sky
@@ -27,7 +27,7 @@ HEAD = "A 0 0,0,0\nC 0,0,10 0,0,-1 60\n"
         ("L 3,0,14 1", 5),
         ("sp 0,0,9.999999 1e-9 9,9,9", 1e-6),
         ("sp 1e15,0,0 1 9,9,9", FARTHEST),
-        ("pl 0,0,10 0,1,0 9,9,9", 1),
+        ("pl 0,0,10 0,1,0 9,9,9", 10),
         ("sp 0,0,10 1e-30 9,9,9", LEAST_LENGTH),
     ],
 )

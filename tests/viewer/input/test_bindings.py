@@ -8,6 +8,7 @@ import pytest
 
 from minirt.mlx import Button, Key, Modifier
 from minirt.viewer.app.commands import COMMANDS
+from minirt.viewer.app.typing import TYPE
 from minirt.viewer.editing.dragging import DRAGS
 from minirt.viewer.editing.editor import EDITS
 from minirt.viewer.input.bindings import BINDINGS, keys_markdown, keys_text
@@ -25,7 +26,7 @@ def test_no_key_is_bound_twice(layout):
 
 
 def test_every_binding_has_an_action_and_every_action_a_binding():
-    actions = {*EDITS, *COMMANDS, *DRAGS, "select at pointer"}
+    actions = {*EDITS, *COMMANDS, *DRAGS, "select at pointer", TYPE}
     assert set(ACTIONS) == actions
     assert len(ACTIONS) == len(set(ACTIONS))
     assert not set(EDITS) & set(COMMANDS)
@@ -51,7 +52,7 @@ def test_texts_list_every_binding(layout):
 def test_shift_is_ignored_by_fine_bindings_only():
     keymap = Keymap()
     assert keymap.find(Key.D, Modifier.SHIFT).action == "right"
-    assert keymap.find(Button.WHEEL_UP, Modifier.SHIFT).action == "grow"
+    assert keymap.find(Button.WHEEL_UP, Modifier.SHIFT).action == "nearer"
     assert keymap.find(Key.P, Modifier.SHIFT) is None
     assert keymap.find(Key.TAB, Modifier.SHIFT).action == "select previous"
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from minirt.viewer.input.key_repeat import FIRST_PART, RATE, Advance, KeyRepeat
+from minirt.viewer.input.key_repeat import FIRST_PART, GROWTH, PATIENCE, RATE, Advance, KeyRepeat
 
 KEY = 97
 TICKS = 144  # a second
@@ -24,9 +24,19 @@ def taken(seconds: float, ticks: int) -> list[float]:
 
 
 @pytest.mark.parametrize("ticks", [0, 1, 7, 144])
-@pytest.mark.parametrize("seconds", [0.5, 2.0])
+@pytest.mark.parametrize("seconds", [0.5, 1.0])
 def test_steps_are_proportional_to_time(seconds, ticks):
     assert taken(seconds, ticks)[-1] == pytest.approx(RATE * seconds)
+
+
+@pytest.mark.parametrize("ticks", [0, 1, 7, 144])
+@pytest.mark.parametrize("seconds", [1.5, 2.0, 4.0])
+def test_steps_grow_while_a_key_is_held(seconds, ticks):
+    count = 100_000
+    times = ((number + 0.5) * seconds / count for number in range(count))
+    expected = sum(RATE * (1 + GROWTH * max(0.0, time - PATIENCE)) for time in times) * seconds / count
+    assert taken(seconds, ticks)[-1] == pytest.approx(expected, rel=1e-6)
+    assert expected > 1.1 * RATE * seconds
 
 
 @pytest.mark.parametrize("ticks", [0, 3])

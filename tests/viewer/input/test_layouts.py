@@ -1,4 +1,4 @@
-"""Every key binding on American, French and German keyboards, in a real window."""
+"""Every key binding on keyboards of several countries, also without Latin letters, in a real window."""
 
 from __future__ import annotations
 
@@ -13,21 +13,29 @@ import pytest
 from minirt.viewer.input.bindings import BINDINGS
 from tests.viewer.display.test_help import LAYOUTS, MOUSE
 from tests.viewer.fake import TEXT
-from tests.viewer.xdotool import do
+from tests.viewer.xdotool import LETTER_CODES, do
 from tests.waiting import HANG_LIMIT, until
 from tests.windows import SCREEN, Desktop
 
 pytestmark = pytest.mark.window
 
-COUNTRIES = dict(zip(LAYOUTS, ("us", "fr", "de"), strict=True))
+KEYBOARDS = {  # X11's names, with the option --keys and the key codes of letters that the keyboard does not print
+    "us": ("qwerty", None),
+    "fr": ("azerty", None),
+    "de": ("qwertz", None),
+    "us dvorak": ("qwerty", None),
+    "fr bepo": ("qwerty", None),
+    "ru": ("qwerty", LETTER_CODES),
+    "gr": ("qwerty", LETTER_CODES),
+}
 SIZE = (320, 240)
 LAST = ("toggle full screen", "quit")  # the window may be replaced or closed afterwards
 
 
 @contextmanager
-def keyboard(desktop: Desktop, country: str) -> Iterator[None]:
-    """Set the keyboard layout of a country for the block."""
-    desktop.run("setxkbmap", country)
+def keyboard(desktop: Desktop, layout: str) -> Iterator[None]:
+    """Set the keyboard layout, or a layout and its variant, for the block."""
+    desktop.run("setxkbmap", *layout.split())
     try:
         yield
     finally:
@@ -37,10 +45,13 @@ def keyboard(desktop: Desktop, country: str) -> Iterator[None]:
 class LoggingViewer:
     """The running viewer, and the file in which it logs the actions of keys."""
 
-    def __init__(self, desktop: Desktop, process: subprocess.Popen[str], log: Path) -> None:
+    def __init__(
+        self, desktop: Desktop, process: subprocess.Popen[str], log: Path, codes: dict[str, str] | None = None
+    ) -> None:
         self.desktop = desktop
         self.process = process
         self._log = log
+        self._codes = codes  # of letters
 
     @property
     def actions(self) -> list[str]:
@@ -54,12 +65,17 @@ class LoggingViewer:
         """
         window = self.desktop.find(f"miniRT - {scene.name}", size)
         count = len(self.actions) + len(keys)
-        do(self.desktop, window, *(f"press {key}" for key in keys))
+        do(self.desktop, window, *(f"press {key}" for key in keys), codes=self._codes)
         until(lambda: len(self.actions) >= count or self.process.poll() is not None, f"the actions of {keys}")
 
 
-@pytest.mark.parametrize("keys", LAYOUTS)
-def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, keys: str) -> None:
+def test_all_layouts_are_tested() -> None:
+    assert {keys for keys, _ in KEYBOARDS.values()} == set(LAYOUTS)
+
+
+@pytest.mark.parametrize("layout", KEYBOARDS)
+def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, layout: str) -> None:
+    keys, codes = KEYBOARDS[layout]
     table = [(key, row.action) for row in BINDINGS for key in row.spellings(keys) if key not in MOUSE]
     usual = [(key, action) for key, action in table if action not in LAST]
     assert len(usual) > 40
@@ -71,8 +87,8 @@ def test_every_key_triggers_its_action(desktop: Desktop, tmp_path: Path, keys: s
     log = tmp_path / "log"
     log.write_text("")
     command = [sys.executable, "-W", "error", "-m", "tests.viewer.action_log", keys, str(log), *map(str, scenes)]
-    with keyboard(desktop, COUNTRIES[keys]), desktop.program(*command) as process:
-        viewer = LoggingViewer(desktop, process, log)
+    with keyboard(desktop, layout), desktop.program(*command) as process:
+        viewer = LoggingViewer(desktop, process, log, codes)
         viewer.press(scenes[0], SIZE, *(key for key, _ in usual))
         for (key, _), size in zip(full_screen, (SIZE, SCREEN), strict=True):
             viewer.press(scenes[0], size, key)

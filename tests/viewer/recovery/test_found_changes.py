@@ -72,12 +72,27 @@ def test_the_newest_is_found(path):
     assert find_changes(path).path == newer
     left = leave_journal(path)
     assert find_changes(path).path == left
-    set_time(left, 2500)
-    assert find_changes(path) is None or find_changes(path).path == newer
+    now = left.stat().st_mtime
+    set_time(newer, now - 1000)
+    set_time(left, now - 2000)
+    assert find_changes(path).path == newer
+    set_time(left, now - 500)
+    assert find_changes(path).path == left
 
 
 def test_changes_older_than_the_file_are_not_offered(path):
     recovered(path, OTHER, 999)
+    assert find_changes(path) is None
+
+
+def test_changes_of_just_the_text_of_the_file_are_newer_whatever_the_clock_said(path):
+    left = leave_journal(path)
+    set_time(path, left.stat().st_mtime + 3600)  # saved before the clock was set back by an hour
+    found = find_changes(path)
+    assert found is not None
+    assert found.path == left
+    path.write_text(OTHER)
+    set_time(path, left.stat().st_mtime + 3600)  # another program has saved something else since
     assert find_changes(path) is None
 
 

@@ -6,6 +6,7 @@ import errno
 import os
 import stat
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -14,7 +15,7 @@ from minirt.scene import Scene, dump, load
 from minirt.viewer.files.watched_file import signature
 from minirt.viewer.recovery import journal, journal_file
 from minirt.viewer.recovery.journal import Journal, Version
-from minirt.viewer.recovery.journal_folder import abandoned_journals, is_abandoned, journal_folder
+from minirt.viewer.recovery.journal_folder import KEPT, abandoned_journals, is_abandoned, journal_folder
 from tests.viewer.fake import TEXT
 
 
@@ -53,7 +54,7 @@ def test_each_version_can_be_read_back(book, path):
     for diameter in (3.0, 4.0, 5.0):
         scene = grown(scene, diameter)
         keep(book, scene, saved, path)
-        assert journal_file.read(book.path) == (path, dump(scene))
+        assert journal_file.read(book.path) == (path, TEXT, dump(scene))
 
 
 def test_a_cut_journal_gives_an_earlier_version(book, path, tmp_path):
@@ -142,15 +143,44 @@ def test_only_the_journals_of_programs_that_ended_are_offered(path):
     assert list(abandoned_journals(path)) == [left]
 
 
-def test_old_journals_are_deleted(path):
+def left_journal(path) -> Path:
+    """Leave the journal of a program that was killed; return its path."""
     book = Journal()
     saved = load(path).scene
     keep(book, grown(saved, 3.0), saved, path)
     left = book.path
     book.close(delete=False)
-    os.utime(left, (1, 1))
+    assert left
+    return left
+
+
+def test_old_journals_are_deleted(path):
+    left = left_journal(path)
+    now = left.stat().st_mtime
+    os.utime(left, (now - KEPT + 1000,) * 2)
+    assert list(abandoned_journals(path)) == [left]
+    os.utime(left, (now - KEPT - 1000,) * 2)
     assert list(abandoned_journals(path)) == []
     assert not left.exists()
+
+
+@pytest.mark.parametrize("seconds", [1, 2**33])
+def test_a_journal_that_a_wrong_clock_has_dated_is_kept_from_now_on(path, seconds):
+    """A machine without a battery begins in 1970; another clock was set into the future."""
+    left = left_journal(path)
+    now = left.stat().st_mtime
+    os.utime(left, (seconds, seconds))
+    for _ in range(2):
+        assert list(abandoned_journals(path)) == [left]
+        assert left.stat().st_mtime >= now
+
+
+def test_the_journal_of_a_running_program_is_not_deleted_however_old_it_is(book, path):
+    saved = load(path).scene
+    keep(book, grown(saved, 3.0), saved, path)
+    os.utime(book.path, (book.path.stat().st_mtime - KEPT - 1000,) * 2)
+    assert list(abandoned_journals(path)) == []
+    assert book.path.exists()
 
 
 def test_a_taken_journal_is_deleted_when_its_changes_are_kept(book, path, tmp_path):

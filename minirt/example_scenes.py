@@ -1,0 +1,64 @@
+"""Example scenes, which are installed with the library: `minirt.example("demo")`."""
+
+from __future__ import annotations
+
+import re
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from minirt.errors import FileError
+
+if TYPE_CHECKING:
+    from minirt.scene import Scene
+
+PACKAGE = Path(__file__).parent
+FOLDERS = (PACKAGE / "scenes", PACKAGE.parent / "scenes")  # of a wheel, and beside the sources
+FILE = re.compile(r"(?<=[\s:])(?:textures|meshes)/[^\s,#]+")  # a file that a line of an example names
+UNFIT = re.compile(r"[\s,#]")  # in a path: no line of a scene can name it
+
+
+def folder() -> Path:
+    """Return the folder of the example scenes; FileError where none was installed."""
+    for each in FOLDERS:
+        if (each / "demo.rt").exists():
+            return each
+    raise FileError(FOLDERS[0], "the example scenes are not installed")
+
+
+def examples() -> list[str]:
+    """Return the names of the example scenes, in alphabetical order.
+
+    FileError where they are not installed.
+
+        minirt.examples()  # ["demo", "eval-camera-elsewhere", ...]
+    """
+    return sorted(path.stem for path in folder().glob("*.rt"))
+
+
+def example(name: str = "demo") -> Scene:
+    """Return an example scene by its name.
+
+    The scene belongs to no file, and names its textures and meshes by their absolute paths, so that it can be saved
+    anywhere. FileError for an unknown name, with the names that are like it.
+
+        minirt.render(minirt.example("gallery-chess"), 640, 480).save("chess.png")
+    """
+    from minirt.scene import load, parse
+
+    known = examples()
+    if name not in known:
+        near = get_close_matches(name, known, 3)
+        hint = f"did you mean {' or '.join(near)}?" if near else f"the examples are {', '.join(known)}"
+        raise FileError(name, f"there is no such example scene; {hint}")
+    path = folder() / f"{name}.rt"
+    if UNFIT.search(str(path.parent)):
+        return load(path).scene
+    text = path.read_text(encoding="utf-8")
+    lines = (line if line.startswith("#") else FILE.sub(absolute, line) for line in text.split("\n"))
+    return parse("\n".join(lines)).scene
+
+
+def absolute(match: re.Match[str]) -> str:
+    """Return the absolute path of a file that an example names."""
+    return str(folder() / match.group())

@@ -1,0 +1,137 @@
+"""Writer of MP4 (H.264) and WebM (VP9) films, by PyAV: `pip install 'minirt[video]'`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from fractions import Fraction
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from minirt.formats.films.film import Film
+
+CODECS = {"MP4": ("mp4", "libx264"), "WEBM": ("webm", "libvpx-vp9")}
+QUALITY = 80  # of 100
+WORST = {"MP4": 45, "WEBM": 58}  # constant rate factors of quality 0; that of quality 100 is 4
+BEST = 4
+BT709, STUDIO_RANGE = 1, 1  # FFmpeg's numbers of the matrix from RGB, and of levels from 16 to 235
+
+
+class FailingOnce:
+    """A file that fails at most once: PyAV raises the first error, and prints those that follow with their traceback.
+
+    After an error it takes everything and keeps nothing.
+    """
+
+    def __init__(self, out: BinaryIO) -> None:
+        self.out = out
+        self.has_failed = False
+
+    def write(self, data: bytes) -> int:
+        """Write data."""
+        return self.attempt(self.out.write, data, otherwise=len(data))
+
+    def seek(self, offset: int, whence: int = 0) -> int:
+        """Move to a place."""
+        return self.attempt(self.out.seek, offset, whence, otherwise=offset)
+
+    def tell(self) -> int:
+        """Return the place."""
+        return self.attempt(self.out.tell, otherwise=0)
+
+    def seekable(self) -> bool:
+        """Whether it can move: always."""
+        return True
+
+    def writable(self) -> bool:
+        """Whether it can be written: always."""
+        return True
+
+    def attempt(self, action: Callable[..., int], *given: object, otherwise: int) -> int:
+        """Do something with the file, unless it has failed before. OSError."""
+        if self.has_failed:
+            return otherwise
+        try:
+            return action(*given)
+        except OSError:
+            self.has_failed = True
+            raise
+
+
+class VideoFilm(Film):
+    """Writes pictures by a codec. Colours have half the resolution of brightness. So widths and heights are even: odd
+    ones gain a row or a column."""
+
+    name = ""  # of the format
+
+    def __init__(self, out: BinaryIO, fps: float, quality: int | None = None) -> None:
+        import av
+
+        super().__init__(out, fps, quality)
+        with value_errors():
+            self.film = av.open(FailingOnce(out), "w", format=CODECS[self.name][0])
+        self.stream: Any = None
+
+    def add(self, picture: np.ndarray) -> None:
+        """Write a picture, (h, w, 3) uint8."""
+        import av
+
+        even = np.pad(picture, [(0, len(picture) % 2), (0, picture.shape[1] % 2), (0, 0)], "edge")
+        with value_errors():
+            if self.stream is None:
+                self.stream = self.new_stream(*even.shape[:2])
+            frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(even), format="rgb24")
+            yuv = frame.reformat(format="yuv420p", dst_colorspace="ITU709", dst_color_range="MPEG")
+            self.film.mux(self.stream.encode(yuv))
+
+    def new_stream(self, height: int, width: int) -> Any:
+        """Return a stream of pictures of that size."""
+        rate = Fraction(self.fps).limit_denominator(1000)
+        stream: Any = self.film.add_stream(CODECS[self.name][1], rate=rate, options=options(self.name, self.quality))
+        stream.height, stream.width = height, width
+        stream.pix_fmt = "yuv420p"
+        stream.codec_context.colorspace = stream.codec_context.color_primaries = BT709
+        stream.codec_context.color_trc, stream.codec_context.color_range = BT709, STUDIO_RANGE
+        return stream
+
+    def end(self) -> None:
+        """Write what the codec still holds, and the end of the file."""
+        with value_errors():
+            self.film.mux(self.stream.encode())
+            self.film.close()
+
+    def close(self) -> None:
+        """Free the codec."""
+        with suppress(ValueError, OSError), value_errors():
+            self.film.close()
+
+
+class Mp4Film(VideoFilm):
+    """An MP4 film."""
+
+    name = "MP4"
+
+
+class WebmFilm(VideoFilm):
+    """A WebM film."""
+
+    name = "WEBM"
+
+
+@contextmanager
+def value_errors() -> Iterator[None]:
+    """Raise PyAV's errors as ValueError."""
+    import av
+
+    try:
+        yield
+    except av.FFmpegError as error:
+        raise ValueError(str(error)) from None
+
+
+def options(name: str, quality: int | None) -> dict[str, str]:
+    """Return the options of the codec for a quality from 1 to 100."""
+    share = (QUALITY if quality is None else quality) / 100
+    factor = round(WORST[name] + share * (BEST - WORST[name]))
+    return {"crf": str(factor), "b": "0", "row-mt": "1", "cpu-used": "4"} if name == "WEBM" else {"crf": str(factor)}

@@ -1,0 +1,129 @@
+"""Table of the picture and film formats: extensions, largest side, bits a channel.
+
+Only formats that hold the colours of a picture of any size are in it. Pillow also writes others, which are grey, have
+256 pixels at most or depend on the file name: `tests/formats/test_table.py` reads back what each format here holds.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+from minirt.errors import RenderError
+
+ANY_SIDE = 2**31 - 1
+FLOAT = 32  # bits of a channel of floating-point numbers
+EXACT = (8,)
+DEEP_MEMORY = 46  # bytes a pixel of a picture with 16 bits while it is rendered and written
+
+
+class Format(NamedTuple):
+    """A picture or film format."""
+
+    suffixes: tuple[str, ...]
+    largest: int = ANY_SIDE  # pixels of a side
+    bits: tuple[int, ...] = EXACT  # that a channel can have, the default first
+    is_lossy: bool = False  # whether it has a quality from 1 to 100
+    is_film: bool = False  # whether it can hold several pictures in one file
+    is_still: bool = True  # whether it can hold a single picture
+    memory: int = 9  # bytes a pixel while a picture is rendered and written with the default bits, as measured
+
+
+FORMATS = {  # by Pillow's name, where Pillow writes the format
+    "PNG": Format((".png",), bits=(8, 16), memory=6),
+    "APNG": Format((".apng",), is_film=True),
+    "JPEG": Format((".jpg", ".jpeg", ".jpe", ".jfif"), 65_500, is_lossy=True),
+    "WEBP": Format((".webp",), 16_383, is_lossy=True, is_film=True, memory=18),
+    "AVIF": Format((".avif",), 65_536, is_lossy=True, memory=34),
+    "GIF": Format((".gif",), 65_535, is_film=True, memory=18),
+    "TIFF": Format((".tif", ".tiff"), bits=(8, 16)),
+    "BMP": Format((".bmp", ".dib")),
+    "PPM": Format((".ppm", ".pnm")),
+    "TGA": Format((".tga",), 65_535),
+    "JPEG2000": Format((".jp2", ".j2k", ".jpx"), memory=46),
+    "PCX": Format((".pcx",), 65_535),
+    "SGI": Format((".sgi", ".rgb"), 65_535, memory=14),
+    "QOI": Format((".qoi",)),
+    "EXR": Format((".exr",), bits=(FLOAT,), memory=53),
+    "HDR": Format((".hdr", ".pic"), 32_767, bits=(FLOAT,), memory=37),
+    "PFM": Format((".pfm",), bits=(FLOAT,), memory=53),
+    "MP4": Format((".mp4", ".m4v"), 16_384, is_lossy=True, is_film=True, is_still=False),
+    "WEBM": Format((".webm",), 16_384, is_lossy=True, is_film=True, is_still=False),
+}
+BY_SUFFIX = {suffix: name for name, each in FORMATS.items() for suffix in each.suffixes}
+COMMON = (".png", ".jpg", ".jpeg", ".webp", ".tiff", ".exr", ".hdr", ".pfm", ".gif", ".webm")  # to suggest
+OWN = {"PNG", "EXR", "HDR", "PFM"}  # written without Pillow
+FILMS_BY_PYAV = {"MP4", "WEBM"}
+
+
+def format_of(path: str | os.PathLike[str]) -> str:
+    """Return the name of the format of a file extension; RenderError for an unknown one."""
+    suffix = Path(path).suffix.lower()
+    name = BY_SUFFIX.get(suffix)
+    if name is None or not is_installed(name):
+        raise RenderError(f"{os.fspath(path)}: cannot write pictures with the extension '{suffix}'{hint(suffix, name)}")
+    return name
+
+
+def memory_of(name: str, bits: int | None) -> int:
+    """Return the bytes of memory a pixel that a picture takes while it is rendered and written."""
+    return DEEP_MEMORY if bits == 16 and 16 in FORMATS[name].bits else FORMATS[name].memory
+
+
+def is_installed(name: str) -> bool:
+    """Whether the library that writes a format is there, and was built with it."""
+    if name in OWN:  # without Pillow, which loads the plug-ins of all formats to answer
+        return True
+    if name in FILMS_BY_PYAV:
+        from importlib.util import find_spec
+
+        return find_spec("av") is not None
+    from PIL import Image as pillow  # noqa: N813
+
+    pillow.init()
+    return {"APNG": "PNG"}.get(name, name) in pillow.SAVE
+
+
+def hint(suffix: str, name: str | None) -> str:
+    """Return what to do about an extension that cannot be written, as the end of a sentence."""
+    if name in FILMS_BY_PYAV:
+        return ": install PyAV (pip install 'minirt[video]'), or try .gif, .webp or .apng"
+    if name:
+        return ": this Pillow was built without it, try .png"
+    if suffix in (".pbm", ".pgm", ".ico", ".icns"):
+        return f": it cannot hold {'colours' if suffix in ('.pbm', '.pgm') else 'large pictures'}, try .png"
+    from difflib import get_close_matches
+
+    return f", try {next(iter(get_close_matches(suffix[:40], COMMON, 1, 0.7)), COMMON[0])}"
+
+
+def check_size(path: str | os.PathLike[str], name: str, width: int, height: int) -> None:
+    """Check that a format can hold a picture of this size; RenderError otherwise."""
+    largest = FORMATS[name].largest
+    if max(width, height) > largest:
+        raise RenderError(f"{os.fspath(path)}: {name} holds at most {largest:,} pixels a side, got {width}x{height}")
+
+
+def check_bits(name: str, bits: int | None) -> int:
+    """Return the bits a channel, those of the format when `bits` is None; RenderError where it cannot have them."""
+    can = FORMATS[name].bits
+    if bits is not None and bits not in can:
+        raise RenderError(f"{name} has {' or '.join(map(str, can))} bits a channel, got {bits}: {advice(bits)}")
+    return can[0] if bits is None else bits
+
+
+def advice(bits: int) -> str:
+    """Name the formats that have so many bits a channel."""
+    names = [name for name, each in FORMATS.items() if bits in each.bits]
+    return f"try {' or '.join(names)}" if 0 < len(names) < 5 else "leave them out"
+
+
+def check_quality(name: str, quality: int | None) -> None:
+    """Check that a quality from 1 to 100 is given to a lossy format alone; RenderError otherwise."""
+    if quality is None:
+        return
+    if not FORMATS[name].is_lossy:
+        raise RenderError(f"{name} has no quality: it keeps all pixels as they are")
+    if not 1 <= quality <= 100:
+        raise RenderError(f"the quality is a number from 1 to 100, got {quality}")

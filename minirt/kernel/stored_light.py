@@ -1,0 +1,98 @@
+"""Light of packets: summed over their samples, and stored as pixels of the picture."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from minirt.lanes import Vec, lane, load, minimum, rarely, save, width
+from minirt.lanes.vec import Number
+
+PACKET_HEIGHT = 4  # pixels; a packet is as wide as makes one pixel for each of the `width` rays
+TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles, or so many rows of a plan, at a time
+SUMS = 3 * TILE * TILE  # numbers of a tile's light
+ESTIMATE = SUMS // 4  # those after which the light of the next estimate of a planned packet is kept
+OPAQUE = 0xFF000000  # alpha of a pixel
+
+
+def accumulate(radiance: Vec, sums: Any, start: int, sample: int) -> Vec:
+    """Add the radiance of a sample to that of the samples before it, which `sums` holds from index `start` on."""
+    count = width(sums)
+    if sample > 0:
+        radiance = radiance + Vec(load(sums, start), load(sums, start + count), load(sums, start + 2 * count))
+    save_sum(radiance, sums, start)
+    return radiance
+
+
+def save_sum(radiance: Vec, sums: Any, start: int) -> None:
+    """Store a radiance in `sums` from index `start` on."""
+    count = width(sums)
+    save(radiance.x, sums, start)
+    save(radiance.y, sums, start + count)
+    save(radiance.z, sums, start + 2 * count)
+
+
+def to_byte_range(channel: Number) -> Number:
+    """Clamp a colour channel, which is not negative, to 1 and scale it so that truncation rounds it to a byte."""
+    return minimum(channel, 1.0) * 255.0 + 0.5
+
+
+def store_estimate(
+    pixels: Any, linear: Any, errors: Any, sums: Any, x: int, y: int, radiance: Vec, estimate: int, item: int
+) -> None:
+    """Store the radiance of a packet in the picture, and where references tell its squared error, that error. `item` is
+    the packet's row in the plan; negative without a plan."""
+    if estimate == 0:
+        store_packet(pixels, linear, x, y, radiance)
+    if rarely(item >= 0):
+        save_sum(radiance, sums, estimate * ESTIMATE)
+        if estimate == 2:
+            errors[item] = squared_error(sums, pixels.shape[0] - y, pixels.shape[1] - x, width(radiance.x))
+
+
+def squared_error(sums: Any, height: int, across: int, count: int) -> float:
+    """Estimate the squared error of a packet's light, clamped to [0, 1], summed over its `count` pixels and channels.
+
+    `sums` has the light and two reference estimates. Where the references are independent and have
+    no bias, the product of the differences from each of them has the squared error as its mean, however large their own
+    errors are. Of the packet's pixels, those beyond `height` lines or `across` columns are left out.
+    """
+    packet_width = count // PACKET_HEIGHT
+    total = 0.0
+    for number in range(3 * count):
+        pixel = number % count
+        if pixel // packet_width < height and pixel % packet_width < across:
+            light = min(sums[number], 1.0)
+            one, other = min(sums[ESTIMATE + number], 1.0), min(sums[2 * ESTIMATE + number], 1.0)
+            total += (light - one) * (light - other)
+    return total
+
+
+def store_packet(pixels: Any, linear: Any, x: int, y: int, radiance: Vec) -> None:
+    """Store the radiance of a packet in the picture, except for pixels beyond the picture's edges."""
+    height, across = pixels.shape
+    has_linear = linear.shape[0] > 0
+    packet_width = width(radiance.x) // PACKET_HEIGHT
+    red, green, blue = to_byte_range(radiance.x), to_byte_range(radiance.y), to_byte_range(radiance.z)
+    if rarely(has_linear or x + packet_width > across or y + PACKET_HEIGHT > height):
+        for i in range(width(radiance.x)):
+            column, row = x + i % packet_width, y + i // packet_width
+            if column < across and row < height:
+                pixels[row, column] = argb(lane(red, i), lane(green, i), lane(blue, i))
+                if has_linear:
+                    linear[row, column, 0] = lane(radiance.x, i)
+                    linear[row, column, 1] = lane(radiance.y, i)
+                    linear[row, column, 2] = lane(radiance.z, i)
+    else:
+        store_block(pixels, x, y, red, green, blue)
+
+
+def argb(red: float, green: float, blue: float) -> int:
+    """Return an opaque pixel, 0xAARRGGBB, whose channels are truncated to bytes."""
+    return OPAQUE | int(red) << 16 | int(green) << 8 | int(blue)
+
+
+def store_block(pixels: Any, x: int, y: int, red: Number, green: Number, blue: Number) -> None:
+    """Store a packet that lies wholly in the picture; compiled, each of its rows is one store."""
+    packet_width = width(red) // PACKET_HEIGHT
+    for i in range(width(red)):
+        pixels[y + i // packet_width, x + i % packet_width] = argb(lane(red, i), lane(green, i), lane(blue, i))

@@ -1,0 +1,137 @@
+"""PageBackend: one window in a page of a browser, which sends events and gets frames."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from minirt.errors import MlxError
+from minirt.mlx.backend import Backend
+from minirt.notebook.frames import FrameStream
+
+if TYPE_CHECKING:
+    from minirt.mlx.backend import Loop
+    from minirt.mlx.window import Window
+
+TICK = 1 / 60  # seconds between two turns of a busy loop
+SCREEN = (3840, 2160)  # pixels: the largest window
+Message = dict[str, Any]
+
+
+class PageBackend(Backend):
+    """A back end whose loop runs in a thread of its own. Any thread may call `do`, `acknowledge` and `restart`.
+
+    send: sends a message, and bytes with it, to the page.
+    """
+
+    def __init__(self, send: Callable[[Message, bytes], object]) -> None:
+        self._send = send
+        self.frames = FrameStream(lambda number, data: send({"kind": "frame", "number": number}, data))
+        self._actions: deque[Callable[[], object]] = deque()
+        self._awake = threading.Event()
+        self._next_tick = 0.0
+        self._clipboard = ""
+
+    def do(self, action: Callable[[], object]) -> None:
+        """Have the loop perform an action before its next turn."""
+        self._actions.append(action)
+        self._awake.set()
+
+    def acknowledge(self, number: int) -> None:
+        """Note that the page has shown a frame, and send the one that waited for it."""
+        self.do(lambda: self.frames.acknowledge(number))
+
+    def restart(self) -> None:
+        """Send the frame again: a page shows the window anew."""
+        self.do(self._restart)
+
+    @property
+    def window(self) -> Window | None:
+        """The window, once it is open."""
+        return self._display.windows[0] if self._display.windows else None
+
+    def _restart(self) -> None:
+        self.frames.restart()
+        for window in self._display.windows:
+            window.stale = True
+
+    # --- the contract of a back end ---
+
+    def open(self, display: Loop) -> None:
+        self._display = display
+
+    def close(self) -> None:
+        """Do nothing: the page belongs to the notebook."""
+
+    def open_window(self, window: Window) -> None:
+        if self.window:
+            raise MlxError("a page of a notebook has one window")
+
+    def close_window(self, window: Window) -> None:
+        """Do nothing: the page keeps its last frame."""
+
+    def show(self, window: Window) -> None:
+        window.shown.take_changes()
+        window.stale = not self.frames.offer(window.shown.pixels, self.time())
+
+    def run(self) -> None:
+        self._display.turn(tick=False)
+        while not self._display.over:
+            self._awake.wait(self._patience())
+            self._awake.clear()
+            while self._actions:
+                self._actions.popleft()()
+            self._display.turn(tick=self._is_tick_due())
+            if window := self.window:
+                self.frames.sharpen(window.shown.pixels, self.time())
+
+    def wake(self) -> None:
+        self._awake.set()
+
+    def time(self) -> float:
+        return time.perf_counter()
+
+    def screen_size(self) -> tuple[int, int]:
+        return SCREEN
+
+    def set_title(self, window: Window) -> None:
+        """Do nothing: there is no title bar."""
+
+    def set_fullscreen(self, window: Window, on: bool) -> None:
+        """Let the page fill the screen; the window keeps its size, and the page stretches its frames."""
+        self._send({"kind": "full screen", "on": on}, b"")
+
+    def move_pointer(self, window: Window, x: int, y: int) -> None:
+        """Do nothing: pages cannot move the pointer."""
+
+    def show_pointer(self, window: Window, on: bool) -> None:
+        self._send({"kind": "pointer", "cursor": window.cursor.value if on else "none"}, b"")
+
+    def set_cursor(self, window: Window) -> None:
+        self.show_pointer(window, True)
+
+    def set_icons(self, window: Window) -> None:
+        """Do nothing: there is no title bar."""
+
+    def clipboard(self, window: Window) -> str:
+        return self._clipboard
+
+    def set_clipboard(self, window: Window, text: str) -> None:
+        self._clipboard = text
+        self._send({"kind": "copy", "text": text}, b"")
+
+    def _patience(self) -> float | None:
+        """Seconds until there is something to do without an event; None for ever."""
+        now = self.time()
+        waits = [self.frames.patience(now), max(0.0, self._next_tick - now) if self._display.busy else None]
+        return min((each for each in waits if each is not None), default=None)
+
+    def _is_tick_due(self) -> bool:
+        now = self.time()
+        if not self._display.busy or now < self._next_tick:
+            return False
+        self._next_tick = now + TICK
+        return True

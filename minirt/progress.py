@@ -1,0 +1,119 @@
+"""Progress of work that takes more than a second: its line of text, the thread that draws it, and notebooks.
+
+A notebook shows a bar below the cell and takes it away at the end. The command line has its own: `minirt.cli.progress`.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextvars import ContextVar, copy_context
+from threading import Event, Thread
+from time import perf_counter
+from typing import Any, NamedTuple
+
+from minirt.timing import in_words
+
+PATIENCE = 1.0  # seconds of work without a bar
+PAUSE = 0.2  # seconds from one drawing of the bar to the next
+STOPPED = 30.0  # seconds between two drawings in which the program was stopped, as by Ctrl+Z, and did not work
+BAR = 24  # characters
+SHOWN: ContextVar[bool] = ContextVar("shown", default=False)  # whether a bar for this work is in the notebook
+
+
+class State(NamedTuple):
+    """Share of some work that is done."""
+
+    what: str
+    share: float | None = None  # of the whole, from 0 to 1; None while nobody knows
+
+
+@contextmanager
+def drawn(read: Callable[[], State], draw: Callable[[str], object], clock: Callable[[], float]) -> Iterator[None]:
+    """Draw the state that `read` returns while the block runs, from another thread, by `draw(text)`.
+
+    Nothing is drawn in the first second; `draw("")` erases what was drawn.
+    """
+    ended = Event()
+    arguments = (draw_until, ended, read, draw, clock)
+    thread = Thread(target=copy_context().run, args=(without_signals, *arguments), daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+
+
+def draw_until(
+    ended: Event, read: Callable[[], State], draw: Callable[[str], object], clock: Callable[[], float]
+) -> None:
+    """Draw the bar until the work has ended, then erase it."""
+    last, seconds, pause, is_drawn = clock(), 0.0, PATIENCE, False
+    while not ended.wait(pause):
+        last, passed = (now := clock()), now - last
+        seconds += passed if passed < STOPPED else pause
+        draw(line(read(), seconds))
+        pause, is_drawn = PAUSE, True
+    if is_drawn:
+        draw("")
+
+
+def without_signals(work: Callable[..., None], *arguments: object) -> None:
+    """Do some work in a thread that gets no signal: one that it took would not wake the main thread, which waits for a
+    picture."""
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
+    work(*arguments)
+
+
+def line(state: State, seconds: float) -> str:
+    """Return the bar: how much is done, and the time that is left if the rest is as fast, or that has passed."""
+    if not state.share:
+        return f"{in_words(seconds)}  {state.what}"
+    share = min(state.share, 1.0)
+    left = in_words(seconds * (1 - share) / share)
+    return f"{'#' * round(BAR * share):-<{BAR}} {share:4.0%}  {left} left  {state.what}"
+
+
+def in_notebook() -> bool:
+    """Whether the program runs in the kernel of a notebook."""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython else None
+    return hasattr(shell, "kernel")
+
+
+def in_notebooks(read: Callable[[], State]) -> AbstractContextManager[None]:
+    """Show the state that `read` returns below the cell while the block runs; elsewhere do nothing."""
+    return shown_below_cell(read) if in_notebook() and not SHOWN.get() else nullcontext()
+
+
+@contextmanager
+def shown_below_cell(read: Callable[[], State]) -> Iterator[None]:
+    """Show progress below the cell, and not that of the parts of this work beside it."""
+    token = SHOWN.set(True)
+    try:
+        with drawn(read, NotebookLine().draw, perf_counter):
+            yield
+    finally:
+        SHOWN.reset(token)
+
+
+class NotebookLine:
+    """A line of text below a cell, which can be replaced and erased."""
+
+    def __init__(self) -> None:
+        self.handle: Any = None
+
+    def draw(self, text: str) -> None:
+        """Show a text instead of the last one; none erases it."""
+        from IPython.display import DisplayHandle
+
+        content = {"text/plain": text} if text else {"text/html": ""}
+        if self.handle is None:
+            self.handle = DisplayHandle()
+            self.handle.display(content, raw=True)
+        else:
+            self.handle.update(content, raw=True)

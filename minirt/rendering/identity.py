@@ -1,0 +1,36 @@
+"""Identity of a picture: a hash of all that it depends on, which tells whether two programs render the same one."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+
+from minirt import regular_files
+from minirt.element import Element, fields_of
+from minirt.fields import MeshFile
+from minirt.kernel.machine_code.cache_folder import fingerprint_of
+from minirt.kernel.machine_code.processor import V3
+from minirt.scene import Scene, dump
+
+LARGEST = 256 * 2**20  # bytes of a picture or mesh file
+
+
+def identity(scene: Scene, settings: str) -> str:
+    """Return a hash of a scene, the files that it names, the settings and the kernel. FileError where a file cannot be
+    read."""
+    found = hashlib.sha256(f"{fingerprint_of(V3)} {settings}\n{dump(scene)}".encode())
+    for name in sorted({name for element in scene.elements for name in files_of(element)}):
+        data = regular_files.read(scene.beside(name), LARGEST)
+        found.update(f"{name} {len(data)}\n".encode())
+        found.update(data)
+    return found.hexdigest()
+
+
+def files_of(element: Element) -> Iterator[str]:
+    """Yield the names of the pictures and meshes of an element, as the scene file has them."""
+    for field in fields_of(type(element)):
+        value = getattr(element, field.name)
+        if isinstance(value, MeshFile):
+            yield value.name
+        elif value is not None:
+            yield from (each.name for each in field.pictures(value))

@@ -1,0 +1,38 @@
+"""Text of scene files: pages of items -> lines. Unchanged lines are written as they were read."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+from minirt import atomic_write, regular_files
+from minirt.scene import fast, files
+from minirt.scene.line_rewriting import line_of
+from minirt.scene.lines import BOM
+from minirt.scene.pages import Item, Page
+
+
+def text_of(pages: tuple[Page, ...]) -> str:
+    """Return the text of a scene file."""
+    lines = [line for page in pages for line in lines_of(page.items)]
+    return "\n".join(lines[:1] + [line.removeprefix(BOM) for line in lines[1:]])
+
+
+def lines_of(items: tuple[Item, ...]) -> Iterator[str]:
+    """Yield the lines of items."""
+    sources = [item if isinstance(item, str) else item.source for item in items]
+    for item, source, read in zip(items, sources, fast.read(sources), strict=True):
+        yield source if isinstance(item, str) or item == read else line_of(item)
+
+
+def write(pages: tuple[Page, ...], path: str | os.PathLike[str]) -> None:
+    """Write a scene file as a whole or not at all; SceneError when that fails.
+
+    An existing file keeps its permissions, and a symbolic link stays one.
+    """
+    files.check_name(path)
+    data = text_of(pages).encode()
+    try:
+        atomic_write.write(path, data)
+    except (OSError, ValueError) as error:
+        raise files.file_error(path, f"cannot be written: {regular_files.reason(error)}") from None

@@ -1,0 +1,157 @@
+"""Choosing an element or an attribute from a list: letters filter it, arrows go through it, Enter takes it.
+
+The chosen one is in the scene at once, so that the picture shows it. Escape takes it out again, and any key that means
+nothing to the list leaves it there, as the last change.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from minirt.element import fields_of
+from minirt.mlx import Key
+from minirt.viewer.app.session import Session
+from minirt.viewer.app.typing import ENTER
+from minirt.viewer.display.panel import Panel
+from minirt.viewer.editing import attributes, structure
+from minirt.viewer.editing.adding import addable_kinds
+from minirt.viewer.editing.state import State
+
+ADDING = ("add", "add previous")  # actions that open the list of elements
+LISTS = (*ADDING, "add attribute")  # actions that open a list
+
+
+class Choice(NamedTuple):
+    """A row of a list."""
+
+    title: str
+    key: int | str  # number of a kind of element, or name of an attribute
+
+
+class Choosing:
+    """The list that is open; it is so as long as its last choice is the last change of the scene."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self._letters = ""
+        self._choices: list[Choice] = []
+        self._of_elements = True
+        self._before: State | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the list is open."""
+        last = self.session.state.last_change
+        kind = structure.CHANGE_KIND if self._of_elements else attributes.CHANGE_KIND
+        return self._before is not None and last is not None and last[0] == kind
+
+    @property
+    def is_filtered(self) -> bool:
+        """Whether letters were typed into the open list."""
+        return self.is_open and bool(self._letters)
+
+    def begin(self, action: str, before: State) -> None:
+        """Show the list after an action of LISTS has added the first choice, or the next one, to `before`."""
+        if not self.is_open or self._of_elements != (action in ADDING):
+            self._letters = ""
+            self._of_elements = action in ADDING
+            self._before = before
+            self._choices = list(element_choices(before) if self._of_elements else attribute_choices(before))
+        self.show()
+
+    def end(self) -> None:
+        """Close the list; what it added stays."""
+        if self._before is not None:
+            self._before = None
+            self.show()
+
+    def on_key(self, key: int) -> bool:
+        """Take a key press; False if the key means nothing to the list."""
+        rows = self.rows()
+        if key in ENTER:
+            self.session.state = self.session.state.end_merging()
+            self.end()
+        elif key == Key.ESCAPE:
+            self.cancel()
+        elif key in (Key.UP, Key.DOWN):
+            if rows:
+                self.choose(rows[(self.chosen(rows) + (1 if key == Key.DOWN else -1)) % len(rows)])
+        elif key == Key.BACKSPACE and self._letters:
+            self.filter(self._letters[:-1])
+        elif Key.A <= key <= Key.Z or (key == Key.SPACE and self._letters):
+            self.filter(self._letters + chr(key))
+        else:
+            return False
+        return True
+
+    def filter(self, letters: str) -> None:
+        """Show the choices that contain some letters, and choose the first of them."""
+        self._letters = letters
+        rows = self.rows()
+        if rows and letters:
+            self.choose(rows[0])
+        else:
+            self.show()
+
+    def choose(self, choice: Choice) -> None:
+        """Replace the last choice in the scene by another one."""
+        session = self.session
+        state = session.state.with_message("")
+        if isinstance(choice.key, int):
+            state = structure.add_kind(choice.key, state, session.now)
+        else:
+            state = attributes.add_named(choice.key, state, session.now)
+        session.state = state
+        self.show()
+        session.show(state)
+
+    def cancel(self) -> None:
+        """Take the last choice out of the scene again, and close the list."""
+        before, self._before = self._before, None
+        assert before
+        self.session.screen.panel = None
+        self.session.show(replace(before, aim=None).with_message(""))
+
+    def rows(self) -> list[Choice]:
+        """The choices that contain the letters: first those that begin with them, then those of which a word does."""
+        letters = self._letters
+        if not letters:
+            return self._choices
+        found = [choice for choice in self._choices if letters in choice.title]
+        return sorted(
+            found, key=lambda choice: (not choice.title.startswith(letters), f" {letters}" not in choice.title)
+        )
+
+    def chosen(self, rows: list[Choice]) -> int:
+        """Index of the last choice in `rows`, or 0."""
+        state = self.session.state
+        active = state.active.field.name if state.active else ""
+        key = state.kind_index if self._of_elements else active
+        return next((index for index, row in enumerate(rows) if row.key == key), 0)
+
+    def show(self) -> None:
+        """Show the list, or nothing if it is closed."""
+        screen = self.session.screen
+        if not self.is_open:
+            screen.panel = None
+        else:
+            rows = self.rows()
+            noun = "element" if self._of_elements else "attribute"
+            hint = "" if rows else "    nothing is called so"
+            title = f"{noun}: {self._letters}_{hint}    type, arrows, Enter    Esc: none"
+            screen.panel = Panel(title, tuple(row.title for row in rows), self.chosen(rows))
+        self.session.refresh()
+
+
+def element_choices(state: State) -> list[Choice]:
+    """The kinds of elements that can be added to a scene."""
+    kinds = addable_kinds(state.scene)
+    made = structure.default_elements(kinds, range(len(kinds)), state)
+    return [Choice(kinds[number].title, number) for number, _ in made]
+
+
+def attribute_choices(state: State) -> list[Choice]:
+    """The attributes that the selected element lacks."""
+    titles = {field.name: field.title for field in fields_of(type(state.element))}
+    return [Choice(titles[field.name], field.name) for field, _ in attributes.missing_attributes(state.element, state)]

@@ -1,0 +1,130 @@
+"""The program renders by other processes: `--cluster`."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+
+import minirt
+from tests.cli.program import Result, program, start
+from tests.terminals import terminal
+from tests.waiting import HANG_LIMIT, until
+
+Run = Callable[..., Result]
+LOCAL = ("--cluster", "local")
+
+
+def test_files_are_those_of_one_process(run: Run, folder: Path) -> None:
+    """Bands of a picture, frames of a film and numbered pictures, byte by byte, with what they carry."""
+    for name, *arguments in (
+        ("a.png", "--size", "600x300", "--samples", "2", "--dither"),
+        ("a.gif", "--turntable", "6", "--size", "60x30"),
+        ("a.exr", "--turntable", "5", "--frames", "2-4", "--size", "60x30", "--region", "3,5,40,20"),
+    ):
+        written = []
+        for more in ((), LOCAL):
+            assert run("ball.rt", "-o", name, *arguments, *more) == (0, b"", "")
+            files = sorted(folder.glob("a*"))
+            written.append([(each.name, each.read_bytes()) for each in files])
+            for each in files:
+                each.unlink()
+        assert written[0] == written[1]
+
+
+def test_sizes_may_exceed_those_of_one_process(run: Run, folder: Path) -> None:
+    assert run("ball.rt", "--size", "16400x17", "--bits", "16", "-o", "a.tif", *LOCAL) == (0, b"", "")
+    picture = minirt.render(minirt.load("ball.rt"), 16400, 17)
+    assert np.array_equal(tifffile.imread("a.tif"), picture.deep)
+    ended = run("ball.rt", "--size", "16400x17", "-o", "a.tif")
+    assert (ended.status, "argument --size: must be a whole number from 1 to 16384" in ended.err) == (2, True)
+
+
+@pytest.mark.parametrize("output", ["a.tif", "a.gif"])
+def test_an_error_is_reached_and_told(run: Run, folder: Path, output: str) -> None:
+    film = ("--turntable", "2") if output == "a.gif" else ()
+    goal = "--size", "320x180", "--samples", "auto", "--strict", "--error"
+    ended = run("ball.rt", "-o", output, *film, *goal, "0.01", *LOCAL)
+    assert ended.status == 0
+    found = re.search(r"estimated error ([\d.]+)", ended.err)
+    assert found
+    assert float(found[1]) <= 0.01
+    if output == "a.tif":  # 8 bits end before
+        ended = run("ball.rt", "-o", output, *goal, "0.000001", *LOCAL)
+        assert (ended.status, "notice: no more samples" in ended.err) == (1, True)
+
+
+def interrupted(folder: Path, words: bytes, *arguments: str) -> str:
+    """Output of the program when it is interrupted after it has shown some words."""
+    with terminal() as screen, start(folder, "ball.rt", *arguments, *LOCAL, stderr=screen.end) as running:
+        screen.leave()
+        until(lambda: bool(re.search(words, screen.read())), "some work")
+        os.killpg(running.pid, signal.SIGINT)
+        screen.wait_for_end()  # which all processes have open
+        running.communicate(timeout=HANG_LIMIT)
+        assert running.returncode == 130
+    assert b"Traceback" not in screen.text
+    return screen.text.decode()
+
+
+def test_an_interrupted_picture_keeps_its_bands_and_ends_all_processes(folder: Path) -> None:
+    how = "--size", "640x1600", "--samples", "256", "--threads", "1", "-o", "a.tif"
+    text = interrupted(folder, rb"[4-9] of 25 bands", *how)
+    assert re.search(r"\d+ of 25 bands are kept; the same command goes on", text)
+    assert {each.name for each in folder.iterdir()} == {"ball.rt", "a.tif.part", "a.tif.journal"}
+    assert len((folder / "a.tif.journal").read_text().splitlines()) >= 5
+
+
+def test_an_interrupted_film_goes_on(run: Run, folder: Path) -> None:
+    how = "--turntable", "12", "--size", "320x180", "--samples", "1024", "--threads", "1", "-o", "spin.png"
+    text = interrupted(folder, rb"picture ([3-9]|1[01]) of", *how)
+    assert re.search(r"\d+ of 12 pictures of the film are kept; miniRT .* --resume goes on", text)
+    before = {each.name: each.stat().st_mtime_ns for each in folder.glob("spin-*.png")}
+    kept = int(re.findall(r"(\d+) of 12 pictures", text)[0])
+    assert 0 < kept <= len(before) < 12
+    assert run("ball.rt", *how, *LOCAL, "--resume") == (0, b"", "")
+    after = {each.name: each.stat().st_mtime_ns for each in folder.glob("spin-*.png")}
+    assert len(after) == 12
+    assert sum(before[each] == after[each] for each in before) >= kept
+    assert not (folder / ".spin.png.part").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "message"),
+    [
+        (("--cluster", "local", "-o", "a.tif", "--resume"), 2, ".tif pictures go on without it"),
+        (("--cluster", "local"), 2, "--cluster needs -o, and no --replay or --time"),
+        (("--cluster", "here", "-o", "a.tif"), 2, "must be local, or the address of a scheduler like tcp://host:8786"),
+        (("--cluster", "local", "-o", "no/a.tif"), 1, "no/a.tif: cannot write: No such file"),
+        (("--cluster", "local", "-o", "a.webp", "--size", "17000x5"), 1, "WEBP holds at most 16,383 pixels a side"),
+        (("--cluster", "nothing://127.0.0.1:1", "-o", "a.tif"), 1, "--cluster nothing://127.0.0.1:1: no scheduler"),
+    ],
+)
+def test_what_cannot_be_done_is_told_before_the_work(
+    run: Run, folder: Path, arguments: tuple[str, ...], status: int, message: str
+) -> None:
+    ended = run("ball.rt", *arguments)
+    assert (ended.status, ended.out) == (status, b"")
+    assert message in ended.err
+    assert [each.name for each in folder.iterdir()] == ["ball.rt"]
+
+
+def test_without_dask_an_address_is_an_error(folder: Path) -> None:
+    (folder / "distributed.py").write_text("raise ImportError")
+    ended = program(folder, "ball.rt", "-o", "a.tif", "--cluster", "tcp://127.0.0.1:1")
+    assert (ended.status, "pip install 'minirt[cluster]'" in ended.err) == (1, True)
+
+
+def test_a_picture_cannot_ask_for_a_size_beyond_the_limit(run: Run, folder: Path) -> None:
+    """Its settings may come from anybody."""
+    image = minirt.render(minirt.load("ball.rt"), 8, 6)
+    texts = {"miniRT scene": (folder / "ball.rt").read_text(), "miniRT settings": "--size 900000000x900000000"}
+    image.save("wild.png", texts=texts)
+    assert run("wild.png", "-o", "a.png").status == 0
+    assert minirt.load("a.png")

@@ -1,0 +1,151 @@
+"""The program writes light, 16 bits and films, and refuses what a format cannot hold before the work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image as pillow  # noqa: N813
+
+import minirt
+from minirt.rendering import Renderer
+from tests.cli.program import SCENE, Result
+
+Run = Callable[..., Result]
+SIZE = ("--size", "40x30")
+
+
+@pytest.fixture
+def no_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing can be rendered."""
+
+    def refuse(*arguments: object, **more: object) -> None:
+        raise AssertionError("rendered in vain")
+
+    monkeypatch.setattr(Renderer, "render", refuse)
+    monkeypatch.setattr(Renderer, "reach", refuse)
+
+
+@pytest.mark.parametrize("tone", ["plain", "filmic"])
+def test_float_files_hold_exposed_light_without_tone(run: Run, folder: Path, tone: str) -> None:
+    cv2 = pytest.importorskip("cv2")
+    assert run("ball.rt", "-o", "x.pfm", *SIZE, "--tone", tone, "--exposure", "3").status == 0
+    scene = minirt.load("ball.rt")
+    light = minirt.render(scene.replace(scene.camera, exposure=3.0, tone=tone), 40, 30).linear
+    found = cv2.imread("x.pfm", cv2.IMREAD_UNCHANGED)[..., ::-1]
+    assert np.array_equal(found, light.astype(np.float32))
+    assert found.max() > 1
+
+
+@pytest.mark.parametrize("name", ["x.png", "x.tif"])
+def test_16_bits_have_the_tone_and_round_to_the_8_bits(run: Run, folder: Path, name: str) -> None:
+    cv2 = pytest.importorskip("cv2")
+    assert run("ball.rt", "-o", name, *SIZE, "--bits", "16", "--tone", "filmic", "--exposure", "1").status == 0
+    assert run("ball.rt", "-o", f"8-{name}", *SIZE, "--tone", "filmic", "--exposure", "1").status == 0
+    deep, levels = (cv2.imread(each, cv2.IMREAD_UNCHANGED) for each in (name, f"8-{name}"))
+    assert (deep.dtype, levels.dtype) == (np.uint16, np.uint8)
+    assert np.abs(deep / 257.0 - levels).max() <= 0.51
+    assert len(np.unique(deep)) > len(np.unique(levels))
+
+
+def test_light_of_auto_sampling_goes_below_the_rounding_of_8_bits(run: Run, folder: Path) -> None:
+    goal = ("--samples", "auto", "--error", "3e-4", "--strict")
+    assert run("ball.rt", "-o", "x.exr", "--size", "160x90", *goal).status == 0
+    assert run("ball.rt", "-o", "x.png", "--size", "160x90", *goal).status == 1
+
+
+REFUSED = {
+    ("-o", "x.webp", "--size", "16384x4"): "x.webp: WEBP holds at most 16,383 pixels a side, got 16384x4",
+    ("-o", "nowhere/x.png"): "nowhere/x.png: cannot write: No such file or directory",
+    ("-o", "ball.rt/x.png"): "ball.rt/x.png: cannot write: Not a directory",
+    ("-o", "folder.png"): "folder.png: cannot write: not a regular file",
+    ("-o", "nowhere/x.gif", "--turntable", "3"): "nowhere/x.gif: cannot write: No such file or directory",
+    ("-o", "nowhere/x.png", "--turntable", "3"): "nowhere/x.png: cannot write: No such file or directory",
+    ("-o", "x.pgm"): "x.pgm: cannot write pictures with the extension '.pgm': it cannot hold colours, try .png",
+    ("-o", "x.jpg", "--bits", "16"): "JPEG has 8 bits a channel, got 16: try PNG or TIFF",
+    ("-o", "x.png", "--quality", "50"): "PNG has no quality: it keeps all pixels as they are",
+    ("-o", "-", "--quality", "50"): "PNG has no quality: it keeps all pixels as they are",
+    ("--fallback", "x.nope"): "x.nope: cannot write pictures with the extension '.nope', try .png",
+    ("-o", "x.exr", "--replay", "keys.txt"): "x.exr: the frames of a replay have 8 bits a channel, "
+    "try .png without --bits",
+}
+
+
+@pytest.mark.usefixtures("no_work")
+@pytest.mark.parametrize("arguments", REFUSED, ids=" ".join)
+def test_what_cannot_be_written_is_refused_before_the_work(run: Run, folder: Path, arguments: tuple[str, ...]) -> None:
+    (folder / "folder.png").mkdir()
+    (folder / "keys.txt").write_text("wait 1\n")
+    assert run("ball.rt", *arguments) == (1, b"", f"Error\n{REFUSED[arguments]}\n")
+    assert {path.name for path in folder.iterdir()} == {"ball.rt", "folder.png", "keys.txt"}
+
+
+@pytest.mark.usefixtures("no_work")
+def test_a_film_of_one_picture_is_refused(run: Run) -> None:
+    pytest.importorskip("av")
+    ended = run("ball.rt", "-o", "x.mp4")
+    assert (ended.status, "a film needs --turntable or --replay" in ended.err) == (1, True)
+
+
+def test_a_planted_render_is_found(run: Run, no_work: None) -> None:
+    with pytest.raises(AssertionError, match="in vain"):
+        run("ball.rt", "-o", "x.png")
+
+
+@pytest.mark.parametrize(("name", "frames"), [("x.webp", 3), ("x.apng", 3), ("x.mp4", 3)])
+def test_a_turntable_is_a_film(run: Run, folder: Path, name: str, frames: int) -> None:
+    if name.endswith(".mp4"):
+        av = pytest.importorskip("av")
+    assert run("ball.rt", "--turntable", "3", "-o", name, *SIZE) == (0, b"", "")
+    if name.endswith(".mp4"):
+        with av.open(name) as film:
+            assert sum(1 for _ in film.decode(video=0)) == frames
+        return
+    with pillow.open(name) as film:
+        assert (film.n_frames, film.size) == (frames, (40, 30))
+
+
+def test_a_replay_can_be_a_film_of_any_format(run: Run, folder: Path) -> None:
+    (folder / "keys.txt").write_text("press I\npress I\nhold d 1\nwait 0.2\n")
+    assert run("ball.rt", "--replay", "keys.txt", "-o", "movie.webp", "--size", "32x18").status == 0
+    with pillow.open("movie.webp") as movie:
+        assert movie.n_frames > 8
+
+
+def test_some_frames_of_a_turntable(run: Run, folder: Path) -> None:
+    assert run("ball.rt", "--turntable", "5", "-o", "all.png", *SIZE).status == 0
+    assert run("ball.rt", "--turntable", "5", "-o", "some.png", "--frames", "2-3", *SIZE).status == 0
+    assert sorted(path.name for path in folder.glob("some*")) == ["some-0002.png", "some-0003.png"]
+    for number in ("0002", "0003"):
+        assert (folder / f"some-{number}.png").read_bytes() == (folder / f"all-{number}.png").read_bytes()
+    assert run("ball.rt", "--turntable", "5", "-o", "one.gif", "--frames", "5", *SIZE).status == 0
+    for wrong, words in (
+        (("--turntable", "5", "--frames", "4-6"), "there are 5 pictures, got 6"),
+        (("--turntable", "5", "--frames", "3-2"), "must be FIRST-LAST, like 10-20, got '3-2'"),
+        (("--frames", "1-2"), "--frames needs --turntable"),
+    ):
+        ended = run("ball.rt", "-o", "x.png", *wrong)
+        assert (ended.status, words in ended.err) == (2, True)
+
+
+def test_several_scenes_are_rendered_by_one_process(run: Run, folder: Path) -> None:
+    (folder / "sub").mkdir()
+    (folder / "sub" / "far.rt").write_text(SCENE.replace("0,0,-5", "0,0,-9"))
+    (folder / "bad.rt").write_text("nonsense\n")
+    (folder / "out").mkdir()
+    ended = run("ball.rt", "bad.rt", "sub/far.rt", "-o", "out/{name}.png", *SIZE)
+    assert (ended.status, ended.out) == (1, b"")
+    assert ended.err.startswith("Error\nbad.rt:1:1: ")
+    assert {path.name for path in (folder / "out").iterdir()} == {"ball.png", "far.png"}
+    for scene, name in (("ball.rt", "ball"), ("sub/far.rt", "far")):
+        assert np.array_equal(
+            np.asarray(pillow.open(f"out/{name}.png")), minirt.render(minirt.load(scene), 40, 30).array
+        )
+    ended = run("ball.rt", "sub/far.rt", "--check")
+    assert ended == (0, b"ball.rt: no errors, 2 shapes, 1 lights\nsub/far.rt: no errors, 2 shapes, 1 lights\n", "")
+    ended = run("bad.rt", "ball.rt", "--check")
+    assert (ended.status, ended.out) == (1, b"ball.rt: no errors, 2 shapes, 1 lights\n")
+    ended = run("ball.rt", "sub/../ball.rt", "-o", "out/{name}.png")
+    assert (ended.status, ended.err) == (2, "Error\ntwo scenes would be written to out/ball.png\n")

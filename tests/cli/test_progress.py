@@ -1,0 +1,112 @@
+"""The progress bar is drawn on terminals alone, after a second, with the time that is left, and erased at the end."""
+
+from __future__ import annotations
+
+import io
+import signal
+from functools import partial
+from threading import Event
+
+import pytest
+
+from minirt import progress as module
+from minirt.cli.progress import draw, progress
+from minirt.progress import State, draw_until, line
+from tests.waiting import HANG_LIMIT
+
+
+class Terminal(io.StringIO):
+    """A terminal that keeps what is written."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+class Ended(Event):
+    """An end that comes after some waits, and keeps their lengths."""
+
+    def __init__(self, waits: int) -> None:
+        self.left, self.waited = waits, []  # type: ignore[var-annotated]
+
+    def wait(self, timeout: float | None = None) -> bool:
+        self.waited.append(timeout)
+        self.left -= 1
+        return self.left < 0
+
+
+@pytest.mark.parametrize(
+    ("state", "seconds", "text"),
+    [
+        (State("x.png", 0.25), 10, "######------------------  25%  30 s left  x.png"),
+        (State("x.png", 1.0), 10, "######################## 100%  0 s left  x.png"),
+        (State("x.png", 1.5), 10, "######################## 100%  0 s left  x.png"),
+        (State("film", 0.01), 100, "------------------------   1%  2 h 45 min left  film"),
+        (State("reading"), 12.4, "12 s  reading"),
+        (State("x.png", 0.0), 12.4, "12 s  x.png"),
+    ],
+)
+def test_the_bar_tells_share_and_remaining_time(state: State, seconds: float, text: str) -> None:
+    assert line(state, seconds) == text
+
+
+def test_the_first_second_has_no_bar_and_the_end_erases_it() -> None:
+    times = iter([0.0, 1.0, 1.2])
+    out, ended = Terminal(), Ended(2)
+    draw_until(ended, lambda: State("x", 0.5), partial(draw, out), lambda: next(times))
+    assert ended.waited == [module.PATIENCE, module.PAUSE, module.PAUSE]
+    first, second, last = out.getvalue().split("\r\x1b[K")[1:]
+    assert (first, second, last) == (line(State("x", 0.5), 1.0), line(State("x", 0.5), 1.2), "")
+    quick = Terminal()
+    draw_until(Ended(0), lambda: State("x", 0.5), partial(draw, quick), lambda: 0.0)
+    assert quick.getvalue() == ""
+
+
+def test_the_time_in_which_a_program_was_stopped_does_not_count() -> None:
+    times = iter([0.0, 1.0, 3601.0, 3601.2])
+    out = Terminal()
+    draw_until(Ended(3), lambda: State("x", 0.5), partial(draw, out), lambda: next(times))
+    shown = out.getvalue().split("\r\x1b[K")[1:]
+    assert shown == [*(line(State("x", 0.5), seconds) for seconds in (1.0, 1.0 + module.PAUSE, 1.4)), ""]
+
+
+def test_without_a_terminal_nothing_is_asked_and_nothing_written() -> None:
+    def never() -> State:
+        raise AssertionError
+
+    out = io.StringIO()
+    with progress(never, out):
+        pass
+    assert out.getvalue() == ""
+
+
+def test_a_terminal_that_has_gone_is_no_error() -> None:
+    gone = Terminal()
+    gone.close()
+    draw_until(Ended(3), lambda: State("x"), partial(draw, gone), lambda: 0.0)
+
+
+def test_the_block_ends_the_thread_also_by_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "PATIENCE", 0.0)
+    drawn, out = Event(), Terminal()
+
+    def state() -> State:
+        assert signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])  # the main thread gets Ctrl+C
+        drawn.set()
+        return State("x")
+
+    def interrupted() -> None:
+        with progress(state, out):
+            assert drawn.wait(HANG_LIMIT)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert out.getvalue().endswith("\r\x1b[K")
+
+
+def test_the_thread_that_calls_keeps_its_signals() -> None:
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [])
+    with progress(lambda: State("x"), Terminal()):
+        pass
+    draw_until(Ended(0), lambda: State("x"), partial(draw, Terminal()), lambda: 0.0)
+    assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == before

@@ -1,0 +1,165 @@
+"""A PNG picture carries its scene and settings, and the program opens it again; texts of strangers do no harm."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image as pillow  # noqa: N813
+
+import minirt
+from minirt import png
+from minirt.scene import in_picture
+from tests.cli.program import SCENE, Result
+
+Run = Callable[..., Result]
+PIXEL = np.zeros((1, 1, 3), np.uint8)
+
+
+def stranger(folder: Path, **texts: str) -> str:
+    """Write a picture with texts of anybody; return its name."""
+    named = {"scene": in_picture.SCENE, "settings": in_picture.SETTINGS}
+    (folder / "strange.png").write_bytes(png.encode(PIXEL, {named[key]: text for key, text in texts.items()}))
+    return "strange.png"
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ("--size", "40x30", "--samples", "3"),
+        ("--size", "41x30", "--dither", "--tone", "filmic", "--exposure", "0.7", "--left-handed"),
+        ("--size", "40x30", "--samples", "auto", "--error", "0.01", "--depth", "2"),
+        ("--size", "40x30", "--precision", "single"),
+    ],
+    ids=" ".join,
+)
+def test_a_picture_is_rendered_again_from_itself(run: Run, folder: Path, settings: tuple[str, ...]) -> None:
+    assert run("ball.rt", "-o", "first.png", *settings).status == 0
+    (folder / "ball.rt").unlink()
+    assert run("first.png", "-o", "again.png").status == 0
+    assert (folder / "again.png").read_bytes() == (folder / "first.png").read_bytes()
+    assert run("first.png", "--check").out == b"first.png: no errors, 2 shapes, 1 lights\n"
+    assert len(minirt.load("first.png").shapes) == 2
+
+
+def test_options_win_over_the_settings_of_a_picture(run: Run, folder: Path) -> None:
+    assert run("ball.rt", "-o", "first.png", "--size", "40x30", "--samples", "3").status == 0
+    assert run("first.png", "-o", "other.png", "--size", "20x10").status == 0
+    assert np.array_equal(
+        np.asarray(pillow.open("other.png")), minirt.render(minirt.load("ball.rt"), 20, 10, samples=3).array
+    )
+
+
+def test_pillow_reads_the_texts(run: Run) -> None:
+    assert run("ball.rt", "-o", "x.png", "--size", "40x30").status == 0
+    with pillow.open("x.png") as image:
+        assert image.text == {"miniRT scene": SCENE, "miniRT settings": "--size 40x30"}
+
+
+def test_metadata_can_be_left_out(run: Run) -> None:
+    assert run("ball.rt", "-o", "x.png", "--size", "40x30", "--no-metadata").status == 0
+    with pillow.open("x.png") as image:
+        assert image.text == {}
+    ended = run("x.png", "--check")
+    assert ended.status == 1
+    assert ended.err.startswith("Error\nx.png: this picture carries no scene; ")
+
+
+def test_a_scene_that_is_too_long_is_not_carried() -> None:
+    assert not in_picture.texts_for("#" * (in_picture.LONGEST_WRITTEN + 1), "")
+
+
+def test_frames_of_a_turntable_carry_their_own_view(run: Run) -> None:
+    assert run("ball.rt", "--turntable", "3", "-o", "x.png", "--size", "40x30").status == 0
+    assert run("x-0002.png", "-o", "again.png").status == 0
+    again, frame = (np.asarray(pillow.open(name)).astype(int) for name in ("again.png", "x-0002.png"))
+    assert np.abs(again - frame).max() <= 1  # numbers of a saved camera have nine digits
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        "--size 99999x99999 --samples 0 --depth 77 --precision half",
+        "--size --samples --output evil.png -o evil.png --report evil --replay evil --threads 9 --config evil",
+        "--samples \u0663 --error nan --time -1 \x00 \u202e " + "--size 1x " * 1000,
+    ],
+)
+def test_settings_of_strangers_are_left_out_where_they_are_wrong(run: Run, folder: Path, settings: str) -> None:
+    name = stranger(folder, scene="R 8 6\n" + SCENE, settings=settings)
+    assert run(name, "-o", "x.png").status == 0
+    with pillow.open("x.png") as image:
+        assert image.size == (8, 6)
+    assert {path.name for path in folder.iterdir()} == {"ball.rt", name, "x.png"}
+
+
+def test_a_scene_of_strangers_is_parsed_as_any_other(run: Run, folder: Path) -> None:
+    ended = run(stranger(folder, scene=SCENE + "sp 0,0,0 -1 1,2,3\n"), "--check")
+    assert (ended.status, ended.out) == (1, b"")
+    assert ended.err.startswith("Error\nstrange.png:6:10: sphere diameter must be > 0, got -1\n")
+    ended = run(stranger(folder, scene=SCENE + "#" * 70_000_000), "--check")
+    assert ended == (1, b"", "Error\nstrange.png: the text in the PNG picture is larger than 64 MiB\n")
+
+
+@pytest.mark.parametrize("at", [*range(0, 60, 7), 90])
+def test_damaged_pictures_are_errors(run: Run, folder: Path, at: int) -> None:
+    whole = bytearray((folder / stranger(folder, scene=SCENE)).read_bytes())
+    (folder / "cut.png").write_bytes(whole[:at])
+    whole[at] ^= 0x55
+    (folder / "changed.png").write_bytes(whole)
+    for name in ("cut.png", "changed.png"):
+        ended = run(name, "--check")
+        assert (ended.status, ended.out) == (1, b"")
+        assert ended.err.startswith(f"Error\n{name}: ")
+
+
+def test_pictures_that_are_no_files_are_errors(run: Run, folder: Path) -> None:
+    (folder / "folder.png").mkdir()
+    for name in ("folder.png", "missing.png"):
+        assert run(name, "--check").err.startswith(f"Error\n{name}: ")
+
+
+def test_keys_do_not_write_a_scene_over_its_picture(run: Run, folder: Path) -> None:
+    assert run("ball.rt", "-o", "x.png", "--size", "40x30").status == 0
+    before = (folder / "x.png").read_bytes()
+    (folder / "keys.txt").write_text("press Tab\nhold d 0.3\npress Ctrl+S\n")
+    ended = run("x.png", "--replay", "keys.txt")
+    assert (ended.status, "not written over its picture" in ended.err) == (1, True)
+    (folder / "keys.txt").write_text("press Tab\nhold d 0.3\npress Ctrl+Shift+S\n")
+    assert run("x.png", "--replay", "keys.txt").status == 0
+    assert (folder / "x.png").read_bytes() == before
+    assert len(minirt.load("x-1.rt").shapes) == 2
+
+
+@pytest.mark.parametrize("moved", [False, True])
+def test_textures_are_found_from_the_picture(
+    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, moved: bool
+) -> None:
+    for name in ("scenes/textures", "out"):
+        (folder / name).mkdir(parents=True)
+    pillow.new("RGB", (2, 2), (200, 30, 30)).save(folder / "scenes" / "textures" / "red.png")
+    (folder / "scenes" / "ball.rt").write_text(SCENE.replace("10,0,255", "10,0,255 texture:textures/red.png"))
+    assert run("scenes/ball.rt", "-o", "out/x.png", "--size", "40x30").status == 0
+    with pillow.open("out/x.png") as image:
+        assert image.text["miniRT folder"] == "../scenes"
+    monkeypatch.chdir(folder / "out")
+    assert run("x.png", "-o", "../scenes/again.png").status == 0
+    first, again = (np.asarray(pillow.open(name)) for name in ("x.png", "../scenes/again.png"))
+    assert np.array_equal(first, again)
+    if moved:  # to where the named folder is not: the textures may be beside the picture
+        (folder / "out" / "x.png").rename(folder / "scenes" / "x.png")
+        (folder / "out").rmdir()
+        (folder / "scenes").rename(folder / "elsewhere")
+        monkeypatch.chdir(folder)
+        assert run("elsewhere/x.png", "--check").status == 0
+        (folder / "elsewhere" / "textures" / "red.png").unlink()
+        ended = run("elsewhere/x.png", "--check")
+        assert (ended.status, "red.png" in ended.err) == (1, True)
+
+
+@pytest.mark.parametrize("way", ["/etc", "nowhere", "../nowhere", "x\0y", "y" * 5000])
+def test_a_strange_folder_is_left_out(folder: Path, way: str) -> None:
+    texts = {in_picture.SCENE: SCENE, in_picture.FOLDER: way}
+    (folder / "strange.png").write_bytes(png.encode(PIXEL, texts))
+    assert minirt.load("strange.png").file == Path("strange.png")

@@ -1,0 +1,83 @@
+"""Rows of a picture, its division into bands, and the error of the whole by those of the bands."""
+
+from __future__ import annotations
+
+from math import isclose
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import minirt
+from minirt.cluster.bands import LEAST_PIXELS, MOST_PIXELS, ROWS, bands_of, runs, whole
+from minirt.errors import RenderError
+from minirt.kernel.frame import TILE
+from minirt.rendering.sampling.outcome import Outcome
+from tests.cluster.scenes import BALL
+
+SIZE = 70, 61
+
+
+@pytest.mark.parametrize("settings", [{}, {"samples": 3, "dither": True}], ids=str)
+def test_rows_are_those_of_the_whole_picture(settings: dict[str, Any]) -> None:
+    scene = BALL.replace(BALL.camera, tone="filmic") if settings else BALL
+    picture = minirt.render(scene, *SIZE, **settings)
+    for first, end in ((0, 61), (17, 18), (30, 61)):
+        some = minirt.render(scene, *SIZE, **settings, rows=(first, end))
+        assert np.array_equal(some.array, picture.array[first:end])
+        assert np.array_equal(some.linear, picture.linear[first:end])
+
+
+@pytest.mark.parametrize("rows", [(-1, 5), (3, 3), (5, 62)])
+def test_rows_that_are_not_there_are_refused(rows: tuple[int, int]) -> None:
+    with pytest.raises(RenderError, match="region"):
+        minirt.render(BALL, *SIZE, rows=rows)
+    with pytest.raises(RenderError, match="a region or rows, not both"):
+        minirt.render(BALL, *SIZE, rows=(0, 5), region=(0, 0, 5, 5))
+
+
+@given(st.integers(1, 300_000), st.integers(1, 300_000))
+def test_bands_are_all_rows_once_by_whole_tiles_and_of_bounded_size(width: int, height: int) -> None:
+    bands = runs(width, height)
+    assert [row for first, end in bands for row in (first, end)][1:-1:2] == [first for first, _ in bands[1:]]
+    assert (bands[0][0], bands[-1][1]) == (0, height)
+    assert all(first % TILE == 0 for first, _ in bands)
+    rows = [end - first for first, end in bands]
+    assert min(rows) > 0
+    limit = max(TILE, min(MOST_PIXELS // width, max(ROWS, LEAST_PIXELS // width)))
+    assert max(rows) <= 1.5 * limit + TILE
+
+
+def test_bands_of_a_region_lie_in_it() -> None:
+    assert bands_of((5, 7, 600, 100)) == [(5, 7, 600, 48), (5, 55, 600, 52)]
+
+
+def outcome(error: float, samples: float = 2.0, goal: float = 0.01) -> Outcome:
+    return Outcome(samples, int(4 * samples), error, 1.0, goal)
+
+
+def test_the_error_of_the_whole_is_that_of_all_pixels_together() -> None:
+    """Noise of a known size in each band, against the root of the mean square over the whole picture."""
+    random = np.random.Generator(np.random.PCG64(1))
+    noises = [random.normal(0, error, (rows, 40)) for rows, error in ((64, 0.02), (64, 0.001), (17, 0.1))]
+    errors = [float(np.sqrt((noise**2).mean())) for noise in noises]
+    together = whole([(len(noise), outcome(error)) for noise, error in zip(noises, errors, strict=True)])
+    assert together
+    assert isclose(together.error, np.sqrt((np.concatenate(noises) ** 2).mean()), rel_tol=1e-12)
+    assert not isclose(together.error, sum(errors) / 3, rel_tol=0.05)  # a planted wrong mean
+
+
+@given(st.lists(st.tuples(st.integers(1, 64), st.floats(0, 0.01)), min_size=1, max_size=9))
+def test_where_each_band_reaches_the_goal_the_whole_does(bands: list[tuple[int, float]]) -> None:
+    together = whole([(rows, outcome(error)) for rows, error in bands])
+    assert together
+    assert together.error <= 0.01 * (1 + 1e-12)
+
+
+def test_samples_of_the_whole_are_a_mean_over_rows_and_a_band_without_outcome_leaves_none() -> None:
+    together = whole([(30, outcome(0.01, 2.0)), (10, outcome(0.01, 6.0))])
+    assert together
+    assert (together.samples, together.most, together.seconds) == (3.0, 24, 2.0)
+    assert whole([(30, outcome(0.01)), (10, None)]) is None

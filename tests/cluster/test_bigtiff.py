@@ -1,0 +1,61 @@
+"""BigTIFF files are read back by tifffile, Pillow and OpenCV."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+import tifffile
+from PIL import Image as pillow  # noqa: N813
+
+from minirt.cluster import bigtiff
+
+
+def write(path: Path, levels: np.ndarray, order: list[int], first: int = 0) -> None:
+    """Write a picture with its strips in some order, the first of them at a byte far behind the header."""
+    parts = bigtiff.strips(levels)
+    places = [0] * len(parts)
+    with path.open("wb") as file:
+        file.seek(max(first, bigtiff.HEADER.size))
+        for number in order:
+            places[number] = file.tell()
+            file.write(parts[number])
+        start = file.tell()
+        height, width, _ = levels.shape
+        sizes = [len(each) for each in parts]
+        file.write(bigtiff.directory(width, height, 8 * levels.itemsize, places, sizes, start))
+        file.seek(0)
+        file.write(bigtiff.header(start))
+
+
+@pytest.mark.parametrize("number", [np.uint8, np.uint16])
+@pytest.mark.parametrize(("width", "height"), [(1, 1), (7, 16), (33, 50), (300, 129)])
+def test_other_libraries_read_the_levels(tmp_path: Path, number: type, width: int, height: int) -> None:
+    levels = np.random.Generator(np.random.PCG64(7)).integers(np.iinfo(number).max, size=(height, width, 3))
+    levels = levels.astype(number)
+    count = len(bigtiff.strips(levels))
+    write(tmp_path / "a.tif", levels, list(range(count))[::-1])
+    with tifffile.TiffFile(tmp_path / "a.tif") as file:
+        assert file.is_bigtiff
+        assert np.array_equal(file.asarray(), levels)
+    read = cv2.imread(str(tmp_path / "a.tif"), cv2.IMREAD_UNCHANGED)
+    assert np.array_equal(read[..., ::-1], levels)
+    if number is np.uint8:  # Pillow has no 16 bits of several channels
+        with pillow.open(tmp_path / "a.tif") as picture:
+            assert np.array_equal(np.asarray(picture), levels)
+
+
+def test_places_beyond_4_gib_are_kept(tmp_path: Path) -> None:
+    levels = np.arange(40 * 5 * 3, dtype=np.uint8).reshape(40, 5, 3)
+    write(tmp_path / "a.tif", levels, [0, 1, 2], 5 * 2**30)  # a hole, which takes no room on the disk
+    assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), levels)
+
+
+def test_strips_in_another_order_are_another_picture(tmp_path: Path) -> None:
+    """A planted directory that takes strips in the order of the file is found."""
+    levels = np.arange(32 * 5 * 3, dtype=np.uint16).reshape(32, 5, 3)
+    write(tmp_path / "a.tif", levels, [0, 1])
+    write(tmp_path / "b.tif", np.roll(levels, 16, axis=0), [0, 1])
+    assert not np.array_equal(tifffile.imread(tmp_path / "b.tif"), tifffile.imread(tmp_path / "a.tif"))

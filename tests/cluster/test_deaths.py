@@ -1,0 +1,86 @@
+"""A worker that dies costs its task: it is made again, unless workers die of it again and again."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+
+import minirt
+from minirt.cluster import workers
+from minirt.cluster.task import Answer, Task
+from minirt.cluster.worker import carry_out
+from minirt.errors import RenderError
+from tests.cluster.scenes import BALL
+
+SIZE = 600, 400
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
+
+
+@pytest.mark.parametrize("is_function", [False, True])
+def test_bands_of_a_killed_worker_are_made_again(is_function: bool, tmp_path: Path) -> None:
+    """A pool of processes breaks as a whole: another takes its place."""
+    pools: list[ProcessPoolExecutor] = []
+
+    def pool() -> ProcessPoolExecutor:
+        pools.append(ProcessPoolExecutor(2))
+        return pools[-1]
+
+    def kill(done: int, _: int) -> None:
+        if done in (1, 4):  # the first pool, then perhaps the second
+            for each in list((pools[-1]._processes or {}).values())[:1]:
+                os.kill(each.pid, signal.SIGKILL)
+
+    how = pool if is_function else pool()
+    minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, samples=16, executor=how, on_progress=kill)
+    assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), minirt.render(BALL, *SIZE, samples=16).array)
+    # The second pool may have done all of its bands before its death is noticed.
+    assert len(pools) in ((2, 3) if is_function else (1,))
+    for each in pools:
+        each.shutdown()
+
+
+def dies(task: Task) -> Answer:
+    """Die of one band."""
+    if task.region and task.region[1] == 128:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return carry_out(task)
+
+
+def test_a_band_of_which_workers_die_is_an_error_and_the_others_are_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as patch:
+        patch.setattr(workers, "carry_out", dies)
+        with pytest.raises(RenderError, match=r"4 workers died"):
+            minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, executor=lambda: ProcessPoolExecutor(1))
+    assert not (tmp_path / "a.tif").exists()
+    done: list[int] = []
+    minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, on_progress=lambda number, _: done.append(number))
+    assert done[0] > 0
+    assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), minirt.render(BALL, *SIZE).array)
+
+
+def fails(task: Task) -> Answer:
+    """Fail as no task should."""
+    raise KeyError(task.what)
+
+
+def test_an_error_of_a_worker_is_told_with_its_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers, "carry_out", fails)
+    with pytest.raises(RenderError, match=r"rows \d+ to \d+ failed: KeyError: 'rows \d+ to \d+'"):
+        minirt.render_to(tmp_path / "a.tif", BALL, *SIZE)
+
+
+def test_an_executor_that_is_shut_down_takes_no_tasks(tmp_path: Path) -> None:
+    pool = ThreadPoolExecutor(1)
+    pool.shutdown()
+    with pytest.raises(RenderError, match="takes no tasks: cannot schedule new futures after shutdown"):
+        minirt.render_to(tmp_path / "a.tif", BALL, *SIZE, executor=pool)

@@ -1,0 +1,170 @@
+"""Films have all pictures, in their colours, at their times: Pillow and PyAV read them back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from weakref import WeakSet
+
+import numpy as np
+import pytest
+from PIL import Image as pillow  # noqa: N813
+
+from minirt.errors import RenderError
+from minirt.image import Image
+from minirt.movie import save_movie
+
+COLOURS = [(250, 0, 0), (0, 250, 0), (0, 0, 250), (200, 180, 20)]
+
+
+def film(height: int = 36, width: int = 64) -> list[Image]:
+    """Pictures of a ball that goes from left to right over a grey slope, each in another colour."""
+    y, x = np.mgrid[:height, :width]
+    pictures = []
+    for number, colour in enumerate(COLOURS):
+        array = np.repeat((2 * x + 40).astype(np.uint8)[..., None], 3, axis=2)
+        array[(x - 8 - 14 * number) ** 2 + (y - height // 2) ** 2 < 49] = colour
+        pictures.append(Image(array))
+    return pictures
+
+
+@pytest.mark.parametrize(("name", "allowed"), [("a.webp", 9), ("a.apng", 0), ("a.gif", 5)])
+def test_a_loop_has_all_pictures_and_repeats(tmp_path: Path, name: str, allowed: int) -> None:
+    (path,) = save_movie(film(), tmp_path / name, fps=10)
+    with pillow.open(path) as movie:
+        assert (movie.n_frames, movie.size, movie.info["loop"]) == (4, (64, 36), 0)
+        for number, picture in enumerate(film()):
+            movie.seek(number)
+            movie.load()
+            assert movie.info["duration"] == 100
+            assert np.abs(np.asarray(movie.convert("RGB")).astype(int) - picture.array).mean() <= allowed
+
+
+@pytest.mark.parametrize(("name", "codec"), [("a.mp4", "h264"), ("a.webm", "vp9"), ("a.M4V", "h264")])
+@pytest.mark.parametrize("size", [(36, 64), (35, 63)])
+def test_a_video_has_all_pictures_in_their_colours(
+    tmp_path: Path, name: str, codec: str, size: tuple[int, int]
+) -> None:
+    av = pytest.importorskip("av")
+    save_movie(film(*size), tmp_path / name, fps=10)
+    with av.open(str(tmp_path / name)) as container:
+        (stream,) = container.streams
+        assert (stream.codec_context.name.removeprefix("lib"), stream.average_rate) == (codec, 10)
+        frames = [(frame.time, read(frame)) for frame in container.decode(video=0)]
+    assert [time for time, _ in frames] == pytest.approx([0, 0.1, 0.2, 0.3], abs=2e-3)
+    for (_, found), picture in zip(frames, film(*size), strict=True):
+        assert found.shape[:2] == (36, 64)  # even
+        cut = found[: size[0], : size[1]].astype(int)
+        assert np.abs(cut - picture.array).mean() < 6  # colours have half the resolution
+
+
+def read(frame: object) -> np.ndarray:
+    """The pixels of a frame, converted by the matrix that the file names."""
+    array: np.ndarray = frame.reformat(format="rgb24").to_ndarray()  # type: ignore[attr-defined]
+    return array
+
+
+def test_a_green_area_keeps_its_green(tmp_path: Path) -> None:
+    """The matrix of another standard (BT.601) would be off by 20 levels and more."""
+    av = pytest.importorskip("av")
+    pictures = [Image(np.full((32, 32, 3), (40, 200, 60), np.uint8))]
+    for name in ("a.mp4", "a.webm"):
+        save_movie(pictures, tmp_path / name, quality=100)
+        with av.open(str(tmp_path / name)) as container:
+            context = container.streams[0].codec_context
+            assert (int(context.colorspace), int(context.color_range)) == (1, 1)
+            (frame,) = container.decode(video=0)
+            right, wrong = (
+                frame.reformat(format="rgb24", src_colorspace=matrix).to_ndarray() for matrix in ("ITU709", "ITU601")
+            )
+        assert np.abs(right.astype(int) - (40, 200, 60)).max() <= 3
+        assert np.abs(wrong.astype(int) - (40, 200, 60)).max() > 10
+
+
+@pytest.mark.parametrize("name", ["a.webp", "a.mp4", "a.webm"])
+def test_quality_changes_the_size(tmp_path: Path, name: str) -> None:
+    if not name.endswith(".webp"):
+        pytest.importorskip("av")
+    sizes = []
+    for quality in (5, 95):
+        save_movie(film(180, 320), tmp_path / name, quality=quality)
+        sizes.append((tmp_path / name).stat().st_size)
+    assert sizes[0] < 0.7 * sizes[1]
+
+
+@pytest.mark.parametrize(("name", "allowed"), [("a.webp", 6), ("a.apng", 0), ("a.gif", 5)])
+def test_loops_hold_pictures_that_stay_or_change_little(tmp_path: Path, name: str, allowed: int) -> None:
+    first = film()[0].array
+    changed = [first, first, first.copy(), first.copy(), np.flip(first, axis=1).copy()]
+    changed[2][35, 63] = (255, 255, 255)  # the last pixel
+    changed[3][17:20, 31:36] = (10, 250, 30)
+    save_movie(map(Image, changed), tmp_path / name, fps=10)
+    with pillow.open(tmp_path / name) as movie:
+        durations = []
+        for number, picture in enumerate(changed[1:]):
+            movie.seek(number)
+            movie.load()
+            durations.append(movie.info["duration"])
+            found = np.asarray(movie.convert("RGB")).astype(int)
+            assert np.abs(found - picture).mean() <= allowed
+            assert np.abs(found[17:20, 31:36] - picture[17:20, 31:36]).mean() <= 10 * allowed
+        assert durations == [200, 100, 100, 100]  # ms: the first picture stays
+
+
+def test_a_picture_that_stays_longer_than_a_format_can_say_is_written_again(tmp_path: Path) -> None:
+    first = film()[0]
+    save_movie([first, first, first], tmp_path / "a.gif", fps=0.002)
+    save_movie([first, first, first], tmp_path / "a.apng", fps=0.02)
+    for name, total in (("a.gif", 1_500_000), ("a.apng", 150_000)):
+        with pillow.open(tmp_path / name) as movie:
+            durations = []
+            for number in range(movie.n_frames):
+                movie.seek(number)
+                durations.append(movie.info["duration"])
+                assert np.array_equal(np.asarray(movie.convert("RGB"))[:, 30:], first.array[:, 30:]) or name == "a.gif"
+        assert (len(durations), sum(durations)) == (3, total)
+
+
+def most_alive(path: Path, save: Callable[[Iterator[Image]], object]) -> int:
+    """The most pictures of a film that are in memory at once while it is saved."""
+    alive: WeakSet[Image] = WeakSet()
+    counts = []
+
+    def pictures() -> Iterator[Image]:
+        for number in range(12):
+            made = Image(film()[number % 4].array)
+            alive.add(made)
+            counts.append(len(alive))
+            yield made
+            del made
+
+    save(pictures())
+    assert path.exists()
+    return max(counts)
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.webp", "a.apng", "a.mp4", "a.webm"])
+def test_two_pictures_of_a_film_are_in_memory_at_once(tmp_path: Path, name: str) -> None:
+    if name.endswith((".mp4", ".webm")):
+        pytest.importorskip("av")
+    path = tmp_path / name
+    assert most_alive(path, lambda pictures: save_movie(pictures, path)) <= 2
+    assert most_alive(path, lambda pictures: save_movie(list(pictures), path)) == 12  # which would be noticed
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.webp", "a.apng", "a.mp4", "a.webm"])
+def test_pictures_of_two_sizes_make_no_film(tmp_path: Path, name: str) -> None:
+    if name.endswith((".mp4", ".webm")):
+        pytest.importorskip("av")
+    with pytest.raises(RenderError, match="the pictures of a film have one size, got 30x20 and 64x36"):
+        save_movie([*film(), *film(20, 30)], tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.webp", "a.apng", "a.mp4", "a.webm", "a.png"])
+def test_a_film_without_pictures_is_refused(tmp_path: Path, name: str) -> None:
+    if name.endswith((".mp4", ".webm")):
+        pytest.importorskip("av")
+    with pytest.raises(RenderError, match="needs a picture"):
+        save_movie([], tmp_path / name)
+    assert not list(tmp_path.iterdir())

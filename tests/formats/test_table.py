@@ -1,0 +1,82 @@
+"""Every format of the table holds a picture in its colours and size, and no other extension is accepted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image as pillow  # noqa: N813
+
+from minirt.errors import RenderError
+from minirt.formats import table
+from minirt.formats.table import BY_SUFFIX, FILMS_BY_PYAV, FORMATS, check_size, format_of, is_installed
+from minirt.image import Image
+
+ARRAY = np.moveaxis(np.indices((200, 300)).repeat(2, axis=0)[:3], 0, -1).astype(np.uint8)
+FLOATS = {"EXR", "HDR", "PFM"}  # see `test_floats.py`
+STILL = [s for s, name in BY_SUFFIX.items() if FORMATS[name].is_still and name not in FLOATS and is_installed(name)]
+
+
+@pytest.mark.parametrize("suffix", STILL)
+def test_pillow_reads_back_what_is_written(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"a{suffix}"
+    Image(ARRAY).save(path)
+    with pillow.open(path) as image:
+        found = np.asarray(image.convert("RGB")).astype(int)
+    assert found.shape == ARRAY.shape
+    error = np.abs(found - ARRAY).mean()
+    name = format_of(path)
+    assert error <= (8 if FORMATS[name].is_lossy or name == "GIF" else 0)
+
+
+def test_pillow_would_write_others_wrongly(tmp_path: Path) -> None:
+    """The reason why the table of formats is closed."""
+    pillow.fromarray(ARRAY).save(tmp_path / "a.ico")
+    with pillow.open(tmp_path / "a.ico") as image:
+        assert image.size != (300, 200)
+
+
+@pytest.mark.parametrize("suffix", [".pgm", ".pbm", ".ico", ".icns", ".xbm", ".eps", ".spider", ".txt", ".rt", "", "."])
+def test_other_extensions_are_refused(suffix: str) -> None:
+    with pytest.raises(RenderError, match="cannot write pictures with the extension"):
+        format_of(f"a{suffix}")
+
+
+@pytest.mark.parametrize(
+    ("name", "advice"),
+    [("a.pgm", "it cannot hold colours, try .png"), ("a.jpgg", "try .jpg"), ("a.xyzzy", "try .png")],
+)
+def test_a_refusal_says_what_to_do(name: str, advice: str) -> None:
+    with pytest.raises(RenderError, match=advice):
+        format_of(name)
+
+
+def test_a_library_that_is_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(table, "is_installed", lambda name: name not in FILMS_BY_PYAV | {"AVIF"})
+    with pytest.raises(RenderError, match=r"install PyAV \(pip install 'minirt\[video\]'\), or try .gif"):
+        format_of("a.mp4")
+    with pytest.raises(RenderError, match="this Pillow was built without it"):
+        format_of("a.avif")
+
+
+@pytest.mark.parametrize("name", ["WEBP", "GIF", "JPEG"])
+def test_the_largest_side_is_the_formats_own(name: str) -> None:
+    largest = FORMATS[name].largest
+    check_size("a", name, largest, 1)
+    with pytest.raises(RenderError, match=f"a: {name} holds at most {largest:,} pixels a side, got 1x{largest + 1}"):
+        check_size("a", name, 1, largest + 1)
+    assert Image(np.zeros((1, largest, 3), np.uint8)).encode(name)
+    if name != "JPEG":  # whose library allows a few pixels more in some versions
+        with pytest.raises(RenderError, match=f"cannot write this picture as {name}"):
+            Image(np.zeros((1, largest + 1, 3), np.uint8)).encode(name)
+
+
+def test_quality_is_for_lossy_formats() -> None:
+    rough, fine = (len(Image(ARRAY).encode("JPEG", quality=quality)) for quality in (5, 95))
+    assert rough < fine
+    with pytest.raises(RenderError, match="PNG has no quality"):
+        Image(ARRAY).encode("PNG", quality=5)
+    for wrong in (0, 101):
+        with pytest.raises(RenderError, match="from 1 to 100"):
+            Image(ARRAY).encode("JPEG", quality=wrong)

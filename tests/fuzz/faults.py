@@ -1,0 +1,119 @@
+"""Faults at all writes of all sorts of files: kills, and errors of the disk.
+
+python -m tests.fuzz.faults [WRITES]      # at so many random writes of each sort of file, or all; status 1 if one fails
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from minirt import atomic_write
+from minirt.errors import MiniRTError
+from tests.faulty_files import CODES, counting, failing_at, faulty_files, is_killed_at
+from tests.file_writers import Writer, writers
+
+OLD = b"old"
+RANDOM = slice(256, 512)  # bytes of a WebM film with its random identifiers
+Files = dict[str, bytes]  # name -> content
+
+
+def contents(folder: Path) -> Files:
+    """Return the files of a folder, WebM films without their random identifiers."""
+    found = {each.name: bytearray(each.read_bytes()) for each in sorted(folder.iterdir())}
+    for name, data in found.items():
+        if name.endswith(".webm"):
+            data[RANDOM] = bytes(len(data[RANDOM]))
+    return {name: bytes(data) for name, data in found.items()}
+
+
+def written(writer: Writer, folder: Path) -> Files:
+    """Let a writer write into a new folder; return its files."""
+    folder.mkdir()
+    writer(folder)
+    return contents(folder)
+
+
+def moments(writer: Writer, folder: Path, some: int) -> list[int]:
+    """Return the numbers of some random writes, the last among them, or of all if there are no more."""
+    counted: list[int] = []
+    with faulty_files(counting(counted)):
+        writer(folder)
+    last = len(counted) - 1
+    assert last >= 0, "nothing was written"
+    chosen = {last, *random.Random(some).sample(range(last), min(some - 1, last))}
+    return sorted(chosen)
+
+
+def put_old(folder: Path, names: Sequence[str]) -> None:
+    """Let a folder hold old files alone."""
+    for each in folder.iterdir():
+        each.unlink()
+    for name in names:
+        (folder / name).write_bytes(OLD)
+
+
+def check_whole(found: Files, new: Files) -> None:
+    """AssertionError unless each file is the old one or the new one, and no other is there."""
+    for name, data in found.items():
+        assert name in new, f"{name} was left"
+        assert data in (OLD, new[name]), f"{name} is half written"
+    assert found.keys() == new.keys(), "a file is gone"
+
+
+def tried_kills(writer: Writer, folder: Path, some: int) -> int:
+    """Kill a writer at some of its writes, and let it write again after each; return how many there were."""
+    new, work = written(writer, folder / "new"), folder / "work"
+    work.mkdir()
+    chosen = moments(writer, work, some)
+    for number in chosen:
+        put_old(work, list(new))
+        atomic_write.CLEANED.discard(work)
+        assert is_killed_at(lambda: writer(work), number)
+        found = contents(work)
+        check_whole({name: data for name, data in found.items() if not Path(name).match(atomic_write.TEMPORARY)}, new)
+        writer(work)
+        assert contents(work) == new, "the next run does not clear up"
+    return len(chosen)
+
+
+def tried_errors(writer: Writer, folder: Path, some: int, codes: Sequence[int]) -> int:
+    """Let some writes of a writer fail; return how many there were."""
+    new, work = written(writer, folder / "new"), folder / "work"
+    work.mkdir()
+    chosen = moments(writer, work, some)
+    for turn, number in enumerate(chosen):
+        put_old(work, list(new))
+        code = codes[turn % len(codes)]
+        told = None
+        try:
+            with faulty_files(failing_at(number, code)):
+                writer(work)
+        except MiniRTError as error:
+            told = str(error)
+        assert told is not None, "the error was lost"
+        assert os.strerror(code).lower() in told.lower(), f"{told} does not tell the reason"
+        check_whole(contents(work), new)
+    return len(chosen)
+
+
+def main(some: int = sys.maxsize) -> int:
+    """Try all sorts of files, and print what fails."""
+    failed = 0
+    for name, writer in writers().items():
+        for trial in (tried_kills, lambda *given: tried_errors(*given, CODES)):
+            with tempfile.TemporaryDirectory() as folder:
+                try:
+                    print(f"{name}: {trial(writer, Path(folder), some)} writes", flush=True)
+                except AssertionError as error:
+                    failed += 1
+                    print(f"{name}: {error}", flush=True)
+    return int(failed > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main(*map(int, sys.argv[1:])))

@@ -1,0 +1,186 @@
+"""Strict grammar of scene files, written from the format's description: the referee of the parser.
+
+It shares nothing with the parser but the description: a table of elements, and a predicate for each kind of field.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+from fractions import Fraction
+from itertools import pairwise
+
+from tests.fuzz.scene_fields import (
+    FARTHEST,
+    Test,
+    between,
+    colour,
+    direction,
+    length,
+    lengths,
+    may_be_zero,
+    mesh,
+    paint,
+    parts,
+    picture,
+    point,
+    ratio,
+    value_of,
+    whole,
+)
+
+KEY = re.compile(r"([A-Za-z_]+):(.*)", re.DOTALL)
+HEX_COLOUR = re.compile(r"#([0-9A-Fa-f]{3}){1,2}([ \t]|$)")
+SURE, FLAT = 1e-13, 1e-17  # shares of the size of a triangle: higher is a triangle, lower is a line
+LARGE = 1e14  # scale and place of a mesh, all of which must be within FARTHEST
+SMALLEST = 1e-140  # size of a triangle whose area a float64 can hold
+
+TURN, HEIGHT, FADE = between(-360, 360), between(-10, 10), between(0, FARTHEST)
+PATTERN = parts((1, length), (3, colour), (1, whole(1, 12)), (1, HEIGHT), least=1)
+SURFACE: dict[str, Test] = {
+    "specular spc": parts((1, ratio), (1, between(1, 1e6)), (1, "blinn".__eq__), least=2),
+    "mirror mir": parts((1, ratio), (1, FADE), least=1),
+    "glass ref": parts((1, between(1, 10)), (1, ratio), (1, FADE), least=1),
+    "tint": parts((3, colour), (1, length), least=1),
+    "fresnel": ratio,
+    "glow": ratio,
+    "checker pat": parts((1, length), (3, colour), least=1),
+    "texture txm tx": picture,
+    "bump bum": parts((1, picture), (1, HEIGHT), least=1),
+    "normal nm": picture,
+    "uv": parts((1, length), (1, length), *[(1, between(-1e6, 1e6))] * 2, (1, TURN), least=2),
+    **dict.fromkeys(("marble", "wood", "clouds"), PATTERN),
+}
+ROLL = {"roll": TURN}
+TURNED = SURFACE | ROLL
+AXIS = TURNED | {"axis": direction}
+CAMERA = ROLL | {
+    "tone": ("plain", "srgb", "filmic").__contains__, "exposure": between(-20, 20), "lens": length, "focus": length
+}  # fmt: skip
+LAMP: dict[str, Test] = {"fade": length, "size": length}
+SOLID = [point, direction, length, length, colour]  # with an axis
+BARE = {"fresnel", "checker"}  # keys that may stand alone
+
+Element = tuple[list[Test], int, dict[str, Test]]  # fields, how many of them must be given, attributes
+ELEMENTS: dict[str, Element] = {
+    "R": ([whole(1, 16384)] * 2, 2, {}),
+    "A": ([ratio, colour], 2, {}),
+    "bg": ([paint], 1, {}),
+    "C": ([point, may_be_zero, between(0, 180)], 3, CAMERA),
+    "L": ([point, ratio, colour], 2, LAMP),
+    "l": ([point, ratio, colour], 2, LAMP),
+    "dl": ([direction, ratio, colour], 2, {"size": between(0, 90)}),
+    "sl": ([point, direction, between(0, 180), ratio, colour], 4, LAMP | {"rim": ratio}),
+    "sp": ([point, length, colour], 3, AXIS),
+    "pl": ([point, direction, colour], 3, TURNED),
+    "cy": (SOLID, 5, TURNED),
+    "co cn cone": (SOLID, 5, TURNED),
+    "pa": (SOLID, 5, TURNED),
+    "hy": ([*SOLID[:4], length, colour], 6, TURNED),
+    "tr tri": ([point, point, point, colour], 4, SURFACE),
+    "sq": ([point, direction, length, colour], 4, TURNED),
+    "di": ([point, direction, length, colour], 4, TURNED),
+    "bo": ([point, direction, lengths, colour], 4, TURNED),
+    "to": (SOLID, 5, TURNED),
+    "el": ([point, direction, lengths, colour], 4, TURNED),
+    "ob obj": ([mesh, point, length, colour], 4, AXIS),
+}
+CODES = {spelling: names.split()[0] for names in ELEMENTS for spelling in names.split()}
+FORMS = {names.split()[0]: element for names, element in ELEMENTS.items()}
+ONCE = {"R", "A", "bg", "C", "L"}
+
+
+def is_scene(data: bytes) -> bool | None:
+    """Whether a strict reader accepts a file; None where the description leaves it open."""
+    try:
+        text = data.decode()
+    except UnicodeDecodeError:
+        return False
+    if "\0" in text:
+        return False
+    lines = text.removeprefix("\ufeff").split("\n")
+    codes = [code_of(line.removesuffix("\r")) for line in lines]
+    if "wrong" in codes or any(codes.count(code) > 1 for code in ONCE) or not {"A", "C"} <= set(codes):
+        return False
+    return None if "open" in codes else True
+
+
+def code_of(line: str) -> str:
+    """Return the identifier of a line, "" for a line without an element, or "wrong", or "open"."""
+    body, comment, rest = line.partition("#")
+    if "\r" in line or any(is_foreign(character) for character in body):
+        return "wrong"
+    words = [word for word in re.split("[ \t]+", body) if word]
+    if not words:
+        return ""
+    if any(word.startswith("//") for word in words) or CODES.get(words[0]) is None:
+        return "wrong"
+    values = words[1:]
+    if any(a.endswith(",") or b.startswith(",") for a, b in pairwise(values)):
+        return "wrong"
+    return verdict(CODES[words[0]], values, comment + rest)
+
+
+def is_foreign(character: str) -> bool:
+    """Whether a character may stand in no word and between none."""
+    return character not in " \t" and unicodedata.category(character)[0] in "CZ"
+
+
+def verdict(code: str, words: list[str], comment: str) -> str:
+    """Return the identifier of an element with these words, or "wrong", or "open"."""
+    fields, least, attributes = FORMS[code]
+    keys = {key: names for names in attributes for key in names.split()}
+    first = next((at for at, word in enumerate(words) if KEY.match(word) or is_bare(word, keys)), len(words))
+    values, keyed = words[:first], words[first:]
+    if not least <= len(values) <= len(fields):
+        return "wrong"
+    if len(values) < len(fields) and HEX_COLOUR.match(comment):  # '#' begins a comment, and no colour
+        return "wrong"
+    if not all(test(value) for test, value in zip(fields, values, strict=False)):
+        return "wrong"
+    seen = set()
+    for word in keyed:
+        match = KEY.match(word)
+        names = keys.get(match[1] if match else word)
+        if names is None or names in seen or not (match or is_bare(word, keys)):
+            return "wrong"
+        if match and not attributes[names](match[2]):
+            return "wrong"
+        seen.add(names)
+    return fitting(code, values)
+
+
+def is_bare(word: str, keys: dict[str, str]) -> bool:
+    """Whether a word is an attribute without a value."""
+    return word in keys and keys[word].split()[0] in BARE
+
+
+def fitting(code: str, values: list[str]) -> str:
+    """Return the identifier of an element, or "wrong" or "open", by what its values must be to each other."""
+    if code == "hy":
+        return code if value_of(values[2]) <= value_of(values[3]) else "wrong"
+    if code == "to":
+        return code if value_of(values[3]) <= value_of(values[2]) else "wrong"
+    if code == "ob":
+        return (
+            code
+            if value_of(values[2]) < LARGE and all(abs(value_of(x)) < LARGE for x in values[1].split(","))
+            else "open"
+        )
+    if code == "tr":
+        corners = [[Fraction(value_of(part)) for part in corner.split(",")] for corner in values[:3]]
+        height = flatness(*corners)
+        if max(abs(p - q) for p, q in zip(corners[0] * 2, corners[1] + corners[2], strict=True)) < SMALLEST:
+            return "open"
+        return code if height > SURE else "wrong" if height <= FLAT else "open"
+    return code
+
+
+def flatness(a: list[Fraction], b: list[Fraction], c: list[Fraction]) -> float:
+    """Return the doubled area of a triangle, in units of its longest edge times its farthest coordinate."""
+    edges = [[q - p for p, q in zip(*ends, strict=True)] for ends in ((a, b), (b, c), (c, a))]
+    (ux, uy, uz), (vx, vy, vz) = edges[0], edges[1]
+    area = (uy * vz - uz * vy) ** 2 + (uz * vx - ux * vz) ** 2 + (ux * vy - uy * vx) ** 2
+    longest, largest = max(sum(part**2 for part in edge) for edge in edges), max(map(abs, (*a, *b, *c)))
+    return math.sqrt(area / (longest * largest**2)) if area else 0.0

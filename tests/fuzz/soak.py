@@ -1,0 +1,73 @@
+"""Soak test of the renderer: scenes of all sorts, in many sizes; memory, open files and threads stay as they are.
+
+python -m tests.fuzz.soak 60    # minutes
+python -m tests.fuzz.soak 60 7  # with another seed
+
+The scenes are those of the fuzzer of extreme scenes. The usage is printed each minute. The run fails where memory grows
+by more than 3 % after the first ten minutes, or the number of files or threads grows: see `tests/usage.py`. The window
+has a soak test of its own, `tests/viewer/monkey.py`; `make soak MINUTES=60` runs both.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+import time
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from minirt.errors import SceneError
+from minirt.scene import Scene, parse
+from tests import environment
+from tests.fuzz.extremes import PRECISIONS, make, renderer
+from tests.fuzz.fuzzer import seeded
+from tests.fuzz.scene_files import folder
+from tests.usage import Record, Usage
+
+LARGEST = (320, 240)  # pixels of a picture; small ones are as frequent
+
+
+def soak(share: Callable[[int], float], seed: int, record: Record) -> int:
+    """Render until `share(pictures)` is 1, the share of the run that is over after so many; return their number."""
+    pictures, number = 0, 0
+    while (progress := share(pictures)) < 1:
+        chance = seeded("soak", seed * 10**9 + number)
+        number += 1
+        scene = read(make(chance))
+        if scene is not None:
+            render(scene, chance)
+            pictures += 1
+        record.note(progress)
+    record.note(1.0)
+    return pictures
+
+
+def read(data: bytes) -> Scene | None:
+    """Return the scene of a file; None where it is refused."""
+    try:
+        return parse(data, folder() / "soak.rt").scene
+    except SceneError:
+        return None
+
+
+def render(scene: Scene, chance: random.Random) -> None:
+    """Render a scene in some size and precision."""
+    width, height = (int(most ** chance.random()) for most in LARGEST)
+    assert renderer(chance.choice(PRECISIONS)).render(scene, np.zeros((height, width, 4), np.uint8))
+
+
+def share_of_time(seconds: float) -> Callable[[int], float]:
+    """Return a function that tells which share of so many seconds is over."""
+    start = time.monotonic()
+    return lambda _: (time.monotonic() - start) / seconds
+
+
+if __name__ == "__main__":
+    environment.prepare()
+    minutes, seed = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1
+    record = Record(max(6, round(minutes)), Usage.of, partial(print, flush=True))
+    number = soak(share_of_time(60 * minutes), seed, record)
+    print(f"{number} pictures, {record.verdict}")
+    sys.exit(not record.is_flat)

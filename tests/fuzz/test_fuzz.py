@@ -1,0 +1,129 @@
+"""A short seeded run of each fuzzer, and wrong programs that it must find."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from minirt.errors import MiniRTError, SceneError
+from minirt.fields import numerals, triples
+from minirt.jail import decoder
+from minirt.meshes import fast
+from minirt.rendering.packing import lens
+from minirt.viewer.input.recording_line import Line
+from tests.fuzz import __main__ as command
+from tests.fuzz import arguments, scene_grammar, scenes
+from tests.fuzz.fuzzer import Fuzzer, seeded
+from tests.fuzz.table import FUZZERS
+
+FRAME = "A 1 9,9,9\nC 0,0,0 0,0,1 60\n"
+
+
+def run(name: str, inputs: int) -> set[str]:
+    """Check some inputs of a fuzzer; return the verdicts."""
+    fuzzer: Fuzzer = FUZZERS[name]
+    return {fuzzer.check(fuzzer.make(seeded(name, number))) for number in range(inputs)}
+
+
+@pytest.mark.parametrize("name", FUZZERS)
+def test_no_input_crashes_the_program_or_gets_a_wrong_verdict(name: str) -> None:
+    assert len(run(name, FUZZERS[name].short)) > 1, "all inputs had the same fate"
+
+
+def test_the_same_number_gives_the_same_input() -> None:
+    for name, fuzzer in FUZZERS.items():
+        assert fuzzer.make(seeded(name, 7)) == fuzzer.make(seeded(name, 7)) != fuzzer.make(seeded(name, 8))
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("sp 0,0,0 1 1,2,3", True),
+        ("sp 0,0,0 1 1,2,3 mirror:0.5,2 axis:1,0,0", True),
+        ("sp 0,0,0 1 1,2,3 mirror:0.5 mir:0.5", False),
+        ("sp 0,0,0 0 1,2,3", False),
+        ("sp 0,0,0 1 1,2,256", False),
+        ("sp 0,0,0 1_0 1,2,3", False),
+        ("pl 0,0,0 0,1,0,0 1,2,3", True),
+        ("pl 0,0,0 0,1,0,1 1,2,3", False),
+        ("pl 0,0,0 0,0,0 1,2,3", False),
+        ("hy 0,0,0 0,1,0 2 1 1 1,2,3", False),
+        ("tr 0,0,0 1,1,1 2,2,2 1,2,3", False),
+        ("tr 0,0,0 1,1,1 2,2,3 1,2,3 roll:3", False),
+        ("L 0,0,0 1 #ffffff", False),
+        ("sp 0,0,0 1 1,2,3 fresnel checker uv:1,2,0,0,90", True),
+        ("sp 0,0,0 1 1,2,3\r", True),
+        ("sp 0,0,0 1 1,2,3 \xa0", False),
+    ],
+)
+def test_the_grammar_agrees_with_the_description(line: str, expected: bool) -> None:
+    assert scene_grammar.is_scene((FRAME + line).encode()) is expected
+
+
+def test_a_reader_of_numbers_that_takes_what_python_takes_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(triples, "number", float)
+    with pytest.raises((AssertionError, ValueError)):
+        run("scenes", 300)
+
+
+def test_a_limit_that_is_off_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(numerals, "LONGEST", 302)
+    with pytest.raises(AssertionError, match="the grammar says False"):
+        scenes.check(f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3".encode())
+
+
+def test_a_fast_reader_of_meshes_that_counts_wrongly_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    table = fast.corner_table
+    monkeypatch.setattr(fast, "corner_table", lambda faces: abs(table(faces)))
+    with pytest.raises(AssertionError, match="diagnosing reader"):
+        run("meshes", FUZZERS["meshes"].short)
+
+
+def test_a_decoder_whose_errors_are_not_caught_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def careless(_: object) -> None:
+        raise OSError("broken data stream")
+
+    monkeypatch.setattr(decoder, "pixels_of", careless)
+    with pytest.raises(AssertionError, match="a good picture is refused"):
+        run("pictures", FUZZERS["pictures"].short)
+
+
+def test_a_recording_whose_times_are_not_checked_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Line, "seconds", lambda self, index: float(self.words[index]))
+    with pytest.raises(ValueError, match="could not convert"):
+        FUZZERS["replays"].check(b"wait x")
+
+
+def test_a_program_that_lets_errors_through_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("minirt.cli.MiniRTError", SceneError)
+    with pytest.raises(MiniRTError):
+        run("arguments", arguments.FUZZER.short)
+
+
+def test_a_lens_whose_focus_has_no_reciprocal_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lens, "SMALLEST", 0.0)
+    monkeypatch.setattr(lens, "CLOSEST", 0.0)
+    line = "A 1 9,9,9\nC 0,0,0 0,0,1 60 lens:1 focus:1e-310\nsp 0,0,5 1 1,2,3"
+    with pytest.raises(Warning):
+        FUZZERS["extremes"].check(line.encode())
+
+
+def test_an_element_may_be_added_in_a_window_of_one_pixel() -> None:
+    data = b"move 267,94\nresize 1x1\npress Ctrl+-\nresize 1x1\npress Ctrl++\npress N"
+    assert FUZZERS["replays"].check(data) == "played"
+
+
+def test_ctrl_c_keeps_what_was_counted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    slices = iter([Counter(refused=3), Counter(refused=4, crashes=1)])
+
+    def run_slice(name: str, first: int, seconds: float) -> Counter[str]:
+        for each in slices:
+            return each
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command, "OUT", tmp_path)
+    monkeypatch.setattr(command, "run_slice", run_slice)
+    counts = command.fuzz(100.0, 1, ["scenes", "meshes"])
+    assert counts == {"scenes": Counter(refused=3), "meshes": Counter(refused=4, crashes=1)}

@@ -1,0 +1,292 @@
+"""Soft shadows and depth of field: shares of discs, circles of confusion, convergence, culling that misses nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from minirt.kernel import frame, interpreted
+from minirt.materials import Checker
+from minirt.rendering import Renderer
+from minirt.rendering.frame_arguments import frame_arguments
+from minirt.rendering.packing.aperture_rays import aperture_places, in_disc, with_apertures
+from minirt.rendering.packing.lens import lens_numbers
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Ambient, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight, parse
+from minirt.shapes.disc import Disc
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
+from tests.kernel.pictures import EVERY, linear
+from tests.reference.sampled import render_sampled
+
+WHITE = (255, 255, 255)
+FLOOR = Plane((0, 0, 0), (0, 1, 0), WHITE)
+RENDERER = Renderer(2)
+
+
+def share_beyond(edge: np.ndarray) -> np.ndarray:
+    """The share of a unit disc that lies beyond a straight edge at a signed distance from its centre."""
+    x = np.clip(edge, -1, 1)
+    return (np.arccos(x) - x * np.sqrt(1 - x * x)) / np.pi
+
+
+TOP, SCREEN, ACROSS = 12.0, 9.0, 24  # heights of a lamp and of half a plane above the floor; pixels
+LAMPS = {
+    "point": Light((0, TOP, 0), 1.0, size=0.8),
+    "spot": SpotLight((0, TOP, 0), (0, -1, 0), 170, 1.0, rim=0.0, size=0.8),
+    "parallel": ParallelLight((0, -1, 0), 1.0, size=6.0),
+}
+
+
+def penumbra(lamp: Any, along: str) -> tuple[np.ndarray, np.ndarray]:
+    """Places on the floor from -2 to 2 across the edge of half a plane above 0; shares of the lamp seen there."""
+    roof = Square((-50, SCREEN, 0) if along == "z" else (0, SCREEN, -50), (0, 1, 0), 100, WHITE)
+    below = Camera((0, 4, 0), (0, -1, 0), 2 * np.degrees(np.arctan(2 / 4)))
+    shown = linear(Scene((below, lamp, roof, FLOOR)), ACROSS, ACROSS, 1024, RENDERER)[..., 0]
+    lit = linear(Scene((below, lamp, FLOOR)), ACROSS, ACROSS, 1024, RENDERER)[..., 0]
+    share = shown / lit if along == "z" else (shown / lit).T
+    return 4 * (np.arange(ACROSS) + 0.5) / ACROSS - 2, share[ACROSS // 2]
+
+
+def shares_seen(kind: str, x: np.ndarray) -> np.ndarray:
+    """The shares of a disc beyond the edge. Seen from x, that is before the lamp's point at x (1 - TOP / SCREEN)."""
+    edge = -x / SCREEN / np.tan(np.radians(3.0)) if kind == "parallel" else x * (1 - TOP / SCREEN) / 0.4
+    return share_beyond(edge)
+
+
+@pytest.mark.parametrize("along", ["x", "z"])
+@pytest.mark.parametrize("kind", LAMPS)
+def test_the_penumbra_of_a_straight_edge_has_the_share_of_the_disc_that_is_seen(kind: str, along: str) -> None:
+    x, share = penumbra(LAMPS[kind], along)
+    # The disc faces the point: seen at an angle of 9 degrees at most, it is as wide as a level one within 1.5 %.
+    assert_allclose(share, shares_seen(kind, x), atol=0.012)
+    if kind != "parallel":  # the penumbra is as wide as the lamp times the ratio of the distances
+        width = 0.8 * SCREEN / (TOP - SCREEN)
+        assert abs((share * (1 - share) > 1e-9).sum() * 4 / ACROSS - width) <= 2 * 4 / ACROSS
+
+
+@pytest.mark.parametrize("kind", LAMPS)
+@pytest.mark.parametrize("axis", [2, 3])
+def test_a_light_moved_along_one_axis_alone_would_show(monkeypatch: pytest.MonkeyPatch, kind: str, axis: int) -> None:
+    def flattened(samples: int, variants: int, pixels: int, seed: int) -> np.ndarray:
+        return np.where(np.arange(4) == axis, 0.0, aperture_places(samples, variants, pixels, seed))
+
+    monkeypatch.setattr("minirt.rendering.frame_arguments.aperture_places", flattened)
+    across = [penumbra(LAMPS[kind], along) for along in ("x", "z")]
+    assert max(np.abs(share - shares_seen(kind, x)).max() for x, share in across) > 0.03
+
+
+def test_umbra_and_penumbra_of_a_ball_end_where_its_tangents_do() -> None:
+    # A lamp of radius 1, 12 above the floor; a disc of radius 1.5, 8 above the lamp's shadow: similar triangles.
+    eye = Camera((0, 6, 0), (0, -1, 0), 2 * np.degrees(np.arctan(8 / 6)))
+    scene = Scene((eye, Light((0, 12, 0), 1.0, size=2.0), Disc((0, 7, 0), (0, 1, 0), 3.0, WHITE), FLOOR))
+    size = 64
+    row = linear(scene, size, size, 256, RENDERER)[size // 2, :, 0]
+    x = np.abs(16 * (np.arange(size) + 0.5) / size - 8)
+    umbra, penumbra = 1.5 + (1.5 - 1.0) * 7 / 5, 1.5 + (1.5 + 1.0) * 7 / 5
+    lit = np.hypot(12, x) ** -1 * 12
+    assert (row[x < umbra - 0.25] == 0).all()
+    assert (
+        row[(x > umbra + 0.35) & (x < penumbra - 0.5)] < 0.98 * lit[(x > umbra + 0.35) & (x < penumbra - 0.5)]
+    ).all()
+    assert_allclose(row[x > penumbra + 0.25], lit[x > penumbra + 0.25], rtol=0.01)
+
+
+@pytest.mark.parametrize(("distance", "focus"), [(5.0, 10.0), (20.0, 10.0), (30.0, 6.0)])
+def test_a_small_ball_out_of_focus_becomes_a_disc_of_the_diameter_of_a_thin_lens(distance: float, focus: float) -> None:
+    lens, size, half = 0.5, 96, 0.12
+    eye = Camera((0, 0, 0), (0, 0, 1), 2 * np.degrees(np.arctan(half)), lens=lens, focus=focus)
+    ball = Sphere((0, 0, distance), 0.004 * distance, WHITE)
+    light = linear(Scene((Ambient(1.0, WHITE), eye, ball)), size, size, 1024, RENDERER)[..., 0]
+    y, x = (np.mgrid[:size, :size] + 0.5) * 2 * half / size - half  # slopes
+    spread = np.sqrt((light * (x * x + y * y)).sum() / light.sum())
+    # Slopes of rays from the lens: radius |1/distance - 1/focus| lens/2, of which the RMS is 1/sqrt(2); and the ball's.
+    blur, own = lens / 2 * abs(1 / distance - 1 / focus), 0.002
+    assert_allclose(spread, np.sqrt((blur**2 + own**2) / 2), rtol=0.03)
+    assert light[np.hypot(x, y) > blur + own + 2 * half / size * 1.5].max() == 0
+
+
+def soft_scene(spread: float = 1.0) -> Scene:
+    """All kinds of shapes, enough for light buffers and tiles, with four lights and a lens."""
+    soft: Any = {Light: 2.0, FurtherLight: 1.2}
+    items = [each.replace(size=soft[type(each)] * spread) if type(each) in soft else each for each in EVERY.elements]
+    camera = EVERY.camera.replace(lens=1.0 * spread, focus=6.0)
+    return Scene((*(each for each in items if type(each) is not Camera), camera))
+
+
+def everything_listed(arrays: Any, tiles: int) -> Any:
+    """Put all shapes into the lists of all tiles and of all lights, in cones that take in all directions."""
+    kinds, lights = arrays.slots[:, 0], len(arrays.lights)
+    by_kind = [np.flatnonzero(kinds == kind) for kind in range(len(arrays.groups))]
+    first = np.cumsum([0, *map(len, by_kind)])
+    cones, light_cones = arrays.cones.copy(), arrays.light_cones.copy()
+    for each in (cones, light_cones):
+        each[..., 3], each[..., 4] = -2.0, 0.0
+    return arrays._replace(
+        tile_shapes=np.concatenate([np.tile(each, tiles) for each in by_kind]).astype(np.int32),
+        cones=cones,
+        light_cones=light_cones,
+        light_buffer_cells=1,
+        light_shapes=np.tile(np.concatenate(by_kind), lights).astype(np.int32),
+        groups=tuple(
+            group._replace(
+                tile_starts=tiles * first[i] + len(by_kind[i]) * np.arange(tiles + 1),
+                light_starts=len(kinds) * np.arange(lights)[:, None] + first[[i, i + 1]],
+            )
+            for i, group in enumerate(arrays.groups)
+        ),
+    )
+
+
+def light_of(arrays: Any, width: int, height: int) -> np.ndarray:
+    """Render a packed scene by the interpreted kernel, with four samples."""
+    pixels, light = np.zeros((height, width, 4), np.uint8), np.zeros((height, width, 3))
+    with np.errstate(all="ignore"):
+        frame.frame(*frame_arguments(arrays, pixels, 4, light))
+    return light
+
+
+def test_culling_leaves_out_nothing_that_a_moved_eye_or_light_sees() -> None:
+    size, tiles = (32, 16), 2
+    arrays = Packing(interpreted).pack(soft_scene(), *size)
+    hard = Packing(interpreted).pack(EVERY, *size)
+    assert arrays.light_buffer_cells > 1
+    expected = light_of(everything_listed(arrays, tiles), *size)
+    assert np.array_equal(light_of(arrays, *size), expected)
+    fields = ("tile_shapes", "cones", "light_buffers", "light_shapes", "light_cones", "groups")
+    narrow = arrays._replace(**{name: getattr(hard, name) for name in fields})
+    assert not np.array_equal(light_of(narrow, *size), expected)  # lists for a pinhole and points would not do
+
+
+HELD_OUT = """
+A 0.1 255,240,220
+C 0.5,3,-8 -0.05,-0.3,0.95 50 {lens}
+{light}
+pl 0,0,0 0,1,0 200,200,190
+pl 0,0,9 0.1,0.1,-1 120,140,165
+sp 0,1,0 2 220,80,60 specular:0.4,20
+sp 2.2,0.6,-1.5 1.2 60,120,220 mirror:0.3
+cy -2.4,1,1 0.1,1,0 0.6 2 90,180,90
+bo -0.8,0.3,-2.5 0.2,1,0.1 0.6,0.6,0.6 230,200,80
+co 1.5,2.6,2 0,-1,0.1 1 2 200,90,200
+to -3,0.5,-1 0,1,0.3 1 0.3 230,230,230
+"""
+CASES = {
+    "size": ("", "L -4,7,-4 0.8 255,255,255 size:2.5\nl 5,4,-3 0.3 size:1"),
+    "parallel size": ("", "dl 0.5,-1,0.4 0.8 size:14"),
+    "spot size": ("", "sl -3,7,-3 0.4,-0.8,0.4 60 0.9 size:1.5 rim:0.5 fade:30"),
+    "lens": ("lens:0.7 roll:10", "L -4,7,-4 0.8 255,255,255"),
+    "focus": ("lens:0.5 focus:6", "L -4,7,-4 0.8 255,255,255 size:1"),
+}
+
+
+def held_out(case: str) -> Scene:
+    """Return the scene of a case."""
+    lens, light = CASES[case]
+    return parse(HELD_OUT.format(lens=lens, light=light)).scene
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_pictures_equal_those_of_the_reference_with_random_samples(case: str) -> None:
+    scene, size, number = held_out(case), (32, 20), 25
+    one, other = (render_sampled(scene, *size, number, seed) for seed in (1, 2))
+    light = linear(scene, *size, 512, RENDERER)
+    noise = np.sqrt(((one - other) ** 2).mean()) / 2  # of the mean of both
+    assert noise < 0.02
+    assert np.sqrt(((light - (one + other) / 2) ** 2).mean()) < 1.3 * noise
+    assert abs((light - (one + other) / 2).mean()) < 0.003
+    pinhole = scene.replace(scene.camera, lens=None) if "lens:" in CASES[case][0] else hard(scene)
+    sharp = linear(pinhole, *size, 512, RENDERER)
+    # The effect of the size, which is smaller than the noise of a pixel, is found whole: without it the share is 0.
+    effect = light - sharp
+    assert abs((((one + other) / 2 - sharp) * effect).sum() / (effect**2).sum() - 1) < 0.3
+
+
+def hard(scene: Scene) -> Scene:
+    """Return a scene with lights without a size."""
+    for light in scene.lights:
+        scene = scene.replace(light, size=None)
+    return scene
+
+
+def test_focus_along_each_ray_would_show() -> None:
+    far = Camera((0, 0, 0), (0, 0, 1), 110, lens=1.0, focus=5.0)
+    wall = Square((0, 0, 5), (0, 0, 1), 12, WHITE).replace(checker=Checker(0.1))
+    scene = Scene((Ambient(1.0, WHITE), far, wall))
+    right, wrong = (render_sampled(scene, 32, 18, 300, 3, along_the_ray=wrong)[..., 0] for wrong in (False, True))
+    light = linear(scene, 32, 18, 256, RENDERER)[..., 0]
+    assert np.abs(light - right).mean() < 0.4 * np.abs(light - wrong).mean()
+
+
+def test_one_sample_is_that_from_the_centres() -> None:
+    sharp = hard(soft_scene())
+    assert_allclose(linear(soft_scene()), linear(sharp.replace(sharp.camera, lens=None)), atol=1e-9)
+
+
+def test_sizes_too_small_to_matter_change_nothing_to_speak_of() -> None:
+    sharp = hard(soft_scene())
+    tiny = linear(soft_scene(1e-9), samples=4)
+    assert np.abs(tiny - linear(sharp.replace(sharp.camera, lens=None), samples=4)).max() < 1e-6
+
+
+def test_the_error_falls_faster_than_that_of_random_samples() -> None:
+    scene = held_out("size")
+    exact = linear(scene, 40, 24, 4096, RENDERER)
+    errors = [np.sqrt(((linear(scene, 40, 24, n, RENDERER) - exact) ** 2).mean()) for n in (4, 16, 64, 256)]
+    order = -np.polyfit(np.log([4, 16, 64, 256]), np.log(errors), 1)[0]
+    assert order > 0.56, errors  # 0.5 for random samples
+
+
+def test_neighbouring_pixels_have_samples_of_their_own() -> None:
+    # In a penumbra the rest of the noise of a pixel says nothing about that of its neighbours.
+    scene = held_out("size")
+    noise = linear(scene, 64, 40, 4, RENDERER)[..., 1] - linear(scene, 64, 40, 2048, RENDERER)[..., 1]
+    noise = np.where(np.abs(noise) < 0.2, noise, 0.0)  # without edges
+    for one, other in ((noise[1:], noise[:-1]), (noise[:, 1:], noise[:, :-1]), (noise[:, 4:], noise[:, :-4])):
+        assert abs((one * other).mean()) < 0.25 * (noise**2).mean()
+
+
+def test_the_estimated_error_is_that_of_the_picture() -> None:
+    for case in ("size", "focus"):
+        scene = held_out(case)
+        exact = np.clip(linear(scene, 160, 90, 1024, RENDERER), 0, 1)
+        pixels, light = np.zeros((90, 160, 4), np.uint8), np.zeros((90, 160, 3))
+        outcome = RENDERER.reach(scene, pixels, 0.008, linear=light)
+        assert outcome
+        error = np.sqrt(((np.clip(light, 0, 1) - exact) ** 2).mean())
+        assert error / 1.5 < outcome.error < 1.5 * error
+        assert error < 1.5 * 0.008
+
+
+def test_places_fill_discs_evenly() -> None:
+    places = aperture_places(64, 4, 16, 0)
+    assert places.shape == (256, 16, 4)
+    for first in (0, 2):
+        x, y = places[..., first], places[..., first + 1]
+        assert_allclose([x.mean(), y.mean(), (x * y).mean()], 0, atol=0.01)
+        assert_allclose([(x * x).mean(), (y * y).mean()], 0.25, atol=0.005)
+        assert np.hypot(x, y).max() <= 1
+    assert np.abs(np.corrcoef(places.reshape(-1, 4).T) - np.eye(4)).max() < 0.05
+    # Areas keep their ratio: of the square's points as many fall into the inner half of the disc as beside it.
+    grid = (np.stack(np.mgrid[:200, :200], axis=-1) + 0.5) / 200
+    assert_allclose((np.hypot(*np.moveaxis(in_disc(grid), -1, 0)) < 0.5**0.5).mean(), 0.5, atol=0.005)
+    assert in_disc(np.array([0.5, 0.5])).tolist() == [0, 0]
+
+
+LENGTHS = (5e-324, 1e-308, 1e-160, 1e-30, 1.0, 1e15)
+
+
+@pytest.mark.parametrize("focus", LENGTHS)
+def test_what_is_in_focus_may_be_as_close_as_a_scene_may_say(focus: float) -> None:
+    rays, places = np.ones((4, 3 * 8)), aperture_places(4, 1, 8, 1)
+    for lens in LENGTHS:
+        numbers = lens_numbers(Camera((0, 0, 0), (0.6, 0, 0.8), 60, lens=lens), focus)
+        directions = with_apertures(rays, places, numbers)[:, :24].astype(np.float32)
+        assert np.isfinite(directions * directions).all()
+        assert np.isfinite(numbers.astype(np.float32)).all()
+        is_kept = focus >= 1e-18 * lens and focus >= 1e-30
+        assert not is_kept or numbers[6] == 1 / focus

@@ -1,0 +1,158 @@
+"""Rectangles of a larger picture: the same bits as a crop of the whole, at the cost of the rectangle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import asin, atan, hypot, tan
+from typing import Any
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.kernel.frame import tile_count
+from minirt.rendering import crop, darkroom, scene_packing
+from minirt.rendering.crop import Crop
+from minirt.rendering.running import fixed_samples
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Ambient, Background, Camera, Scene
+from minirt.shapes.sphere import Sphere
+from tests.kernel.pictures import EVERY, WHITE
+from tests.rendering.test_apertures import soft_scene
+
+SIZE = WIDTH, HEIGHT = 203, 77
+REGIONS = ((0, 0, *SIZE), (37, 21, 60, 50), (16, 32, 16, 16), (190, 66, 13, 11), (102, 40, 1, 1))
+SKY = Scene((Camera((0, 0, 0), (0.1, 0.2, 1), 70), Background(paint=(200, 100, 50))))
+
+
+def crops(scene: Scene, region: tuple[int, int, int, int], **settings: Any) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Levels and light of a region, rendered alone and cut out of the whole picture."""
+    x, y, width, height = region
+    alone, whole = (minirt.render(scene, *SIZE, region=each, **settings) for each in (region, None))
+    inside = slice(y, y + height), slice(x, x + width)
+    return [(alone.array, alone.linear), (whole.array[inside], whole.linear[inside])]
+
+
+def assert_same(scene: Scene, regions: tuple[tuple[int, int, int, int], ...] = REGIONS, **settings: Any) -> None:
+    for region in regions:
+        for alone, cut in zip(*crops(scene, region, **settings), strict=True):
+            assert np.array_equal(alone, cut), f"{settings}: {region}"
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [{}, {"samples": 5}, {"dither": True, "samples": 2}, {"precision": "single"}, {"depth": 0}],
+    ids=str,
+)
+def test_a_region_is_a_crop_of_the_picture(settings: dict[str, Any]) -> None:
+    assert_same(EVERY, **settings)
+
+
+@pytest.mark.parametrize("tone", ["srgb", "filmic"])
+def test_tones_and_dithering_of_a_region_are_those_of_the_picture(tone: str) -> None:
+    assert_same(EVERY.replace(EVERY.camera, tone=tone), REGIONS[1:3], dither=True)
+
+
+@pytest.mark.parametrize("samples", [1, 4, 100])
+def test_samples_of_lenses_and_soft_lights_are_those_of_the_picture(samples: int) -> None:
+    scene = soft_scene()
+    assert_same(scene.replace(scene.camera, lens=0.3), REGIONS[1:4], samples=samples)
+
+
+def test_a_region_of_a_scene_without_shapes() -> None:
+    assert_same(SKY)
+    assert_same(Scene((SKY.camera,)))
+
+
+def without_place(made: Callable[..., Any]) -> Callable[..., Any]:
+    """A function whose argument `crop`, the last one, begins at the corner of the picture."""
+
+    def wrong(*arguments: Any) -> Any:
+        *others, place = arguments
+        return made(*others, place and place._replace(left=0, top=0))
+
+    return wrong
+
+
+@pytest.mark.parametrize("part", ["rays", "lists", "variants", "dithering"])
+def test_each_part_that_forgot_its_place_would_be_noticed(part: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, settings = EVERY, {"threads": 1}
+    if part == "rays":
+        rays = scene_packing.placed_rays
+        monkeypatch.setattr(
+            scene_packing, "placed_rays", lambda camera, crop: rays(camera, crop._replace(left=0, top=0))
+        )
+    elif part == "lists":
+        binned = scene_packing.seen_by_eye
+        monkeypatch.setattr(
+            scene_packing,
+            "seen_by_eye",
+            lambda *given: binned(*given[:5], given[5]._replace(left=0, top=0), *given[6:]),
+        )
+    elif part == "variants":
+        scene, settings = soft_scene(), {"samples": 4, "threads": 1}
+        monkeypatch.setattr(fixed_samples, "frame_arguments", without_place(fixed_samples.frame_arguments))
+    else:
+        settings = {"dither": True, "threads": 1}
+        develop = darkroom.develop
+        monkeypatch.setattr(darkroom, "develop", lambda *given: develop(*given[:6]))
+    with pytest.raises(AssertionError):
+        assert_same(scene, REGIONS[1:2], **settings)
+
+
+def test_a_region_takes_the_tiles_that_it_touches_and_no_others() -> None:
+    cut = crop.cut_for((37, 21, 60, 50), *SIZE)
+    assert (cut.crop, cut.shape) == (Crop(*SIZE, 32, 16), (55, 65))
+    group, *_ = Packing().pack(EVERY, *cut.shape[::-1], cut.crop).groups
+    assert len(group.tile_starts) == tile_count(55) * tile_count(65) + 1
+
+
+def test_a_region_of_a_huge_picture_shows_what_its_rays_hit() -> None:
+    width, height, centre = 100_000, 20_000, (-3.0, 0.01, 10.0)
+    slope = tan(atan(0.3) + asin(1 / hypot(3, 10)))  # of the outer edge of the ball, which is right of the middle
+    region = round((1 + slope) / 2 * width) - 20, 9_990, 40, 30
+    ball, eye = Sphere(centre, 2.0, WHITE), Camera((0, 0, 0), (0, 0, 1), 90)
+    shown = minirt.render(Scene((Ambient(1.0, WHITE), eye, ball)), width, height, region=region)
+    y, x = np.mgrid[: region[3], : region[2]]
+    right = 2 * (region[0] + x + 0.5) / width - 1  # slopes of the rays; x points to the left
+    up = (1 - 2 * (region[1] + y + 0.5) / height) * height / width
+    rays = np.stack([-right, up, np.ones_like(right)], axis=-1)
+    hit = np.linalg.norm(np.cross(rays, centre), axis=-1) < np.linalg.norm(rays, axis=-1)
+    assert 0.1 < hit.mean() < 0.9
+    assert np.array_equal(shown.linear[..., 0] == 1.0, hit)
+
+
+def test_the_error_of_a_region_is_that_of_its_own_pixels() -> None:
+    region = (48, 16, 96, 48)
+    found = minirt.render(EVERY, *SIZE, samples="auto", error=0.004, region=region)
+    exact = minirt.render(EVERY, *SIZE, samples=400, region=region)
+    assert found.reached
+    assert found.reached.is_reached
+    clamped = np.minimum(found.linear, 1.0) - np.minimum(exact.linear, 1.0)
+    assert found.array.shape == (48, 96, 3)
+    assert np.sqrt(np.square(clamped).mean()) < 1.5 * 0.004
+
+
+@pytest.mark.parametrize(
+    ("region", "problem"),
+    [
+        ((0, 0, 0, 5), "a region has at least 1x1 pixels, got 0x5"),
+        ((-1, 0, 5, 5), "region -1,0,5,5 does not lie in the picture of 203x77 pixels"),
+        ((200, 0, 4, 5), "region 200,0,4,5 does not lie in the picture"),
+        ((0, 77, 1, 1), "does not lie"),
+    ],
+)
+def test_a_region_beyond_the_picture_is_an_error(region: tuple[int, int, int, int], problem: str) -> None:
+    with pytest.raises(minirt.RenderError, match=problem):
+        minirt.render(EVERY, *SIZE, region=region)
+
+
+@pytest.mark.parametrize("region", [(0, 0, 640, 480), (37, 5, 300, 7), (15, 0, 1, 1)])
+@pytest.mark.parametrize("samples", [1, 64, 65536])
+def test_strips_cover_a_region_once_and_begin_with_tiles(region: crop.Region, samples: int) -> None:
+    found = crop.strips_of(region, samples, 2**23)
+    columns = [column for x, _, width, _ in found for column in range(x, x + width)]
+    assert columns == list(range(region[0], region[0] + region[2]))
+    assert all(x % 16 == 0 for x, *_ in found[1:])
+    assert {strip[1::2] for strip in found} == {region[1::2]}
+    assert all(width <= 16 or width * height * samples <= 2**23 for _, _, width, height in found)

@@ -1,0 +1,140 @@
+"""The memory that is allowed: its default, its option, and the refusal of pictures and textures that exceed it."""
+
+from __future__ import annotations
+
+from argparse import ArgumentTypeError
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image as pillow  # noqa: N813
+
+import minirt
+from minirt import memory_limit
+from minirt.cli import main
+from minirt.cli.argument_values import memory_size
+from minirt.rendering.packing.materials import TexturePool
+from tests.cli.program import SCENE
+
+MIB = 2**20
+TEXTURED = "A 1 255,255,255\nC 0,0,-9 0,0,1 60\n" + "".join(
+    f"sp {3 * i},0,0 1 255,255,255 texture:{i}.png\n" for i in range(4)
+)
+
+
+@pytest.fixture(autouse=True)
+def default_limit() -> Iterator[None]:
+    """Restore the default."""
+    yield
+    minirt.limit_memory(None)
+
+
+@pytest.mark.parametrize(
+    ("text", "size"),
+    [("4G", 4 * 2**30), ("512MiB", 512 * MIB), ("1048576", MIB), ("1tb", 2**40), ("1.5k", 0), ("1.5g", 3 * 2**29)],
+)
+def test_sizes_are_parsed(text: str, size: int) -> None:
+    if size:
+        assert memory_size(text) == size
+    else:
+        with pytest.raises(ArgumentTypeError, match="from 1M"):
+            memory_size(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "G", "-1G", "1,5G", "1K", "\u0663G", "99999999999999999G", "4X", "nan", "1e9", "B"]
+)
+def test_other_texts_are_refused(text: str) -> None:
+    with pytest.raises(ArgumentTypeError, match="like 512M or 4G"):
+        memory_size(text)
+
+
+@pytest.mark.parametrize("size", [0, -5])
+def test_a_limit_is_positive(size: int) -> None:
+    with pytest.raises(minirt.RenderError, match=f"at least 1 byte, got {size}"):
+        minirt.limit_memory(size)
+
+
+def test_the_control_group_limits_the_default(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    groups = tmp_path / "groups"
+    monkeypatch.setattr(memory_limit, "GROUP", tmp_path)
+    monkeypatch.setattr(memory_limit, "GROUPS_OF_PROCESS", groups)
+    assert memory_limit.group_limits() == []
+    groups.write_text("4:memory:/old\n0::/outer/inner\n")
+    for folder in ("memory/old", "outer/inner"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "outer" / "inner" / "memory.max").write_text("max\n")
+    (tmp_path / "outer" / "memory.max").write_text(f"{300 * MIB}\n")
+    (tmp_path / "memory" / "old" / "memory.limit_in_bytes").write_text(f"{500 * MIB}\n")
+    assert sorted(memory_limit.group_limits()) == [300 * MIB, 500 * MIB]
+    assert memory_limit.default_total.__wrapped__() <= 300 * MIB * 7 / 8
+
+
+def test_what_the_process_holds_is_counted() -> None:
+    before = memory_limit.room()
+    minirt.limit_memory(memory_limit.sizes()[1] + 500 * MIB)
+    least = memory_limit.room()
+    held = np.ones(200 * MIB, np.uint8)
+    assert least - memory_limit.room() > held.nbytes / 2
+    assert least <= 500 * MIB
+    assert before > 0
+
+
+def test_a_large_picture_is_refused_with_both_sizes() -> None:
+    minirt.limit_memory(memory_limit.sizes()[1] + 50 * MIB)
+    with pytest.raises(minirt.RenderError, match=r"4000x3000 pixels needs about 320 MiB of memory, allowed \d\d MiB"):
+        minirt.render(minirt.loads(SCENE), 4000, 3000)
+
+
+@pytest.mark.parametrize("arguments", [["-o", "x.png"], ["-o", "x.exr"], ["-o", "x.gif", "--turntable", "3"]])
+def test_the_program_refuses_a_large_picture(
+    arguments: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("ball.rt").write_text(SCENE)
+    assert main(["ball.rt", *arguments, "--size", "8000x6000", "--memory", "64M"]) == 1
+    assert capsys.readouterr().err.startswith("Error\na picture of 8000x6000 pixels needs about ")
+    assert [each.name for each in tmp_path.iterdir()] == ["ball.rt"]
+
+
+def test_a_tiff_file_that_does_not_fit_is_written_in_bands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("ball.rt").write_text(SCENE)
+    size = "--size", "2600x2000"
+    assert main(["ball.rt", "-o", "whole.tif", *size]) == 0
+    monkeypatch.setattr(memory_limit, "SMALL", 0)
+    monkeypatch.setattr(memory_limit, "room", lambda: 30 * MIB)  # whatever other tests have left in memory
+    assert main(["ball.rt", "-o", "bands.tif", *size]) == 0
+    first, second = (np.asarray(pillow.open(name)) for name in ("whole.tif", "bands.tif"))
+    assert np.array_equal(first, second)
+    assert b"II+\0" == Path("bands.tif").read_bytes()[:4] != Path("whole.tif").read_bytes()[:4]  # BigTIFF, and Pillow's
+
+
+def write_textures(folder: Path, side: int) -> None:
+    """Write four pictures, the last of them a link to the first."""
+    for number in range(3):
+        pillow.new("RGB", (side, side), (number, 99, 9)).save(folder / f"{number}.png")
+    (folder / "3.png").hardlink_to(folder / "0.png")
+
+
+def test_textures_count_together_and_links_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_textures(tmp_path, 64)
+    (tmp_path / "x.rt").write_text(TEXTURED)
+    scene = minirt.load(tmp_path / "x.rt")
+    needs: list[int] = []
+    monkeypatch.setattr(memory_limit, "check", lambda needed, *_: needs.append(needed))
+    pool = TexturePool(scene)
+    for number in range(4):
+        pool.number(f"{number}.png", minirt.materials.picture_cache.picture)
+    texels = pool.arrays()["texels"]
+    assert texels.dtype == np.float32
+    assert max(needs) == needs[-1] == texels.nbytes == 3 * 64 * 64 * 3 * 4
+
+
+def test_too_large_a_texture_is_refused_with_its_place(tmp_path: Path) -> None:
+    write_textures(tmp_path, 1024)
+    (tmp_path / "x.rt").write_text(TEXTURED)
+    minirt.limit_memory(MIB)
+    with pytest.raises(minirt.SceneError, match=r"x.rt:3:.*the textures need about 12 MiB of memory, allowed 0 MiB"):
+        minirt.load(tmp_path / "x.rt")

@@ -1,0 +1,67 @@
+"""Types of the public names: a program that uses all of them runs, and type checkers find no error in it."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+import minirt
+from minirt.element import fields_of
+from minirt.scene.registry import ELEMENTS
+from tests.make_plurals import FILE, plurals
+from tests.paths import ROOT, TESTS
+from tests.processes import run
+
+PROGRAM = TESTS / "typed" / "every_name.py"
+SETTINGS = {"DEFAULT_ERROR", "DEFAULT_SIZE"}
+
+
+def test_the_program_uses_every_public_name() -> None:
+    used = set(re.findall(r"minirt\.(\w+)", PROGRAM.read_text(encoding="utf-8")))
+    assert used >= set(minirt.__all__) - SETTINGS
+    assert used <= set(minirt.__all__)
+
+
+def test_the_program_runs(tmp_path: Path) -> None:
+    ended = run([sys.executable, str(PROGRAM), str(tmp_path)], cwd=ROOT, text=True)
+    assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def test_the_plurals_are_as_generated() -> None:
+    assert FILE.read_text(encoding="utf-8") == plurals()
+
+
+@pytest.mark.parametrize("name", sorted(set(minirt.__all__) - SETTINGS))
+def test_every_public_name_has_help(name: str) -> None:
+    thing = getattr(minirt, name)
+    assert len(inspect.getdoc(thing) or "") >= 30
+    if not (isinstance(thing, type) and issubclass(thing, Exception)):
+        assert inspect.signature(thing)
+
+
+@pytest.mark.parametrize("kind", ELEMENTS.values(), ids=lambda kind: str(kind.title))
+def test_help_names_all_fields_with_their_range(kind: type[minirt.Element]) -> None:
+    text = inspect.getdoc(kind) or ""
+    for field in fields_of(kind):
+        (line,) = re.findall(rf"^- `{field.name}: .*$", text, re.MULTILINE)
+        assert field.doc in line
+        assert field.range in line
+        assert field.unit in line
+
+
+def test_a_representation_is_short_and_makes_the_element_again() -> None:
+    ball = minirt.Sphere((0, 0, 5), 2, (255, 0, 0), mirror=0.3)
+    shown = "Sphere(centre=(0.0, 0.0, 5.0), diameter=2.0, colour=(255, 0, 0), mirror=Mirror(share=0.3))"
+    assert repr(ball) == shown
+    assert eval(shown, {name: getattr(minirt, name) for name in minirt.__all__}) == ball
+    assert len(repr(minirt.example("demo"))) < 100
+    assert len(repr(minirt.Image(minirt.render(minirt.example(), 4, 3).array))) < 100
+
+
+def test_completion_lists_the_public_names_and_the_plurals_of_a_scene() -> None:
+    assert set(dir(minirt)) >= set(minirt.__all__)
+    assert {"add", "spheres", "planes", "shapes", "save", "spot_lights"} <= set(dir(minirt.example()))

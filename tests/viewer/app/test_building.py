@@ -1,0 +1,216 @@
+"""Building by hand: a snowman from an empty scene, the list of elements, typed values, and hints."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+from math import dist
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image as pillow  # noqa: N813
+
+from minirt.cli import main
+from minirt.scene import load
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.sphere import Sphere
+from minirt.viewer.app.session import Session
+from minirt.viewer.display.hints import hints
+from tests.pages import read
+from tests.paths import ROOT
+from tests.viewer.fake import TEXT, played, scene
+
+BLANK = "A 0.2 255,255,255\nC 0,2,9 0,-0.2,-1 60\n"
+SPHERE = ("press Tab", "press Tab")  # from the camera over the light
+KEYS, POINTER = 60, 15  # presses of keys and uses of the pointer in which a snowman is built
+PAGE = read("minirt/viewer/README.md")
+
+
+def title(session: Session) -> str:
+    """The title of the panel, or nothing."""
+    return session.screen.panel.title if session.screen.panel else ""
+
+
+def test_a_snowman_is_built_from_nothing_in_few_steps(tmp_path: Path) -> None:
+    """Three balls rest on each other, the hat on them, all on the ground and in the light."""
+    lines = (ROOT / "assets/snowman-keys.txt").read_text().splitlines()
+    words = [line.split("#")[0].split() for line in lines if line.split("#")[0].strip()]
+    assert {each[0] for each in words} <= {"wait", "press", "text", "move", "drag"}
+    assert sum(each[0] in ("press", "text") for each in words) <= KEYS
+    assert sum(each[0] in ("move", "drag") for each in words) <= POINTER
+    assert all(len(each[1]) == 1 for each in words if each[0] == "text")
+
+    path, film = tmp_path / "snowman.rt", tmp_path / "snowman.gif"
+    path.write_text((ROOT / "assets/blank.rt").read_text())
+    (command,) = re.findall(r"^miniRT snowman\.rt --replay (\S+) (.*) -o assets/snowman\.gif$", PAGE, re.MULTILINE)
+    assert main([str(path), "--replay", str(ROOT / command[0]), *command[1].split(), "-o", str(film)]) == 0
+    with pillow.open(ROOT / "assets/snowman.gif") as kept, pillow.open(film) as made:
+        assert kept.size == made.size
+        assert abs(kept.n_frames - made.n_frames) <= 3
+    built = load(path).scene
+    assert (len(built.planes), len(built.lights)) == (1, 1)
+    balls = sorted(built.spheres, key=lambda ball: ball.centre[1])
+    balls = [ball for ball in balls if ball.diameter >= 1]
+    assert balls[0].centre[1] == pytest.approx(balls[0].diameter / 2)
+    for lower, upper in pairwise(balls):
+        assert dist(lower.centre, upper.centre) == pytest.approx((lower.diameter + upper.diameter) / 2, abs=1e-3)
+        assert upper.centre[::2] == lower.centre[::2]
+    brim, crown = sorted(built.cylinders, key=lambda part: part.centre[1])
+    assert brim.centre[1] - brim.height / 2 == pytest.approx(balls[-1].centre[1] + balls[-1].diameter / 2, abs=1e-3)
+    assert crown.centre[1] - crown.height / 2 == pytest.approx(brim.centre[1] + brim.height / 2, abs=1e-3)
+    assert brim.colour == crown.colour == (0, 0, 0)
+    assert brim.centre[::2] == crown.centre[::2] == balls[-1].centre[::2]
+    coal = [ball for ball in built.spheres if ball.diameter == 0.1]
+    assert len(coal) == 3
+    assert all(dist(each.centre, balls[-1].centre) < 0.65 for each in coal)
+
+
+def test_the_first_shape_brings_a_lamp_which_is_undone_with_it() -> None:
+    session = played("move 32,30", "press N", text=BLANK)
+    assert len(session.state.scene.lights) == 1
+    assert "light" in session.state.message
+    assert isinstance(session.state.element, Sphere)
+    assert played("press N", "press Return", "press Ctrl+Z", text=BLANK).state.scene.items == scene(BLANK).items
+    assert len(played("press N", text=TEXT).state.scene.lights) == 1
+    assert not played("press N", "press b", "press a", "press c", text=BLANK).state.scene.lights
+
+
+@pytest.mark.parametrize(
+    ("keys", "kind"),
+    [
+        (["press c", "press y"], "cylinder"),
+        (["press l", "press i", "press n", "press d"], "cylinder"),
+        (["press Down", "press Down"], "cylinder"),
+        (["press c", "press Down"], "cone"),
+        (["press c", "press Down", "press Up"], "cylinder"),
+        (["press c", "press o", "press Backspace"], "cylinder"),
+        (["press N", "press N", "press N"], "cone"),
+        (["press Shift+N"], "sphere"),
+        (["press s", "press p", "press o", "press t"], "spot light"),
+        (["press q", "press q"], "square"),  # nothing is called qq
+    ],
+)
+def test_letters_and_arrows_choose_from_the_list(keys: list[str], kind: str) -> None:
+    open_list = ["press N", "press N"] if keys == ["press Shift+N"] else ["press N"]
+    chosen = played(*open_list, *keys)
+    assert chosen.state.element.title == kind
+    assert len(chosen.state.scene.elements) == len(scene().elements) + 1
+    assert len(chosen.state.undo_stack) == 1
+    assert title(chosen).startswith("element: ")
+    for end, count in (
+        ("press Return", 1),
+        ("press Escape", 0),
+        ("press Ctrl+Z", 0),
+        ("press Tab", 1),
+        ("click 1,1", 1),
+    ):
+        ended = played(*open_list, *keys, end)
+        assert len(ended.state.scene.elements) == len(scene().elements) + count
+        assert title(ended) == ""
+        assert ended.state.aim is None or count
+
+
+def test_letters_are_keys_again_when_the_list_is_closed() -> None:
+    session = played("press N", "press Return", "press d", "press N", "press Return", "press N")
+    assert len(session.state.scene.spheres) == 4
+    assert played("press N", "press d").state.element.title == "disc"
+    assert played("press N", "text 4", "press Return").state.element.diameter == 4
+
+
+def test_attributes_are_chosen_from_a_list() -> None:
+    session = played(*SPHERE, "press M", "press g", "press l", "press a")
+    assert session.state.element.glass is not None
+    assert session.state.element.specular is None
+    assert session.state.active is not None
+    assert session.state.active.field.name == "glass"
+    mirror = played(*SPHERE, *(f"press {letter}" for letter in "Mmirror")).state.element
+    assert mirror.mirror is not None
+    assert played(*SPHERE, "press M", "press Escape").state.element == scene().spheres[0]
+
+
+@pytest.mark.parametrize(
+    ("typed", "expected"),
+    [
+        ("3.5", 3.5),
+        ("=*2", 4.0),
+        ("=/4", 0.5),
+        ("=+0.5", 2.5),
+        ("=-0.5", 1.5),
+        ("=7", 7.0),
+        ("5--", 5.0),
+        ("0", "must be > 0"),
+        ("3-", "must be > 0"),
+        ("1.2.3", "must be a number"),
+        ("=/0", "divided by 0"),
+        ("1,2,3", "takes one number"),
+        ("=", "must be a number"),
+    ],
+)
+def test_a_typed_number_sets_the_active_value(typed: str, expected: float | str) -> None:
+    state = played(*SPHERE, *(f"text {character}" for character in typed), "press Return").state
+    if isinstance(expected, str):
+        assert expected in state.message
+        assert state.scene.items == scene().items
+    else:
+        assert state.scene.spheres[0].diameter == expected
+        assert len(state.undo_stack) == 1
+
+
+def test_colours_are_typed_as_grey_as_three_numbers_and_by_channel() -> None:
+    def colour(*lines: str) -> tuple[int, int, int]:
+        colour: tuple[int, int, int] = played(*SPHERE, "press V", *lines, "press Return").state.scene.spheres[0].colour
+        return colour
+
+    assert colour("text 80") == (80, 80, 80)
+    assert colour("text 1,22,133") == (1, 22, 133)
+    assert colour("text =*0.5") == (128, 0, 0)
+    assert colour("press V", "press V", "text 9") == (255, 9, 0)
+    assert colour("text 256") == (255, 0, 0)
+
+
+def test_what_is_typed_is_shown_corrected_and_left() -> None:
+    assert "diameter: 3.5_" in title(played(*SPHERE, "text 3.5"))
+    assert played(*SPHERE, "text 3.55", "press Backspace", "press Return").state.scene.spheres[0].diameter == 3.5
+    for leave in ("press Escape", "press V", "press Tab", "press Backspace", "wheel up"):
+        left = played(*SPHERE, "text 3", leave, "press Return")
+        assert left.state.scene.spheres[0].diameter == (2.1 if leave == "wheel up" else 2)
+        assert title(left) == ""
+    assert played("text 7", "press Return", "press d").state.scene.camera.fov == 7
+
+
+def test_a_new_cone_stands_on_its_base() -> None:
+    cone = played("press N", "press c", "press o", "press n", "press e", text=BLANK).state.element
+    assert cone.axis == (0, -1, 0)
+    assert cone.apex[1] == pytest.approx(cone.height)
+
+
+def test_each_typed_character_is_drawn_at_once() -> None:
+    frames = [played(*SPHERE, f"text {typed}").screen.frame for typed in ("3", "3.", "3.5")]
+    assert not any(np.array_equal(one, other) for one, other in pairwise(frames))
+
+
+def test_the_line_of_information_says_what_keys_do() -> None:
+    state = played(*SPHERE, "text 3.8", "press Return").state
+    assert "+ - diameter 3.8" in hints(state, every=False)
+    assert "wheel: nearer" in hints(played().state, every=False)
+    assert "X axis" in hints(played(*SPHERE, "press X").state, every=False)
+    brim = played("press N", "press c", "press y", "press Return", "press V", "text 0.25", "press Return").state
+    assert isinstance(brim.element, Cylinder)
+    assert re.search(r"\+ - height 0\.25\b", hints(brim, every=True))
+
+
+def test_the_wheel_moves_the_camera_nearer_and_never_past_the_scene() -> None:
+    near = played("wheel up").state.scene.camera
+    assert near.fov == 90
+    assert near.position[:2] == (0, 0)
+    assert 0 < near.position[2] < 10
+    back = played("wheel up", "wheel down").state.scene.camera
+    assert back.position[2] == pytest.approx(10, rel=0.02)
+    assert played("text +").state.scene.camera.fov > 90
+
+
+def test_a_new_element_is_exactly_under_the_pointer() -> None:
+    """Within the two digits of its place on the ground, where a pixel is 1 / 8 wide."""
+    added = played("move 40,20", "press N", text="A 0.2 255,255,255\nC 0,4,0 0,-1,0 90\n").state.element
+    assert [abs(added.centre[axis]) for axis in (0, 2)] == pytest.approx([8.5 / 8, 3.5 / 8], abs=0.006)
