@@ -14,8 +14,6 @@ from threading import Event, Thread
 from time import perf_counter
 from typing import Any, NamedTuple
 
-from minirt.timing import in_words
-
 PATIENCE = 1.0  # seconds of work without a bar
 PAUSE = 0.2  # seconds from one drawing of the bar to the next
 STOPPED = 30.0  # seconds between two drawings in which the program was stopped, as by Ctrl+Z, and did not work
@@ -71,6 +69,8 @@ def without_signals(work: Callable[..., None], *arguments: object) -> None:
 
 def line(state: State, seconds: float) -> str:
     """Return the bar: how much is done, and the time that is left if the rest is as fast, or that has passed."""
+    from minirt.timing import in_words
+
     if not state.share:
         return f"{in_words(seconds)}  {state.what}"
     share = min(state.share, 1.0)

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from minirt.errors import FileError
 
+LARGEST_ASSET = 256 * 2**20  # bytes of a picture or mesh file that a scene names
+
 
 def reason(error: OSError | ValueError) -> str:
     """Return the system's reason for a failure; a ValueError is about a path that no file can have."""

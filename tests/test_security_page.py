@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 
 from minirt.jail.confinement import CALLS
-from minirt.jail.decoder import FORMATS, LARGEST, SIDE
+from minirt.jail.decoder import FORMATS, SIDE
 from minirt.jail.messages import CPU_TIME, MEMORY
 from minirt.jail.pipes import LONGEST_WAIT
 from minirt.meshes.mesh_cache import MAX_BYTES
 from minirt.meshes.obj import MAX_LINES, MAX_TRIANGLES
+from minirt.regular_files import LARGEST_ASSET
 from minirt.scene import files
 from tests.jail.breakouts import ACTS
 from tests.lowest_versions import lowest_versions
@@ -21,7 +22,7 @@ PAGE = read("SECURITY.md")
 def test_the_limits_are_those_of_the_program() -> None:
     flat = re.sub(r"\s+", " ", PAGE)
     assert f"A scene file has {files.MAX_BYTES // 2**20} MiB and {files.MAX_LINES:,} lines at most" in flat
-    assert f"up to {LARGEST // 2**20} MiB and of {SIDE}x{SIDE} pixels are read, in nine raster formats" in flat
+    assert f"up to {LARGEST_ASSET // 2**20} MiB and of {SIDE}x{SIDE} pixels are read, in nine raster formats" in flat
     assert len((*FORMATS, "XPM")) == 9
     assert f"{CPU_TIME} s of processor time, {MEMORY // 2**30} GiB of memory" in flat
     assert f"{LONGEST_WAIT:.0f} s until it has answered" in flat

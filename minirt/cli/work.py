@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -41,6 +40,8 @@ def kept_work(
     except BaseException:
         part.close()
         if part.places:
+            import shlex
+
             command = [each for each in options.command if each != "--resume"]
             tell(f"{len(part.places)} of {parts} {what} are kept; miniRT {shlex.join([*command, '--resume'])} goes on")
         raise

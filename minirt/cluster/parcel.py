@@ -22,7 +22,6 @@ from minirt.errors import RenderError
 from minirt.meshes.triangles import Triangles
 from minirt.scene import Scene
 
-LARGEST = 256 * 2**20  # bytes of a picture file, as `minirt.materials.picture_cache` reads them
 ARRAYS = ("points", "corners", "normals", "uvs")
 
 Kind = TypeVar("Kind", bound=Record)
@@ -54,7 +53,7 @@ def packed(scene: Scene) -> Parcel:
     used: dict[str, None] = {}
 
     def picture(name: str) -> str:
-        digest = files.keep(regular_files.read(scene.beside(name), LARGEST))
+        digest = files.keep(regular_files.read(scene.beside(name), regular_files.LARGEST_ASSET))
         used[digest] = None
         return digest
 

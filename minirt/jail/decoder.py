@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
-LARGEST = 256 * 2**20  # bytes of a file
 SIDE = 8192  # pixels
 FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TIFF", "PPM", "TGA", "WEBP")  # raster formats: no programs, no fonts
 READ_BY_PROGRAM = (b"#?", b"/* XPM */")  # how Radiance and XPM pictures begin, which are not decoded here

@@ -81,13 +81,13 @@ def expect(path: str | os.PathLike[str]) -> None:
     """
     if state.trusts_all or not state.sessions or "numpy" in sys.modules:
         return
-    from minirt.jail.decoder import LARGEST, READ_BY_PROGRAM, DecodingError
+    from minirt.jail.decoder import READ_BY_PROGRAM, DecodingError
     from minirt.jail.helper import Helper
 
     with suppress(FileError, DecodingError), lock:
         if state.helper:
             return
-        data = regular_files.read(path, LARGEST)
+        data = regular_files.read(path, regular_files.LARGEST_ASSET)
         if not data.startswith(READ_BY_PROGRAM) and not is_known(digest_of(data)):
             state.helper = Helper()
             state.helper.start()

@@ -12,15 +12,13 @@ from minirt.kernel.machine_code.cache_folder import fingerprint_of
 from minirt.kernel.machine_code.processor import V3
 from minirt.scene import Scene, dump
 
-LARGEST = 256 * 2**20  # bytes of a picture or mesh file
-
 
 def identity(scene: Scene, settings: str) -> str:
     """Return a hash of a scene, the files that it names, the settings and the kernel. FileError where a file cannot be
     read."""
     found = hashlib.sha256(f"{fingerprint_of(V3)} {settings}\n{dump(scene)}".encode())
     for name in sorted({name for element in scene.elements for name in files_of(element)}):
-        data = regular_files.read(scene.beside(name), LARGEST)
+        data = regular_files.read(scene.beside(name), regular_files.LARGEST_ASSET)
         found.update(f"{name} {len(data)}\n".encode())
         found.update(data)
     return found.hexdigest()

@@ -16,6 +16,8 @@ from minirt.element import Element, fields_of
 from minirt.scene.pages import Item
 from minirt.scene.registry import ELEMENTS
 
+FEW_LINES = 100  # of a file: the diagnosing reader reads them before the pattern of the fast path is compiled
+
 
 @cache
 def frequent_kinds() -> dict[str, type[Element]]:
@@ -43,8 +45,10 @@ def plain_line() -> re.Pattern[str]:
     return re.compile(rf"[ \t]*+(?:(?=[#\r]|\Z)|{elements})[ \t]*+(?:#[^\r\n\0]*)?\r?")
 
 
-def read(sources: Sequence[str]) -> Sequence[Item | None]:
-    """Parse lines as they stand in a file; None for each line that is left to the diagnosing reader."""
+def read(sources: Sequence[str], length: int) -> Sequence[Item | None]:
+    """Parse lines as they stand in a file of `length` lines; None for each that is left to the diagnosing reader."""
+    if length <= FEW_LINES:
+        return [None] * len(sources)
     indices: dict[str, list[int]] = defaultdict(list)
     texts: dict[str, list[str]] = defaultdict(list)
     items: list[Item | None] = [None] * len(sources)

@@ -14,14 +14,15 @@ from minirt.scene.pages import Item, Page
 
 def text_of(pages: tuple[Page, ...]) -> str:
     """Return the text of a scene file."""
-    lines = [line for page in pages for line in lines_of(page.items)]
+    length = sum(len(page.items) for page in pages)
+    lines = [line for page in pages for line in lines_of(page.items, length)]
     return "\n".join(lines[:1] + [line.removeprefix(BOM) for line in lines[1:]])
 
 
-def lines_of(items: tuple[Item, ...]) -> Iterator[str]:
-    """Yield the lines of items."""
+def lines_of(items: tuple[Item, ...], length: int) -> Iterator[str]:
+    """Yield the lines of items of a file of `length` lines."""
     sources = [item if isinstance(item, str) else item.source for item in items]
-    for item, source, read in zip(items, sources, fast.read(sources), strict=True):
+    for item, source, read in zip(items, sources, fast.read(sources, length), strict=True):
         yield source if isinstance(item, str) or item == read else line_of(item)
 
 

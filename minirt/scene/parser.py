@@ -24,7 +24,6 @@ from minirt.scene.scene import Scene
 from minirt.scene.suggestions import nearest_element
 
 BLOCK = 4096  # lines that the fast path reads at once
-FEW_LINES = 100  # of a file: the diagnosing reader reads them before the pattern of the fast path is compiled
 
 
 class Reading(NamedTuple):
@@ -92,7 +91,7 @@ def read_lines(sources: list[str], log: Log) -> list[Item]:
     seen: dict[str, int] = {}  # identifier: first line that has it, or seems to mean it
     for start in range(0, len(sources), BLOCK):
         block = sources[start : start + BLOCK]
-        plain = fast.read(block) if len(sources) > FEW_LINES else [None] * len(block)
+        plain = fast.read(block, len(sources))
         if set(map(type, plain)) == {str}:
             items += block
             continue

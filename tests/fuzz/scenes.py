@@ -10,7 +10,7 @@ import random
 
 from minirt.errors import SceneError
 from minirt.scene import Scene, dump, parse
-from minirt.scene.parser import FEW_LINES
+from minirt.scene.fast import FEW_LINES
 from tests.fuzz import scene_grammar, scene_words
 from tests.fuzz.fuzzer import Fuzzer
 from tests.fuzz.mutations import mutated

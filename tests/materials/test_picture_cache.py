@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from minirt.errors import FileError
-from minirt.materials import picture_cache
+from minirt.materials import picture_files
 from minirt.materials.picture_cache import heights, picture
 from minirt.rendering.packing.colours import Colours
 from minirt.rendering.packing.materials import TexturePool
@@ -107,8 +107,8 @@ def test_heights_keep_16_bits_and_colours_are_rounded_to_8(tmp_path: Path) -> No
 def test_a_file_is_decoded_once_and_again_when_it_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "a.png"
     decoded: list[Path] = []
-    real = picture_cache.decode
-    monkeypatch.setattr(picture_cache, "decode", lambda path: decoded.append(path) or real(path))
+    real = picture_files.decode
+    monkeypatch.setattr(picture_files, "decode", lambda path: decoded.append(path) or real(path))
     Image.fromarray(COLOURS).save(path)
     first = picture(path)
     assert picture(path) is first

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from unittest.mock import patch
 
 from minirt.errors import Problem, SceneError
-from minirt.scene import Item, fast, parser
+from minirt.scene import Item, fast
 from minirt.scene.diagnostics import Log
 from minirt.scene.parser import read_lines
 
 Outcome = tuple[list[Problem], list[Problem], list[object] | tuple[Problem, ...]]
 
 
-def no_plain_lines(sources: Sequence[str]) -> Sequence[None]:
+def no_plain_lines(sources: Sequence[str], length: int) -> Sequence[None]:
     """Stand in for `fast.read`: leave all lines to the diagnosing reader."""
     return [None] * len(sources)
 
@@ -36,7 +36,7 @@ def read_by_both(sources: list[str], log: Log) -> list[Item]:
     """Read lines as `read_lines` does; AssertionError when the diagnosing reader alone gives another outcome."""
     with patch.object(fast, "read", no_plain_lines):
         diagnosed = outcome(sources, Log(log.file, log.lenient))[1]
-    with patch.object(parser, "FEW_LINES", 0):
+    with patch.object(fast, "FEW_LINES", 0):
         items, both = outcome(sources, log)
     assert both == diagnosed
     if isinstance(both[2], tuple):

@@ -28,6 +28,7 @@ from tests.scene.examples import CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, problem
 from tests.scene.readers import exact, no_plain_lines, read_by_both
 from tests.scene.strategies import ANY
 
+MANY = fast.FEW_LINES + 1  # of a file, so that the fast path reads it
 COMPONENTS = [
     "0",
     "-0",
@@ -61,7 +62,7 @@ COMPONENTS += ["0" * LONGEST]
     ],
 )
 def test_the_fast_path_reads_plain_lines(line: str) -> None:
-    (element,) = fast.read([line])
+    (element,) = fast.read([line], MANY)
     log = Log("test.rt", lenient=False)
     diagnosed = parser.read_line(line_from(1, line), {}, log)
     assert element is not None
@@ -73,7 +74,7 @@ def test_the_fast_path_reads_plain_lines(line: str) -> None:
 @pytest.mark.parametrize("line", ["", "\r", " \t", "#", "\t#\r", f" # {SPHERE} // é\x85\v"])
 def test_the_fast_path_reads_comments_and_blank_lines(line: str) -> None:
     log = Log("test.rt", lenient=False)
-    assert list(fast.read([SPHERE, line, SPHERE]))[1] == line == parser.read_line(line_from(2, line), {}, log)
+    assert list(fast.read([SPHERE, line, SPHERE], MANY))[1] == line == parser.read_line(line_from(2, line), {}, log)
     assert not log.errors + log.notices
 
 
@@ -91,7 +92,7 @@ def test_the_fast_path_reads_comments_and_blank_lines(line: str) -> None:
     ],
 )
 def test_the_fast_path_skips_a_line_and_reads_its_neighbours(line: str) -> None:
-    before, element, after = fast.read([SPHERE, line, SPHERE])
+    before, element, after = fast.read([SPHERE, line, SPHERE], MANY)
     assert element is None
     assert not isinstance(before, str | None)
     assert not isinstance(after, str | None)
@@ -122,7 +123,7 @@ def test_both_readers_agree_on_mixed_good_and_bad_fields(lines: list[str], lenie
 @settings(max_examples=100, deadline=None)
 def test_the_description_of_an_element_without_attributes_is_plain(elements: list[Any]) -> None:
     lines = [describe(element) for element in elements]
-    assert list(fast.read(lines)) == [
+    assert list(fast.read(lines, MANY)) == [
         each if type(each) in fast.frequent_kinds().values() and ":" not in line else None
         for line, each in zip(lines, elements, strict=True)
     ]

@@ -39,7 +39,7 @@ class Wrong(NamedTuple):
 
     def __str__(self) -> str:
         reason = " (where it starts)" if self.again else ""
-        line = " ".join(lines_of((self.shape,)))
+        line = " ".join(lines_of((self.shape,), 1))
         return f"t = {self.t!r}{reason}, not {self.exact!r}: {line} from {self.origin} along {self.direction}"
 
 

@@ -49,4 +49,4 @@ def common_prefix(first: tuple[object, ...] | list[Item], second: tuple[object, 
 
 def texts(items: list[Item]) -> list[str]:
     """Return the lines of items."""
-    return list(lines_of(tuple(items)))
+    return list(lines_of(tuple(items), len(items)))
