@@ -18,6 +18,7 @@ LOADED = "import sys; print(*sorted({each.split('.')[0] for each in sys.modules}
 QUIETLY = "import contextlib, io\nfrom minirt.cli import main\nwith contextlib.redirect_stdout(io.StringIO()):\n"
 HEAVY = {"numba", "llvmlite", "pyglet", "PIL", "minirt.mlx", "minirt.viewer"}
 OTHER_WORK = {"PIL", "minirt.movie", "minirt.report", "minirt.meshes.obj"}  # other formats, reports, meshes
+OTHER_WORK |= {"minirt.materials.radiance", "minirt.materials.xpm", "minirt.timing"}  # textures, slow pictures
 OTHER_WORK |= {"minirt.rendering.queries.pick", "minirt.rendering.queries.preview"}  # clicks, coarse pictures
 FOR_MISTAKES = {"difflib", "logging", "subprocess"}  # needed to report a mistake, or to compile
 CRYPTOGRAPHY = {"secrets", "hashlib"}
@@ -69,6 +70,12 @@ def test_rendering_to_png_imports_nothing_that_other_work_needs(folder: Path) ->
     assert "minirt.png" in loaded
     assert not OTHER_WORK & loaded
     assert OTHER_WORK & modules(RENDER.format("x.bmp"), folder) == {"PIL"}
+
+
+def test_the_pattern_of_many_lines_is_not_compiled_for_few(folder: Path) -> None:
+    """A picture carries the text of its scene: the lines are read again, to find those that have changed."""
+    code = RENDER.format("x.png") + "\nfrom minirt.scene import fast\nprint(fast.plain_line.cache_info().currsize)"
+    assert printed(code, folder) == ["0"]
 
 
 NO_MEMORY = "lambda *_, **__: (_ for _ in ()).throw(MemoryError())"
