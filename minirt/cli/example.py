@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from minirt.cli.arguments import DEMO, Arguments
@@ -24,6 +23,8 @@ def choose(parser: Arguments, options: argparse.Namespace, arguments: Sequence[s
         options.example, options.fallback = DEMO, DEMO_PICTURE
     if not options.example:
         return
+    from pathlib import Path
+
     if options.scene:
         parser.error(f"--example shows a scene of its own, got {options.scene[0]}, too")
     names = (f"{options.example}{suffix}.rt" for suffix in ("", *(f"-{number}" for number in range(1, 1000))))
