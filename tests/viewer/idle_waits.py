@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import count
 
 from tests.idle import Thread, threads, until_idle
-from tests.viewer.process_tree import state
+from tests.viewer.process_tree import compilers, processor_time, state
 from tests.waiting import until
 
 
@@ -24,6 +24,17 @@ def until_events_are_done(process: int) -> None:
         return has_ended(process) or (before.asleep and before == last)
 
     until(asleep, f"the end of the input events of process {process}")
+
+
+def until_compiled(program: int) -> None:
+    """Wait until the program compiles no kernel. Compilers give way to all other processes: on a busy machine they take
+    long, but some time passes for them."""
+
+    def times() -> dict[int, int]:
+        return {each: processor_time(each) for each in compilers(program)}
+
+    while before := times():
+        until(lambda before=before: times() != before, "progress of the compiler")
 
 
 def has_ended(process: int) -> bool:

@@ -22,11 +22,10 @@ from minirt.scene import load
 from minirt.viewer.input.bindings import BINDINGS
 from minirt.viewer.input.chords import MOUSE
 from tests.usage import Record, Usage
-from tests.viewer.idle_waits import until_at_rest, until_events_are_done
-from tests.viewer.process_tree import compilers
+from tests.viewer.idle_waits import until_at_rest, until_compiled, until_events_are_done
 from tests.viewer.scenes import WITH_CYLINDER
 from tests.viewer.xdotool import do
-from tests.waiting import HANG_LIMIT, until
+from tests.waiting import HANG_LIMIT
 from tests.windows import SCREEN, Desktop, open_desktop
 
 SIZE = (320, 240)
@@ -185,7 +184,7 @@ class Monkey:
             self.await_full_screen()
         self.write(WITH_CYLINDER)
         self.do("press Ctrl+R", "resize {}x{}".format(*SIZE))
-        until(lambda: not compilers(self.process.pid), "the end of the compiler")
+        until_compiled(self.process.pid)
         until_at_rest(self.process.pid)
         used = Usage.of(self.process.pid)
         self.do("resize {}x{}".format(*size), "move 0,0")

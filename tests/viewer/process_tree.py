@@ -23,6 +23,12 @@ def processes() -> list[int]:
     return [int(folder.name) for folder in Path("/proc").glob("[0-9]*")]
 
 
+def processor_time(process: int) -> int:
+    """Return the processor time that a process has used, in ticks of the system; 0 if it has ended."""
+    user, kernel = state(process, 13)[11:] or (0, 0)
+    return int(user) + int(kernel)
+
+
 def parent(process: int) -> int:
     """Return the id of the parent process."""
     return int(state(process)[1])
@@ -35,8 +41,8 @@ def arguments(process: int) -> list[str]:
     return []
 
 
-def state(process: int) -> list[str]:
-    """Return the state letter, parent and group of a process; the letter is X if it has ended."""
+def state(process: int, fields: int = 3) -> list[str]:
+    """Return the state letter, parent and group of a process, and further fields; the letter is X if it has ended."""
     with suppress(OSError):
-        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[:3]
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[:fields]
     return ["X", "0", "0"]
