@@ -25,10 +25,17 @@ pytest_xdist_make_scheduler = pytest.hookimpl(optionalhook=True)(scheduling.make
 
 
 def pytest_configure() -> None:
-    """Enable Ctrl+C for the tests and their programs even if the caller ignores it, as `nohup make test &` in a
-    script does."""
-    if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    """Give the programs of the tests the signals that the caller ignores, as `nohup make test &` in a script does.
+
+    Programs that are started inherit ignored signals, but not handlers.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        return
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    for number in {getattr(signal, name, signal.SIGINT) for name in ("SIGHUP", "SIGQUIT", "SIGTERM")}:
+        if signal.getsignal(number) is signal.SIG_IGN:
+            signal.signal(number, lambda *_: None)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
