@@ -8,7 +8,7 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from contextvars import ContextVar, copy_context
 from threading import Event, Thread
 from time import perf_counter
@@ -32,17 +32,19 @@ class State(NamedTuple):
 def drawn(read: Callable[[], State], draw: Callable[[str], object], clock: Callable[[], float]) -> Iterator[None]:
     """Draw the state that `read` returns while the block runs, from another thread, by `draw(text)`.
 
-    Nothing is drawn in the first second; `draw("")` erases what was drawn.
+    Nothing is drawn in the first second, or where the system allows no more threads; `draw("")` erases what was drawn.
     """
     ended = Event()
     arguments = (draw_until, ended, read, draw, clock)
     thread = Thread(target=copy_context().run, args=(without_signals, *arguments), daemon=True)
-    thread.start()
+    with suppress(RuntimeError):  # the system allows no more threads
+        thread.start()
     try:
         yield
     finally:
         ended.set()
-        thread.join()
+        if thread.ident is not None:
+            thread.join()
 
 
 def draw_until(

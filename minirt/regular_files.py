@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from pathlib import Path
+from typing import BinaryIO
 
 from minirt.errors import FileError
 
@@ -35,12 +37,20 @@ def read(path: str | os.PathLike[str], largest: int) -> bytes:
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with os.fdopen(descriptor, "rb") as file:
             size = check_regular(path, os.fstat(descriptor), largest).st_size
-            data = file.read(size + 1)  # Python reserves memory for as many bytes as it is asked for
+            data = read_at_once(file, size + 1)  # Python reserves memory for as many bytes as it is asked for
             if len(data) > size:  # the file grows
-                data += file.read(largest + 1 - len(data))
+                data += read_at_once(file, largest + 1 - len(data))
     except (OSError, ValueError) as error:
         raise FileError(path, f"cannot be read: {reason(error)}") from None
     check_size(path, len(data), largest)
+    return data
+
+
+def read_at_once(file: BinaryIO, size: int) -> bytes:
+    """Return at most `size` bytes of an open file; OSError where it has none yet, as some files of /proc."""
+    data: bytes | None = file.read(size)
+    if data is None:
+        raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
     return data
 
 

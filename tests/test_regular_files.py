@@ -46,6 +46,22 @@ def test_files_up_to_the_limit_are_read_whole(tmp_path: Path, size: int) -> None
             regular_files.read(path, 1000)
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no FIFOs")
+@pytest.mark.parametrize("first", [b"", b"a"])
+def test_a_file_whose_bytes_do_not_come_is_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, first: bytes
+) -> None:
+    """As /proc/kmsg, a regular file of length 0, whose reader waits for the next message of the kernel."""
+    path = tmp_path / "a"
+    os.mkfifo(path)
+    monkeypatch.setattr(regular_files, "check_regular", lambda path, status, largest: status)
+    with path.open("r+b", buffering=0) as writer:
+        writer.write(first)
+        with pytest.raises(FileError) as caught:
+            regular_files.read(path, 1000)
+    assert caught.value.reason == "cannot be read: resource temporarily unavailable"
+
+
 @pytest.mark.parametrize(("told", "largest", "fits"), [(0, 5000, True), (10, 5000, True), (10, 1999, False)])
 def test_a_file_that_grows_while_it_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: int, largest: int, fits: bool

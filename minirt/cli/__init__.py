@@ -18,6 +18,7 @@ from minirt.cli.output import hide_warnings, prepare_streams, say, tell
 from minirt.errors import MiniRTError
 
 NO_MEMORY = "not enough memory; a smaller picture, smaller files or fewer shapes need less"
+NO_THREADS = "the system allows no more threads; 'ulimit -u' shows how many threads and processes a user may have"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -35,6 +36,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         return FAILED
     except MemoryError:
         tell(f"Error\n{NO_MEMORY}")
+        return FAILED
+    except RuntimeError as error:
+        if str(error) != "can't start new thread":  # of Python
+            raise
+        tell(f"Error\n{NO_THREADS}")
         return FAILED
     except KeyboardInterrupt as error:
         return signal_status(error)

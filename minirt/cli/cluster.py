@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
@@ -56,17 +57,32 @@ def workers(options: argparse.Namespace) -> Iterator[Any]:
 
 
 def pool() -> Executor:
-    """Return a pool of processes that leave Ctrl+C to this one."""
+    """Return a pool of processes that leave Ctrl+C to this one, and end with it."""
     from multiprocessing import get_context
 
     from minirt.rendering.running.cores import usable_cores
 
-    return ProcessPoolExecutor(min(usable_cores(), MOST_PROCESSES), get_context("spawn"), ignore_interrupts)
+    return ProcessPoolExecutor(min(usable_cores(), MOST_PROCESSES), get_context("spawn"), serve)
 
 
-def ignore_interrupts() -> None:
-    """Ignore Ctrl+C, which a terminal sends to all processes."""
+def serve() -> None:
+    """Prepare a process of the pool: it ignores Ctrl+C, which a terminal sends to all, and ends when its parent dies.
+
+    Otherwise the processes of a killed program would wait for tasks for ever.
+    """
+    from threading import Thread
+
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=end_with_parent, daemon=True).start()
+
+
+def end_with_parent() -> None:
+    """Wait until the parent of this process has died, and end it at once."""
+    from multiprocessing import parent_process
+
+    if parent := parent_process():
+        parent.join()
+        os._exit(FAILED)
 
 
 def render_bands(scene: Scene, options: argparse.Namespace) -> int:

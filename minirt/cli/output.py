@@ -14,7 +14,7 @@ from contextlib import suppress
 from io import TextIOWrapper
 from typing import TextIO
 
-from minirt.errors import RenderError
+from minirt.errors import RenderError, printable
 
 
 def prepare_streams() -> None:
@@ -67,10 +67,10 @@ def written(write: Callable[[], None]) -> None:
 
 
 def tell(text: object, stream: TextIO | None = None) -> None:
-    """Print to standard error, or to another stream; do nothing when that fails."""
+    """Print lines to standard error, or to another stream, without control characters; do nothing when that fails."""
     stream = stream or sys.stderr
     try:
-        print(text, file=stream, flush=True)
+        print(*map(printable, str(text).split("\n")), sep="\n", file=stream, flush=True)
     except OSError:
         mute(stream)
 

@@ -95,8 +95,10 @@ class PartFile:
         packed = self.file.read(place.length)
         if zlib.crc32(packed) != place.checksum:
             return None
-        inflater = zlib.decompressobj()
-        data = inflater.decompress(packed, size + 1)
+        try:
+            data = zlib.decompressobj().decompress(packed, size + 1)
+        except zlib.error:
+            return None
         return data if len(data) == size else None
 
     def offer(self, number: int, data: bytes, seconds: float) -> None:

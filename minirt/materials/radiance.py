@@ -55,6 +55,9 @@ def read_header(data: bytes) -> Header:
             raise RadianceError(f"line {number - 1}: the format must be {FORMAT.decode()}, got {shown(value)}")
         if key.strip() == b"EXPOSURE":
             exposure *= positive(value, number - 1)
+            if not 0 < exposure < inf:
+                size = "large" if exposure else "small"
+                raise RadianceError(f"line {number - 1}: the product of all exposures is too {size}")
     end = data.find(b"\n", start, start + LONGEST_HEADER)
     match = RESOLUTION.fullmatch(data[start:end].strip()) if end >= 0 else None
     if not match or match[2] == match[5]:

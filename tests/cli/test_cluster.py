@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import re
 import signal
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,7 +15,8 @@ import pytest
 import tifffile
 
 import minirt
-from tests.cli.program import Result, program, start
+from tests.cli.program import Result, environment, program, start
+from tests.processes import is_running, started
 from tests.terminals import terminal
 from tests.waiting import HANG_LIMIT, until
 
@@ -36,6 +39,28 @@ def test_files_are_those_of_one_process(run: Run, folder: Path) -> None:
             for each in files:
                 each.unlink()
         assert written[0] == written[1]
+
+
+POOL = """
+import os, sys
+from minirt.cli.cluster import pool
+workers = pool()
+list(workers.map(os.getpgid, [0] * 8))
+print(*workers._processes, flush=True)
+sys.stdin.read()
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="is_running reads /proc")
+def test_the_processes_of_a_killed_program_end(tmp_path: Path) -> None:
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with started([sys.executable, "-c", POOL], cwd=tmp_path, env=environment(), text=True, **pipes) as process:
+        assert process.stdout is not None
+        workers = list(map(int, process.stdout.readline().split()))
+        assert workers
+        assert all(map(is_running, workers))
+        process.kill()
+        until(lambda: not any(map(is_running, workers)), "the end of the processes")
 
 
 def test_sizes_may_exceed_those_of_one_process(run: Run, folder: Path) -> None:

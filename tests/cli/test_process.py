@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.announcing import RENDERING
-from tests.cli.program import ANNOUNCING, environment, interrupt, program, start
+from tests.cli.program import ANNOUNCING, Result, environment, interrupt, program, start
 from tests.processes import run
 from tests.terminals import terminal
 from tests.waiting import HANG_LIMIT
@@ -165,6 +165,45 @@ def test_a_lack_of_memory_is_a_sentence(folder: Path) -> None:
     assert (ended.returncode, ended.stdout) == (1, "")
     assert ended.stderr.startswith("Error\nnot enough memory; ")
     assert ended.stderr.count("\n") == 2
+
+
+WITHOUT_THREADS = """
+import threading
+def fail(thread):
+    raise RuntimeError("can't start new thread")
+threading.Thread.start = fail
+from minirt import cli
+if {is_needed}:
+    from minirt.cli import picture
+    picture.progress = lambda read: threading.Thread().start()
+raise SystemExit(cli.main())
+"""
+
+
+def without_threads(folder: Path, is_needed: bool) -> Result:
+    """Render, into x.png, where the system allows no threads; `is_needed`: something cannot do without."""
+    code = WITHOUT_THREADS.format(is_needed=is_needed)
+    command = [sys.executable, "-c", code, "ball.rt", "--size", "8x8", "-o", "x.png"]
+    ended = run(command, cwd=folder, env=environment())
+    return Result(ended.returncode, ended.stdout, ended.stderr.decode())
+
+
+def test_without_threads_a_picture_is_right(folder: Path) -> None:
+    assert program(folder, "ball.rt", "--size", "8x8", "-o", "wanted.png") == (0, b"", "")
+    assert without_threads(folder, is_needed=False) == (0, b"", "")
+    assert (folder / "x.png").read_bytes() == (folder / "wanted.png").read_bytes()
+
+
+def test_a_lack_of_threads_is_a_sentence(folder: Path) -> None:
+    status, _, err = without_threads(folder, is_needed=True)
+    assert (status, err.count("\n")) == (1, 2)
+    assert err.startswith("Error\nthe system allows no more threads; ")
+
+
+def test_no_message_has_control_characters(folder: Path) -> None:
+    (folder / "b\x1b[31m\x07.rt").write_text((folder / "ball.rt").read_text())
+    ended = program(folder, "b\x1b[31m\x07.rt", "-o", "missing/{name}.png", "--size", "8x8")
+    assert (ended.status, ended.err) == (1, "Error\nmissing/b [31m .png: cannot write: No such file or directory\n")
 
 
 def test_a_closed_pipe_gives_no_traceback(folder: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import sys
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -154,6 +155,22 @@ def test_a_damaged_part_is_rendered_again(run: Run, folder: Path, renders: Rende
         assert run(*STILL, "--resume").status == 0
         assert renders.count == missing
         assert contents(folder) == wanted
+
+
+def test_a_part_that_cannot_be_unpacked_is_missing(tmp_path: Path) -> None:
+    part = part_file.PartFile(tmp_path / "x.png", "work", resume=False)
+    part.append(0, b"abc")
+    part.close()
+    packed = zlib.compress(b"abc", part_file.LEVEL)
+    other = bytes(len(packed))
+    head, other_head = (part_file.HEAD.pack(0, len(each), zlib.crc32(each)) for each in (packed, other))
+    whole = part.path.read_bytes()
+    for data, wanted in ((whole, b"abc"), (whole.replace(head + packed, other_head + other), None)):
+        part.path.write_bytes(data)
+        again = part_file.PartFile(tmp_path / "x.png", "work", resume=True)
+        assert list(again.places) == [0]
+        assert again.read(0, 3) == wanted
+        again.close()
 
 
 def test_a_numbered_picture_that_was_deleted_is_written_again(run: Run, folder: Path, renders: Renders) -> None:

@@ -141,6 +141,17 @@ DAMAGED = {
     "line 2: the format must be 32-bit_rle_rgbe, got '32-bit_rle_xyze'": b"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n",
     "line 2: the exposure must be a number > 0, got '0'": b"#?RADIANCE\nEXPOSURE=0\n\n-Y 2 +X 8\n" + ROWS,
     "line 2: the exposure must be a number > 0, got 'nan'": b"#?RADIANCE\nEXPOSURE=nan\n\n-Y 2 +X 8\n" + ROWS,
+    "line 3: the product of all exposures is too small": b"#?RGBE\n"
+    + 2 * b"EXPOSURE=1e-300\n"
+    + b"\n-Y 2 +X 8\n"
+    + ROWS,
+    "line 3: the product of all exposures is too large": b"#?RGBE\n"
+    + 2 * b"EXPOSURE=1e300\n"
+    + b"\n-Y 2 +X 8\n"
+    + ROWS,
+    "line 2: the format must be 32-bit_rle_rgbe, got '\\x1b[31m'": b"#?RGBE\nFORMAT=\x1b[31m\n\n",
+    "line 3: the header has no end": b"#?RGBE\nA=1\n" + bytes(3 * 2**20) + b"\n\n-Y 2 +X 8\n" + ROWS,
+    "line 4: expected a size such as -Y 512 +X 1024, got ''": b"#?RGBE\nA=1\n\n" + b" " * 2**20 + b"-Y 2 +X 8\n" + ROWS,
     f"scanline 1 of 2, byte {START}: the file ends": HEADER + b"-Y 2 +X 8\n",
     f"scanline 2 of 2, byte {START + 23}: the file ends": HEADER + b"-Y 2 +X 8\n" + ROWS[:-1],
     f"scanline 2 of 2, byte {START + 12}: it has 9 pixels, and should have 8": HEADER

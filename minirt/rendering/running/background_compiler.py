@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from threading import Lock, Thread
 
 from minirt.errors import RenderError
@@ -43,10 +44,12 @@ class BackgroundCompiler:
                 self.start()
 
     def start(self) -> None:
-        """Start the thread, unless it runs. The caller holds the lock."""
+        """Start the thread, unless it runs or the system allows no more threads. The caller holds the lock."""
         if not self.thread:
-            self.thread = Thread(target=self.work, name="minirt-compiler", daemon=True)
-            self.thread.start()
+            thread = Thread(target=self.work, name="minirt-compiler", daemon=True)
+            with suppress(RuntimeError):
+                thread.start()
+                self.thread = thread
 
     def work(self) -> None:
         """Compile what is wanted until nothing is: the body of the thread."""

@@ -33,19 +33,20 @@ class Task(NamedTuple):
 
 
 class ThreadPool:
-    """A fixed number of threads that run jobs.
+    """A fixed number of threads that run jobs, or as many as the system allows.
 
     It uses plain queues: handing out the jobs and collecting the results takes half as long as with futures, 0.04 ms.
     """
 
     def __init__(self, number: int) -> None:
         self.tasks: SimpleQueue[Task | None] = SimpleQueue()
-        self.threads = [
-            Thread(target=run_tasks, args=(self.tasks,), name="minirt-render", daemon=True) for _ in range(number)
-        ]
-        for thread in self.threads:
-            thread.start()
-        finalize(self, stop_threads, self.tasks, number)
+        self.threads: list[Thread] = []
+        with suppress(RuntimeError):  # the system allows no more threads
+            for _ in range(number):
+                thread = Thread(target=run_tasks, args=(self.tasks,), name="minirt-render", daemon=True)
+                thread.start()
+                self.threads.append(thread)
+        finalize(self, stop_threads, self.tasks, len(self.threads))
 
     def give_way(self) -> None:
         """Let the other threads of the process go first from now on. Only Linux has priorities of threads."""
@@ -56,10 +57,14 @@ class ThreadPool:
                     os.setpriority(os.PRIO_PROCESS, thread.native_id or 0, niceness)
 
     def run(self, jobs: list[Job], cancel: Callable[[], None]) -> None:
-        """Run as many jobs as there are threads, and wait for all of them; an error of one is raised.
+        """Run jobs on the threads, or on the caller's without any, and wait for all of them; an error of one is raised.
 
         `cancel` makes the jobs end early. It is called when a job fails, and when Ctrl+C interrupts the wait.
         """
+        if not self.threads:
+            for job in jobs:
+                job()
+            return
         results: list[BaseException | None] = []
         wake_up: SimpleQueue[None] = SimpleQueue()
         for job in jobs:

@@ -28,7 +28,10 @@ class FoundChanges(NamedTuple):
     @property
     def title(self) -> str:
         """Their name in messages: time of day, with the date unless it is today."""
-        when = datetime.fromtimestamp(self.time)  # in the user's own time
+        try:
+            when = datetime.fromtimestamp(self.time)  # in the user's own time
+        except (OSError, OverflowError, ValueError):  # beyond the year 9999, which some file systems hold
+            return f"unsaved changes ({self.path.name})"
         date = "" if when.date() == datetime.now().date() else f"{when:%Y-%m-%d} "
         name = "" if self.is_journal else f" ({self.path.name})"
         return f"unsaved changes of {date}{when:%H:%M}{name}"
@@ -54,7 +57,7 @@ def is_newer(changes: FoundChanges, now: str, saved: float) -> bool:
 def candidates(file: Path) -> Iterator[FoundChanges]:
     """Yield all journals and recovery files of a scene file that can be read."""
     for path in abandoned_journals(file):
-        with suppress(OSError, FileError, ValueError, KeyError):
+        with suppress(OSError, FileError, ValueError):
             contents = journal_file.read(path)
             yield FoundChanges(path, path.stat().st_mtime, contents.text, is_journal=True, base=contents.base)
     for path in sorted(file.parent.glob(f"{glob.escape(file.stem)}.recovered*.rt")):

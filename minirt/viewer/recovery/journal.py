@@ -22,6 +22,7 @@ from minirt.viewer.recovery.journal_folder import create_journal
 from minirt.viewer.recovery.splice import difference
 
 INTERVAL = 0.25  # seconds between two writes
+MOST_CHANGES = 2**24  # bytes that a journal grows by before a new one takes its place
 
 
 class Version(NamedTuple):
@@ -39,6 +40,7 @@ class Journal:
     def __init__(self) -> None:
         self.path: Path | None = None  # of the journal, while there is one
         self._file: BinaryIO | None = None
+        self._size = self._most = 0  # bytes of the journal, and how many it may have before a new one begins
         self._newest: Version | None = None
         self._written: Version | None = None
         self._obsolete: list[Path] = []  # journals to delete as soon as this one holds their changes
@@ -97,17 +99,23 @@ class Journal:
         if before and (before.saved is not version.saved or not contents_differ(version.scene, version.saved)):
             self._end_file(delete=True)
         if contents_differ(version.scene, version.saved):
-            if not self._file:
+            if self._size > self._most:
+                self._end_file(delete=False)
+            is_new = not self._file
+            if is_new:
                 self.path, self._file = create_journal(version.file)
                 self._append(journal_file.beginning(version.file, text_of(version)))
             splice = difference(self._written.scene if self._written else version.saved, version.scene)
             if splice:
                 self._append(journal_file.record(splice))
+            if is_new:
+                self._most = self._size + MOST_CHANGES
             self._delete_obsolete()
         self._written = version
 
     def _append(self, data: bytes) -> None:
         assert self._file
+        self._size += len(data)
         while data:
             data = data[self._file.write(data) :]
         os.fsync(self._file.fileno())
@@ -118,6 +126,7 @@ class Journal:
             self._file.close()
             self._obsolete.append(self.path)
         self._file = self.path = self._written = None
+        self._size = self._most = 0
         if delete:
             self._delete_obsolete()
 

@@ -40,16 +40,27 @@ def record(splice: Splice) -> bytes:
 
 def read(path: Path) -> Contents:
     """Read a journal. FileError where it cannot be read, ValueError where it is damaged before its last line."""
-    header, _, rest = regular_files.read(path, LARGEST).partition(b"\n")
+    data = regular_files.read(path, LARGEST)
+    try:
+        return contents(data)
+    except (KeyError, OverflowError, RecursionError, TypeError) as error:
+        raise ValueError("a line has other values than a journal") from error
+
+
+def contents(data: bytes) -> Contents:
+    """Return the contents of a journal; where it is damaged ValueError, or what values of other types raise."""
+    header, _, rest = data.partition(b"\n")
     values = json.loads(header)
     if not isinstance(values, dict) or values.get("journal") != VERSION:
         raise ValueError("not a journal of this version")
     file, length = Path(str(values["file"])), int(values["bytes"])
-    if len(rest) <= length:
+    if not 0 <= length < len(rest):
         raise ValueError("ends within the text of the scene")
     base = rest[:length].decode()
     lines = base.split("\n")
     for change in rest[length + 1 :].split(b"\n")[:-1]:
         start, removed, new = json.loads(change)
         Splice(int(start), int(removed), [str(line) for line in new]).apply(lines)
-    return Contents(file, base, "\n".join(lines))
+    text = "\n".join(lines)
+    text.encode()  # a half of a surrogate pair, which JSON can hold, cannot be saved: UnicodeEncodeError
+    return Contents(file, base, text)

@@ -6,10 +6,11 @@ import _thread
 import gc
 import os
 import sys
-from threading import Event
+from threading import Event, Thread
 
 import pytest
 
+from minirt.rendering.running import thread_pool
 from minirt.rendering.running.thread_pool import NICENESS, ThreadPool
 from tests.waiting import HANG_LIMIT
 
@@ -32,6 +33,26 @@ def test_only_the_threads_of_the_pool_give_way() -> None:
     assert nicenesses(pool) == [NICENESS, NICENESS]
     assert nicenesses(other) == [0, 0]
     assert os.getpriority(os.PRIO_PROCESS, 0) == before
+
+
+@pytest.mark.parametrize("allowed", [0, 1, 3])
+def test_jobs_run_on_as_many_threads_as_the_system_allows(monkeypatch: pytest.MonkeyPatch, allowed: int) -> None:
+    class FewThreads(Thread):
+        def start(self) -> None:
+            if len(started) == allowed:
+                raise RuntimeError("can't start new thread")
+            started.append(self)
+            super().start()
+
+    seen: list[int] = []
+    started: list[Thread] = []
+    monkeypatch.setattr(thread_pool, "Thread", FewThreads)
+    pool = ThreadPool(3)
+    assert len(pool.threads) == allowed
+    pool.run([lambda number=number: seen.append(number) for number in range(3)], lambda: None)
+    assert sorted(seen) == [0, 1, 2]
+    with pytest.raises(ZeroDivisionError):
+        pool.run([lambda: 1 / 0] * 3, lambda: None)
 
 
 def test_ctrl_c_just_before_the_wait_is_seen() -> None:

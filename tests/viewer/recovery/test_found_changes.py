@@ -101,6 +101,32 @@ def test_changes_that_the_file_holds_are_not_offered(path):
     assert find_changes(path) is None
 
 
+@pytest.mark.parametrize(
+    "change", [b"3", b"[null, 0, []]", b"[0, 1, null]", b"[1e999, 0, []]", b'[0, 1, ["\\ud800"]]', b"[" * 100_000]
+)
+def test_a_journal_with_other_values_is_passed_over(path, change):
+    left = leave_journal(path)
+    with left.open("ab") as file:
+        file.write(change + b"\n")
+    assert find_changes(path) is None
+
+
+def test_recovery_files_that_are_no_files_are_passed_over(path):
+    os.mkfifo(path.with_name(f"{path.stem}.recovered.rt"))
+    path.with_name(f"{path.stem}.recovered-1.rt").mkdir()
+    (loop := path.with_name(f"{path.stem}.recovered-2.rt")).symlink_to(loop)
+    left = leave_journal(path)
+    os.mkfifo(left.with_stem(left.stem + "0"))
+    left.with_stem(left.stem + "1").mkdir()
+    assert find_changes(path).path == left
+
+
+@pytest.mark.parametrize("seconds", [1e12, 1e18, -1e18])
+def test_changes_of_a_year_that_no_calendar_has_have_a_title(path, seconds):
+    found = FoundChanges(path.with_name("a.journal"), seconds, "", is_journal=True)
+    assert found.title == "unsaved changes (a.journal)"
+
+
 def test_what_cannot_be_read_is_passed_over(path):
     file = recovered(path, OTHER, 2000)
     newer = recovered(path, OTHER, 3000, "-1")

@@ -57,6 +57,21 @@ def test_each_version_can_be_read_back(book, path):
         assert journal_file.read(book.path) == (path, TEXT, dump(scene))
 
 
+def test_a_new_journal_takes_the_place_of_one_that_has_grown(book, path, monkeypatch):
+    monkeypatch.setattr(journal, "MOST_CHANGES", 1000)
+    saved = load(path).scene
+    sizes, paths = [], set()
+    for number in range(200):
+        scene = grown(saved, 3.0 + number)
+        keep(book, scene, saved, path)
+        assert journal_file.read(book.path) == (path, TEXT, dump(scene))
+        assert list(journal_folder().iterdir()) == [book.path]
+        sizes.append(book.path.stat().st_size)
+        paths.add(book.path)
+    assert max(sizes) < sizes[0] + 1100
+    assert 2 < len(paths) < 20
+
+
 def test_a_cut_journal_gives_an_earlier_version(book, path, tmp_path):
     saved = scene = load(path).scene
     versions = [TEXT]
