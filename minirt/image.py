@@ -64,6 +64,12 @@ class Image:
 
         return pillow.fromarray(self.array)
 
+    def pil_in_place(self) -> PillowImage:
+        """Return the picture as a Pillow image, which overwrites `array` where that saves a copy."""
+        from minirt.formats.in_frame import in_frame
+
+        return in_frame(self.array) or self.pil
+
     @property
     def deep(self) -> np.ndarray:
         """The picture with 16 bits a channel, (h, w, 3) uint16, made of its light; RenderError without light."""
@@ -99,9 +105,17 @@ class Image:
         self.write(buffer, name, bits, quality, texts)
         return buffer.getvalue()
 
-    def write(self, file: BinaryIO, name: str, bits: int | None, quality: int | None, texts: Mapping[str, str]) -> None:
+    def write(
+        self,
+        file: BinaryIO,
+        name: str,
+        bits: int | None,
+        quality: int | None,
+        texts: Mapping[str, str],
+        in_place: bool = False,
+    ) -> None:
         """Write the bytes of a file in a format, part by part where the format allows it; OSError when that fails, and
-        RenderError when the format cannot hold the picture. The arguments are those of `encode`."""
+        RenderError when the format cannot hold the picture. The arguments are those of `save`."""
         bits = check_bits(name, bits)
         check_quality(name, quality)
         try:
@@ -111,7 +125,8 @@ class Image:
                 file.write(self.encode_by_own(name))
             else:
                 options = {} if quality is None else {"quality": quality}
-                self.pil.save(cast("Any", PlainFile(file)), "PNG" if name == "APNG" else name, **options)
+                picture = self.pil_in_place() if in_place else self.pil
+                picture.save(cast("Any", PlainFile(file)), "PNG" if name == "APNG" else name, **options)
         except (OSError, ValueError, KeyError, OverflowError) as error:
             if isinstance(error, OSError) and error.errno:
                 raise
@@ -133,14 +148,15 @@ class Image:
         bits: int | None = None,
         quality: int | None = None,
         texts: Mapping[str, str] = NO_TEXTS,
+        in_place: bool = False,
     ) -> None:
         """Write a file in the format of its extension, as a whole or not at all; RenderError when that fails.
 
-        The arguments are those of `encode`.
+        The arguments are those of `encode`. `in_place` may overwrite the picture, which saves 4 bytes a pixel.
         """
         name = format_of(path)
         try:
-            atomic_write.write(path, lambda file: self.write(file, name, bits, quality, texts))
+            atomic_write.write(path, lambda file: self.write(file, name, bits, quality, texts, in_place))
         except OSError as error:
             raise RenderError(f"{os.fspath(path)}: cannot write: {error.strerror or error}") from None
 

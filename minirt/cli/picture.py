@@ -127,12 +127,15 @@ def clipped(scene: Scene, options: argparse.Namespace, width: int, height: int) 
 
 
 def write(image: Image, output: str, scene: Scene, options: argparse.Namespace) -> None:
-    """Write a picture to a file, or to standard output as PNG when `output` is `-`; PNG carries scene and settings."""
+    """Write a picture to a file, or to standard output as PNG when `output` is `-`; PNG carries scene and settings.
+
+    The picture may be overwritten.
+    """
     texts = texts_for(output, scene, options) if options.metadata else {}
     if output == "-":
         say_bytes(image.encode(bits=options.bits, quality=options.quality, texts=texts))
         return
-    image.save(output, bits=options.bits, quality=options.quality, texts=texts)
+    image.save(output, bits=options.bits, quality=options.quality, texts=texts, in_place=True)
 
 
 def texts_for(output: str, scene: Scene, options: argparse.Namespace) -> dict[str, str]:
