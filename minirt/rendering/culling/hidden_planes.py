@@ -73,11 +73,14 @@ def unhidden(
     planes = block.planes
     slack = MARGIN * (1 + np.abs(corners).sum())
     slopes = corners @ by_axis[:, planes]
-    greatest, least = slopes.max(axis=0) + slack, slopes.min(axis=0) - slack
+    hiding = planes[hides[planes]]
+    if not len(hiding):
+        return planes
     with np.errstate(divide="ignore"):  # a plane at the origin is seen everywhere
-        nearest = greatest / heights[planes]
-    farthest = np.where(hides[planes], least / (heights[planes] + error[planes]), 0.0)
-    kept: np.ndarray = planes[(greatest > 0) & (nearest * COINCIDENT >= farthest.max(initial=0.0))]
+        farthest = (slopes[:, hides[planes]] - slack) / (heights[hiding] + error[hiding])
+        nearest = (slopes + slack) / heights[planes]
+    hider = farthest[:, farthest.min(axis=0).argmax(), None]
+    kept: np.ndarray = planes[(nearest > 0).any(axis=0) & (nearest * COINCIDENT >= hider).any(axis=0)]
     return kept
 
 
