@@ -9,10 +9,11 @@ import numpy as np
 
 from minirt.kernel.culling.binning import Grid
 from minirt.rendering.culling.dual_hull import within_hull
-from minirt.rendering.culling.hidden_planes import COINCIDENT, is_crowd, nearest_runs
+from minirt.rendering.culling.hidden_planes import COINCIDENT, MOST_WORK, is_crowd, nearest_runs
 from minirt.rendering.culling.planes import CellRuns, rounding
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 
+FIRST_WORK, PASSES = 2**19, 4  # planes of blocks at least, and of each plane, that are looked at before that
 PER_CELL = 32  # planes in a cell on average, from which on those are looked for that are never seen
 
 
@@ -34,7 +35,8 @@ def seen_planes(
     normals, heights, error = -np.sign(height[:, None]) * planes[:, :3], np.abs(height), 2 * rounding(planes, origin)
     left = np.flatnonzero(shown)
     if not radius:
-        runs = nearest_runs(grid, normals[left], heights[left], error[left], hides[left])
+        work = min(MOST_WORK, max(FIRST_WORK, PASSES * len(left) * len(grid.frames)))
+        runs = nearest_runs(grid, normals[left], heights[left], error[left], hides[left], work)
         if runs is not None and runs.lengths.sum() <= PER_CELL * grid.cells:
             return shown, runs
         left = left[~within_hull(normals[left], heights[left], error[left], hides[left], COINCIDENT)]

@@ -38,7 +38,12 @@ def is_crowd(planes: int, grid: Grid) -> bool:
 
 
 def nearest_runs(
-    grid: Grid, normals: np.ndarray, heights: np.ndarray, error: np.ndarray, hides: np.ndarray
+    grid: Grid,
+    normals: np.ndarray,
+    heights: np.ndarray,
+    error: np.ndarray,
+    hides: np.ndarray,
+    most_work: int = MOST_WORK,
 ) -> CellRuns | None:
     """Return runs as `cell_runs`, without planes that others hide from the origin of the grid; None if it takes long.
 
@@ -52,7 +57,7 @@ def nearest_runs(
         block = blocks.popleft()
         kept = unhidden(grid, block, by_axis, heights, error, hides)
         cells, work = block.columns * block.rows, work + len(block.planes)
-        if work > MOST_WORK:
+        if work > most_work:
             return None
         if cells <= max(1, grid.cells // BLOCKS) or cells * len(kept) <= SMALL_BLOCK:
             runs.append(runs_of_block(grid, block, normals, kept))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import minirt
-from minirt.rendering.culling import dual_hull, foremost_planes
+from minirt.kernel.culling.binning import Grid
+from minirt.rendering.culling import dual_hull, foremost_planes, hidden_planes
 from minirt.rendering.scene_packing import Packing
 from tests.rendering.culling.test_hidden_planes import HEIGHT, WIDTH, cull_all, light_of
 
@@ -88,6 +91,23 @@ def test_few_planes_are_left(name: str, head: str, most: int, monkeypatch: pytes
     cull_as_crowd(monkeypatch)
     listed = np.unique(Packing().pack(scene_of(name, head), WIDTH, HEIGHT).tile_shapes)
     assert 0 < np.sum(listed < PLANES) <= most
+
+
+def test_cells_of_planes_that_hide_none_are_given_up_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked_at: list[int] = []
+    original = hidden_planes.unhidden
+
+    def unhidden(grid: Grid, block: hidden_planes.Block, *arguments: Any) -> np.ndarray:
+        looked_at.append(len(block.planes))
+        return original(grid, block, *arguments)
+
+    monkeypatch.setattr(hidden_planes, "unhidden", unhidden)
+    cull_as_crowd(monkeypatch)
+    monkeypatch.setattr(foremost_planes, "FIRST_WORK", 0)
+    scene = scene_of("repeated")
+    Packing().pack(scene.remove(*scene.lights), WIDTH, HEIGHT)
+    assert PLANES in looked_at
+    assert sum(each for each in looked_at if each > 1) <= 5 * PLANES
 
 
 def test_the_hull_of_a_cube_hides_what_is_beyond_its_corners() -> None:
