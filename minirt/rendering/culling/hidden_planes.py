@@ -78,15 +78,17 @@ def unhidden(
     planes = block.planes
     slack = MARGIN * (1 + np.abs(corners).sum())
     slopes = corners @ by_axis[:, planes]
-    hiding = planes[hides[planes]]
-    if not len(hiding):
-        return planes
+    greatest, least = slopes.max(axis=0) + slack, slopes.min(axis=0) - slack
+    farthest = np.where(hides[planes], least / np.maximum(heights[planes] + error[planes], 1e-300), 0.0)
+    hider = farthest.argmax()
     with np.errstate(divide="ignore"):  # a plane at the origin is seen everywhere
-        farthest = (slopes[:, hides[planes]] - slack) / (heights[hiding] + error[hiding])
-        nearest = (slopes + slack) / heights[planes]
-    hider = farthest[:, farthest.min(axis=0).argmax(), None]
-    kept: np.ndarray = planes[(nearest > 0).any(axis=0) & (nearest * COINCIDENT >= hider).any(axis=0)]
-    return kept
+        kept = np.flatnonzero((greatest > 0) & (greatest / heights[planes] * COINCIDENT >= farthest[hider]))
+        if farthest[hider] > 0:
+            nearest = (slopes[:, kept] + slack) / heights[planes[kept]]
+            depths = (slopes[:, hider] - slack) / (heights[planes[hider]] + error[planes[hider]])
+            kept = kept[(nearest * COINCIDENT >= depths[:, None]).any(axis=0)]
+    seen: np.ndarray = planes[kept]
+    return seen
 
 
 def quarters(block: Block) -> list[Block]:
