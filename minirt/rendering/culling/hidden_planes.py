@@ -79,11 +79,11 @@ def unhidden(
     slack = MARGIN * (1 + np.abs(corners).sum())
     slopes = corners @ by_axis[:, planes]
     greatest, least = slopes.max(axis=0) + slack, slopes.min(axis=0) - slack
-    farthest = np.where(hides[planes], least / np.maximum(heights[planes] + error[planes], 1e-300), 0.0)
+    farthest = np.where(hides[planes], least / np.maximum(heights[planes] + error[planes], 1e-300), -np.inf)
     hider = farthest.argmax()
     with np.errstate(divide="ignore"):  # a plane at the origin is seen everywhere
-        kept = np.flatnonzero((greatest > 0) & (greatest / heights[planes] * COINCIDENT >= farthest[hider]))
-        if farthest[hider] > 0:
+        kept = np.flatnonzero((greatest > 0) & (greatest / heights[planes] * COINCIDENT >= max(farthest[hider], 0.0)))
+        if farthest[hider] > -np.inf:
             nearest = (slopes[:, kept] + slack) / heights[planes[kept]]
             depths = (slopes[:, hider] - slack) / (heights[planes[hider]] + error[planes[hider]])
             kept = kept[(nearest * COINCIDENT >= depths[:, None]).any(axis=0)]
