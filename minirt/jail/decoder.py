@@ -8,16 +8,19 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+from minirt.jail.plain_pnm import Levels, read_levels
 
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
+    from PIL.ImageFile import ImageFile
 
 SIDE = 8192  # pixels
 FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TIFF", "PPM", "TGA", "WEBP")  # raster formats: no programs, no fonts
 READ_BY_PROGRAM = (b"#?", b"/* XPM */")  # how Radiance and XPM pictures begin, which are not decoded here
 MOST_READS = 1_000_000  # of a file, by Pillow; a TIFF of 8192x8192 pixels has 262,144 tiles of 16x16
-PLAIN_PNM = (b"P1", b"P2", b"P3")  # text, in which Pillow takes 3 us for a comment
+PLAIN_PNM = (b"P1", b"P2", b"P3")  # text, in which Pillow takes 3 us for a comment, 0.3 us for a level
 COMMENTS = re.compile(rb"(?:#[^\r\n]*+[\r\n]*+)++")
 BYTES = {"RGB": 3, "I": 4, "I;16": 2, "I;16L": 2, "I;16B": 2}  # of a pixel, by the mode in which Pillow decodes it
 
@@ -68,7 +71,7 @@ def decode(data: bytes) -> Decoded:
                 data = COMMENTS.sub(b"\n", data)
             image = pillow.open(File(data), formats=FORMATS)
             check_size(*image.size)
-            return pixels_of(image)
+            return pixels_of(read_plain(image, data) if data.startswith(PLAIN_PNM) and image.mode != "1" else image)
     except DecodingError:
         raise
     except pillow.DecompressionBombError:
@@ -79,6 +82,17 @@ def decode(data: bytes) -> Decoded:
         raise DecodingError("needs more memory than there is to decode it") from None
     except Exception as error:  # damaged files make decoders raise anything
         raise DecodingError(f"is a damaged picture ({error})") from None
+
+
+def read_plain(image: ImageFile, data: bytes) -> PillowImage:
+    """Return the picture of a plain PGM or PPM file, whose header Pillow has read; ValueError."""
+    from PIL import Image as pillow  # noqa: N813
+
+    header = image.tile[0]
+    white, size = (65535, 4) if image.mode == "I" else (255, 1)
+    levels = Levels(cast("tuple[str, int]", header.args)[1], white, size)
+    count = image.width * image.height * len(image.getbands())
+    return pillow.frombytes(image.mode, image.size, read_levels(data, header.offset, count, levels))
 
 
 def pixels_of(image: PillowImage) -> Decoded:

@@ -38,7 +38,12 @@ def is_crowd(planes: int, grid: Grid) -> bool:
 
 
 def nearest_runs(
-    grid: Grid, normals: np.ndarray, heights: np.ndarray, error: np.ndarray, hides: np.ndarray
+    grid: Grid,
+    normals: np.ndarray,
+    heights: np.ndarray,
+    error: np.ndarray,
+    hides: np.ndarray,
+    most_work: int = MOST_WORK,
 ) -> CellRuns | None:
     """Return runs as `cell_runs`, without planes that others hide from the origin of the grid; None if it takes long.
 
@@ -52,7 +57,7 @@ def nearest_runs(
         block = blocks.popleft()
         kept = unhidden(grid, block, by_axis, heights, error, hides)
         cells, work = block.columns * block.rows, work + len(block.planes)
-        if work > MOST_WORK:
+        if work > most_work:
             return None
         if cells <= max(1, grid.cells // BLOCKS) or cells * len(kept) <= SMALL_BLOCK:
             runs.append(runs_of_block(grid, block, normals, kept))
@@ -74,11 +79,16 @@ def unhidden(
     slack = MARGIN * (1 + np.abs(corners).sum())
     slopes = corners @ by_axis[:, planes]
     greatest, least = slopes.max(axis=0) + slack, slopes.min(axis=0) - slack
+    farthest = np.where(hides[planes], least / np.maximum(heights[planes] + error[planes], 1e-300), -np.inf)
+    hider = farthest.argmax()
     with np.errstate(divide="ignore"):  # a plane at the origin is seen everywhere
-        nearest = greatest / heights[planes]
-    farthest = np.where(hides[planes], least / (heights[planes] + error[planes]), 0.0)
-    kept: np.ndarray = planes[(greatest > 0) & (nearest * COINCIDENT >= farthest.max(initial=0.0))]
-    return kept
+        kept = np.flatnonzero((greatest > 0) & (greatest / heights[planes] * COINCIDENT >= max(farthest[hider], 0.0)))
+        if farthest[hider] > -np.inf:
+            nearest = (slopes[:, kept] + slack) / heights[planes[kept]]
+            depths = (slopes[:, hider] - slack) / (heights[planes[hider]] + error[planes[hider]])
+            kept = kept[(nearest * COINCIDENT >= depths[:, None]).any(axis=0)]
+    seen: np.ndarray = planes[kept]
+    return seen
 
 
 def quarters(block: Block) -> list[Block]:

@@ -10,7 +10,6 @@ from minirt.kernel.culling.binning import MARGIN, Grid
 from minirt.rendering.packing.lights import light_position, radius_of, tangent_of
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Lamp, ParallelLight
-from minirt.shapes import Shape
 
 
 class CellRuns(NamedTuple):
@@ -74,13 +73,9 @@ def never_occludes(shape_arrays: ShapeArrays, eye: np.ndarray, light: Lamp, radi
 
 def opaque_planes(shape_arrays: ShapeArrays) -> np.ndarray:
     """Whether no light passes through each plane."""
-    owners = shape_arrays.owner[shape_arrays.plane_indices].tolist()
-    return np.array([not is_transparent(shape_arrays.shapes[owner]) for owner in owners], bool)
-
-
-def is_transparent(shape: Shape) -> bool:
-    """Whether light passes through a shape."""
-    return shape.glass is not None and shape.glass.share > 0
+    shapes = shape_arrays.shapes
+    glass = [shapes[owner].glass for owner in shape_arrays.owner[shape_arrays.plane_indices].tolist()]
+    return np.array([each is None or each.share <= 0 for each in glass], bool)
 
 
 def cell_runs(grid: Grid, normals: np.ndarray, lean: float = 0.0) -> CellRuns:

@@ -13,10 +13,11 @@ from minirt.kernel.culling.binning import MARGIN, Grid
 from minirt.kernel.frame import tile_count
 from minirt.kernel.stored_light import TILE
 from minirt.rendering.crop import Crop
-from minirt.rendering.culling.hidden_planes import is_crowd, nearest_runs
+from minirt.rendering.culling.foremost_planes import seen_planes
+from minirt.rendering.culling.hidden_planes import is_crowd
 from minirt.rendering.culling.light_frustum import SPREAD, Cluster, frustum_grid
 from minirt.rendering.culling.list_sizes import ADVICE, COARSEST, MEMBER, QUICKLY_BUILT, WHAT, check_lists
-from minirt.rendering.culling.planes import CellRuns, cell_runs, opaque_planes, rounding, signed_heights
+from minirt.rendering.culling.planes import CellRuns, cell_runs, opaque_planes, signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
@@ -170,11 +171,11 @@ def bin_shapes(
     """
     height = signed_heights(shape_arrays.planes, origin, radius)
     shown = ~skipped
+    runs: CellRuns | None = None
+    if hiding is not None and is_crowd(int(shown.sum()), grid):
+        shown, runs = seen_planes(shape_arrays, shown, height, origin, grid, hiding, radius)
     planes, heights = shape_arrays.planes[shown], height[shown]
     towards = -np.sign(heights[:, None]) * planes[:, :3]
-    runs: CellRuns | None = None
-    if hiding is not None and is_crowd(len(planes), grid) and not radius and not lean:
-        runs = nearest_runs(grid, towards, np.abs(heights), 2 * rounding(planes, origin), hiding[shown])
     check_lists(kernel, shape_arrays, balls, origin, grid, copies, largest, len(planes), runs)
     kinds, stride = len(shape_arrays.rows), grid.cells + 1
     cones, counts = np.zeros((len(shape_arrays.slots), 5)), np.zeros(kinds * stride, np.int64)
