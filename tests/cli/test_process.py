@@ -19,6 +19,7 @@ QUIETLY = "import contextlib, io\nfrom minirt.cli import main\nwith contextlib.r
 HEAVY = {"numba", "llvmlite", "pyglet", "PIL", "minirt.mlx", "minirt.viewer"}
 OTHER_WORK = {"PIL", "minirt.movie", "minirt.report", "minirt.meshes.obj"}  # other formats, reports, meshes
 OTHER_WORK |= {"minirt.materials.radiance", "minirt.materials.xpm", "minirt.timing"}  # textures, slow pictures
+OTHER_WORK |= {"minirt.rendering.culling.hidden_planes"}  # thousands of planes
 OTHER_WORK |= {"minirt.rendering.queries.pick", "minirt.rendering.queries.preview"}  # clicks, coarse pictures
 FOR_MISTAKES = {"difflib", "logging", "subprocess"}  # needed to report a mistake, or to compile
 CRYPTOGRAPHY = {"secrets", "hashlib"}

@@ -9,8 +9,8 @@ import numpy as np
 
 from minirt.kernel.culling.binning import Grid
 from minirt.rendering.culling.dual_hull import within_hull
-from minirt.rendering.culling.hidden_planes import COINCIDENT, MOST_WORK, is_crowd, nearest_runs
-from minirt.rendering.culling.planes import CellRuns, rounding
+from minirt.rendering.culling.hidden_planes import COINCIDENT, MOST_WORK, nearest_runs
+from minirt.rendering.culling.planes import CellRuns, is_crowd, rounding
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 
 FIRST_WORK, PASSES = 2**19, 4  # planes of blocks at least, and of each plane, that are looked at before that

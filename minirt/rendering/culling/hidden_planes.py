@@ -14,7 +14,6 @@ import numpy as np
 from minirt.kernel.culling.binning import MARGIN, Grid
 from minirt.rendering.culling.planes import CellRuns, cell_runs
 
-CROWD = 2**24  # planes times cells, from which on hidden planes are culled
 SMALL_BLOCK = 2**14  # planes times cells of a block that is not divided any more
 BLOCKS = 2**12  # nor is a block of one part in so many of the cells
 MOST_WORK = 2**22  # planes of blocks that are looked at, before culling is given up
@@ -30,11 +29,6 @@ class Block(NamedTuple):
     columns: int
     rows: int
     planes: np.ndarray
-
-
-def is_crowd(planes: int, grid: Grid) -> bool:
-    """Whether so many planes are worth culling."""
-    return planes * grid.cells > CROWD
 
 
 def nearest_runs(

@@ -11,6 +11,8 @@ from minirt.rendering.packing.lights import light_position, radius_of, tangent_o
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Lamp, ParallelLight
 
+CROWD = 2**24  # planes times cells, from which on hidden planes are culled
+
 
 class CellRuns(NamedTuple):
     """Runs of cells in which planes may be hit, each within a row of cells."""
@@ -18,6 +20,11 @@ class CellRuns(NamedTuple):
     planes: np.ndarray  # (r,) index of the plane
     first: np.ndarray  # (r,) the first cell
     lengths: np.ndarray  # (r,) number of cells
+
+
+def is_crowd(planes: int, grid: Grid) -> bool:
+    """Whether so many planes are worth culling."""
+    return planes * grid.cells > CROWD
 
 
 def signed_heights(planes: np.ndarray, point: np.ndarray, radius: float = 0.0) -> np.ndarray:

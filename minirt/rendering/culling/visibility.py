@@ -13,11 +13,9 @@ from minirt.kernel.culling.binning import MARGIN, Grid
 from minirt.kernel.frame import tile_count
 from minirt.kernel.stored_light import TILE
 from minirt.rendering.crop import Crop
-from minirt.rendering.culling.foremost_planes import seen_planes
-from minirt.rendering.culling.hidden_planes import is_crowd
 from minirt.rendering.culling.light_frustum import SPREAD, Cluster, frustum_grid
 from minirt.rendering.culling.list_sizes import ADVICE, COARSEST, MEMBER, QUICKLY_BUILT, WHAT, check_lists
-from minirt.rendering.culling.planes import CellRuns, cell_runs, opaque_planes, signed_heights
+from minirt.rendering.culling.planes import CellRuns, cell_runs, is_crowd, opaque_planes, signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
@@ -173,6 +171,8 @@ def bin_shapes(
     shown = ~skipped
     runs: CellRuns | None = None
     if hiding is not None and is_crowd(int(shown.sum()), grid):
+        from minirt.rendering.culling.foremost_planes import seen_planes
+
         shown, runs = seen_planes(shape_arrays, shown, height, origin, grid, hiding, radius)
     planes, heights = shape_arrays.planes[shown], height[shown]
     towards = -np.sign(heights[:, None]) * planes[:, :3]
