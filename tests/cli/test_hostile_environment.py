@@ -16,12 +16,12 @@ ARGUMENTS = ("ball.rt", "--size", "16x16", "--no-trust", "-o")
 TEXTURED = "A 0.2 255,255,255\nC 0,0,-5 0,0,1 70\nL -4,3,-3 0.7 255,255,255\nsp 0,0,0 2 10,0,255 texture:x.ppm\n"
 ENVIRONMENTS: dict[str, dict[str, str | None]] = {
     "no home": {"HOME": None, "XDG_CACHE_HOME": None},
-    "a home that is not there": {"HOME": "/nonexistent/home", "XDG_CACHE_HOME": None},
+    "a home that is not there": {"HOME": "/dev/null/home", "XDG_CACHE_HOME": None},
     "an empty cache": {"XDG_CACHE_HOME": ""},
     "a relative cache": {"XDG_CACHE_HOME": "relative"},
     "a file as cache": {"XDG_CACHE_HOME": "/dev/null"},
     "control characters in the cache": {"XDG_CACHE_HOME": "/dev/null/line\nbreak\x1b[31m"},
-    "no temporary folder": {"TMPDIR": "/nonexistent"},
+    "no temporary folder": {"TMPDIR": "/dev/null/tmp"},
 }
 FEW_FILES = """
 import os, resource, sys
