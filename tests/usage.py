@@ -90,6 +90,6 @@ class Record:
 
     @property
     def verdict(self) -> str:
-        """What has become of the resources since the warm-up, in words."""
+        """The change of the resources since the warm-up, in words."""
         change = self.after.memory / self.before.memory - 1
         return f"{'flat' if self.is_flat else 'NOT FLAT'}: {self.before} -> {self.after} ({change:+.1%} memory)"

@@ -26,7 +26,7 @@ class Nothing(type):
 
 
 class Absent(Exception, metaclass=Nothing):  # noqa: N818 - a class in the place of any class, of errors, too
-    """What a stand-in has under every name; calls of it do nothing."""
+    """The value of every name in a stand-in; calls of it do nothing."""
 
     def __getattr__(self, name: str) -> type:
         return Absent

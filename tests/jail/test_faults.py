@@ -135,7 +135,7 @@ def test_time_in_which_the_program_is_stopped_does_not_count(monkeypatch: pytest
 def test_a_helper_that_hangs_on_to_its_pipes_by_another_process(
     monkeypatch: pytest.MonkeyPatch, used: Helper, tmp_path: Path
 ) -> None:
-    """Where no filter forbids it, a decoder may leave a process behind, which keeps the pipes open."""
+    """A decoder may leave a process behind, which keeps the pipes open, where no filter forbids it."""
     note = f"open({str(tmp_path / 'pid')!r}, 'w').write(str(os.getpid()))"
     source = f"import os, signal\nif os.fork(): os._exit(0)\n{note}\nsignal.pause()"
     monkeypatch.setattr(helper, "COMMAND", (sys.executable, "-S", "-c", source))

@@ -1,4 +1,4 @@
-"""What is read of other processes: their processor time, and whether their compilers have ended."""
+"""Processor time of other processes, and the wait for their compilers."""
 
 from __future__ import annotations
 
