@@ -38,6 +38,7 @@ def test_ctrl_z_stops_the_program_and_fg_goes_on(folder: Path) -> None:
             screen.wait_for(PROMPT)
             assert not (folder / "x.png").exists()
             os.write(screen.reader, b"fg\n")
+            screen.wait_for(PROMPT)  # else the terminal shows the next line before it
             os.write(screen.reader, b"echo status $?\n")
             screen.wait_for(b"status 0")
             screen.wait_for(PROMPT)
