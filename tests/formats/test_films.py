@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from weakref import WeakSet
@@ -13,6 +14,11 @@ from PIL import Image as pillow  # noqa: N813
 from minirt.errors import RenderError
 from minirt.image import Image
 from minirt.movie import save_movie
+from tests import waiting
+from tests.processes import in_child
+
+needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+pytestmark = pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning")  # what Python 3.12 says of a fork
 
 COLOURS = [(250, 0, 0), (0, 250, 0), (0, 0, 250), (200, 180, 20)]
 
@@ -150,6 +156,35 @@ def test_two_pictures_of_a_film_are_in_memory_at_once(tmp_path: Path, name: str)
     path = tmp_path / name
     assert most_alive(path, lambda pictures: save_movie(pictures, path)) <= 2
     assert most_alive(path, lambda pictures: save_movie(list(pictures), path)) == 12  # which would be noticed
+
+
+def films_before_and_after_a_fork(folder: Path, name: str) -> list[int]:
+    """Write a film, fork, and write it again in the child process; return the lengths of both files.
+
+    At this size FFmpeg converts colours in several threads, none of which a child has.
+    """
+    pictures, paths = film(360, 640), [folder / f"before-{name}", folder / f"after-{name}"]
+    save_movie(pictures, paths[0])
+    assert in_child(lambda: save_movie(pictures, paths[1])) == 0
+    return [path.stat().st_size for path in paths]
+
+
+@needs_fork
+@pytest.mark.parametrize("name", ["a.mp4", "a.webm"])
+def test_a_forked_child_writes_the_film_that_its_parent_has_written(tmp_path: Path, name: str) -> None:
+    pytest.importorskip("av")
+    before, after = films_before_and_after_a_fork(tmp_path, name)
+    assert before == after > 0
+
+
+@needs_fork
+def test_a_conversion_that_all_films_share_would_hang(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    av = pytest.importorskip("av", "17", reason="earlier versions convert without threads")
+    reformatter = av.video.reformatter.VideoReformatter()
+    monkeypatch.setattr(av.video.reformatter, "VideoReformatter", lambda: reformatter)
+    monkeypatch.setattr(waiting, "HANG_LIMIT", 2.0)
+    with pytest.raises(TimeoutError, match="in add"):
+        films_before_and_after_a_fork(tmp_path, "a.mp4")
 
 
 @pytest.mark.parametrize("name", ["a.gif", "a.webp", "a.apng", "a.mp4", "a.webm"])

@@ -67,11 +67,14 @@ class VideoFilm(Film):
 
     def __init__(self, out: BinaryIO, fps: float, quality: int | None = None) -> None:
         import av
+        from av.video.reformatter import VideoReformatter
 
         super().__init__(out, fps, quality)
         with value_errors():
             self.film = av.open(FailingOnce(out), "w", format=CODECS[self.name][0])
         self.stream: Any = None
+        # One of its own: PyAV 19 shares one among all films, and its threads are gone in a child after `os.fork()`.
+        self.reformatter = VideoReformatter()
 
     def add(self, picture: np.ndarray) -> None:
         """Write a picture, (h, w, 3) uint8."""
@@ -82,8 +85,8 @@ class VideoFilm(Film):
             if self.stream is None:
                 self.stream = self.new_stream(*even.shape[:2])
             frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(even), format="rgb24")
-            yuv = frame.reformat(format="yuv420p", dst_colorspace="ITU709", dst_color_range="MPEG")
-            self.film.mux(self.stream.encode(yuv))
+            converted = {"format": "yuv420p", "dst_colorspace": "ITU709", "dst_color_range": "MPEG"}
+            self.film.mux(self.stream.encode(self.reformatter.reformat(frame, **converted)))
 
     def new_stream(self, height: int, width: int) -> Any:
         """Return a stream of pictures of that size."""
