@@ -12,6 +12,7 @@ import argparse
 import random
 from collections import deque
 from collections.abc import Callable
+from concurrent.futures import Future
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -118,7 +119,8 @@ class User:
         self.session = session
         self.backend = backend
         self.pictures: list[Shown] = []
-        self.finished = Event()  # the picture was refined, or was not to be
+        self.finished = Event()  # a picture of a scene later than the first `seen` ones was refined, or was not to be
+        self.seen = 0
         self.draw = session.draw
         session.draw = self.draw_and_note  # type: ignore[method-assign]
         self.handed = 0.0
@@ -138,22 +140,24 @@ class User:
         if latest and latest.pixels is not None:
             if not self.pictures or self.pictures[-1].scene is not latest.job.scene:
                 self.pictures.append(Shown(latest.job.scene, latest.job.divisor, self.handed, perf_counter()))
-            if latest.job.divisor == 1:
+            if latest.job.divisor == 1 and len(self.pictures) > self.seen:
                 self.finished.set()
 
-    def act(self) -> None:
-        """Measure, and end the session."""
+    def act(self, latency: Future[Latency]) -> None:
+        """Measure the latency, and end the session."""
         try:
             self.finished.wait()
-            self.measure()
+            latency.set_result(self.measure())
+        except BaseException as error:
+            latency.set_exception(error)
         finally:
             self.backend.do(self.session.quit)  # type: ignore[attr-defined]
 
-    def measure(self) -> None:
+    def measure(self) -> Latency:
         """Tap keys, hold one, and drag the pointer."""
         self.tap(0)  # the first coarse picture knows how long the first picture took
         taps = [self.tap(number) for number in range(TAPS)]
-        self.latency = Latency(
+        return Latency(
             [shown.handed - start for start, shown in taps],
             [shown.shown - start for start, shown in taps],
             self.gaps(partial(self.hold, KEYS[0])),
@@ -169,13 +173,13 @@ class User:
 
     def tap(self, number: int) -> tuple[float, Shown]:
         """Tap a key while a picture is refined; return the time and the picture that follows."""
+        self.seen = len(self.pictures)
         self.finished.clear()
-        before = len(self.pictures)
         keyboard, key = self.session.window.keyboard, KEYS[number % len(KEYS)]
         start = self.do(lambda: (keyboard.press(key, perf_counter()), keyboard.release(key)))
         self.finished.wait()
         sleep(self.random.uniform(*TAP_DELAYS))
-        return start, self.pictures[before]
+        return start, self.pictures[self.seen]
 
     def gaps(self, move: Callable[[], float]) -> list[float]:
         """Move something while a picture is refined; return the seconds between its start, its pictures and its end."""
@@ -215,12 +219,10 @@ def measure(scene: Scene, width: int, height: int, window: bool = False) -> Late
     session = desktop.open_session(
         scene, Path("scene.rt"), (width, height), renderer, Mlx(backend), "qwerty", False, WINDOW_SAMPLES, False
     )
-    user = User(session, backend)
-    thread = Thread(target=user.act, daemon=True)
-    thread.start()
+    latency: Future[Latency] = Future()
+    Thread(target=User(session, backend).act, args=[latency], daemon=True).start()
     desktop.run_event_loop(session)
-    thread.join()
-    return user.latency
+    return latency.result()
 
 
 def main() -> None:

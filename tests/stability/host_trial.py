@@ -103,9 +103,10 @@ def enter(project: ProjectCopy, cache: Path, seconds: float, quiet: bool) -> Non
     sys.path[:] = [str(project.root), *(each for each in sys.path if not (Path(each) / "minirt/__init__.py").exists())]
     for name in [each for each in sys.modules if each.split(".")[0] in ("minirt", "tests")]:
         del sys.modules[name]
-    sys.dont_write_bytecode = quiet
-    if quiet:  # else bytecode of changed sources could be taken for that of others
-        os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+    # Bytecode of a source would be taken for that of another of the same length and second.
+    sys.dont_write_bytecode = True
+    os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+    if quiet:
         for name, limit in LIMITS.items():
             resource.setrlimit(getattr(resource, name), (limit, limit))
         nothing = os.open(os.devnull, os.O_RDWR)
