@@ -10,12 +10,13 @@ import errno
 import io
 import os
 import signal
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import pytest
+
+from tests.processes import in_child
 
 Fault = Callable[[memoryview], memoryview]
 
@@ -92,17 +93,10 @@ def is_killed_at(work: Callable[[], object], number: int) -> bool:
         left -= 1
         return data
 
-    child = os.fork()
-    if not child:
-        status = 1
-        try:
-            with faulty_files(kill):
-                work()
-            status = 0
-        except BaseException as error:
-            print(repr(error), file=sys.stderr, flush=True)
-        finally:
-            os._exit(status)
-    _, status = os.waitpid(child, 0)
-    assert os.WIFSIGNALED(status) or not os.WEXITSTATUS(status), "the work failed"
-    return os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGKILL
+    def faulty() -> None:
+        with faulty_files(kill):
+            work()
+
+    status = in_child(faulty)
+    assert status in (0, -signal.SIGKILL), "the work failed"
+    return status != 0

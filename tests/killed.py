@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterator
 from types import FrameType
 from typing import Any
 
+from tests.processes import in_child
+
 
 def kill_at_each_line(work: Callable[[], object], modules: tuple[str, ...]) -> Iterator[int]:
     """Do the work in child processes; yield after each: the first is killed before the first line of the modules, the
@@ -23,15 +25,14 @@ def kill_at_each_line(work: Callable[[], object], modules: tuple[str, ...]) -> I
 
 def is_killed(work: Callable[[], object], modules: tuple[str, ...], number: int) -> bool:
     """Do the work in a child process that kills itself before line `number`; False where it ended before that."""
-    child = os.fork()
-    if not child:
-        try:
-            sys.settrace(killer(modules, number))
-            work()
-        finally:
-            os._exit(0)
-    _, status = os.waitpid(child, 0)
-    return os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGKILL
+
+    def traced() -> None:
+        sys.settrace(killer(modules, number))
+        work()
+
+    status = in_child(traced)
+    assert status in (0, -signal.SIGKILL), "the work failed"
+    return status != 0
 
 
 def killer(modules: tuple[str, ...], number: int) -> Callable[[FrameType, str, Any], Any]:

@@ -27,7 +27,7 @@ from minirt.rendering.queries.rays import Tracer
 from tests.cli.program import SCENE, environment
 from tests.kernel.machine_code.small_kernels import Compiler, call, double, is_found, library, object_code_of
 from tests.kernel.pictures import ALL
-from tests.processes import run
+from tests.processes import in_child, run
 from tests.waiting import HANG_LIMIT
 
 pytestmark = [
@@ -115,14 +115,9 @@ def test_a_pool_of_processes_renders_and_reports_errors(tmp_path: Path, method: 
 
 def holds_in_child(condition: Callable[[], bool]) -> bool:
     """Fork, and return whether a condition holds in the child process."""
-    child = os.fork()
-    if not child:
-        status = 2
-        try:
-            status = 0 if condition() else 1
-        finally:
-            os._exit(status)
-    return os.waitpid(child, 0)[1] == 0
+    status = in_child(lambda: os._exit(2 if condition() else 3))
+    assert status in (2, 3), "the condition could not be found out"
+    return status == 2
 
 
 def is_free(lock: Any) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 import tomllib
 
 import pytest
@@ -12,6 +11,7 @@ from minirt.cli.arguments import argument_parser
 from tests.manual_page import PAGE, manual_page
 from tests.pages import read
 from tests.paths import ROOT
+from tests.processes import run
 
 
 def test_it_is_as_generated() -> None:
@@ -29,7 +29,8 @@ def formatted(source: str) -> tuple[str, str]:
     if not groff:
         pytest.skip("no groff")
     command = [groff, "-man", "-Tascii", "-ww", "-P-c", "-rHY=0"]
-    done = subprocess.run(command, input=source, capture_output=True, text=True, check=True)
+    done = run(command, source, text=True)
+    assert done.returncode == 0
     return done.stdout, done.stderr
 
 

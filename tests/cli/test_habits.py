@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import pytest
 
 from minirt.cli.arguments import argument_parser
 from minirt.cli.completion import completion
+from tests import processes
 from tests.cli.program import Result
 from tests.cli.test_output import pixels
 
@@ -120,8 +120,8 @@ def test_bash_completes_options_choices_and_files(folder: Path, words: tuple[str
     (folder / "notes.txt").touch()
     command = [bash, "-c", COMPLETE, "bash", str(folder), "miniRT", *words]
     script = completion(argument_parser(), "bash")
-    found = subprocess.run(command, env={"SCRIPT": script}, capture_output=True, text=True, check=True)
-    assert found.stderr == ""
+    found = processes.run(command, env={"SCRIPT": script}, text=True)
+    assert (found.returncode, found.stderr) == (0, "")
     assert found.stdout.split("\n")[:-1] == expected
 
 
@@ -134,4 +134,5 @@ def test_completion_names_every_option(run: Run, shell: str) -> None:
             name = option if shell != "fish" else f"-l {option[2:]}" if option.startswith("--") else f"-s {option[1:]}"
             assert name in ended.out.decode()
     if shutil.which(shell):
-        assert subprocess.run([shell, "-n", "-c", ended.out.decode()], check=True, capture_output=True).stderr == b""
+        checked = processes.run([shell, "-n", "-c", ended.out.decode()])
+        assert (checked.returncode, checked.stderr) == (0, b"")

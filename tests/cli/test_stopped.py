@@ -13,6 +13,7 @@ from PIL import Image, ImageChops
 
 from tests.cli.announcing import RENDERING
 from tests.cli.program import ANNOUNCING, program, start
+from tests.processes import until_stopped
 from tests.waiting import HANG_LIMIT
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
@@ -29,12 +30,9 @@ def await_rendering(process: subprocess.Popen[bytes]) -> None:
 def stop_and_continue(process: subprocess.Popen[bytes]) -> bool:
     """Stop a program and its threads, and let it go on; False where it ended before."""
     os.killpg(process.pid, signal.SIGSTOP)
-    _, status = os.waitpid(process.pid, os.WUNTRACED)
-    if os.WIFSTOPPED(status):
+    if stopped := until_stopped(process):
         os.killpg(process.pid, signal.SIGCONT)
-    else:
-        assert os.waitstatus_to_exitcode(status) == 0
-    return os.WIFSTOPPED(status)
+    return stopped
 
 
 def test_a_stopped_program_goes_on(folder: Path) -> None:

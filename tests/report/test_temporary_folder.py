@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from minirt.report.temporary_folder import PREFIX, temporary_folder
+from tests.processes import in_child
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="folders cannot be locked there")
 
@@ -30,12 +31,13 @@ def test_the_folder_ends_with_the_block(parent: Path) -> None:
 
 
 def test_the_folder_of_a_killed_program_is_deleted_by_the_next(parent: Path) -> None:
-    child = os.fork()
-    if not child:
+
+    def killed() -> None:
         with temporary_folder() as made:
             (made / "file").touch()
             os.kill(os.getpid(), signal.SIGKILL)
-    os.waitpid(child, 0)
+
+    assert in_child(killed) == -signal.SIGKILL
     (left,) = parent.iterdir()
     assert (left / "file").exists()
     with temporary_folder() as made:

@@ -11,6 +11,7 @@ import pytest
 
 from minirt.kernel.machine_code import private_files
 from minirt.kernel.machine_code.private_files import key_of, locked, make_private_folder, read, write
+from tests.processes import fork
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="files have no modes there")
 
@@ -132,13 +133,9 @@ def test_a_lock_is_free_although_a_forked_process_has_its_file_open(
     path = tmp_path / "lock"
     reader, writer = os.pipe()
     with locked(path):
-        child = os.fork()
-        if not child:
-            os.close(writer)
-            os.read(reader, 1)  # until the parent process closes the other end
-            os._exit(0)
+        wait = fork(lambda: (os.close(writer), os.read(reader, 1)))  # until the parent process closes the other end
         assert not is_free(path, monkeypatch)
     assert is_free(path, monkeypatch)
     os.close(writer)
-    assert os.waitpid(child, 0)[1] == 0
+    assert wait() == 0
     os.close(reader)

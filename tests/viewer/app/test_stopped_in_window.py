@@ -8,6 +8,7 @@ import signal
 import pytest
 
 import minirt
+from tests.processes import until_stopped
 from tests.viewer.app.test_real_window import picture, viewing
 from tests.waiting import until
 
@@ -20,8 +21,7 @@ def test_keys_that_are_pressed_while_the_program_is_stopped_count_when_it_goes_o
         viewer.key("i", "i")
         viewer.shows(picture(path))
         os.killpg(viewer.process.pid, signal.SIGSTOP)
-        _, status = os.waitpid(viewer.process.pid, os.WUNTRACED)
-        assert os.WIFSTOPPED(status)
+        assert until_stopped(viewer.process)
         viewer.key("Tab", "Tab", "e", "ctrl+s")
         before = path.read_text()
         os.killpg(viewer.process.pid, signal.SIGCONT)
