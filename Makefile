@@ -14,8 +14,9 @@ SUDO    ?= $(if $(filter 0,$(shell id -u)),,sudo)
 # The program is installed in editable mode, so only a change of its dependencies installs it again. The path to the
 # sources is relative: Python reads it in the encoding of the locale, and an absolute one with an umlaut would keep Python
 # from starting under LC_ALL=C.
+UP       = $(shell echo $(VENV)/ | sed 's|[^/]*/|../|g')
 INSTALL  = $(PIP) install --quiet --no-build-isolation --editable $(1) && \
-           for file in $(VENV)/lib/python*/site-packages/*minirt*.pth; do echo ../../../.. >"$$file"; done
+           for file in $(VENV)/lib/python*/site-packages/*minirt*.pth; do echo $(UP)../../.. >"$$file"; done
 
 all: $(NAME) $(KERNELS)  ## install the program as .venv/bin/miniRT, and compile its kernels for this machine
 
@@ -49,8 +50,13 @@ run: $(NAME)  ## show a scene: make run SCENE=scenes/subject.rt
 test: $(DEV) $(KERNELS)  ## run all tests, or some: make test TESTS=tests/shapes
 	$(PYTEST) $(TESTS)
 
+QUICK := not window and not slow
+
 quick: $(DEV)  ## run the tests that take a minute in all
-	$(PYTEST) -m "not window and not slow" $(TESTS)
+	$(PYTEST) -m "$(QUICK)" $(TESTS)
+
+pythons: $(NAME)  ## run quick tests, a film, a window and a notebook with each Python of this machine, in new environments
+	$(VENV)/bin/python -m tests.pythons
 
 FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/test_frame.py \
             tests/kernel/test_invariances.py tests/kernel/test_single.py tests/kernel/shading/test_specular.py \
@@ -131,4 +137,4 @@ docs: $(DEV)  ## build pages on the public names in out/docs, with pdoc
 re: fclean  ## install everything anew
 	$(MAKE) all
 
-.PHONY: all help bonus run test quick processors lowest check fuzz soak types docs bench bench-peers report textures gallery diagrams clean fclean re
+.PHONY: all help bonus run test quick pythons processors lowest check fuzz soak types docs bench bench-peers report textures gallery diagrams clean fclean re

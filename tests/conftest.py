@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import signal
 import threading
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from minirt import jail
 from tests import environment, scheduling
+from tests.paths import ROOT
 from tests.windows import desktop
 
 __all__ = ["desktop"]
@@ -36,6 +38,14 @@ def pytest_configure() -> None:
     for number in {getattr(signal, name, signal.SIGINT) for name in ("SIGHUP", "SIGQUIT", "SIGTERM")}:
         if signal.getsignal(number) is signal.SIG_IGN:
             signal.signal(number, lambda *_: None)
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Do not even import the files that `make quick` leaves out."""
+    if "not slow" in config.option.markexpr and collection_path.is_relative_to(ROOT):
+        name = collection_path.relative_to(ROOT).as_posix() + ("/" if collection_path.is_dir() else "")
+        return scheduling.is_slow(name) or None
+    return None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -22,48 +22,70 @@ SCENE_TESTS = {
     "tests/stability/test_pictures.py",
 }
 
-# Files that `make quick` skips: they take two thirds of the time of all tests that open no window.
-SLOW = {
-    "tests/bench/yardstick/test_yardstick.py",
+# Folders and files that `make quick` leaves out. They take most of the time, above all without compiled kernels, since
+# a kernel takes seconds to compile.
+SLOW = (
+    "tests/bench/",
+    "tests/cli/test_arguments.py",
+    "tests/cli/test_cluster.py",
+    "tests/cli/test_example.py",
+    "tests/cli/test_full_disk.py",
+    "tests/cli/test_hostile_environment.py",
+    "tests/cli/test_movies.py",
+    "tests/cli/test_output.py",
+    "tests/cli/test_process.py",
+    "tests/cli/test_resume.py",
     "tests/cli/test_streams.py",
-    "tests/kernel/bvh/test_queries.py",
-    "tests/kernel/compiler/test_documented_pipeline.py",
-    "tests/kernel/compiler/test_specialisation.py",
-    "tests/kernel/machine_code/test_cache_folder.py",
-    "tests/kernel/machine_code/test_compile_process.py",
-    "tests/kernel/machine_code/test_shipped_code.py",
-    "tests/kernel/shading/test_texturing.py",
+    "tests/cluster/",
+    "tests/fuzz/",
+    "tests/jail/",
+    "tests/kernel/",
     "tests/lanes/test_operators.py",
     "tests/materials/test_textures.py",
+    "tests/newcomer/",
+    "tests/rendering/culling/",
+    "tests/rendering/developing/test_pictures.py",
     "tests/rendering/packing/test_widening.py",
-    "tests/rendering/queries/test_pick.py",
-    "tests/rendering/queries/test_preview.py",
-    "tests/rendering/sampling/test_auto.py",
+    "tests/rendering/queries/",
+    "tests/rendering/sampling/",
+    "tests/rendering/test_apertures.py",
+    "tests/rendering/test_buffers.py",
+    "tests/rendering/test_crop.py",
     "tests/rendering/test_extreme_scenes.py",
+    "tests/rendering/test_memory.py",
     "tests/rendering/test_meshes.py",
-    "tests/report/measurements/test_formula_errors.py",
-    "tests/report/measurements/test_operation_counts.py",
+    "tests/report/measurements/",
+    "tests/report/test_durations.py",
+    "tests/report/test_interruption.py",
     "tests/report/test_report.py",
     "tests/scene/test_fast.py",
     "tests/scene/test_fuzz.py",
     "tests/scene/test_round_trips.py",
     "tests/shapes/test_mapping.py",
     "tests/shapes/test_protocol.py",
-    "tests/stability/test_mutants.py",
-    "tests/stability/test_properties.py",
-    "tests/stability/test_regimes.py",
-    "tests/stability/test_reintersection.py",
-    "tests/stability/test_surfaces.py",
+    "tests/stability/",
+    "tests/test_concurrency.py",
+    "tests/test_environment.py",
+    "tests/test_example_scenes.py",
+    "tests/test_faulty_writes.py",
     "tests/test_fork_safety.py",
+    "tests/test_goldens.py",
+    "tests/test_imports.py",
+    "tests/test_killed_writers.py",
     "tests/test_random_materials.py",
+    "tests/test_readme.py",
+    "tests/test_snippets.py",
+    "tests/test_typed.py",
+    "tests/test_usage.py",
+    "tests/viewer/app/test_building.py",
     "tests/viewer/app/test_monkey.py",
     "tests/viewer/editing/test_every_kind.py",
-}
+)
 
 
 def is_slow(test: str) -> bool:
-    """Whether a test is in one of the slow files."""
-    return file_of(test) in SLOW
+    """Whether a test, or a file of tests, is one that `make quick` leaves out."""
+    return test.startswith(SLOW)
 
 
 def file_of(test: str) -> str:

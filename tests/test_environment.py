@@ -127,7 +127,12 @@ def test_windows_and_scenes_are_groups_and_every_other_file_is_its_own() -> None
     walk, file = "tests/viewer/app/test_walk.py::test_a_walk", Path(__file__).relative_to(ROOT).as_posix()
     assert scheduling.work_group(walk) == scheduling.work_group("tests/mlx/test_window.py::test_x[a]") == "windows"
     assert {scheduling.work_group(f"{each}::test_y") for each in scheduling.SCENE_TESTS} == {"scenes"}
-    assert all((ROOT / each).is_file() for each in scheduling.SCENE_TESTS | scheduling.SLOW)
+    assert all((ROOT / each).is_file() for each in scheduling.SCENE_TESTS)
     assert scheduling.work_group(f"{file}::test_z[b::c]") == file
     tests = [f"{file}::test_z", "tests/test_goldens.py::test_y", walk]
     assert sorted(tests, key=scheduling.order) == tests[::-1]
+
+
+def test_what_quick_leaves_out_exists() -> None:
+    for each in scheduling.SLOW:
+        assert (ROOT / each).is_dir() if each.endswith("/") else (ROOT / each).is_file()

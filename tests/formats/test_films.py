@@ -170,6 +170,7 @@ def films_before_and_after_a_fork(folder: Path, name: str) -> list[int]:
 
 
 @needs_fork
+@pytest.mark.each_python
 @pytest.mark.parametrize("name", ["a.mp4", "a.webm"])
 def test_a_forked_child_writes_the_film_that_its_parent_has_written(tmp_path: Path, name: str) -> None:
     pytest.importorskip("av")

@@ -74,5 +74,6 @@ def test_long_work_shows_a_bar_and_can_be_interrupted(kernel: Any, work: str) ->
     assert (sort, "image/png" in result["data"]) == ("execute_result", True)
 
 
+@pytest.mark.each_python
 def test_short_work_shows_nothing(kernel: Any) -> None:
     assert execute(kernel[1], "short = minirt.render(scene, 32, 18)") == []

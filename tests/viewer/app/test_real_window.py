@@ -151,6 +151,7 @@ def test_ctrl_c_in_the_terminal_ends_the_program(viewer):
     assert viewer.end() == (130, "", "")
 
 
+@pytest.mark.each_python
 def test_keys_edit_and_save_the_scene(viewer):
     viewer.key("i", "i")
     viewer.key("Tab", "Tab", "e", "plus", "ctrl+s")  # to the light, to the sphere

@@ -1,0 +1,82 @@
+"""Run the quick tests, a film, a window and a notebook with each Python that the machine has: `make pythons`.
+
+Each gets a new environment in .venv/pythons, with the newest versions of all packages, and compiles its own kernels.
+The Pythons are those that pyproject.toml names, and newer ones where numba has wheels for them.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+from tests.paths import ROOT
+
+FOLDER = Path(".venv/pythons")
+LATER = 3  # minor versions after the newest named one that are looked for
+TESTS = "not window and not slow or each_python"  # the quick ones, a film, a window and a notebook
+
+
+def named() -> list[str]:
+    """Return the versions of Python that pyproject.toml names, such as 3.11."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    return re.findall(r"Python :: (3\.\d+)", "\n".join(project["classifiers"]))
+
+
+def newer(versions: list[str]) -> list[str]:
+    """Return the versions after these that are looked for."""
+    last = int(versions[-1].partition(".")[2])
+    return [f"3.{minor}" for minor in range(last + 1, last + 1 + LATER)]
+
+
+def find(version: str) -> Path | None:
+    """Return the path of a Python on PATH or in pyenv; None where there is none that starts."""
+    pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
+    on_path = shutil.which(f"python{version}")
+    for path in ([Path(on_path)] if on_path else []) + sorted(pyenv.glob(f"{version}.*/bin/python")):
+        started = subprocess.run([path, "-c", "import venv, ensurepip"], capture_output=True, check=False)
+        if started.returncode == 0:  # pyenv's shims fail, but for the versions that are chosen
+            return path
+    return None
+
+
+def has_numba(version: str) -> bool:
+    """Whether numba has wheels for a version of Python on this system."""
+    wanted = ["--only-binary=:all:", "--no-deps", f"--python-version={version}", "--target=unused", "numba"]
+    command = [sys.executable, "-m", "pip", "install", "--dry-run", "--quiet", *wanted]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+def passes(version: str, python: Path) -> bool:
+    """Run the tests with a Python in a new environment; return whether all pass."""
+    folder = FOLDER / version
+    shutil.rmtree(ROOT / folder, ignore_errors=True)
+    cache = ROOT / folder / "cache"
+    cache.mkdir(parents=True)
+    make = ["make", "--no-print-directory", "quick", f"VENV={folder}", f"PYTHON={python}", f"QUICK={TESTS}"]
+    environment = os.environ | {"XDG_CACHE_HOME": str(cache)}
+    return subprocess.run(make, cwd=ROOT, env=environment, check=False).returncode == 0
+
+
+def main() -> int:
+    """Run the tests with each Python, and print what became of it; return 1 where some fail or nothing was found."""
+    told: dict[str, str] = {}
+    for version in (*named(), *newer(named())):
+        python = find(version)
+        if python and (version in named() or has_numba(version)):
+            print(f"Python {version}: {python}", flush=True)
+            told[version] = "passed" if passes(version, python) else "FAILED"
+        elif python:
+            told[version] = "numba has no wheels for it"
+        else:
+            told[version] = "not found on PATH or in pyenv"
+    print(*(f"Python {version}: {what}" for version, what in told.items()), sep="\n")
+    return int("passed" not in told.values() or "FAILED" in told.values())
+
+
+if __name__ == "__main__":
+    sys.exit(main())
