@@ -47,6 +47,7 @@ SLOW = (
     "tests/rendering/developing/test_pictures.py",
     "tests/rendering/packing/test_widening.py",
     "tests/rendering/queries/",
+    "tests/rendering/running/test_kernels.py",  # which needs wide kernels
     "tests/rendering/sampling/",
     "tests/rendering/test_apertures.py",
     "tests/rendering/test_buffers.py",

@@ -74,7 +74,7 @@ class VideoFilm(Film):
             self.film = av.open(FailingOnce(out), "w", format=CODECS[self.name][0])
         self.stream: Any = None
         # One of its own: PyAV 19 shares one among all films, and its threads are gone in a child after `os.fork()`.
-        self.reformatter = VideoReformatter()
+        self.reformatter: Any = VideoReformatter()
 
     def add(self, picture: np.ndarray) -> None:
         """Write a picture, (h, w, 3) uint8."""
@@ -85,8 +85,8 @@ class VideoFilm(Film):
             if self.stream is None:
                 self.stream = self.new_stream(*even.shape[:2])
             frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(even), format="rgb24")
-            converted = {"format": "yuv420p", "dst_colorspace": "ITU709", "dst_color_range": "MPEG"}
-            self.film.mux(self.stream.encode(self.reformatter.reformat(frame, **converted)))
+            yuv = self.reformatter.reformat(frame, format="yuv420p", dst_colorspace="ITU709", dst_color_range="MPEG")
+            self.film.mux(self.stream.encode(yuv))
 
     def new_stream(self, height: int, width: int) -> Any:
         """Return a stream of pictures of that size."""

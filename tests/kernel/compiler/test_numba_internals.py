@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from typing import Any
 
 import numba
@@ -13,7 +12,6 @@ from numba.extending import register_jitable
 
 from minirt.kernel.compiler import numba_internals, options
 from minirt.kernel.compiler.numba_internals import ASSUMPTIONS, failed_assumption
-from tests.paths import ROOT
 
 # For each interface an owner that loses an attribute.
 CHANGES: list[tuple[str, Any, str]] = [
@@ -81,9 +79,8 @@ def test_inlined_functions_have_no_machine_code_of_their_own() -> None:
     assert not any("alternating" in line or "power_of" in line for line in functions)
 
 
-def test_the_tested_version_is_that_of_the_project_file() -> None:
-    with (ROOT / "pyproject.toml").open("rb") as file:
-        required = tomllib.load(file)["project"]["dependencies"]
+def test_tested_versions_have_the_private_interfaces() -> None:
     name, limit = options.TESTED.split("<")
-    assert any(each.startswith(f"{name}>=") and each.endswith(f",<{limit}") for each in required)
-    assert tuple(map(int, numba.__version__.split(".")[:2])) < tuple(map(int, limit.split(".")))
+    assert name == "numba"
+    is_tested = tuple(map(int, numba.__version__.split(".")[:2])) < tuple(map(int, limit.split(".")))
+    assert not is_tested or options.FAILED is None
