@@ -119,7 +119,7 @@ class User:
         self.session = session
         self.backend = backend
         self.pictures: list[Shown] = []
-        self.finished = Event()  # a picture of a scene later than the first `seen` ones was refined, or was not to be
+        self.finished = Event()  # the picture of a scene after the first `seen` ones was refined, or was not to be
         self.seen = 0
         self.draw = session.draw
         session.draw = self.draw_and_note  # type: ignore[method-assign]
@@ -173,13 +173,17 @@ class User:
 
     def tap(self, number: int) -> tuple[float, Shown]:
         """Tap a key while a picture is refined; return the time and the picture that follows."""
-        self.seen = len(self.pictures)
-        self.finished.clear()
+        self.expect_picture()
         keyboard, key = self.session.window.keyboard, KEYS[number % len(KEYS)]
         start = self.do(lambda: (keyboard.press(key, perf_counter()), keyboard.release(key)))
         self.finished.wait()
         sleep(self.random.uniform(*TAP_DELAYS))
         return start, self.pictures[self.seen]
+
+    def expect_picture(self) -> None:
+        """Let `finished` wait for a refined picture of a scene of which there is none yet."""
+        self.seen = len(self.pictures)
+        self.finished.clear()
 
     def gaps(self, move: Callable[[], float]) -> list[float]:
         """Move something while a picture is refined; return the seconds between its start, its pictures and its end."""
