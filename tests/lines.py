@@ -10,13 +10,15 @@ from typing import Any
 from tests.waiting import until
 
 
-def next_line(process: subprocess.Popen[Any]) -> str:
-    """Wait for the next line of standard output, a pipe, and return it without its line end. EOFError at the end.
+def next_line(process: subprocess.Popen[Any], errors: bool = False) -> str:
+    """Wait for the next line of standard output, or of standard error, and return it without its line end.
 
-    Only the line is read from the pipe: `communicate` returns the rest.
+    Only the line is read from the pipe: `communicate` returns the rest. EOFError at the end; TimeoutError after
+    `HANG_LIMIT`, while `readline` would wait for ever.
     """
-    assert process.stdout is not None
-    pipe = process.stdout.fileno()
+    stream = process.stderr if errors else process.stdout
+    assert stream is not None
+    pipe = stream.fileno()
     line = b""
     while not line.endswith(b"\n"):
         until(lambda: bool(select.select([pipe], [], [], 0)[0]), "a line of the program's output")

@@ -16,6 +16,7 @@ import minirt
 from minirt.errors import Problem
 from minirt.rendering import shared
 from tests.cli.program import SCENE, environment
+from tests.lines import next_line
 from tests.processes import run, started
 from tests.waiting import HANG_LIMIT
 
@@ -107,8 +108,7 @@ def test_ctrl_c_ends_the_work(tmp_path: Path, way: str) -> None:
     command = [sys.executable, "program.py", way]
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
     with started(command, cwd=tmp_path, env=environment() | QUIET, **streams) as process:
-        assert process.stdout
-        assert process.stdout.readline() == b"begun\n"
+        assert next_line(process) == "begun"
         os.killpg(process.pid, signal.SIGINT)
         assert process.wait(timeout=HANG_LIMIT) == 130
 

@@ -13,8 +13,10 @@ import pytest
 
 from minirt.kernel.machine_code import compile_process
 from tests import conftest, environment, scheduling
+from tests.lines import next_line
 from tests.paths import ROOT
 from tests.processes import run, started
+from tests.waiting import HANG_LIMIT
 
 # Prints the kinds of vector registers that a compiled sum of lanes uses.
 REGISTERS = """
@@ -99,9 +101,9 @@ def test_ctrl_c_reaches_the_tests_if_the_caller_ignores_it() -> None:
         conftest.pytest_configure()
         with started([sys.executable, "-c", "import sys; print('ready', flush=True); sys.stdin.read()"],
                      stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:  # fmt: skip
-            process.stdout.readline()
+            next_line(process)
             process.send_signal(signal.SIGINT)
-            assert process.stdout.read() == b""
+            assert process.communicate(timeout=HANG_LIMIT)[0] == b""
         assert process.returncode == -signal.SIGINT
     finally:
         signal.signal(signal.SIGINT, before)
@@ -113,7 +115,7 @@ def test_a_program_whose_block_fails_leaves_nothing_running() -> None:
 
     def failing_block() -> None:
         with started([sys.executable, "-c", PARENT], stdout=subprocess.PIPE, pass_fds=(writer,)) as parent:
-            parent.stdout.readline()
+            next_line(parent)
             os.close(writer)
             raise ZeroDivisionError
 

@@ -16,6 +16,7 @@ import tifffile
 
 import minirt
 from tests.cli.program import Result, environment, program, start
+from tests.lines import next_line
 from tests.processes import is_running, started
 from tests.terminals import terminal
 from tests.waiting import HANG_LIMIT, until
@@ -55,8 +56,7 @@ sys.stdin.read()
 def test_the_processes_of_a_killed_program_end(tmp_path: Path) -> None:
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     with started([sys.executable, "-c", POOL], cwd=tmp_path, env=environment(), text=True, **pipes) as process:
-        assert process.stdout is not None
-        workers = list(map(int, process.stdout.readline().split()))
+        workers = list(map(int, next_line(process).split()))
         assert workers
         assert all(map(is_running, workers))
         process.kill()

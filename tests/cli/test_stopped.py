@@ -13,6 +13,7 @@ from PIL import Image, ImageChops
 
 from tests.cli.announcing import RENDERING
 from tests.cli.program import ANNOUNCING, program, start
+from tests.lines import next_line
 from tests.processes import until_stopped
 from tests.waiting import HANG_LIMIT
 
@@ -23,8 +24,7 @@ PICTURE = ("ball.rt", "-o", "x.png", "--size", "320x240", "--threads", "2")
 
 def await_rendering(process: subprocess.Popen[bytes]) -> None:
     """Wait until a program has begun to render."""
-    assert process.stderr is not None
-    assert process.stderr.readline() == RENDERING + b"\n"
+    assert next_line(process, errors=True) == RENDERING.decode()
 
 
 def stop_and_continue(process: subprocess.Popen[bytes]) -> bool:

@@ -19,6 +19,7 @@ from minirt.cluster.bands import bands_of
 from minirt.errors import RenderError
 from tests.cli.program import environment
 from tests.cluster.scenes import BALL, with_files
+from tests.lines import next_line
 from tests.processes import run, started
 
 SIZE = 600, 400
@@ -211,7 +212,7 @@ minirt.render_to("a.tif", minirt.load("ball.rt"), 600, 400, samples=64, on_progr
 def test_a_killed_program_is_gone_on_with(tmp_path: Path) -> None:
     BALL.save(tmp_path / "ball.rt")
     with started([sys.executable, "-c", KILLED], cwd=tmp_path, env=environment(), stdout=-1) as program:
-        while program.stdout.readline() != b"3\n":
+        while next_line(program) != "3":
             pass
         program.kill()
     done: list[int] = []

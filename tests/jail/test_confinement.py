@@ -13,6 +13,7 @@ import pytest
 from minirt.kernel.machine_code.processor import is_linux_on_x86_64
 from tests.cli.program import environment
 from tests.jail.breakouts import ACTS, landlock_version, outcomes
+from tests.lines import next_line
 from tests.processes import is_running, run, started
 from tests.waiting import until
 
@@ -87,7 +88,7 @@ child.wait()
 
 def test_a_confined_process_ends_with_its_parent() -> None:
     with started([sys.executable, "-c", ORPHAN], env=environment(), stdout=subprocess.PIPE, text=True) as parent:
-        child = int(parent.stdout.readline())
+        child = int(next_line(parent))
         assert is_running(child)
         parent.kill()
         until(lambda: not is_running(child), "the end of the confined process")

@@ -19,8 +19,9 @@ from minirt.jail.helper import Helper
 from minirt.jail.messages import ANSWER, BrokenAnswerError, read_answer
 from tests.cli.program import environment
 from tests.jail.pictures import PNG
+from tests.lines import next_line
 from tests.processes import is_running, started
-from tests.waiting import until
+from tests.waiting import HANG_LIMIT, until
 
 # A process that speaks as the helper does, without decoding, and that meets its fault at one stage.
 FAKE = """
@@ -169,10 +170,10 @@ def test_ctrl_c_ends_the_wait_and_the_helper(tmp_path: Path) -> None:
     command = [sys.executable, "-c", PROGRAM.format(fake=FAKE), "a.rt", "--check", "--no-trust"]
     options = {"cwd": tmp_path, "env": environment(), "stdout": subprocess.PIPE, "text": True}
     with started(command, stderr=subprocess.PIPE, **options) as program:
-        child = int(program.stdout.readline())
+        child = int(next_line(program))
         until(lambda: state_of(child) == "S", "the wait of the helper")
         program.send_signal(signal.SIGINT)
-        _, err = program.communicate()
+        _, err = program.communicate(timeout=HANG_LIMIT)
     assert "Traceback" not in err
     assert program.returncode in {130, -signal.SIGINT}
     assert not is_running(child)

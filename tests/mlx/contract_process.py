@@ -8,6 +8,7 @@ import sys
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
+from tests.lines import next_line
 from tests.mlx.contract import load
 from tests.waiting import HANG_LIMIT
 
@@ -61,12 +62,12 @@ class ScenarioProcess:
         """Send the name and wait for the log. The process has a time limit of its own: it answers or ends."""
         process = self._process or self._start()
         assert process.stdin is not None
-        assert process.stdout is not None
         process.stdin.write(f"{name}\n")
         process.stdin.flush()
-        answer = process.stdout.readline()
-        assert answer, f"{name} ended the process: {self._errors.read_text()}"
-        log: Log = json.loads(answer)
+        try:
+            log: Log = json.loads(next_line(process))
+        except EOFError:
+            raise AssertionError(f"{name} ended the process: {self._errors.read_text()}") from None
         return log
 
     def _start(self) -> subprocess.Popen[str]:

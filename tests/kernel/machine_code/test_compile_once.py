@@ -15,6 +15,7 @@ from minirt.kernel.machine_code.private_files import locked
 from tests.kernel.machine_code.package_copies import copy_package
 from tests.kernel.machine_code.small_kernels import double, file_of, is_found
 from tests.kernel.machine_code.test_cache_folder import KERNELS, render_in_new_process
+from tests.lines import next_line
 from tests.paths import ROOT
 from tests.processes import started
 from tests.waiting import HANG_LIMIT
@@ -58,11 +59,10 @@ def output_of_a_second_program(tmp_path: Path, program: str) -> list[str]:
     command = [sys.executable, "-c", program, str(folder)]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     with started(command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True) as second:
-        assert second.stdout is not None
         with locked(kernel.with_suffix(".lock")):
-            first_line = second.stdout.readline()
+            first_line = next_line(second)
             shutil.copy(other / kernel.name, kernel)
-        return [first_line.strip(), *second.communicate(timeout=HANG_LIMIT)[0].split()]
+        return [first_line, *second.communicate(timeout=HANG_LIMIT)[0].split()]
 
 
 def test_a_program_waits_for_another_that_compiles_the_same_kernel(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from minirt.kernel.machine_code.processor import NATIVE, V3, V4
 from tests.guards import must_end
 from tests.kernel.machine_code.package_copies import copy_package
 from tests.kernel.machine_code.small_kernels import call, count, double, half, library, square
+from tests.lines import next_line
 from tests.paths import PACKAGE, ROOT
 from tests.processes import run, started
 from tests.waiting import HANG_LIMIT, until
@@ -233,7 +234,6 @@ def test_a_patient_process_has_the_lowest_priority_and_ends_when_the_program_is_
     variables = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": str(PACKAGE.parent)}
     command = [sys.executable, "-c", PROGRAM, ENDLESS, request]
     with started(command, env=variables, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as program:
-        assert program.stdout is not None
-        assert program.stdout.readline() == b"compiling module:name ['int'] 19\n"
+        assert next_line(program) == "compiling module:name ['int'] 19"
         os.kill(program.pid, signal.SIGKILL)
         assert program.communicate(timeout=HANG_LIMIT)[0] == b""  # the compiler, which inherited it, has ended too
