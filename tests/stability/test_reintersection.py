@@ -53,7 +53,7 @@ def seen(kind: Kind, seed: int, count: int = 1000, size: float | None = None) ->
     shapes = [shapes[i] for i in first[0]]
     on, out = surfaces(shapes, (origins[first] + t[first][:, None] * directions[first])[:, None])
     back = np.sum(out[:, 0] * directions[first], axis=-1) > 0
-    return Seen(shapes, on, np.where((back & ~solid(kind))[:, None, None], -out, out))
+    return Seen(shapes, on, np.where((back & (not solid(kind)))[:, None, None], -out, out))
 
 
 def solid(kind: Kind) -> bool:
