@@ -90,6 +90,7 @@ def fork(work: Callable[[], object]) -> Callable[[], int]:
 
     def wait() -> int:
         hang = Timer(waiting.HANG_LIMIT, os.kill, (child, signal.SIGABRT))
+        hang.daemon = True
         hang.start()
         status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         hang.cancel()
@@ -97,7 +98,7 @@ def fork(work: Callable[[], object]) -> Callable[[], int]:
         with stacks:
             stacks.seek(0)
             if status == -signal.SIGABRT:
-                raise TimeoutError(f"a child process did not end: {stacks.read().decode(errors='replace')}")
+                raise TimeoutError(f"a child process hung or was aborted: {stacks.read().decode(errors='replace')}")
         return status
 
     return wait
