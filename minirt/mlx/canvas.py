@@ -63,10 +63,10 @@ class Canvas:
 
     def put(self, source: NDArray[np.uint8], x: int, y: int) -> None:
         """Draw a picture with its top left corner at x, y, clipped at the borders."""
+        self._merge_points()
         left, top = max(x, 0), max(y, 0)
         right, bottom = min(x + source.shape[1], self.width), min(y + source.shape[0], self.height)
         if left < right and top < bottom:
-            self._merge_points()
             words = source.view("<u4")[top - y : bottom - y, left - x : right - x, 0]
             if self._alpha:
                 blend(self._words[top:bottom, left:right], words)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from minirt.mlx.blending import BLOCK, blend
@@ -123,6 +123,7 @@ class Reference:
             self.pixels[place] = mixed[0], mixed[1], mixed[2]
 
 
+@example([("point", 2, 1, 0x01808080), ("put", 0, -2, 0), ("point", 2, 1, 0)])  # a picture outside of the canvas
 @given(st.lists(calls, max_size=12))
 def test_any_sequence_of_calls_gives_the_picture_of_the_reference(steps: list[tuple[str, int, int, int]]) -> None:
     canvas, reference = Canvas(WIDTH, HEIGHT, alpha=True), Reference()
