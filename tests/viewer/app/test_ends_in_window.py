@@ -12,7 +12,7 @@ import pytest
 
 import minirt
 from minirt.viewer.recovery.journal_folder import name_of
-from tests.viewer.app.test_real_window import Viewer, viewing
+from tests.viewer.app.test_real_window import Viewer, picture, viewing
 from tests.viewer.scenes import WITH_CYLINDER
 from tests.waiting import until
 from tests.windows import Desktop, open_desktop, require_tools
@@ -50,6 +50,8 @@ def test_signals_end_the_program_and_keep_changes(desktop, tmp_path, number):
 def test_a_window_without_unsaved_changes_ends_by_a_signal_and_leaves_nothing(desktop, tmp_path):
     path = tmp_path / "scene.rt"
     with viewing(desktop, path) as viewer:
+        viewer.key("i", "i")
+        viewer.shows(picture(path))  # the event loop runs: from then on signals are handled
         viewer.key("d")
         os.kill(viewer.process.pid, signal.SIGTERM)
         assert viewer.end() == (143, "", "")
