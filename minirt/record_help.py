@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from inspect import Signature
 
 MODULE = re.compile(r"\bminirt(\.[a-z_]+)*\.")  # before the name of a class
-STUBS = ("A line `", "The values of `")  # beginnings of the texts of classes with a manual page
+STUBS = ("A line `",)  # beginnings of the texts of classes whose module is their manual page
 
 
 class FieldSignature:

@@ -1,6 +1,6 @@
-"""The registry of materials: what surfaces are made of, one file and one field of `Attributes` each.
+"""The registry of materials: what surfaces are made of, one class and one field of `Attributes` each.
 
-Another material is a file beside these with its manual page, and here its import and its field. Parser, writer, editor,
+Another material is a class in `surfaces` or `maps`, with its manual page, and a field here. Parser, writer, editor,
 documentation, the public name `minirt.Glass` and the features of the kernel derive from that. What is left to write is
 how it is packed (`minirt.rendering.packing.materials`) and how it changes light (`minirt.kernel.shading`).
 """
@@ -9,21 +9,9 @@ from typing import Any
 
 from minirt.element import Element, fields_of
 from minirt.fields import declare
-from minirt.materials.bump import Bump as Bump
-from minirt.materials.checker import Checker as Checker
-from minirt.materials.clouds import Clouds as Clouds
-from minirt.materials.compound import Compound as Compound
-from minirt.materials.fresnel import Fresnel as Fresnel
-from minirt.materials.glass import Glass as Glass
-from minirt.materials.glow import Glow as Glow
-from minirt.materials.marble import Marble as Marble
-from minirt.materials.mirror import Mirror as Mirror
-from minirt.materials.normal_map import NormalMap as NormalMap
-from minirt.materials.placement import Placement as Placement
-from minirt.materials.specular import Specular as Specular
-from minirt.materials.texture import Texture as Texture
-from minirt.materials.tint import Tint as Tint
-from minirt.materials.wood import Wood as Wood
+from minirt.materials.compound import Compound
+from minirt.materials.maps import Bump, Checker, Clouds, Marble, NormalMap, Placement, Texture, Wood
+from minirt.materials.surfaces import Fresnel, Glass, Glow, Mirror, Specular, Tint
 from minirt.records import record
 
 SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}

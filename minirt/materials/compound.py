@@ -1,20 +1,40 @@
-"""The field of a material with several values, separated by commas: `specular:0.5,30,blinn`."""
+"""Base of materials with several values: the record of the values, and the field of a line that holds them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, ClassVar
 
-from minirt.element import fields_of
+from minirt.element import Record, fields_of
 from minirt.errors import FieldError, quoted
 from minirt.fields import Field, PictureFile
-from minirt.materials.material import Material
 from minirt.records import record
+
+
+@record()
+class Material(Record):
+    """Values of one material, and the feature of the kernel that draws it."""
+
+    feature: ClassVar[str]  # a key of `minirt.rendering.packing.features.FEATURES`
+
+    def has_effect(self) -> bool:
+        """Whether the picture shows it: a material without effect costs no feature of the kernel."""
+        return True
+
+    def further_features(self) -> tuple[str, ...]:
+        """Features of the kernel that these values need beside `feature`."""
+        return ()
+
+    def used_feature(self) -> str:
+        """The feature that the kernel needs to draw it; empty if it has no effect."""
+        return self.feature if self.has_effect() else ""
 
 
 @record(kw_only=True)
 class Compound(Field):
-    """A material, its values in the order of its fields; the last ones may be left out where they have a default.
+    """The field of a material with several values, separated by commas: `specular:0.5,30,blinn`.
+
+    The values are in the order of its fields; the last ones may be left out where they have a default.
 
     A program may give a number in place of a material whose other values may be left out: it is the first value.
     """

@@ -8,7 +8,7 @@ A made-up material: a highlight as wide as can be.
 from __future__ import annotations
 
 from minirt.fields import Real, declare
-from minirt.materials.material import Material
+from minirt.materials.compound import Material
 from minirt.records import record
 
 

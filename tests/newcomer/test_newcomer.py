@@ -55,8 +55,8 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     registry = package / "materials/__init__.py"
     add_line(
         registry,
-        "from minirt.materials.normal_map import NormalMap as NormalMap",
-        "from minirt.materials.sheen import Sheen as Sheen",
+        "from minirt.materials.surfaces import Fresnel, Glass, Glow, Mirror, Specular, Tint",
+        "from minirt.materials.sheen import Sheen",
     )
     add_line(
         registry,

@@ -14,7 +14,7 @@ import numpy as np
 from minirt.element import fields_of
 from minirt.fields import Point
 from minirt.materials import Clouds, Marble, Wood
-from minirt.materials.pattern import Pattern
+from minirt.materials.maps import Pattern
 from minirt.scene import Camera
 from minirt.shapes.disc import Disc
 from minirt.shapes.plane import Plane

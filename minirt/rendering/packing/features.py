@@ -8,7 +8,7 @@ from typing import Any
 
 from minirt.element import Element, fields_of
 from minirt.materials import Attributes
-from minirt.materials.material import Material
+from minirt.materials.compound import Material
 from minirt.scene import Background, Camera, Lamp, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes import Shape
 
