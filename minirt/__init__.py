@@ -28,10 +28,10 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.example_scenes import example as example
     from minirt.example_scenes import examples as examples
     from minirt.fields import MeshFile as MeshFile
+    from minirt.helpers.system import limit_memory as limit_memory
     from minirt.image import Image as Image
     from minirt.image import LinearImage as LinearImage
     from minirt.materials import *  # noqa: F403
-    from minirt.memory_limit import limit_memory as limit_memory
     from minirt.notebook import view as view
     from minirt.rendering import Renderer as Renderer
     from minirt.rendering.buffers import Buffers as Buffers
@@ -69,7 +69,7 @@ MODULES = {
     "minirt.example_scenes": ("example", "examples"),
     "minirt.fields": ("MeshFile",),
     "minirt.image": ("Image", "LinearImage"),
-    "minirt.memory_limit": ("limit_memory",),
+    "minirt.helpers.system": ("limit_memory",),
     "minirt.notebook": ("view",),
     "minirt.rendering": ("Renderer",),
     "minirt.rendering.buffers": ("Buffers", "buffers"),
@@ -208,9 +208,9 @@ def render(
     """
     import numpy as np
 
-    from minirt import memory_limit
+    from minirt.helpers import system
+    from minirt.helpers.progress import State, in_notebooks
     from minirt.image import Image, LinearImage
-    from minirt.progress import State, in_notebooks
     from minirt.rendering.crop import cut_for
     from minirt.scene.arguments import check_scene
 
@@ -224,7 +224,7 @@ def render(
             raise RenderError("a picture has a region or rows, not both")
         region = (0, rows[0], width, rows[1] - rows[0])
     crop, shape, kept = cut_for(region, width, height)
-    memory_limit.check_picture(*shape, PIXEL + LIGHT * (linear or dither))
+    system.check_picture(*shape, PIXEL + LIGHT * (linear or dither))
     pixels = np.empty((*shape, 4), np.uint8)
     light = np.zeros((*shape, 3)) if linear else None
     chosen = renderer(threads, precision, depth, dither)

@@ -11,9 +11,9 @@ from time import perf_counter
 import numpy as np
 
 import minirt
+from minirt.helpers.system import runs
 from minirt.rendering import Renderer
 from minirt.scene import Scene, load
-from minirt.timing import runs
 
 LEAST_FRAMES, LEAST_SECONDS = 9, 1.0  # of each of both measurements
 STEP = 1e-3  # scene units that the eye moves from frame to frame

@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import numpy as np
 
-from minirt import atomic_write, png
 from minirt.errors import RenderError
+from minirt.formats import png
+from minirt.formats.png import NO_TEXTS
 from minirt.formats.table import FLOAT, check_bits, check_quality, format_of
-from minirt.png import NO_TEXTS
+from minirt.helpers import file_io
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike
@@ -156,7 +157,7 @@ class Image:
         """
         name = format_of(path)
         try:
-            atomic_write.write(path, lambda file: self.write(file, name, bits, quality, texts, in_place))
+            file_io.write(path, lambda file: self.write(file, name, bits, quality, texts, in_place))
         except OSError as error:
             raise RenderError(f"{os.fspath(path)}: cannot write: {error.strerror or error}") from None
 

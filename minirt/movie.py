@@ -10,9 +10,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
-from minirt import atomic_write
 from minirt.errors import RenderError
 from minirt.formats.table import FORMATS, check_quality, format_of
+from minirt.helpers import file_io
 
 if TYPE_CHECKING:
     from minirt.formats.films.film import Film
@@ -56,7 +56,7 @@ def record_movie(
     target, name = Path(path), format_of(path)
     check_quality(name, quality)
     try:
-        atomic_write.write(target, lambda file: write_film(record, file, name, fps, quality))
+        file_io.write(target, lambda file: write_film(record, file, name, fps, quality))
     except OSError as error:
         raise RenderError(f"{target}: cannot write: {error.strerror or error}") from None
     return target

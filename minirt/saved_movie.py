@@ -9,9 +9,9 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from minirt.helpers.progress import State, in_notebooks
 from minirt.movie import FPS
 from minirt.movie import save_movie as save
-from minirt.progress import State, in_notebooks
 
 if TYPE_CHECKING:
     from minirt.image import Image

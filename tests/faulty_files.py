@@ -1,4 +1,4 @@
-"""Faults of a disk, and kills, at each write to a file in turn: the files of `minirt.atomic_write` count their writes.
+"""Faults of a disk, and kills, at each write to a file in turn: `minirt.helpers.file_io` writes to counting files.
 
 A fault is a function that is called before a write with its data; what it returns is written, so that an error fails
 the write, and fewer bytes are a short one.

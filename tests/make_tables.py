@@ -18,28 +18,8 @@ from tests.pages import PAGES, block, name, read
 from tests.paths import ROOT, SCENES
 from tests.test_imports import MAY
 
-HELPERS = {
-    "errors",
-    "records",
-    "atomic_write",
-    "file_locks",
-    "user_files",
-    "fork_safety",
-    "gc_pause",
-    "regular_files",
-    "timing",
-    "__main__",
-}
-HELPERS |= {
-    "png",
-    "formats",
-    "image",
-    "movie",
-    "saved_movie",
-    "record_help",
-    "example_scenes",
-    "progress",
-}  # left out of the diagram, as small
+# Left out of the diagram, as small.
+HELPERS = {"errors", "records", "helpers", "formats", "image", "movie", "saved_movie", "example_scenes", "__main__"}
 PLACE = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 INDEX_TEXT = re.compile(r"^(text = '''\n).*?^(''')$", re.MULTILINE | re.DOTALL)
 PICTURE = re.compile(r"^\| !\[.*?\]\((.*?)\) \| .*?<br>`miniRT (\S+)(.*)$", re.MULTILINE)

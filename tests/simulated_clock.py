@@ -6,7 +6,9 @@ from collections.abc import Callable, Collection
 
 import pytest
 
-from minirt import bench, timing
+from minirt import bench
+from minirt.helpers import system
+from minirt.helpers.system import Run
 from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.stored_light import PACKET_HEIGHT
 from minirt.rendering import renderer
@@ -15,7 +17,6 @@ from minirt.rendering.running import to_error
 from minirt.rendering.running.frame_runner import FrameRunner
 from minirt.rendering.sampling import auto
 from minirt.report.measurements import formula_errors, picture_errors
-from minirt.timing import Run
 
 PACKET_SECONDS = 1e-6  # for a packet of rays
 FORMULA_SECONDS = 1e-3  # for all rays of the first formula; the second takes twice as long, ...
@@ -50,9 +51,9 @@ def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
         clock.rendered(sum(map(packets_of, frames)))
 
     patch.setattr(FrameRunner, "run", counted)
-    for module in (timing, auto, to_error, renderer, picture_errors, bench):
+    for module in (system, auto, to_error, renderer, picture_errors, bench):
         patch.setattr(module, "perf_counter", lambda: clock.wall)
-    patch.setattr(timing, "process_time", clock.cpu)
+    patch.setattr(system, "process_time", clock.cpu)
     patch.setattr(formula_errors, "in_turn", in_turn)
     return clock
 
@@ -73,7 +74,7 @@ def packets(width: int, height: int, rays: int = 16) -> int:
 
 
 def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[Run, ...]]:
-    """Replace `minirt.timing.in_turn` for formulas: run each once, and report every second turn ten times as slow."""
+    """Replace `helpers.system.in_turn`: run each once, and report every second turn as ten times as slow."""
     for work in works:
         work()
     slowness = [10.0 if turn % 2 else 1.0 for turn in range(times)]

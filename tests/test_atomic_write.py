@@ -12,7 +12,7 @@ from typing import BinaryIO
 
 import pytest
 
-from minirt import atomic_write
+from minirt.helpers import file_io
 from minirt.viewer.files.scene_files import create_numbered
 from tests.processes import run
 
@@ -27,18 +27,18 @@ def test_a_new_file_never_replaces_one(tmp_path: Path) -> None:
     (tmp_path / "b").symlink_to("nowhere")
     for name in "ab":
         with pytest.raises(FileExistsError):
-            atomic_write.create(tmp_path / name, b"new")
-    atomic_write.create(tmp_path / "c", b"new")
+            file_io.create(tmp_path / name, b"new")
+    file_io.create(tmp_path / "c", b"new")
     assert (tmp_path / "a").read_bytes() == b"old"
     assert (tmp_path / "c").read_bytes() == b"new"
     assert names(tmp_path) == ["a", "b", "c"]
 
 
 def test_a_file_that_appears_just_now_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(atomic_write.os.path, "lexists", lambda _: False)
+    monkeypatch.setattr(file_io.os.path, "lexists", lambda _: False)
     (tmp_path / "a").write_bytes(b"old")
     with pytest.raises(FileExistsError):
-        atomic_write.create(tmp_path / "a", b"new")
+        file_io.create(tmp_path / "a", b"new")
     assert (tmp_path / "a").read_bytes() == b"old"
     assert names(tmp_path) == ["a"]
 
@@ -48,10 +48,10 @@ def test_file_systems_without_hard_links(tmp_path: Path, monkeypatch: pytest.Mon
         raise PermissionError(1, "Operation not permitted")
 
     monkeypatch.setattr(os, "link", refuse)
-    atomic_write.create(tmp_path / "a", b"new")
+    file_io.create(tmp_path / "a", b"new")
     assert (tmp_path / "a").read_bytes() == b"new"
     with pytest.raises(FileExistsError):
-        atomic_write.create_in_place(tmp_path / "a", b"other")
+        file_io.create_in_place(tmp_path / "a", b"other")
     assert names(tmp_path) == ["a"]
 
 
@@ -74,7 +74,7 @@ def test_copies_of_many_writers_at_once_are_all_there(tmp_path: Path) -> None:
 
 def test_copies_by_looking_first_would_be_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two programs that look for a free name before either writes, as `create` does not."""
-    monkeypatch.setattr(atomic_write, "create", atomic_write.write)
+    monkeypatch.setattr(file_io, "create", file_io.write)
     for data in (b"first", b"second"):
         create_numbered(tmp_path / "scene.rt", ".rt", data)
     assert names(tmp_path) == ["scene-1.rt"]
@@ -94,7 +94,7 @@ def test_a_private_file_is_private_at_every_moment(tmp_path: Path, monkeypatch: 
             return original(first, *others)  # type: ignore[operator]
 
         monkeypatch.setattr(target, name, watched)
-    atomic_write.write(path, b"new")
+    file_io.write(path, b"new")
     assert len(modes) == 4
     assert set(modes) == {0o600}
 
@@ -106,7 +106,7 @@ def test_extended_attributes_stay(tmp_path: Path) -> None:
         os.setxattr(path, "user.comment", b"kept")
     except (AttributeError, OSError):
         pytest.skip("this file system has no extended attributes")
-    atomic_write.write(path, b"new")
+    file_io.write(path, b"new")
     assert os.getxattr(path, "user.comment") == b"kept"
 
 
@@ -116,7 +116,7 @@ def test_the_owner_stays(tmp_path: Path) -> None:
     path.write_bytes(b"old")
     os.chown(path, 12345, 54321)
     path.chmod(0o640)
-    atomic_write.write(path, b"new")
+    file_io.write(path, b"new")
     status = path.stat()
     assert (status.st_uid, status.st_gid, stat.S_IMODE(status.st_mode)) == (12345, 54321, 0o640)
 
@@ -125,14 +125,14 @@ def test_files_that_killed_programs_left_are_deleted(tmp_path: Path) -> None:
     program = """
 import os, sys
 from pathlib import Path
-from minirt import atomic_write
-atomic_write.os.fsync = lambda _: os.kill(os.getpid(), 9)
-atomic_write.write(sys.argv[1], b"new")
+from minirt.helpers import file_io
+file_io.os.fsync = lambda _: os.kill(os.getpid(), 9)
+file_io.write(sys.argv[1], b"new")
 """
     path = tmp_path / "file"
     assert run([sys.executable, "-c", program, str(path)]).returncode == -9
     assert len(names(tmp_path)) == 1
-    atomic_write.write(path, b"new")
+    file_io.write(path, b"new")
     assert names(tmp_path) == ["file"]
 
 
@@ -140,14 +140,14 @@ def test_files_that_running_programs_write_stay_however_old_they_are(tmp_path: P
     path = tmp_path / "file"
 
     def write(file: BinaryIO) -> None:
-        (written,) = tmp_path.glob(atomic_write.TEMPORARY)
+        (written,) = tmp_path.glob(file_io.TEMPORARY)
         for seconds in (1, 2**33):  # after 1970, and in a future: clocks may be wrong
             os.utime(written, (seconds, seconds))
-            atomic_write.CLEANED.discard(tmp_path)
-            atomic_write.write(tmp_path / "other", b"other")
+            file_io.CLEANED.discard(tmp_path)
+            file_io.write(tmp_path / "other", b"other")
         file.write(b"new")
 
-    atomic_write.write(path, write)
+    file_io.write(path, write)
     assert path.read_bytes() == b"new"
     assert names(tmp_path) == ["file", "other"]
 
@@ -156,29 +156,29 @@ def test_files_that_running_programs_write_stay_however_old_they_are(tmp_path: P
 def test_without_locks_old_files_are_deleted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float, is_left: bool
 ) -> None:
-    monkeypatch.setattr(atomic_write.file_locks, "is_free", lambda _: None)
-    left = tmp_path / atomic_write.TEMPORARY.replace("*", "left")
+    monkeypatch.setattr(file_io, "is_free", lambda _: None)
+    left = tmp_path / file_io.TEMPORARY.replace("*", "left")
     left.touch()
     now = left.stat().st_mtime
-    monkeypatch.setattr(atomic_write.time, "time", lambda: now)
+    monkeypatch.setattr(file_io.time, "time", lambda: now)
     os.utime(left, (now + seconds, now + seconds))
-    atomic_write.write(tmp_path / "file", b"new")
+    file_io.write(tmp_path / "file", b"new")
     assert left.exists() == is_left
 
 
 def test_a_file_that_is_taken_for_abandoned_before_it_is_locked_is_created_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def late(descriptor: int, lock: Callable[[int], bool] = atomic_write.file_locks.lock) -> bool:
+    def late(descriptor: int, lock: Callable[[int], bool] = file_io.lock) -> bool:
         nonlocal tries
         tries += 1
         if tries == 1:
-            atomic_write.delete_abandoned(tmp_path)
+            file_io.delete_abandoned(tmp_path)
         return lock(descriptor)
 
     tries = 0
-    monkeypatch.setattr(atomic_write.file_locks, "lock", late)
-    atomic_write.write(tmp_path / "file", b"new")
+    monkeypatch.setattr(file_io, "lock", late)
+    file_io.write(tmp_path / "file", b"new")
     assert tries == 2
     assert names(tmp_path) == ["file"]
     assert (tmp_path / "file").read_bytes() == b"new"

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from minirt import atomic_write, file_locks
 from minirt.errors import RenderError
+from minirt.helpers import file_io
 from minirt.image import Image
 from minirt.movie import encode_film
 from tests.faulty_files import CODES, faulty_files, short
@@ -78,7 +78,7 @@ def in_place(folder: Path) -> None:
 def deaf(folder: Path) -> None:
     """Write a file as a whole, and take no notice of errors."""
     with suppress(OSError):
-        atomic_write.write(folder / "file", b"new" * 1000)
+        file_io.write(folder / "file", b"new" * 1000)
 
 
 @needs_forks
@@ -97,6 +97,6 @@ def test_a_writer_that_hides_errors_would_be_found(tmp_path: Path) -> None:
 
 @needs_forks
 def test_without_locks_the_next_run_would_not_clear_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(file_locks, "is_free", lambda _: None)
+    monkeypatch.setattr(file_io, "is_free", lambda _: None)
     with pytest.raises(AssertionError, match="the next run does not clear up"):
         faults.tried_kills(WRITERS["scene"], tmp_path, SOME)

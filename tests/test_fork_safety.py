@@ -17,7 +17,7 @@ from weakref import WeakSet
 import numpy as np
 import pytest
 
-from minirt import fork_safety
+from minirt.helpers import system
 from minirt.kernel.machine_code import loader
 from minirt.kernel.machine_code.library import Library
 from minirt.materials import picture_cache
@@ -140,7 +140,7 @@ def test_locks_that_other_threads_hold_are_free_in_a_child(owner: str, monkeypat
     with lock_of():
         assert holds_in_child(lambda: is_free(lock_of()))
         assert lock_of().locked()  # in the parent process nothing changes
-        monkeypatch.setattr(fork_safety, "renewables", WeakSet())  # nothing is renewed: the check notices
+        monkeypatch.setattr(system, "renewables", WeakSet())  # nothing is renewed: the check notices
         assert not holds_in_child(lambda: is_free(lock_of()))
 
 
@@ -151,7 +151,7 @@ def test_pools_of_threads_are_new_in_a_child(monkeypatch: pytest.MonkeyPatch) ->
     are_new = lambda: renderer.runner.pool is not pools[0] and tracer.pool is not pools[1]  # noqa: E731
     assert holds_in_child(are_new)
     assert (renderer.runner.pool, tracer.pool) == pools
-    monkeypatch.setattr(fork_safety, "renewables", WeakSet())
+    monkeypatch.setattr(system, "renewables", WeakSet())
     assert not holds_in_child(are_new)
 
 

@@ -11,9 +11,9 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 import minirt
-from minirt import memory_limit
 from minirt.cli import main
 from minirt.cli.argument_values import memory_size
+from minirt.helpers import system
 from minirt.rendering.packing.materials import TexturePool
 from tests.cli.program import SCENE
 
@@ -58,31 +58,31 @@ def test_a_limit_is_positive(size: int) -> None:
 
 def test_the_control_group_limits_the_default(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     groups = tmp_path / "groups"
-    monkeypatch.setattr(memory_limit, "GROUP", tmp_path)
-    monkeypatch.setattr(memory_limit, "GROUPS_OF_PROCESS", groups)
-    assert memory_limit.group_limits() == []
+    monkeypatch.setattr(system, "GROUP", tmp_path)
+    monkeypatch.setattr(system, "GROUPS_OF_PROCESS", groups)
+    assert system.group_limits() == []
     groups.write_text("4:memory:/old\n0::/outer/inner\n")
     for folder in ("memory/old", "outer/inner"):
         (tmp_path / folder).mkdir(parents=True)
     (tmp_path / "outer" / "inner" / "memory.max").write_text("max\n")
     (tmp_path / "outer" / "memory.max").write_text(f"{300 * MIB}\n")
     (tmp_path / "memory" / "old" / "memory.limit_in_bytes").write_text(f"{500 * MIB}\n")
-    assert sorted(memory_limit.group_limits()) == [300 * MIB, 500 * MIB]
-    assert memory_limit.default_total.__wrapped__() <= 300 * MIB * 7 / 8
+    assert sorted(system.group_limits()) == [300 * MIB, 500 * MIB]
+    assert system.default_total.__wrapped__() <= 300 * MIB * 7 / 8
 
 
 def test_what_the_process_holds_is_counted() -> None:
-    before = memory_limit.room()
-    minirt.limit_memory(memory_limit.sizes()[1] + 500 * MIB)
-    least = memory_limit.room()
+    before = system.room()
+    minirt.limit_memory(system.sizes()[1] + 500 * MIB)
+    least = system.room()
     held = np.ones(200 * MIB, np.uint8)
-    assert least - memory_limit.room() > held.nbytes / 2
+    assert least - system.room() > held.nbytes / 2
     assert least <= 500 * MIB
     assert before > 0
 
 
 def test_a_large_picture_is_refused_with_both_sizes() -> None:
-    minirt.limit_memory(memory_limit.sizes()[1] + 50 * MIB)
+    minirt.limit_memory(system.sizes()[1] + 50 * MIB)
     with pytest.raises(minirt.RenderError, match=r"4000x3000 pixels needs about 320 MiB of memory, allowed \d\d MiB"):
         minirt.render(minirt.loads(SCENE), 4000, 3000)
 
@@ -103,8 +103,8 @@ def test_a_tiff_file_that_does_not_fit_is_written_in_bands(tmp_path: Path, monke
     Path("ball.rt").write_text(SCENE)
     size = "--size", "2600x2000"
     assert main(["ball.rt", "-o", "whole.tif", *size]) == 0
-    monkeypatch.setattr(memory_limit, "SMALL", 0)
-    monkeypatch.setattr(memory_limit, "room", lambda: 25 * MIB)  # whatever other tests have left in memory
+    monkeypatch.setattr(system, "SMALL", 0)
+    monkeypatch.setattr(system, "room", lambda: 25 * MIB)  # whatever other tests have left in memory
     assert main(["ball.rt", "-o", "bands.tif", *size]) == 0
     first, second = (np.asarray(pillow.open(name)) for name in ("whole.tif", "bands.tif"))
     assert np.array_equal(first, second)
@@ -123,7 +123,7 @@ def test_textures_count_together_and_links_once(tmp_path: Path, monkeypatch: pyt
     (tmp_path / "x.rt").write_text(TEXTURED)
     scene = minirt.load(tmp_path / "x.rt")
     needs: list[int] = []
-    monkeypatch.setattr(memory_limit, "check", lambda needed, *_: needs.append(needed))
+    monkeypatch.setattr(system, "check_memory", lambda needed, *_: needs.append(needed))
     pool = TexturePool(scene)
     for number in range(4):
         pool.number(f"{number}.png", minirt.materials.picture_cache.picture)
@@ -146,7 +146,7 @@ def test_a_region_is_counted_with_its_copy(
 ) -> None:
     (tmp_path / "x.rt").write_text(SCENE)
     needs: list[float] = []
-    monkeypatch.setattr(memory_limit, "check_picture", lambda height, width, each: needs.append(each))
+    monkeypatch.setattr(system, "check_picture", lambda height, width, each: needs.append(each))
     output = str(tmp_path / "x.jpg")
     assert main([str(tmp_path / "x.rt"), "-o", output, "--size", "64x48", *region]) == 0
     assert needs[0] == told

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image as pillow  # noqa: N813
 
-from minirt import png
+from minirt.formats import png
 
 Array = np.ndarray
 RANDOM = np.random.default_rng(7)

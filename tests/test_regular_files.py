@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from minirt import regular_files
 from minirt.errors import FileError
+from minirt.helpers import file_io
 
 LARGEST = 2**26
 
@@ -29,8 +29,8 @@ def peak(read: Callable[[], bytes]) -> int:
 def test_a_small_file_needs_little_memory(tmp_path: Path) -> None:
     path = tmp_path / "a"
     path.write_bytes(bytes(1000))
-    assert regular_files.read(path, LARGEST) == bytes(1000)
-    assert peak(lambda: regular_files.read(path, LARGEST)) < 2**20
+    assert file_io.read(path, LARGEST) == bytes(1000)
+    assert peak(lambda: file_io.read(path, LARGEST)) < 2**20
     with path.open("rb") as file:
         assert peak(lambda: file.read(LARGEST)) > LARGEST  # so the check notices
 
@@ -40,10 +40,10 @@ def test_files_up_to_the_limit_are_read_whole(tmp_path: Path, size: int) -> None
     path = tmp_path / "a"
     path.write_bytes(os.urandom(size))
     if size <= 1000:
-        assert regular_files.read(path, 1000) == path.read_bytes()
+        assert file_io.read(path, 1000) == path.read_bytes()
     else:
         with pytest.raises(FileError, match="larger than"):
-            regular_files.read(path, 1000)
+            file_io.read(path, 1000)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no FIFOs")
@@ -54,11 +54,11 @@ def test_a_file_whose_bytes_do_not_come_is_an_error(
     """As /proc/kmsg, a regular file of length 0, whose reader waits for the next message of the kernel."""
     path = tmp_path / "a"
     os.mkfifo(path)
-    monkeypatch.setattr(regular_files, "check_regular", lambda path, status, largest: status)
+    monkeypatch.setattr(file_io, "check_regular", lambda path, status, largest: status)
     with path.open("r+b", buffering=0) as writer:
         writer.write(first)
         with pytest.raises(FileError) as caught:
-            regular_files.read(path, 1000)
+            file_io.read(path, 1000)
     assert caught.value.reason == "cannot be read: resource temporarily unavailable"
 
 
@@ -68,16 +68,16 @@ def test_a_file_that_grows_while_it_is_read(
 ) -> None:
     path = tmp_path / "a"
     path.write_bytes(bytes(2000))
-    real = regular_files.check_regular
+    real = file_io.check_regular
 
     def before_it_grew(path: Any, status: os.stat_result, largest: int) -> os.stat_result:
         values = list(real(path, status, 2**40))
         values[6] = told  # st_size
         return os.stat_result(values)
 
-    monkeypatch.setattr(regular_files, "check_regular", before_it_grew)
+    monkeypatch.setattr(file_io, "check_regular", before_it_grew)
     if fits:
-        assert regular_files.read(path, largest) == bytes(2000)
+        assert file_io.read(path, largest) == bytes(2000)
     else:
         with pytest.raises(FileError, match="larger than"):
-            regular_files.read(path, largest)
+            file_io.read(path, largest)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 
+from minirt.helpers.file_io import LARGEST_ASSET
 from minirt.jail.confinement import CALLS
 from minirt.jail.decoder import FORMATS, SIDE
 from minirt.jail.messages import CPU_TIME, MEMORY
 from minirt.jail.pipes import LONGEST_WAIT
 from minirt.meshes.mesh_cache import MAX_BYTES
 from minirt.meshes.obj import MAX_LINES, MAX_TRIANGLES
-from minirt.regular_files import LARGEST_ASSET
 from minirt.scene import files
 from tests.jail.breakouts import ACTS
 from tests.lowest_versions import lowest_versions

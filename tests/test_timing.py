@@ -6,8 +6,8 @@ from functools import partial
 
 import pytest
 
-from minirt import timing
-from minirt.timing import Run, in_turn, is_disturbed, runs
+from minirt.helpers import system
+from minirt.helpers.system import Run, in_turn, is_disturbed, runs
 
 
 class Machine:
@@ -30,8 +30,8 @@ class Machine:
 def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
     """A simulated machine in the place of the real clocks."""
     simulated = Machine()
-    monkeypatch.setattr(timing, "perf_counter", lambda: simulated.wall)
-    monkeypatch.setattr(timing, "process_time", lambda: simulated.cpu)
+    monkeypatch.setattr(system, "perf_counter", lambda: simulated.wall)
+    monkeypatch.setattr(system, "process_time", lambda: simulated.cpu)
     return simulated
 
 

@@ -66,14 +66,14 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
     if text := asked_text(parser, options):
         say(text)
         return OK
-    from minirt import memory_limit
     from minirt.cli.configuration import with_configuration
+    from minirt.helpers import system
 
     options = with_configuration(parser, options, argv)
     options.command = sys.argv[1:] if argv is None else list(argv)
     example.choose(parser, options, options.command)
     check_options(parser, options)
-    memory_limit.limit_memory(options.memory)
+    system.limit_memory(options.memory)
     if len(options.scene) == 1:
         return run_scene(parser, options, options.scene[0])
     statuses = []
@@ -105,7 +105,7 @@ def asked_text(parser: Arguments, options: argparse.Namespace) -> str:
 
 def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int:
     """Run the command for one scene."""
-    from minirt.gc_pause import gc_paused
+    from minirt.helpers.system import gc_paused
 
     with gc_paused():  # looking for garbage among new modules takes an eighth of a warm start
         from minirt.cli.commands import command_for

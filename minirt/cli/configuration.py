@@ -54,10 +54,10 @@ def read(parser: argparse.ArgumentParser, path: Path) -> dict[str, object]:
     """Return the defaults in a file by the names of options; FileError for what no option takes."""
     import tomllib
 
-    from minirt import regular_files
+    from minirt.helpers import file_io
 
     try:
-        table = tomllib.loads(regular_files.read(path, LARGEST).decode())
+        table = tomllib.loads(file_io.read(path, LARGEST).decode())
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise FileError(path, f"is not TOML: {error}") from None
     actions = {action.dest: action for action in parser._actions if action.dest in NAMES}

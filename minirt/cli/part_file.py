@@ -16,8 +16,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import IO, NamedTuple
 
-from minirt import file_locks
 from minirt.errors import RenderError
+from minirt.helpers import file_io
 
 TITLE = b"miniRT part file 1, work "
 FLAGS = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)  # of a file that must not exist yet
@@ -151,5 +151,5 @@ def delete(path: Path) -> None:
 
 def lock(file: IO[bytes], path: Path) -> None:
     """Lock a file until it is closed; RenderError where another program has locked it."""
-    if not file_locks.lock(file.fileno()):
+    if not file_io.lock(file.fileno()):
         raise RenderError(f"{path}: another program is at this work")

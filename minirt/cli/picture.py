@@ -10,7 +10,7 @@ from minirt.cli.exit_status import FAILED, OK
 from minirt.cli.output import say_bytes, tell
 from minirt.cli.progress import State, progress
 from minirt.cli.target import check_memory, check_region, needs_light
-from minirt.gc_pause import gc_paused
+from minirt.helpers.system import gc_paused
 
 if TYPE_CHECKING:
     from minirt.cli.part_file import PartFile

@@ -10,7 +10,7 @@ from functools import partial
 from time import perf_counter
 from typing import TextIO
 
-from minirt.progress import State, drawn
+from minirt.helpers.progress import State, drawn
 
 __all__ = ["State", "progress"]
 

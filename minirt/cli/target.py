@@ -69,21 +69,22 @@ def check_region(options: argparse.Namespace, output: str, width: int, height: i
 
 def check_memory(options: argparse.Namespace, output: str, size: tuple[int, int]) -> None:
     """Check that there is memory to render and write a picture of this size, or its region; RenderError otherwise."""
-    from minirt import LIGHT, memory_limit
+    from minirt import LIGHT
     from minirt.formats.table import format_of, memory_of
+    from minirt.helpers import system
 
     name = "PNG" if output == "-" else format_of(output)
     *_, width, height = options.region or size
     is_light_extra = (options.dither or options.verbose) and not needs_light(options, output)
     needed = memory_of(name, options.bits) + LIGHT * is_light_extra + COPY * bool(options.region)
-    memory_limit.check_picture(height, width, needed)
+    system.check_picture(height, width, needed)
 
 
 def is_rendered_in_bands(scene: Scene, options: argparse.Namespace) -> bool:
     """Whether a picture does not fit into memory, but is written to a file that can be made of bands of rows."""
     from minirt import size_of
     from minirt.formats.table import format_of
-    from minirt.memory_limit import TooLargeError
+    from minirt.helpers.system import TooLargeError
 
     if options.output == "-" or format_of(options.output) != "TIFF" or options.time:
         return False
@@ -98,11 +99,11 @@ def check_target(options: argparse.Namespace, output: str, width: int, height: i
     """Check that a picture of this size can be written to a file; RenderError otherwise."""
     if output == "-":
         return
-    from minirt import atomic_write
     from minirt.formats.table import check_size, format_of
+    from minirt.helpers import file_io
 
     check_size(output, format_of(output), width, height)
     try:
-        atomic_write.probe(output)
+        file_io.probe(output)
     except OSError as error:
         raise RenderError(f"{os.fspath(output)}: cannot write: {error.strerror or error}") from None

@@ -16,7 +16,7 @@ from minirt.cli.exit_status import OK
 from minirt.cli.picture import rows_done, write
 from minirt.cli.progress import State, progress
 from minirt.cli.target import check_memory, check_region, is_film, needs_light
-from minirt.gc_pause import gc_paused
+from minirt.helpers.system import gc_paused
 
 if TYPE_CHECKING:
     from minirt.cli.part_file import PartFile

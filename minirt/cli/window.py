@@ -7,7 +7,6 @@ import os
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from minirt import regular_files
 from minirt.cli.arguments import SAMPLES, WINDOW_SAMPLES
 from minirt.cli.exit_status import OK
 from minirt.cli.output import say
@@ -15,6 +14,7 @@ from minirt.cli.picture import render, write
 from minirt.cli.progress import State, progress
 from minirt.cli.target import check_target, is_film
 from minirt.errors import FileError, MlxError, ReplayError
+from minirt.helpers import file_io
 
 if TYPE_CHECKING:
     from minirt.scene import Scene
@@ -91,7 +91,7 @@ def without_metadata(options: argparse.Namespace) -> argparse.Namespace:
 def read_lines(path: str) -> list[str]:
     """Return the lines of a file of recorded keys; ReplayError when it cannot be read."""
     try:
-        return regular_files.read(path, MAX_RECORDING).decode().replace("\r\n", "\n").split("\n")
+        return file_io.read(path, MAX_RECORDING).decode().replace("\r\n", "\n").split("\n")
     except FileError as error:
         raise ReplayError(str(error)) from None
     except UnicodeDecodeError as error:

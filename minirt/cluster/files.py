@@ -16,8 +16,8 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
+from minirt.helpers.file_io import PRIVATE_FOLDER, user_folder
 from minirt.kernel.machine_code import private_files
-from minirt.user_files import PRIVATE_FOLDER, user_folder
 
 UNUSED = 30 * 24 * 3600  # seconds after which a file is deleted
 

@@ -10,10 +10,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
-from minirt import atomic_write, file_locks
 from minirt.cluster import bigtiff, journal
 from minirt.cluster.task import Made, Region
 from minirt.errors import RenderError
+from minirt.helpers import file_io
 
 FLAGS = os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
 
@@ -36,7 +36,7 @@ class Output:
             self.end = max((each.end for each in self.bands.values()), default=bigtiff.HEADER.size)
             self.data.truncate(self.end)
             lines = [journal.title(self.key) + "\n", *map(journal.line, self.bands.values())]
-            atomic_write.write(self.journal_path, "".join(lines).encode())
+            file_io.write(self.journal_path, "".join(lines).encode())
             self.lines: TextIO = self.journal_path.open("a", encoding="utf-8")
         except BaseException:
             self.data.close()
@@ -82,5 +82,5 @@ class Output:
 
 def lock(file: BinaryIO, target: Path) -> None:
     """Lock a file until it is closed; RenderError where another program has locked it."""
-    if not file_locks.lock(file.fileno()):
+    if not file_io.lock(file.fileno()):
         raise RenderError(f"{target}: another program is rendering into this file")

@@ -15,10 +15,10 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from minirt import regular_files
 from minirt.cluster import files
 from minirt.element import Element, Record, fields_of
 from minirt.errors import RenderError
+from minirt.helpers import file_io
 from minirt.meshes.triangles import Triangles
 from minirt.scene import Scene
 
@@ -53,7 +53,7 @@ def packed(scene: Scene) -> Parcel:
     used: dict[str, None] = {}
 
     def picture(name: str) -> str:
-        digest = files.keep(regular_files.read(scene.beside(name), regular_files.LARGEST_ASSET))
+        digest = files.keep(file_io.read(scene.beside(name), file_io.LARGEST_ASSET))
         used[digest] = None
         return digest
 

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Literal
 
-from minirt import atomic_write
 from minirt.cluster.bands import whole
 from minirt.cluster.output import Output
 from minirt.cluster.still import Still, size_for
@@ -16,6 +15,7 @@ from minirt.cluster.task import Region, Settings, Task
 from minirt.cluster.workers import WorkerPool, Workers
 from minirt.errors import RenderError
 from minirt.formats.table import check_bits, check_size, format_of
+from minirt.helpers import file_io
 from minirt.rendering.sampling.outcome import Outcome
 from minirt.scene import Scene
 from minirt.scene.arguments import check_scene
@@ -58,7 +58,7 @@ def render_to(
     check_size(path, name, settings.width, settings.height)
     still = Still(scene, settings, region, f"strips-{bits}")
     try:
-        atomic_write.probe(path)
+        file_io.probe(path)
         with Output(Path(path), key_of(still.task), still.bands) as output:
             on_progress(len(output.bands), len(still.bands))
             for band, made in still.made(WorkerPool(executor, threads), output.bands.keys()):

@@ -10,7 +10,7 @@ import minirt
 from minirt.cluster import bigtiff, files, parcel
 from minirt.cluster.task import Answer, Made, Missing, Task, version
 from minirt.errors import RenderError
-from minirt.fork_safety import ForkSafeLock
+from minirt.helpers.system import ForkSafeLock
 from minirt.scene import Scene
 
 if TYPE_CHECKING:

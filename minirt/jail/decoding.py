@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
-from minirt import regular_files
 from minirt.errors import FileError
-from minirt.fork_safety import ForkSafeLock, renew_after_fork
+from minirt.helpers import file_io
+from minirt.helpers.system import ForkSafeLock, renew_after_fork
 
 if TYPE_CHECKING:
     from minirt.jail.decoder import Decoded
@@ -87,7 +87,7 @@ def expect(path: str | os.PathLike[str]) -> None:
     with suppress(FileError, DecodingError), lock:
         if state.helper:
             return
-        data = regular_files.read(path, regular_files.LARGEST_ASSET)
+        data = file_io.read(path, file_io.LARGEST_ASSET)
         if not data.startswith(READ_BY_PROGRAM) and not is_known(digest_of(data)):
             state.helper = Helper()
             state.helper.start()

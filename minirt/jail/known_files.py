@@ -13,7 +13,7 @@ from contextlib import suppress
 from hashlib import blake2b
 from pathlib import Path
 
-from minirt.user_files import PRIVATE_FILE, PRIVATE_FOLDER, is_private, user_folder
+from minirt.helpers.file_io import PRIVATE_FILE, PRIVATE_FOLDER, is_private, user_folder
 
 NAME = "decoded-pictures"
 DIGEST_SIZE = 32  # bytes

@@ -9,10 +9,9 @@ from weakref import WeakValueDictionary
 
 import numpy as np
 
-from minirt import memory_limit, regular_files
 from minirt.errors import FileError
-from minirt.fork_safety import ForkSafeLock
-from minirt.memory_limit import TooLargeError
+from minirt.helpers import file_io, system
+from minirt.helpers.system import ForkSafeLock, TooLargeError
 
 TEXEL = 4  # bytes of a channel of a pixel in the arrays of the kernel
 
@@ -52,14 +51,14 @@ def reader(heights_wanted: bool, sky_wanted: bool) -> Callable[[Path], np.ndarra
 
 def identity(path: str | os.PathLike[str]) -> tuple[int, int]:
     """The device and the inode of a picture file, which all links to it share. FileError if it cannot be read."""
-    status = regular_files.status(path, regular_files.LARGEST_ASSET)
+    status = file_io.status(path, file_io.LARGEST_ASSET)
     return status.st_dev, status.st_ino
 
 
 def cached(read: Callable[[Path], np.ndarray], path: str | os.PathLike[str]) -> np.ndarray:
     """The array that `read` makes from a file, read again only if the file has changed; one for all links to it."""
     path = Path(path)
-    status = regular_files.status(path, regular_files.LARGEST_ASSET)
+    status = file_io.status(path, file_io.LARGEST_ASSET)
     stamp = (status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns)
     key = read, os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
     with lock:
@@ -80,4 +79,4 @@ def cached(read: Callable[[Path], np.ndarray], path: str | os.PathLike[str]) -> 
 
 def check_textures(arrays: list[np.ndarray]) -> None:
     """Check that there is room for the texels of these arrays, which a kernel reads; `TooLargeError` otherwise."""
-    memory_limit.check(TEXEL * sum(array.size for array in arrays), "the textures need", "smaller pictures need less")
+    system.check_memory(TEXEL * sum(array.size for array in arrays), "the textures need", "smaller pictures need less")

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from minirt import jail, regular_files
+from minirt import jail
 from minirt.errors import FileError, printable
+from minirt.helpers import file_io
 from minirt.jail.decoder import DecodingError, check_size
 from minirt.materials import radiance, xpm
 
@@ -26,7 +27,7 @@ def colours(path: Path) -> np.ndarray:
 
 def light_or_colours(path: Path) -> np.ndarray:
     """The light of a Radiance picture; red, green and blue of any other file."""
-    data = regular_files.read(path, regular_files.LARGEST_ASSET)
+    data = file_io.read(path, file_io.LARGEST_ASSET)
     if not data.startswith(radiance.MAGIC):
         return colours(path)
     try:
@@ -50,7 +51,7 @@ def brightness(path: Path) -> np.ndarray:
 
 def decode(path: Path) -> np.ndarray:
     """Decode a file: uint8 (h, w, 3), or uint16 (h, w) for 16-bit grey. FileError if it holds no picture."""
-    data = regular_files.read(path, regular_files.LARGEST_ASSET)
+    data = file_io.read(path, file_io.LARGEST_ASSET)
     if not data:
         raise FileError(path, "is empty")
     if data.startswith(radiance.MAGIC):

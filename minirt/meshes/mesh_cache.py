@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from minirt import regular_files
 from minirt.errors import FileError
-from minirt.fork_safety import ForkSafeLock
+from minirt.helpers import file_io
+from minirt.helpers.system import ForkSafeLock
 from minirt.meshes.triangles import Triangles
 
 MAX_BYTES = 256 * 2**20  # 256 MiB
@@ -20,7 +20,7 @@ lock = ForkSafeLock()
 
 def load_mesh(path: str | os.PathLike[str]) -> Triangles:
     """Return the triangles of an .obj file, the same object until the file changes; FileError when it is no mesh."""
-    status = regular_files.status(path, MAX_BYTES)
+    status = file_io.status(path, MAX_BYTES)
     stamp = (status.st_ino, status.st_size, status.st_mtime_ns)
     key = os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
     with lock:
@@ -35,6 +35,6 @@ def read(path: Path) -> Triangles:
     from minirt.meshes.obj import ObjError, parse
 
     try:
-        return parse(regular_files.read(path, MAX_BYTES))
+        return parse(file_io.read(path, MAX_BYTES))
     except ObjError as error:
         raise FileError(path, str(error)) from None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from minirt.errors import MlxError
-from minirt.progress import in_notebook
+from minirt.helpers.progress import in_notebook
 
 if TYPE_CHECKING:
     from minirt.mlx import Mlx

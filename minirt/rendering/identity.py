@@ -5,9 +5,9 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator
 
-from minirt import regular_files
 from minirt.element import Element, fields_of
 from minirt.fields import MeshFile
+from minirt.helpers import file_io
 from minirt.kernel.machine_code.cache_folder import fingerprint_of
 from minirt.kernel.machine_code.processor import V3
 from minirt.scene import Scene, dump
@@ -18,7 +18,7 @@ def identity(scene: Scene, settings: str) -> str:
     read."""
     found = hashlib.sha256(f"{fingerprint_of(V3)} {settings}\n{dump(scene)}".encode())
     for name in sorted({name for element in scene.elements for name in files_of(element)}):
-        data = regular_files.read(scene.beside(name), regular_files.LARGEST_ASSET)
+        data = file_io.read(scene.beside(name), file_io.LARGEST_ASSET)
         found.update(f"{name} {len(data)}\n".encode())
         found.update(data)
     return found.hexdigest()

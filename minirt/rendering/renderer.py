@@ -11,7 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.fork_safety import renew_after_fork
+from minirt.helpers.system import renew_after_fork
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering.crop import Crop
 from minirt.rendering.darkroom import Darkroom

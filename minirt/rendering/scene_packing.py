@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from minirt import jail
+from minirt.helpers.system import TooLargeError
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import Group, SceneArrays
-from minirt.memory_limit import TooLargeError
 from minirt.rendering.crop import Crop
 from minirt.rendering.culling.light_frustum import dense_cluster
 from minirt.rendering.culling.list_sizes import COARSEST

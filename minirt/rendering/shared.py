@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from minirt.fork_safety import ForkSafeLock
+from minirt.helpers.system import ForkSafeLock
 from minirt.rendering.renderer import Renderer
 
 Settings = tuple[int | None, str, int | None, bool]

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from time import perf_counter
 from typing import TextIO
 
-from minirt.timing import in_words
+from minirt.helpers.system import in_words
 
 BAR = 24  # characters
 TRUST = 0.05  # share of the expected time after which the measured pace counts as much as the expected one

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from minirt import file_locks
+from minirt.helpers import file_io
 
 PREFIX = "minirt-report-"
 
@@ -37,7 +37,7 @@ def locked_folder(stack: ExitStack) -> Path:
         with suppress(FileNotFoundError):  # another program took it for abandoned, before it was locked
             descriptor = os.open(made, os.O_RDONLY)
             stack.callback(os.close, descriptor)
-            file_locks.lock(descriptor)
+            file_io.lock(descriptor)
             made.stat()
             return made
 
@@ -48,7 +48,7 @@ def delete_if_abandoned(folder: Path) -> None:
         return
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
     try:
-        if os.fstat(descriptor).st_uid == os.geteuid() and file_locks.is_free(descriptor):
+        if os.fstat(descriptor).st_uid == os.geteuid() and file_io.is_free(descriptor):
             shutil.rmtree(folder, ignore_errors=True)
     finally:
         os.close(descriptor)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 
-from minirt import atomic_write, regular_files
+from minirt.helpers import file_io
 from minirt.scene import fast, files
 from minirt.scene.line_rewriting import line_of
 from minirt.scene.lines import BOM
@@ -34,6 +34,6 @@ def write(pages: tuple[Page, ...], path: str | os.PathLike[str]) -> None:
     files.check_name(path)
     data = text_of(pages).encode()
     try:
-        atomic_write.write(path, data)
+        file_io.write(path, data)
     except (OSError, ValueError) as error:
-        raise files.file_error(path, f"cannot be written: {regular_files.reason(error)}") from None
+        raise files.file_error(path, f"cannot be written: {file_io.reason(error)}") from None

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from minirt import regular_files
 from minirt.errors import FileError, Problem, SceneError
+from minirt.helpers import file_io
 from minirt.scene import in_picture
 
 SUFFIX = ".rt"
@@ -40,7 +40,7 @@ def read(path: str | os.PathLike[str]) -> bytes:
     try:
         if in_picture.is_picture(path):
             return in_picture.read(path, MAX_BYTES)
-        return regular_files.read(path, MAX_BYTES)
+        return file_io.read(path, MAX_BYTES)
     except FileError as error:
         raise file_error(path, error.reason) from None
 

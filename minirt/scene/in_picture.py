@@ -9,8 +9,8 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from minirt import regular_files
 from minirt.errors import FileError
+from minirt.helpers import file_io
 
 SUFFIX = ".png"
 SCENE, SETTINGS, FOLDER = "miniRT scene", "miniRT settings", "miniRT folder"  # keywords of the texts
@@ -50,9 +50,9 @@ def folder(path: str | os.PathLike[str]) -> Path:
 
 def read_text(path: str | os.PathLike[str], keyword: str, longest: int) -> bytes | None:
     """Return a text of a PNG picture, None where it has none; FileError where it cannot be read."""
-    from minirt.formats.png_texts import PngError, texts
+    from minirt.formats.png import PngError, texts
 
-    data = regular_files.read(path, LARGEST_PICTURE)
+    data = file_io.read(path, LARGEST_PICTURE)
     try:
         return texts(data, (keyword,), longest).get(keyword)
     except PngError as error:

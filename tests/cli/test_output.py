@@ -13,8 +13,8 @@ import pytest
 from PIL import Image
 
 import minirt
-from minirt import atomic_write
 from minirt.cli import main
+from minirt.helpers import file_io
 from tests.cli.program import SCENE, Result
 
 Run = Callable[..., Result]
@@ -77,7 +77,7 @@ def test_an_existing_file_stays_when_writing_fails(run: Run, folder: Path, monke
     def full(descriptor: int) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(atomic_write.os, "fsync", full)
+    monkeypatch.setattr(file_io.os, "fsync", full)
     ended = run("ball.rt", "-o", "x.png", "--size", "8x6")
     assert ended == (1, b"", "Error\nx.png: cannot write: No space left on device\n")
     assert (folder / "x.png").read_bytes() == b"old"
@@ -283,7 +283,7 @@ def test_a_replay_whose_save_fails_is_an_error(
 
     (folder / "keys.txt").write_text("press Tab\npress d\npress Ctrl+S\n")
     with monkeypatch.context() as patch:
-        patch.setattr(atomic_write.os, "fsync", full)
+        patch.setattr(file_io.os, "fsync", full)
         ended = run("ball.rt", "--replay", "keys.txt", "--size", "40x30", "-o", output)
     assert ended == (1, b"", "Error\nball.rt: cannot be written: no space left on device\n")
     assert not (folder / output).exists()

@@ -19,7 +19,7 @@ LOADED = "import sys; print(*sorted({each.split('.')[0] for each in sys.modules}
 QUIETLY = "import contextlib, io\nfrom minirt.cli import main\nwith contextlib.redirect_stdout(io.StringIO()):\n"
 HEAVY = {"numba", "llvmlite", "pyglet", "PIL", "minirt.mlx", "minirt.viewer"}
 OTHER_WORK = {"PIL", "minirt.movie", "minirt.report", "minirt.meshes.obj"}  # other formats, reports, meshes
-OTHER_WORK |= {"minirt.materials.radiance", "minirt.materials.xpm", "minirt.timing"}  # textures, slow pictures
+OTHER_WORK |= {"minirt.materials.radiance", "minirt.materials.xpm", "minirt.helpers.system"}  # textures, slow pictures
 OTHER_WORK |= {"minirt.rendering.culling.hidden_planes"}  # thousands of planes
 OTHER_WORK |= {"minirt.rendering.queries.pick", "minirt.rendering.queries.preview"}  # clicks, coarse pictures
 FOR_MISTAKES = {"difflib", "logging", "subprocess"}  # needed to report a mistake, or to compile
@@ -69,7 +69,7 @@ def test_rendering_to_a_file_imports_no_window(folder: Path) -> None:
 
 def test_rendering_to_png_imports_nothing_that_other_work_needs(folder: Path) -> None:
     loaded = modules(RENDER.format("x.png"), folder)
-    assert "minirt.png" in loaded
+    assert "minirt.formats.png" in loaded
     assert not OTHER_WORK & loaded
     assert OTHER_WORK & modules(RENDER.format("x.bmp"), folder) == {"PIL"}
 

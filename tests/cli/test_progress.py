@@ -9,9 +9,9 @@ from threading import Event
 
 import pytest
 
-from minirt import progress as module
 from minirt.cli.progress import draw, progress
-from minirt.progress import State, draw_until, line
+from minirt.helpers import progress as module
+from minirt.helpers.progress import State, draw_until, line
 from tests.waiting import HANG_LIMIT
 
 

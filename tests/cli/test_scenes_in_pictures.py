@@ -10,7 +10,7 @@ import pytest
 from PIL import Image as pillow  # noqa: N813
 
 import minirt
-from minirt import png
+from minirt.formats import png
 from minirt.scene import in_picture
 from tests.cli.program import SCENE, Result
 

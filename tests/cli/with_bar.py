@@ -6,8 +6,8 @@ import signal
 import sys
 from threading import Event
 
-from minirt import progress
 from minirt.cli import main
+from minirt.helpers import progress
 from minirt.rendering.frame_arguments import Frame
 from minirt.rendering.running.frame_runner import FrameRunner
 from tests.waiting import until

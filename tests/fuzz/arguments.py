@@ -13,7 +13,7 @@ from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
 
 from minirt.cli import main
-from minirt.memory_limit import limit_memory
+from minirt.helpers.system import limit_memory
 from tests.fuzz.fuzzer import Fuzzer
 from tests.fuzz.mutations import mutated
 

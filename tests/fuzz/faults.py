@@ -12,8 +12,8 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from minirt import atomic_write
 from minirt.errors import MiniRTError
+from minirt.helpers import file_io
 from tests.faulty_files import CODES, counting, failing_at, faulty_files, is_killed_at
 from tests.file_writers import Writer, writers
 
@@ -90,10 +90,10 @@ def tried_kills(writer: Writer, folder: Path, some: int) -> int:
     chosen = moments(writer, work, some)
     for number in chosen:
         put_old(work, list(new))
-        atomic_write.CLEANED.discard(work)
+        file_io.CLEANED.discard(work)
         assert is_killed_at(lambda: writer(work), number)
         found = contents(work)
-        check_whole({name: data for name, data in found.items() if not Path(name).match(atomic_write.TEMPORARY)}, new)
+        check_whole({name: data for name, data in found.items() if not Path(name).match(file_io.TEMPORARY)}, new)
         writer(work)
         assert contents(work) == new, "the next run does not clear up"
     return len(chosen)

@@ -28,7 +28,7 @@ from minirt import cli
 from minirt.report import generate
 from minirt.report.measurements import formula_errors, plan
 from minirt.report.measurements.run_times import Budget
-from minirt.timing import runs
+from minirt.helpers.system import runs
 from tests.cli.announcing import announce_rendering
 
 def endless(work, least, seconds):

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from minirt import atomic_write
 from minirt.errors import SceneError
+from minirt.helpers import file_io
 from minirt.scene import load, parse, save
 from tests.scene.examples import WHOLE
 
@@ -120,5 +120,5 @@ def test_a_write_protected_file_is_not_replaced(tmp_path: Path, monkeypatch: pyt
 
 
 def test_bytes_are_written_unchanged(tmp_path: Path) -> None:
-    atomic_write.write(tmp_path / "data", b"\r\n\0\xff")
+    file_io.write(tmp_path / "data", b"\r\n\0\xff")
     assert (tmp_path / "data").read_bytes() == b"\r\n\0\xff"

@@ -7,7 +7,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from minirt import png
+from minirt.formats import png
 from minirt.formats.films.changes import ONE_PIXEL, changed_rectangle
 from minirt.formats.films.loop import LoopFilm
 

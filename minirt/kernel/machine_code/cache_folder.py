@@ -14,10 +14,10 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
+from minirt.helpers.file_io import PRIVATE_FOLDER, user_folder
 from minirt.kernel.machine_code.private_files import make_private_folder
 from minirt.kernel.machine_code.processor import described, processor
 from minirt.kernel.machine_code.source_files import source_files
-from minirt.user_files import PRIVATE_FOLDER, user_folder
 
 PACKAGE = Path(__file__).parents[2]
 SOURCES = ("kernel", "lanes", "shapes")  # folders of all sources of a kernel

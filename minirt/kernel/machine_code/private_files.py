@@ -14,9 +14,9 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from minirt import atomic_write
+from minirt.helpers import file_io
+from minirt.helpers.file_io import PRIVATE_FILE, PRIVATE_FOLDER, is_private
 from minirt.kernel.machine_code.container import KEY_SIZE
-from minirt.user_files import PRIVATE_FILE, PRIVATE_FOLDER, is_private
 
 if sys.platform != "win32":
     import fcntl
@@ -69,7 +69,7 @@ def read(path: Path) -> bytes:
 
 def write(path: Path, data: bytes) -> None:
     """Replace a file in one step by one that only this user may read and write; OSError when that fails."""
-    atomic_write.write(path, data, PRIVATE_FILE)
+    file_io.write(path, data, PRIVATE_FILE)
 
 
 def key_of(folder: Path) -> bytes:

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
-from minirt import atomic_write
+from minirt.helpers import file_io
 from minirt.kernel.machine_code import container
 from minirt.kernel.machine_code.cache_folder import PACKAGE
 from minirt.kernel.machine_code.code_cache import ObjectCode, file_name
@@ -35,7 +35,7 @@ def read(identity: str, folder: Path | None = None) -> ObjectCode | None:
 def write(identity: str, code: ObjectCode, folder: Path) -> None:
     """Write a kernel into a folder of the package. OSError where that is impossible."""
     folder.mkdir(parents=True, exist_ok=True)
-    atomic_write.write(folder / file_name(identity), container.pack(NO_KEY, identity, *code), READABLE)
+    file_io.write(folder / file_name(identity), container.pack(NO_KEY, identity, *code), READABLE)
 
 
 def delete_others(identities: Iterable[str], folder: Path) -> None:

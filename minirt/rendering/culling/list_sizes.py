@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from minirt import memory_limit
+from minirt.helpers import system
 from minirt.kernel.culling.binning import Grid
 from minirt.rendering.culling.planes import CellRuns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -36,12 +36,12 @@ def check_lists(
     shapes, kinds = len(shape_arrays.slots), len(shape_arrays.rows)
     of_planes = planes * len(grid.frames) * grid.down if runs is None else len(runs.lengths)
     fixed = copies * kinds * (grid.cells + 1) * START + of_planes * RUN
-    if memory_limit.is_small(fixed + copies * shapes * grid.cells * MEMBER):
+    if system.is_small_need(fixed + copies * shapes * grid.cells * MEMBER):
         return
     members = planes * grid.cells / 2 if runs is None else float(runs.lengths.sum())
     if len(grid.frames) > 1 or grid.elsewhere >= 0:  # tiles, which are binned for every picture, are not estimated
         members += estimated_members(kernel, shape_arrays, balls, origin, grid)
-    memory_limit.check(int(fixed + copies * members * MEMBER), WHAT, ADVICE, largest)
+    system.check_memory(int(fixed + copies * members * MEMBER), WHAT, ADVICE, largest)
 
 
 def estimated_members(

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt import memory_limit
+from minirt.helpers import system
 from minirt.kernel.culling.binning import MARGIN, Grid
 from minirt.kernel.frame import tile_count
 from minirt.kernel.stored_light import TILE
@@ -130,7 +130,7 @@ def seen_by_light(
     """
     frustum = frustum_grid(cluster, light, cells)
     grid = cube_grid(cells) if frustum is None else frustum
-    largest = QUICKLY_BUILT if cells > COARSEST else memory_limit.UNLIMITED
+    largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
     hiding = opaque_planes(shape_arrays) if is_crowd(len(skipped), grid) else None
     lists = copies, largest, hiding
     binned = bin_shapes(kernel, shape_arrays, shape_arrays.balls, np.array(light), grid, skipped, radius, 0.0, *lists)
@@ -159,7 +159,7 @@ def bin_shapes(
     radius: float = 0.0,
     lean: float = 0.0,
     copies: int = 1,
-    largest: int = memory_limit.UNLIMITED,
+    largest: int = system.UNLIMITED,
     hiding: np.ndarray | None = None,
 ) -> BinnedShapes:
     """Bin the shapes, which `balls` enclose, into the cells of a grid of directions from a point.
@@ -203,7 +203,7 @@ def bin_shapes(
     order = depth_order(depths[rectangles[:used, 0]])
     starts = np.cumsum(counts)  # the ends, until `fill_bins` has counted them down
     count = int(starts[-1]) if kinds else 0
-    memory_limit.check(copies * count * MEMBER, WHAT, ADVICE)
+    system.check_memory(copies * count * MEMBER, WHAT, ADVICE)
     members = np.empty(count, np.int32)
     kernel.fill_bins(rectangles, order, grid.across, starts, members)
     return BinnedShapes(starts.reshape(kinds, stride), members, cones)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from minirt.fork_safety import renew_after_fork
+from minirt.helpers.system import renew_after_fork
 from minirt.kernel.bvh.nodes import Tree
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.argument_block import words_of

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.errors import RenderError
+from minirt.helpers.system import Run, is_disturbed, runs
 from minirt.kernel.machine_code import loader
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import LIBRARY
@@ -23,7 +24,6 @@ from minirt.report.measurements.intervals import of_median
 from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS, ENOUGH, Budget
 from minirt.report.measurements.variants import Variant
 from minirt.scene import Scene
-from minirt.timing import Run, is_disturbed, runs
 
 PAIRS = 15  # of frames, of the scene as it is and of the variant, in turn
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from minirt.helpers.system import runs
 from minirt.rendering import Renderer
 from minirt.report.measurements import povray
 from minirt.report.measurements.ablation import PAIRS
@@ -15,7 +16,6 @@ from minirt.report.measurements.run_times import RUNS
 from minirt.report.measurements.settings import AUTO, Setting
 from minirt.report.measurements.variants import Variant
 from minirt.scene import Scene
-from minirt.timing import runs
 
 Step = tuple[str, float]  # name and expected seconds
 

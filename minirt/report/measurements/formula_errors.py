@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from minirt.helpers.system import Run, in_turn, is_disturbed
 from minirt.kernel.compiler.jit_formula import probe
 from minirt.kernel.rows import row_type
 from minirt.rendering.packing.primitives import defining_points, packed_rows
@@ -21,7 +22,6 @@ from minirt.report.measurements.sizes import sizes
 from minirt.shapes import Kind, Shape
 from minirt.shapes.disc import Disc
 from minirt.shapes.square import Square
-from minirt.timing import Run, in_turn, is_disturbed
 
 U = 2.0**-53
 SLACK = 64 * U  # of distance and size: so close to the boundary both hit and miss are right

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.errors import RenderError
+from minirt.helpers.system import Run, runs
 from minirt.rendering import Renderer
 from minirt.report.measurements import flip
 from minirt.report.measurements.intervals import of_median, of_rmse
@@ -20,7 +21,6 @@ from minirt.report.measurements.reference import Reference
 from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS, Budget, Times, measure_times
 from minirt.report.measurements.settings import Drawn, Setting
 from minirt.scene import Scene
-from minirt.timing import Run, runs
 
 OURS = "miniRT"
 

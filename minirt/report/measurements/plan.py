@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from minirt.helpers.system import runs
 from minirt.rendering import Renderer
 from minirt.report.measurements.run_times import Budget
 from minirt.scene import Scene
-from minirt.timing import runs
 
 RAYS = 32  # per shape: a packet in float32
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.errors import RenderError
+from minirt.helpers.system import Run, is_disturbed
 from minirt.report.measurements import flip
 from minirt.report.measurements.metrics import Picture, rmse
 from minirt.report.measurements.picture_errors import Row, with_errors, with_times
@@ -19,7 +20,6 @@ from minirt.report.measurements.povray_scene import translated
 from minirt.report.measurements.reference import Reference
 from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS, Times
 from minirt.scene import Scene
-from minirt.timing import Run, is_disturbed
 
 PROGRAM, COMMAND = "POV-Ray", ("povray",)
 RUNS, MOST_RUNS = 3, 6  # undisturbed, and in all

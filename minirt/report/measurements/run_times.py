@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from minirt.timing import Run, is_disturbed, runs
+from minirt.helpers.system import Run, is_disturbed, runs
 
 RUNS = 7  # of a round
 FEW = 3  # of a round, of work so slow that `RUNS` of them would take longer than a picture may

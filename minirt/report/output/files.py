@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from minirt import atomic_write
 from minirt.errors import RenderError
+from minirt.helpers import file_io
 from minirt.image import Image
 from minirt.report.measurements.findings import Findings, choices
 from minirt.report.measurements.formula_errors import Row as FormulaRow
@@ -83,6 +83,6 @@ def write_files(folder: str | os.PathLike[str], made: Files) -> None:
     for name, data in made.items():
         path = Path(folder) / name
         try:
-            atomic_write.write(path, data)
+            file_io.write(path, data)
         except OSError as error:
             raise RenderError(f"{path}: cannot write: {error.strerror or error}") from None

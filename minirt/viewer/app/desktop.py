@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NoReturn
 
 import minirt
-from minirt.gc_pause import gc_paused
+from minirt.helpers.system import gc_paused
 from minirt.mlx import Mlx
 from minirt.scene import Scene
 from minirt.scene.arguments import check_scene

@@ -7,10 +7,10 @@ from contextlib import suppress
 from itertools import chain, count
 from pathlib import Path
 
-from minirt import atomic_write, regular_files
 from minirt.errors import FileError, MiniRTError, RenderError, SceneError
+from minirt.helpers import file_io
+from minirt.helpers.file_io import reason
 from minirt.image import Image
-from minirt.regular_files import reason
 from minirt.scene import Camera, Scene, dump
 from minirt.scene.files import MAX_BYTES, SUFFIX, file_error
 
@@ -23,7 +23,7 @@ def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = N
     numbered = (path.with_name(f"{path.stem}-{n}{suffix}") for n in count(1))
     for each in chain([first] if first else [], numbered):
         with suppress(FileExistsError):
-            atomic_write.create(each, data)
+            file_io.create(each, data)
             return each
     raise AssertionError("there are endlessly many numbers")
 
@@ -52,7 +52,7 @@ def save_picture(image: Image, path: Path) -> Path:
 def back_up(path: Path) -> Path:
     """Copy a file, byte for byte, to a new file beside it; return the new path. SceneError."""
     try:
-        data = regular_files.read(path, MAX_BYTES)
+        data = file_io.read(path, MAX_BYTES)
     except FileError as error:
         raise file_error(path, error.reason) from None
     return create_scene_file(path, data)

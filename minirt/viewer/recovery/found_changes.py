@@ -9,8 +9,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import NamedTuple
 
-from minirt import regular_files
 from minirt.errors import FileError, SceneError
+from minirt.helpers import file_io
 from minirt.scene import files
 from minirt.viewer.recovery import journal_file
 from minirt.viewer.recovery.journal_folder import abandoned_journals
@@ -43,7 +43,7 @@ def find_changes(file: Path) -> FoundChanges | None:
     Changes of just the text that the file has are newer, whatever the times say: clocks are set back, too.
     """
     with suppress(OSError, FileError, SceneError, UnicodeDecodeError):
-        now, saved = regular_files.read(file, files.MAX_BYTES).decode(), file.stat().st_mtime
+        now, saved = file_io.read(file, files.MAX_BYTES).decode(), file.stat().st_mtime
         newest = sorted(candidates(file), key=lambda each: each.time)
         return next((each for each in reversed(newest) if is_newer(each, now, saved) and each.text != now), None)
     return None

@@ -12,8 +12,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
-from minirt import regular_files
 from minirt.errors import FileError
+from minirt.helpers import file_io
 from minirt.scene import Scene, dump, files
 from minirt.viewer.files.scene_files import contents_differ
 from minirt.viewer.files.watched_file import Signature, signature
@@ -149,7 +149,7 @@ class Journal:
 def text_of(version: Version) -> bytes:
     """Return the text of the saved scene: that of its file, or written anew where another program changed the file."""
     with suppress(OSError, FileError):
-        data = regular_files.read(version.file, files.MAX_BYTES)
+        data = file_io.read(version.file, files.MAX_BYTES)
         is_its_file = version.saved.file == version.file and signature(version.file) == version.signature
         if is_its_file and data.count(b"\n") + 1 == len(version.saved.items):
             return data

@@ -12,7 +12,7 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
-from minirt import regular_files
+from minirt.helpers import file_io
 from minirt.viewer.recovery.splice import Splice
 
 VERSION = 1
@@ -40,7 +40,7 @@ def record(splice: Splice) -> bytes:
 
 def read(path: Path) -> Contents:
     """Read a journal. FileError where it cannot be read, ValueError where it is damaged before its last line."""
-    data = regular_files.read(path, LARGEST)
+    data = file_io.read(path, LARGEST)
     try:
         return contents(data)
     except (KeyError, OverflowError, RecursionError, TypeError) as error:

@@ -11,7 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from minirt.file_locks import lock
+from minirt.helpers.file_io import lock
 
 PRIVATE_FILE, PRIVATE_FOLDER = 0o600, 0o700
 KEPT = 30 * 24 * 3600  # seconds that a journal is kept which nobody asks for

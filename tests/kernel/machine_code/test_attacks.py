@@ -158,7 +158,7 @@ def test_a_program_that_is_killed_while_it_keeps_a_kernel_harms_no_other(tmp_pat
     code = object_code_of(call(double)[0], '[{"array": "<f8", "ndim": 1}]')
     work: Callable[[], None] = lambda: CodeCache(tmp_path).write(identity, code)  # noqa: E731
     outcomes = set()
-    for _ in kill_at_each_line(work, ("atomic_write", "private_files", "code_cache", "container")):
+    for _ in kill_at_each_line(work, ("file_io", "private_files", "code_cache", "container")):
         names = {path.name for path in tmp_path.iterdir() if not path.name.endswith((".lock", ".tmp"))}
         assert names <= {"key", file_of(double, tmp_path).name}
         outcomes.add(is_found(double, tmp_path))

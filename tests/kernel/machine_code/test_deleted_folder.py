@@ -17,7 +17,7 @@ import pytest
 from minirt.kernel.machine_code import cache_folder
 from tests.kernel.machine_code.small_kernels import double, is_found, square
 
-MODULES = ("atomic_write", "cache_folder", "code_cache", "container", "library", "private_files")
+MODULES = ("file_io", "cache_folder", "code_cache", "container", "library", "private_files")
 
 
 def delete_all(folder: Path) -> None:

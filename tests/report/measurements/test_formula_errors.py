@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from numba.core.registry import cpu_target
 
-from minirt import timing
+from minirt.helpers import system
+from minirt.helpers.system import Run
 from minirt.report.measurements import exact_hits, formula_errors, textbook
 from minirt.report.measurements.eye_rays import rays_from_the_eye
 from minirt.report.measurements.formula_errors import Answers, Row, compare, measure_formulas, time_ratio
@@ -23,7 +24,6 @@ from minirt.shapes.disc import Disc
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
-from minirt.timing import Run
 from tests.kernel.pictures import ALL
 from tests.simulated_clock import FORMULA_SECONDS, PROCESSOR_SHARE, in_turn
 
@@ -128,7 +128,7 @@ def test_a_turn_in_which_the_machine_was_slow_counts_no_more_than_another() -> N
 
 
 def test_runs_of_the_machine_take_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(formula_errors, "in_turn", timing.in_turn)
+    monkeypatch.setattr(formula_errors, "in_turn", system.in_turn)
     monkeypatch.setattr(formula_errors, "RUNS", 1)
     assert all(0 < row.ns_ray < inf and 0 < row.cpu_ns_ray < inf for row in rows_of(BALL, "benign").values())
 

@@ -71,7 +71,7 @@ def without_signals(work: Callable[..., None], *arguments: object) -> None:
 
 def line(state: State, seconds: float) -> str:
     """Return the bar: how much is done, and the time that is left if the rest is as fast, or that has passed."""
-    from minirt.timing import in_words
+    from minirt.helpers.system import in_words
 
     if not state.share:
         return f"{in_words(seconds)}  {state.what}"

@@ -1,16 +1,22 @@
-"""Limit of the memory that the program may take: the user's, or that of the control group, process or machine.
+"""The process and its machine: the limit of memory, forks, garbage collection and clocks.
 
-Large needs are compared with it before memory is allocated, since the system would end the program without a word.
-The limit is one of the process, because all renderers share its memory.
+The limit is the user's, or that of the control group, process or machine. Large needs are compared with it before
+memory is allocated, since the system would end the program without a word.
 """
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
-from contextlib import suppress
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
+from threading import Lock
+from time import perf_counter, process_time
+from typing import NamedTuple, Protocol
+from weakref import WeakSet
 
 from minirt.errors import RenderError
 
@@ -107,30 +113,134 @@ def available() -> int:
     return UNLIMITED
 
 
-def is_small(needed: int) -> bool:
+def is_small_need(needed: int) -> bool:
     """Whether nobody need count so few bytes."""
     return needed <= min(SMALL, total() // SMALL_SHARE)
 
 
-def check(needed: int, what: str, advice: str, largest: int = UNLIMITED) -> None:
+def check_memory(needed: int, what: str, advice: str, largest: int = UNLIMITED) -> None:
     """Check that there is room for something that may have at most `largest` bytes; `TooLargeError` otherwise.
 
     The sentence of the error begins with `what`, including a verb, and ends with the `advice`.
     """
-    if not is_small(needed) and needed > (allowed := min(room(), largest)):
-        rest = "" if allowed >= largest else f" (what is left of {in_words(total())})"
-        raise TooLargeError(f"{what} about {in_words(needed)} of memory, allowed {in_words(allowed)}{rest}; {advice}")
+    if not is_small_need(needed) and needed > (allowed := min(room(), largest)):
+        rest = "" if allowed >= largest else f" (what is left of {size_in_words(total())})"
+        raise TooLargeError(
+            f"{what} about {size_in_words(needed)} of memory, allowed {size_in_words(allowed)}{rest}; {advice}"
+        )
 
 
 def check_picture(height: int, width: int, bytes_per_pixel: float) -> None:
     """Check that there is room for a picture; `TooLargeError` otherwise."""
-    check(int(height * width * bytes_per_pixel), f"a picture of {width}x{height} pixels needs", FEWER_PIXELS)
+    check_memory(int(height * width * bytes_per_pixel), f"a picture of {width}x{height} pixels needs", FEWER_PIXELS)
 
 
 class TooLargeError(RenderError):
     """Something needs more memory than is allowed."""
 
 
-def in_words(size: int) -> str:
+def size_in_words(size: int) -> str:
     """Return a number of bytes in the unit that suits it."""
     return f"{size / 2**30:.1f} GiB" if size >= 2**30 else f"{size / 2**20:.0f} MiB"
+
+
+# Of all threads a child process has only the one that forked. Thread pools are therefore without threads, and a lock
+# that another thread held stays locked for ever. Spawned child processes import everything anew.
+
+
+class Renewable(Protocol):
+    """An object with locks or threads."""
+
+    def after_fork(self) -> None:
+        """Replace the locks and drop the threads, in the child process."""
+
+
+renewables: WeakSet[Renewable] = WeakSet()
+
+
+def renew_after_fork(owner: Renewable) -> None:
+    """Call `owner.after_fork` in each child process, for as long as `owner` is alive."""
+    renewables.add(owner)
+
+
+def renew_all() -> None:
+    """Renew all objects, in a child process."""
+    for owner in renewables:
+        owner.after_fork()
+
+
+class ForkSafeLock:
+    """Lock of a module, for `with`: a new one, not held by anybody, in each child process."""
+
+    def __init__(self) -> None:
+        self.after_fork()
+        renew_after_fork(self)
+
+    def after_fork(self) -> None:
+        """Replace the lock, which a thread that is gone may hold."""
+        self.lock = Lock()
+
+    def __enter__(self) -> None:
+        self.lock.acquire()
+
+    def __exit__(self, *error: object) -> None:
+        self.lock.release()
+
+
+if hasattr(os, "register_at_fork"):  # Windows has no fork
+    os.register_at_fork(after_in_child=renew_all)
+
+
+@contextmanager
+def gc_paused() -> Iterator[None]:
+    """Collect no garbage inside the context, and exclude the objects created inside from later collections.
+
+    With the modules of numba loaded a collection takes 30 ms, in which no thread runs, and the last one, at the end of
+    the program, 100 ms.
+    """
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        if enabled:
+            gc.enable()
+
+
+DISTURBED = 1.15  # ratio of wall time to processor time from which a run counts as disturbed
+
+
+class Run(NamedTuple):
+    """Wall time and processor time of a run in seconds; the latter is the sum over all threads of this program."""
+
+    wall: float
+    cpu: float
+
+
+def runs(work: Callable[[], object], least: int, seconds: float) -> list[Run]:
+    """Time at least `least` runs of some work, and more until they take `seconds` together."""
+    times: list[Run] = []
+    while len(times) < least or sum(run.wall for run in times) < seconds:
+        wall, cpu = perf_counter(), process_time()
+        work()
+        times.append(Run(perf_counter() - wall, process_time() - cpu))
+    return times
+
+
+def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[Run, ...]]:
+    """Time so many runs of each work. The works take turns, so that other load on the machine slows them all alike."""
+    return [*zip(*([runs(work, 1, 0.0)[0] for work in works] for _ in range(times)), strict=True)]
+
+
+def is_disturbed(run: Run, threads: int) -> bool:
+    """Whether the threads of a run had to wait for a processor: its wall time exceeds their processor time."""
+    return run.wall * threads > DISTURBED * run.cpu
+
+
+def in_words(seconds: float) -> str:
+    """Say a time in the unit that people would use."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"

@@ -1,4 +1,4 @@
-"""Atomic file writing: as a whole or not at all."""
+"""Files: written as a whole or not at all, read if they are regular, locked, and kept for this user alone."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from minirt import file_locks
+from minirt.errors import FileError
 
-PRIVATE = 0o600
 TEMPORARY = ".minirt-*.tmp"
 ABANDONED = 3600  # seconds after which a temporary file belongs to a killed program, where there are no locks
 FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)  # of a file that must not exist yet
@@ -93,7 +92,7 @@ def temporary_file(
     """
     kept = stat.S_IMODE(existing.st_mode) if existing else None
     mode = kept if permissions is None else permissions
-    temporary, descriptor = create_temporary(target.parent, 0o666 if mode is None else mode & PRIVATE)
+    temporary, descriptor = create_temporary(target.parent, 0o666 if mode is None else mode & PRIVATE_FILE)
     with ExitStack() as stack:
         try:
             with os.fdopen(descriptor, "wb") as file:
@@ -122,7 +121,7 @@ def create_temporary(folder: Path, mode: int) -> tuple[Path, int]:
     while True:
         path = folder / TEMPORARY.replace("*", os.urandom(8).hex())
         descriptor = os.open(path, FLAGS, mode)
-        if file_locks.lock(descriptor) and path.exists():
+        if lock(descriptor) and path.exists():
             return path, descriptor
         os.close(descriptor)  # another program took it for abandoned, before it was locked
         with suppress(OSError):
@@ -172,7 +171,7 @@ def delete_if_abandoned(path: Path) -> None:
             with suppress(PermissionError):  # of another user's file
                 descriptor = os.open(path, LOOK)
                 stack.callback(os.close, descriptor)
-                free = file_locks.is_free(descriptor)  # and taken, so that a program that has just created it sees that
+                free = is_free(descriptor)  # and taken, so that a program that has just created it sees that
         if is_old(path) if free is None else free:
             path.unlink()
 
@@ -193,3 +192,111 @@ def status_of_existing(target: Path) -> os.stat_result | None:
     if not os.access(target, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     return status
+
+
+if sys.platform != "win32":
+    import fcntl
+
+
+def lock(descriptor: int) -> bool:
+    """Lock an open file until it is closed or the process ends, unless another program has; whether none has.
+
+    A system or file system without locks never has another program's.
+    """
+    return is_free(descriptor) is not False
+
+
+def is_free(descriptor: int) -> bool | None:
+    """Lock an open file as `lock` does; None where there are no locks."""
+    if sys.platform == "win32":
+        return None
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return None
+    return True
+
+
+LARGEST_ASSET = 256 * 2**20  # bytes of a picture or mesh file that a scene names
+
+
+def reason(error: OSError | ValueError) -> str:
+    """Return the system's reason for a failure; a ValueError is about a path that no file can have."""
+    return str(error.strerror).lower() if isinstance(error, OSError) else "no file can have this name"
+
+
+def status(path: str | os.PathLike[str], largest: int) -> os.stat_result:
+    """Return the status of a regular file of at most `largest` bytes; FileError for anything else."""
+    try:
+        return check_regular(path, Path(path).stat(), largest)
+    except (OSError, ValueError) as error:
+        raise FileError(path, f"cannot be read: {reason(error)}") from None
+
+
+def read(path: str | os.PathLike[str], largest: int) -> bytes:
+    """Return the bytes of a regular file; FileError when it has more than `largest` or cannot be read.
+
+    Anything but a regular file is refused before it is opened, and opening does not block: a FIFO or a device that
+    takes the file's place in between cannot hang the program.
+    """
+    status(path, largest)
+    try:
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+        with os.fdopen(descriptor, "rb") as file:
+            size = check_regular(path, os.fstat(descriptor), largest).st_size
+            data = read_at_once(file, size + 1)  # Python reserves memory for as many bytes as it is asked for
+            if len(data) > size:  # the file grows
+                data += read_at_once(file, largest + 1 - len(data))
+    except (OSError, ValueError) as error:
+        raise FileError(path, f"cannot be read: {reason(error)}") from None
+    check_size(path, len(data), largest)
+    return data
+
+
+def read_at_once(file: BinaryIO, size: int) -> bytes:
+    """Return at most `size` bytes of an open file; OSError where it has none yet, as some files of /proc."""
+    data: bytes | None = file.read(size)
+    if data is None:
+        raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+    return data
+
+
+def check_regular(path: str | os.PathLike[str], status: os.stat_result, largest: int) -> os.stat_result:
+    """Return `status`; FileError unless it is that of a regular file of at most `largest` bytes."""
+    if stat.S_ISDIR(status.st_mode):
+        raise FileError(path, "is a folder")
+    if not stat.S_ISREG(status.st_mode):
+        raise FileError(path, "is not a regular file")
+    check_size(path, status.st_size, largest)
+    return status
+
+
+def check_size(path: str | os.PathLike[str], size: int, largest: int) -> None:
+    """Check that a file has at most `largest` bytes; FileError otherwise."""
+    if size > largest:
+        raise FileError(path, f"larger than {largest // 2**20} MiB")
+
+
+OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
+PRIVATE_FILE, PRIVATE_FOLDER = 0o600, 0o700
+
+
+def user_folder() -> Path:
+    """Return the folder for this user's files that may be deleted at any time; RuntimeError where the user has no home.
+
+    The XDG Base Directory Specification tells programs to ignore an XDG_CACHE_HOME that is relative."""
+    named = Path(os.environ.get("XDG_CACHE_HOME", ""))
+    if named.is_absolute():
+        return named
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches"
+    if sys.platform == "win32" and os.environ.get("LOCALAPPDATA"):
+        return Path(os.environ["LOCALAPPDATA"])
+    return Path.home() / ".cache"
+
+
+def is_private(status: os.stat_result) -> bool:
+    """Whether nobody but this user can have written a file or a folder; on Windows the user's folder protects them."""
+    return sys.platform == "win32" or (status.st_uid == os.geteuid() and not status.st_mode & OTHERS_WRITE)
