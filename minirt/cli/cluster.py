@@ -14,9 +14,9 @@ from minirt.cli.arguments import SAMPLES
 from minirt.cli.exit_status import FAILED, OK
 from minirt.cli.output import tell
 from minirt.cli.picture import write
-from minirt.cli.progress import State, progress
 from minirt.cli.target import check_region, needs_light
 from minirt.errors import RenderError
+from minirt.helpers.progress import State, progress
 
 if TYPE_CHECKING:
     from minirt.rendering.sampling.outcome import Outcome

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from minirt.cli.arguments import SAMPLES
 from minirt.cli.cluster import status, workers
-from minirt.cli.progress import State
 from minirt.cli.target import is_film, needs_light
 from minirt.cli.turntable import SIZE, Frames, is_written, write_turntable
+from minirt.helpers.progress import State
 
 if TYPE_CHECKING:
     from minirt.image import Image

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 from minirt.cli.exit_status import OK
 from minirt.cli.output import say
 from minirt.cli.picture import render_to_file
-from minirt.cli.progress import State, progress
 from minirt.cli.turntable import render_turntable
 from minirt.cli.window import replay, show
+from minirt.helpers.progress import State, progress
 
 if TYPE_CHECKING:
     from minirt.scene import Scene

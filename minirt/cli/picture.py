@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from minirt.cli.arguments import SAMPLES
 from minirt.cli.exit_status import FAILED, OK
 from minirt.cli.output import say_bytes, tell
-from minirt.cli.progress import State, progress
 from minirt.cli.target import check_memory, check_region, needs_light
+from minirt.helpers.progress import State, progress
 from minirt.helpers.system import gc_paused
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TextIO
 
 from minirt.cli import example
 from minirt.cli.output import tell
-from minirt.cli.progress import State, progress
+from minirt.helpers.progress import State, progress
 
 if TYPE_CHECKING:
     from minirt.scene import Reading, Scene

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, TypeVar
 from minirt.cli.arguments import SAMPLES
 from minirt.cli.exit_status import OK
 from minirt.cli.picture import rows_done, write
-from minirt.cli.progress import State, progress
 from minirt.cli.target import check_memory, check_region, is_film, needs_light
+from minirt.helpers.progress import State, progress
 from minirt.helpers.system import gc_paused
 
 if TYPE_CHECKING:

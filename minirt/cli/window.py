@@ -11,10 +11,10 @@ from minirt.cli.arguments import SAMPLES, WINDOW_SAMPLES
 from minirt.cli.exit_status import OK
 from minirt.cli.output import say
 from minirt.cli.picture import render, write
-from minirt.cli.progress import State, progress
 from minirt.cli.target import check_target, is_film
 from minirt.errors import FileError, MlxError, ReplayError
 from minirt.helpers import file_io
+from minirt.helpers.progress import State, progress
 
 if TYPE_CHECKING:
     from minirt.scene import Scene

@@ -1,18 +1,20 @@
 """Progress of work that takes more than a second: its line of text, the thread that draws it, and notebooks.
 
-A notebook shows a bar below the cell and takes it away at the end. The command line has its own: `minirt.cli.progress`.
+A terminal shows a bar on standard error, a notebook below the cell; both take it away at the end.
 """
 
 from __future__ import annotations
 
+import shutil
 import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from contextvars import ContextVar, copy_context
+from functools import partial
 from threading import Event, Thread
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TextIO
 
 PATIENCE = 1.0  # seconds of work without a bar
 PAUSE = 0.2  # seconds from one drawing of the bar to the next
@@ -119,3 +121,23 @@ class NotebookLine:
             self.handle.display(content, raw=True)
         else:
             self.handle.update(content, raw=True)
+
+
+@contextmanager
+def progress(
+    read: Callable[[], State], out: TextIO | None = None, clock: Callable[[], float] = perf_counter
+) -> Iterator[None]:
+    """Show the state that `read` returns while the block runs, on standard error if that is a terminal."""
+    stream = out or sys.stderr
+    if not stream.isatty():
+        yield
+        return
+    with drawn(read, partial(draw, stream), clock):
+        yield
+
+
+def draw(out: TextIO, text: str) -> None:
+    """Replace the line of a terminal. One that has gone is no error."""
+    with suppress(OSError, ValueError):  # ValueError: the stream is closed
+        out.write("\r\x1b[K" + text[: shutil.get_terminal_size().columns - 1])
+        out.flush()

@@ -9,9 +9,8 @@ from threading import Event
 
 import pytest
 
-from minirt.cli.progress import draw, progress
 from minirt.helpers import progress as module
-from minirt.helpers.progress import State, draw_until, line
+from minirt.helpers.progress import State, draw, draw_until, line, progress
 from tests.waiting import HANG_LIMIT
 
 
