@@ -17,7 +17,7 @@ WINDOWS, SCENES = "windows", "scenes"
 LARGEST = (WINDOWS, SCENES)  # the groups that take longest start first
 SCENE_TESTS = {
     "tests/test_goldens.py",
-    "tests/rendering/packing/test_widening.py",
+    "tests/rendering/packing/test_generic_kernels.py",
     "tests/rendering/queries/test_preview.py",
     "tests/stability/test_pictures.py",
 }
@@ -45,9 +45,9 @@ SLOW = (
     "tests/newcomer/",
     "tests/rendering/culling/",
     "tests/rendering/developing/test_pictures.py",
-    "tests/rendering/packing/test_widening.py",
+    "tests/rendering/packing/test_generic_kernels.py",
     "tests/rendering/queries/",
-    "tests/rendering/running/test_kernels.py",  # which needs wide kernels
+    "tests/rendering/running/test_kernels.py",  # which needs generic kernels
     "tests/rendering/sampling/",
     "tests/rendering/test_apertures.py",
     "tests/rendering/test_buffers.py",

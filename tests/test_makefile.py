@@ -36,7 +36,7 @@ def test_the_program_comes_first() -> None:
     assert program < kernels
 
 
-def test_showing_a_scene_does_not_wait_for_wide_kernels() -> None:
+def test_showing_a_scene_does_not_wait_for_generic_kernels() -> None:
     done = run(["make", "--dry-run", "--always-make", "run"], cwd=ROOT, env=OUTSIDE, text=True)
     assert "touch .venv/bin/miniRT" in done.stdout
     assert "ahead_of_time" not in done.stdout

@@ -1,4 +1,4 @@
-"""Build hook of hatchling: puts example scenes into wheels and, for x86-64 Linux, wide kernels compiled ahead of time.
+"""Build hook of hatchling: example scenes for wheels and, on x86-64 Linux, generic kernels compiled ahead of time.
 
 The kernels fit every such machine whose processor has level v3 or v4 of x86-64, and every version of Python.
 """

@@ -117,7 +117,7 @@ class Measurement:
             self.formulas,
             self.certificates,
             [*stiff_shapes(self.scene, shapes, self.width, self.height), *coincident(self.scene, shapes)],
-            [*kernel_notes(self.scene, wide=None, compiling=False), *packing.notes],
+            [*kernel_notes(self.scene, generic=None, compiling=False), *packing.notes],
             identical_without_culling(self.pictures),
             self.not_measured,
             interrupted,

@@ -1,6 +1,6 @@
 """Fuzzer of extreme valid scenes: what the reader accepts renders, without warnings, NaN or infinities.
 
-Kernels that were compiled ahead of time draw them, since a narrow kernel for each would take seconds.
+Kernels that were compiled ahead of time draw them, since a specialised kernel for each would take seconds.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def check(data: bytes) -> str:
 def renderer(precision: str) -> Renderer:
     """Return a renderer that compiles nothing."""
     made = Renderer(1, precision)
-    made.kernels.narrow_after = float("inf")
+    made.kernels.specialised_after = float("inf")
     return made
 
 

@@ -51,7 +51,7 @@ def pack(scene: Scene) -> None:
 def prepare(scene: Scene) -> None:
     """Pack a scene as for the process that compiles its kernel, which is not started."""
     for precision in RENDERERS:
-        assert Kernels(precision, 8).narrow(scene)
+        assert Kernels(precision, 8).specialised(scene)
 
 
 def pick_middle(scene: Scene) -> None:

@@ -1,4 +1,4 @@
-"""Compiles narrow kernels in the background, by a process of the lowest priority, while a wide kernel draws."""
+"""Compiles specialised kernels in the background, by a process of the lowest priority, while a generic kernel draws."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class BackgroundCompiler:
             try:
                 LIBRARY.compile([identity], self.process)
             except RenderError as error:
-                logging.getLogger(__name__).info("a wide kernel stays in use: %s", error)
+                logging.getLogger(__name__).info("a generic kernel stays in use: %s", error)
         self.notify()
 
     def next(self) -> str | None:

@@ -164,7 +164,7 @@ def per_cent(ratio: float) -> float:
 
 
 def drawing_kernel(scene: Scene) -> str:
-    """Return the identity of the narrow kernel that draws a scene."""
+    """Return the identity of the specialised kernel that draws a scene."""
     return LIBRARY.identity(calls_for(scene, "double", DEPTH)[-1])
 
 

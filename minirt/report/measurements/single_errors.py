@@ -12,7 +12,7 @@ from minirt.element import fields_of
 from minirt.materials import Attributes
 from minirt.rendering import Renderer
 from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, NEEDS, PLAIN, features
-from minirt.rendering.packing.widening import precision_of
+from minirt.rendering.packing.generic_kernels import precision_of
 from minirt.report.measurements.metrics import Picture, changed, clamped, rmse
 from minirt.scene import Background, FurtherLight, Light, Scene, SpotLight
 from minirt.shapes import Shape

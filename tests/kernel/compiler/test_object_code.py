@@ -19,7 +19,7 @@ from minirt.kernel.machine_code import functions, loader, shipped_code
 from minirt.kernel.machine_code.library import LIBRARY, Call, Library
 from minirt.kernel.machine_code.signature import signature_of
 from minirt.rendering import Renderer
-from minirt.rendering.running.kernels import wide_identity
+from minirt.rendering.running.kernels import generic_identity
 from minirt.scene import Scene
 from tests.kernel.bvh.trees import random_rays, random_shapes
 from tests.kernel.machine_code.small_kernels import both, call, double, object_code_of, quotients, sine, step
@@ -68,7 +68,7 @@ def kernels_of_a_picture() -> dict[str, str]:
     shapes = random_shapes(random, 100)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Library, "identity", identity)
-        wide_identity.cache_clear()  # earlier tests may have asked for it
+        generic_identity.cache_clear()  # earlier tests may have asked for it
         assert Renderer(1).render(ALL, np.zeros((16, 24, 4), np.uint8))
         assert Renderer(1).reach(ALL, np.zeros((16, 24, 4), np.uint8), 0.5)
         minirt.trace(Scene((AMBIENT, EYE, *shapes)), *random_rays(random, shapes, 10))
@@ -81,7 +81,7 @@ def test_kernels_refer_to_nothing_outside_of_themselves() -> None:
     checked = set()
     for identity, name in kernels_of_a_picture().items():
         found = shipped_code.read(identity) or (LIBRARY.cache and LIBRARY.cache.read(identity))
-        if found:  # else a wider or a narrower kernel was there
+        if found:  # else a more generic or a more specialised kernel was there
             assert (name, is_complete(found)) == (name, True)
             checked.add(name)
     assert checked == {name for name, each in vars(functions).items() if isinstance(each, functions.CompiledFunction)}

@@ -26,7 +26,7 @@ def test_a_kernel_is_ready_for_all_scenes_of_its_kinds(monkeypatch: pytest.Monke
     monkeypatch.setattr(LIBRARY, "has", there.__contains__)
     assert renderer.is_ready(Scene((EYE,)))
     assert not renderer.is_ready(ALL)
-    there.update(renderer.kernels.narrow(ALL))
+    there.update(renderer.kernels.specialised(ALL))
     assert renderer.is_ready(ALL)
     assert renderer.is_ready(Scene((EYE, *SHAPES[:3])))
     assert not renderer.is_ready(Scene((EYE, SHAPES[0])))

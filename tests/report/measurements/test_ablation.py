@@ -96,6 +96,6 @@ def test_the_compiler_is_timed_whether_or_not_the_kernel_was_there() -> None:
 
 
 def test_each_scene_has_the_kernel_that_draws_it() -> None:
-    narrow = Renderer(1).kernels.narrow
-    assert ablation.drawing_kernel(ALL) in narrow(ALL)
-    assert ablation.drawing_kernel(ALL) not in narrow(ALL.replace(ALL.shapes[1], mirror=0.25))
+    specialised = Renderer(1).kernels.specialised
+    assert ablation.drawing_kernel(ALL) in specialised(ALL)
+    assert ablation.drawing_kernel(ALL) not in specialised(ALL.replace(ALL.shapes[1], mirror=0.25))

@@ -38,10 +38,10 @@ def test_planes_that_hide_nothing() -> None:
 
 def test_shape_types_that_the_scene_lacks() -> None:
     balls = Scene((AMBIENT, EYE, LAMP, *(shape for shape in SHAPES if isinstance(shape, Sphere))))
-    assert any("planes, cylinders" in note for note in kernel_notes(balls, wide=None, compiling=False))
+    assert any("planes, cylinders" in note for note in kernel_notes(balls, generic=None, compiling=False))
     behind = Cylinder((0, 0, -900), (0, 1, 0), 1, 1, GREY), Plane((0, 0, -901), (0, 0, 1), GREY)
     more = Scene((*balls.elements, *behind))
-    named, *without = kernel_notes(more, wide=None, compiling=False)
+    named, *without = kernel_notes(more, generic=None, compiling=False)
     assert "planes" in named
     assert not any("planes" in note for note in without)
     assert np.array_equal(linear(more, 60, 40), linear(balls, 60, 40))

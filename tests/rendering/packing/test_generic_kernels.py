@@ -1,4 +1,4 @@
-"""Wide kernels: they draw the same bits as the narrow kernel of each scene, and all scenes have the types of one."""
+"""Generic kernels draw the same bits as the specialised kernel of each scene, and all scenes have the types of one."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.materials import Checker, Specular
 from minirt.rendering.frame_arguments import frame_arguments
-from minirt.rendering.packing import widening
-from minirt.rendering.packing.widening import WIDE_KERNELS, WideKernel, empty_arrays, fitting, widened
+from minirt.rendering.packing import generic_kernels
+from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel, empty_arrays, fitting, generalised
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Background, ParallelLight, Scene, SpotLight
 from minirt.shapes.plane import Plane
@@ -37,7 +37,7 @@ ROWS = ("lights", "colours_and_extents", "slots", "tile_shapes", "cones", "light
 
 
 def packed(scene: Scene, precision: str = "double", depth: int = 8, width: int = 96, height: int = 72) -> SceneArrays:
-    """Return the arrays of a scene for its narrow kernel."""
+    """Return the arrays of a scene for its specialised kernel."""
     return Packing(precision=precision, depth=depth).pack(scene, width, height)
 
 
@@ -60,19 +60,19 @@ def types_of(arrays: SceneArrays) -> Any:
     return typeof(arrays)
 
 
-def every_form(scene: Scene) -> list[tuple[SceneArrays, WideKernel]]:
-    """Return a packed scene in each precision, with each wide kernel that fits it."""
+def every_form(scene: Scene) -> list[tuple[SceneArrays, GenericKernel]]:
+    """Return a packed scene in each precision, with each generic kernel that fits it."""
     forms = {packed(scene, precision).camera.dtype: packed(scene, precision) for precision in PRECISIONS}
-    return [(arrays, wide) for arrays in forms.values() for wide in fitting(arrays)]
+    return [(arrays, generic) for arrays in forms.values() for generic in fitting(arrays)]
 
 
-def test_the_arrays_of_a_wide_kernel_have_its_precision() -> None:
-    for wide in WIDE_KERNELS:
-        assert empty_arrays(wide).lights.dtype == (np.float32 if wide.precision == "single" else np.float64)
+def test_the_arrays_of_a_generic_kernel_have_its_precision() -> None:
+    for generic in GENERIC_KERNELS:
+        assert empty_arrays(generic).lights.dtype == (np.float32 if generic.precision == "single" else np.float64)
 
 
-def test_the_arrays_of_a_wide_kernel_are_those_of_a_scene_without_lights_and_shapes() -> None:
-    arrays = empty_arrays(next(each for each in WIDE_KERNELS if (each.name, each.precision) == ("full", "double")))
+def test_the_arrays_of_a_generic_kernel_are_those_of_a_scene_without_lights_and_shapes() -> None:
+    arrays = empty_arrays(next(each for each in GENERIC_KERNELS if (each.name, each.precision) == ("full", "double")))
     packed = Packing().pack(minirt.load(paths.SCENES / "figure-v4-everything.rt"), 8, 8)
     for name in ROWS:
         assert getattr(arrays, name).shape == (0, *getattr(packed, name).shape[1:]), name
@@ -91,27 +91,27 @@ def test_the_arrays_of_a_wide_kernel_are_those_of_a_scene_without_lights_and_sha
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
-def test_wide_kernels_draw_the_same_bits_as_the_narrow_one(path: Path) -> None:
+def test_generic_kernels_draw_the_same_bits_as_the_specialised_one(path: Path) -> None:
     arrays = packed(minirt.load(path))
-    wide_kernels = fitting(arrays)
-    assert wide_kernels[-1].name == "full"
-    for wide in wide_kernels:
-        assert same_bits(arrays, widened(arrays, wide)), wide
+    generic_kernels = fitting(arrays)
+    assert generic_kernels[-1].name == "full"
+    for generic in generic_kernels:
+        assert same_bits(arrays, generalised(arrays, generic)), generic
 
 
 @pytest.mark.parametrize("stem", ["demo", "shapes", "meshes", "figure-v4-everything", "light-spot", "light-fade"])
-def test_wide_kernels_in_single_precision_do_so_too(stem: str) -> None:
+def test_generic_kernels_in_single_precision_do_so_too(stem: str) -> None:
     arrays = packed(minirt.load(f"scenes/{stem}.rt"), "single")
-    for wide in fitting(arrays):
-        assert wide.precision == "single"
-        assert same_bits(arrays, widened(arrays, wide)), wide
+    for generic in fitting(arrays):
+        assert generic.precision == "single"
+        assert same_bits(arrays, generalised(arrays, generic)), generic
 
 
 @pytest.mark.parametrize("stem", ["demo", "shapes", "gallery-marbles"])
 def test_several_samples_have_the_same_bits(stem: str) -> None:
     arrays = packed(minirt.load(f"scenes/{stem}.rt"))
-    for wide in fitting(arrays):
-        assert same_bits(arrays, widened(arrays, wide), samples=4), wide
+    for generic in fitting(arrays):
+        assert same_bits(arrays, generalised(arrays, generic), samples=4), generic
 
 
 SPECIAL = {
@@ -129,21 +129,21 @@ SPECIAL = {
 @pytest.mark.parametrize("name", SPECIAL)
 def test_special_scenes_have_the_same_bits(name: str) -> None:
     arrays = packed(SPECIAL[name])
-    for wide in fitting(arrays):
-        assert same_bits(arrays, widened(arrays, wide)), wide
+    for generic in fitting(arrays):
+        assert same_bits(arrays, generalised(arrays, generic)), generic
 
 
 @pytest.mark.parametrize("depth", [0, 1])
 def test_any_depth_has_the_same_bits(depth: int) -> None:
     arrays = packed(SPECIAL["parallel light, a BVH and mirrors"], depth=depth)
-    assert same_bits(arrays, widened(arrays, fitting(arrays)[0]))
+    assert same_bits(arrays, generalised(arrays, fitting(arrays)[0]))
 
 
 def test_the_interpreted_kernel_draws_the_same_bits_too() -> None:
     for scene in (ALL, SPECIAL["parallel light, a BVH and mirrors"]):
         arrays = Packing(interpreted).pack(scene, 24, 16)
         pictures = []
-        for each in (arrays, widened(arrays, fitting(arrays)[-1])):
+        for each in (arrays, generalised(arrays, fitting(arrays)[-1])):
             light = np.full((16, 24, 3), np.nan)
             with np.errstate(all="ignore"):
                 frame.frame(*frame_arguments(each, np.zeros((16, 24, 4), np.uint8), 1, light))
@@ -153,19 +153,19 @@ def test_the_interpreted_kernel_draws_the_same_bits_too() -> None:
 
 def test_groups_with_wrong_numbers_are_noticed() -> None:
     arrays = packed(EVERY)
-    wide = widened(arrays, fitting(arrays)[0])
-    first, second, *others = wide.groups
+    generic = generalised(arrays, fitting(arrays)[0])
+    first, second, *others = generic.groups
     swapped = (first._replace(number=second.number), second._replace(number=first.number), *others)
-    assert same_bits(arrays, wide)
-    assert not same_bits(arrays, wide._replace(groups=swapped))
+    assert same_bits(arrays, generic)
+    assert not same_bits(arrays, generic._replace(groups=swapped))
 
 
 def test_another_rounding_is_noticed() -> None:
     arrays = packed(ALL)
-    wide = widened(arrays, fitting(arrays)[0])
-    other = wide.ambient.copy()
+    generic = generalised(arrays, fitting(arrays)[0])
+    other = generic.ambient.copy()
     other[0] = np.nextafter(other[0], 1)
-    assert not same_bits(arrays, wide._replace(ambient=other))
+    assert not same_bits(arrays, generic._replace(ambient=other))
 
 
 @pytest.mark.parametrize("scenes", ["files", "random", "special"])
@@ -176,21 +176,21 @@ def test_all_scenes_have_the_types_of_the_empty_one(scenes: str) -> None:
         "special": lambda: list(SPECIAL.values()),
     }[scenes]()
     for scene in several:
-        for arrays, wide in every_form(scene):
-            assert types_of(widened(arrays, wide)) == types_of(empty_arrays(wide))
+        for arrays, generic in every_form(scene):
+            assert types_of(generalised(arrays, generic)) == types_of(empty_arrays(generic))
 
 
 def test_other_types_are_noticed() -> None:
-    for wide in WIDE_KERNELS:
-        empty = empty_arrays(wide)
+    for generic in GENERIC_KERNELS:
+        empty = empty_arrays(generic)
         assert types_of(empty._replace(tile_shapes=np.zeros(0, np.int64))) != types_of(empty)
         assert types_of(empty._replace(camera=np.zeros(24, empty.camera.dtype)[::2])) != types_of(empty)
-    assert len({str(types_of(empty_arrays(wide))) for wide in WIDE_KERNELS}) == len(WIDE_KERNELS)
+    assert len({str(types_of(empty_arrays(generic))) for generic in GENERIC_KERNELS}) == len(GENERIC_KERNELS)
 
 
-def test_the_narrowest_kernel_comes_first() -> None:
+def test_the_most_specialised_kernel_comes_first() -> None:
     def names(*changes: Any, precision: str = "double") -> list[str]:
-        return [wide.name for wide in fitting(packed(Scene((AMBIENT, EYE, LAMP, *changes)), precision))]
+        return [generic.name for generic in fitting(packed(Scene((AMBIENT, EYE, LAMP, *changes)), precision))]
 
     spot = SpotLight((0, 7, -3), (0, -1, 0.3), 50, 0.8)
     for precision in PRECISIONS:
@@ -199,30 +199,30 @@ def test_the_narrowest_kernel_comes_first() -> None:
             assert names(*BALLS, shape, precision=precision) == ["full"]
         assert names(spot, *BALLS, precision=precision) == ["full"]
         assert names(FLOOR.replace(mirror=0.5), precision=precision) == ["full"]
-    assert all(wide.precision == "single" for wide in fitting(packed(ALL, "single")))
+    assert all(generic.precision == "single" for generic in fitting(packed(ALL, "single")))
 
 
-def test_widening_copies_nothing() -> None:
+def test_generalising_copies_nothing() -> None:
     for scene in (SPECIAL["a mesh of many triangles"], SPECIAL["parallel light, a BVH and mirrors"]):
         arrays = packed(scene)
-        wide = widened(arrays, fitting(arrays)[-1])
+        generic = generalised(arrays, fitting(arrays)[-1])
         for name in ("slots", "cones", "light_cones", "colours_and_extents", "tile_shapes", "light_shapes", "lights"):
-            assert getattr(wide, name) is getattr(arrays, name)
-        assert sum(len(group.rows) for group in wide.groups) == len(arrays.slots)
+            assert getattr(generic, name) is getattr(arrays, name)
+        assert sum(len(group.rows) for group in generic.groups) == len(arrays.slots)
         for group in arrays.groups:
-            assert any(each is group for each in wide.groups)
+            assert any(each is group for each in generic.groups)
         if arrays.bvh:
-            assert wide.bvh.nodes is arrays.bvh.nodes
-            assert {id(group) for group in arrays.bvh.groups} <= {id(group) for group in wide.bvh.groups}
+            assert generic.bvh.nodes is arrays.bvh.nodes
+            assert {id(group) for group in arrays.bvh.groups} <= {id(group) for group in generic.bvh.groups}
 
 
 def test_kinds_are_in_the_order_of_the_registry() -> None:
-    for wide in WIDE_KERNELS:
-        names = [group.rows.dtype.names[0].split(".")[0] for group in empty_arrays(wide).groups]
-        assert names == [kind.element.title for kind in widening.ALL_KINDS]
+    for generic in GENERIC_KERNELS:
+        names = [group.rows.dtype.names[0].split(".")[0] for group in empty_arrays(generic).groups]
+        assert names == [kind.element.title for kind in generic_kernels.ALL_KINDS]
 
 
-def test_every_feature_has_a_wide_kernel() -> None:
+def test_every_feature_has_a_generic_kernel() -> None:
     optional = [name for name, default in SceneArrays._field_defaults.items() if default is None]
-    double = [wide for wide in WIDE_KERNELS if wide.precision == "double"]
+    double = [generic for generic in GENERIC_KERNELS if generic.precision == "double"]
     assert double[-1].features == {*optional, "checks", "textures", "bumps", "normals", "placements"}

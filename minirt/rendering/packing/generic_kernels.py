@@ -1,11 +1,12 @@
-"""Widens the packed arrays of a scene to the arguments of a wide kernel.
+"""Extends the packed arrays of a scene to the arguments of a generic kernel.
 
-A narrow kernel is compiled for the kinds of shapes and the features of one scene. A wide kernel is the same function,
-compiled for all kinds of shapes and for a fixed set of features, so that it can be compiled ahead of time: what a scene
-lacks is an array without rows, which the kernel skips. Its picture has the same bits as that of the narrow kernel.
+A specialised kernel is compiled for the kinds of shapes and the features of one scene. A generic kernel is the same
+function, compiled for all kinds of shapes and for a fixed set of features, so that it can be compiled ahead of time:
+what a scene lacks is an array without rows, which the kernel skips. Both draw the same bits.
 
-To draw a packed scene with a wide kernel: `wide = fitting(arrays)[0]`, then call the kernel that is compiled for the
-types of `empty_arrays(wide)` with `widened(arrays, wide)` in place of the scene. All scenes have the same types there.
+To draw a packed scene with a generic kernel: `generic = fitting(arrays)[0]`, then call the kernel that is compiled for
+the types of `empty_arrays(generic)` with `generalised(arrays, generic)` in place of the scene. All scenes have the same
+types there.
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ ABSENT = -1  # number of the group of a kind that a scene lacks
 NO_TEXELS, NO_PICTURES = np.zeros(0, np.float32), np.zeros((0, 4), np.int64)
 
 
-class WideKernel(NamedTuple):
-    """A wide kernel: the features that it is compiled for, beside all kinds of shapes."""
+class GenericKernel(NamedTuple):
+    """A generic kernel: the features that it is compiled for, beside all kinds of shapes."""
 
     name: str
     precision: str  # "double" or "single"
@@ -46,22 +47,22 @@ FULL_SINGLE = PLAIN | {
     *("spots", "soft", "lens", "specular", "glow", "surface_maps", "patterns", "background", "checks", "placements")
 }
 
-FULL_DOUBLE = WideKernel("full", "double", FULL)
-# The narrowest first.
-WIDE_KERNELS = (
-    WideKernel("plain", "double", PLAIN),
+FULL_DOUBLE = GenericKernel("full", "double", FULL)
+# The most specialised first.
+GENERIC_KERNELS = (
+    GenericKernel("plain", "double", PLAIN),
     FULL_DOUBLE,
-    WideKernel("plain", "single", PLAIN),
-    WideKernel("full", "single", FULL_SINGLE),
+    GenericKernel("plain", "single", PLAIN),
+    GenericKernel("full", "single", FULL_SINGLE),
 )
 
 
-def fitting(arrays: SceneArrays) -> list[WideKernel]:
-    """Return the wide kernels that can draw a packed scene, the narrowest first."""
+def fitting(arrays: SceneArrays) -> list[GenericKernel]:
+    """Return the generic kernels that can draw a packed scene, the most specialised first."""
     precision = precision_of(arrays)
     used = {name for name in OPTIONAL if getattr(arrays, name) is not None}
     used |= {name for name in MAPS if arrays.surface_maps and getattr(arrays.surface_maps, name) is not None}
-    return [wide for wide in WIDE_KERNELS if wide.precision == precision and used <= wide.features]
+    return [generic for generic in GENERIC_KERNELS if generic.precision == precision and used <= generic.features]
 
 
 def precision_of(arrays: SceneArrays) -> str:
@@ -69,20 +70,20 @@ def precision_of(arrays: SceneArrays) -> str:
     return "single" if arrays.camera.dtype == np.float32 else "double"
 
 
-def widened(arrays: SceneArrays, wide: WideKernel) -> SceneArrays:
-    """Return a packed scene as the argument of a wide kernel that fits it. Its arrays are shared, not copied."""
-    empty = empty_arrays(wide)
+def generalised(arrays: SceneArrays, generic: GenericKernel) -> SceneArrays:
+    """Return a packed scene as the argument of a generic kernel that fits it. Its arrays are shared, not copied."""
+    empty = empty_arrays(generic)
     whole: SceneArrays = filled(arrays, empty)
     if empty.surface_maps is not None:
         whole = whole._replace(surface_maps=filled(whole.surface_maps, empty.surface_maps))
     if empty.patterns is not None:
         whole = whole._replace(patterns=filled(whole.patterns, empty.patterns))
     if empty.bvh is not None:
-        whole = whole._replace(bvh=widened_tree(whole.bvh))
+        whole = whole._replace(bvh=generalised_tree(whole.bvh))
     return whole._replace(groups=all_groups(arrays.groups, empty.groups))
 
 
-def widened_tree(tree: Tree) -> Tree:
+def generalised_tree(tree: Tree) -> Tree:
     """Return a BVH with a group for each kind of shape, those that a scene lacks without shapes."""
     empty = empty_arrays(FULL_DOUBLE).bvh
     return tree._replace(groups=all_groups(tree.groups, empty.groups))
@@ -100,9 +101,9 @@ def all_groups(groups: tuple[Any, ...], empty: tuple[Any, ...]) -> tuple[Any, ..
 
 
 @cache
-def empty_arrays(wide: WideKernel) -> SceneArrays:
-    """Return the argument of a wide kernel for a scene without lights and shapes: its types are those of all scenes."""
-    number: Any = np.float32 if wide.precision == "single" else np.float64
+def empty_arrays(generic: GenericKernel) -> SceneArrays:
+    """Return the argument of a generic kernel for a scene without lights and shapes: all scenes have its types."""
+    number: Any = np.float32 if generic.precision == "single" else np.float64
     numbers, integers, indices = (
         partial(np.zeros, dtype=number),
         partial(np.zeros, dtype=np.int64),
@@ -145,17 +146,17 @@ def empty_arrays(wide: WideKernel) -> SceneArrays:
         glow=numbers(0),
         patterns=Patterns(integers((0, 2)), numbers((0, COLUMNS)), numbers(0)),
         smooth=integers(0),
-        surface_maps=maps._replace(**without(MAPS, wide)),
+        surface_maps=maps._replace(**without(MAPS, generic)),
         background=numbers(3),
         environment=Environment(NO_TEXELS, NO_PICTURES),
         bvh=Tree(numbers(0), numbers(0), integers((0, 2)), tuple(map(empty_blocks, ALL_KINDS, rows))),
     )
-    return whole._replace(**without(OPTIONAL, wide))
+    return whole._replace(**without(OPTIONAL, generic))
 
 
-def without(names: tuple[str, ...], wide: WideKernel) -> dict[str, Any]:
-    """Return None for each of the features that a wide kernel lacks."""
-    return dict.fromkeys(set(names) - wide.features)
+def without(names: tuple[str, ...], generic: GenericKernel) -> dict[str, Any]:
+    """Return None for each of the features that a generic kernel lacks."""
+    return dict.fromkeys(set(names) - generic.features)
 
 
 def empty_blocks(kind: Kind, rows: np.ndarray) -> nodes.Group:
