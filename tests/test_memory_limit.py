@@ -12,7 +12,7 @@ from PIL import Image as pillow  # noqa: N813
 
 import minirt
 from minirt.cli import main
-from minirt.cli.argument_values import memory_size
+from minirt.cli.arguments import memory_size
 from minirt.helpers import system
 from minirt.rendering.packing.materials import TexturePool
 from tests.cli.program import SCENE

@@ -11,9 +11,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from minirt.cli import example
-from minirt.cli.arguments import Arguments, argument_parser
-from minirt.cli.exit_status import FAILED, INTERRUPTED, OK
+from minirt.cli.arguments import FAILED, INTERRUPTED, OK, Arguments, argument_parser
 from minirt.cli.output import hide_warnings, prepare_streams, say, tell
 from minirt.errors import MiniRTError
 
@@ -66,12 +64,13 @@ def run(parser: Arguments, argv: Sequence[str] | None) -> int:
     if text := asked_text(parser, options):
         say(text)
         return OK
-    from minirt.cli.configuration import with_configuration
+    from minirt.cli import scenes
+    from minirt.cli.options import with_configuration
     from minirt.helpers import system
 
     options = with_configuration(parser, options, argv)
     options.command = sys.argv[1:] if argv is None else list(argv)
-    example.choose(parser, options, options.command)
+    scenes.choose_example(parser, options, options.command)
     check_options(parser, options)
     system.limit_memory(options.memory)
     if len(options.scene) == 1:
@@ -97,7 +96,7 @@ def asked_text(parser: Arguments, options: argparse.Namespace) -> str:
 
         return keys_text()
     if options.completion:
-        from minirt.cli.completion import completion
+        from minirt.cli.options import completion
 
         return completion(parser, options.completion)
     return ""
@@ -108,11 +107,10 @@ def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int
     from minirt.helpers.system import gc_paused
 
     with gc_paused():  # looking for garbage among new modules takes an eighth of a warm start
-        from minirt.cli.commands import command_for
+        from minirt.cli.commands import command_for, show
+        from minirt.cli.options import with_settings
         from minirt.cli.scenes import read_scene, with_camera_options
-        from minirt.cli.settings import with_settings
         from minirt.cli.target import output_for
-        from minirt.cli.window import show
 
         output = output_for(scene, options.output) if options.output else options.output
         options = argparse.Namespace(**vars(options) | {"scene": [scene], "output": output})
@@ -159,7 +157,7 @@ def check_options(parser: Arguments, options: argparse.Namespace) -> None:
 
 def check_cluster(parser: Arguments, options: argparse.Namespace) -> None:
     """Exit with a message when the options do not go with --cluster, or need it."""
-    from minirt.cli.argument_values import MAX_SIDE
+    from minirt.cli.arguments import MAX_SIDE
 
     if options.cluster and (not options.output or options.replay or options.time):
         parser.error("--cluster needs -o, and no --replay or --time")

@@ -1,31 +1,138 @@
-"""Arguments of the command line, with their help texts and defaults."""
+"""Arguments of the command line: options with their help texts and defaults, parsers of values, exit statuses.
+
+A parser of a value raises ArgumentTypeError, which says what is wrong with a text.
+"""
 
 from __future__ import annotations
 
 import argparse
+import re
 import sys
-from typing import Any, NoReturn
+from argparse import ArgumentTypeError
+from collections.abc import Iterable
+from math import inf
+from typing import Any, NamedTuple, NoReturn
 
 from minirt import DEFAULT_ERROR
-from minirt.cli.argument_values import (
-    cluster,
-    exposure,
-    file_name,
-    memory_size,
-    positive_number,
-    region,
-    size,
-    span,
-    text_scale,
-    whole_number,
-)
-from minirt.cli.exit_status import USAGE
 from minirt.cli.output import say, tell
 
+OK = 0  # exit statuses
+FAILED = 1  # an error in a scene, in rendering or in writing
+USAGE = 2  # wrong arguments
+INTERRUPTED = 130  # Ctrl+C; 128 + n after another signal n
 SAMPLES, WINDOW_SAMPLES = 1, 16  # default samples a pixel: of a file, of the window
 DEMO = "demo"  # the example scene of a program without arguments
 TONES = ("plain", "srgb", "filmic")
 DEPTH, MAX_DEPTH = 8, 32  # bounces of light: default and limit
+MAX_SIDE = 16384  # pixels
+MOST = 999_999_999  # pixels of a side that --cluster takes, if the format holds them
+LEAST_MEMORY, MOST_MEMORY = 2**20, 2**50  # bytes
+MAX_EXPOSURE = 20.0  # EV, up and down
+UNKNOWN = re.compile(r"unrecognized arguments: (-\S*)")
+CHOICE = re.compile(r"argument (?P<option>.*?): invalid choice: '?(?P<value>.*?)'? \(choose from (?P<choices>.*)\)")
+NEAR = 0.6  # similarity from which on a word is suggested, from 0 to 1
+TEXT_SCALES = 0.5, 4.0  # least and largest, as with keys in the window
+
+
+def file_name(text: str) -> str:
+    """Check that the name of a file or folder is not empty."""
+    if not text:
+        raise ArgumentTypeError("must be the name of a file, got ''")
+    return text
+
+
+def size(text: str) -> tuple[int, int]:
+    """Parse a size in pixels, such as 640x480."""
+    width, _, height = text.partition("x")
+    if not (width.isascii() and width.isdigit() and height.isascii() and height.isdigit()):
+        raise ArgumentTypeError(f"must be WIDTHxHEIGHT, like 640x480, got '{text}'")
+    return whole_number(width, 1, MOST), whole_number(height, 1, MOST)
+
+
+def cluster(text: str) -> str:
+    """Parse the place of workers: local, or the address of a scheduler."""
+    if text != "local" and not re.fullmatch(r"[a-z]+://[!-~]+", text):
+        raise ArgumentTypeError(f"must be local, or the address of a scheduler like tcp://host:8786, got '{text[:40]}'")
+    return text
+
+
+class Region(NamedTuple):
+    """A rectangle of a picture, in pixels from its upper left corner; written as on the command line."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+
+    def __str__(self) -> str:
+        return ",".join(map(str, self))
+
+
+def region(text: str) -> Region:
+    """Parse a rectangle of a picture, such as 320,0,640,480."""
+    numbers = text.split(",")
+    if len(numbers) != 4 or not all(each.isascii() and each.isdigit() for each in numbers):
+        raise ArgumentTypeError(f"must be X,Y,WIDTH,HEIGHT, like 320,0,640,480, got '{text[:40]}'")
+    place = (whole_number(each, 0, MAX_SIDE) for each in numbers[:2])
+    return Region(*place, *(whole_number(each, 1, MAX_SIDE) for each in numbers[2:]))
+
+
+def whole_number(text: str, low: int, high: int) -> int:
+    """Parse a whole number in [low, high]."""
+    if not (text.isascii() and text.isdigit() and len(text) < 10 and low <= int(text) <= high):
+        raise ArgumentTypeError(f"must be a whole number from {low} to {high}, got '{text[:40]}'")
+    return int(text)
+
+
+def span(text: str) -> range:
+    """Parse numbers of frames: 10-20, or 7 alone."""
+    first, dash, last = text.partition("-")
+    try:
+        start = whole_number(first, 1, 3600)
+        return range(start, whole_number(last, start, 3600) + 1 if dash else start + 1)
+    except ArgumentTypeError:
+        raise ArgumentTypeError(f"must be FIRST-LAST, like 10-20, got '{text[:40]}'") from None
+
+
+def positive_number(text: str) -> float:
+    """Parse a finite number > 0."""
+    try:
+        number = float(text) if text.isascii() and "_" not in text else 0.0
+    except ValueError:
+        number = 0.0
+    if not 0 < number < inf:
+        raise ArgumentTypeError(f"must be a number > 0, got '{text[:40]}'")
+    return number
+
+
+def exposure(text: str) -> float:
+    """Parse an exposure: a number of doublings of light."""
+    return number_within(text, -MAX_EXPOSURE, MAX_EXPOSURE)
+
+
+def text_scale(text: str) -> float:
+    """Parse a factor for the size of text."""
+    return number_within(text, *TEXT_SCALES)
+
+
+def number_within(text: str, low: float, high: float) -> float:
+    """Parse a number in [low, high]."""
+    try:
+        number = float(text) if text.isascii() and "_" not in text else inf
+    except ValueError:
+        number = inf
+    if not low <= number <= high:
+        raise ArgumentTypeError(f"must be a number from {low:g} to {high:g}, got '{text[:40]}'")
+    return number
+
+
+def memory_size(text: str) -> int:
+    """Parse an amount of memory in bytes, or in units of 1024 such as 512M, 1.5G and 2GiB."""
+    match = re.fullmatch(r"([0-9]{1,15}(?:\.[0-9]{1,9})?)(?:([kmgt])(?:i?b)?)?", text.lower(), re.ASCII)
+    size = int(float(match[1]) * 1024 ** (" kmgt".index(match[2]) if match[2] else 0)) if match else 0
+    if not LEAST_MEMORY <= size <= MOST_MEMORY:
+        raise ArgumentTypeError(f"must be an amount of memory from 1M to 1024T, like 512M or 4G, got '{text[:40]}'")
+    return size
 
 
 class Arguments(argparse.ArgumentParser):
@@ -33,8 +140,6 @@ class Arguments(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print one sentence to standard error, and exit with the status for wrong arguments; argparse calls this."""
-        from minirt.cli.suggestions import clearer
-
         self.exit(USAGE, f"Error\n{clearer(self, message)}\n")
 
     def _print_message(self, message: str, file: Any = None) -> None:
@@ -208,3 +313,30 @@ def argument_parser() -> Arguments:
     add("-v", "--verbose", action="store_true", help="report each step and its duration")
     add("--version", action="store_true", help="print the version")
     return parser
+
+
+def clearer(parser: argparse.ArgumentParser, message: str) -> str:
+    """Return the message of argparse about wrong arguments, in one line and with a suggestion."""
+    if unknown := UNKNOWN.match(message):
+        word = unknown[1].partition("=")[0]
+        options = [option for action in parser._actions for option in action.option_strings]
+        return f"unknown option {word}{suggestion(word, options) or '; miniRT --help lists all'}"
+    if choice := CHOICE.fullmatch(message):
+        choices = re.sub(r"'", "", choice["choices"])
+        hint = suggestion(choice["value"], choices.split(", "))
+        return f"argument {choice['option']}: must be {in_words(choices)}, got '{choice['value'][:40]}'{hint}"
+    return message.removeprefix("unrecognized arguments: ")
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """Return `, did you mean --size?`, or '' without a word that is near."""
+    from difflib import get_close_matches
+
+    near = get_close_matches(word[:40], list(known), 1, NEAR)
+    return f", did you mean {near[0]}?" if near else ""
+
+
+def in_words(choices: str) -> str:
+    """Return `plain, srgb or filmic` for `plain, srgb, filmic`."""
+    first, _, last = choices.rpartition(", ")
+    return f"{first} or {last}" if first else last

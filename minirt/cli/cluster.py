@@ -10,8 +10,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from minirt.cli.arguments import SAMPLES
-from minirt.cli.exit_status import FAILED, OK
+from minirt.cli.arguments import FAILED, OK, SAMPLES
 from minirt.cli.output import tell
 from minirt.cli.picture import write
 from minirt.cli.target import check_region, needs_light

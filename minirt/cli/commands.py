@@ -6,18 +6,23 @@ A command takes a scene and the options, and returns an exit status.
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
-from minirt.cli.exit_status import OK
+from minirt.cli.arguments import OK, SAMPLES, WINDOW_SAMPLES
 from minirt.cli.output import say
-from minirt.cli.picture import render_to_file
+from minirt.cli.picture import render, render_to_file, write
+from minirt.cli.target import check_target, is_film
 from minirt.cli.turntable import render_turntable
-from minirt.cli.window import replay, show
+from minirt.errors import FileError, MlxError, ReplayError
+from minirt.helpers import file_io
 from minirt.helpers.progress import State, progress
 
 if TYPE_CHECKING:
     from minirt.scene import Scene
+
 
 Command = Callable[["Scene", argparse.Namespace], int]
 
@@ -79,3 +84,85 @@ def report(scene: Scene, options: argparse.Namespace) -> int:
     how = options.threads, options.quick, options.ablation
     say(write_report(scene, options.scene[0], options.report, size, *how))
     return OK
+
+
+# Showing a scene in a window, and replaying recorded keys without one.
+
+
+MAX_RECORDING = 16 * 2**20  # bytes of a file of recorded keys
+
+
+def show(scene: Scene, options: argparse.Namespace, saved: Scene | None = None) -> int:
+    """Show the scene in a window until it is closed; without a display, render to the fallback file if there is one.
+
+    `saved` is the scene of the file, where options have changed it.
+    """
+    import minirt
+    from minirt import viewer
+
+    try:
+        return viewer.run(
+            scene,
+            path=options.scene[0],
+            size=options.size,
+            keys=options.keys,
+            lenient=options.lenient,
+            samples=options.samples or WINDOW_SAMPLES,
+            watch=options.watch,
+            text_scale=options.text_scale,
+            saved=saved,
+            renderer=minirt.renderer(options.threads, options.precision, options.depth, options.dither),
+        )
+    except MlxError as error:
+        if not options.fallback:
+            raise
+        say(f"{error}\nNo window: rendering to {options.fallback} instead.")
+        write(render(scene, options, options.fallback), options.fallback, scene, options)
+        say(f"The picture is in {os.path.abspath(options.fallback)}")  # noqa: PTH100
+        return OK
+
+
+def replay(scene: Scene, options: argparse.Namespace) -> int:
+    """Play recorded keys without a window; write the last frame, or all frames as a film, to the output if given."""
+    import minirt
+    from minirt.movie import record_movie
+    from minirt.viewer.app.animation import FPS, record
+    from minirt.viewer.app.replay import replay as play
+
+    width, height = options.size or minirt.size_of(scene)
+    if options.output:
+        check_target(options, options.output, width, height)
+    lines = read_lines(options.replay)
+    settings: dict[str, Any] = {
+        "file": options.replay,
+        "renderer": minirt.renderer(options.threads, options.precision, options.depth, options.dither),
+        "size": (width, height),
+        "path": options.scene[0],
+        "keys": "qwerty" if options.keys == "auto" else options.keys,  # the same on every machine
+        "lenient": options.lenient,
+        "samples": options.samples or SAMPLES,
+    }
+    with progress(lambda: State(f"playing {options.replay}")):
+        if is_film(options):
+            play_film = partial(record, scene, lines, **settings)
+            record_movie(play_film, options.output, FPS, quality=options.quality)
+            return OK
+        pixels = play(scene, lines, **settings)
+    if options.output:  # which carries no scene: keys have edited it
+        write(minirt.Image.from_bgra(pixels), options.output, scene, without_metadata(options))
+    return OK
+
+
+def without_metadata(options: argparse.Namespace) -> argparse.Namespace:
+    """Return the options for a picture that carries no scene."""
+    return argparse.Namespace(**vars(options) | {"metadata": False})
+
+
+def read_lines(path: str) -> list[str]:
+    """Return the lines of a file of recorded keys; ReplayError when it cannot be read."""
+    try:
+        return file_io.read(path, MAX_RECORDING).decode().replace("\r\n", "\n").split("\n")
+    except FileError as error:
+        raise ReplayError(str(error)) from None
+    except UnicodeDecodeError as error:
+        raise ReplayError(f"{path}: cannot be read: {error}") from None

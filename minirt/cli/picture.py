@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from minirt.cli.arguments import SAMPLES
-from minirt.cli.exit_status import FAILED, OK
+from minirt.cli.arguments import FAILED, OK, SAMPLES
 from minirt.cli.output import say_bytes, tell
 from minirt.cli.target import check_memory, check_region, needs_light
 from minirt.helpers.progress import State, progress
@@ -141,7 +140,7 @@ def write(image: Image, output: str, scene: Scene, options: argparse.Namespace) 
 def texts_for(output: str, scene: Scene, options: argparse.Namespace) -> dict[str, str]:
     """Return the texts that a picture of the scene carries."""
     import minirt
-    from minirt.cli.settings import settings_text
+    from minirt.cli.options import settings_text
     from minirt.scene import dump, in_picture
 
     width, height = options.size or minirt.size_of(scene)

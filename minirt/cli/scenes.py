@@ -1,18 +1,20 @@
-"""Reading the scenes that the command line names: files, pictures that carry a scene, and standard input."""
+"""Scenes that the command line names: files, pictures that carry one, standard input and examples."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, TextIO
 
-from minirt.cli import example
+from minirt.cli.arguments import DEMO, Arguments
 from minirt.cli.output import tell
-from minirt.helpers.progress import State, progress
+from minirt.helpers.progress import progress
 
 if TYPE_CHECKING:
     from minirt.scene import Reading, Scene
 
+DEMO_PICTURE = "miniRT-demo.png"  # of a program without arguments, where no window can be opened
 STANDARD_INPUT = "standard input"
 
 
@@ -24,7 +26,9 @@ def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
     if options.trust is not None:
         (jail.trust_all_files if options.trust else jail.trust_no_files)()
     if options.example:
-        return example.read(options)
+        return read_example(options)
+    from minirt.helpers.progress import State
+
     path = options.scene[0]
     with progress(lambda: State(f"reading {STANDARD_INPUT if path == '-' else path}")):
         scene, notices = (
@@ -61,3 +65,28 @@ def with_camera_options(scene: Scene, options: argparse.Namespace) -> Scene:
     given = {"tone": options.tone, "exposure": options.exposure}
     changes = {name: value for name, value in given.items() if value is not None}
     return scene.replace(scene.camera, **changes) if changes else scene
+
+
+def choose_example(parser: Arguments, options: argparse.Namespace, arguments: Sequence[str]) -> None:
+    """Let an example stand for the scene file where the options ask for one, or where there are no arguments.
+
+    The window saves it to a new file in the current folder.
+    """
+    if not arguments:
+        options.example, options.fallback = DEMO, DEMO_PICTURE
+    if not options.example:
+        return
+    from pathlib import Path
+
+    if options.scene:
+        parser.error(f"--example shows a scene of its own, got {options.scene[0]}, too")
+    names = (f"{options.example}{suffix}.rt" for suffix in ("", *(f"-{number}" for number in range(1, 1000))))
+    options.scene = [next((name for name in names if not Path(name).exists()), f"{options.example}.rt")]
+
+
+def read_example(options: argparse.Namespace) -> Scene:
+    """Return the example; FileError for an unknown name."""
+    from minirt import example
+
+    scene = example(options.example)
+    return scene.replace(scene.camera, left_handed=True) if options.left_handed else scene

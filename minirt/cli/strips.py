@@ -11,7 +11,7 @@ from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from minirt.cli.argument_values import Region
+from minirt.cli.arguments import Region
 from minirt.cli.part_file import PartFile
 
 if TYPE_CHECKING:

@@ -11,8 +11,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, TypeVar
 
-from minirt.cli.arguments import SAMPLES
-from minirt.cli.exit_status import OK
+from minirt.cli.arguments import OK, SAMPLES
 from minirt.cli.picture import rows_done, write
 from minirt.cli.target import check_memory, check_region, is_film, needs_light
 from minirt.helpers.progress import State, progress
@@ -37,7 +36,7 @@ def render_turntable(scene: Scene, options: argparse.Namespace) -> int:
 def write_turntable(scene: Scene, options: argparse.Namespace, make: Callable[..., Some]) -> Some:
     """Write the film of the frames that `make` returns; its arguments are those of `Frames`."""
     import minirt
-    from minirt.cli.argument_values import Region
+    from minirt.cli.arguments import Region
     from minirt.cli.work import kept_work
     from minirt.viewer.app.animation import turntable
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from minirt.cli.arguments import argument_parser
-from minirt.cli.completion import completion
+from minirt.cli.options import completion
 from tests import processes
 from tests.cli.program import Result
 from tests.cli.test_output import pixels

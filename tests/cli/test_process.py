@@ -113,7 +113,7 @@ def test_help_and_version_start_fast(folder: Path, option: str) -> None:
     """Only the standard library and a few modules of the program are imported, and few functions called."""
     assert program(folder, option).status == 0
     allowed = {"minirt", "minirt.cli", "minirt.errors"}
-    allowed |= {f"minirt.cli.{each}" for each in ("argument_values", "arguments", "example", "exit_status", "output")}
+    allowed |= {f"minirt.cli.{each}" for each in ("arguments", "output")}
     loaded = modules(f"{QUIETLY}    with contextlib.suppress(SystemExit): main(['{option}'])", folder)
     loaded -= modules("import contextlib, io", folder)
     assert {each for each in loaded if each.split(".")[0] not in sys.stdlib_module_names} == allowed

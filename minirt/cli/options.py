@@ -1,0 +1,214 @@
+"""Options that are not typed: defaults of the configuration file and settings that a picture carries.
+
+Also the completion of arguments in shells, which is made from the parser's list of options.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+from collections.abc import Sequence
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+from minirt.cli.arguments import MAX_SIDE, suggestion
+from minirt.errors import FileError
+
+# Options that the configuration file may set, those that a picture carries, and those of them that windows use, where
+# samples mean something else.
+PICTURES = ("size", "samples", "quality", "depth", "precision", "dither", "metadata", "lenient", "left_handed")
+CONFIGURABLE = (*PICTURES, "keys", "watch", "threads", "memory", "verbose")
+CARRIED = ("size", "region", "samples", "error", "time", "depth", "precision", "dither", "left_handed")
+IN_WINDOWS_TOO = ("size", "depth", "precision", "left_handed")
+LARGEST = 2**16  # bytes of a configuration file
+BASH = """_miniRT() {{
+    local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}"
+    case "$before" in
+{cases}
+    esac
+    if [[ "$word" == -* ]]; then
+        COMPREPLY=($(compgen -W {options} -- "$word"))
+    else
+        COMPREPLY=($(compgen -f -X '!*.@(rt|png)' -- "$word") $(compgen -d -- "$word"))
+    fi
+}}
+shopt -s extglob 2>/dev/null
+complete -o filenames -F _miniRT miniRT
+"""
+ZSH = "autoload -Uz bashcompinit && bashcompinit && setopt KSH_GLOB\n"
+ANY_VALUE = "return"  # leaves a value to the user
+FILES = {"output", "fallback", "replay", "report", "config"}  # options whose value is a path
+FISH_SCENES = "complete -c miniRT -k -xa '(__fish_complete_suffix .rt .png)'"
+
+
+def default_path() -> Path:
+    """Return the path of the configuration file where no other is named."""
+    folder = os.environ.get("APPDATA" if os.name == "nt" else "XDG_CONFIG_HOME", "")
+    return (Path(folder) if os.path.isabs(folder) else Path.home() / ".config") / "minirt" / "config.toml"  # noqa: PTH117
+
+
+def with_configuration(
+    parser: argparse.ArgumentParser, options: argparse.Namespace, argv: Sequence[str] | None
+) -> argparse.Namespace:
+    """Return the options with the defaults of the configuration file; FileError for a wrong one.
+
+    It is TOML with the long names of options: `size = "1920x1080"`, `left-handed = true`.
+    """
+    path = configuration_path(options.config)
+    if path is None:
+        return options
+    parser.set_defaults(**configuration(parser, path))
+    return parser.parse_args(argv)
+
+
+def configuration_path(named: str | None) -> Path | None:
+    """Return the path of the file to read: the one that is `named`, or the user's own if there is one."""
+    if named is not None:
+        return Path(named) if named else None
+    try:
+        path = default_path()
+        return path if path.is_file() else None
+    except (OSError, RuntimeError):  # RuntimeError: nobody's home
+        return None
+
+
+def configuration(parser: argparse.ArgumentParser, path: Path) -> dict[str, object]:
+    """Return the defaults in a file by the names of options; FileError for what no option takes."""
+    import tomllib
+
+    from minirt.helpers import file_io
+
+    try:
+        table = tomllib.loads(file_io.read(path, LARGEST).decode())
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise FileError(path, f"is not TOML: {error}") from None
+    actions = actions_of(parser, CONFIGURABLE)
+    for name in table:
+        if name.replace("-", "_") not in actions:
+            known = [each.replace("_", "-") for each in actions]
+            raise FileError(path, f"no option '{name[:40]}' that has a default{suggestion(name, known)}")
+    defaults = {name.replace("-", "_"): value for name, value in table.items()}
+    for name, value in defaults.items():
+        try:
+            defaults[name] = value_of(actions[name], value)
+        except ValueError as error:
+            raise FileError(path, f"{name.replace('_', '-')} {error}") from None
+    return defaults
+
+
+def actions_of(parser: argparse.ArgumentParser, names: Sequence[str]) -> dict[str, argparse.Action]:
+    """Return some options of the parser by their names."""
+    return {action.dest: action for action in parser._actions if action.dest in names}
+
+
+def value_of(action: argparse.Action, value: object) -> object:
+    """Return a value as the option itself would parse it; ValueError says why it would not."""
+    if action.nargs == 0:
+        if not isinstance(value, bool):
+            raise ValueError(f"must be true or false, got {value!r:.40}")
+        return value
+    try:
+        result = action.type(str(value)) if callable(action.type) else str(value)
+    except argparse.ArgumentTypeError as error:
+        raise ValueError(str(error)) from None
+    if action.choices and result not in action.choices:
+        raise ValueError(f"must be one of {', '.join(map(str, action.choices))}, got {value!r:.40}")
+    return result
+
+
+def settings_text(options: argparse.Namespace, width: int, height: int) -> str:
+    """Return the settings of a picture of this size as options: `--size 640x480 --samples 16`."""
+    values = {name: getattr(options, name) for name in CARRIED} | {"size": f"{width}x{height}"}
+    if values["precision"] == "double":
+        values["precision"] = None
+    given = {"--" + name.replace("_", "-"): value for name, value in values.items() if value not in (None, False)}
+    return " ".join(option if value is True else f"{option} {value}" for option, value in given.items())
+
+
+def with_settings(parser: argparse.ArgumentParser, options: argparse.Namespace) -> argparse.Namespace:
+    """Return the options with the settings of the picture that is the scene, where none were given.
+
+    They may come from anybody: what is unknown or out of range is left out.
+    """
+    from minirt.scene import in_picture
+
+    scene = options.scene[0]
+    if not in_picture.is_picture(scene):
+        return options
+    try:
+        text = in_picture.settings(scene)
+    except FileError as error:
+        from minirt.scene.files import file_error
+
+        raise file_error(error.path, error.reason) from None
+    usable = CARRIED if options.output else IN_WINDOWS_TOO
+    changed = argparse.Namespace(**vars(options))
+    for name, value in carried(parser, text).items():
+        if name in usable and getattr(options, name) == parser.get_default(name):
+            setattr(changed, name, value)
+    if not options.output or changed.samples != "auto":
+        changed.error, changed.time = options.error, options.time
+    if not options.region and not is_inside(changed):
+        changed.region = None
+    return changed
+
+
+def is_inside(options: argparse.Namespace) -> bool:
+    """Whether the region of a picture lies in a picture of the size that is asked for."""
+    if not options.region or not options.size:
+        return False
+    (x, y, across, down), (width, height) = options.region, options.size
+    return bool(x + across <= width and y + down <= height)
+
+
+def carried(parser: argparse.ArgumentParser, text: str) -> dict[str, object]:
+    """Return the settings in a text by their names, without those that the parser would refuse."""
+    actions = actions_of(parser, CARRIED)
+    found: dict[str, object] = {}
+    words = text.split()
+    for word, value in zip_longest(words, words[1:], fillvalue=""):
+        action = actions.get(word.removeprefix("--").replace("-", "_")) if word.startswith("--") else None
+        if action is None:
+            continue
+        try:
+            result: Any = value_of(action, True if action.nargs == 0 else value)
+        except ValueError:
+            continue
+        if action.dest != "size" or max(result) <= MAX_SIDE:
+            found[action.dest] = result
+    return found
+
+
+def completion(parser: argparse.ArgumentParser, shell: str) -> str:
+    """Return the script for bash, zsh or fish."""
+    actions = [action for action in parser._actions if action.option_strings]
+    if shell == "fish":
+        return "\n".join(fish_line(action) for action in actions) + "\n" + FISH_SCENES
+    script = BASH.format(
+        cases="\n".join(bash_case(action) for action in actions if action.nargs != 0),
+        options=shlex.quote(" ".join(option for action in actions for option in action.option_strings)),
+    )
+    return (ZSH if shell == "zsh" else "") + script.rstrip("\n")
+
+
+def bash_case(action: argparse.Action) -> str:
+    """Return the case of an option that takes a value."""
+    options = "|".join(action.option_strings)
+    if action.choices:
+        words = shlex.quote(" ".join(map(str, action.choices)))
+        return f'        {options}) COMPREPLY=($(compgen -W {words} -- "$word")); return ;;'
+    if action.dest in FILES:
+        return f'        {options}) COMPREPLY=($(compgen -f -- "$word")); return ;;'
+    return f"        {options}) {ANY_VALUE} ;;"
+
+
+def fish_line(action: argparse.Action) -> str:
+    """Return the line for an option."""
+    names = [f"-s {name[1:]}" if len(name) == 2 else f"-l {name[2:]}" for name in action.option_strings]
+    value = "" if action.nargs == 0 else "-r" if action.dest in FILES else "-x"
+    if action.choices:
+        value += " -a " + shlex.quote(" ".join(map(str, action.choices)))
+    about = (action.help or "").replace("%%", "%").partition(";")[0]
+    return " ".join(["complete -c miniRT", *names, value, "-d", "'" + about.replace("'", "\\'") + "'"])
