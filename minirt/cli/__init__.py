@@ -122,7 +122,7 @@ def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int
         return show(with_camera_options(read, options), options, read)
     if options.report:  # which ends itself by SIGTERM, when it has written what it has
         return command(with_camera_options(read, options), options)
-    from minirt.cli.ending import signals_end_work
+    from minirt.helpers.signals import signals_end_work
 
     with signals_end_work():
         return command(with_camera_options(read, options), options)

@@ -1,1 +1,1 @@
-"""Helpers of all parts: files, the process and its memory, progress."""
+"""Helpers of all parts: files, the process and its memory, progress, signals."""
