@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from minirt import errors
-from minirt.meshes.block import ObjError
+from minirt.meshes.obj_lines import ObjError
 
 PROBLEM = errors.Problem("ball.rt", 3, 5, "sp 0,0,0 -2 é", "diameter must be > 0", 2)
 ERRORS = [

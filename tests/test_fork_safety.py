@@ -17,11 +17,11 @@ from weakref import WeakSet
 import numpy as np
 import pytest
 
+from minirt import meshes
 from minirt.helpers import system
 from minirt.kernel.machine_code import loader
 from minirt.kernel.machine_code.library import Library
 from minirt.materials import picture_cache
-from minirt.meshes import mesh_cache
 from minirt.rendering import Renderer
 from minirt.rendering.queries.rays import Tracer
 from tests.cli.program import SCENE, environment
@@ -130,7 +130,7 @@ LOCKS: dict[str, Callable[[], Any]] = {
     "renderer": lambda: RENDERER.busy,
     "tracer": lambda: TRACER.busy,
     "pictures": lambda: picture_cache.lock.lock,
-    "meshes": lambda: mesh_cache.lock.lock,
+    "meshes": lambda: meshes.lock.lock,
 }
 
 

@@ -9,7 +9,7 @@ from minirt.jail.confinement import CALLS
 from minirt.jail.decoder import FORMATS, SIDE
 from minirt.jail.messages import CPU_TIME, MEMORY
 from minirt.jail.pipes import LONGEST_WAIT
-from minirt.meshes.mesh_cache import MAX_BYTES
+from minirt.meshes import MAX_BYTES
 from minirt.meshes.obj import MAX_LINES, MAX_TRIANGLES
 from minirt.scene import files
 from tests.jail.breakouts import ACTS

@@ -1,14 +1,15 @@
-"""The field of a direction, and how directions are scaled to unit length, rounded and written."""
+"""The field of a direction; unit vectors, rounded and written; the upright frame of a view, and angles in degrees."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from itertools import product
+from math import cos, hypot, radians, sin
 
 from minirt.errors import FieldError
 from minirt.fields.field import Repair
-from minirt.fields.numerals import number, spelled
+from minirt.fields.scalars import number, spelled
 from minirt.fields.triples import Three, Triple, reads
 from minirt.records import record
 
@@ -118,3 +119,27 @@ def plain_decimal(value: float) -> str:
         return text
     digits, _, places = text.removeprefix("-").partition("e-")
     return f"{'-' * (value < 0)}0.{'0' * (int(places) - 1)}{digits.replace('.', '')}"
+
+
+def upright(x: float, y: float, z: float) -> tuple[Triple, Triple]:
+    """Right and up, as unit vectors, for a view along the unit vector x, y, z.
+
+    Right is the cross product of that vector and (0,1,0). For a view straight up or down, where this is zero, right is
+    +x, and up is +z or -z.
+    """
+    largest = max(abs(x), abs(z))
+    if not largest:
+        return (1.0, 0.0, 0.0), (0.0, 0.0, y)
+    # Scale the horizontal part first, so that its direction is kept even if its length is 1e-300.
+    a, b = x / largest, z / largest
+    length = hypot(a, b)
+    a, b = a / length, b / length
+    return (-b, 0.0, a), (-a * y, hypot(x, z), -b * y)
+
+
+def cos_and_sin(degrees: float) -> tuple[float, float]:
+    """Cosine and sine of an angle; exact for multiples of a right angle."""
+    quarters = round(degrees / 90)
+    rest = radians(degrees - 90 * quarters)
+    c, s = cos(rest), sin(rest)
+    return ((c, s), (-s, c), (-c, -s), (s, -c))[quarters % 4]

@@ -1,7 +1,7 @@
-"""Base class of fields; an element declares one by `declare`.
+"""Base class of fields, and the fields of one word: a choice, and the names of pictures and meshes.
 
-A field is positional, or it is an attribute: attributes follow the other fields with a key, `mirror:0.3`, and may be
-left out; then they have their default or are absent (None).
+An element declares a field by `declare`. It is positional, or it is an attribute: attributes follow the other fields
+with a key, `mirror:0.3`, and may be left out; then they have their default or are absent (None).
 
 A field defines how its value is spelled in a scene file (`parse`, `format`; `column` for many at once), its range
 (`check`), which wrong spellings a lenient reader accepts (`repair`) and how a key press changes it (`nudge`). Errors
@@ -10,12 +10,16 @@ are `FieldError`s that say what was expected, without the name of the field.
 
 from __future__ import annotations
 
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
-from minirt.errors import FieldError
+from minirt.errors import FieldError, quoted
 from minirt.records import Immutable, record
+
+FORBIDDEN = " \t\r\n\0#"  # a line is cut at blanks, and `#` begins a comment
 
 
 class PictureFile(NamedTuple):
@@ -155,3 +159,77 @@ class Field(Immutable, ABC):
     def range(self) -> str:
         """The range as text, for messages and documentation."""
         return ""
+
+
+@record(kw_only=True)
+class Choice(Field):
+    """One of some words; a key press takes the next one, and the first one after the last."""
+
+    words: tuple[str, ...]
+    placeholder: str = "word"
+
+    def parse(self, text: str) -> str:
+        return text
+
+    def check(self, value: str) -> str:
+        if value not in self.words:
+            raise FieldError(f"must be {', '.join(self.words[:-1])} or {self.words[-1]}, got {quoted(str(value))}")
+        return value
+
+    def nudge(self, value: str, steps: float) -> str:
+        if not steps:
+            return value
+        return self.words[(self.words.index(value) + (1 if steps > 0 else -1)) % len(self.words)]
+
+
+def file_name(text: str, also: str = "", sort: str = "picture") -> str:
+    """Check the name of a file: FieldError if it cannot stand in a line, or has one of the characters in `also`."""
+    if not isinstance(text, str) or not text or any(character in text for character in FORBIDDEN + also):
+        commas = ", commas" if "," in also else ""
+        raise FieldError(f"must be the name of a {sort} file, without blanks{commas} and #, got {text!r}")
+    return text
+
+
+@record(kw_only=True)
+class Picture(Field):
+    """A picture file, its name kept as written; `heights`: read as a height map, `also`: characters it must not
+    have."""
+
+    placeholder: str = "file"
+    heights: bool = False
+    also: str = ""
+
+    def parse(self, text: str) -> str:
+        return file_name(text, self.also)
+
+    def check(self, value: str) -> str:
+        return file_name(value, self.also)
+
+    def pictures(self, value: str) -> Iterator[PictureFile]:
+        yield PictureFile(value, self.heights)
+
+
+@dataclass(frozen=True)
+class MeshFile:
+    """The name of a mesh file as written, and the triangles read from it."""
+
+    name: str
+    triangles: Any = None  # `minirt.meshes.Triangles`; None if it has not been read, as for lines without a scene file
+
+
+@record(kw_only=True)
+class MeshField(Field):
+    """A mesh file, its name kept as written."""
+
+    def parse(self, text: str) -> MeshFile:
+        return MeshFile(file_name(text, sort="mesh"))
+
+    def format(self, value: MeshFile) -> str:
+        return value.name
+
+    def check(self, value: MeshFile | str | os.PathLike[str]) -> MeshFile:
+        if isinstance(value, MeshFile):
+            return value
+        if not isinstance(value, (str, os.PathLike)):
+            raise FieldError(f"must be the name of a mesh file, got {value!r}")
+        return self.parse(os.fspath(value))

@@ -1,15 +1,14 @@
-"""Fields of three numbers: points, sizes, colours."""
+"""Fields of three numbers: points, sizes, colours; and a colour that may be a picture instead."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from minirt.errors import FieldError, quoted
-from minirt.fields.field import Field, Repair
-from minirt.fields.numerals import PLAIN, number, numbers, spelled, whole, wholes
-from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, clamp
+from minirt.fields.field import Field, PictureFile, Repair, file_name
+from minirt.fields.scalars import FARTHEST, LEAST_LENGTH, PLAIN, clamp, number, numbers, spelled, whole, wholes
 from minirt.records import record
 
 Triple = tuple[float, float, float]
@@ -180,3 +179,31 @@ def reads(parse: Callable[[str], Any], text: str) -> bool:
     except FieldError:
         return False
     return True
+
+
+@record(kw_only=True)
+class Paint(Colour):
+    """A colour or a picture file; a word with a comma is a colour."""
+
+    def parse(self, text: str) -> Triple | str:  # type: ignore[override]
+        return super().parse(text) if "," in text else file_name(text, ",")
+
+    def format(self, value: Triple | str) -> str:
+        return value if isinstance(value, str) else super().format(value)
+
+    def check(self, value: Triple | str) -> Triple | str:  # type: ignore[override]
+        return file_name(value, ",") if isinstance(value, str) else super().check(value)
+
+    def repair(self, text: str) -> Repair | None:
+        return super().repair(text) if "," in text else None
+
+    def nudge(self, value: Triple | str, steps: float) -> Triple | str:  # type: ignore[override]
+        return value if isinstance(value, str) else super().nudge(value, steps)
+
+    def pictures(self, value: Triple | str) -> Iterator[PictureFile]:
+        if isinstance(value, str):
+            yield PictureFile(value, sky=True)
+
+    @property
+    def notation(self) -> str:
+        return "R,G,B or file"

@@ -12,8 +12,8 @@ from io import BytesIO
 
 import numpy as np
 
-from minirt.meshes import diagnosing, fast
-from minirt.meshes.block import Block, Counts, ObjError
+from minirt.meshes import obj_lines
+from minirt.meshes.obj_lines import Block, Counts, ObjError
 from minirt.meshes.polygons import FaceError, triangulate
 from minirt.meshes.triangles import Triangles, non_degenerate, squared_lengths, unit
 
@@ -21,8 +21,6 @@ BLOCK_BYTES = 2**20  # of lines that are parsed at once; their words take up to 
 LONGEST_LINE = 2**24  # bytes, with the lines that continue it
 MAX_TRIANGLES = 10_000_000
 MAX_LINES = 2**24  # of 16 bytes fill the largest file
-
-__all__ = ["ObjError", "parse"]
 
 
 def parse(data: bytes) -> Triangles:
@@ -32,7 +30,7 @@ def parse(data: bytes) -> Triangles:
     file, blocks = BytesIO(data.removeprefix(b"\xef\xbb\xbf")), []
     before, triangles = Counts(), 0
     while lines := read_lines(file, before.lines):
-        block = fast.read(lines, before) or diagnosing.read(lines, before)
+        block = obj_lines.read_quickly(lines, before) or obj_lines.diagnose(lines, before)
         blocks.append(block)
         before = before.after(block, len(lines))
         triangles += int((block.sizes - 2).sum())
@@ -96,5 +94,5 @@ def check_indices(whole: Block) -> None:
         part = int(np.argmax(beyond[corner]))
         line = np.repeat(whole.lines, whole.sizes)[corner]
         raise ObjError(
-            diagnosing.missing_index_message(part, int(whole.corners[corner, part]) + 1, counts[part]), int(line)
+            obj_lines.missing_index_message(part, int(whole.corners[corner, part]) + 1, counts[part]), int(line)
         )

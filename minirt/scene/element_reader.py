@@ -12,7 +12,7 @@ from minirt import jail
 from minirt.element import Element, cached_per_kind, fields_of, pattern
 from minirt.errors import FieldError, FileError, quoted
 from minirt.fields import Colour, Field, MeshFile
-from minirt.fields.numerals import code_point_name
+from minirt.fields.scalars import code_point_name
 from minirt.scene.diagnostics import Log
 from minirt.scene.lines import Line, Word, first_unprintable, join_at_commas, split_at_blanks
 from minirt.scene.registry import ELEMENTS, SPELLINGS

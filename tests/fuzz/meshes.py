@@ -8,8 +8,8 @@ from io import BytesIO
 
 import numpy as np
 
-from minirt.meshes import diagnosing, fast, obj
-from minirt.meshes.block import Block, Counts, ObjError
+from minirt.meshes import obj, obj_lines
+from minirt.meshes.obj_lines import Block, Counts, ObjError
 from minirt.meshes.triangles import Triangles
 from tests.fuzz.fuzzer import Fuzzer
 from tests.fuzz.mutations import mutated
@@ -53,11 +53,11 @@ def face(points: int, uvs: int, normals: int, chance: random.Random) -> str:
 def check(data: bytes) -> str:
     """Compare the readers; a mesh that is accepted is finite and names corners that exist."""
     lines = BytesIO(data).readlines()
-    quick = fast.read(lines, Counts())
+    quick = obj_lines.read_quickly(lines, Counts())
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
-            careful = diagnosing.read(lines, Counts())
+            careful = obj_lines.diagnose(lines, Counts())
         except ObjError:
             careful = None
         assert not quick or same(quick, careful), "the fast reader accepts what the diagnosing reader does not"

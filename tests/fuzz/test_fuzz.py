@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from minirt.errors import MiniRTError, SceneError
-from minirt.fields import numerals, triples
+from minirt.fields import scalars, triples
 from minirt.jail import decoder
-from minirt.meshes import fast
+from minirt.meshes import obj_lines
 from minirt.rendering.packing import lens
 from minirt.viewer.input.recording_line import Line
 from tests.fuzz import __main__ as command
@@ -69,14 +69,14 @@ def test_a_reader_of_numbers_that_takes_what_python_takes_is_found(monkeypatch: 
 
 
 def test_a_limit_that_is_off_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(numerals, "LONGEST", 302)
+    monkeypatch.setattr(scalars, "LONGEST", 302)
     with pytest.raises(AssertionError, match="the grammar says False"):
         scenes.check(f"{FRAME}sp 0,0,0 {'0' * 300}1 1,2,3".encode())
 
 
 def test_a_fast_reader_of_meshes_that_counts_wrongly_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    table = fast.corner_table
-    monkeypatch.setattr(fast, "corner_table", lambda faces: abs(table(faces)))
+    table = obj_lines.corner_table
+    monkeypatch.setattr(obj_lines, "corner_table", lambda faces: abs(table(faces)))
     with pytest.raises(AssertionError, match="diagnosing reader"):
         run("meshes", FUZZERS["meshes"].short)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from minirt.meshes import ears, obj
-from minirt.meshes.block import ObjError
+from minirt.meshes import obj, polygons
+from minirt.meshes.obj_lines import ObjError
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\n"
 
@@ -85,7 +85,7 @@ def test_a_face_that_takes_too_long_to_cut_is_refused(monkeypatch: pytest.Monkey
     text = (comb + "f 1 2 3\nf " + " ".join(map(str, range(1, 101))) + "\n").encode()
     whole = len(obj.parse(text))
     assert whole > 50
-    monkeypatch.setattr(ears, "MOST_LOOKS", 100)
+    monkeypatch.setattr(polygons, "MOST_LOOKS", 100)
     with pytest.raises(ObjError, match=r"^line 102: a face of 100 corners takes too long to cut into triangles$"):
         obj.parse(text)
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from minirt.meshes import Triangles, diagnosing, fast, obj
-from minirt.meshes.block import Block, Counts
+from minirt.meshes import Triangles, obj, obj_lines
+from minirt.meshes.obj_lines import Block, Counts
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 Read = Callable[[str], Triangles]
@@ -18,15 +18,15 @@ Read = Callable[[str], Triangles]
 def read(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Read:
     """Parse a text by one of the two readers alone."""
     if request.param == "diagnosing":
-        monkeypatch.setattr(fast, "read", lambda *_: None)
+        monkeypatch.setattr(obj_lines, "read_quickly", lambda *_: None)
     else:
-        monkeypatch.setattr(diagnosing, "read", None)
+        monkeypatch.setattr(obj_lines, "diagnose", None)
     return lambda text: obj.parse(text.encode())
 
 
 def parse_diagnosing(text: str) -> Triangles:
     """Parse a text that the fast path leaves to the diagnosing reader."""
-    assert fast.read(text.encode().splitlines(keepends=True), Counts()) is None
+    assert obj_lines.read_quickly(text.encode().splitlines(keepends=True), Counts()) is None
     return obj.parse(text.encode())
 
 
@@ -138,7 +138,7 @@ def test_both_readers_give_the_same_block() -> None:
             numbers = random.integers(1, 21, (random.integers(3, 7), 3)) * random.choice([-1, 1], (1, 3))
             lines.append("f " + " ".join(forms.format(*row) for row in numbers.tolist()))
         data = [line.encode() + b"\n" for line in lines]
-        quick, slow = fast.read(data, Counts(3, 4, 5, 6)), diagnosing.read(data, Counts(3, 4, 5, 6))
+        quick, slow = obj_lines.read_quickly(data, Counts(3, 4, 5, 6)), obj_lines.diagnose(data, Counts(3, 4, 5, 6))
         assert quick is not None
         assert all(np.array_equal(one, other) for one, other in zip(quick, slow, strict=True)), forms
         assert isinstance(slow, Block)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from minirt.meshes import obj, polygons
-from minirt.meshes.ears import Polygon
+from minirt.meshes.polygons import Polygon
 
 Flat = list[tuple[float, float]]
 DART: Flat = [(0, 2), (-1, -1), (0, 0), (1, -1)]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from minirt.materials import Mirror
 from minirt.scene import Camera, Scene
-from tests.reference import meshes  # noqa: F401  (what is said of each shape in the other files, of these alone)
+from tests.reference import meshes
 from tests.reference.glass import is_sheet, is_tinted, left_by_media, mirror_and_glass, shares
 from tests.reference.hits import first_hits
 from tests.reference.light import OFF_SURFACE, shaded

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from minirt.errors import SceneError
 from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, Real, Three, Whole, whole
-from minirt.fields.numerals import LONGEST, NUMBER, PLAIN, WHOLE, numbers, wholes
+from minirt.fields.scalars import LONGEST, NUMBER, PLAIN, WHOLE, numbers, wholes
 from minirt.records import record
 from minirt.scene import describe, element_reader, fast, parse, parser
 from minirt.scene.diagnostics import Log

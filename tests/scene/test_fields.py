@@ -29,8 +29,7 @@ from minirt.fields import (
     unit,
     whole,
 )
-from minirt.fields.numerals import LONGEST
-from minirt.fields.scalars import Factor, Flag
+from minirt.fields.scalars import LONGEST, Factor, Flag
 from minirt.fields.triples import Lengths
 from minirt.scene import Camera, Light
 from minirt.shapes.sphere import Sphere

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from minirt.errors import FieldError, FileError
 from minirt.fields import MeshFile
-from minirt.fields.pictures import file_name
+from minirt.fields.field import file_name
 from minirt.meshes import load_mesh
 from minirt.scene import Scene
 
