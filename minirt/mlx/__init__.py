@@ -8,10 +8,8 @@ minirt.mlx program.py` runs a program that says `from mlx import Mlx`.
 
 from minirt.errors import MlxError
 from minirt.mlx.api import Mlx
-from minirt.mlx.cursors import Cursor
-from minirt.mlx.events import Button, Event
-from minirt.mlx.image import Image
-from minirt.mlx.keys import Key, Modifier
+from minirt.mlx.arguments import Image
+from minirt.mlx.events import Button, Cursor, Event, Key, Modifier
 from minirt.mlx.window import Window
 
 __all__ = ["Button", "Cursor", "Event", "Image", "Key", "Mlx", "MlxError", "Modifier", "Window"]

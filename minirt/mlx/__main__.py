@@ -1,6 +1,179 @@
-"""Run a program that is written for the official Python wrapper of MiniLibX: `python -m minirt.mlx program.py`."""
+"""Run a program that is written for the official Python wrapper of MiniLibX: `python -m minirt.mlx program.py`.
 
-from minirt.mlx.drop_in.command import main
+The program is unchanged: it says `from mlx import Mlx`. It runs in a window or, with simulated time, without a screen.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import runpy
+import sys
+import threading
+import time
+from importlib.machinery import ModuleSpec
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from minirt.errors import MlxError
+from minirt.mlx import recording
+from minirt.mlx.api import Mlx
+from minirt.mlx.arguments import MaybeNone, integer
+from minirt.mlx.backend import ADVICE
+from minirt.mlx.memory import Headless
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from minirt.mlx.arguments import Integer
+    from minirt.mlx.backend import Backend
+    from minirt.mlx.window import Window, WindowHost
+
+
+FAILED = 1  # exit status
+READING = 1e-6  # seconds that pass with each reading of a clock, so that a loop that waits for a time ends
+
+
+def main(argv: Sequence[str] | None = None) -> Any:
+    """Run the program; return the argument of its `sys.exit`, or 0. Its exceptions come through."""
+    options = _parse(argv)
+    try:
+        backend = _headless(options) if options.headless else None
+        install(backend, strict=options.strict)
+        try:
+            status = _run(options.program, options.arguments)
+        finally:  # even after an exception
+            saved = backend is None or backend.finish()
+    except MlxError as error:
+        print(f"mlx: {error}", file=sys.stderr)
+        return FAILED
+    return status if saved else FAILED
+
+
+def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
+    """Parse the arguments; those after the program are its own."""
+    parser = argparse.ArgumentParser(
+        prog="python -m minirt.mlx",
+        description="Run a program for the official Python wrapper of MiniLibX (from mlx import Mlx), unchanged.",
+        epilog=f"Scripts of events:\n{(recording.__doc__ or '').split(chr(10), 2)[2]}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--headless", action="store_true", help="open no window; time is simulated")
+    parser.add_argument("--events", type=Path, metavar="SCRIPT", help="the events of a headless program")
+    parser.add_argument("--picture", type=Path, metavar="FILE", help="save the last picture of a headless program")
+    parser.add_argument(
+        "--screen", default="1920x1080", metavar="WxH", help="size of the simulated screen (%(default)s)"
+    )
+    parser.add_argument("--strict", action="store_true", help="end at the first failure or exception of a hook")
+    parser.add_argument("program", type=Path)
+    parser.add_argument("arguments", nargs=argparse.REMAINDER, help="arguments of the program")
+    options = parser.parse_args(argv)
+    if (options.events or options.picture) and not options.headless:
+        parser.error("--events and --picture need --headless")
+    return options
+
+
+def _headless(options: argparse.Namespace) -> Headless:
+    """Make the back end with its script. Raises MlxError."""
+    try:
+        width, height = map(int, options.screen.split("x"))
+    except ValueError as error:
+        raise MlxError(f"--screen: expected a size like 1920x1080, got {options.screen!r}") from error
+    backend = Headless(options.picture, (width, height))
+    if options.events:
+        try:
+            lines = options.events.read_text(encoding="utf-8").splitlines()
+        except (OSError, ValueError) as error:
+            raise MlxError(f"{options.events} cannot be read: {error}") from error
+        recording.add_script(lines, str(options.events), backend)
+    simulate_process(backend)
+    return backend
+
+
+def _run(program: Path, arguments: list[str]) -> Any:
+    """Run the program as `python program.py …` does; return what it exits with. Raises MlxError if there is none."""
+    if not program.is_file():
+        raise MlxError(f"there is no program {program}")
+    sys.argv = [str(program), *arguments]
+    sys.path[0] = str(program.resolve().parent)
+    try:
+        runpy.run_path(str(program), run_name="__main__")
+    except SystemExit as leaving:
+        return leaving.code
+    return 0
+
+
+def install(backend: Backend | None, *, strict: bool) -> None:
+    """Make `from mlx import Mlx` import our class, with this back end and option, even if the wrapper is installed."""
+
+    class WrapperMlx(Mlx):
+        def __init__(self) -> None:
+            super().__init__(backend, strict=strict)
+
+        def mlx_string_put(
+            self, mlx_ptr: WindowHost, win_ptr: Window, x: Integer, y: Integer, color: Integer, string: str
+        ) -> int:
+            """Draw text in a colour 0xBBGGRR: in text, and only there, the wrapper's shader takes blue for red."""
+            word = integer(color)
+            swapped = (word & 0xFF) << 16 | word & 0xFF00 | word >> 16 & 0xFF
+            return super().mlx_string_put(mlx_ptr, win_ptr, x, y, swapped, string)
+
+        def _mlx_failed(self, error: MlxError) -> MaybeNone:
+            return super()._mlx_failed(MlxError(str(error).replace(ADVICE, "--headless runs without one")))
+
+    WrapperMlx.__name__ = WrapperMlx.__qualname__ = "Mlx"
+    WrapperMlx.__module__ = "mlx.mlx"
+    package, module = _module("mlx", is_package=True), _module("mlx.mlx")
+    for target in (package, module):
+        target.Mlx = WrapperMlx  # type: ignore[attr-defined]
+    package.mlx = module  # type: ignore[attr-defined]
+
+
+def _module(name: str, *, is_package: bool = False) -> ModuleType:
+    """Make an empty module and register it."""
+    module = ModuleType(name)
+    module.__spec__ = ModuleSpec(name, None, is_package=is_package)
+    if is_package:
+        module.__path__ = []
+    sys.modules[name] = module
+    return module
+
+
+def simulate_process(user: Headless) -> None:
+    """Let the program see simulated time, and save its picture even if it ends by `os._exit`."""
+    leave = os._exit
+
+    def save_and_leave(status: int) -> None:
+        leave(status if user.finish() else 1)
+
+    simulate_time(user.time, user.pass_time)
+    os._exit = save_and_leave  # type: ignore[assignment]
+
+
+def simulate_time(now: Callable[[], float], advance: Callable[[float], None]) -> None:
+    """Replace the clocks by `now`, and sleeping in the main thread by `advance`; other threads sleep as usual.
+
+    Call it before the program is imported, which may import the functions by their names.
+    """
+    start, sleep = time.time(), time.sleep
+
+    def read() -> float:
+        advance(READING)
+        return now()
+
+    def simulated_sleep(seconds: float) -> None:
+        if threading.current_thread() is threading.main_thread():
+            advance(seconds)
+        else:
+            sleep(seconds)
+
+    time.monotonic = time.perf_counter = read
+    time.time = lambda: start + read()
+    time.monotonic_ns = time.perf_counter_ns = lambda: int(1e9 * read())
+    time.time_ns = lambda: int(1e9 * (start + read()))
+    time.sleep = simulated_sleep  # type: ignore[assignment]
+
 
 if __name__ == "__main__":
     raise SystemExit(main())

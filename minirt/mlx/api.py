@@ -16,28 +16,27 @@ import os
 from typing import TYPE_CHECKING
 
 from minirt.errors import MlxError
+from minirt.mlx.arguments import MaybeNone, integer
 from minirt.mlx.backend import ADVICE
+from minirt.mlx.calls import Calls
 from minirt.mlx.display import Display
 from minirt.mlx.extensions import Extensions
-from minirt.mlx.image_calls import ImageCalls
-from minirt.mlx.loop_calls import LoopCalls
-from minirt.mlx.options import MaybeNone, integer
 from minirt.mlx.text import draw_text
 from minirt.mlx.window import Window
 
 if TYPE_CHECKING:
+    from minirt.mlx.arguments import Integer
     from minirt.mlx.backend import Backend
-    from minirt.mlx.options import Integer
     from minirt.mlx.window import WindowHost
 
 PITCH = 10  # pixels from one character to the next, as in the wrapper: programs centre and align text by it
 
 
-class Mlx(ImageCalls, LoopCalls, Extensions):
+class Mlx(Calls, Extensions):
     """MiniLibX's functions as methods; those without a result return 0. Colours are 0xAARRGGBB; x goes right, y down.
 
     backend: the window system; None is the screen, `minirt.mlx.memory.Memory()` needs none.
-    alpha, strict, symbols: see `minirt.mlx.options.Options`; the defaults are what the wrapper does.
+    alpha, strict, symbols: see `minirt.mlx.arguments.Options`; the defaults are what the wrapper does.
     """
 
     # --- opening and closing ---

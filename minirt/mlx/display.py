@@ -7,13 +7,12 @@ import threading
 import traceback
 from typing import TYPE_CHECKING
 
+from minirt.mlx.arguments import Handle
 from minirt.mlx.events import Event
-from minirt.mlx.handle import Handle
 
 if TYPE_CHECKING:
+    from minirt.mlx.arguments import BoundHook, Hook, Options
     from minirt.mlx.backend import Backend
-    from minirt.mlx.hooks import BoundHook, Hook
-    from minirt.mlx.options import Options
     from minirt.mlx.window import Window
 
 

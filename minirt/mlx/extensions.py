@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from minirt.mlx.arguments import bound, set_hook
 from minirt.mlx.events import Event
-from minirt.mlx.hooks import bound, set_hook
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from minirt.mlx.cursors import Cursor
+    from minirt.mlx.arguments import Hook, Image
     from minirt.mlx.display import Display
-    from minirt.mlx.hooks import Hook
-    from minirt.mlx.image import Image
-    from minirt.mlx.keys import Modifier
+    from minirt.mlx.events import Cursor, Modifier
     from minirt.mlx.window import Window
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from minirt.mlx.keys import Key, Modifier
+from minirt.mlx.events import Key, Modifier
 
 KEYPAD: Final = 3  # the location of keys on the keypad
 NAMED: Final[dict[str, Key]] = {

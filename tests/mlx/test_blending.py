@@ -9,8 +9,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from minirt.mlx.blending import BLOCK, blend
-from minirt.mlx.canvas import Canvas
+from minirt.mlx.canvas import BLOCK, Canvas, blend
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -11,8 +11,8 @@ import pytest
 from PIL import Image
 
 from minirt.errors import MlxError
-from minirt.mlx.drop_in.headless import Headless
-from minirt.mlx.drop_in.script import STEPS, add_script, key_codes
+from minirt.mlx.memory import Headless
+from minirt.mlx.recording import STEPS, add_script, key_codes
 from tests import processes
 from tests.lines import next_line
 from tests.mlx.test_without_display import NO_SCREEN

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from minirt.mlx.on_pyglet import latin_letters
-from minirt.mlx.on_pyglet.latin_letters import latin_letter
+from minirt.mlx.on_pyglet import x11
+from minirt.mlx.on_pyglet.x11 import latin_letter
 
 FIRST = 24, 38, 52  # key codes of the first keys of the three rows of letters
 LAYOUTS = {  # what the keys print, in rows; - is any symbol that is no Latin letter
@@ -34,7 +34,7 @@ def letters(monkeypatch: pytest.MonkeyPatch, active: int, *layouts: str) -> dict
     """Return the letter that each key stands for, with some layouts of which one is active."""
     tables = [table(layout) for layout in layouts]
     found = lambda _, key, group: tables[group if group < len(tables) else 0].get(key, 0)  # noqa: E731
-    monkeypatch.setattr(latin_letters, "_symbol", found)
+    monkeypatch.setattr(x11, "_symbol", found)
     events = {key: SimpleNamespace(xkey=SimpleNamespace(keycode=key, state=active << 13)) for key in table("us")}
     codes = {key: latin_letter(None, event) for key, event in events.items()}
     return {key: code and chr(code) for key, code in codes.items()}
@@ -60,5 +60,5 @@ def test_the_letters_of_another_layout_of_the_user_come_first(monkeypatch):
 
 def test_letters_beside_the_usual_keys_count_as_printed(monkeypatch):
     """A search among the American places alone takes é of bépo for the missing w: the test notices it."""
-    monkeypatch.setattr(latin_letters, "PRINTING_KEYS", list(latin_letters.POSITIONS))
+    monkeypatch.setattr(x11, "PRINTING_KEYS", list(x11.POSITIONS))
     assert letters(monkeypatch, 0, "bepo")[25] == "w"

@@ -15,7 +15,7 @@ from tests.mlx.wake_thread import wake_thread
 from tests.waiting import HANG_LIMIT
 
 if TYPE_CHECKING:
-    from minirt.mlx.hooks import Hook
+    from minirt.mlx.arguments import Hook
 
 
 def test_time_is_simulated() -> None:

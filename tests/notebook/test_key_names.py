@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from minirt.mlx.keys import Key, Modifier
+from minirt.mlx.events import Key, Modifier
 from minirt.notebook.key_names import code_of, modifiers_of, text_of
 
 

@@ -1,4 +1,4 @@
-"""Handle Ctrl+C promptly while the main thread sleeps in the platform's event wait.
+"""Handle Ctrl+C promptly while the main thread sleeps in the platform's event wait, and the loss of the X server.
 
 Python runs signal handlers between two instructions of the main thread. That thread may sleep in the window system,
 and the signal may even arrive in another thread, so the handler would not run. Python writes the signal's number into a
@@ -7,11 +7,14 @@ socket at once (`signal.set_wakeup_fd`); a thread that reads the socket wakes th
 
 from __future__ import annotations
 
+import ctypes
+import os
 import signal
 import socket
+import sys
 import threading
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -74,3 +77,29 @@ def _watch(reader: socket.socket, wake: Callable[[], None]) -> None:
     """Call `wake` for each signal until the other end of the socket is closed."""
     while reader.recv(1):
         wake()
+
+
+# The X server was killed, or has closed the connection of this program. Xlib ends a process whose connection breaks,
+# without Python's knowledge. Its error handler is the last chance to save.
+
+
+STATUS = 1
+HANDLER = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)
+INSTALLED: list[Any] = []  # handlers, which Xlib may call as long as the program runs
+
+
+def end_program_when_connection_is_lost(save: Callable[[], None]) -> None:
+    """Call `save` and end the process with status 1 when the X server is gone. No other system has such a server."""
+    if not sys.platform.startswith("linux"):
+        return
+    from pyglet.libs.x11 import xlib
+
+    def handler(_display: int) -> int:
+        try:
+            save()
+            print("Error\nthe connection to the X server is lost", file=sys.stderr, flush=True)
+        finally:
+            os._exit(STATUS)
+
+    INSTALLED[:] = [HANDLER(handler)]
+    ctypes.CDLL(xlib._lib._name).XSetIOErrorHandler(INSTALLED[0])  # the same library, without pyglet's argument types

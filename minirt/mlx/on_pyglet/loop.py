@@ -13,8 +13,7 @@ from pyglet.app.base import EventLoop
 
 from minirt.errors import MlxError
 from minirt.mlx.backend import ADVICE, Backend
-from minirt.mlx.on_pyglet.connection_loss import end_program_when_connection_is_lost
-from minirt.mlx.on_pyglet.interrupt import interruptible
+from minirt.mlx.on_pyglet.interrupt import end_program_when_connection_is_lost, interruptible
 from minirt.mlx.on_pyglet.native import NativeWindow
 
 if TYPE_CHECKING:

@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 from pyglet.window import key as pyglet_key
 from pyglet.window import mouse as pyglet_mouse
 
-from minirt.mlx.events import Button, Event
-from minirt.mlx.keys import Key, Modifier
-from minirt.mlx.on_pyglet.canvas_texture import CanvasTexture
-from minirt.mlx.on_pyglet.drag_and_drop import fix_drag_enter
-from minirt.mlx.on_pyglet.key_codes import KeyEvent, report_key_events
-from minirt.mlx.on_pyglet.pyglet_window import PygletWindow
-from minirt.mlx.on_pyglet.x11_properties import manager_has_full_screen, request_full_screen
+from minirt.mlx.events import Button, Event, Key, Modifier
+from minirt.mlx.on_pyglet.pyglet_window import CanvasTexture, PygletWindow
+from minirt.mlx.on_pyglet.x11 import (
+    KeyEvent,
+    fix_drag_enter,
+    manager_has_full_screen,
+    report_key_events,
+    request_full_screen,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable

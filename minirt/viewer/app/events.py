@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from minirt.mlx import Event
-from minirt.mlx.keys import MODIFIER_KEYS
+from minirt.mlx.events import MODIFIER_KEYS
 from minirt.viewer.app import file_sync, recovery
 from minirt.viewer.app.choosing import ADDING, LISTS, Choosing
 from minirt.viewer.app.commands import COMMANDS

@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from minirt.errors import MlxError
-from minirt.mlx.events import Button
-from minirt.mlx.keys import Key
+from minirt.mlx.events import Button, Key
 
 if TYPE_CHECKING:
-    from minirt.mlx.drop_in.headless import Headless
+    from minirt.mlx.memory import Headless
+
 
 KEYS = {"".join(map(str.capitalize, key.name.split("_"))): int(key) for key in Key}
 MODIFIERS = {"Shift": Key.SHIFT_L, "Ctrl": Key.CONTROL_L, "Alt": Key.ALT_L, "Super": Key.SUPER_L}

@@ -1,0 +1,189 @@
+"""Calls of MiniLibX for hooks, the event loop and images; the options, and what happens on a failure."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from minirt.errors import MlxError
+from minirt.mlx.arguments import Image, MaybeNone, Options, bound, integer, set_hook
+from minirt.mlx.events import Event
+from minirt.mlx.window import Window
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from os import PathLike
+
+    from numpy.typing import NDArray
+
+    from minirt.mlx.arguments import Hook, Integer
+    from minirt.mlx.backend import Backend
+    from minirt.mlx.display import Display
+    from minirt.mlx.window import WindowHost
+
+    FileName = str | PathLike[str]
+    ImageAndSize = tuple[Image | MaybeNone, int, int]  # (None, 0, 0) after a failure
+
+GREATEST = 32767  # pixels of an image's side
+
+
+class Calls:
+    """Options, hooks, the loop and images of `Mlx`. A hook of None removes the one that was set.
+
+    The attributes' names leave all others to programs, many of which derive their own class from Mlx.
+    `mlx_ptr` is unused in the calls for images, as in MiniLibX.
+    """
+
+    SYNC_IMAGE_WRITABLE = 1
+    SYNC_WIN_FLUSH = 2
+    SYNC_WIN_COMPLETED = 3
+
+    def __init__(
+        self, backend: Backend | None = None, *, alpha: bool = True, strict: bool = False, symbols: bool = False
+    ) -> None:
+        self._mlx_backend = backend
+        self._mlx_options = Options(alpha, strict, symbols)
+
+    def mlx_set_options(
+        self,
+        *,
+        alpha: bool | None = None,
+        strict: bool | None = None,
+        symbols: bool | None = None,
+        application: str | None = None,
+    ) -> int:
+        """Change options, `alpha` and `application` for windows that are opened later; None leaves one as it is."""
+        options = self._mlx_options
+        options.alpha = options.alpha if alpha is None else alpha
+        options.strict = options.strict if strict is None else strict
+        options.symbols = options.symbols if symbols is None else symbols
+        options.application = options.application if application is None else application
+        return 0
+
+    def _mlx_failed(self, error: MlxError) -> MaybeNone:
+        """Raise the error, or print it and return None, as MiniLibX does."""
+        if self._mlx_options.strict:
+            raise error
+        print(f"mlx: {error}", file=sys.stderr)
+        return None
+
+    # --- hooks and the loop ---
+
+    def mlx_hook(self, win_ptr: Window, x_event: Integer, x_mask: Integer, callback: Hook | None, param: object) -> int:
+        """Set the one hook of an event and window. `Event` lists the arguments before `param`; the mask is unused."""
+        return set_hook(win_ptr.hooks, integer(x_event), callback, param)
+
+    def mlx_key_hook(self, win_ptr: Window, callback: Hook | None, param: object) -> int:
+        """Call callback(keycode, param) when a key is released."""
+        return set_hook(win_ptr.hooks, Event.KEY_RELEASE, callback, param)
+
+    def mlx_mouse_hook(self, win_ptr: Window, callback: Hook | None, param: object) -> int:
+        """Call callback(button, x, y, param) when a button is pressed or the wheel turned."""
+        return set_hook(win_ptr.hooks, Event.BUTTON_PRESS, callback, param)
+
+    def mlx_expose_hook(self, win_ptr: Window, callback: Hook | None, param: object) -> int:
+        """Call callback(param) when the window has to be drawn; its earlier content is still there."""
+        return set_hook(win_ptr.hooks, Event.EXPOSE, callback, param)
+
+    def mlx_loop_hook(self, mlx_ptr: Display, callback: Hook | None, param: object) -> int:
+        """Call callback(param) about 60 times a second; with None the loop sleeps until an event."""
+        mlx_ptr.loop_hook = bound(callback, param)
+        return 0
+
+    def mlx_loop(self, mlx_ptr: Display) -> int:
+        """Run until `mlx_loop_exit` or until no window is left. Ctrl+C raises KeyboardInterrupt.
+
+        The exception of a hook is printed, and the loop goes on; with the option `strict` it is raised from here.
+        """
+        mlx_ptr.loop()
+        return 0
+
+    def mlx_loop_exit(self, mlx_ptr: Display) -> int:
+        """End the loop; no hook is called after this."""
+        mlx_ptr.ending = True
+        return 0
+
+    mlx_loop_end = mlx_loop_exit
+
+    def mlx_do_sync(self, mlx_ptr: Display) -> int:
+        """Show all windows as they are drawn now."""
+        for window in mlx_ptr.windows:
+            mlx_ptr.show(window)
+        return 0
+
+    def mlx_sync(self, mlx_ptr: Display, cmd: Integer, img_or_win_ptr: Image | Window) -> int:
+        """Show a window now, or later if it is hidden. `cmd` is one of SYNC_…; images are always writable."""
+        if isinstance(img_or_win_ptr, Window) and img_or_win_ptr.is_open and img_or_win_ptr.visible:
+            mlx_ptr.show(img_or_win_ptr)
+        return 0
+
+    # --- images ---
+
+    def mlx_new_image(self, mlx_ptr: WindowHost, width: Integer, height: Integer) -> Image | MaybeNone:
+        """Return an image that is all transparent, or None for a size below 1 or above 32767 pixels."""
+        columns, rows = integer(width), integer(height)
+        if not (0 < columns <= GREATEST and 0 < rows <= GREATEST):
+            return self._mlx_failed(MlxError(f"an image cannot be of {columns}x{rows} pixels"))
+        return Image(np.zeros((rows, columns, 4), np.uint8))
+
+    def mlx_get_data_addr(self, img_ptr: Image) -> tuple[memoryview, int, int, int]:
+        """Return (bytes, bits per pixel, bytes per row, 0). The bytes of a pixel are blue, green, red, alpha."""
+        return img_ptr.pixels.reshape(-1).data, 32, 4 * img_ptr.width, 0
+
+    def mlx_put_image_to_window(
+        self, mlx_ptr: WindowHost, win_ptr: Window, img_ptr: Image, x: Integer, y: Integer
+    ) -> int:
+        """Blend the image, as it is now, into the window with its top left corner at x, y; alpha 255 is opaque."""
+        win_ptr.canvas.put(img_ptr.pixels, integer(x), integer(y))
+        return 0
+
+    def mlx_destroy_image(self, mlx_ptr: WindowHost, img_ptr: Image) -> int:
+        """Do nothing: Python frees an image without references."""
+        return 0
+
+    def mlx_png_file_to_image(self, mlx_ptr: WindowHost, filename: FileName) -> ImageAndSize:
+        """Return (image, width, height) of a picture file of any format that Pillow reads."""
+        return self._mlx_image_of(lambda: _read_picture(filename))
+
+    def mlx_xpm_file_to_image(self, mlx_ptr: WindowHost, filename: FileName) -> ImageAndSize:
+        """Return (image, width, height) of an XPM file."""
+        return self._mlx_image_of(lambda: _read_xpm_file(filename))
+
+    def mlx_xpm_to_image(self, mlx_ptr: WindowHost, xpm_data: Sequence[str]) -> ImageAndSize:
+        """Return (image, width, height) of the strings of an XPM file."""
+        from minirt.mlx.xpm import read_xpm
+
+        return self._mlx_image_of(lambda: read_xpm(xpm_data))
+
+    def _mlx_image_of(self, read: Callable[[], NDArray[np.uint8]]) -> ImageAndSize:
+        """Return the image that `read` makes with its size, or (None, 0, 0)."""
+        try:
+            image = Image(read())
+        except MlxError as error:
+            return self._mlx_failed(error), 0, 0
+        return image, image.width, image.height
+
+
+def _read_picture(filename: FileName) -> NDArray[np.uint8]:
+    """Read a picture file as BGRA. Raises MlxError."""
+    from PIL import Image as Pillow
+
+    try:
+        with Pillow.open(filename) as picture:
+            rgba = np.asarray(picture.convert("RGBA"))
+    except (OSError, ValueError, SyntaxError, Pillow.DecompressionBombError) as error:
+        raise MlxError(f"{filename} cannot be read as a picture: {error}") from error
+    return np.ascontiguousarray(rgba[..., [2, 1, 0, 3]])
+
+
+def _read_xpm_file(filename: FileName) -> NDArray[np.uint8]:
+    """Read an XPM file as BGRA. Raises MlxError."""
+    from minirt.mlx.xpm import read_xpm, strings_of
+
+    try:
+        return read_xpm(strings_of(Path(filename).read_text(encoding="latin-1")))
+    except (OSError, ValueError, MlxError) as error:
+        raise MlxError(f"{filename} cannot be read as an XPM picture: {error}") from error
