@@ -135,11 +135,11 @@ class Image:
 
     def encode_by_own(self, name: str) -> bytes:
         """Return the bytes of a format that Pillow lacks."""
-        from minirt.formats import openexr, pfm, radiance, tiff
+        from minirt.formats import floats, tiff
 
         if name == "TIFF":
             return tiff.encode(self.deep)
-        encode = {"EXR": openexr.encode, "HDR": radiance.encode, "PFM": pfm.encode}[name]
+        encode = {"EXR": floats.encode_exr, "HDR": floats.encode_hdr, "PFM": floats.encode_pfm}[name]
         return encode(self.light(f"{FLOAT} bits"))
 
     def save(

@@ -10,9 +10,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
-from minirt.cluster import bigtiff, journal
+from minirt.cluster import journal
 from minirt.cluster.task import Made, Region
 from minirt.errors import RenderError
+from minirt.formats import tiff
 from minirt.helpers import file_io
 
 FLAGS = os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
@@ -25,7 +26,7 @@ class Output:
         """`key` tells the picture from others, `bands` are its parts."""
         self.target = target = Path(os.path.realpath(target))  # a link stays
         self.key = key
-        self.strips = [-(-rows // bigtiff.ROWS) for *_, rows in bands]  # of each band
+        self.strips = [-(-rows // tiff.ROWS) for *_, rows in bands]  # of each band
         self.data_path, self.journal_path = (target.with_name(target.name + end) for end in (".part", ".journal"))
 
     def __enter__(self) -> Output:
@@ -33,7 +34,7 @@ class Output:
         try:
             lock(self.data, self.target)
             self.bands = journal.read(self.journal_path, self.key, self.data, self.strips)
-            self.end = max((each.end for each in self.bands.values()), default=bigtiff.HEADER.size)
+            self.end = max((each.end for each in self.bands.values()), default=tiff.BIG.header.size)
             self.data.truncate(self.end)
             lines = [journal.title(self.key) + "\n", *map(journal.line, self.bands.values())]
             file_io.write(self.journal_path, "".join(lines).encode())
@@ -67,11 +68,11 @@ class Output:
         for _, each in sorted(self.bands.items()):
             places += [each.start + sum(each.sizes[:number]) for number in range(len(each.sizes))]
             sizes += each.sizes
-        start = self.end + self.end % 2
+        start = tiff.even(self.end)
         self.data.seek(start)
-        self.data.write(bigtiff.directory(width, height, bits, places, sizes, start))
+        self.data.write(tiff.directory(width, height, bits, places, sizes, start))
         self.data.seek(0)
-        self.data.write(bigtiff.header(start))
+        self.data.write(tiff.header(start))
         self.data.flush()
         os.fsync(self.data.fileno())
         with suppress(FileNotFoundError):

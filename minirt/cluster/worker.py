@@ -7,9 +7,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import minirt
-from minirt.cluster import bigtiff, files, parcel
+from minirt.cluster import files, parcel
 from minirt.cluster.task import Answer, Made, Missing, Task, version
 from minirt.errors import RenderError
+from minirt.formats import tiff
 from minirt.helpers.system import ForkSafeLock
 from minirt.scene import Scene
 
@@ -34,12 +35,12 @@ def levels_and_light(image: Image) -> Made:
 
 def strips_of_8_bits(image: Image) -> Made:
     """Return a picture as strips of a TIFF file."""
-    return Made((), bigtiff.strips(image.array), image.reached)
+    return Made((), tiff.strips(image.array), image.reached)
 
 
 def strips_of_16_bits(image: Image) -> Made:
     """Return a picture as strips of a TIFF file, made of its light."""
-    return Made((), bigtiff.strips(image.deep), image.reached)
+    return Made((), tiff.strips(image.deep), image.reached)
 
 
 FORMS: dict[str, tuple[bool, Callable[[Image], Made]]] = {  # whether light is needed, and what makes the result

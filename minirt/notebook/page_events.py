@@ -1,12 +1,12 @@
-"""Events of the page, as calls of a window."""
+"""Events of the page, as calls of a window; keys by the names of browsers (https://www.w3.org/TR/uievents-key)."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, Final
 
-from minirt.mlx.events import Button, Event
+from minirt.mlx.events import Button, Event, Key, Modifier
 from minirt.mlx.window import Window
-from minirt.notebook.key_names import code_of, modifiers_of, text_of
 
 Message = dict[str, Any]
 BUTTONS = (Button.LEFT, Button.MIDDLE, Button.RIGHT, Button.BACK, Button.FORWARD)  # by their numbers in JavaScript
@@ -48,3 +48,70 @@ def press(window: Window, message: Message, now: float) -> None:
 def point(window: Window, message: Message) -> tuple[int, int]:
     """Return the pixel of a point, which the page gives as shares of width and height."""
     return int(message["x"] * window.width), int(message["y"] * window.height)
+
+
+KEYPAD: Final = 3  # the location of keys on the keypad
+NAMED: Final[dict[str, Key]] = {
+    "ArrowLeft": Key.LEFT,
+    "ArrowUp": Key.UP,
+    "ArrowRight": Key.RIGHT,
+    "ArrowDown": Key.DOWN,
+    "Enter": Key.RETURN,
+    "PageUp": Key.PAGE_UP,
+    "PageDown": Key.PAGE_DOWN,
+    **{
+        each.name.title(): each
+        for each in (Key.BACKSPACE, Key.TAB, Key.PAUSE, Key.ESCAPE, Key.HOME, Key.END, Key.INSERT, Key.DELETE)
+    },
+    **{f"F{number}": Key[f"F{number}"] for number in range(1, 13)},
+}
+MODIFIER_CODES: Final[dict[str, Key]] = {
+    "ShiftLeft": Key.SHIFT_L,
+    "ShiftRight": Key.SHIFT_R,
+    "ControlLeft": Key.CONTROL_L,
+    "ControlRight": Key.CONTROL_R,
+    "AltLeft": Key.ALT_L,
+    "AltRight": Key.ALT_R,
+}
+
+
+# A key that went down or up in the page: what it prints or its name (`key`), its place on an American keyboard
+# (`code`), its `location`, and the modifiers `shift`, `ctrl`, `alt` and `command`, the Command key of a Mac.
+KeyEvent = Mapping[str, Any]
+
+
+def code_of(event: KeyEvent) -> int | None:
+    """Return the code of the symbol that a key prints, lower case for letters; None for a key without a code.
+
+    A key that prints no Latin letter stands for the letter that American keyboards have in its place.
+    """
+    key: str = event["key"]
+    code: str = event["code"]
+    if code in MODIFIER_CODES:
+        return MODIFIER_CODES[code]
+    if key in NAMED:
+        named = NAMED[key]
+        keypad = "ENTER" if named is Key.RETURN else named.name
+        return getattr(Key, f"KEYPAD_{keypad}", named) if event["location"] == KEYPAD else named
+    if len(key) != 1:
+        return None
+    if not key.isascii() and code.startswith("Key") and len(code) == 4:
+        return ord(code[3].lower())
+    return ord(key.lower())
+
+
+def modifiers_of(event: KeyEvent) -> Modifier:
+    """Return the modifiers that are held. Command is the modifier of shortcuts, wherever the kernel runs."""
+    held = {"shift": Modifier.SHIFT, "ctrl": Modifier.CTRL, "alt": Modifier.ALT, "command": Modifier.ACCEL}
+    modifiers = Modifier.NONE
+    for name, modifier in held.items():
+        if event[name]:
+            modifiers |= modifier
+    return modifiers
+
+
+def text_of(event: KeyEvent) -> str:
+    """Return the text that a key types, an empty string for none. AltGr, which types symbols, is Ctrl and Alt."""
+    is_shortcut = event["command"] or event["ctrl"] != event["alt"]
+    key: str = event["key"]
+    return key if len(key) == 1 and not is_shortcut else ""

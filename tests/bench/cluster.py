@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 import minirt
-from minirt.cluster import bigtiff
 from minirt.cluster.parcel import pack
+from minirt.formats import tiff
 from minirt.viewer.app.animation import turntable
 
 SIZE, SAMPLES = (1920, 1080), 16
@@ -53,7 +53,7 @@ def print_bands(scene: minirt.Scene, folder: Path) -> None:
         time.process_time,
         lambda: minirt.render(scene, *SIZE, linear=False, **how),
         lambda: minirt.render_to(folder / "a.tif", scene, *SIZE, **how),
-        lambda: bigtiff.strips(image.array),
+        lambda: tiff.strips(image.array),
     )
     print(
         f"{SIZE[0]}x{SIZE[1]}, {SAMPLES} samples: {whole:.2f} s of one core, {whole_rays() / whole / 1e6:.1f} M rays/s"

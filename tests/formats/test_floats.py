@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from minirt.errors import RenderError
-from minirt.formats import openexr, radiance
+from minirt.formats import floats
 from minirt.image import Image
 from minirt.materials.radiance import read_header, read_pixels
 from tests.formats.pictures import SIZES, light, picture
@@ -56,7 +56,7 @@ def test_radiance_keeps_a_256th_of_the_largest_channel(
     tmp_path: Path, read: Callable[[Path], np.ndarray], size: tuple[int, int]
 ) -> None:
     made = light(*size)
-    (tmp_path / "a.hdr").write_bytes(radiance.encode(made))
+    (tmp_path / "a.hdr").write_bytes(floats.encode_hdr(made))
     error = np.abs(read(tmp_path / "a.hdr") - made)
     assert (error <= made.max(axis=-1, keepdims=True) / 256).all()
     assert not error[-1, 0].any()  # black
@@ -64,14 +64,14 @@ def test_radiance_keeps_a_256th_of_the_largest_channel(
 
 def test_radiance_holds_what_its_exponent_can() -> None:
     made = np.array([[[1e-45, 0, 0], [2.0**-126, 0, 0], [1e39, 1, 1], [np.inf, 0, 0]]])
-    data = radiance.encode(made)
+    data = floats.encode_hdr(made)
     found = read_pixels(data, read_header(data))[0, :, 0]
     assert found[0] == 0
     assert found[1:] == pytest.approx([2.0**-126, 255 * 2.0**119, 255 * 2.0**119], rel=1 / 256)
 
 
 def test_runs_make_even_areas_small() -> None:
-    assert len(radiance.encode(np.full((100, 1000, 3), 0.3))) < 100 * 100
+    assert len(floats.encode_hdr(np.full((100, 1000, 3), 0.3))) < 100 * 100
 
 
 def test_noise_that_zip_cannot_compress_is_stored(tmp_path: Path) -> None:
@@ -88,7 +88,7 @@ def test_a_wrong_predictor_is_found(tmp_path: Path) -> None:
         packed = zlib.compress(planes.tobytes())
         return np.array([top, len(packed)], "<i4").tobytes() + packed
 
-    with patch.object(openexr, "block", plain):
+    with patch.object(floats, "exr_block", plain):
         picture(33, 40).save(tmp_path / "a.exr")
     assert not np.array_equal(read_exr(tmp_path / "a.exr"), light(33, 40).astype(np.float32))
 

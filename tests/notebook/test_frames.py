@@ -7,7 +7,7 @@ import io
 import numpy as np
 from PIL import Image
 
-from minirt.notebook.frames import AHEAD, COARSE, FINE, QUIET, FrameStream, encode
+from minirt.notebook.page_back_end import AHEAD, COARSE, FINE, QUIET, FrameStream, encode
 
 GRADIENT = np.dstack([np.add.outer(np.arange(64), np.arange(96) + shift).astype(np.uint8) for shift in (0, 20, 60, 0)])
 

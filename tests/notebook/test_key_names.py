@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from minirt.mlx.events import Key, Modifier
-from minirt.notebook.key_names import code_of, modifiers_of, text_of
+from minirt.notebook.page_events import code_of, modifiers_of, text_of
 
 
 def event(key: str, code: str = "", location: int = 0, **held: bool) -> dict[str, Any]:

@@ -10,24 +10,24 @@ import pytest
 import tifffile
 from PIL import Image as pillow  # noqa: N813
 
-from minirt.cluster import bigtiff
+from minirt.formats import tiff
 
 
 def write(path: Path, levels: np.ndarray, order: list[int], first: int = 0) -> None:
     """Write a picture with its strips in some order, the first of them at a byte far behind the header."""
-    parts = bigtiff.strips(levels)
+    parts = tiff.strips(levels)
     places = [0] * len(parts)
     with path.open("wb") as file:
-        file.seek(max(first, bigtiff.HEADER.size))
+        file.seek(max(first, tiff.BIG.header.size))
         for number in order:
             places[number] = file.tell()
             file.write(parts[number])
         start = file.tell()
         height, width, _ = levels.shape
         sizes = [len(each) for each in parts]
-        file.write(bigtiff.directory(width, height, 8 * levels.itemsize, places, sizes, start))
+        file.write(tiff.directory(width, height, 8 * levels.itemsize, places, sizes, start))
         file.seek(0)
-        file.write(bigtiff.header(start))
+        file.write(tiff.header(start))
 
 
 @pytest.mark.parametrize("number", [np.uint8, np.uint16])
@@ -35,7 +35,7 @@ def write(path: Path, levels: np.ndarray, order: list[int], first: int = 0) -> N
 def test_other_libraries_read_the_levels(tmp_path: Path, number: type, width: int, height: int) -> None:
     levels = np.random.Generator(np.random.PCG64(7)).integers(np.iinfo(number).max, size=(height, width, 3))
     levels = levels.astype(number)
-    count = len(bigtiff.strips(levels))
+    count = len(tiff.strips(levels))
     write(tmp_path / "a.tif", levels, list(range(count))[::-1])
     with tifffile.TiffFile(tmp_path / "a.tif") as file:
         assert file.is_bigtiff

@@ -1,0 +1,136 @@
+"""Writers of light: OpenEXR, Radiance and portable float maps.
+
+OpenEXR pictures (`.exr`) have red, green and blue as float32, scanlines compressed by ZIP, 16 at a time, after the file
+layout of openexr.com (version 2, one part): a header of attributes, a table of offsets, blocks of lines.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+
+import numpy as np
+
+MAGIC, VERSION = 20000630, 2
+ZIP, BLOCK_LINES = 3, 16  # number of the compression, and scanlines of a block
+FLOAT32 = 2  # type of a channel: float32
+LEVEL = 4  # of compression: as OpenEXR itself
+
+
+def encode_exr(light: np.ndarray) -> bytes:
+    """Return the file of light, (h, w, 3) in the order red, green, blue."""
+    height, width = light.shape[:2]
+    blocks = [exr_block(top, planes_of(light[top : top + BLOCK_LINES])) for top in range(0, height, BLOCK_LINES)]
+    header = exr_header(width, height)
+    first = len(header) + 8 * len(blocks)
+    offsets = first + np.cumsum([0, *map(len, blocks)])[:-1]
+    return b"".join([header, offsets.astype("<u8").tobytes(), *blocks])
+
+
+def exr_header(width: int, height: int) -> bytes:
+    """Return the header, from the magic number to the end of the attributes."""
+    channels = b"".join(name + b"\0" + struct.pack("<iB3xii", FLOAT32, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    attributes = (
+        ("channels", "chlist", channels),
+        ("compression", "compression", bytes([ZIP])),
+        ("dataWindow", "box2i", window),
+        ("displayWindow", "box2i", window),
+        ("lineOrder", "lineOrder", b"\0"),  # the upper line first
+        ("pixelAspectRatio", "float", struct.pack("<f", 1)),
+        ("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
+        ("screenWindowWidth", "float", struct.pack("<f", 1)),
+    )
+    parts = [
+        name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(v)) + v for name, kind, v in attributes
+    ]
+    return struct.pack("<2i", MAGIC, VERSION) + b"".join(parts) + b"\0"
+
+
+def planes_of(light: np.ndarray) -> np.ndarray:
+    """Return scanlines (n, w, 3) as all of blue, all of green, all of red of each (n, 3, w), float32."""
+    return light[..., ::-1].astype("<f4").transpose(0, 2, 1)
+
+
+def exr_block(top: int, planes: np.ndarray) -> bytes:
+    """Return a block of scanlines, the first of which is line `top`.
+
+    Bytes are sorted into those of even and odd places, then each is replaced by its difference to the one before.
+    """
+    raw = planes.tobytes()
+    data = np.frombuffer(raw, np.uint8)
+    data = np.concatenate([data[0::2], data[1::2]])
+    data[1:] -= data[:-1] - np.uint8(128)  # numpy computes the right side first
+    packed = zlib.compress(data.tobytes(), LEVEL)
+    if len(packed) >= len(raw):  # a reader takes a block of full length as it is
+        packed = raw
+    return struct.pack("<2i", top, len(packed)) + packed
+
+
+# Radiance (`.hdr`): red, green and blue with a common exponent, 8 bits each, runs compressed. After Ward, Real Pixels
+# (Graphics Gems II, 1991). A colour's largest channel keeps an error of at most 1/256 of itself.
+
+
+SHORTEST, LONGEST = 8, 2**15 - 1  # pixels of a scanline that can have runs
+SCANLINES = 16  # scanlines that are converted at once
+MIN_RUN, MAX_RUN, MAX_LITERAL = 4, 127, 128
+BRIGHTEST = 2.0**127 * (255 / 256)
+
+
+def encode_hdr(light: np.ndarray) -> bytes:
+    """Return the file of light, (h, w, 3)."""
+    height, width = light.shape[:2]
+    header = f"#?RADIANCE\nSOFTWARE=miniRT\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode()
+    pixels = (line for top in range(0, height, SCANLINES) for line in rgbe(light[top : top + SCANLINES]))
+    if not SHORTEST <= width <= LONGEST:
+        return header + b"".join(line.tobytes() for line in pixels)
+    start = bytes([2, 2, width >> 8, width & 255])
+    lines = (start + b"".join(runs(line[:, channel]) for channel in range(4)) for line in pixels)
+    return header + b"".join(lines)
+
+
+def rgbe(light: np.ndarray) -> np.ndarray:
+    """Return light as mantissas of red, green and blue, in 256ths of 2^(exponent - 128), and the exponent."""
+    light = np.clip(light, 0.0, BRIGHTEST)
+    _, exponent = np.frexp(light.max(axis=-1))
+    mantissa = np.rint(np.ldexp(light, 8 - exponent[..., None]))
+    pixels = np.empty((*light.shape[:2], 4), np.uint8)
+    pixels[..., :3] = np.minimum(mantissa, 255)
+    pixels[..., 3] = exponent + 128
+    pixels[(exponent < -127) | (light.max(axis=-1) == 0)] = 0
+    return pixels
+
+
+def runs(line: np.ndarray) -> bytes:
+    """Return the bytes of a channel of a scanline: a count above 128 repeats a byte, another copies some bytes."""
+    edges = np.flatnonzero(np.diff(line)) + 1
+    starts, ends = np.append(0, edges), np.append(edges, len(line))
+    long = ends - starts >= MIN_RUN
+    out, done, data = bytearray(), 0, line.tobytes()
+    for start, end in zip(starts[long].tolist(), ends[long].tolist(), strict=True):
+        copy(out, data[done:start])
+        for at in range(start, end, MAX_RUN):
+            out += bytes([128 + min(MAX_RUN, end - at), data[start]])
+        done = end
+    copy(out, data[done:])
+    return bytes(out)
+
+
+def copy(out: bytearray, data: bytes) -> None:
+    """Append bytes as they are, with the counts that announce them."""
+    for at in range(0, len(data), MAX_LITERAL):
+        part = data[at : at + MAX_LITERAL]
+        out.append(len(part))
+        out += part
+
+
+# Portable float maps (`.pfm`): float32, the lower line first (Debevec).
+
+
+LITTLE_ENDIAN = "-1.0"  # the sign tells the order of bytes
+
+
+def encode_pfm(light: np.ndarray) -> bytes:
+    """Return the file of light, (h, w, 3)."""
+    height, width = light.shape[:2]
+    return f"PF\n{width} {height}\n{LITTLE_ENDIAN}\n".encode() + light[::-1].astype("<f4").tobytes()
