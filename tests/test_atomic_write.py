@@ -13,7 +13,7 @@ from typing import BinaryIO
 import pytest
 
 from minirt.helpers import file_io
-from minirt.viewer.files.scene_files import create_numbered
+from minirt.viewer.files import create_numbered
 from tests.processes import run
 
 

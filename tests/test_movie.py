@@ -11,10 +11,9 @@ from PIL import Image as pillow  # noqa: N813
 import minirt
 from minirt.errors import RenderError
 from minirt.movie import save_movie
-from minirt.viewer.app.animation import FPS as ANIMATION_FPS
-from minirt.viewer.app.animation import TICKS, animation, turntable
-from minirt.viewer.editing.measure import scene_centre
-from minirt.viewer.editing.projection import projection_of
+from minirt.viewer.app.replay import FPS as ANIMATION_FPS
+from minirt.viewer.app.replay import TICKS, animation, turntable
+from minirt.viewer.editing.projection import projection_of, scene_centre
 from tests.viewer.fake import FakeRenderer, scene
 
 COLOURS = [(250, 0, 0), (0, 250, 0), (0, 0, 250)]

@@ -38,7 +38,7 @@ def write_turntable(scene: Scene, options: argparse.Namespace, make: Callable[..
     import minirt
     from minirt.cli.arguments import Region
     from minirt.cli.work import kept_work
-    from minirt.viewer.app.animation import turntable
+    from minirt.viewer.app.replay import turntable
 
     size = options.size or minirt.size_of(scene)
     check_region(options, options.output, *size)

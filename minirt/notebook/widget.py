@@ -117,7 +117,7 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
             session.refinement.painter.close(STOP_TIMEOUT)
 
     def _show(self, scene: Scene) -> None:
-        from minirt.viewer.app.file_sync import state_after_reading
+        from minirt.viewer.editing.state import state_after_reading
 
         self._session.release_button()
         self._session.show(state_after_reading(self._session.state, scene, None))

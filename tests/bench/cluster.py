@@ -18,7 +18,7 @@ from typing import Any
 import minirt
 from minirt.cluster.parcel import pack
 from minirt.formats import tiff
-from minirt.viewer.app.animation import turntable
+from minirt.viewer.app.replay import turntable
 
 SIZE, SAMPLES = (1920, 1080), 16
 TINY, FRAMES = (16, 16), 200

@@ -31,7 +31,7 @@ import sys
 from pathlib import Path
 from minirt.errors import SceneError
 from minirt.scene import load
-from minirt.viewer.files.watched_file import signature
+from minirt.viewer.files import signature
 from minirt.viewer.recovery.journal import Journal, Version
 path, book = Path("ball.rt"), Journal()
 saved = load(path).scene

@@ -16,7 +16,7 @@ import tifffile
 import minirt
 from minirt.cli import main
 from minirt.cluster.worker import share_of_cores
-from minirt.viewer.app.animation import turntable
+from minirt.viewer.app.replay import turntable
 from tests.cluster.scenes import BALL, with_files
 
 distributed = pytest.importorskip("distributed")

@@ -19,7 +19,7 @@ from minirt.cluster import frames, workers
 from minirt.cluster.task import Answer, Task
 from minirt.cluster.worker import carry_out
 from minirt.errors import RenderError
-from minirt.viewer.app.animation import turntable
+from minirt.viewer.app.replay import turntable
 from tests.cluster.scenes import BALL, with_files
 from tests.waiting import HANG_LIMIT
 

@@ -13,8 +13,7 @@ from pathlib import Path
 from minirt.errors import ReplayError
 from minirt.mlx.memory import Memory
 from minirt.viewer.app.replay import play
-from minirt.viewer.input.bindings import BINDINGS
-from minirt.viewer.input.chords import KEYS, MOUSE
+from minirt.viewer.bindings import BINDINGS, KEYS, MOUSE
 from minirt.viewer.input.recording import add_recording
 from tests.fuzz.fuzzer import Fuzzer
 from tests.fuzz.mutations import mutated

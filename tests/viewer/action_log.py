@@ -12,7 +12,7 @@ from pathlib import Path
 from minirt.scene import load
 from minirt.viewer.app.desktop import run
 from minirt.viewer.app.events import EventDispatcher
-from minirt.viewer.input.bindings import Binding
+from minirt.viewer.bindings import Binding
 from tests.viewer.fake import FakeRenderer
 
 

@@ -19,8 +19,7 @@ from typing import NamedTuple
 from PIL import Image
 
 from minirt.scene import load
-from minirt.viewer.input.bindings import BINDINGS
-from minirt.viewer.input.chords import MOUSE
+from minirt.viewer.bindings import BINDINGS, MOUSE
 from tests.usage import Record, Usage
 from tests.viewer.idle_waits import until_at_rest, until_compiled, until_events_are_done
 from tests.viewer.scenes import WITH_CYLINDER

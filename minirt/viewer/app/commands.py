@@ -1,17 +1,33 @@
-"""Commands: key bindings that do not edit the scene, but deal with files, pictures and the window."""
+"""Commands: key bindings that do not edit the scene, but deal with files, pictures and the window.
+
+Files are saved, read again and followed without loss of work when other programs write them, too.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
 
+from minirt.errors import SceneError
 from minirt.rendering.queries.pick import surface_point
-from minirt.scene import describe
-from minirt.viewer.app import file_sync, recovery
-from minirt.viewer.app.file_sync import save_scene
+from minirt.scene import describe, load, save
+from minirt.scene.files import check_name
+from minirt.viewer.app import recovery
 from minirt.viewer.app.session import Session
+from minirt.viewer.bindings import platform_spelling
 from minirt.viewer.display.overlay import HudLevel
-from minirt.viewer.editing import framing
-from minirt.viewer.files.scene_files import save_copy
+from minirt.viewer.editing import motion
+from minirt.viewer.editing.state import initial_state, state_after_reading
+from minirt.viewer.files import (
+    WatchedFile,
+    back_up,
+    contents_differ,
+    error_summary,
+    save_copy,
+    save_recovery,
+    signature,
+)
 
 TEXT_SCALES = (0.5, 4.0)  # least and largest
 TEXT_STEP = 2**0.25  # factor of a key press
@@ -27,7 +43,7 @@ def reload(session: Session) -> None:
     if session.found_changes:
         recovery.take(session)
     else:
-        file_sync.reload(session)
+        read_again(session)
 
 
 def screenshot(session: Session) -> None:
@@ -49,7 +65,7 @@ def focus(session: Session) -> None:
     camera = state.scene.camera
     shape = session.pick(state.scene, window.width, window.height, *at)
     point = surface_point(shape, camera, window.width, window.height, *at) if shape else None
-    session.state = framing.focus(state, point, session.now)
+    session.state = motion.focus(state, point, session.now)
 
 
 def toggle_hud(session: Session) -> None:
@@ -93,6 +109,86 @@ def toggle_full_screen(session: Session) -> None:
 def quit(session: Session) -> None:
     """End the session."""
     session.quit()
+
+
+DELETED = "{} was deleted by another program: {} writes it again"
+UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and keeps the other as a copy"
+
+
+def save_scene(session: Session) -> None:
+    """Write the scene to its file; if another program has changed the file, copy it first. SceneError."""
+    check_name(session.path)
+    copy = back_up(session.path) if session.file.changed else None
+    linked = has_other_links(session.path)
+    save(session.state.scene, session.path)
+    session.file.accept(signature(session.path))
+    session.saved = session.state.scene
+    session.screen.banner = ""
+    session.found_changes = None
+    kept = f"; what another program had written is in {copy}" if copy else ""
+    cut = "; its other hard links keep the old scene" if linked else ""
+    session.state = session.state.with_message(f"saved: {session.path}{kept}{cut}")
+
+
+def has_other_links(path: Path) -> bool:
+    """Whether a file has more than one name, of which saving replaces one."""
+    with suppress(OSError):
+        return path.stat().st_nlink > 1
+    return False
+
+
+def read_again(session: Session) -> None:
+    """Read the file again; undo restores the previous scene. SceneError."""
+    read_file(session)
+    session.state = session.state.with_message(f"read again: {session.path}")
+
+
+def follow_change(session: Session) -> None:
+    """Show the file after another program has written it, unless the session has unsaved changes.
+
+    If the file has errors or is gone, the last picture stays and a banner says so.
+    """
+    if session.file.missing:
+        session.screen.banner = DELETED.format(session.path.name, platform_spelling("Ctrl+S"))
+        return
+    if contents_differ(session.state.scene, session.saved):
+        session.screen.banner = UNSAVED.format(
+            session.path.name, platform_spelling("Ctrl+R"), platform_spelling("Ctrl+S")
+        )
+        return
+    try:
+        read_file(session, keep_camera=True)
+    except SceneError as error:
+        session.screen.banner = error_summary(error)
+
+
+def read_file(session: Session, keep_camera: bool = False) -> None:
+    """Show the scene in the file. `keep_camera`: keep the current camera unless the file changed it. SceneError."""
+    seen = signature(session.path)
+    scene = load(session.path, session.lenient, session.state.scene.camera.left_handed).scene
+    session.file.accept(seen)
+    session.release_button()
+    session.state = state_after_reading(session.state, scene, session.saved if keep_camera else None)
+    session.saved = scene
+    session.screen.banner = ""
+    session.has_unused_memory = True
+
+
+def open_another(session: Session, path: Path) -> None:
+    """Show another file; write unsaved changes to a recovery file beside the old one. SceneError."""
+    scene = load(path, session.lenient, session.state.scene.camera.left_handed).scene
+    kept = ""
+    if contents_differ(session.state.scene, session.saved):
+        kept = f"; the changes that were not saved are in {save_recovery(session.state.scene, session.path)}"
+    session.file.close()
+    session.release_button()
+    session.path, session.file = path, WatchedFile(path)
+    session.watch_file()
+    session.mlx.mlx_set_window_title(session.window, f"miniRT - {path.name}")
+    session.saved = scene
+    session.screen.banner = ""
+    session.has_unused_memory = True
+    session.state = initial_state(scene).with_message(f"opened: {path}{kept}")
 
 
 COMMANDS: dict[str, Callable[[Session], None]] = {

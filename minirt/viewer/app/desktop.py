@@ -18,10 +18,10 @@ from minirt.viewer.app import recovery
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.app.signals import ended_by_signals
-from minirt.viewer.display import unused_memory
 from minirt.viewer.display.application_icon import application_icons
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Renderer
+from minirt.viewer.display.screen import use_one_heap
 
 if TYPE_CHECKING:
     from minirt.mlx.display import Display
@@ -58,7 +58,7 @@ def run(
 
     If the renderer cannot be stopped (inside the compiler), the process ends here at once.
     """
-    unused_memory.use_one_heap()
+    use_one_heap()
     renderer = renderer or minirt.renderer(threads)
     session = open_session(scene, Path(path), size, renderer, mlx or Mlx(), keys, lenient, samples, watch, saved)
     session.screen.text_scale = text_scale

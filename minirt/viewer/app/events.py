@@ -5,21 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 from minirt.mlx import Event
-from minirt.mlx.events import MODIFIER_KEYS
-from minirt.viewer.app import file_sync, recovery
-from minirt.viewer.app.choosing import ADDING, LISTS, Choosing
-from minirt.viewer.app.commands import COMMANDS
-from minirt.viewer.app.held_edits import HeldEdits
+from minirt.mlx.keys import MODIFIER_KEYS
+from minirt.viewer.app import recovery
+from minirt.viewer.app.commands import COMMANDS, follow_change, open_another
 from minirt.viewer.app.mouse import Mouse
+from minirt.viewer.app.panels import ADDING, LISTS, TYPE, Choosing, Typing
 from minirt.viewer.app.session import Session
-from minirt.viewer.app.typing import TYPE, Typing
+from minirt.viewer.bindings import SIGNIFICANT, Binding
 from minirt.viewer.editing import structure
 from minirt.viewer.editing.editor import EDITS, apply
-from minirt.viewer.input.bindings import Binding
-from minirt.viewer.input.key_repeat import Advance
-from minirt.viewer.input.keymap import SIGNIFICANT
+from minirt.viewer.editing.state import State
+from minirt.viewer.key_repeat import Advance
 
 REPEATED = ("grow", "shrink")  # actions of characters that go on while their key is held
 
@@ -135,7 +134,7 @@ class EventDispatcher:
         session = self.session
         if session.file_changed.is_set():
             session.file_changed.clear()
-            file_sync.follow_change(session)
+            follow_change(session)
         for error in session.refinement.collect():
             session.show_error(error)
         session.attempt(Session.take_screenshot)
@@ -152,7 +151,7 @@ class EventDispatcher:
 
     def on_drop(self, file: str) -> None:
         """A file was dropped on the window."""
-        self.session.attempt(lambda session: file_sync.open_another(session, Path(file)))
+        self.session.attempt(lambda session: open_another(session, Path(file)))
         if self.session.path == Path(file):
             recovery.offer(self.session)
         self.session.show(self.session.state)
@@ -205,3 +204,38 @@ class EventDispatcher:
             session.mlx.mlx_loop_hook(session.display, self._tick_hook if ticks else None, None)
 
         return hook
+
+
+class FirstStep(NamedTuple):
+    """The first step of a held key, of which a part was taken."""
+
+    key: int
+    size: float  # of a step when the key was pressed
+    before: State  # the state before the key was pressed
+    after: State  # the state after the part
+
+
+class HeldEdits:
+    """Applies the progress of held keys to the state of the editor.
+
+    The first step comes in parts, so that the picture moves at once and never stands still. Each part replaces the part
+    before: a tap leaves what one whole step leaves, to the last digit.
+    """
+
+    def __init__(self) -> None:
+        self._first: FirstStep | None = None  # of the last pressed key
+
+    def apply(self, state: State, advance: Advance, size: float, now: float) -> State:
+        """Return the state after the progress of a key; `size` is that of a step now."""
+        if advance.after == advance.before:
+            return state
+        done, first = advance.before, self._first
+        if first and first.key == advance.key and first.after is state:
+            done, state, size = 0.0, first.before, first.size
+        before = state
+        if done < 1:
+            state = apply(before, advance.action, (min(advance.after, 1.0) - done) * size, now)
+        if advance.after > 1:
+            state = apply(state, advance.action, (advance.after - max(done, 1.0)) * size, now)
+        self._first = FirstStep(advance.key, size, before, state) if done == 0.0 and advance.after < 1 else None
+        return state

@@ -10,17 +10,13 @@ from minirt.mlx import Button, Cursor
 from minirt.rendering.queries.pick import surface_point
 from minirt.scene import Camera
 from minirt.shapes import Shape
-from minirt.viewer.app.pressed_button import PressedButton
-from minirt.viewer.app.session import Session
-from minirt.viewer.display.icons import icon_at
+from minirt.viewer.app.session import PressedButton, Session
+from minirt.viewer.bindings import Binding, Drag
+from minirt.viewer.display.marks import icon_at
 from minirt.viewer.display.overlay import HudLevel
-from minirt.viewer.editing import dragging, selection
-from minirt.viewer.editing.aiming import Aim, aim
-from minirt.viewer.editing.dragging import PIXEL_CENTRE
-from minirt.viewer.editing.projection import projection_of
-from minirt.viewer.editing.state import position_of
-from minirt.viewer.input.bindings import Binding
-from minirt.viewer.input.chords import Drag
+from minirt.viewer.editing.dragging import PIXEL_CENTRE, apply_drag, start_drag
+from minirt.viewer.editing.projection import Aim, aim, projection_of
+from minirt.viewer.editing.state import position_of, select_shape
 
 if TYPE_CHECKING:
     from minirt.fields import Triple
@@ -57,9 +53,7 @@ class Mouse:
             session.show_error(error)
             session.show(session.state)
             return
-        grip = dragging.start_drag(
-            session.state.end_merging(), session.window.width, session.window.height, x, y, point
-        )
+        grip = start_drag(session.state.end_merging(), session.window.width, session.window.height, x, y, point)
         session.pressed = PressedButton(button, x, y, drag, grip)
 
     def on_crossing(self, inside: bool) -> None:
@@ -76,7 +70,7 @@ class Mouse:
                 session.pressed = pressed._replace(dragging=True)
                 session.mlx.mlx_set_cursor(session.window, self.cursor(pressed))
                 session.state = session.state.end_merging()
-            session.show(dragging.apply_drag(session.state, pressed.drag.action, pressed.grip, x, y))
+            session.show(apply_drag(session.state, pressed.drag.action, pressed.grip, x, y))
 
     def cursor(self, pressed: PressedButton) -> Cursor:
         """Return the shape of the pointer during a drag; a drag on nothing turns the camera."""
@@ -113,7 +107,7 @@ class Mouse:
             return None if isinstance(element, Camera) else position_of(element)
         shape, point = self.surface_at(x, y)
         if selecting:
-            session.show(selection.select_shape(state, shape))
+            session.show(select_shape(state, shape))
         return point
 
     def surface_at(self, x: int, y: int) -> tuple[Shape | None, Triple | None]:

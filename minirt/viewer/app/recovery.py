@@ -6,10 +6,10 @@ from contextlib import suppress
 from pathlib import Path
 
 from minirt.scene import parse
-from minirt.viewer.app.file_sync import state_after_reading
 from minirt.viewer.app.session import Session
-from minirt.viewer.files.scene_files import contents_differ, save_recovery
-from minirt.viewer.input.chords import platform_spelling
+from minirt.viewer.bindings import platform_spelling
+from minirt.viewer.editing.state import state_after_reading
+from minirt.viewer.files import contents_differ, save_recovery
 from minirt.viewer.recovery.found_changes import find_changes
 from minirt.viewer.recovery.journal import Journal
 

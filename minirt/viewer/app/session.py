@@ -13,28 +13,38 @@ import threading
 from collections.abc import Callable
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from minirt.errors import MiniRTError, RenderError
 from minirt.image import Image
 from minirt.mlx import Cursor, Mlx, Modifier
 from minirt.scene import Scene
 from minirt.shapes import Shape
-from minirt.viewer.app.pressed_button import PressedButton
-from minirt.viewer.display import unused_memory
+from minirt.viewer.bindings import Binding, Keymap
 from minirt.viewer.display.painter import Outcome, Painter, Pixels
 from minirt.viewer.display.refinement import Refinement
-from minirt.viewer.display.screen import Screen
+from minirt.viewer.display.screen import Screen, give_back_memory
+from minirt.viewer.editing.dragging import DragStart
 from minirt.viewer.editing.state import State, initial_state
-from minirt.viewer.files.scene_files import error_summary, save_picture
-from minirt.viewer.files.watched_file import WatchedFile
-from minirt.viewer.input.key_repeat import KeyRepeat
-from minirt.viewer.input.keymap import Keymap
+from minirt.viewer.files import WatchedFile, error_summary, save_picture
+from minirt.viewer.key_repeat import KeyRepeat
 from minirt.viewer.recovery.journal import Journal, Version
 
 if TYPE_CHECKING:
     from minirt.mlx.display import Display
     from minirt.viewer.recovery.found_changes import FoundChanges
+
+
+class PressedButton(NamedTuple):
+    """A mouse button that is down on the picture."""
+
+    button: int
+    x: int  # pixel where it was pressed
+    y: int
+    drag: Binding  # its row in the table
+    grip: DragStart
+    dragging: bool = False  # whether the pointer has moved far enough since
+
 
 Pick = Callable[[Scene, int, int, int, int], Shape | None]  # (scene, width, height, x, y)
 
@@ -139,7 +149,7 @@ class Session:
         """Give the memory of earlier sizes and files back to the system as soon as a picture of the new is complete."""
         if self.has_unused_memory and self.refinement.complete:
             self.has_unused_memory = False
-            unused_memory.give_back()
+            give_back_memory()
 
     def judge_view(self) -> None:
         """Say so, and what to do, if the first picture of a scene that was read shows nothing of it."""

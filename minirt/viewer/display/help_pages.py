@@ -8,9 +8,9 @@ from itertools import zip_longest
 from typing import NamedTuple
 
 from minirt.mlx.text import draw_text, measure
+from minirt.viewer.bindings import FINE_NOTE, key_groups
 from minirt.viewer.display.overlay import MARGIN, MESSAGE_COLOUR, MIN_TEXT_SIZE, TEXT_COLOUR, wrap
 from minirt.viewer.display.painter import Pixels
-from minirt.viewer.input.bindings import FINE_NOTE, key_groups
 
 READABLE = 11, 0.7  # least text size, in pixels and as a part of the usual one, before there is another page
 INDENT = "  "  # of keys below their title

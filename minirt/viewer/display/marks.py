@@ -1,23 +1,24 @@
-"""Marks over the picture: outline of the selected shape, axis of its movement, icons of lights."""
+"""Marks over the picture: outline of the selected shape, axis of its movement, icons, an arrow to what is outside."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import hypot
+from typing import NamedTuple
 
 import numpy as np
 
-from minirt.element import Element
+from minirt.element import Element, fields_of
+from minirt.fields import Colour, Triple
 from minirt.mlx.text import draw_text, measure
 from minirt.scene import Camera, Scene
+from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
-from minirt.viewer.display.edge_arrow import arrow_direction, draw_arrow
-from minirt.viewer.display.icons import SIZE, Icon, elements_with_icon, place_icons
 from minirt.viewer.display.outline import PixelIndices, outline_pixels
 from minirt.viewer.display.painter import Pixels
-from minirt.viewer.editing.measure import extent
 from minirt.viewer.editing.motion import WORLD_AXES
-from minirt.viewer.editing.projection import Pixel, Projection, projection_of
-from minirt.viewer.editing.state import Frame, State
+from minirt.viewer.editing.projection import Pixel, Projection, dot, extent, projection_of, subtract
+from minirt.viewer.editing.state import Frame, State, can_edit, position_of
 
 GOLD, BLACK, WHITE = 0xFFD75F, 0x000000, 0xFFFFFF
 AXIS_COLOURS = {Frame.X: 0xFF5050, Frame.Y: 0x60E060, Frame.Z: 0x6090FF}
@@ -142,3 +143,86 @@ def fill_square(pixels: Pixels, icon: Icon, half: int, colour: int) -> None:
 def bgra(colour: int) -> tuple[int, int, int, int]:
     """Convert 0xRRGGBB to an opaque pixel: blue, green, red, alpha."""
     return colour & 0xFF, colour >> 8 & 0xFF, colour >> 16 & 0xFF, 255
+
+
+SIZE = 20  # pixels of a side, times the screen's scale
+MAX_ICONS = 200  # so that a scene of many lights is still drawn at once
+KINDS_WITH_ICON = tuple(kind for kind in ELEMENTS.values() if can_edit(kind) and not issubclass(kind, Shape))
+
+
+class Icon(NamedTuple):
+    """A square that stands for an element."""
+
+    owner: int  # the index of its element
+    x: int  # centre, in pixels
+    y: int
+    code: str
+    colour: int  # 0xRRGGBB
+
+
+def elements_with_icon(scene: Scene) -> list[int]:
+    """Return the indices of the elements that have an icon."""
+    return sorted({index for kind in KINDS_WITH_ICON for index in scene.indices_of(kind)})
+
+
+def place_icons(scene: Scene, indices: Iterable[int], view: Projection, scale: float) -> list[Icon]:
+    """Return the icons of the elements with these indices, as far as they lie within the picture."""
+    size = round(SIZE * scale)
+    corner = view.width - size
+    placed: list[Icon] = []
+    for index in indices:
+        element = scene.elements[index]
+        point = None if isinstance(element, Camera) else position_of(element)
+        at: Pixel | None = view.pixel(point) if point else (corner, size)
+        corner -= 0 if point else round(1.5 * size)
+        if at and 0 <= at[0] < view.width and 0 <= at[1] < view.height and len(placed) < MAX_ICONS:
+            placed.append(Icon(index, round(at[0]), round(at[1]), element.code, colour_of(element)))
+    return placed
+
+
+def icon_at(icons: list[Icon], x: int, y: int, scale: float) -> Icon | None:
+    """Return the icon under the pointer; if several overlap, the last, which is drawn on top."""
+    reach = SIZE * scale / 2
+    return next((each for each in reversed(icons) if max(abs(each.x - x), abs(each.y - y)) <= reach), None)
+
+
+def colour_of(element: Element) -> int:
+    """Return the element's own colour as 0xRRGGBB, white if it has none."""
+    colours = [getattr(element, field.name) for field in fields_of(type(element)) if isinstance(field, Colour)]
+    red, green, blue = map(int, next((each for each in colours if not isinstance(each, str)), (255, 255, 255)))
+    return red << 16 | green << 8 | blue
+
+
+LENGTH, BORDER, TOP = 18, 8, 36  # pixels: of the arrow, and of room for it at the edge and at the top; times the scale
+FILL, RIM = (0x5F, 0xD7, 0xFF, 255), (0, 0, 0, 255)  # BGRA: golden, with a black rim
+
+
+def arrow_direction(view: Projection, point: Triple, radius: float = 0.0) -> tuple[float, float] | None:
+    """Unit direction in the picture, right and down, towards a ball outside of it; None if it is inside."""
+    depth = view.depth(point)
+    offset = subtract(point, view.eye)
+    across, up = dot(offset, view.right) / hypot(*view.right), dot(offset, view.up) / hypot(*view.up)
+    at = view.pixel(point)
+    if at and depth > 0:
+        reach = view.width / 2 / hypot(*view.right) * radius / depth
+        if -reach <= at[0] < view.width + reach and -reach <= at[1] < view.height + reach:
+            return None
+    elif hypot(*offset) <= radius:
+        return None
+    length = hypot(across, up)
+    return (across / length, -up / length) if length else (0.0, 1.0)
+
+
+def draw_arrow(pixels: Pixels, direction: tuple[float, float], scale: float) -> None:
+    """Draw an arrow whose tip is where a line from the picture's middle in this direction meets its border."""
+    height, width = pixels.shape[:2]
+    border, top = min(BORDER * scale, width / 4, height / 8), min(TOP * scale, height / 4)
+    room = width / 2 - border, (height - border - top) / 2
+    reach = min(side / abs(part) for side, part in zip(room, direction, strict=True) if part)
+    tip = width / 2 + reach * direction[0], top + room[1] + reach * direction[1]
+    size = LENGTH * scale
+    y, x = np.ogrid[:height, :width]
+    along = (tip[0] - x - 0.5) * direction[0] + (tip[1] - y - 0.5) * direction[1]  # back from the tip
+    beside = np.abs((x + 0.5 - tip[0]) * direction[1] - (y + 0.5 - tip[1]) * direction[0])
+    pixels[(along >= -2 * scale) & (along <= size + 2 * scale) & (beside <= along / 2 + 3 * scale)] = RIM
+    pixels[(along >= 0) & (along <= size) & (beside <= along / 2)] = FILL

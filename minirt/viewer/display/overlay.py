@@ -1,16 +1,19 @@
-"""Text over the picture: heads-up display and messages."""
+"""Text over the picture: heads-up display with hints on keys, messages, and the panel of a typed value or a list."""
 
 from __future__ import annotations
 
+import re
 import textwrap
 from enum import IntEnum
+from typing import NamedTuple
 
 from minirt.element import fields_of
 from minirt.mlx.text import draw_text, measure
+from minirt.scene import Camera
 from minirt.scene.line_rewriting import field_text
-from minirt.viewer.display.hints import hints, short_numbers
 from minirt.viewer.display.painter import Outcome, Pixels
-from minirt.viewer.editing.state import State
+from minirt.viewer.editing.state import Frame, State
+from minirt.viewer.editing.values import Value
 
 TEXT_COLOUR, MESSAGE_COLOUR, BACKGROUND = 0xFFFFFF, 0xFFD75F, 0xA0000000  # BACKGROUND with its opacity
 MARGIN, PADDING = 10, 4  # pixels
@@ -130,3 +133,69 @@ def draw_lines(pixels: Pixels, y: int, text: str, colour: int, size: int) -> Non
     """Draw text at the left border; `y` is its top, or if negative the distance of its end from the bottom."""
     top = y if y >= 0 else pixels.shape[0] + y - measure(text, size)[1]
     draw_text(pixels, MARGIN, top, text, colour, size=size, background=BACKGROUND, padding=PADDING)
+
+
+LONG_NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?|-?\d+e[-+]?\d+")
+GAP = "    "  # between groups of words
+
+
+def hints(state: State, every: bool) -> str:
+    """Present meanings of keys, the most useful first: `+ - diameter 3.8`. `every`: also what is as usual."""
+    active = state.active
+    groups = [
+        f"{state.element.title}: + - {active.name} {value_text(state, active)}" if active else state.element.title
+    ]
+    if isinstance(state.element, Camera):
+        groups.append("wheel: nearer")
+    if every or state.frame is not Frame.VIEW:
+        groups.append(f"X: move {'in the ' if state.frame is Frame.VIEW else 'along the '}{state.frame.value}")
+    return GAP.join([*groups, "H: help"])
+
+
+def value_text(state: State, active: Value) -> str:
+    """The active value as the file spells it, numbers to six digits."""
+    text = field_text(active.field, state.element).partition(":")[2] or field_text(active.field, state.element)
+    parts = text.split(",")
+    if active.part is not None and active.part < len(parts):
+        text = parts[active.part]
+    return short_numbers(text)
+
+
+def short_numbers(text: str) -> str:
+    """Shorten numbers in a text to six digits."""
+    return LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", text)
+
+
+ROW_COLOUR = 0xC0C0C0  # of the rows that are not chosen
+PANEL_BACKGROUND = 0xC0000000  # with its opacity
+TOP, BOTTOM = 2, 2  # lines above and below the panel, which belong to the information and to messages
+MARK = "> "  # before the chosen row
+
+
+class Panel(NamedTuple):
+    """A title with rows below, of which one is chosen."""
+
+    title: str
+    rows: tuple[str, ...] = ()
+    chosen: int = 0
+
+
+def draw_panel(pixels: Pixels, panel: Panel, size: int) -> None:
+    """Draw a panel in text of a size, above the messages; of a long list the rows around the chosen one."""
+    line = measure(" ", size)[1]
+    top = MARGIN + TOP * line
+    draw_panel_line(pixels, MARGIN, top, panel.title, MESSAGE_COLOUR, size)
+    count = max(1, (pixels.shape[0] - MARGIN - 2 * PADDING - top) // line - 1 - BOTTOM)
+    first = min(max(panel.chosen - count // 2, 0), max(len(panel.rows) - count, 0))
+    rows = panel.rows[first : first + count]
+    if rows:
+        top, left = top + line + 2 * PADDING, MARGIN + measure(MARK, size)[0]
+        draw_panel_line(pixels, left, top, "\n".join(rows), ROW_COLOUR, size)
+        chosen = panel.chosen - first
+        draw_text(pixels, MARGIN, top + chosen * line, MARK, MESSAGE_COLOUR, size=size)
+        draw_text(pixels, left, top + chosen * line, rows[chosen], MESSAGE_COLOUR, size=size)
+
+
+def draw_panel_line(pixels: Pixels, x: int, y: int, text: str, colour: int, size: int) -> None:
+    """Draw text on a dark ground."""
+    draw_text(pixels, x, y, text, colour, size=size, background=PANEL_BACKGROUND, padding=PADDING)

@@ -1,12 +1,13 @@
-"""Progressive refinement: request coarse pictures while something moves, then finer ones until the final picture."""
+"""Progressive refinement: pictures as coarse as a steady frame rate needs while something moves, then finer ones."""
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import replace
+from statistics import median_low
 
 from minirt.mlx import Window
 from minirt.scene import Scene
-from minirt.viewer.display.adaptive_resolution import AdaptiveResolution
 from minirt.viewer.display.painter import Job, Outcome, Painter
 
 
@@ -71,3 +72,92 @@ class Refinement:
     def _request(self, job: Job) -> None:
         self._requested = job
         self.painter.request(job)
+
+
+FRAME_TIME = 0.016  # seconds from a key to its picture on the screen while something moves
+DIVISORS = (1, 2, 3, 4, 6, 8)  # of width and height
+FINER_SHARE = 0.8  # of the time: a finer picture must fit into it before it replaces a coarser one
+TRIAL_EXCESS = 1.5  # times the time: a finer picture that is estimated to take at most this is tried all the same ...
+TRIAL_INTERVAL = 30  # ... after so many pictures in a row
+
+
+class AdaptiveResolution:
+    """Choose the resolution from the measured time of rendering and of displaying pictures.
+
+    A picture that is twice as coarse costs a quarter, plus a constant cost per picture. So the cost of coarse pictures
+    overestimates that of finer ones; a finer one is tried now and then, ever less often until nothing moves. And the
+    cost of a still picture underestimates that of the coarse one which follows it, whose rays are less alike, too: how
+    far is learned from the last movements.
+    """
+
+    def __init__(self) -> None:
+        # The median of the last times counts: a single slow picture changes nothing.
+        self._costs: deque[float] = deque(maxlen=3)  # seconds per pixel
+        self._display_times: deque[float] = deque(maxlen=3)  # seconds per picture
+        self._excesses: deque[float] = deque(maxlen=3)  # cost of the first coarse picture by that of the still one
+        self._measured = 0  # the divisor that had these costs; 0 while nothing is known
+        self._chosen = DIVISORS[-1]
+        self._candidates = 0  # pictures in a row after which a finer one seemed possible
+        self._trial_interval = TRIAL_INTERVAL
+
+    def record(self, outcome: Outcome) -> None:
+        """Record the time of a picture that was finished, or was cancelled and would have taken longer."""
+        job, cost = outcome.job, outcome.seconds / outcome.job.pixels
+        if job.samples > 1:
+            return
+        if outcome.pixels is None:
+            if job.divisor == self._measured and cost > median_low(self._costs):
+                self._costs.append(cost)
+            return
+        if job.divisor != self._measured:
+            if self._measured == 1:
+                self._excesses.append(max(1.0, cost / median_low(self._costs)))
+            self._costs.clear()
+            self._measured = job.divisor
+        self._costs.append(cost)
+        if not job.urgent:
+            self._chosen, self._candidates, self._trial_interval = job.divisor, 0, TRIAL_INTERVAL
+
+    @property
+    def rate(self) -> float:
+        """Primary rays per second, 0 while nothing is known."""
+        cost = median_low(self._costs) if self._costs else 0.0
+        return 1 / cost if cost else 0.0
+
+    def record_display_time(self, seconds: float) -> None:
+        """Record how long it took to bring a picture to the window."""
+        self._display_times.append(seconds)
+
+    def divisor(self, width: int, height: int) -> int:
+        """Return the least divisor that is fast enough; the greatest if none is, or while nothing is known."""
+        if self._measured == self._chosen:
+            self._chosen = self._next_divisor(median_low(self._costs) * width * height)
+        return self._chosen
+
+    def _next_divisor(self, seconds: float) -> int:
+        """Return the divisor that should follow the chosen one, given the estimated time of a picture at full size.
+
+        The chosen one stays until it is too slow or a finer one fits into FINER_SHARE of the time.
+        """
+        if self._chosen == 1 and seconds > self._time:
+            return least_divisor(seconds * (median_low(self._excesses) if self._excesses else 1.0), self._time)
+        better = min(
+            max(self._chosen, least_divisor(seconds, self._time)), least_divisor(seconds, self._time * FINER_SHARE)
+        )
+        possible = least_divisor(seconds, self._time * TRIAL_EXCESS)
+        self._candidates = self._candidates + 1 if possible < better == self._chosen else 0
+        if self._candidates < self._trial_interval:
+            return better
+        self._candidates, self._trial_interval = 0, 2 * self._trial_interval
+        return possible
+
+    @property
+    def _time(self) -> float:
+        """Seconds left for rendering: at least half a frame, since coarser pictures do not help a slow screen."""
+        display_time = median_low(self._display_times) if self._display_times else 0.0
+        return max(FRAME_TIME - display_time, FRAME_TIME / 2)
+
+
+def least_divisor(seconds: float, time: float) -> int:
+    """Return the least divisor that reduces `seconds` to `time`, or the greatest."""
+    return next((each for each in DIVISORS if seconds <= time * each * each), DIVISORS[-1])

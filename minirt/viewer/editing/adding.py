@@ -26,13 +26,12 @@ from minirt.scene import Light, Scene
 from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
-from minirt.viewer.editing.aiming import aim_ahead
-from minirt.viewer.editing.measure import UP
 from minirt.viewer.editing.motion import clamp_point
-from minirt.viewer.editing.number_format import leading_decimal, nice_number, round_length, round_point
+from minirt.viewer.editing.projection import UP, aim_ahead
 from minirt.viewer.editing.standing import settled
 from minirt.viewer.editing.state import State, can_edit
-from minirt.viewer.files.asset_files import meshes, pictures
+from minirt.viewer.editing.values import leading_decimal, nice_number, round_length, round_point
+from minirt.viewer.files import meshes, pictures
 
 SIZE = 1 / 8  # of lengths in a new attribute, as a share of the scene's size
 LAMP_SHARE = 0.6  # of the way to a surface: where a new lamp hangs

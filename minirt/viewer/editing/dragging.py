@@ -15,19 +15,18 @@ from minirt.rendering.queries.pick import pick, surface_point
 from minirt.scene import Camera
 from minirt.scene.camera_frame import linear_combination
 from minirt.shapes import Shape
-from minirt.viewer.editing.aiming import aim
-from minirt.viewer.editing.measure import UP, extent, scene_centre
 from minirt.viewer.editing.motion import (
     WORLD_AXES,
+    can_turn,
     clamp_point,
     handedness,
     orbit_camera,
     rotate,
     translate,
+    turn_axis,
     turn_camera,
 )
-from minirt.viewer.editing.orientation import can_turn, turn_axis
-from minirt.viewer.editing.projection import Projection, projection_of, subtract
+from minirt.viewer.editing.projection import UP, Projection, aim, extent, projection_of, scene_centre, subtract
 from minirt.viewer.editing.standing import dropped, stand
 from minirt.viewer.editing.state import State
 

@@ -2,6 +2,12 @@
 
 `amount` is a number of steps: 1 for a press, fractions while a key is held or with Shift. `now` is the time in seconds,
 by which changes are merged for undo. Actions depend on the types of fields that elements have, never on a shape.
+
+A typed value is a number, or after = a change of the present one:
+
+3.5          that value; three numbers with commas for a colour or sizes, one for all three
+=*2  =/2     the value times or divided by a number
+=+0.5  =-1   the value plus or minus a number
 """
 
 from __future__ import annotations
@@ -9,17 +15,81 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from operator import add, mul, sub, truediv
+from typing import Any
 
-from minirt.errors import ElementError
-from minirt.fields import MeshFile, Point
+from minirt.errors import ElementError, FieldError
+from minirt.fields import Colour, Count, Field, MeshFile, Point, number
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame
-from minirt.viewer.editing import attributes, framing, history, selection, standing, structure
-from minirt.viewer.editing.motion import WORLD_AXES, handedness, roll_camera, rotate, translate, turn_camera
-from minirt.viewer.editing.orientation import can_turn, turn_axis
-from minirt.viewer.editing.state import Frame, State, field_names
+from minirt.viewer.editing import motion, standing, structure
+from minirt.viewer.editing.motion import (
+    WORLD_AXES,
+    can_turn,
+    handedness,
+    roll_camera,
+    rotate,
+    translate,
+    turn_axis,
+    turn_camera,
+)
+from minirt.viewer.editing.standing import keep_standing
+from minirt.viewer.editing.state import (
+    Frame,
+    State,
+    field_names,
+    redo,
+    select_camera,
+    select_neighbour,
+    select_next_light,
+    undo,
+)
 from minirt.viewer.editing.values import values
-from minirt.viewer.files import asset_files
+from minirt.viewer.files import next_file
+
+OPERATIONS: dict[str, Callable[[float, float], float]] = {"*": mul, "/": truediv, "+": add, "-": sub}
+CHARACTERS = "0123456789.,+-*/="  # of which typed values are made
+
+
+def set_typed(state: State, text: str, now: float) -> State:
+    """The state whose active value is what was typed, or which says what is wrong with it."""
+    active = state.active
+    if active is None:
+        return state.with_message(f"{state.element.title} has no value to type")
+    try:
+        new = typed(active.inner or active.field, active.get(state.element), text)
+        changed = state.element.replace(**{active.field.name: active.replaced(state.element, new)})
+    except (FieldError, ValueError) as error:
+        reason = str(error)
+        return state.with_message(reason if reason.startswith(state.element.title) else f"{active.name} {reason}")
+    changed = keep_standing(state, changed)
+    return state.end_merging().edit_element(changed, f"typed {active.name}", now).end_merging()
+
+
+def typed(field: Field, old: Any, text: str) -> Any:
+    """The value of a field that `text` asks for. FieldError if it is no number, or out of the field's range."""
+    count = len(old) if isinstance(old, tuple) else 1
+    if isinstance(old, (bool, str)) or not all(isinstance(part, (int, float)) for part in parts_of(old)):
+        raise FieldError("is not a number: + and - change it")
+    body = text.removeprefix("=")
+    relative = text.startswith("=") and body[:1] in OPERATIONS and len(body) > 1
+    given = [number(part) for part in (body[1:] if relative else body).split(",")]
+    if len(given) not in (1, count):
+        raise FieldError(f"takes {'one number' if count == 1 else f'one number or {count}'}, got {len(given)}")
+    given *= count // len(given)
+    if relative:
+        if body[0] == "/" and 0 in given:
+            raise FieldError("cannot be divided by 0")
+        given = [OPERATIONS[body[0]](part, by) for part, by in zip(parts_of(old), given, strict=True)]
+    if isinstance(field, (Colour, Count)):
+        given = [round(part) for part in given]
+    return field.check(tuple(given) if isinstance(old, tuple) else given[0])
+
+
+def parts_of(value: Any) -> tuple[Any, ...]:
+    """The components of a value."""
+    return value if isinstance(value, tuple) else (value,)
+
 
 Edit = Callable[[State, float, float], State]  # (state, amount, now)
 
@@ -73,8 +143,9 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
     active = state.active
     if active is None:
         return state.with_message(f"{state.element.title} has no size")
-    next_file = partial(asset_files.next_file, state.scene)
-    new = state.element.replace(**{active.field.name: active.stepped(state.element, sign * amount, next_file)})
+    new = state.element.replace(
+        **{active.field.name: active.stepped(state.element, sign * amount, partial(next_file, state.scene))}
+    )
     changed = state.edit_element(standing.keep_standing(state, new), f"value {active.name}", now)
     if changed is state:
         value = active.get(state.element)
@@ -89,7 +160,7 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
 def turn_wheel(sign: float, state: State, amount: float, now: float) -> State:
     """Move the camera nearer to what it shows, or change the active value of any other element."""
     if isinstance(state.element, Camera):
-        return framing.approach(state, sign * amount, now)
+        return motion.approach(state, sign * amount, now)
     return change_value(sign, state, amount, now)
 
 
@@ -108,10 +179,10 @@ def next_frame(state: State, _amount: float, _now: float) -> State:
 
 
 EDITS: dict[str, Edit] = {
-    "select next": partial(selection.select_neighbour, 1),
-    "select previous": partial(selection.select_neighbour, -1),
-    "select camera": selection.select_camera,
-    "select light": selection.select_next_light,
+    "select next": partial(select_neighbour, 1),
+    "select previous": partial(select_neighbour, -1),
+    "select camera": select_camera,
+    "select light": select_next_light,
     "left": partial(move, RIGHT, -1.0),
     "right": partial(move, RIGHT, 1.0),
     "forward": partial(move, FORWARD, 1.0),
@@ -131,13 +202,13 @@ EDITS: dict[str, Edit] = {
     "farther": partial(turn_wheel, -1.0),
     "drop": standing.drop,
     "next value": next_value,
-    "add attribute": attributes.add_attribute,
-    "remove attribute": attributes.remove_attribute,
-    "next tone": framing.next_tone,
-    "look at": framing.look_at,
-    "reset camera": framing.reset_camera,
-    "undo": history.undo,
-    "redo": history.redo,
+    "add attribute": structure.add_attribute,
+    "remove attribute": structure.remove_attribute,
+    "next tone": motion.next_tone,
+    "look at": motion.look_at,
+    "reset camera": motion.reset_camera,
+    "undo": undo,
+    "redo": redo,
     "add": partial(structure.add, 1),
     "add previous": partial(structure.add, -1),
     "duplicate": structure.duplicate,

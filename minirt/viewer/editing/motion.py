@@ -1,16 +1,19 @@
-"""Translation and rotation of vectors, cameras, and any element with points and directions."""
+"""Translate and rotate elements and the camera, frame the selected element, focus, and change the tone."""
 
 from __future__ import annotations
 
-from math import atan2, cos, dist, fmod, fsum, hypot, pi, radians, sin
+from math import atan, atan2, copysign, cos, degrees, dist, fmod, fsum, hypot, pi, radians, sin, tan
+from typing import Any
 
-from minirt.element import Element
-from minirt.fields import FARTHEST, Direction, Point, Triple, clamp, unit, upright
+from minirt.element import Element, fields_of
+from minirt.fields import FARTHEST, LEAST_LENGTH, Direction, Point, Triple, clamp, spelled, unit, upright
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame, linear_combination
-from minirt.viewer.editing.number_format import NOISE, neat_direction
-from minirt.viewer.editing.orientation import can_turn, rodrigues, with_directions
-from minirt.viewer.editing.state import Frame, field_names
+from minirt.scene.elements import TONES
+from minirt.shapes.oriented import Oriented
+from minirt.viewer.editing.projection import dot, extent, scene_centre, subtract
+from minirt.viewer.editing.state import Frame, State, field_names
+from minirt.viewer.editing.values import NOISE, neat_direction, round_length, shows_roll
 
 STEEPEST = pi / 2 - 1e-8  # radians: nobody sees the difference to straight up, which would have no heading
 WORLD_AXES: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
@@ -99,3 +102,113 @@ def roll_camera(camera: Camera, degrees: float) -> Camera:
 def handedness(camera: Camera) -> float:
     """Return -1 for a mirrored picture, in which right and clockwise are the opposite in the scene, otherwise 1."""
     return -1.0 if camera.left_handed else 1.0
+
+
+LEVEL = 0.5  # vertical part of a camera's up; above it, which is up to a pitch of 60 degrees, left and right are level
+
+
+def can_turn(element: Element) -> bool:
+    """Whether some rotation of an element can be seen."""
+    if isinstance(element, Oriented):
+        return element.shows_axis
+    fields = fields_of(type(element))
+    points = sum(isinstance(field, Point) for field in fields)
+    return points > 1 or any(isinstance(field, Direction) for field in fields)
+
+
+def turn_axis(camera: Camera, axis: int) -> Triple:
+    """The axis of a turn as seen by the camera: right, up or forward, by its number in `camera_frame`.
+
+    In place of up it is the vertical, unless the camera looks steeply up or down or is rolled: what stands upright then
+    turns on its foot, as on a turntable, and does not tip over.
+    """
+    direction = camera_frame(camera)[axis]
+    return (0.0, copysign(1.0, direction[1]), 0.0) if axis == 1 and abs(direction[1]) > LEVEL else direction
+
+
+def with_directions(element: Element, directions: dict[str, Any], about: Triple, angle: float) -> dict[str, Any]:
+    """The changed fields of an element that was rotated: its `directions`, and the roll that keeps its frame whole.
+
+    `directions` are rotated and rounded already. The rotated frame is compared with the frame without a roll about the
+    new axis, however far that frame is from the one before.
+    """
+    if not (isinstance(element, Oriented) and shows_roll(element)):
+        return directions
+    first, _ = across(element)
+    rotated = rodrigues(first, about, angle)
+    u, v = across(element.replace(**directions, roll=0.0))
+    return directions | {"roll": degrees(atan2(dot(rotated, v), dot(rotated, u)))}
+
+
+def across(shape: Oriented) -> tuple[Triple, Triple]:
+    """The two vectors of the frame of a shape that are perpendicular to its axis or normal."""
+    u, v, _ = shape.frame()
+    return (u.x, u.y, u.z), (v.x, v.y, v.z)
+
+
+def rodrigues(vector: Triple, axis: Triple, degrees: float) -> Triple:
+    """Rotate a vector about the unit vector `axis` by Rodrigues' formula (1840)."""
+    c, s = cos(radians(degrees)), sin(radians(degrees))
+    (x, y, z), (a, b, d) = vector, axis
+    cross = b * z - d * y, d * x - a * z, a * y - b * x
+    along = (x * a + y * b + z * d) * (1 - c)
+    return linear_combination(1.0, linear_combination(c, vector, s, cross), along, axis)
+
+
+LENS = 1 / 40  # diameter of a new lens by the distance in focus
+MARGIN = 1.5  # the distance is larger than for the bounding sphere: room for corners of the box and a border
+ASPECT = 9 / 16  # height / width of a usual window
+APPROACH = 1 / 10  # of the distance to the scene's centre: a step of the wheel
+NEAREST = 1 / 4  # of the scene's size: the least distance whose share a step is
+POINT_RADIUS = 1 / 10  # of the scene's size: the radius that is shown around an element without extent
+
+
+def look_at(state: State, _amount: float, now: float) -> State:
+    """Move the camera, without turning it, so that the selected element is centred and fills the picture."""
+    element, camera = state.element, state.scene.camera
+    bounds = None if isinstance(element, Camera) else extent(element)
+    if bounds is None:
+        return state.with_message(f"select an element with a position to look at: {element.title} has none")
+    centre, radius = bounds
+    half = atan(tan(radians(clamp(camera.fov, 1.0, 120.0)) / 2) * ASPECT)
+    distance = MARGIN * (radius or POINT_RADIUS * state.size) / sin(half)
+    _, _, forward = camera_frame(camera)
+    moved = camera.replace(position=clamp_point(linear_combination(1.0, centre, -distance, forward)))
+    return state.edit_camera(moved, "", now)
+
+
+def approach(state: State, steps: float, now: float) -> State:
+    """Move the camera ahead by a tenth of its distance to the scene's centre; close to it, by as much as there."""
+    camera = state.scene.camera
+    _, _, forward = camera_frame(camera)
+    ahead = dot(subtract(scene_centre(state.scene), camera.position), forward)
+    distance = max(ahead, state.size * NEAREST) * (1 - (1 - APPROACH) ** steps)
+    moved = camera.replace(position=clamp_point(linear_combination(1.0, camera.position, distance, forward)))
+    return state.edit_camera(moved, "approach", now)
+
+
+def next_tone(state: State, _amount: float, now: float) -> State:
+    """Switch to the next tone of the picture."""
+    camera = state.scene.camera
+    tone = TONES[(TONES.index(camera.tone) + 1) % len(TONES)]
+    return state.edit_camera(camera.replace(tone=tone), "tone", now).with_message(f"tone: {tone}")
+
+
+def focus(state: State, point: Triple | None, now: float) -> State:
+    """Focus the camera on a point: its distance along the viewing direction. A camera without a lens gets one."""
+    if point is None:
+        return state.with_message("nothing there to focus on")
+    camera = state.scene.camera
+    distance = sum(f * (p - e) for f, p, e in zip(camera.direction, point, camera.position, strict=True))
+    distance = round_length(max(distance, LEAST_LENGTH))
+    lens = camera.lens or round_length(LENS * distance)
+    focused = camera.replace(focus=distance, lens=lens)
+    changed = state.change(state.scene.replace(camera, focused), "focus", now)
+    return changed.with_message(f"focus: {spelled(distance)}, lens: {spelled(lens)}")
+
+
+def reset_camera(state: State, _amount: float, now: float) -> State:
+    """Reset the camera to that of the file."""
+    if state.scene.camera == state.file_camera:
+        return state
+    return state.change(state.scene.replace(state.scene.camera, state.file_camera), "", now)

@@ -1,14 +1,19 @@
-"""Perspective projection: convert between pixels of a picture and points of its scene."""
+"""Geometry of the view: pixels and points of the scene, sizes of elements and scenes, and the aim of the pointer."""
 
 from __future__ import annotations
 
-from math import hypot
-from typing import NamedTuple
+from collections.abc import Sequence
+from math import dist, hypot
+from statistics import median
+from typing import NamedTuple, TypeVar
 
-from minirt.fields import Triple, unit
+from minirt.element import Element, fields_of
+from minirt.fields import FARTHEST, LEAST_LENGTH, Point, Triple, clamp, unit
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.scene import Camera
+from minirt.rendering.queries.pick import surface_normal
+from minirt.scene import Camera, Scene
 from minirt.scene.camera_frame import linear_combination
+from minirt.shapes import Shape
 
 Pixel = tuple[float, float]
 
@@ -97,3 +102,121 @@ def dot(a: Triple, b: Triple) -> float:
 def subtract(a: Triple, b: Triple) -> Triple:
     """Difference a - b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+Extent = tuple[Triple, float]  # centre and radius
+Item = TypeVar("Item")
+
+UP: Triple = (0.0, 1.0, 0.0)
+FLAT = 0.02  # slope of a view that is too level to show where it meets the ground
+UNKNOWN_SIZE = 10.0  # scene units: the size of a scene that says nothing of it
+SAMPLE_SIZE = 4096  # items; their median is within some per cent of that of a million
+
+
+def extent(element: Element) -> Extent | None:
+    """Centre and radius of an element: half the longest side of its bounding box, or 0 at its point, or None."""
+    box = element.bounds() if isinstance(element, Shape) else None
+    if box is not None:
+        (a, b, c), (x, y, z) = box
+        return ((a + x) / 2, (b + y) / 2, (c + z) / 2), max(x - a, y - b, z - c) / 2
+    points = [getattr(element, each.name) for each in fields_of(type(element)) if isinstance(each, Point)]
+    return (points[0], 0.0) if points else None
+
+
+def sample(items: Sequence[Item]) -> Sequence[Item]:
+    """Select at most SAMPLE_SIZE items, evenly spaced in the file."""
+    return items[:: max(1, -(-len(items) // SAMPLE_SIZE))]
+
+
+def extents(scene: Scene) -> list[Extent]:
+    """Extents of the bounded shapes of a scene or, if there are none, of all elements with a position."""
+    bounded: list[Element] = [each for each in sample(scene.shapes) if each.bounds() is not None]
+    elements = bounded or [each for each in sample(scene.elements) if not isinstance(each, Camera)]
+    return list(filter(None, map(extent, elements)))
+
+
+def scene_size(scene: Scene) -> float:
+    """Size of a scene: the median distance of its elements from the camera.
+
+    The median ignores single distant or huge elements (a sky, a sun). Without elements it is the distance to what the
+    camera looks at.
+    """
+    distances = [max(dist(scene.camera.position, centre), radius) for centre, radius in extents(scene)]
+    known = any(distances)
+    usual = median(distance for distance in distances if distance > 0) if known else looked_at_distance(scene.camera)
+    return clamp(usual, LEAST_LENGTH, FARTHEST)
+
+
+def looked_at_distance(camera: Camera) -> float:
+    """Distance from the camera to where it looks: to the ground y = 0, or to the point of its view nearest the origin.
+
+    A camera in the origin, or one that looks away from it, tells less: the distance to the origin, or UNKNOWN_SIZE.
+    """
+    x, y, z = camera.position
+    a, b, c = camera.direction
+    if y * b < 0 and abs(b) > FLAT:
+        return -y / b
+    ahead, away = -(x * a + y * b + z * c), hypot(x, y, z)
+    return ahead if ahead > away / 2 else away or UNKNOWN_SIZE
+
+
+def scene_centre(scene: Scene) -> Triple:
+    """Centre of a scene: the median of each coordinate, which ignores single distant elements."""
+    centres = [centre for centre, _ in extents(scene)]
+    if not centres:
+        return 0.0, 0.0, 0.0
+    x, y, z = (median(each) for each in zip(*centres, strict=True))
+    return x, y, z
+
+
+BACKGROUND = 4.0  # times the scene's size: what is farther away is background, on which nothing stands
+SHARE = 1 / 4  # of the picture's shorter side: the size of a new element
+PICTURE = 640, 360  # pixels of a usual window, where none is known
+
+
+class Aim(NamedTuple):
+    """The place where the line of sight through a pixel ends."""
+
+    eye: Triple
+    point: Triple
+    normal: Triple | None  # of the surface there, towards the eye; None in the air
+    size: float  # of an element that fills SHARE of the picture at this depth
+
+
+def aim(view: Projection, size: float, x: float, y: float, shape: Shape | None, point: Triple | None) -> Aim:
+    """Aim through a point of the picture, at the `point` of a shape, at the ground y = 0, or at `size` from the eye.
+
+    size: of the scene.
+    """
+    ray = view.ray(x, y)
+    normal: Triple | None = None
+    if shape and point and dist(view.eye, point) <= BACKGROUND * size:
+        normal = surface_normal(shape, point, ray)
+    else:
+        distance = ground_distance(view.eye, ray)
+        point = linear_combination(1.0, view.eye, size if distance is None else distance, ray)
+        if distance is None or shape or distance > BACKGROUND * size:
+            point = linear_combination(1.0, view.eye, size, ray)
+        else:
+            point, normal = (point[0], 0.0, point[2]), UP if view.eye[1] > 0 else (0.0, -1.0, 0.0)
+    return Aim(view.eye, point, normal, SHARE * picture_side(view, point))
+
+
+def aim_ahead(camera: Camera, size: float) -> Aim:
+    """Aim through the middle of the picture, a little below it, without a look at the shapes."""
+    width, height = PICTURE
+    view = projection_of(camera, width, height)
+    return aim(view, size or looked_at_distance(camera), width / 2, 0.55 * height, None, None)
+
+
+def ground_distance(eye: Triple, ray: Triple) -> float | None:
+    """Distance along a ray to the ground y = 0; None where the ray does not reach it."""
+    return -eye[1] / ray[1] if eye[1] * ray[1] < 0 else None
+
+
+def picture_side(view: Projection, point: Triple) -> float:
+    """Length of the picture's shorter side in the scene, at the depth of a point."""
+    depth = view.depth(point)
+    middle = view.point_at_depth(view.width / 2, view.height / 2, depth)
+    sides = view.point_at_depth(0.0, view.height / 2, depth), view.point_at_depth(view.width / 2, 0.0, depth)
+    return 2 * min(dist(middle, side) for side in sides)

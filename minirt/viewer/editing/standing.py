@@ -9,12 +9,10 @@ from minirt.fields import Point, Triple
 from minirt.rendering.queries.beneath import clearance
 from minirt.scene import Scene
 from minirt.shapes import Shape
-from minirt.viewer.editing.aiming import Aim
-from minirt.viewer.editing.measure import UP, extent
 from minirt.viewer.editing.motion import translate
-from minirt.viewer.editing.number_format import round_point
-from minirt.viewer.editing.projection import dot, subtract
+from minirt.viewer.editing.projection import UP, Aim, dot, extent, subtract
 from minirt.viewer.editing.state import State, field_names, position_of
+from minirt.viewer.editing.values import round_point
 
 LEVEL = 0.35  # cosine of the slope of a surface, of 70 degrees, on which shapes still come to rest
 POINT_ROUNDING = 1 / 100  # of a step, to a tenth of which the points of a standing shape are rounded

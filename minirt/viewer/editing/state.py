@@ -1,4 +1,4 @@
-"""State of the editor: the scene, the selection, and the undo and redo stacks."""
+"""State of the editor: the scene, the selection, and undo and redo by stacks of snapshots."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ from typing import Any
 
 from minirt.element import Element, fields_of
 from minirt.fields import Direction, Point, Triple
-from minirt.scene import Camera, Scene
-from minirt.viewer.editing.aiming import Aim
-from minirt.viewer.editing.measure import scene_size
-from minirt.viewer.editing.number_format import nice_number, round_changes
-from minirt.viewer.editing.values import Value, is_editable, values
+from minirt.scene import Camera, Lamp, Scene
+from minirt.shapes import Shape
+from minirt.viewer.editing.projection import Aim, scene_size
+from minirt.viewer.editing.values import Value, is_editable, nice_number, round_changes, values
 
 STEP_SHARE = 1 / 40  # one step of a movement as a share of the scene's size, before rounding
 MERGE_SECONDS = 0.5  # seconds; changes of the same kind at shorter intervals are undone together
@@ -146,3 +145,95 @@ def position_of(element: Element) -> Triple | None:
 def can_edit(kind: type[Element]) -> bool:
     """Whether keys can edit elements of the kind."""
     return any(map(is_editable, fields_of(kind))) or bool(field_names(kind, Point) or field_names(kind, Direction))
+
+
+def select_neighbour(step: int, state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
+    """Select the next (step 1) or previous (-1) editable element in the order of the file, cyclically."""
+    count = len(state.scene.elements)
+    indices = ((state.selected + step * number) % count for number in range(1, count + 1))
+    return state.select(next(index for index in indices if can_edit(type(state.scene.elements[index]))))
+
+
+def select_camera(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
+    """Select the camera."""
+    return state.select(index_of(state.scene, state.scene.camera))
+
+
+def select_next_light(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
+    """Select the next light after the selected element, cyclically."""
+    lights = list(state.scene.indices_of(Lamp))
+    if not lights:
+        return state.with_message("there is no light")
+    return state.select(next((index for index in lights if index > state.selected), lights[0]))
+
+
+def select_shape(state: State, shape: Shape | None) -> State:
+    """Select the shape that a pixel shows, or keep the selection if it shows none."""
+    state = state.with_message("" if shape else "there is nothing")
+    return state.select(index_of(state.scene, shape)) if shape else state
+
+
+MAX_ITEMS = 1_000_000  # of all scenes of the undo stack, about 500 bytes each; edits share them, files read anew do not
+
+
+def undo(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
+    """Undo the last change, and restore the selection before it."""
+    if not state.undo_stack:
+        return state.with_message("nothing to undo")
+    return restore(
+        state.undo_stack[-1],
+        replace(state, undo_stack=state.undo_stack[:-1], redo_stack=(*state.redo_stack, current_snapshot(state))),
+    )
+
+
+def redo(state: State, _amount: float = 1.0, _now: float = 0.0) -> State:
+    """Redo the change that was undone last."""
+    if not state.redo_stack:
+        return state.with_message("nothing to redo")
+    return restore(
+        state.redo_stack[-1],
+        replace(state, undo_stack=(*state.undo_stack, current_snapshot(state)), redo_stack=state.redo_stack[:-1]),
+    )
+
+
+def current_snapshot(state: State) -> Snapshot:
+    """Snapshot of the current scene and selection."""
+    return Snapshot(state.scene.drop_caches(), state.selected)
+
+
+def stack_after_reading(state: State) -> tuple[Snapshot, ...]:
+    """Undo stack of a state whose file was read anew. Its oldest entries are dropped where it has too many items."""
+    stack = (*state.undo_stack[1 - MAX_UNDO :], current_snapshot(state))
+    pages: set[int] = set()
+    items = 0
+    for number in range(len(stack) - 1, -1, -1):
+        new = {id(page): len(page.items) for page in stack[number].scene.pages if id(page) not in pages}
+        pages.update(new)
+        items += sum(new.values())
+        if items > MAX_ITEMS and number < len(stack) - 1:
+            return stack[number + 1 :]
+    return stack
+
+
+def restore(snapshot: Snapshot, state: State) -> State:
+    """The state with the scene of a snapshot. The active value stays if the selected element stays."""
+    value_index = state.value_index if snapshot.selected == state.selected else 0
+    return replace(state, scene=snapshot.scene, selected=snapshot.selected, value_index=value_index, last_change=None)
+
+
+def state_after_reading(old: State, scene: Scene, saved: Scene | None) -> State:
+    """Return the state for the new scene of the file, with selection and undo history of the old state.
+
+    The current camera stays if the file has the same camera as `saved`, the scene that the file held before.
+    """
+    new = initial_state(scene)
+    if saved and scene.camera == saved.camera:
+        new = replace(new, scene=scene.replace(scene.camera, old.scene.camera.replace(source=scene.camera.source)))
+    same = old.selected < len(scene.elements) and type(scene.elements[old.selected]) is type(old.element)
+    return replace(
+        new,
+        selected=old.selected if same else new.selected,
+        value_index=old.value_index if same else 0,
+        frame=old.frame,
+        undo_stack=stack_after_reading(old),
+    )

@@ -10,7 +10,7 @@ from typing import NoReturn
 from minirt.errors import FieldError, Problem, ReplayError, quoted
 from minirt.fields import number
 from minirt.mlx import Key, Modifier
-from minirt.viewer.input.chords import KEYS, MODIFIERS, Chord, parse_chord
+from minirt.viewer.bindings import KEYS, MODIFIERS, Chord, parse_chord
 
 WORD = re.compile(r"\S+")
 PIXEL = re.compile(r"([0-9]{1,5}),([0-9]{1,5})")

@@ -15,8 +15,7 @@ from typing import BinaryIO, NamedTuple
 from minirt.errors import FileError
 from minirt.helpers import file_io
 from minirt.scene import Scene, dump, files
-from minirt.viewer.files.scene_files import contents_differ
-from minirt.viewer.files.watched_file import Signature, signature
+from minirt.viewer.files import Signature, contents_differ, signature
 from minirt.viewer.recovery import journal_file
 from minirt.viewer.recovery.journal_folder import create_journal
 from minirt.viewer.recovery.splice import difference

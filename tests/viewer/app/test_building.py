@@ -16,7 +16,7 @@ from minirt.scene import load
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.hints import hints
+from minirt.viewer.display.overlay import hints
 from tests.pages import read
 from tests.paths import ROOT
 from tests.viewer.fake import TEXT, played, scene

@@ -7,8 +7,8 @@ import pytest
 from minirt.errors import SceneError
 from minirt.mlx import Key
 from minirt.scene import load
-from minirt.viewer.app.file_sync import follow_change, open_another, save_scene
-from minirt.viewer.files.watched_file import WatchedFile
+from minirt.viewer.app.commands import follow_change, open_another, save_scene
+from minirt.viewer.files import WatchedFile
 from tests.viewer.fake import TEXT, colour_of, scene
 from tests.viewer.session_harness import SessionHarness
 

@@ -7,10 +7,10 @@ from itertools import pairwise
 import pytest
 
 from minirt.mlx import Key
-from minirt.viewer.app.held_edits import HeldEdits
+from minirt.viewer.app.events import HeldEdits
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import State
-from minirt.viewer.input.key_repeat import Advance
+from minirt.viewer.key_repeat import Advance
 from tests.viewer.fake import TEXT, played, scene
 from tests.viewer.session_harness import SessionHarness
 

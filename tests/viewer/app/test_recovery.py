@@ -9,7 +9,7 @@ import pytest
 from minirt.mlx import Key
 from minirt.scene import dump, load
 from minirt.viewer.app import recovery
-from minirt.viewer.files.watched_file import WatchedFile
+from minirt.viewer.files import WatchedFile
 from minirt.viewer.recovery import journal_file
 from minirt.viewer.recovery.journal_folder import journal_folder
 from tests.viewer.fake import TEXT, scene

@@ -10,7 +10,7 @@ from minirt.viewer.app.replay import replay
 from minirt.viewer.display.help_pages import help_pages
 from minirt.viewer.display.overlay import text_size
 from minirt.viewer.editing.editor import TURN_STEP
-from minirt.viewer.input.key_repeat import RATE
+from minirt.viewer.key_repeat import RATE
 from tests.viewer.fake import FakeRenderer, colour_of, played, scene
 
 SELECT_SPHERE = ("press Tab", "press Tab")

@@ -8,9 +8,9 @@ import pytest
 
 from minirt.errors import FileError, RenderError
 from minirt.mlx import Key
-from minirt.viewer.display.adaptive_resolution import FRAME_TIME
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.refinement import FRAME_TIME
 from minirt.viewer.editing.state import initial_state
 from tests.viewer.fake import FakeRenderer, colour_of, scene
 from tests.viewer.session_harness import SIZE, SessionHarness

@@ -6,8 +6,8 @@ import itertools
 
 import pytest
 
-from minirt.viewer.display.adaptive_resolution import FRAME_TIME, AdaptiveResolution
 from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.refinement import FRAME_TIME, AdaptiveResolution
 from tests.viewer.fake import colour_of, scene
 
 SCENE = scene()

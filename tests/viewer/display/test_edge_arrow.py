@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from minirt.fields import Triple
-from minirt.viewer.display.edge_arrow import BORDER, FILL, TOP, arrow_direction, draw_arrow
+from minirt.viewer.display.marks import BORDER, FILL, TOP, arrow_direction, draw_arrow
 from minirt.viewer.editing.projection import projection_of
 from tests.viewer.fake import played, scene
 

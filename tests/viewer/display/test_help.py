@@ -15,10 +15,10 @@ from minirt.scene import Camera, describe, dump, load
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.app.session import Session
+from minirt.viewer.bindings import BINDINGS, Binding
 from minirt.viewer.display.overlay import HudLevel
 from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import Frame
-from minirt.viewer.input.bindings import BINDINGS, Binding
 from tests.viewer.fake import TEXT, played, scene
 
 LAYOUTS = ("qwerty", "azerty", "qwertz")

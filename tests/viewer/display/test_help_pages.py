@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from minirt.mlx import Key
 from minirt.mlx.text import measure
+from minirt.viewer.bindings import BINDINGS, FINE_NOTE
 from minirt.viewer.display import help_pages
 from minirt.viewer.display.help_pages import draw_help, width_of
 from minirt.viewer.display.overlay import overlay_scale, text_size
-from minirt.viewer.input.bindings import BINDINGS, FINE_NOTE
 from tests.viewer.session_harness import SessionHarness
 
 SIZES = [(320, 240), (640, 480), (1280, 720), (1900, 300), (3840, 2160)]

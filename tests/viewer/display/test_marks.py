@@ -9,9 +9,20 @@ from minirt.rendering.queries.pick import covers
 from minirt.scene import Camera, Light
 from minirt.shapes import KINDS, Shape
 from minirt.shapes.sphere import Sphere
-from minirt.viewer.display import icons, outline
-from minirt.viewer.display.icons import Icon, elements_with_icon, place_icons
-from minirt.viewer.display.marks import AXIS_COLOURS, BLACK, GOLD, WHITE, bgra, draw_icon, draw_line, draw_outline
+from minirt.viewer.display import marks, outline
+from minirt.viewer.display.marks import (
+    AXIS_COLOURS,
+    BLACK,
+    GOLD,
+    WHITE,
+    Icon,
+    bgra,
+    draw_icon,
+    draw_line,
+    draw_outline,
+    elements_with_icon,
+    place_icons,
+)
 from minirt.viewer.display.outline import outline_pixels
 from minirt.viewer.display.overlay import text_size
 from minirt.viewer.display.painter import paint
@@ -208,8 +219,8 @@ def test_lights_have_icons_that_can_be_clicked() -> None:
 
 
 def test_an_icon_has_the_colour_of_its_light() -> None:
-    assert icons.colour_of(Light((0, 0, 5), 1, (255, 128, 1))) == 0xFF8001
-    assert icons.colour_of(Camera((0, 0, 0), (0, 0, 1), 70)) == 0xFFFFFF
+    assert marks.colour_of(Light((0, 0, 5), 1, (255, 128, 1))) == 0xFF8001
+    assert marks.colour_of(Camera((0, 0, 0), (0, 0, 1), 70)) == 0xFFFFFF
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0])

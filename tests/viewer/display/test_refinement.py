@@ -10,9 +10,9 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.mlx import Key
 from minirt.mlx.memory import Memory
-from minirt.viewer.display.adaptive_resolution import FRAME_TIME
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.refinement import FRAME_TIME
 from tests.viewer.fake import MARK, FakeRenderer, colour_of, scene
 from tests.viewer.session_harness import SIZE, SessionHarness
 from tests.waiting import HANG_LIMIT, until

@@ -8,14 +8,16 @@ from pathlib import Path
 
 import pytest
 
-from minirt.viewer.display import unused_memory
+from minirt.viewer.app import session
+from minirt.viewer.display import screen
 from tests.processes import run
 from tests.viewer.fake import played
 
 PROGRAM = """
 from threading import Thread
 import numpy as np
-from minirt.viewer.display import unused_memory
+from minirt.viewer.app import session
+from minirt.viewer.display import screen
 from tests.usage import Usage
 
 def work():
@@ -24,12 +26,12 @@ def work():
     kept.extend(blocks[::10])
 
 kept = []
-unused_memory.use_one_heap()
+screen.use_one_heap()
 thread = Thread(target=work)
 thread.start()
 thread.join()
 usages = [Usage.of().memory]
-unused_memory.give_back()
+screen.give_back_memory()
 usages.append(Usage.of().memory)
 print(usages[0] - usages[1], sum(block.nbytes for block in kept), all((block == 1).all() for block in kept))
 """
@@ -59,12 +61,12 @@ def test_memory_is_given_back_once_after_a_resize_or_a_reload(
     lines: list[str], expected: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     calls: list[None] = []
-    monkeypatch.setattr(unused_memory, "give_back", lambda: calls.append(None))
+    monkeypatch.setattr(session, "give_back_memory", lambda: calls.append(None))
     played(*lines, path=tmp_path / "scene.rt")
     assert len(calls) == expected
 
 
 def test_other_systems_have_no_such_functions(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(unused_memory.ctypes, "CDLL", lambda _: object())
-    unused_memory.use_one_heap()
-    unused_memory.give_back()
+    monkeypatch.setattr(screen.ctypes, "CDLL", lambda _: object())
+    screen.use_one_heap()
+    screen.give_back_memory()

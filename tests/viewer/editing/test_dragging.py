@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from minirt.mlx import Key
 from minirt.rendering.queries.pick import surface_point
 from minirt.scene import Camera
-from minirt.viewer.editing.measure import scene_centre
-from minirt.viewer.editing.projection import dot, projection_of
+from minirt.viewer.editing.projection import dot, projection_of, scene_centre
 from tests.viewer.fake import played, scene
 from tests.viewer.session_harness import SessionHarness
 

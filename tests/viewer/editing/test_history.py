@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from minirt.viewer.editing import history
+from minirt.viewer.editing import state as state_module
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.history import stack_after_reading
-from minirt.viewer.editing.state import MAX_UNDO, Snapshot, State, initial_state
+from minirt.viewer.editing.state import MAX_UNDO, Snapshot, State, initial_state, stack_after_reading
 from tests.viewer.fake import scene
 
 
@@ -88,7 +87,7 @@ def test_undoing_everything_restores_the_scene_of_the_file():
 
 @pytest.mark.parametrize(("limit", "expected"), [(99, 10), (90, 10), (89, 9), (18, 2), (17, 1), (1, 1)])
 def test_scenes_of_files_that_were_read_are_kept_up_to_a_number_of_items(limit, expected, monkeypatch):
-    monkeypatch.setattr(history, "MAX_ITEMS", limit)
+    monkeypatch.setattr(state_module, "MAX_ITEMS", limit)
     scenes = [scene() for _ in range(10)]
     assert {len(each.items) for each in scenes} == {9}
     state = initial_state(scenes[0])
@@ -101,7 +100,7 @@ def test_scenes_of_files_that_were_read_are_kept_up_to_a_number_of_items(limit, 
 
 
 def test_edits_share_items_and_are_all_kept(monkeypatch):
-    monkeypatch.setattr(history, "MAX_ITEMS", 9)
+    monkeypatch.setattr(state_module, "MAX_ITEMS", 9)
     shown = scene()
     state = replace(initial_state(shown), undo_stack=(Snapshot(shown, 0),) * (MAX_UNDO + 5))
     assert len(stack_after_reading(state)) == MAX_UNDO

@@ -11,7 +11,7 @@ from minirt.scene.pages import PAGE_LENGTH
 from minirt.shapes.sphere import Sphere
 from minirt.viewer.display.overlay import element_line
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.measure import SAMPLE_SIZE, scene_size
+from minirt.viewer.editing.projection import SAMPLE_SIZE, scene_size
 from minirt.viewer.editing.state import State, initial_state
 
 HEAD = "A 0 0,0,0\nC 0,0,0 0,0,1 60\nL 0,0,0 1\n"

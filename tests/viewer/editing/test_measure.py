@@ -8,7 +8,7 @@ import pytest
 
 from minirt.fields import FARTHEST, LEAST_LENGTH
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.measure import scene_size
+from minirt.viewer.editing.projection import scene_size
 from minirt.viewer.editing.state import initial_state
 from tests.viewer.fake import scene
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from minirt.scene import describe, dump, load
 from minirt.viewer.editing.editor import apply
-from minirt.viewer.editing.number_format import leading_decimal, nice_number
 from minirt.viewer.editing.state import index_of, initial_state
+from minirt.viewer.editing.values import leading_decimal, nice_number
 from tests.paths import ROOT
 from tests.viewer.fake import TEXT, played, scene
 

@@ -24,9 +24,8 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.motion import neat_rotation, rotate
-from minirt.viewer.editing.number_format import round_changes
 from minirt.viewer.editing.state import State, initial_state
-from minirt.viewer.editing.values import values
+from minirt.viewer.editing.values import round_changes, values
 from tests.reference.normals import right_and_up_on
 from tests.reference.vectors import own_x_and_z
 from tests.viewer.fake import played

@@ -11,8 +11,7 @@ import pytest
 
 from minirt.errors import SceneError
 from minirt.scene import dump, files, load
-from minirt.viewer.files.scene_files import back_up
-from minirt.viewer.files.watched_file import signature
+from minirt.viewer.files import back_up, signature
 from minirt.viewer.recovery.found_changes import find_changes
 from minirt.viewer.recovery.journal import Version, text_of
 from tests.guards import must_end, must_not_open

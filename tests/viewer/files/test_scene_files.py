@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from minirt.scene import load
-from minirt.viewer.files.scene_files import contents_differ, save_recovery
+from minirt.viewer.files import contents_differ, save_recovery
 from tests.viewer.fake import TEXT, colour_of, played, scene
 
 SELECT_SPHERE = ("press Tab", "press Tab")

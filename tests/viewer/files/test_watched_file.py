@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from minirt.viewer.files import watched_file
-from minirt.viewer.files.watched_file import Signature, WatchedFile, signature
+from minirt.viewer import files
+from minirt.viewer.files import Signature, WatchedFile, signature
 from tests.viewer.fake import TEXT
 from tests.waiting import HANG_LIMIT, until
 
@@ -50,7 +50,7 @@ class SteppedWatch:
         until(lambda: self._started == self._checks + 1, "a check of the file")
 
     def signature(self, path: Path) -> Signature:
-        """Replace `minirt.viewer.files.watched_file.signature`: wait until the test allows a check."""
+        """Replace `minirt.viewer.files.signature`: wait until the test allows a check."""
         if threading.current_thread().name == "minirt-watch":
             self._started += 1
             self._allowed.acquire(timeout=HANG_LIMIT)
@@ -66,9 +66,9 @@ class SteppedWatch:
 
 @pytest.fixture
 def watch(path, monkeypatch) -> Iterator[SteppedWatch]:
-    monkeypatch.setattr(watched_file, "INTERVAL", 0.001)
+    monkeypatch.setattr(files, "INTERVAL", 0.001)
     watch = SteppedWatch(path)
-    monkeypatch.setattr(watched_file, "signature", watch.signature)
+    monkeypatch.setattr(files, "signature", watch.signature)
     watch.start()
     yield watch
     watch.close()
@@ -103,8 +103,8 @@ def test_a_change_is_reported_when_the_file_is_stable(path, monkeypatch):
         seen.append(signatures[min(len(seen), len(signatures) - 1)])
         return seen[-1]
 
-    monkeypatch.setattr(watched_file, "signature", next_signature)
-    monkeypatch.setattr(watched_file, "INTERVAL", 0.001)
+    monkeypatch.setattr(files, "signature", next_signature)
+    monkeypatch.setattr(files, "INTERVAL", 0.001)
     watched = WatchedFile(path)
     notified: list[int] = []
     watched.watch(lambda: notified.append(len(seen)))

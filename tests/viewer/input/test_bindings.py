@@ -8,13 +8,21 @@ import pytest
 
 from minirt.mlx import Button, Key, Modifier
 from minirt.viewer.app.commands import COMMANDS
-from minirt.viewer.app.typing import TYPE
+from minirt.viewer.app.panels import TYPE
+from minirt.viewer.bindings import (
+    BINDINGS,
+    LAYOUTS,
+    Chord,
+    Keymap,
+    chords_of,
+    keys_markdown,
+    keys_text,
+    parse_chord,
+    platform_spelling,
+    resolve_layout,
+)
 from minirt.viewer.editing.dragging import DRAGS
 from minirt.viewer.editing.editor import EDITS
-from minirt.viewer.input.bindings import BINDINGS, keys_markdown, keys_text
-from minirt.viewer.input.chords import Chord, parse_chord, platform_spelling
-from minirt.viewer.input.keymap import Keymap, chords_of
-from minirt.viewer.input.layouts import LAYOUTS, resolve_layout
 
 ACTIONS = [binding.action for binding in BINDINGS]
 

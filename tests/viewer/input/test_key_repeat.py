@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from minirt.viewer.input.key_repeat import FIRST_PART, GROWTH, PATIENCE, RATE, Advance, KeyRepeat
+from minirt.viewer.key_repeat import FIRST_PART, GROWTH, PATIENCE, RATE, Advance, KeyRepeat
 
 KEY = 97
 TICKS = 144  # a second

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from minirt.viewer.input.bindings import BINDINGS
+from minirt.viewer.bindings import BINDINGS
 from tests.viewer.display.test_help import LAYOUTS, MOUSE
 from tests.viewer.fake import TEXT
 from tests.viewer.xdotool import LETTER_CODES, do

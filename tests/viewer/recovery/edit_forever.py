@@ -15,7 +15,7 @@ import threading
 from pathlib import Path
 
 from minirt.scene import load
-from minirt.viewer.files.watched_file import signature
+from minirt.viewer.files import signature
 from minirt.viewer.recovery.journal import Journal, Version
 
 PAUSE = 0.002  # seconds between two edits

@@ -8,7 +8,7 @@ import time
 import pytest
 
 from minirt.scene import load
-from minirt.viewer.files.watched_file import signature
+from minirt.viewer.files import signature
 from minirt.viewer.recovery.found_changes import FoundChanges, find_changes
 from minirt.viewer.recovery.journal import Journal, Version
 from tests.viewer.fake import TEXT

@@ -12,7 +12,7 @@ import pytest
 
 from minirt.errors import FileError
 from minirt.scene import Scene, dump, load
-from minirt.viewer.files.watched_file import signature
+from minirt.viewer.files import signature
 from minirt.viewer.recovery import journal, journal_file
 from minirt.viewer.recovery.journal import Journal, Version
 from minirt.viewer.recovery.journal_folder import KEPT, abandoned_journals, is_abandoned, journal_folder

@@ -2,23 +2,105 @@
 
 The action of a `held` binding goes on while its key is held. That of a `fine` binding takes a tenth of its step with
 Shift, except for typed characters, which many keyboards type with Shift.
+
+Chords are spelled `Tab`, `Shift+Tab`, `Ctrl+Z`, `+`, `wheel up`. Letters and named keys are keys; any other character
+is typed text, wherever a keyboard has it, and with Ctrl the key that prints it, with or without Shift: `Ctrl++`. Ctrl
+means Cmd on macOS. On QWERTZ keyboards all letters of the bindings are where QWERTY has them.
 """
 
 from __future__ import annotations
 
+import locale
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import IntEnum
 from itertools import groupby
+from typing import Final, NamedTuple
 
-from minirt.viewer.input.chords import platform_spelling
-from minirt.viewer.input.layouts import resolve_layout
+from minirt.mlx import Button, Key, Modifier
+
+
+class Drag(IntEnum):
+    """Drag with a mouse button."""
+
+    LEFT = 0x100 + Button.LEFT
+    MIDDLE = 0x100 + Button.MIDDLE
+    RIGHT = 0x100 + Button.RIGHT
+
+
+MOUSE: dict[str, Button | Drag] = {
+    "left click": Button.LEFT,
+    "right click": Button.RIGHT,
+    "left drag": Drag.LEFT,
+    "middle drag": Drag.MIDDLE,
+    "right drag": Drag.RIGHT,
+    "wheel up": Button.WHEEL_UP,
+    "wheel down": Button.WHEEL_DOWN,
+}
+KEYS = {"".join(map(str.capitalize, key.name.split("_"))): key for key in Key}  # PageUp, A, F1
+PRINTED = {"+": Key.PLUS, "-": Key.MINUS, "=": Key.EQUAL, "0": Key.DIGIT_0}  # with Ctrl, by what they print
+MODIFIERS = {"Ctrl": Modifier.ACCEL, "Shift": Modifier.SHIFT}
+PLATFORM_NAMES = {"Ctrl": "Cmd"} if sys.platform == "darwin" else {}
+
+
+class Chord(NamedTuple):
+    """A key with held modifiers, typed text, a mouse button or a drag."""
+
+    code: Key | Button | Drag | str
+    modifiers: Modifier = Modifier.NONE
+
+
+def key_named(name: str) -> Key | None:
+    """Return the key with this name (`Tab`, `PageUp`, `a`, `F5`), or None."""
+    return KEYS.get(name.upper() if len(name) == 1 else name)
+
+
+def parse_chord(spelling: str) -> Chord:
+    """Parse the spelling of a chord. ValueError with the unknown part as message."""
+    before, plus, name = spelling.rpartition("+")
+    if plus and not name and before[-1:] in ("", "+"):  # the key itself is +
+        before, name = before[:-1], plus
+    modifier_names = before.split("+") if before else []
+    modifiers = Modifier.NONE
+    for word in modifier_names:
+        if word not in MODIFIERS:
+            raise ValueError(word)
+        modifiers |= MODIFIERS[word]
+    if name in MOUSE:
+        return Chord(MOUSE[name], modifiers)
+    key = key_named(name)
+    if key is not None:
+        return Chord(key, modifiers)
+    if len(name) == 1 and not name.isalnum() and not modifier_names:
+        return Chord(name)
+    if len(name) == 1 and modifiers == Modifier.ACCEL and name in PRINTED:
+        return Chord(PRINTED[name], modifiers)
+    raise ValueError(name)
+
+
+def platform_spelling(spelling: str) -> str:
+    """Spelling of a chord with the modifier names of this platform."""
+    return "+".join(PLATFORM_NAMES.get(word, word) for word in spelling.split("+")) if len(spelling) > 1 else spelling
+
+
+LAYOUTS: Final = ("auto", "qwerty", "azerty", "qwertz")
+AZERTY_LOCALES = ("fr_FR", "fr_BE", "French_France", "French_Belgium")  # locales whose usual keyboard is AZERTY
+
+
+def resolve_layout(layout: str) -> str:
+    """Replace `auto` by the layout of the user's locale; other layouts stay."""
+    if layout != "auto":
+        return layout
+    return "azerty" if locale.getlocale()[0] in AZERTY_LOCALES else "qwerty"
+
 
 KeyGroup = tuple[str, list[tuple[str, str]]]  # title, rows of keys and help
 
 
 @dataclass(frozen=True)
 class Binding:
-    """One row of the table; `minirt.viewer.input.chords` describes the spelling of keys."""
+    """One row of the table; `minirt.viewer.bindings` describes the spelling of keys."""
 
     action: str
     group: str
@@ -136,3 +218,32 @@ def keys_markdown() -> str:
         lines.append(f"| {binding.help} | {' '.join(f'`{key}`' for key in binding.keys)} | {azerty} |")
     lines.append(f"| {FINE_NOTE[1]} | `{FINE_NOTE[0]}` | |")
     return "\n".join(lines) + "\n"
+
+
+SIGNIFICANT = Modifier.ACCEL | Modifier.SHIFT
+
+
+def chords_of(binding: Binding, layout: str) -> list[Chord]:
+    """All chords that trigger a binding."""
+    plain = [parse_chord(spelling) for spelling in binding.spellings(layout)]
+    shifted = [Chord(each.code, each.modifiers | Modifier.SHIFT) for each in plain if not isinstance(each.code, str)]
+    return plain + shifted if binding.fine else plain
+
+
+class Keymap:
+    """The table of bindings, indexed by chord."""
+
+    def __init__(self, layout: str = "qwerty") -> None:
+        self.layout = resolve_layout(layout)
+        self._bindings = {each: binding for binding in BINDINGS for each in chords_of(binding, self.layout)}
+
+    def find(self, code: int | str, modifiers: Modifier = Modifier.NONE) -> Binding | None:
+        """Return the binding of a key, button or typed character with these modifiers, or None."""
+        if code == Key.ESCAPE:
+            modifiers = Modifier.NONE  # with any modifiers
+        if Modifier.ACCEL in modifiers and code in PRINTED.values():
+            modifiers &= ~Modifier.SHIFT  # some keyboards print the symbol only with Shift
+        if modifiers & ~SIGNIFICANT:
+            return None
+        # Equal integers are one dictionary key, whatever their enumeration; codes of buttons and keys do not overlap.
+        return self._bindings.get(Chord(code, modifiers))  # type: ignore[arg-type]

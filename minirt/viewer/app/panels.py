@@ -1,7 +1,8 @@
-"""Choosing an element or an attribute from a list: letters filter it, arrows go through it, Enter takes it.
+"""Panels: typing the active value, and choosing an element or an attribute from a list.
 
-The chosen one is in the scene at once, so that the picture shows it. Escape takes it out again, and any key that means
-nothing to the list leaves it there, as the last change.
+A digit or = begins a value, Enter sets it, Escape leaves it as it was. In a list letters filter, arrows go through it
+and Enter takes the choice, which is in the scene at once, so that the picture shows it. Escape takes it out again, and
+any key that means nothing to the list leaves it there, as the last change.
 """
 
 from __future__ import annotations
@@ -12,11 +13,64 @@ from typing import NamedTuple
 from minirt.element import fields_of
 from minirt.mlx import Key
 from minirt.viewer.app.session import Session
-from minirt.viewer.app.typing import ENTER
-from minirt.viewer.display.panel import Panel
-from minirt.viewer.editing import attributes, structure
+from minirt.viewer.display.overlay import Panel
+from minirt.viewer.editing import structure
 from minirt.viewer.editing.adding import addable_kinds
+from minirt.viewer.editing.editor import CHARACTERS, set_typed
 from minirt.viewer.editing.state import State
+
+ENTER = (Key.RETURN, Key.KEYPAD_ENTER)
+TYPE = "type value"  # the action that begins with =
+MAX_LENGTH = 40  # characters
+
+
+class Typing:
+    """Characters of a value that were typed; empty while no value is typed."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.text = ""
+
+    def begin(self, character: str) -> None:
+        """Begin with a digit or =."""
+        self.session.release_button()
+        self.session.state = self.session.state.with_message("")
+        self.show(character)
+
+    def on_text(self, characters: str) -> None:
+        """Add what was typed, as far as values are made of it; a minus behind a number changes its sign."""
+        text = self.text
+        for character in characters:
+            if character == "-" and not text.startswith("="):
+                text = text.removeprefix("-") if text.startswith("-") else f"-{text}"
+            elif character in CHARACTERS:
+                text += character
+        self.show(text[:MAX_LENGTH])
+
+    def on_key(self, key: int) -> bool:
+        """Take a key press; False if the key is not one of those that end or correct what is typed."""
+        if key in ENTER:
+            session = self.session
+            text, self.text = self.text, ""
+            self.show("")
+            session.show(set_typed(session.state.with_message(""), text, session.now))
+        elif key == Key.ESCAPE:
+            self.show("")
+        elif key == Key.BACKSPACE:
+            self.show(self.text[:-1])
+        else:
+            return False
+        return True
+
+    def show(self, text: str) -> None:
+        """Show what is typed; nothing if it is empty."""
+        session = self.session
+        self.text = text
+        active = session.state.active
+        name = active.name if active else "no value"
+        session.screen.panel = Panel(f"{name}: {text}_    Enter: set it    Esc: leave it") if text else None
+        session.refresh()
+
 
 ADDING = ("add", "add previous")  # actions that open the list of elements
 LISTS = (*ADDING, "add attribute")  # actions that open a list
@@ -42,9 +96,8 @@ class Choosing:
     @property
     def is_open(self) -> bool:
         """Whether the list is open."""
-        last = self.session.state.last_change
-        kind = structure.CHANGE_KIND if self._of_elements else attributes.CHANGE_KIND
-        return self._before is not None and last is not None and last[0] == kind
+        kind = structure.ELEMENT if self._of_elements else structure.ATTRIBUTE
+        return self._before is not None and structure.is_adding(self.session.state, kind)
 
     @property
     def is_filtered(self) -> bool:
@@ -101,7 +154,7 @@ class Choosing:
         if isinstance(choice.key, int):
             state = structure.add_kind(choice.key, state, session.now)
         else:
-            state = attributes.add_named(choice.key, state, session.now)
+            state = structure.add_named(choice.key, state, session.now)
         session.state = state
         self.show()
         session.show(state)
@@ -154,4 +207,4 @@ def element_choices(state: State) -> list[Choice]:
 def attribute_choices(state: State) -> list[Choice]:
     """The attributes that the selected element lacks."""
     titles = {field.name: field.title for field in fields_of(type(state.element))}
-    return [Choice(titles[field.name], field.name) for field, _ in attributes.missing_attributes(state.element, state)]
+    return [Choice(titles[field.name], field.name) for field, _ in structure.missing_attributes(state.element, state)]

@@ -1,0 +1,218 @@
+"""Files beside the scene: copies, screenshots, recovered scenes, textures and meshes; the watch on the scene's file."""
+
+from __future__ import annotations
+
+import tempfile
+import threading
+from collections.abc import Callable, Iterator, Set
+from contextlib import suppress
+from itertools import chain, count
+from pathlib import Path
+
+from minirt.helpers import file_io
+from minirt.errors import FieldError, FileError, MiniRTError, RenderError, SceneError
+from minirt.fields import MeshFile
+from minirt.fields.pictures import file_name
+from minirt.image import Image
+from minirt.meshes import load_mesh
+from minirt.helpers.file_io import reason
+from minirt.scene import Camera, Scene, dump
+from minirt.scene.files import MAX_BYTES, SUFFIX, file_error
+
+
+def create_numbered(path: Path, suffix: str, data: bytes, first: Path | None = None) -> Path:
+    """Write a new file `name-1.suffix`, or with the first number that no file has; return its path. OSError.
+
+    `first` is a name to try before. No other program's file is ever replaced, even one that is written just now.
+    """
+    numbered = (path.with_name(f"{path.stem}-{n}{suffix}") for n in count(1))
+    for each in chain([first] if first else [], numbered):
+        with suppress(FileExistsError):
+            file_io.create(each, data)
+            return each
+    raise AssertionError("there are endlessly many numbers")
+
+
+def save_copy(scene: Scene, path: Path) -> Path:
+    """Write the scene to a new file beside its own; return the new path. SceneError."""
+    return create_scene_file(path, dump(scene).encode())
+
+
+def create_scene_file(path: Path, data: bytes, first: Path | None = None) -> Path:
+    """Write a new scene file beside another one; return its path. SceneError."""
+    try:
+        return create_numbered(path, SUFFIX, data, first)
+    except OSError as error:
+        raise file_error(first or path, f"cannot be written: {reason(error)}") from None
+
+
+def save_picture(image: Image, path: Path) -> Path:
+    """Write a picture beside the scene's file; return its path. RenderError."""
+    try:
+        return create_numbered(path, ".png", image.encode())
+    except OSError as error:
+        raise RenderError(f"{path.with_suffix('.png')}: cannot write: {reason(error)}") from None
+
+
+def back_up(path: Path) -> Path:
+    """Copy a file, byte for byte, to a new file beside it; return the new path. SceneError."""
+    try:
+        data = file_io.read(path, MAX_BYTES)
+    except FileError as error:
+        raise file_error(path, error.reason) from None
+    return create_scene_file(path, data)
+
+
+def save_recovery(scene: Scene, path: Path) -> Path:
+    """Write unsaved changes beside the file, or if that fails into a new temporary folder; return the path."""
+    name = f"{path.stem}.recovered{SUFFIX}"
+    data = dump(scene).encode()
+    try:
+        return create_scene_file(path.with_name(name), data, path.with_name(name))
+    except SceneError:
+        folder = Path(tempfile.mkdtemp(prefix="minirt-"))
+        return create_scene_file(folder / name, data, folder / name)
+
+
+def contents_differ(scene: Scene, saved: Scene) -> bool:
+    """Whether two scenes differ in more than the camera: looking around is not an unsaved change."""
+    return contents(scene) != contents(saved)
+
+
+def contents(scene: Scene) -> list[object]:
+    """Return the lines of a scene, without the camera's."""
+    return [item for item in scene.items if not isinstance(item, Camera)]
+
+
+def error_summary(error: MiniRTError) -> str:
+    """Return the first problem of an error without the quoted line, and the number of further problems."""
+    if not isinstance(error, SceneError):
+        return str(error)
+    first, others = str(error.problems[0]).split("\n")[0], len(error.problems) - 1
+    return f"{first}\nand {others} more" if others else first
+
+
+INTERVAL = 0.25  # seconds between two checks of the file
+
+Signature = tuple[int, int, int] | None  # modification time, size, inode; None if there is no file
+
+
+class WatchedFile:
+    """A file whose last state read or written here is known, so that changes by other programs can be reported."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._known = signature(path)
+        self._reported = self._known
+        self._closed = threading.Event()
+
+    def accept(self, seen: Signature) -> None:
+        """Record the signature of the file as it was just read or written here."""
+        self._known = self._reported = seen
+
+    @property
+    def known(self) -> Signature:
+        """The signature of the file as it was last read or written here."""
+        return self._known
+
+    @property
+    def missing(self) -> bool:
+        """Whether the file was there, and is not any more."""
+        return self._known is not None and signature(self.path) is None
+
+    @property
+    def changed(self) -> bool:
+        """Whether another program has written the file since."""
+        now = signature(self.path)
+        return now is not None and now != self._known
+
+    def watch(self, notify: Callable[[], object]) -> None:
+        """Start a thread that calls `notify` when the file was changed or deleted and two checks found it the same."""
+        threading.Thread(target=self._watch, args=(notify,), name="minirt-watch", daemon=True).start()
+
+    def close(self) -> None:
+        """Stop watching."""
+        self._closed.set()
+
+    def _watch(self, notify: Callable[[], object]) -> None:
+        before = self._reported
+        while not self._closed.wait(INTERVAL):
+            now = signature(self.path)
+            if now == before and now != self._reported:
+                self._reported = now
+                notify()
+            before = now
+
+
+def signature(path: Path) -> Signature:
+    """Return the numbers that differ when a file has changed."""
+    try:
+        status = path.stat()
+    except (OSError, ValueError):
+        return None
+    return status.st_mtime_ns, status.st_size, status.st_ino
+
+
+PICTURE_SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".tga", ".webp", ".xpm"}
+MESH_SUFFIXES = {".obj"}
+
+
+def asset_names(scene: Scene, suffixes: Set[str] = PICTURE_SUFFIXES) -> list[str]:
+    """Return the files with these suffixes, relative to the scene's folder, those in the folder itself first."""
+    top = scene.beside("")
+    inside = sorted(each for each in children(top) if each.is_dir() and not each.name.startswith("."))
+    files = [each for folder in (top, *inside) for each in sorted(children(folder)) if each.suffix.lower() in suffixes]
+    return [each.relative_to(top).as_posix() for each in files]
+
+
+def children(folder: Path) -> list[Path]:
+    """Return the entries of a folder; an empty list if it cannot be read."""
+    try:
+        return list(folder.iterdir())
+    except OSError:
+        return []
+
+
+def is_usable_picture(scene: Scene, name: str) -> bool:
+    """Whether a scene line can spell the name and the file holds a picture."""
+    from minirt.materials.picture_cache import picture  # loads numpy and Pillow, which no other key needs
+
+    try:
+        picture(scene.beside(file_name(name, ",")))
+    except (FieldError, FileError):
+        return False
+    return True
+
+
+def pictures(scene: Scene) -> Iterator[str]:
+    """Yield the names of the usable pictures."""
+    return (name for name in asset_names(scene) if is_usable_picture(scene, name))
+
+
+def read_mesh(scene: Scene, name: str) -> MeshFile | None:
+    """Read a mesh; None if a scene line cannot spell the name or the file holds no mesh."""
+    try:
+        return MeshFile(file_name(name), load_mesh(scene.beside(name)))
+    except (FieldError, FileError):
+        return None
+
+
+def meshes(scene: Scene) -> Iterator[MeshFile]:
+    """Yield the usable meshes."""
+    return filter(None, (read_mesh(scene, name) for name in asset_names(scene, MESH_SUFFIXES)))
+
+
+def next_file(scene: Scene, file: str | MeshFile, steps: float) -> str | MeshFile:
+    """Return the next usable picture or mesh after `file`, cyclically; the previous one if `steps` is negative."""
+    if isinstance(file, MeshFile):
+        candidates = cycle_after(asset_names(scene, MESH_SUFFIXES), file.name, steps)
+        return next(filter(None, (read_mesh(scene, each) for each in candidates)), file)
+    return next((each for each in cycle_after(asset_names(scene), file, steps) if is_usable_picture(scene, each)), file)
+
+
+def cycle_after(names: list[str], name: str, steps: float) -> list[str]:
+    """Return all names in cyclic order from the one after `name`; in reverse order if `steps` is negative."""
+    if steps < 0:
+        names.reverse()
+    start = names.index(name) + 1 if name in names else 0
+    return names[start:] + names[:start]
