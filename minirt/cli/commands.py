@@ -126,7 +126,7 @@ def replay(scene: Scene, options: argparse.Namespace) -> int:
     """Play recorded keys without a window; write the last frame, or all frames as a film, to the output if given."""
     import minirt
     from minirt.movie import record_movie
-    from minirt.viewer.app.animation import FPS, record
+    from minirt.viewer.app.replay import FPS, record
     from minirt.viewer.app.replay import replay as play
 
     width, height = options.size or minirt.size_of(scene)

@@ -9,13 +9,13 @@ from contextlib import suppress
 from itertools import chain, count
 from pathlib import Path
 
-from minirt.helpers import file_io
 from minirt.errors import FieldError, FileError, MiniRTError, RenderError, SceneError
 from minirt.fields import MeshFile
 from minirt.fields.pictures import file_name
+from minirt.helpers import file_io
+from minirt.helpers.file_io import reason
 from minirt.image import Image
 from minirt.meshes import load_mesh
-from minirt.helpers.file_io import reason
 from minirt.scene import Camera, Scene, dump
 from minirt.scene.files import MAX_BYTES, SUFFIX, file_error
 

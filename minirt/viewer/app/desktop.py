@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NoReturn
 
 import minirt
+from minirt.helpers.signals import ended_by_signals
 from minirt.helpers.system import gc_paused
 from minirt.mlx import Mlx
 from minirt.scene import Scene
@@ -17,7 +18,6 @@ from minirt.scene.arguments import check_scene
 from minirt.viewer.app import recovery
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
-from minirt.viewer.app.signals import ended_by_signals
 from minirt.viewer.display.application_icon import application_icons
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Renderer
