@@ -11,7 +11,7 @@ from pathlib import Path
 
 from minirt.errors import FieldError, FileError, MiniRTError, RenderError, SceneError
 from minirt.fields import MeshFile
-from minirt.fields.pictures import file_name
+from minirt.fields.triples import file_name
 from minirt.helpers import file_io
 from minirt.helpers.file_io import reason
 from minirt.image import Image

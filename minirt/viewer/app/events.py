@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from minirt.mlx import Event
-from minirt.mlx.keys import MODIFIER_KEYS
+from minirt.mlx.events import MODIFIER_KEYS
 from minirt.viewer.app import recovery
 from minirt.viewer.app.commands import COMMANDS, follow_change, open_another
 from minirt.viewer.app.mouse import Mouse
