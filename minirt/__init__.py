@@ -36,8 +36,8 @@ if TYPE_CHECKING:  # the same names for type checkers, which see no `__getattr__
     from minirt.rendering import Renderer as Renderer
     from minirt.rendering.buffers import Buffers as Buffers
     from minirt.rendering.buffers import buffers as buffers
-    from minirt.rendering.queries.camera_rays import camera_rays as camera_rays
-    from minirt.rendering.queries.hits import Hits as Hits
+    from minirt.rendering.queries.rays import Hits as Hits
+    from minirt.rendering.queries.rays import camera_rays as camera_rays
     from minirt.rendering.queries.rays import trace as trace
     from minirt.saved_movie import save_movie as save_movie
     from minirt.scene import Ambient as Ambient
@@ -73,8 +73,8 @@ MODULES = {
     "minirt.notebook": ("view",),
     "minirt.rendering": ("Renderer",),
     "minirt.rendering.buffers": ("Buffers", "buffers"),
-    "minirt.rendering.queries.camera_rays": ("camera_rays",),
-    "minirt.rendering.queries.hits": ("Hits",),
+    "minirt.rendering.queries.rays": ("camera_rays",),
+    "minirt.rendering.queries.rays": ("Hits",),
     "minirt.rendering.queries.rays": ("trace",),
     "minirt.saved_movie": ("save_movie",),
     "minirt.scene": (
@@ -194,7 +194,7 @@ def render(
 
     With `samples` "auto" each part of the picture gets as many samples as it needs, until the estimated error is at
     most `error` (DEFAULT_ERROR if neither is given) or `time` seconds have passed, compilation not counted; `.reached`
-    of the picture tells which. Errors are defined in `minirt.rendering.sampling.outcome`. Without `linear` light, the
+    of the picture tells which. Errors are defined in `minirt.rendering.outcome`. Without `linear` light, the
     picture has 8 bits alone, and sampling also ends where rounding to them decides its error.
 
     Tone and exposure are those of the camera; light is exposed, but has no tone. `dither` replaces rounding to 8 bits
@@ -211,7 +211,7 @@ def render(
     from minirt.helpers import system
     from minirt.helpers.progress import State, in_notebooks
     from minirt.image import Image, LinearImage
-    from minirt.rendering.crop import cut_for
+    from minirt.rendering.packing.camera import cut_for
     from minirt.scene.arguments import check_scene
 
     check_scene(scene, "render")
@@ -266,6 +266,6 @@ def renderer(
 
     Equal arguments, defaults included, give the same object, which keeps its threads and the packed scene.
     """
-    from minirt.rendering.shared import shared_renderer
+    from minirt.rendering.renderer import shared_renderer
 
     return shared_renderer(threads, precision, depth, dither)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import DTypeLike
     from PIL.Image import Image as PillowImage
 
-    from minirt.rendering.sampling.outcome import Outcome
+    from minirt.rendering.outcome import Outcome
 
 DEEP = 65535  # highest level of 16 bits
 BLOCK = 2**18  # pixels that are converted at once
@@ -74,7 +74,7 @@ class Image:
     @property
     def deep(self) -> np.ndarray:
         """The picture with 16 bits a channel, (h, w, 3) uint16, made of its light; RenderError without light."""
-        from minirt.rendering.developing.tone import levels_of
+        from minirt.rendering.tone_mapping import levels_of
 
         light = self.light("16 bits")
         levels = np.empty(light.shape, np.uint16)

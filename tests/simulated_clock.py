@@ -12,9 +12,8 @@ from minirt.helpers.system import Run
 from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.stored_light import PACKET_HEIGHT
 from minirt.rendering import renderer
-from minirt.rendering.frame_arguments import Frame
-from minirt.rendering.running import to_error
-from minirt.rendering.running.frame_runner import FrameRunner
+from minirt.rendering.frame import Frame
+from minirt.rendering.frame_runner import FrameRunner
 from minirt.rendering.sampling import auto
 from minirt.report.measurements import formula_errors, picture_errors
 

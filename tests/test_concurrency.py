@@ -14,7 +14,7 @@ import pytest
 
 import minirt
 from minirt.errors import Problem
-from minirt.rendering import shared
+from minirt.rendering import renderer
 from tests.cli.program import SCENE, environment
 from tests.lines import next_line
 from tests.processes import run, started
@@ -141,15 +141,15 @@ def test_a_cancelled_picture_is_an_error(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_threads_that_ask_at_once_get_the_same_renderer(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shared, "renderers", {})
+    monkeypatch.setattr(renderer, "renderers", {})
     made: list[object] = []
 
     def make(*settings: object) -> object:
         made.append(settings)
-        assert shared.lock.lock.locked()  # no other thread makes one meanwhile
+        assert renderer.lock.lock.locked()  # no other thread makes one meanwhile
         return object()
 
-    monkeypatch.setattr(shared, "Renderer", make)
+    monkeypatch.setattr(renderer, "Renderer", make)
     with ThreadPoolExecutor(8) as pool:
         found = set(pool.map(lambda _: minirt.renderer(3), range(64)))
     assert len(found) == 1

@@ -18,7 +18,7 @@ from minirt.errors import RenderError
 from minirt.helpers.progress import State, progress
 
 if TYPE_CHECKING:
-    from minirt.rendering.sampling.outcome import Outcome
+    from minirt.rendering.outcome import Outcome
     from minirt.scene import Scene
 
 LOCAL = "local"
@@ -59,7 +59,7 @@ def pool() -> Executor:
     """Return a pool of processes that leave Ctrl+C to this one, and end with it."""
     from multiprocessing import get_context
 
-    from minirt.rendering.running.cores import usable_cores
+    from minirt.rendering.threads import usable_cores
 
     return ProcessPoolExecutor(min(usable_cores(), MOST_PROCESSES), get_context("spawn"), serve)
 

@@ -17,7 +17,7 @@ from minirt.helpers.progress import State
 
 if TYPE_CHECKING:
     from minirt.image import Image
-    from minirt.rendering.sampling.outcome import Outcome
+    from minirt.rendering.outcome import Outcome
     from minirt.scene import Scene
 
 

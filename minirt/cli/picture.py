@@ -116,7 +116,7 @@ def rows_done(renderer: Renderer, height: int) -> float:
 def clipped(scene: Scene, options: argparse.Namespace, width: int, height: int) -> str:
     """Count the pixels that are brighter than the picture can show, by their light with one sample each."""
     import minirt
-    from minirt.rendering.developing.develop import clipped_pixels
+    from minirt.rendering.tone_mapping import clipped_pixels
 
     settings = {"threads": options.threads, "precision": options.precision, "depth": options.depth}
     light = minirt.render(scene, width, height, region=options.region, **settings).linear

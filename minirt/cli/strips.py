@@ -29,7 +29,7 @@ class Strips:
     """The strips of a picture that is being rendered."""
 
     def __init__(self, scene: Scene, options: argparse.Namespace, size: tuple[int, int], samples: int) -> None:
-        from minirt.rendering.crop import strips_of
+        from minirt.rendering.packing.camera import strips_of
 
         self.scene = scene
         self.size = size

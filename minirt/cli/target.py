@@ -59,7 +59,7 @@ def check_format(options: argparse.Namespace) -> None:
 def check_region(options: argparse.Namespace, output: str, width: int, height: int) -> int:
     """Check that the region that the options ask for, or all of a picture of this size, can be written to a file;
     RenderError otherwise. Return its height."""
-    from minirt.rendering.crop import cut_for
+    from minirt.rendering.packing.camera import cut_for
 
     cut_for(options.region, width, height)
     *_, across, down = options.region or (width, height)

@@ -11,7 +11,7 @@ from math import sqrt
 
 from minirt.cluster.task import Region
 from minirt.kernel.stored_light import TILE
-from minirt.rendering.sampling.outcome import Outcome
+from minirt.rendering.outcome import Outcome
 
 ROWS = 64  # of a band, where the next two leave the choice
 MOST_PIXELS = 2**21  # of a band, whose light takes 48 MiB; but at least one row of tiles

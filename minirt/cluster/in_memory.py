@@ -12,7 +12,7 @@ from minirt.cluster.task import Region, Settings
 from minirt.cluster.workers import WorkerPool, Workers
 from minirt.formats.in_frame import levels_in_frame
 from minirt.image import Image, LinearImage
-from minirt.rendering.sampling.outcome import Outcome
+from minirt.rendering.outcome import Outcome
 from minirt.scene import Scene
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
-from minirt.rendering.sampling.outcome import Outcome
+from minirt.rendering.outcome import Outcome
 
 CHUNK = 2**22  # bytes that are read at once
 

@@ -12,7 +12,7 @@ from minirt.cluster.parcel import Parcel, pack
 from minirt.cluster.task import Made, Region, Settings, Task, version
 from minirt.cluster.workers import WorkerPool
 from minirt.errors import RenderError
-from minirt.rendering.crop import cut_for
+from minirt.rendering.packing.camera import cut_for
 from minirt.scene import Scene
 
 

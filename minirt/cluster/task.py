@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from minirt.rendering.sampling.outcome import Outcome
+from minirt.rendering.outcome import Outcome
 from minirt.scene import Camera
 
 Region = tuple[int, int, int, int]  # column, row, width and height in pixels

@@ -16,7 +16,7 @@ from minirt.cluster.workers import WorkerPool, Workers
 from minirt.errors import RenderError
 from minirt.formats.table import check_bits, check_size, format_of
 from minirt.helpers import file_io
-from minirt.rendering.sampling.outcome import Outcome
+from minirt.rendering.outcome import Outcome
 from minirt.scene import Scene
 from minirt.scene.arguments import check_scene
 

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 
 from minirt.cluster.task import Answer, Task
 from minirt.cluster.worker import carry_out
-from minirt.rendering.running.cores import usable_cores
+from minirt.rendering.threads import usable_cores
 
 HERE = 2  # threads of this process: one renders, the other compresses
 OF_EACH = 2  # tasks of each worker: one is rendered, one waits

@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 from minirt.fields import unit
 from minirt.kernel.rows import kind_of
 from minirt.lanes import Vec
-from minirt.rendering.packing.lens import packed_columns
+from minirt.rendering.packing.camera import packed_columns
 from minirt.rendering.packing.materials import placement_numbers
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.camera_rays import camera_rays
-from minirt.rendering.queries.rays import trace
-from minirt.rendering.shared import shared_renderer
+from minirt.rendering.queries.rays import camera_rays, trace
+from minirt.rendering.renderer import shared_renderer
 from minirt.scene import Ambient, Scene
 from minirt.scene.arguments import check_scene
 from minirt.shapes import Shape

@@ -1,4 +1,4 @@
-"""Renders scenes on all processors: the facade of this package."""
+"""Renders scenes on all processors: the facade of this package, and renderers that all callers share."""
 
 from __future__ import annotations
 
@@ -11,19 +11,18 @@ from time import perf_counter
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.helpers.system import renew_after_fork
+from minirt.helpers.system import ForkSafeLock, renew_after_fork
 from minirt.kernel.machine_code.library import LIBRARY
-from minirt.rendering.crop import Crop
-from minirt.rendering.darkroom import Darkroom
-from minirt.rendering.notes import NO_GENERIC_KERNEL, kernel_notes
+from minirt.rendering.frame_runner import FrameRunner, render_samples, render_to_error
+from minirt.rendering.kernels import Kernels
+from minirt.rendering.notes import NO_WIDE_KERNEL, kernel_notes
+from minirt.rendering.outcome import Outcome
+from minirt.rendering.packing.camera import Crop
 from minirt.rendering.packing.features import DEPTH
-from minirt.rendering.running import fixed_samples, to_error
-from minirt.rendering.running.cores import usable_cores
-from minirt.rendering.running.frame_runner import FrameRunner
-from minirt.rendering.running.kernels import Kernels
 from minirt.rendering.sampling.contrast import classify_call
-from minirt.rendering.sampling.outcome import Outcome
 from minirt.rendering.scene_packing import Packing
+from minirt.rendering.threads import usable_cores
+from minirt.rendering.tone_mapping import ToneMapper
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
@@ -48,7 +47,7 @@ class Renderer:
         self.busy = Lock()
         self.kernels = Kernels(precision, self.depth)
         self.runner = FrameRunner(self.threads, self.kernels)
-        self.darkroom = Darkroom(self.runner, dither)
+        self.tone_mapper = ToneMapper(self.runner.run_jobs, self.threads, dither)
         renew_after_fork(self)
 
     def after_fork(self) -> None:
@@ -83,22 +82,22 @@ class Renderer:
         choice, last = self.runner.choice, self.packing.last
         if not choice or not last:
             return []
-        missing = [] if self.kernels.is_generic_kernel_there else [NO_GENERIC_KERNEL]
-        sentences = kernel_notes(last[0], choice.generic, self.kernels.background.busy)
+        missing = [] if self.kernels.is_wide_kernel_there else [NO_WIDE_KERNEL]
+        sentences = kernel_notes(last[0], choice.wide, self.kernels.background.busy)
         return [*sentences, *missing, *self.packing.notes]
 
     def is_ready(self, scene: Scene) -> bool:
-        """Whether there is a kernel, specialised or generic, that can draw this scene."""
+        """Whether there is a kernel, narrow or wide, that can draw this scene."""
         return self.kernels.is_ready(scene)
 
     def prepare(self, scene: Scene) -> None:
-        """Load a kernel that can draw this scene. Where there is none, another process compiles the specialised one,
-        which takes seconds. RenderError where that fails.
+        """Load a kernel that can draw this scene. Where there is none, another process compiles the narrow one, which
+        takes seconds. RenderError where that fails.
         """
         self.render(scene, np.zeros((1, 1, 4), np.uint8))
 
     def specialise(self, scene: Scene) -> None:
-        """Load or compile the specialised kernel for this scene, so that measurements are those of this kernel alone.
+        """Load or compile the narrow kernel for this scene, so that measurements are those of this kernel alone.
 
         RenderError where compiling fails.
         """
@@ -106,10 +105,10 @@ class Renderer:
         self.prepare(scene)
 
     def specialise_early(self, notify: Callable[[], object] = lambda: None) -> None:
-        """Have specialised kernels compiled as soon as a generic one has drawn a picture: for windows, which stay open.
+        """Have narrow kernels compiled as soon as a wide one has drawn a picture: for windows, which stay open.
 
         `notify` is called when one has been compiled, by the thread that waited for it."""
-        self.kernels.specialised_after = 0.0
+        self.kernels.narrow_after = 0.0
         self.kernels.background.notify = notify
 
     def stop(self) -> None:
@@ -169,17 +168,17 @@ class Renderer:
         if samples < 1:
             raise RenderError(f"a pixel needs at least 1 sample, got {samples}")
         self.runner.not_finite = 0
-        light = self.darkroom.light_for(scene, pixels, linear, edges_only)
+        light = self.tone_mapper.light_for(scene, pixels, linear, edges_only)
         is_done = True
         if not scene.shapes or not pixels.size:
             draw_background(scene, pixels, light, crop)
         else:
             self.kernels.make_ready(scene)
-            is_done = fixed_samples.render(
+            is_done = render_samples(
                 self.runner, self.packing, scene, pixels, light, samples, is_wanted, edges_only, crop
             )
         if is_done:
-            self.darkroom.develop(scene, pixels, light, crop)
+            self.tone_mapper.apply(scene, pixels, light, *corner(crop))
         return is_done
 
     def reach(
@@ -197,7 +196,7 @@ class Renderer:
         with self.busy:
             start = perf_counter()
             self.runner.not_finite = 0
-            light = self.darkroom.light_for(scene, pixels, linear)
+            light = self.tone_mapper.light_for(scene, pixels, linear)
             if not scene.shapes or not pixels.size:
                 draw_background(scene, pixels, light, crop)
                 outcome: Outcome | None = Outcome(1.0, 1, 0.0, perf_counter() - start, error)
@@ -205,12 +204,15 @@ class Renderer:
                 self.kernels.make_ready(scene)
                 LIBRARY.get(classify_call())
                 least = None
-                if linear is None and self.darkroom.needed(scene):
+                if linear is None and self.tone_mapper.needed(scene):
                     first = partial(self._draw, scene, pixels, 1, None, lambda: True, edges_only=False, crop=crop)
-                    least = self.darkroom.floor(scene, pixels, error, first)
+                    least = self.tone_mapper.floor(scene, pixels, error, first)
                 left = seconds - (perf_counter() - start)
-                outcome = to_error.reach(self.runner, self.packing, scene, pixels, light, error, left, least, crop)
-            return self.darkroom.finish(scene, pixels, light, outcome, crop)
+                outcome = render_to_error(self.runner, self.packing, scene, pixels, light, error, left, least, crop)
+            if outcome and self.tone_mapper.needed(scene):
+                self.tone_mapper.apply(scene, pixels, light, *corner(crop))
+                outcome = outcome._replace(rounding=self.tone_mapper.rounding(scene, pixels))
+            return outcome
 
     def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
         """Return the shape that a pixel of a picture shows, see `minirt.rendering.queries.pick`.
@@ -242,8 +244,28 @@ class Renderer:
         self.runner.cancel()
 
 
+def corner(crop: Crop | None) -> tuple[int, int]:
+    """Return the column and row of a picture at which a rectangle begins."""
+    return (crop.left, crop.top) if crop else (0, 0)
+
+
 def draw_background(scene: Scene, pixels: np.ndarray, linear: np.ndarray, crop: Crop | None = None) -> None:
     """Draw a scene without shapes, see `minirt.rendering.queries.preview`."""
     from minirt.rendering.queries import preview
 
     preview.draw_background(scene, pixels, linear, crop)
+
+
+Settings = tuple[int | None, str, int | None, bool]
+
+renderers: dict[Settings, Renderer] = {}
+lock = ForkSafeLock()  # two threads that ask at once get the same renderer
+
+
+def shared_renderer(threads: int | None, precision: str, depth: int | None, dither: bool) -> Renderer:
+    """Return the renderer with these settings, which keeps its threads and the packed scene for the next picture."""
+    settings = threads, precision, depth, dither
+    with lock:
+        if settings not in renderers:
+            renderers[settings] = Renderer(*settings)
+        return renderers[settings]

@@ -12,11 +12,9 @@ from minirt import jail
 from minirt.helpers.system import TooLargeError
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import Group, SceneArrays
-from minirt.rendering.crop import Crop
 from minirt.rendering.culling.light_frustum import dense_cluster
 from minirt.rendering.culling.list_sizes import COARSEST
 from minirt.rendering.culling.planes import never_occludes
-from minirt.rendering.culling.unseen_materials import effective, without_unseen
 from minirt.rendering.culling.visibility import (
     BinnedShapes,
     light_buffer_cells,
@@ -26,12 +24,18 @@ from minirt.rendering.culling.visibility import (
 )
 from minirt.rendering.notes import notes
 from minirt.rendering.packing.bvh import build_bvh
-from minirt.rendering.packing.camera import camera_numbers, placed_rays
-from minirt.rendering.packing.colours import colours_of
-from minirt.rendering.packing.eye_medium import medium_at
+from minirt.rendering.packing.camera import (
+    Crop,
+    camera_numbers,
+    distance_in_the_middle,
+    lens_numbers,
+    placed_rays,
+    radius_and_focus,
+)
 from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
-from minirt.rendering.packing.lens import distance_in_the_middle, lens_numbers, radius_and_focus
+from minirt.rendering.packing.generic import in_single
 from minirt.rendering.packing.lights import (
+    colours_of,
     emitting_lights,
     intensity,
     positions_and_intensities,
@@ -39,9 +43,8 @@ from minirt.rendering.packing.lights import (
     sizes,
     spot_parameters,
 )
-from minirt.rendering.packing.materials import pack_environment, pack_materials
+from minirt.rendering.packing.materials import effective, medium_at, pack_environment, pack_materials, without_unseen
 from minirt.rendering.packing.shape_arrays import ShapeArrays, smooth_primitives
-from minirt.rendering.packing.single_precision import in_single
 from minirt.scene import ParallelLight, Scene
 from minirt.shapes import Shape
 

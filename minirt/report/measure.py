@@ -9,7 +9,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
-from minirt.rendering.running.cores import usable_cores
+from minirt.rendering.threads import usable_cores
 from minirt.report.formulas import SEED, formula_names, formula_rows, kinds_not_measured, kinds_of
 from minirt.report.measurements import durations, formula_errors, picture_errors
 from minirt.report.measurements.ablation import Ablation, Part

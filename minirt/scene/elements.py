@@ -8,7 +8,7 @@ from minirt.element import Element
 from minirt.fields import Choice, Colour, Direction, Length, Paint, Point, Real, Triple, Whole, declare, unit
 from minirt.records import record
 
-TONES = ("plain", "srgb", "filmic")  # how light becomes the levels of a picture, see `minirt.rendering.developing.tone`
+TONES = ("plain", "srgb", "filmic")  # how light becomes the levels of a picture, see `minirt.rendering.tone_mapping`
 
 
 @record()

@@ -1,6 +1,6 @@
 """Boundaries of shapes: their faces, as functions of a point that are 0 there.
 
-A file of a shape declares `boundary(shape, point)`, which `minirt.rendering.queries.certificate` calls to check hits:
+A file of a shape declares `boundary(shape, point)`, which `minirt.rendering.queries.certificates` calls to check hits:
 
     def boundary(sphere: Any, point: Vec) -> Boundary:
         return Boundary((length(point - sphere.centre) - sphere.diameter / 2,))

@@ -11,7 +11,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from minirt.rendering.running.cores import usable_cores
+from minirt.rendering.threads import usable_cores
 from minirt.report.measurements.machine import processor
 from tests.bench import formulas, latencies, meshes, scenes, starts
 from tests.bench.measure import Cells, available, take_turns

@@ -11,7 +11,7 @@ from statistics import median
 from time import perf_counter
 from typing import NamedTuple
 
-from minirt.rendering.running.cores import usable_cores
+from minirt.rendering.threads import usable_cores
 from tests.bench.system import MissingError, System
 
 PROCESSOR_TIME = Path("/proc/stat")  # processor time of all programs, in ticks

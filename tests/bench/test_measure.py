@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from minirt.rendering.running.cores import usable_cores
+from minirt.rendering.threads import usable_cores
 from tests.bench import measure
 from tests.bench.measure import Cell, Clock, Round, available, clock, elsewhere, take_turns
 from tests.bench.system import MissingError, Setting, System

@@ -11,8 +11,8 @@ from threading import Thread
 from typing import Any
 
 from minirt.cli import main
-from minirt.rendering.frame_arguments import Frame
-from minirt.rendering.running.frame_runner import FrameRunner
+from minirt.rendering.frame import Frame
+from minirt.rendering.frame_runner import FrameRunner
 from tests.waiting import until
 
 RENDERING = b"rendering"

@@ -8,8 +8,8 @@ from threading import Event
 
 from minirt.cli import main
 from minirt.helpers import progress
-from minirt.rendering.frame_arguments import Frame
-from minirt.rendering.running.frame_runner import FrameRunner
+from minirt.rendering.frame import Frame
+from minirt.rendering.frame_runner import FrameRunner
 from tests.waiting import until
 
 

@@ -14,7 +14,7 @@ import minirt
 from minirt.cluster.bands import LEAST_PIXELS, MOST_PIXELS, ROWS, bands_of, runs, whole
 from minirt.errors import RenderError
 from minirt.kernel.frame import TILE
-from minirt.rendering.sampling.outcome import Outcome
+from minirt.rendering.outcome import Outcome
 from tests.cluster.scenes import BALL
 
 SIZE = 70, 61

@@ -11,7 +11,7 @@ from PIL import Image as pillow  # noqa: N813
 
 from minirt.errors import RenderError
 from minirt.image import Image
-from minirt.rendering.developing.tone import light_of
+from minirt.rendering.tone_mapping import light_of
 from tests.formats.pictures import SIZES, light, picture
 
 cv2 = pytest.importorskip("cv2")

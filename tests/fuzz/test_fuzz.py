@@ -11,7 +11,6 @@ from minirt.errors import MiniRTError, SceneError
 from minirt.fields import scalars, triples
 from minirt.jail import decoder
 from minirt.meshes import obj_lines
-from minirt.rendering.packing import lens
 from minirt.viewer.input.recording_line import Line
 from tests.fuzz import __main__ as command
 from tests.fuzz import arguments, scene_grammar, scenes

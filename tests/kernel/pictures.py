@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from minirt.kernel import frame
 from minirt.kernel import interpreted as interpreted_functions
 from minirt.rendering import Renderer
-from minirt.rendering.frame_arguments import ALL_PACKETS, NO_ERRORS, sample_positions, sum_buffer, thread_memory
+from minirt.rendering.frame import ALL_PACKETS, NO_ERRORS, sample_positions, sum_buffer, thread_memory
 from minirt.rendering.packing.camera import packet_rays
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.scene_packing import Packing

@@ -11,7 +11,7 @@ from minirt.kernel import frame, interpreted
 from minirt.kernel.frame import CANCELLED
 from minirt.kernel.stored_light import TILE
 from minirt.lanes import Vec
-from minirt.rendering.frame_arguments import frame_arguments
+from minirt.rendering.frame import frame_arguments
 from minirt.rendering.scene_packing import Packing
 from tests.kernel.pictures import ALL
 

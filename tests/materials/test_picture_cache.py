@@ -14,7 +14,7 @@ from PIL import Image
 from minirt.errors import FileError
 from minirt.materials import picture_files
 from minirt.materials.picture_cache import heights, picture
-from minirt.rendering.packing.colours import Colours
+from minirt.rendering.packing.lights import Colours
 from minirt.rendering.packing.materials import TexturePool
 from minirt.scene import parse
 from tests.guards import must_not_open

@@ -11,9 +11,8 @@ from numpy.testing import assert_allclose
 from minirt.kernel import frame, interpreted
 from minirt.materials import Checker
 from minirt.rendering import Renderer
-from minirt.rendering.frame_arguments import frame_arguments
-from minirt.rendering.packing.aperture_rays import aperture_places, in_disc, with_apertures
-from minirt.rendering.packing.lens import lens_numbers
+from minirt.rendering.frame import frame_arguments
+from minirt.rendering.packing.camera import aperture_places, in_disc, lens_numbers, with_apertures
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight, parse
 from minirt.shapes.disc import Disc
@@ -75,7 +74,7 @@ def test_a_light_moved_along_one_axis_alone_would_show(monkeypatch: pytest.Monke
     def flattened(samples: int, variants: int, pixels: int, seed: int) -> np.ndarray:
         return np.where(np.arange(4) == axis, 0.0, aperture_places(samples, variants, pixels, seed))
 
-    monkeypatch.setattr("minirt.rendering.frame_arguments.aperture_places", flattened)
+    monkeypatch.setattr("minirt.rendering.frame.aperture_places", flattened)
     across = [penumbra(LAMPS[kind], along) for along in ("x", "z")]
     assert max(np.abs(share - shares_seen(kind, x)).max() for x, share in across) > 0.03
 

@@ -11,9 +11,9 @@ import pytest
 
 import minirt
 from minirt.kernel.frame import tile_count
-from minirt.rendering import crop, darkroom, scene_packing
-from minirt.rendering.crop import Crop
-from minirt.rendering.running import fixed_samples
+from minirt.rendering import frame_runner, scene_packing, tone_mapping
+from minirt.rendering.packing import camera
+from minirt.rendering.packing.camera import Crop
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Background, Camera, Scene
 from minirt.shapes.sphere import Sphere
@@ -80,7 +80,7 @@ def test_each_part_that_forgot_its_place_would_be_noticed(part: str, monkeypatch
     if part == "rays":
         rays = scene_packing.placed_rays
         monkeypatch.setattr(
-            scene_packing, "placed_rays", lambda camera, crop: rays(camera, crop._replace(left=0, top=0))
+            scene_packing, "placed_rays", lambda camera, crop: rays(camera, camera._replace(left=0, top=0))
         )
     elif part == "lists":
         binned = scene_packing.seen_by_eye
@@ -91,17 +91,17 @@ def test_each_part_that_forgot_its_place_would_be_noticed(part: str, monkeypatch
         )
     elif part == "variants":
         scene, settings = soft_scene(), {"samples": 4, "threads": 1}
-        monkeypatch.setattr(fixed_samples, "frame_arguments", without_place(fixed_samples.frame_arguments))
+        monkeypatch.setattr(frame_runner, "frame_arguments", without_place(frame_runner.frame_arguments))
     else:
         settings = {"dither": True, "threads": 1}
-        develop = darkroom.develop
-        monkeypatch.setattr(darkroom, "develop", lambda *given: develop(*given[:6]))
+        map_tones = tone_mapping.map_tones
+        monkeypatch.setattr(tone_mapping, "map_tones", lambda *given: map_tones(*given[:6]))
     with pytest.raises(AssertionError):
         assert_same(scene, REGIONS[1:2], **settings)
 
 
 def test_a_region_takes_the_tiles_that_it_touches_and_no_others() -> None:
-    cut = crop.cut_for((37, 21, 60, 50), *SIZE)
+    cut = camera.cut_for((37, 21, 60, 50), *SIZE)
     assert (cut.crop, cut.shape) == (Crop(*SIZE, 32, 16), (55, 65))
     group, *_ = Packing().pack(EVERY, *cut.shape[::-1], cut.crop).groups
     assert len(group.tile_starts) == tile_count(55) * tile_count(65) + 1
@@ -149,8 +149,8 @@ def test_a_region_beyond_the_picture_is_an_error(region: tuple[int, int, int, in
 
 @pytest.mark.parametrize("region", [(0, 0, 640, 480), (37, 5, 300, 7), (15, 0, 1, 1)])
 @pytest.mark.parametrize("samples", [1, 64, 65536])
-def test_strips_cover_a_region_once_and_begin_with_tiles(region: crop.Region, samples: int) -> None:
-    found = crop.strips_of(region, samples, 2**23)
+def test_strips_cover_a_region_once_and_begin_with_tiles(region: camera.Region, samples: int) -> None:
+    found = camera.strips_of(region, samples, 2**23)
     columns = [column for x, _, width, _ in found for column in range(x, x + width)]
     assert columns == list(range(region[0], region[0] + region[2]))
     assert all(x % 16 == 0 for x, *_ in found[1:])

@@ -14,9 +14,9 @@ from minirt.element import Element, fields_of
 from minirt.errors import ElementError
 from minirt.fields import FARTHEST, Direction, Field, Length, Lengths, Point
 from minirt.rendering import Renderer
+from minirt.rendering.kernels import Kernels
 from minirt.rendering.queries.pick import pick
 from minirt.rendering.queries.preview import render_interpreted
-from minirt.rendering.running.kernels import Kernels
 from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.stiffness import lost_in_single
 from minirt.scene import Ambient, Camera, Light, Scene

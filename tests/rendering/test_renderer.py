@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+import sys
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import minirt
 from minirt.errors import RenderError
+from minirt.formats.table import FORMATS, memory_of
 from minirt.rendering import Renderer
-from minirt.scene import Scene
+from minirt.rendering.notes import kernel_notes
+from minirt.rendering.packing.features import FEATURES
+from minirt.rendering.packing.generic import WIDE_KERNELS
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
+from minirt.shapes import ALL_KINDS
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.cli.program import SCENE, environment
 from tests.kernel.pictures import ALL, AMBIENT, EYE, TWO
+from tests.processes import run
 
 
 @pytest.mark.parametrize("samples", [0, -1])
@@ -52,3 +64,135 @@ def test_a_child_process_leaves_busy_locks_and_compiling_to_its_parent() -> None
     assert not renderer.busy.locked()
     assert renderer.kernels.compile_process is not compiling
     assert renderer.kernels.background is not background
+
+
+# The notes of a packing describe its decisions for a scene.
+
+
+GREY = (128, 128, 128)
+CAMERA = Camera((0, 0, -9), (0, 0, 1), 60)
+
+
+def notes_of(*balls: Sphere) -> list[str]:
+    lights = Light((0, 5, 0), 1), FurtherLight((0, 5, 0), 0), FurtherLight((0, -5, 0), 1)
+    black = FurtherLight((0, 0, 9), 1, (0, 0, 0))
+    planes = Plane((0, -9, 0), (0, 1, 0), GREY), Plane((0, -1, 0), (0, -1, 0), GREY)
+    scene = Scene((Ambient(0.1, GREY), Camera((0, 0, -9), (0, 0, 1), 60), *lights, black, *planes, *balls))
+    packing = Packing()
+    assert packing.notes == []
+    packing.pack(scene, 64, 48)
+    return packing.notes
+
+
+def test_kinds_and_features_that_a_kernel_lacks_are_named() -> None:
+    scene = Scene((CAMERA, Sphere((0, 0, 0), 1, GREY), Plane((0, -9, 0), (0, 1, 0), GREY)))
+    kernel, without, plain = kernel_notes(scene, wide=None, compiling=True)
+    others = [kind.element.plural for kind in ALL_KINDS if kind.element not in (Sphere, Plane)]
+    assert (kernel, without) == ("kernel for spheres, planes", f"kernel without {', '.join(others)}")
+    assert plain == f"kernel without {', '.join(FEATURES.values())}"
+
+
+def test_a_wide_kernel_is_named_with_what_it_waits_for() -> None:
+    scene = Scene((CAMERA, Sphere((0, 0, 0), 1, GREY)))
+    for wide in WIDE_KERNELS:
+        features = "all" if wide.name == "full" else "no"
+        note = f"wide kernel for all kinds of shapes and {features} features"
+        assert list(kernel_notes(scene, wide, compiling=False)) == [note]
+        assert list(kernel_notes(scene, wide, compiling=True)) == [
+            note,
+            "the kernel for spheres alone is being compiled",
+        ]
+
+
+def test_shapes_and_lights_that_are_left_out_are_named_with_the_reason() -> None:
+    tiles, buffer, *rest = notes_of(Sphere((0, 0, 0), 1, GREY))
+    assert tiles.startswith("tiles: 12, ")
+    assert buffer == "light buffer: none, every shape is tried (3 shapes)"
+    assert rest == [
+        "plane 1 hides nothing from light 1",
+        "plane 2 hides nothing from light 1",
+        "light 2 has brightness 0",
+        "plane 1 hides nothing from light 3",
+        "light 4 is black",
+    ]
+
+
+def test_a_fallback_to_double_precision_is_noted() -> None:
+    packing = Packing(precision="single")
+    for mirror in (None, 0.5):
+        packing.pack(Scene((Camera((0, 0, -9), (0, 0, 1), 60), Sphere((0, 0, 0), 1, GREY, mirror=mirror))), 64, 48)
+        assert ("double precision: single supports neither images nor a BVH" in packing.notes) is bool(mirror)
+
+
+def test_the_size_of_the_light_buffer_is_noted() -> None:
+    *_, buffer, _, _, _, _, _ = notes_of(*(Sphere((i, 0, 0), 1, GREY) for i in range(48)))
+    assert buffer == "light buffer: 6 x 32 x 32 cells per light (50 shapes)"
+
+
+def test_the_cells_of_every_light_are_noted() -> None:
+    heap = [Sphere((i % 10, i // 10 % 10, i // 100), 0.5, GREY) for i in range(1000)]
+    lights = Light((50, 20, -9), 1), FurtherLight((5, 5, 5), 1)
+    for shown, cells in (
+        (lights[:1], "128 x 128 cells in a frustum per light"),
+        (lights[1:], "6 x 64 x 64 cells per light"),
+        (lights, "6 x 64 x 64 cells or 128 x 128 cells in a frustum per light"),
+        ((), "6 x 64 x 64 cells per light"),
+    ):
+        packing = Packing()
+        packing.pack(Scene((Camera((0, 0, -9), (0, 0, 1), 60), *shown, *heap)), 64, 48)
+        assert f"light buffer: {cells} (1000 shapes)" in packing.notes
+
+
+# Memory that a picture takes, measured in a process of its own.
+
+
+STATUS = Path("/proc/self/status")
+pytestmark = pytest.mark.skipif(not STATUS.exists(), reason="Linux tells the peak of a process's own memory")
+
+SIDE = 2500  # pixels
+MOST = 6  # bytes a pixel of a plain picture: four of the frame buffer, and other memory
+PLAIN = ["png", "jpg", "tif", "bmp", "ppm", "tga", "pcx", "qoi"]
+OTHER = 2.5  # bytes a pixel of this size, of other memory
+PEAK = """
+import sys
+from minirt import cli
+
+def peak():  # that of the resource module would include the parent's
+    return next(int(line.split()[1]) * 1024 for line in open("/proc/self/status") if line.startswith("VmHWM"))
+
+for size in ("64x64", "{side}x{side}"):
+    before = peak()
+    assert cli.main(["ball.rt", "-o", *sys.argv[1:], "--size", size]) == 0
+print((peak() - before) / {side}**2)
+"""
+
+
+def taken_by(folder: Path, *arguments: str) -> float:
+    """Return the bytes a pixel that a picture takes while it is rendered and written to a file."""
+    (folder / "ball.rt").write_text(SCENE)
+    code = PEAK.replace("{side}", str(SIDE))
+    done = run([sys.executable, "-c", code, *arguments], cwd=folder, env=environment(), text=True)
+    assert done.returncode == 0, done.stderr
+    return float(done.stdout)
+
+
+@pytest.mark.parametrize("suffix", PLAIN)
+def test_a_picture_takes_little_more_than_its_frame_buffer(suffix: str, tmp_path: Path) -> None:
+    assert 3.5 < taken_by(tmp_path, f"a.{suffix}") < MOST
+
+
+def test_the_table_of_formats_says_how_little_plain_pictures_take() -> None:
+    assert {memory_of(name, None) for name, each in FORMATS.items() if each.suffixes[0][1:] in PLAIN} == {MOST}
+
+
+def test_a_picture_in_strips_takes_little_more_than_its_frame_buffer(tmp_path: Path) -> None:
+    assert 3.5 < taken_by(tmp_path, "a.jpg", "--samples", "4") < MOST  # so much work is kept in a part file
+
+
+@pytest.mark.parametrize("arguments", [["a.sgi"], ["a.hdr"], ["a.png", "--bits", "16"]], ids=["sgi", "hdr", "deep"])
+def test_pictures_take_what_the_table_of_formats_says(arguments: list[str], tmp_path: Path) -> None:
+    name = next(name for name, each in FORMATS.items() if arguments[0][1:] in each.suffixes)
+    told = memory_of(name, 16 if "--bits" in arguments else None)
+    taken = taken_by(tmp_path, *arguments)
+    assert taken < told + OTHER
+    assert told / 2 < taken  # twice the memory in the table would be found

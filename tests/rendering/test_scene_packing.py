@@ -12,8 +12,8 @@ from PIL import Image
 from minirt.kernel.rows import read
 from minirt.materials import Checker
 from minirt.rendering import Renderer
-from minirt.rendering.packing import primitives
-from minirt.rendering.packing.primitives import extent
+from minirt.rendering.packing import shape_arrays
+from minirt.rendering.packing.shape_arrays import extent
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes.cylinder import Cylinder
@@ -27,7 +27,7 @@ def packed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The shapes that were packed so far."""
     done: list[Any] = []
     monkeypatch.setattr(
-        primitives, "packed_rows", lambda new, numbers=primitives.packed_rows: done.extend(new) or numbers(new)
+        shape_arrays, "packed_rows", lambda new, numbers=shape_arrays.packed_rows: done.extend(new) or numbers(new)
     )
     return done
 

@@ -12,7 +12,7 @@ from minirt.element import fields_of
 from minirt.errors import ElementError
 from minirt.fields import Colour, Direction, Field, Length, Lengths, Point
 from minirt.kernel.trace import ROUNDING
-from minirt.rendering.packing.primitives import extent
+from minirt.rendering.packing.shape_arrays import extent
 from minirt.shapes import Kind, Shape
 from tests import oracle
 from tests.shapes.execution_modes import compiled, surfaces

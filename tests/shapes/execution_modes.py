@@ -14,7 +14,7 @@ import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is
 from minirt.kernel import rows
 from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, lane, load, where, width
-from minirt.rendering.packing.primitives import packed_rows
+from minirt.rendering.packing.shape_arrays import packed_rows
 from minirt.shapes import KINDS, Kind, Shape
 
 Array = NDArray[np.float64]

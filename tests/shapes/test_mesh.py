@@ -16,7 +16,7 @@ from minirt.fields import MeshFile
 from minirt.kernel.rows import read, row_type
 from minirt.lanes import Vec
 from minirt.meshes import Triangles
-from minirt.rendering.packing.primitives import primitives_of
+from minirt.rendering.packing.shape_arrays import primitives_of
 from minirt.shapes import ALL_KINDS, MESH, mesh
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.triangle import Triangle

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from minirt.rendering.queries.certificate import Certificate, certify
-from minirt.rendering.queries.certificate import Rays as HitRays
+from minirt.rendering.queries.certificates import Certificate, certify
+from minirt.rendering.queries.certificates import Rays as HitRays
 from minirt.shapes import Shape
 from tests.shapes.execution_modes import surfaces
 from tests.shapes.regimes import Array, Rays

@@ -17,7 +17,7 @@ EXACT, NOTHING = mpfr("1e-9"), mpfr("1e-45")  # change of the distance in the la
 
 
 class ExactCertificate(NamedTuple):
-    """How exact a hit is: see `minirt.rendering.queries.certificate`."""
+    """How exact a hit is: see `minirt.rendering.queries.certificates`."""
 
     backward_error: float
     condition: float

@@ -24,7 +24,7 @@ import pytest
 
 import minirt.shapes
 from minirt.rendering.queries import preview
-from minirt.rendering.running.cores import usable_cores
+from minirt.rendering.threads import usable_cores
 from minirt.scene import Scene
 from tests.kernel import pictures
 from tests.paths import PACKAGE
@@ -47,7 +47,7 @@ PICTURES = (
     *(f"tests/kernel/test_{name}.py" for name in ("coincident", "extremes", "invariances")),
     *(f"tests/kernel/shading/test_{name}.py" for name in ("lights", "specular", "whitted")),
     "tests/stability/test_pictures.py",
-    "tests/rendering/culling/test_visibility.py",
+    "tests/rendering/packing/test_visibility.py",
 )
 COMPILED = "not compiled and not every_scene and not many_shapes and not light_is_finite and not lists_begin"
 SECONDS = 120  # limit for a change, which may make a loop endless

@@ -12,8 +12,8 @@ import pytest
 import minirt
 from minirt.fields import MeshFile
 from minirt.lanes import Vec, dot, sqrt
-from minirt.rendering.queries import certificate
-from minirt.rendering.queries.certificate import Certificate
+from minirt.rendering.queries import certificates
+from minirt.rendering.queries.certificates import Certificate
 from minirt.scene import Camera, Scene
 from minirt.shapes import KINDS, Kind, Shape
 from minirt.shapes.boundary import Boundary
@@ -98,7 +98,7 @@ def test_a_wrong_boundary_is_noticed(kind: Kind, monkeypatch: pytest.MonkeyPatch
     rays, t, normals = usual(kind)
     hits = np.argwhere(np.isfinite(t))[:8]
     assert wrong(rays, t, normals, certified(rays, t, normals), hits) == 0
-    monkeypatch.setattr(certificate, "ALL_KINDS", [kind._replace(boundary=larger(kind.boundary))])
+    monkeypatch.setattr(certificates, "ALL_KINDS", [kind._replace(boundary=larger(kind.boundary))])
     assert wrong(rays, t, normals, certified(rays, t, normals), hits) >= 6
 
 
@@ -133,8 +133,8 @@ def test_the_face_that_was_hit_counts() -> None:
     down, side, cap = [[0.0, -1, 0]], [[1.0, 0, 0]], [[0.0, 1, 0]]
 
     def error(x: float, t: float, normal: Any, shape: Shape = tube) -> float:
-        rays = certificate.Rays(*map(np.array, ([[x, 5.0, 0]], down, [t], normal)))
-        return float(certificate.certify((shape,), np.array([0]), np.array([0]), rays).backward_error[0])
+        rays = certificates.Rays(*map(np.array, ([[x, 5.0, 0]], down, [t], normal)))
+        return float(certificates.certify((shape,), np.array([0]), np.array([0]), rays).backward_error[0])
 
     assert error(0.5, 4.0, cap) == 0
     assert error(0.5, 4.0, side) > 1e14  # half a unit from the side

@@ -11,7 +11,7 @@ import minirt
 from minirt.element import fields_of
 from minirt.fields import Length, Lengths
 from minirt.kernel.trace import ROUNDING
-from minirt.rendering.packing.primitives import extent
+from minirt.rendering.packing.shape_arrays import extent
 from minirt.scene import Camera, Scene
 from minirt.shapes import KINDS, Kind, Shape
 from tests.oracle.body import body, normals

@@ -12,10 +12,10 @@ from minirt.helpers import system
 from minirt.kernel.culling.binning import MARGIN, Grid
 from minirt.kernel.frame import tile_count
 from minirt.kernel.stored_light import TILE
-from minirt.rendering.crop import Crop
 from minirt.rendering.culling.light_frustum import SPREAD, Cluster, frustum_grid
 from minirt.rendering.culling.list_sizes import ADVICE, COARSEST, MEMBER, QUICKLY_BUILT, WHAT, check_lists
 from minirt.rendering.culling.planes import CellRuns, cell_runs, is_crowd, opaque_planes, signed_heights
+from minirt.rendering.packing.camera import Crop
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh

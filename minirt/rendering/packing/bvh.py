@@ -9,8 +9,7 @@ import numpy as np
 from minirt.kernel.bvh.build import BINS, GROUP, INDEX, BinaryTree
 from minirt.kernel.bvh.nodes import GROUPS, NODE, WIDTH, Group, Tree
 from minirt.kernel.rows import kind_of, row_type
-from minirt.rendering.packing.primitives import primitives_of
-from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.rendering.packing.shape_arrays import ShapeArrays, primitives_of
 from minirt.shapes import Kind
 
 CACHE_LINE = 64  # bytes

@@ -1,18 +1,73 @@
-"""Packs the camera into numbers, and generates its primary rays for the packets of a picture."""
+"""Camera and lens as numbers, and the primary rays of a picture or of a rectangle of it.
+
+A rectangle that is rendered begins at the corner of a tile, so that its tiles and packets are those of the whole
+picture. A region anywhere else is cut out of the rectangle that begins with its first tile.
+
+With a lens, or with lights that have a size, each pixel takes a lattice of points in the square for the lens, and
+another for the lights, both shifted at random and wrapped around (Cranley and Patterson 1976), in random order:
+neighbouring pixels, and the dimensions of one pixel, have nothing in common.
+"""
 
 from __future__ import annotations
 
-from functools import cache
-from math import radians, tan
+from functools import cache, lru_cache
+from itertools import pairwise
+from math import inf, pi, radians, tan
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from minirt.errors import RenderError
 from minirt.fields import clamp
-from minirt.kernel.stored_light import PACKET_HEIGHT
-from minirt.lanes import width
-from minirt.rendering.crop import Crop
+from minirt.kernel.rows import kind_of
+from minirt.kernel.stored_light import PACKET_HEIGHT, TILE
+from minirt.lanes import Vec, width
+from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame
+
+Region: TypeAlias = tuple[int, int, int, int]  # x, y, width and height, in pixels
+
+
+class Crop(NamedTuple):
+    """Place of a rendered rectangle in its picture. The size of the rectangle is that of the pixels to render into."""
+
+    width: int  # of the whole picture, in pixels
+    height: int
+    left: int = 0  # column and row of the picture at which the rectangle begins: multiples of `TILE`
+    top: int = 0
+
+
+class Cut(NamedTuple):
+    """The rectangle to render for a region, and what to keep of it."""
+
+    crop: Crop
+    shape: tuple[int, int]  # rows and columns of the rectangle
+    kept: tuple[slice, slice]  # those of the region
+
+
+def cut_for(region: Region | None, width: int, height: int) -> Cut:
+    """Return what to render for a region (x, y, width, height) of a picture, or for all of it; RenderError for a region
+    that does not lie in the picture."""
+    if region is None:
+        return Cut(Crop(width, height), (height, width), (slice(None), slice(None)))
+    x, y, across, down = region
+    if across < 1 or down < 1:
+        raise RenderError(f"a region has at least 1x1 pixels, got {across}x{down}")
+    if x < 0 or y < 0 or x + across > width or y + down > height:
+        raise RenderError(f"region {x},{y},{across},{down} does not lie in the picture of {width}x{height} pixels")
+    beside, above = x % TILE, y % TILE
+    crop = Crop(width, height, x - beside, y - above)
+    return Cut(crop, (above + down, beside + across), (slice(above, None), slice(beside, None)))
+
+
+def strips_of(region: Region, samples: int, rays: int) -> list[Region]:
+    """Divide a region of a picture into strips of about so many rays, one beside the other, that begin with tiles."""
+    x, y, width, height = region
+    step = max(rays // (height * samples) // TILE, 1) * TILE
+    edges = [x, *range(x // TILE * TILE + step, x + width, step), x + width]
+    return [(left, y, right - left, height) for left, right in pairwise(edges)]
+
 
 NARROWEST, WIDEST = 1e-6, 179.9999  # degrees; fields of view of 0 and 180 are drawn as these
 
@@ -54,3 +109,103 @@ def packet_rays(rays: np.ndarray, samples: np.ndarray) -> np.ndarray:
 def packet_pixels(rays: int) -> np.ndarray:
     """The x and y of the pixel of each ray within a packet, (2, rays)."""
     return np.stack(np.divmod(np.arange(rays), rays // PACKET_HEIGHT)[::-1]).astype(np.float64)
+
+
+# The lens: a disc in the image plane, through whose points the eye looks at what is in focus.
+
+
+CLOSEST = 2.0**-60  # least distance of what is in focus, in radii of the lens: squares of directions stay finite
+SMALLEST = 2.0**-100  # least such distance, in scene units: its reciprocal is finite in single precision, too
+
+
+def lens_numbers(camera: Camera, focus: float) -> np.ndarray:
+    """The half axes of the lens, to the right and up, and one over the distance of what is in focus, (7,).
+
+    A distance that is too small for arithmetic is replaced by the least that is not."""
+    right, up, _ = camera_frame(camera)
+    radius = (camera.lens or 0.0) / 2
+    nearest = max(focus, radius * CLOSEST, SMALLEST)
+    return np.array([*(radius * x for x in right), *(radius * x for x in up), 1.0 / nearest])
+
+
+def radius_and_focus(lens: np.ndarray | None) -> tuple[float, float]:
+    """The radius of a lens, and one over the distance of what is in focus; 0 and 0 without a lens."""
+    return (0.0, 0.0) if lens is None else (float(np.linalg.norm(lens[:3])), float(lens[6]))
+
+
+def distance_in_the_middle(shape_arrays: ShapeArrays, camera: np.ndarray) -> float:
+    """The distance of the shape in the middle of the picture; infinite without one."""
+    with np.errstate(all="ignore"):
+        return float(hit_distances(shape_arrays, Vec(*camera[:3]), Vec(*camera[9:12])).min(initial=inf))
+
+
+def hit_distances(shape_arrays: ShapeArrays, origin: Vec, direction: Vec) -> np.ndarray:
+    """The distances at which a ray hits each primitive, infinite where it does not."""
+    distance = np.full(len(shape_arrays.slots), inf)
+    for group, rows in enumerate(shape_arrays.rows):
+        hit, t = kind_of(rows.dtype.names).intersect(packed_columns(rows), origin, direction)
+        distance[shape_arrays.slots[:, 0] == group] = np.where(hit, t, inf)
+    return distance
+
+
+def packed_columns(rows: Any) -> Any:
+    """Pack rows of shapes of one kind as one shape whose numbers are arrays."""
+    parts = (rows[name] for name in rows.dtype.names)
+    return kind_of(rows.dtype.names).packed(*(Vec(*part.T) if part.ndim > 1 else part for part in parts))
+
+
+GOLDEN_RATIO = (5**0.5 - 1) / 2  # its conjugate, 0.618...
+VARIANTS = 64  # of the places of a packet, where samples are few
+ROWS = 512  # of samples, that more than one variant may take
+
+
+def has_apertures(arrays: Any) -> bool:
+    """Whether a packed scene has a lens or a light with a size."""
+    return arrays.soft is not None or arrays.lens is not None
+
+
+def variants_of(samples: int) -> int:
+    """The number of variants of a packet's places; each packet takes one of them."""
+    return min(max(ROWS // samples, 1), VARIANTS)
+
+
+@lru_cache(32)
+def aperture_places(samples: int, variants: int, pixels: int, seed: int) -> np.ndarray:
+    """Places in the unit discs of lens and lights for each sample, (variants * samples, pixels, 4)."""
+    random = np.random.Generator(np.random.PCG64([samples, seed]))
+    index = np.arange(samples)
+    lattice = np.stack([(index + 0.5) / samples, (index * GOLDEN_RATIO) % 1.0], axis=1)
+    places = np.empty((variants, samples, pixels, 4))
+    for variant in range(variants):
+        for first in (0, 2):
+            shifted = random.permutation(lattice)[:, None] + random.random((pixels, 2))
+            shifted -= shifted >= 1.0
+            places[variant, ..., first : first + 2] = in_disc(shifted)
+    return places.reshape(variants * samples, pixels, 4)
+
+
+def in_disc(square: np.ndarray) -> np.ndarray:
+    """Map the unit square to the unit disc, keeping ratios of areas (Shirley and Chiu, A low distortion map between
+    disk and square, 1997)."""
+    x, y = np.moveaxis(2.0 * square - 1.0, -1, 0)
+    is_beside = np.abs(x) > np.abs(y)
+    radius = np.where(is_beside, x, y)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        angle = np.where(is_beside, pi / 4 * (y / x), pi / 2 - pi / 4 * (x / y))
+    angle = np.where(radius == 0.0, 0.0, angle)
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
+
+
+def with_apertures(rays: np.ndarray, places: np.ndarray, lens: np.ndarray | None) -> np.ndarray:
+    """Add to the directions of rays, (k, 3 * width), what `minirt.kernel.shading.apertures` needs: (k, 8 * width).
+
+    `places` (k, width, 4) are those of `aperture_places`; 0 is the centre of the lens and of the lights.
+    """
+    count, number = len(rays), rays.dtype
+    offsets = np.zeros((count, 3, places.shape[1]))
+    if lens is not None and len(lens):
+        offsets += np.moveaxis(places[..., :2] @ lens[:6].reshape(2, 3), -1, 1)
+        rays = rays - (lens[6] * offsets).reshape(count, -1)
+    disc = np.moveaxis(places[..., 2:], -1, 1)
+    joined: np.ndarray = np.concatenate([rays, offsets.reshape(count, -1), disc.reshape(count, -1)], axis=1)
+    return joined.astype(number, copy=False)

@@ -13,8 +13,7 @@ from minirt.kernel.frame import ray_direction, tile_count
 from minirt.kernel.stored_light import TILE
 from minirt.kernel.trace import COINCIDENT, closest_hit
 from minirt.lanes import Vec, lane, splat, unit
-from minirt.rendering.packing.camera import camera_numbers, pixel_rays
-from minirt.rendering.packing.lens import hit_distances
+from minirt.rendering.packing.camera import camera_numbers, hit_distances, pixel_rays
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.silhouette import covered_pixels
 from minirt.rendering.scene_packing import Packing

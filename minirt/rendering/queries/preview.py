@@ -15,11 +15,10 @@ from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.kernel.stored_light import to_byte_range
 from minirt.lanes import Vec, unit
-from minirt.rendering.crop import Crop
-from minirt.rendering.developing.develop import develop
-from minirt.rendering.developing.tone import PLAIN
-from minirt.rendering.frame_arguments import thread_memory
+from minirt.rendering.frame import thread_memory
+from minirt.rendering.packing.camera import Crop
 from minirt.rendering.scene_packing import Packing
+from minirt.rendering.tone_mapping import PLAIN, map_tones
 from minirt.scene import Scene
 
 BUDGET = 0.12  # seconds
@@ -53,7 +52,7 @@ def render_interpreted(
     pixels = np.full((height, width, 4), 255, np.uint8)
     pixels[..., :3] = to_byte_range(light[..., ::-1])
     if scene.camera.tone != PLAIN:
-        develop(light, pixels, scene.camera.tone)
+        map_tones(light, pixels, scene.camera.tone)
     return pixels, light
 
 

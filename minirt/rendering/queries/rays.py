@@ -1,4 +1,4 @@
-"""Closest-hit queries for single rays through a scene: distance, shape, point and normal, by BVH traversal."""
+"""Closest-hit queries for single rays through a scene, by BVH traversal, and the primary rays of a camera."""
 
 from __future__ import annotations
 
@@ -6,23 +6,132 @@ from collections.abc import Callable
 from functools import cache, cached_property, partial
 from importlib import import_module
 from threading import Lock
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from minirt.errors import RenderError
 from minirt.helpers.system import renew_after_fork
 from minirt.kernel.bvh.nodes import Tree
+from minirt.kernel.frame import ray_direction
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.argument_block import words_of
 from minirt.kernel.machine_code.library import LIBRARY
-from minirt.rendering.packing.generic_kernels import generalised_tree
-from minirt.rendering.queries.hits import Hits, Traced
-from minirt.rendering.running.cores import usable_cores
-from minirt.rendering.running.thread_pool import ThreadPool
-from minirt.scene import Scene
+from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.generic import widened_tree
+from minirt.rendering.threads import ThreadPool, usable_cores
+from minirt.scene import Camera, Scene
 from minirt.scene.arguments import check_scene
 from minirt.shapes import Shape
+
+if TYPE_CHECKING:
+    from minirt.rendering.queries.certificates import Certificate
+
+
+def camera_rays(scene: Scene | Camera, width: int, height: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the rays through the centres of all pixels: origins and unit directions, each (height, width, 3).
+
+    They are the primary rays of a picture of that size with one sample a pixel; row 0 is the upper one. RenderError for
+    a size below 1.
+
+        origins, directions = minirt.camera_rays(scene, 640, 480)
+        hits = minirt.trace(scene, origins.reshape(-1, 3), directions.reshape(-1, 3))
+    """
+    check_scene(scene, "camera_rays")
+    if width < 1 or height < 1:
+        raise RenderError(f"a picture has at least 1x1 pixels, got {width}x{height}")
+    camera = scene if isinstance(scene, Camera) else scene.camera
+    numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
+    y, x = np.mgrid[0:height, 0:width] + 0.5
+    toward = ray_direction(numbers, x, y)
+    directions = np.stack(np.broadcast_arrays(toward.x, toward.y, toward.z), axis=-1)
+    directions /= np.linalg.norm(directions, axis=-1, keepdims=True)
+    return np.broadcast_to(numbers[:3], directions.shape).copy(), directions
+
+
+class Traced(NamedTuple):
+    """Rays and shapes from which certificates are computed."""
+
+    shapes: tuple[Shape, ...]
+    first_primitive: NDArray[np.int64]  # of each shape
+    primitives: NDArray[np.int64]  # that were hit, of the rays that hit something
+    origins: NDArray[np.float64]
+    directions: NDArray[np.float64]
+
+
+class ClosestHits(NamedTuple):
+    """The closest hits of n rays, as arrays."""
+
+    distance: NDArray[np.float64]  # (n,) from the origin, in units of the scene; infinity where nothing is hit
+    owner: NDArray[np.int64]  # (n,) the index in `scene.shapes` of the shape that is hit; -1 where nothing is
+    point: NDArray[np.float64]  # (n, 3) on the surface; NaN where nothing is hit
+    normal: NDArray[np.float64]  # (n, 3) of the surface, of unit length, outward where there is an outside; or NaN
+
+
+class Hits(ClosestHits):
+    """The closest hits of n rays, and their certificates, which are computed on first use.
+
+    They are computed from the arrays that `trace` was given, which must not have changed.
+    """
+
+    traced: Traced | None = None
+
+    @cached_property
+    def certificate(self) -> Certificate:
+        """Backward error, condition and normal error; ValueError for hits that are not those of a call of `trace`."""
+        if self.traced is None:
+            raise ValueError("only hits that minirt.trace returned have a certificate, not parts of them or copies")
+        certificate = import_module("minirt.rendering.queries.certificates")
+        shapes, first_primitive, primitives, *rays = self.traced
+        parts = np.zeros_like(self.owner)
+        is_hit = self.owner >= 0
+        parts[is_hit] = primitives - first_primitive[self.owner[is_hit]]
+        found: Certificate = certificate.certify(
+            shapes, self.owner, parts, certificate.Rays(*rays, self.distance, self.normal)
+        )
+        return found
+
+    @property
+    def primitive(self) -> NDArray[np.int64]:
+        """(n,) the index among the primitives of the scene, in the order of its shapes, of which a mesh has one for
+        each triangle; 0 where nothing is hit. ValueError for hits that are not those of a call of `trace`."""
+        if self.traced is None:
+            raise ValueError("only hits that minirt.trace returned know their primitives, not parts of them or copies")
+        primitive = np.zeros(len(self.owner), np.int64)
+        primitive[self.owner >= 0] = self.traced.primitives
+        return primitive
+
+    def columns(self) -> dict[str, NDArray[np.float64] | NDArray[np.int64]]:
+        """Return the hits as columns of a table: `pandas.DataFrame(hits.columns())`.
+
+        They are distance, owner, point_x, point_y, point_z, normal_x, normal_y and normal_z, each (n,).
+        """
+        vectors = {"point": self.point, "normal": self.normal}
+        parts = {f"{name}_{axis}": vector[:, i] for name, vector in vectors.items() for i, axis in enumerate("xyz")}
+        return {"distance": self.distance, "owner": self.owner, **parts}
+
+    def __repr__(self) -> str:
+        return f"<Hits of {len(self.owner)} rays, {np.count_nonzero(self.owner >= 0)} of which hit a shape>"
+
+    @property
+    def backward_error(self) -> NDArray[np.float64]:
+        """(n,) distance of the hit from the exact surface, in units of 2^-53 (t + |o - c| + size): the rounding errors
+        of t, of the way from the origin of the ray to the shape, and of the shape's lengths. NaN where nothing is hit.
+        """
+        return self.certificate.backward_error
+
+    @property
+    def condition(self) -> NDArray[np.float64]:
+        """(n,) relative change of t per relative change of the numbers of ray and shape; infinity where a ray only
+        touches a surface, NaN where nothing is hit. t is exact within 2^-53 times this times the backward error."""
+        return self.certificate.condition
+
+    @property
+    def normal_error(self) -> NDArray[np.float64]:
+        """(n,) distance of the normal from the exact unit normal, in radians while it is small. NaN where nothing is
+        hit."""
+        return self.certificate.normal_error
 
 
 def trace(scene: Scene, origins: ArrayLike, directions: ArrayLike, *, threads: int | None = None) -> Hits:
@@ -125,13 +234,13 @@ class Tracer:
 def query(
     counter: NDArray[np.int64], tree: Tree, origins: NDArray[np.float64], directions: NDArray[np.float64], hits: Hits
 ) -> Callable[[], None]:
-    """Return a job that traces rays: by the most specialised kernel that is there, or by one that is compiled now."""
-    trees = tree, generalised_tree(tree)
-    specialised, generic = (functions.trace_rays.call(counter, each, origins, directions, *hits) for each in trees)
-    for call in (specialised, generic):
+    """Return a job that traces rays: by the narrowest kernel that is there, or by one that is compiled now."""
+    trees = tree, widened_tree(tree)
+    narrow, wide = (functions.trace_rays.call(counter, each, origins, directions, *hits) for each in trees)
+    for call in (narrow, wide):
         if entry := LIBRARY.find(LIBRARY.identity(call)):
             return partial(entry.run, words_of(call[1]))
-    return partial(LIBRARY.get(specialised).run, words_of(specialised[1]))
+    return partial(LIBRARY.get(narrow).run, words_of(narrow[1]))
 
 
 @cache

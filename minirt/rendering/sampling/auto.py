@@ -3,7 +3,7 @@ are needed.
 
 The first sweep over the picture is a plain frame of one sample a pixel, beside which some packets are probed (see
 `minirt.kernel.stored_light.squared_error`). Often that is enough. Otherwise the packets are sorted into classes by
-their contrast, and are drawn anew with the samples that `minirt.rendering.sampling.allocation` chooses for their class.
+their contrast, and are drawn anew with the samples that `minirt.rendering.sampling.packets` chooses for their class.
 Where that takes long it is done in portions, random sets of packets, since the probes of each tell how many samples, or
 how much time, the next portions need. Where an error is asked for, the picture depends on nothing else; where a time is
 asked for, it depends on how fast the portions were.
@@ -23,10 +23,9 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.kernel.frame import REFERENCE_SAMPLES
-from minirt.rendering.frame_arguments import plan_of
-from minirt.rendering.sampling.allocation import EXPECTED, UNSEEN_ERROR, allocate, places_of, squared_error
-from minirt.rendering.sampling.outcome import Outcome
-from minirt.rendering.sampling.packets import Packets
+from minirt.rendering.frame import plan_of
+from minirt.rendering.outcome import Outcome
+from minirt.rendering.sampling.packets import EXPECTED, UNSEEN_ERROR, Packets, allocate, places_of, squared_error
 from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_numbers
 
 FIRST_PROBES, PROBES = 384, 300  # packets to probe, in the first sweep and in the others

@@ -1,18 +1,22 @@
-"""Contrast classes of the packets of a picture, by how far neighbouring pixels differ.
+"""Contrast between neighbouring pixels, which tells where more samples are needed, and what they will change.
 
-Errors of few samples sit at edges of objects, shadows and textures, all of which show as contrast.
+Errors of few samples sit at edges of objects, shadows and textures, all of which show as contrast (Whitted, An improved
+illumination model for shaded display, 1980, takes more samples where neighbours differ).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache, partial
+from math import sqrt
 
 import numpy as np
 
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.library import Call
 from minirt.kernel.stored_light import PACKET_HEIGHT
+from minirt.rendering.outcome import ERROR_EXPONENT
+from minirt.rendering.tone_mapping import PLAIN, rounding_error, tone_named
 
 Job = Callable[[], object]
 
@@ -47,3 +51,85 @@ def classify_call() -> Call:
     """The call of the compiled function, to look for its kernel."""
     numbers, none = np.zeros(1, np.int64), np.zeros((0, 0), np.uint8)
     return functions.classify.call(numbers, none, none, np.zeros((0, 0), np.uint64), CLASS_OF, none, numbers)
+
+
+CONTRAST = 6  # levels of 255 by which neighbours differ at an edge
+# Lines processed at once: their data fits a processor's cache, which takes a third of the time of all lines at once.
+STRIP = 16 * PACKET_HEIGHT
+
+
+def edge_packets(pixels: np.ndarray, packet_width: int, contrast: int = CONTRAST) -> Iterator[np.ndarray]:
+    """Whether each packet has a pixel at an edge: uint8 (rows, columns), a strip of the picture at a time, so that the
+    caller may stop in between. `pixels` is C-contiguous uint8 (h, w, 4)."""
+    for top in range(0, len(pixels), STRIP):
+        strip = pixels[max(top - 1, 0) : top + STRIP + 1]  # with a line above and one below
+        yield packets_with_any(edge_pixels(strip, contrast)[min(top, 1) :][:STRIP], packet_width)
+
+
+def edge_pixels(pixels: np.ndarray, contrast: int = CONTRAST) -> np.ndarray:
+    """Whether the left, right, upper or lower neighbour of each pixel, (h, w), differs by more than `contrast`
+    levels in any colour. `pixels` is C-contiguous uint8 (h, w, 4), all equally opaque."""
+    height, width, _ = pixels.shape
+    lines = pixels.reshape(height, 4 * width)
+    beside = differ(lines[:, 4:], lines[:, :-4], contrast)
+    below = differ(lines[1:], lines[:-1], contrast)
+    edge = np.zeros((height, width), bool)
+    edge[:, 1:] |= beside
+    edge[:, :-1] |= beside
+    edge[1:] |= below
+    edge[:-1] |= below
+    return edge
+
+
+def differ(a: np.ndarray, b: np.ndarray, contrast: int) -> np.ndarray:
+    """Whether the pixels of two pictures, uint8 (h, 4 * w), differ by more than `contrast` levels: (h, w)."""
+    bytes_differ = np.maximum(a, b) - np.minimum(a, b) > contrast
+    pixels_differ: np.ndarray = bytes_differ.view(np.uint32) != 0  # any byte of a pixel: 40 times as fast as `any`
+    return pixels_differ
+
+
+def packets_with_any(pixels: np.ndarray, packet_width: int) -> np.ndarray:
+    """Whether each packet has at least one of the marked pixels (h, w), as uint8 (rows, columns)."""
+    height, width = pixels.shape
+    rows, columns = -(-height // PACKET_HEIGHT), -(-width // packet_width)
+    padded = np.zeros((rows * PACKET_HEIGHT, columns * packet_width), bool)
+    padded[:height, :width] = pixels
+    packets = np.zeros((rows, columns), bool)
+    for y in range(PACKET_HEIGHT):
+        for x in range(packet_width):
+            packets |= padded[y::PACKET_HEIGHT, x::packet_width]
+    return packets.view(np.uint8)
+
+
+SQUARED_ROUNDING = 1 / 12  # mean squared error of rounding to whole levels
+LINES = 64  # lines processed at once: their data fits a processor's cache, which takes two thirds of the time
+
+
+def estimated_error(
+    before: np.ndarray,
+    after: np.ndarray,
+    fewer: int,
+    samples: int,
+    is_wanted: Callable[[], bool] = lambda: True,
+    tone: str = PLAIN,
+) -> float | None:
+    """The RMSE of a picture `after` with `samples`, given the picture `before` with `fewer`.
+
+    It is the error of `minirt.rendering.outcome` and that of rounding. Both are uint8 (h, w, 4), equally
+    opaque. Their squared difference is the sum of both squared errors, whose ratio is that of the numbers of
+    samples to the power of -1.5. With another tone than plain the error is that of the light of the levels, clamped to
+    [0, 1]. None as soon as `is_wanted` says no, which is asked a few times a millisecond.
+    """
+    total, light = 0.0, np.minimum(tone_named(tone).light, 1.0)
+    for top in range(0, len(before), LINES):
+        if not is_wanted():
+            return None
+        a, b = before[top : top + LINES], after[top : top + LINES]
+        if tone == PLAIN:
+            difference = np.maximum(a, b) - np.minimum(a, b)
+            total += int(np.square(difference, dtype=np.uint16).sum(dtype=np.int64))
+        else:
+            total += float(np.square(light.take(a[..., :3]) - light.take(b[..., :3])).sum()) * 255**2
+    ratio = (samples / fewer) ** ERROR_EXPONENT
+    rounding = SQUARED_ROUNDING if tone == PLAIN else (255 * rounding_error(after, tone, dither=False)) ** 2
+    return sqrt(total / (before.size * 3 / 4) / (1 + ratio) + rounding) / 255

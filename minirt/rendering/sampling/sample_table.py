@@ -13,8 +13,8 @@ from functools import cache, lru_cache
 import numpy as np
 
 from minirt.kernel.frame import REFERENCE_SAMPLES
-from minirt.rendering.frame_arguments import sample_positions
-from minirt.rendering.packing.aperture_rays import aperture_places, variants_of
+from minirt.rendering.frame import sample_positions
+from minirt.rendering.packing.camera import aperture_places, variants_of
 
 # Numbers of samples that a packet may have, two for each doubling; a level is an index of them.
 COUNTS = np.array([1, 2, *(size * 2**k for k in range(1, 16) for size in (1.5, 2))], np.int32)
@@ -26,7 +26,7 @@ class SampleTable:
     """Sample positions (rows, pixels of a packet, 2) for some levels, and where each begins.
 
     `with_places` gives each sample places in the discs of lens and lights, too: (rows, pixels, 6). Drawn samples then
-    have variants, too: see `minirt.rendering.packing.aperture_rays`.
+    have variants, too: see `minirt.rendering.packing.camera`.
     """
 
     def __init__(self, levels: np.ndarray, pixels: int, with_places: bool = False) -> None:

@@ -17,8 +17,8 @@ from minirt.kernel.machine_code import loader
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering import Renderer
+from minirt.rendering.needed_kernels import calls_for
 from minirt.rendering.packing.features import DEPTH
-from minirt.rendering.running.needed_kernels import calls_for
 from minirt.report.measurements.brute_force import ChangedPacking
 from minirt.report.measurements.intervals import of_median
 from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS, ENOUGH, Budget

@@ -12,7 +12,7 @@ from minirt.errors import RenderError
 from minirt.kernel.bvh.nodes import NODE, REFERENCES, Tree
 from minirt.kernel.frame import tile_count
 from minirt.kernel.scene_arrays import SceneArrays
-from minirt.rendering.crop import Crop
+from minirt.rendering.packing.camera import Crop
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 

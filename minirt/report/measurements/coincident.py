@@ -12,8 +12,7 @@ from minirt.kernel.rows import kind_of_packed
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec, dot, unit
 from minirt.rendering.notes import shape_name
-from minirt.rendering.packing.camera import camera_numbers, pixel_rays
-from minirt.rendering.packing.lens import packed_columns
+from minirt.rendering.packing.camera import camera_numbers, packed_columns, pixel_rays
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.report.measurements.stiffness import DOUBLE, SINGLE, Stiff
 from minirt.scene import Scene

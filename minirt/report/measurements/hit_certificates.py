@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.queries.hits import Hits
-from minirt.rendering.queries.rays import trace
+from minirt.rendering.queries.rays import Hits, trace
 from minirt.report.measurements.random_rays import Array, Random, random_directions
 from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Kind

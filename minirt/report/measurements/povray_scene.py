@@ -13,7 +13,7 @@ from minirt.errors import RenderError
 from minirt.materials import Attributes
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import DEPTH
-from minirt.rendering.packing.secondary_rays import mirror_of
+from minirt.rendering.packing.materials import mirror_of
 from minirt.scene import Ambient, Lamp, Light, Scene
 from minirt.shapes import Shape
 from minirt.shapes.cone import Cone

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from minirt.element import fields_of
 from minirt.fields import Colour, Direction, Field, Length, Lengths, Point, Real
 from minirt.lanes import Vec
-from minirt.rendering.packing.primitives import defining_points
+from minirt.rendering.packing.shape_arrays import defining_points
 from minirt.shapes import Kind, Shape
 
 Array = NDArray[np.float64]

@@ -9,9 +9,8 @@ import numpy as np
 
 from minirt.lanes import width as lanes_of
 from minirt.rendering import Renderer
-from minirt.rendering.frame_arguments import frame_arguments, sample_positions
-from minirt.rendering.packing.aperture_rays import aperture_places, has_apertures, with_apertures
-from minirt.rendering.packing.camera import packet_rays
+from minirt.rendering.frame import frame_arguments, sample_positions
+from minirt.rendering.packing.camera import aperture_places, has_apertures, packet_rays, with_apertures
 from minirt.report.measurements.metrics import Picture, clamped, rmse
 from minirt.scene import Scene
 

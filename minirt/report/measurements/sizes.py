@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from minirt.element import fields_of
 from minirt.fields import Length, Lengths, Point
-from minirt.rendering.packing.primitives import bounding_boxes
+from minirt.rendering.packing.shape_arrays import bounding_boxes
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 

@@ -11,8 +11,7 @@ from minirt.kernel.rows import kind_of
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec
 from minirt.rendering.notes import shape_name
-from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.packing.lens import packed_columns
+from minirt.rendering.packing.camera import camera_numbers, packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.sizes import sizes

@@ -9,7 +9,7 @@ from typing import Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from minirt.rendering.sampling.error_estimate import estimated_error
+from minirt.rendering.sampling.contrast import estimated_error
 from minirt.scene import Scene
 from minirt.shapes import Shape
 
@@ -116,7 +116,7 @@ class Outcome:
     pixels: Pixels | None = None
     error: Exception | None = None
     seconds: float = 0.0  # of rendering; 0 in simulated time
-    error_estimate: float | None = None  # of a refined picture: see `minirt.rendering.sampling.error_estimate`
+    error_estimate: float | None = None  # of a refined picture: see `minirt.rendering.sampling.contrast`
     preview: bool = False  # another picture follows when the kernel is ready
     about: tuple[str, ...] = ()  # notes on how it was rendered
 

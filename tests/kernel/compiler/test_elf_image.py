@@ -55,7 +55,7 @@ def test_code_that_refers_to_a_library_is_refused() -> None:
 def kernel_with_a_constant() -> tuple[dict[str, Any], bytes]:
     """Return a kernel of the package, which has constants."""
     from minirt.kernel.machine_code import functions
-    from minirt.rendering.running.needed_kernels import packing_calls
+    from minirt.rendering.needed_kernels import packing_calls
 
     name, values = next(each for each in packing_calls() if each[0] == functions.project_all.name)
     with pytest.MonkeyPatch.context() as patch:

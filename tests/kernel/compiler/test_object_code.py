@@ -19,7 +19,7 @@ from minirt.kernel.machine_code import functions, loader, shipped_code
 from minirt.kernel.machine_code.library import LIBRARY, Call, Library
 from minirt.kernel.machine_code.signature import signature_of
 from minirt.rendering import Renderer
-from minirt.rendering.running.kernels import generic_identity
+from minirt.rendering.kernels import generic_identity
 from minirt.scene import Scene
 from tests.kernel.bvh.trees import random_rays, random_shapes
 from tests.kernel.machine_code.small_kernels import both, call, double, object_code_of, quotients, sine, step

@@ -17,7 +17,7 @@ from minirt.kernel.machine_code.signature import signature_of
 from minirt.lanes.angle import ATAN_HALF
 from minirt.lanes.noise import PERIOD
 from minirt.materials import Checker, Clouds
-from minirt.rendering.frame_arguments import frame_arguments
+from minirt.rendering.frame import frame_arguments
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder

@@ -13,7 +13,7 @@ import pytest
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.library import LIBRARY, Call
 from minirt.rendering import Renderer
-from minirt.rendering.frame_arguments import frame_arguments
+from minirt.rendering.frame import frame_arguments
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import parse
 from tests.kernel.machine_code.small_kernels import Compiler, call, compiled, double, library

@@ -15,8 +15,8 @@ from minirt.kernel import interpreted
 from minirt.kernel.compiler.argument_types import type_of
 from minirt.kernel.machine_code import functions, signature
 from minirt.kernel.machine_code.signature import dtype_of, key_of, signature_of, tuple_class
-from minirt.rendering.frame_arguments import frame_arguments
-from minirt.rendering.running.kernel_features import minimal_scene
+from minirt.rendering.frame import frame_arguments
+from minirt.rendering.needed_kernels import minimal_scene
 from minirt.rendering.scene_packing import Packing
 from tests.paths import scene_files
 

@@ -9,8 +9,13 @@ import pytest
 
 from minirt.kernel.shading.lights import incident_light
 from minirt.lanes import Vec
-from minirt.rendering.packing.colours import Colours
-from minirt.rendering.packing.lights import emitting_lights, light_position, positions_and_intensities, spot_parameters
+from minirt.rendering.packing.lights import (
+    Colours,
+    emitting_lights,
+    light_position,
+    positions_and_intensities,
+    spot_parameters,
+)
 from minirt.scene import Ambient, Camera, FurtherLight, Lamp, Light, ParallelLight, Scene, SpotLight
 
 EYE = Camera((0, 0, -5), (0, 0, 1), 60)

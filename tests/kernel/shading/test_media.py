@@ -14,7 +14,7 @@ from minirt.kernel.shading import transmission, whitted
 from minirt.kernel.shading.media import medium_behind
 from minirt.lanes import Vec
 from minirt.materials import Glass, Mirror, Tint
-from minirt.rendering.packing.eye_medium import encloses
+from minirt.rendering.packing.materials import encloses
 from minirt.scene import Ambient, Background, Camera, Light, Scene
 from minirt.shapes import KINDS
 from minirt.shapes.box import Box

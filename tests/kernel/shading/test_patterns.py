@@ -15,8 +15,8 @@ from minirt.kernel.shading import fractal_noise, pattern_shares, patterns
 from minirt.kernel.shading.patterns import CLOUDS, MARBLE, WOOD, Patterns, apply_patterns, share_and_slope
 from minirt.lanes import Vec, load, save, width
 from minirt.materials import Clouds, Marble, Wood
-from minirt.rendering.packing.colours import Colours
-from minirt.rendering.packing.patterns import frame, pack_patterns
+from minirt.rendering.packing.lights import Colours
+from minirt.rendering.packing.textures import frame, pack_patterns
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane

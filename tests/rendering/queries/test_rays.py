@@ -12,7 +12,7 @@ from gmpy2 import mpfr
 
 import minirt
 from minirt.kernel.machine_code.library import LIBRARY
-from minirt.rendering.queries import certificate, rays
+from minirt.rendering.queries import certificates, rays
 from minirt.scene import Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -163,8 +163,8 @@ def test_hits_have_certificates() -> None:
 
 def test_certificates_are_computed_on_first_use_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[int] = []
-    certify = certificate.certify
-    monkeypatch.setattr(certificate, "certify", lambda *arguments: calls.append(1) or certify(*arguments))
+    certify = certificates.certify
+    monkeypatch.setattr(certificates, "certify", lambda *arguments: calls.append(1) or certify(*arguments))
     hits = minirt.trace(scene(BALL), np.zeros((1, 3)), [[0, 0, 1]])
     assert not calls
     for _ in range(2):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from functools import cache
+from math import sqrt
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,8 +14,8 @@ from numpy.typing import NDArray
 import minirt
 from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.rendering import Renderer
+from minirt.rendering.outcome import MOST_SAMPLES, Outcome
 from minirt.rendering.sampling.auto import FIRST_PROBES, AutoSampler
-from minirt.rendering.sampling.outcome import Outcome
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
@@ -236,3 +238,80 @@ def test_a_cancel_between_two_frames_is_heard(monkeypatch: pytest.MonkeyPatch) -
 
     monkeypatch.setattr(AutoSampler, "sweep", cancelled)
     assert renderer.reach(ALL, np.zeros((HEIGHT, WIDTH, 4), np.uint8), 1e-6) is None
+
+
+# When automatic sampling ends with its first sweep: by how much the mean of the probes may be in doubt.
+
+
+PACKETS = 100  # all of them are probed
+EVEN = np.full(PACKETS, 0.04)
+UNEVEN = np.repeat([1.0, 0.0], [4, 96])  # the same mean, with a standard error of 0.0196
+
+
+class FirstSweep(AutoSampler):
+    """A sampler whose first sweep finds these squared errors, and that only notes whether it refines them."""
+
+    def __init__(self, errors: np.ndarray) -> None:
+        packets: Any = SimpleNamespace(errors=errors, count=PACKETS, samples=(1.0, 1))
+        super().__init__(lambda _: True, lambda: (errors, errors), packets, PACKETS, 1)
+        self.refines = False
+
+    def draw_first(self) -> bool:
+        return True
+
+    def refine(self, goal: float, end: float) -> float:
+        self.refines = True
+        return goal
+
+
+@pytest.mark.parametrize(
+    ("errors", "squared_goal", "refines"),
+    [
+        (EVEN, 0.03, True),
+        (EVEN, 0.05, False),
+        (UNEVEN, 0.05, True),
+        (UNEVEN, 0.08, True),  # above mean and standard error, but the doubt is vague: 0.0792 / 0.7 = 0.113 counts
+        (UNEVEN, 0.11, True),
+        (UNEVEN, 0.12, False),
+    ],
+)
+def test_the_first_sweep_is_enough_where_its_doubt_leaves_the_goal_certain(
+    errors: np.ndarray, squared_goal: float, refines: bool
+) -> None:
+    sampler = FirstSweep(errors)
+    assert sampler.reach(sqrt(squared_goal), 1e9)
+    assert sampler.refines is refines
+
+
+# Outcomes of automatic sampling: whether the goal was reached, and what is said about it.
+
+
+REACHED = Outcome(4.0, 16, 0.002, 0.1, goal=0.003)
+
+
+@pytest.mark.parametrize(
+    ("outcome", "is_reached", "notice"),
+    [
+        (REACHED, True, ""),
+        (REACHED._replace(goal=0.002), True, ""),
+        (REACHED._replace(goal=0.0), True, ""),
+        (REACHED._replace(goal=0.001), False, "error 0.001 not reached: the time was over"),
+        (
+            REACHED._replace(goal=0.001, most=MOST_SAMPLES),
+            False,
+            f"error 0.001 not reached: some pixels have {MOST_SAMPLES} samples, the most there are",
+        ),
+        (
+            REACHED._replace(goal=0.001, rounded=True, rounding=0.006),
+            False,
+            "no more samples: rounding to 8 bits decides below an error of 0.003",
+        ),
+    ],
+)
+def test_a_goal_that_is_not_reached_is_said_with_the_reason(outcome: Outcome, is_reached: bool, notice: str) -> None:
+    assert outcome.is_reached is is_reached
+    assert outcome.notice == notice
+
+
+def test_errors_of_light_and_of_rounding_add_as_independent_ones() -> None:
+    assert REACHED._replace(error=0.003, rounding=0.004).error_of_bytes == pytest.approx(0.005, rel=1e-15)

@@ -1,17 +1,96 @@
-"""Contrast classes of packets, compared with a loop over the pixels."""
+"""Finding the pixels at edges, and the packets that contain them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import count
+from math import sqrt
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from minirt.kernel.stored_light import PACKET_HEIGHT
-from minirt.rendering.sampling.contrast import CLASSES, contrast_classes
+from minirt.rendering.sampling.contrast import (
+    CLASSES,
+    CONTRAST,
+    ROUNDING,
+    STRIP,
+    contrast_classes,
+    edge_packets,
+    edge_pixels,
+    estimated_error,
+    packets_with_any,
+)
+from tests.kernel.pictures import TWO
+from tests.rendering.sampling.test_auto import FACTOR, HEIGHT, KNOWN, WIDTH, reference, rms
 
 Pixels = NDArray[np.uint8]
+
+
+def flat(height: int, width: int, level: int = 100) -> Pixels:
+    pixels = np.full((height, width, 4), level, np.uint8)
+    pixels[..., 3] = 255
+    return pixels
+
+
+def test_a_uniform_picture_has_no_edges() -> None:
+    assert not edge_pixels(flat(5, 7)).any()
+
+
+@pytest.mark.parametrize("channel", [0, 1, 2])
+def test_a_pixel_that_differs_is_at_an_edge_and_so_are_its_four_neighbours(channel: int) -> None:
+    for least, found in ((CONTRAST, 0), (CONTRAST + 1, 5), (155, 5)):
+        for sign in (1, -1):
+            pixels = flat(6, 8)
+            pixels[2, 3, channel] = 100 + sign * min(least, 100 if sign < 0 else 155)
+            edge = edge_pixels(pixels)
+            assert edge.sum() == found
+            if found:
+                assert edge[2, 2:5].all()
+                assert edge[1:4, 3].all()
+
+
+def test_small_differences_in_all_colours_do_not_add_up() -> None:
+    pixels = flat(4, 4)
+    pixels[2, 2, :3] += CONTRAST
+    assert not edge_pixels(pixels).any()
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1)])
+def test_pictures_of_one_line_or_column_have_edges(shape: tuple[int, int]) -> None:
+    pixels = flat(*shape)
+    assert edge_pixels(pixels).shape == shape
+    pixels[-1, -1, :3] = 0
+    assert edge_pixels(pixels).sum() == min(2, pixels.shape[0] * pixels.shape[1]) * (shape != (1, 1))
+
+
+@pytest.mark.parametrize("packet_width", [1, 2, 4])
+def test_a_packet_is_marked_by_any_of_its_pixels(packet_width: int) -> None:
+    for y in range(PACKET_HEIGHT * 2):
+        for x in range(packet_width * 3):
+            marked = np.zeros((PACKET_HEIGHT * 2 - 1, packet_width * 3), bool)
+            if y < len(marked):
+                marked[y, x] = True
+                packets = packets_with_any(marked, packet_width)
+                assert packets.dtype == np.uint8
+                assert np.argwhere(packets).tolist() == [[y // PACKET_HEIGHT, x // packet_width]]
+    assert packets_with_any(np.ones((5, 2 * packet_width + 1), bool), packet_width).shape == (2, 3)
+
+
+def test_the_strips_make_up_the_whole_picture() -> None:
+    generator = np.random.default_rng(3)
+    for height in (1, STRIP - 1, STRIP, STRIP + 1, 2 * STRIP + PACKET_HEIGHT + 1):
+        pixels = flat(height, 21)
+        pixels[..., :3] = 100 + 50 * (generator.random((height, 21, 1)) < 0.004)
+        if height > STRIP:  # the last line of a strip is a neighbour of the first one of the next
+            pixels[STRIP - 1, 5, :3] = pixels[STRIP, 15, :3] = 200
+        strips = list(edge_packets(pixels, 2))
+        assert len(strips) == -(-height // STRIP)
+        assert np.array_equal(np.concatenate(strips), packets_with_any(edge_pixels(pixels), 2))
+
+
+# Contrast classes of packets, compared with a loop over the pixels.
 
 
 def run(jobs: list[Callable[[], object]]) -> None:
@@ -44,3 +123,48 @@ def test_classes_are_those_of_the_greatest_difference(size: tuple[int, int], pac
     classes, counts = contrast_classes(pixels, packet_width, run, threads=3)
     assert np.array_equal(classes, by_loop(pixels, packet_width))
     assert np.array_equal(counts, np.bincount(classes.ravel(), minlength=CLASSES))
+
+
+# The estimated error of refined pictures, compared with pictures of many samples.
+
+
+@pytest.mark.parametrize("name", ["all", "demo", "subject", "everything", "random"])
+def test_the_estimate_is_near_the_true_error(name: str) -> None:
+    pixels = np.zeros((HEIGHT, WIDTH, 4), np.uint8)
+    assert TWO.render(KNOWN[name], pixels)
+    fewer = 1
+    for samples in (4, 16):
+        before = pixels.copy()
+        assert TWO.refine(KNOWN[name], pixels, samples)
+        estimate = estimated_error(before, pixels, fewer, samples)
+        assert estimate is not None
+        assert 1 / FACTOR < estimate / rms(pixels[..., 2::-1] / 255 - reference(name)) < FACTOR
+        fewer = samples
+
+
+def test_a_picture_that_does_not_change_has_the_error_of_rounding() -> None:
+    pixels = np.full((9, 7, 4), 200, np.uint8)
+    assert estimated_error(pixels, pixels, 1, 4) == pytest.approx(sqrt(1 / 12) / 255)
+
+
+def test_large_differences_do_not_overflow() -> None:
+    black, white = np.zeros((9, 7, 4), np.uint8), np.full((9, 7, 4), 255, np.uint8)
+    black[..., 3] = 255
+    assert estimated_error(black, white, 1, 4) == pytest.approx(1 / 3, rel=1e-4)
+    assert estimated_error(white, black, 4, 4) == pytest.approx(sqrt(1 / 2), rel=1e-4)
+
+
+TALL = np.random.default_rng(1).integers(0, 256, (2, 3 * STRIP + 5, 7, 4), np.uint8)
+TALL[..., 3] = 255
+
+
+def test_the_estimate_covers_all_strips() -> None:
+    squared = ((TALL[0].astype(float) - TALL[1])[..., :3] ** 2).mean()
+    assert estimated_error(*TALL, 1, 4) == pytest.approx(sqrt(squared / 9 + ROUNDING) / 255)
+
+
+def test_an_estimate_that_is_no_longer_wanted_ends_after_a_strip() -> None:
+    for asked in range(4):
+        questions = count()
+        assert estimated_error(*TALL, 1, 4, lambda: next(questions) < asked) is None  # noqa: B023
+        assert next(questions) == asked + 1

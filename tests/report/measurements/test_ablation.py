@@ -10,7 +10,7 @@ import pytest
 
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering import Renderer
-from minirt.rendering.running.needed_kernels import packing_calls
+from minirt.rendering.needed_kernels import packing_calls
 from minirt.report.measurements import ablation
 from minirt.report.measurements.ablation import Ablation, Part
 from minirt.report.measurements.run_times import DISTURBED_BY_OTHERS, Budget

@@ -16,7 +16,7 @@ import pytest
 from numpy.typing import NDArray
 
 import minirt
-from minirt.rendering.sampling.adaptive import edge_pixels
+from minirt.rendering.sampling.contrast import edge_pixels
 from tests.viewer.idle_waits import until_at_rest, until_only_one_runs
 from tests.viewer.scenes import WITH_CYLINDER
 from tests.waiting import HANG_LIMIT, until

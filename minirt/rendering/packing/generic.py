@@ -1,0 +1,269 @@
+<<<<<<<< HEAD:minirt/rendering/packing/generic_kernels.py
+"""Extends the packed arrays of a scene to the arguments of a generic kernel.
+
+A specialised kernel is compiled for the kinds of shapes and the features of one scene. A generic kernel is the same
+function, compiled for all kinds of shapes and for a fixed set of features, so that it can be compiled ahead of time:
+what a scene lacks is an array without rows, which the kernel skips. Both draw the same bits.
+
+To draw a packed scene with a generic kernel: `generic = fitting(arrays)[0]`, then call the kernel that is compiled for
+the types of `empty_arrays(generic)` with `generalised(arrays, generic)` in place of the scene. All scenes have the same
+types there.
+========
+"""Forms of a packed scene: float32, and the arguments of generic kernels.
+
+float32 is less precise, with twice as many rays per SIMD register. Everything is moved so that the eye is the origin
+before it is rounded. So whatever is near the eye is precise, wherever in the world that is. Bounds used for culling are
+rounded to the safe side.
+
+A specialised kernel is compiled for the kinds of shapes and the features of one scene. A generic kernel is the same
+function, compiled for all kinds of shapes and for a fixed set of features, so that it can be compiled ahead of time:
+what a scene lacks is an array without rows, which the kernel skips. Its picture has the same bits as that of the
+specialised kernel.
+
+To draw a packed scene with a generic kernel: `wide = fitting(arrays)[0]`, then call the kernel that is compiled for the
+types of `empty_arrays(wide)` with `widened(arrays, wide)` in place of the scene. All scenes have the same types there.
+>>>>>>>> 99ba082 (Merge small modules of rendering and its tests by what changes together):minirt/rendering/packing/generic.py
+"""
+
+from __future__ import annotations
+
+from functools import cache, partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from minirt.kernel.bvh import nodes
+from minirt.kernel.bvh.nodes import WIDTH, Tree
+from minirt.kernel.culling.light_buffer import TOLERANCE
+from minirt.kernel.rows import kind_of, point_fields, row_type
+from minirt.kernel.scene_arrays import Group, SceneArrays
+from minirt.kernel.shading.environment import Environment
+from minirt.kernel.shading.patterns import COLUMNS, ORIGIN, Patterns
+from minirt.kernel.shading.texturing import SurfaceMaps
+from minirt.rendering.packing.bvh import block_type
+from minirt.shapes import ALL_KINDS, Kind
+
+MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
+
+
+def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
+    """Return a scene in float32, the eye at the origin; `boxes` as in `minirt.rendering.packing.shape_arrays`."""
+    eye = arrays.camera[:3]
+    colours_and_extents = arrays.colours_and_extents.copy()
+    colours_and_extents[:, 3] = np.abs(boxes[:, :3] - eye).max(axis=1) + boxes[:, 3]
+    eye_and_no_light = np.concatenate([eye, np.zeros(3)])
+    return SceneArrays(
+        camera=as_single(np.concatenate([np.zeros(3), arrays.camera[3:]])),
+        ambient=as_single(arrays.ambient),
+        lights=as_single(arrays.lights - eye_and_no_light),
+        colours_and_extents=as_single(colours_and_extents),
+        slots=arrays.slots,
+        tile_shapes=arrays.tile_shapes,
+        cones=widened_cones(arrays.cones),
+        light_buffer_cells=arrays.light_buffer_cells,
+        light_buffers=narrowed_light_buffers(arrays.light_buffers),
+        light_shapes=arrays.light_shapes,
+        light_cones=widened_cones(arrays.light_cones),
+        groups=tuple(group._replace(rows=rows_relative_to(group.rows, eye)) for group in arrays.groups),
+        spots=optional_single(arrays.spots),
+        soft=optional_single(arrays.soft),
+        lens=optional_single(arrays.lens),
+        specular=optional_single(arrays.specular),
+        glow=optional_single(arrays.glow),
+        surface_maps=arrays.surface_maps
+        and arrays.surface_maps._replace(
+            checks=optional_single(arrays.surface_maps.checks),
+            placements=optional_single(arrays.surface_maps.placements),
+        ),
+        patterns=arrays.patterns and patterns_relative_to(arrays.patterns, eye),
+        smooth=arrays.smooth,
+        background=optional_single(arrays.background),
+    )
+
+
+def optional_single(numbers: np.ndarray | None) -> np.ndarray | None:
+    """Round an optional array to float32; None stays None."""
+    return None if numbers is None else as_single(numbers)
+
+
+def patterns_relative_to(patterns: Patterns, eye: np.ndarray) -> Patterns:
+    """Move the frames of patterns so that the eye is the origin, and round them to float32."""
+    rows = patterns.rows.copy()
+    rows[:, ORIGIN : ORIGIN + 3] -= eye
+    return patterns._replace(rows=as_single(rows), heights=optional_single(patterns.heights))
+
+
+def as_single(numbers: np.ndarray) -> np.ndarray:
+    """Round to the nearest float32."""
+    with np.errstate(over="ignore"):
+        return numbers.astype(np.float32)
+
+
+def widened_cones(cones: np.ndarray) -> np.ndarray:
+    """Round bounding cones to float32 so that they enclose the given ones and their distances are not greater.
+
+    That holds also when a scalar product in float32 decides whether a direction is inside.
+    """
+    cones = as_single(cones)
+    cones[..., 3] -= MARGIN
+    cones[..., 4] = np.nextafter(cones[..., 4], np.float32(-np.inf))
+    return cones
+
+
+def narrowed_light_buffers(light_buffers: np.ndarray) -> np.ndarray:
+    """Round the parameters of light buffers to float32 so that fewer directions count as close to another."""
+    light_buffers = light_buffers.copy()
+    light_buffers[:, TOLERANCE] = np.maximum(np.sqrt(light_buffers[:, TOLERANCE]) - MARGIN, 0.0) ** 2
+    return as_single(light_buffers)
+
+
+def rows_relative_to(rows: np.ndarray, eye: np.ndarray) -> np.ndarray:
+    """Move rows of shapes so that the eye is the origin, and round them to float32."""
+    kind = kind_of(rows.dtype.names)
+    rows = rows.copy()
+    for name in point_fields(kind):
+        rows[name] -= eye
+    with np.errstate(over="ignore"):
+        return rows.astype(row_type(kind, np.float32))
+
+
+# Scenes as arguments of generic kernels.
+
+
+ABSENT = -1  # number of the group of a kind that a scene lacks
+NO_TEXELS, NO_PICTURES = np.zeros(0, np.float32), np.zeros((0, 4), np.int64)
+
+
+class GenericKernel(NamedTuple):
+    """A generic kernel: the features that it is compiled for, beside all kinds of shapes."""
+
+    name: str
+    precision: str  # "double" or "single"
+    features: frozenset[str]  # fields of `SceneArrays` and `SurfaceMaps` that are not None
+
+
+OPTIONAL = tuple(name for name, default in SceneArrays._field_defaults.items() if default is None)
+MAPS = ("checks", "textures", "bumps", "normals", "placements")
+PLAIN = frozenset({"smooth"})  # as meshes are among all kinds of shapes
+FULL = frozenset(OPTIONAL + MAPS)
+# See `fits_single`.
+FULL_SINGLE = PLAIN | {
+    *("spots", "soft", "lens", "specular", "glow", "surface_maps", "patterns", "background", "checks", "placements")
+}
+
+FULL_DOUBLE = GenericKernel("full", "double", FULL)
+# The most specialised first.
+GENERIC_KERNELS = (
+    GenericKernel("plain", "double", PLAIN),
+    FULL_DOUBLE,
+    GenericKernel("plain", "single", PLAIN),
+    GenericKernel("full", "single", FULL_SINGLE),
+)
+
+
+def fitting(arrays: SceneArrays) -> list[GenericKernel]:
+    """Return the generic kernels that can draw a packed scene, the most specialised first."""
+    precision = precision_of(arrays)
+    used = {name for name in OPTIONAL if getattr(arrays, name) is not None}
+    used |= {name for name in MAPS if arrays.surface_maps and getattr(arrays.surface_maps, name) is not None}
+    return [generic for generic in GENERIC_KERNELS if generic.precision == precision and used <= generic.features]
+
+
+def precision_of(arrays: SceneArrays) -> str:
+    """Return "single" for arrays of float32, and "double" for arrays of float64."""
+    return "single" if arrays.camera.dtype == np.float32 else "double"
+
+
+def generalised(arrays: SceneArrays, generic: GenericKernel) -> SceneArrays:
+    """Return a packed scene as the argument of a generic kernel that fits it. Its arrays are shared, not copied."""
+    empty = empty_arrays(generic)
+    whole: SceneArrays = filled(arrays, empty)
+    if empty.surface_maps is not None:
+        whole = whole._replace(surface_maps=filled(whole.surface_maps, empty.surface_maps))
+    if empty.patterns is not None:
+        whole = whole._replace(patterns=filled(whole.patterns, empty.patterns))
+    if empty.bvh is not None:
+        whole = whole._replace(bvh=generalised_tree(whole.bvh))
+    return whole._replace(groups=all_groups(arrays.groups, empty.groups))
+
+
+def generalised_tree(tree: Tree) -> Tree:
+    """Return a BVH with a group for each kind of shape, those that a scene lacks without shapes."""
+    empty = empty_arrays(FULL_DOUBLE).bvh
+    return tree._replace(groups=all_groups(tree.groups, empty.groups))
+
+
+def filled(arrays: Any, empty: Any) -> Any:
+    """Return a NamedTuple of arrays, with the fields of `empty` in place of those that are None."""
+    return arrays._replace(**{name: getattr(empty, name) for name in arrays._fields if getattr(arrays, name) is None})
+
+
+def all_groups(groups: tuple[Any, ...], empty: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Return the groups of a scene in the order of the registry, with an `empty` one for each kind that it lacks."""
+    present = {group.rows.dtype.names: group for group in groups}
+    return tuple(present.get(group.rows.dtype.names, group) for group in empty)
+
+
+@cache
+def empty_arrays(generic: GenericKernel) -> SceneArrays:
+    """Return the argument of a generic kernel for a scene without lights and shapes: all scenes have its types."""
+    number: Any = np.float32 if generic.precision == "single" else np.float64
+    numbers, integers, indices = (
+        partial(np.zeros, dtype=number),
+        partial(np.zeros, dtype=np.int64),
+        np.zeros(0, np.int32),
+    )
+    rows = [np.zeros(0, row_type(kind, number)) for kind in ALL_KINDS]
+    maps = SurfaceMaps(
+        checks=numbers((0, 4)),
+        textures=integers(0),
+        bumps=np.zeros((0, 2)),
+        normals=integers(0),
+        placements=numbers((0, 15)),
+        used=integers(0),
+        texels=NO_TEXELS,
+        pictures=NO_PICTURES,
+    )
+    whole = SceneArrays(
+        camera=numbers(14),
+        ambient=numbers(3),
+        lights=numbers((0, 6)),
+        colours_and_extents=numbers((0, 4)),
+        slots=integers((0, 2)),
+        tile_shapes=indices,
+        cones=numbers((0, 5)),
+        light_buffer_cells=1,
+        light_buffers=numbers((0, 11)),
+        light_shapes=indices,
+        light_cones=numbers((0, 0, 5)),
+        groups=tuple(Group(each, integers(0), integers((0, 0)), ABSENT) for each in rows),
+        spots=numbers((0, 7)),
+        soft=numbers((0, 4)),
+        lens=numbers(0),
+        specular=numbers((0, 3)),
+        reflective=numbers((0, 3)),
+        transparent=numbers((0, 4)),
+        media=numbers((0, 6)),
+        eye_medium=numbers(3),
+        fresnel=numbers(0),
+        fades=numbers((0, 2)),
+        glow=numbers(0),
+        patterns=Patterns(integers((0, 2)), numbers((0, COLUMNS)), numbers(0)),
+        smooth=integers(0),
+        surface_maps=maps._replace(**without(MAPS, generic)),
+        background=numbers(3),
+        environment=Environment(NO_TEXELS, NO_PICTURES),
+        bvh=Tree(numbers(0), numbers(0), integers((0, 2)), tuple(map(empty_blocks, ALL_KINDS, rows))),
+    )
+    return whole._replace(**without(OPTIONAL, generic))
+
+
+def without(names: tuple[str, ...], generic: GenericKernel) -> dict[str, Any]:
+    """Return None for each of the features that a generic kernel lacks."""
+    return dict.fromkeys(set(names) - generic.features)
+
+
+def empty_blocks(kind: Kind, rows: np.ndarray) -> nodes.Group:
+    """Return a group of a BVH for a kind without shapes."""
+    unbounded = np.zeros(0, np.int64) if kind.infinite else None
+    return nodes.Group(rows, np.zeros(0, block_type(kind)), np.zeros((0, WIDTH, 2)), unbounded, ABSENT)

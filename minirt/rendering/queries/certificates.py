@@ -1,0 +1,270 @@
+"""Certificates of hits: how far a computed hit is from the exact surface, and how much the data's errors move it.
+
+**Backward error** of a hit at distance t along a ray from o in the direction d: the least e such that the point
+o + t d lies on a face of the shape after each face and edge was moved by at most e u M. Here u is 2^-53, and
+M = t + |o - c| + size is what t is computed from: t itself, the way from the ray's origin to the first point c that
+the shape is given by, and the sum of the shape's lengths and of the distances between its points. An algorithm is
+backward stable if the error is a small constant, wherever the ray comes from.
+
+**Condition number** of t: its relative change per relative change of the data. If o - c, the lengths and the distance
+along d change by at most e of each, the point o + t d moves relative to the surface by at most e M, and t follows by
+the implicit function theorem: from F(o + t d) = 0 comes dt = -dF / (grad F . d), a move by e M along the unit normal n
+divided by n . d. So
+
+    condition = M / (t |n . d|),    |error of t| / t <= backward error * u * condition    to first order,
+
+which is the rule of thumb of Higham, Accuracy and Stability of Numerical Algorithms (2002), 1.6. Where a ray only
+touches a surface the condition number is infinite: t then changes by the square root of a change of the data.
+
+All this is computed with double-double numbers (`minirt.shapes.double_double`) from the numbers of the scene as they
+are, with directions and axes of exactly unit length. Of a mesh the corners of the triangles count as the scene places
+them, rounded. That nothing nearer was missed, a certificate does not say.
+"""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any, NamedTuple, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.element import fields_of
+from minirt.fields import Angle, Direction, Length, Lengths, Point, cos_and_sin
+from minirt.lanes import Vec, dot, sqrt, where
+from minirt.shapes import ALL_KINDS, Kind, Shape
+from minirt.shapes.boundary import Boundary, hypotenuse, unit
+from minirt.shapes.compensated import two_sum
+from minirt.shapes.double_double import DoubleDouble
+from minirt.shapes.shape import Position
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Columns = dict[str, Array]  # by the name of the field, a row for each shape, or for each part of it
+
+
+class ExactFields(NamedTuple):
+    """The numbers of shapes of one kind, in columns."""
+
+    points: Columns  # (n, 3)
+    lengths: Columns  # (n,) or (n, 3)
+    directions: Columns  # (n, 3), of unit length but for rounding
+    turns: Columns  # (n, 2) cosine and sine of an angle
+    sizes: Array  # (n,) sum of the lengths and of the distances of the points from the first one
+    first_row: Integers  # of each shape
+
+    def first_point(self, rows: Integers) -> Array:
+        """The first point that each shape is given by."""
+        return next(iter(self.points.values()))[rows]
+
+    def shape(self, rows: Integers, first: Array, power: Integers) -> SimpleNamespace:
+        """The shapes in some rows as one shape: its fields by name, relative to the `first` points, times 2^power.
+
+        Directions have exactly unit length.
+        """
+        points = {name: exact_point(each[rows], first, power) for name, each in self.points.items()}
+        lengths = {name: exact_length(each[rows], power) for name, each in self.lengths.items()}
+        directions = {name: exact_direction(each[rows]) for name, each in self.directions.items()}
+        turns = {name: exact_turn(each[rows]) for name, each in self.turns.items()}
+        return SimpleNamespace(**points, **lengths, **directions, **turns)
+
+
+def exact_fields(kind: Kind, shapes: list[Shape]) -> ExactFields:
+    """Collect the fields of shapes of a kind; for a batched kind, the points and directions of the packed form."""
+    if kind.batched:
+        points, lengths, directions = packed_columns(kind, shapes)
+    else:
+        points, lengths, directions = (
+            {
+                each.name: np.array([getattr(shape, each.name) for shape in shapes], np.float64)
+                for each in fields_of(kind.element)
+                if isinstance(each, sort) and not each.keyed
+            }
+            for sort in (Point, (Length, Lengths), Direction)
+        )
+    turns = {
+        each.name: np.array([cos_and_sin(getattr(shape, each.name)) for shape in shapes])
+        for each in fields_of(kind.element)
+        if isinstance(each, Angle) and not kind.batched
+    }
+    first, *others = points.values()
+    sizes = np.zeros(len(first))
+    for each in lengths.values():
+        sizes += each.reshape(len(each), -1).sum(axis=1)
+    for each in others:
+        sizes += lengths_of(each - first)
+    first_row = np.concatenate([[0], np.cumsum([shape.parts for shape in shapes])[:-1]])
+    return ExactFields(points, lengths, directions, turns, sizes, first_row)
+
+
+def lengths_of(vectors: Array) -> Array:
+    """The lengths of vectors (n, 3), none of which under- or overflows."""
+    return np.hypot(np.hypot(vectors[:, 0], vectors[:, 1]), vectors[:, 2])
+
+
+def packed_columns(kind: Kind, shapes: list[Shape]) -> tuple[Columns, Columns, Columns]:
+    """The points, no lengths and the directions of all parts of shapes, in their packed form."""
+    packed = [shape.pack() for shape in shapes]
+    columns: dict[object, Columns] = {Position: {}, Vec: {}}
+    for name, hint in get_type_hints(kind.packed).items():
+        if hint in columns:
+            vecs = [getattr(each, name) for each in packed]
+            columns[hint][name] = np.concatenate([np.stack([v.x, v.y, v.z], axis=-1) for v in vecs])
+    return columns[Position], {}, columns[Vec]
+
+
+def exact_point(points: Array, first: Array, power: Integers) -> Vec:
+    """The vectors from the `first` points to others, times 2^power."""
+    parts = (two_sum(one, -other) for one, other in zip(points.T, first.T, strict=True))
+    return Vec(*(DoubleDouble(np.ldexp(high, power), np.ldexp(low, power)) for high, low in parts))
+
+
+def exact_length(lengths: Array, power: Integers) -> DoubleDouble | Vec:
+    """One length or three, times 2^power."""
+    parts = [DoubleDouble(np.ldexp(part, power)) for part in np.atleast_2d(lengths.T)]
+    return parts[0] if lengths.ndim == 1 else Vec(*parts)
+
+
+def exact_direction(directions: Array) -> Vec:
+    """Directions of exactly unit length."""
+    return unit(Vec(*map(DoubleDouble, directions.T)))
+
+
+def exact_turn(turns: Array) -> tuple[DoubleDouble, DoubleDouble]:
+    """Cosine and sine of angles, their squares adding up to exactly 1."""
+    c, s = map(DoubleDouble, turns.T)
+    length = hypotenuse(c, s)
+    return c / length, s / length
+
+
+STEPS = 4  # towards the foot; each adds digits, unless the face is curved as strongly as the point is far from it
+SETTLED = 1e-4  # relative change of the way to the foot after which no further step is taken
+FITTING = 0.5  # cosine of face and normal; at an apex, where the normal may be any of a cone, no face may fit
+AXES = (Vec(1.0, 0.0, 0.0), Vec(0.0, 1.0, 0.0), Vec(0.0, 0.0, 1.0))
+
+
+class Foot(NamedTuple):
+    """The nearest point of a face."""
+
+    distance: Array  # of the point from it
+    normal: Vec  # of the face there
+    beyond: Array  # the distance by which the point lies beyond the end of the face
+
+
+def foot(kind: Kind, shape: Any, point: Vec, normal: Vec) -> Foot:
+    """Find the nearest point of the face whose normal is closest to `normal`, of the nearest face where none fits.
+
+    Each step linearises the face about the last foot: the next one lies on that tangent plane, straight below the
+    point. Where that ends the foot is on the face, and the face's normal at the foot leads to the point.
+    """
+    boundary = kind.boundary(shape, seeded(point))
+    amounts = [each.rounded() / sqrt(dot(each.slope, each.slope)) for each in (*boundary.faces, *boundary.limits)]
+    flat = np.zeros_like(point.x.high)
+    ends = [np.fmax.reduce([flat, *amounts[:i], *amounts[i + 1 :]]) for i in range(len(boundary.faces))]
+    farther = [np.fmax(np.abs(amount), end) for amount, end in zip(amounts, ends, strict=False)]
+    face = chosen_face(boundary, normal, np.argmin(farther, axis=0))
+    beyond = np.choose(face, ends)
+    way = Vec(flat, flat, flat)  # from the point to its foot
+    for step in range(STEPS):
+        if step:
+            boundary = kind.boundary(shape, seeded(point + Vec(*map(DoubleDouble, (way.x, way.y, way.z)))))
+        height, slope = height_and_slope(boundary, face)
+        before, way = way, ((dot(slope, way) - height) / dot(slope, slope)) * slope
+        change = way - before
+        if not (dot(change, change) > SETTLED * SETTLED * dot(way, way)).any():
+            break
+    return Foot(sqrt(dot(way, way)), slope * (1.0 / sqrt(dot(slope, slope))), beyond)
+
+
+def seeded(point: Vec) -> Vec:
+    """The point, its coordinates as the variables that gradients are taken by."""
+    parts = (point.x, point.y, point.z)
+    return Vec(*(DoubleDouble(part.high, part.low, axis) for part, axis in zip(parts, AXES, strict=True)))
+
+
+def chosen_face(boundary: Boundary, normal: Vec, nearest: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The index of the face whose normal is closest to `normal`, or of the nearest face where none fits."""
+    slopes = [face.slope for face in boundary.faces]
+    cosines = [dot(slope, normal) / sqrt(dot(slope, slope)) + 0.0 * normal.x for slope in slopes]
+    chosen: NDArray[np.int64] = np.where(
+        np.fmax.reduce(cosines) >= FITTING, np.argmax(np.nan_to_num(cosines, nan=-2.0), axis=0), nearest
+    )
+    return chosen
+
+
+def height_and_slope(boundary: Boundary, face: NDArray[np.int64]) -> tuple[Array, Vec]:
+    """The value and the gradient of the chosen faces."""
+    height, slope = boundary.faces[0].rounded(), boundary.faces[0].slope
+    for index, each in enumerate(boundary.faces[1:], 1):
+        height = np.where(face == index, each.rounded(), height)
+        slope = where(face == index, each.slope, slope)
+    return height, slope
+
+
+U = 2.0**-53
+CHUNK = 1 << 14  # hits that are certified at once, so that their numbers stay in the processor's cache
+
+
+class Rays(NamedTuple):
+    """Rays and their hits."""
+
+    origins: Array  # (n, 3)
+    directions: Array  # (n, 3) of any length
+    distances: Array  # (n,) in scene units
+    normals: Array  # (n, 3); where they are NaN, the nearest face counts as the one that was hit
+
+    def some(self, indices: Integers) -> Rays:
+        """Some of the rays, by their indices."""
+        return Rays(*(part[indices] for part in self))
+
+
+class Certificate(NamedTuple):
+    """Errors and condition numbers of n hits; NaN where nothing was hit."""
+
+    backward_error: Array  # (n,) distance of o + t d from the surface, in units of 2^-53 (t + |o - c| + size)
+    condition: Array  # (n,) relative change of t per relative change of the data
+    normal_error: Array  # (n,) distance of the normal from the exact one at the nearest point of the surface
+
+
+def certify(shapes: tuple[Shape, ...], owners: Integers, parts: Integers, rays: Rays) -> Certificate:
+    """Certify n hits: ray i hits part `parts[i]` of the shape with the index `owners[i]`, or nothing if that is -1."""
+    found = Certificate(*np.full((3, len(owners)), np.nan))
+    kinds = np.array([type(shape) for shape in shapes], object)
+    for kind in ALL_KINDS:
+        members = np.flatnonzero(kinds == kind.element)
+        hits = np.flatnonzero(np.isin(owners, members))
+        if not len(hits):
+            continue
+        fields = exact_fields(kind, [shapes[i] for i in members])
+        rows = fields.first_row[np.searchsorted(members, owners[hits])] + parts[hits]
+        for start in range(0, len(hits), CHUNK):
+            some = hits[start : start + CHUNK]
+            with np.errstate(all="ignore"):
+                certificate = certify_kind(kind, fields, rows[start : start + CHUNK], rays.some(some))
+            for whole, part in zip(found, certificate, strict=True):
+                whole[some] = part
+    return found
+
+
+def certify_kind(kind: Kind, fields: ExactFields, rows: Integers, rays: Rays) -> Certificate:
+    """Certify hits of shapes of one kind, each of the shape in a row of `fields`.
+
+    The face that was hit is the one whose normal is closest to the hit's, or the nearest one where none fits.
+    """
+    first = fields.first_point(rows)
+    magnitude = rays.distances + lengths_of(rays.origins - first) + fields.sizes[rows]
+    # Scaled by a power of two all numbers are about 1, so that no product under- or overflows.
+    power = -np.frexp(magnitude)[1]
+    magnitude, distances = np.ldexp(magnitude, power), np.ldexp(rays.distances, power)
+    d = exact_direction(rays.directions)
+    point = exact_point(rays.origins, first, power) + distances * d
+    shape = fields.shape(rows, first, power)
+    normal = Vec(*rays.normals.T)
+    nearest = foot(kind, shape, point, normal)
+    slope = nearest.normal.x * d.x.high + nearest.normal.y * d.y.high + nearest.normal.z * d.z.high
+    off = normal - nearest.normal
+    return Certificate(
+        np.fmax(nearest.distance, nearest.beyond) / (U * magnitude),
+        magnitude / (distances * np.abs(slope)),
+        sqrt(dot(off, off)),
+    )

@@ -1,0 +1,282 @@
+"""Tone mapping: the levels of 8 bits for the light of pixels, by a tone curve and with or without dithering.
+
+- plain: levels are in proportion to light.
+- srgb: the transfer function of sRGB (IEC 61966-2-1).
+- filmic: Narkowicz's fit to the tone curve of ACES (Narkowicz, ACES Filmic Tone Mapping Curve, 2015), applied to red,
+  green and blue each, then the transfer function of sRGB. Light up to 7.24 keeps differences.
+
+With srgb and filmic the colours and pictures of a scene are decoded by the transfer function of sRGB before they become
+shares of light; with plain they are shares of light as they are.
+
+Dithering replaces rounding. A channel whose light lies between those of two levels takes the upper one where its share
+of the way between them is above a threshold of blue noise. So the mean light of an even area stays as it is.
+
+The kernel rounds light in proportion to levels. What other tones and dithering cost is spent here, after it: the kernel
+stays as it is, and so does sampling, whose contrast and errors are those of light clamped to [0, 1].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, partial
+from math import inf, nan, sqrt
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from minirt.rendering.outcome import ROUNDING
+from minirt.scene import Scene
+
+LEVELS = 256
+PLAIN, SRGB, FILMIC = "plain", "srgb", "filmic"
+TOE, SLOPE, OFFSET, GAMMA = 0.04045, 12.92, 0.055, 2.4  # IEC 61966-2-1
+A, B, C, D, E = 2.51, 0.03, 2.43, 0.59, 0.14  # Narkowicz: (A x^2 + B x) / (C x^2 + D x + E)
+
+
+class Tone(NamedTuple):
+    """A tone curve by its values at the levels of a picture."""
+
+    light: np.ndarray  # (256,) the light that each level stands for
+    halfway: np.ndarray  # (255,) the light from which on a level and not the one below it is nearer, on the curve
+    decodes: bool  # whether colours are decoded by the transfer function of sRGB
+
+
+@cache
+def tone_named(name: str) -> Tone:
+    """Return the tone curve with a name; KeyError for an unknown one."""
+    levels = np.arange(LEVELS)
+    return Tone(light_of(levels / 255, name), light_of((levels[1:] - 0.5) / 255, name), name != PLAIN)
+
+
+def light_of(levels: np.ndarray, name: str) -> np.ndarray:
+    """Return the light that levels in [0, 1] stand for on a tone curve."""
+    return {PLAIN: levels, SRGB: decode_srgb(levels), FILMIC: uncompressed(decode_srgb(levels))}[name]
+
+
+def decode_srgb(levels: np.ndarray) -> np.ndarray:
+    """Return the light of levels in [0, 1] of sRGB."""
+    light: np.ndarray = np.where(levels <= TOE, levels / SLOPE, ((levels + OFFSET) / (1 + OFFSET)) ** GAMMA)
+    return light
+
+
+def levels_of(light: np.ndarray, name: str) -> np.ndarray:
+    """Return the levels in [0, 1] of light on a tone curve: the inverse of `light_of`, clamped."""
+    if name == FILMIC:
+        bounded = np.minimum(light, 1e6)  # whose square is finite; the curve has long passed 1
+        light = bounded * (A * bounded + B) / (bounded * (C * bounded + D) + E)
+    light = np.clip(light, 0.0, 1.0)
+    return light if name == PLAIN else encode_srgb(light)
+
+
+def encode_srgb(light: np.ndarray) -> np.ndarray:
+    """Return the levels in [0, 1] of light in [0, 1]."""
+    steep = (1 + OFFSET) * light ** (1 / GAMMA) - OFFSET
+    levels: np.ndarray = np.where(light <= TOE / SLOPE, light * SLOPE, steep)
+    return levels
+
+
+def uncompressed(shown: np.ndarray) -> np.ndarray:
+    """Return the light that Narkowicz's curve maps to some light in [0, 1]."""
+    a, b, c = A - C * shown, B - D * shown, -E * shown
+    light: np.ndarray = (np.sqrt(b * b - 4 * a * c) - b) / (2 * a)
+    return light
+
+
+KEPT_BITS = 8  # of the 52 bits of a float64's fraction: 256 cells between a power of two and the next
+
+
+class Steps:
+    """At most 255 increasing thresholds above 0, and a table of cells, each with at most one threshold.
+
+    The highest bits of a number are the index of its cell.
+    """
+
+    def __init__(self, thresholds: np.ndarray) -> None:
+        self.low, self.high = float(thresholds[0]) / 2, float(thresholds[-1])
+        self.first, last = cells_of(np.array([self.low, self.high])).tolist()
+        edges = (np.arange(self.first, last + 2) << (52 - KEPT_BITS)).view(np.float64)
+        reached = np.searchsorted(thresholds, edges, "left")
+        assert (np.diff(reached) <= 1).all(), "two thresholds in a cell"
+        self.reached = reached[:-1].astype(np.uint8)  # thresholds below each cell
+        self.next = np.append(thresholds, inf)
+
+    def count(self, numbers: np.ndarray) -> np.ndarray:
+        """Return how many thresholds each number is not below, uint8; numbers are float64, and NaN gives anything."""
+        cells = cells_of(np.clip(numbers, self.low, self.high)) - self.first
+        counts: np.ndarray = self.reached.take(cells, mode="clip")
+        counts += numbers >= self.next.take(counts)
+        return counts
+
+
+def cells_of(numbers: np.ndarray) -> np.ndarray:
+    """Return the highest bits of positive float64 numbers, which increase with the numbers."""
+    cells: np.ndarray = numbers.view(np.int64) >> (52 - KEPT_BITS)
+    return cells
+
+
+NOISE = 64  # pixels along an edge of the square of blue noise
+
+
+@cache
+def blue_noise() -> np.ndarray:
+    """Return thresholds for dithering, (NOISE, NOISE), evenly spaced in (0, 1): a square without low frequencies, that
+    repeats without a seam.
+
+    The file has their ranks, made by Ulichney's void-and-cluster method (The void-and-cluster method for dither array
+    generation, 1993).
+    """
+    ranks: np.ndarray = np.load(Path(__file__).with_name("blue_noise.npy"))
+    return (ranks + 0.5) / (NOISE * NOISE)
+
+
+NO_LINEAR = np.zeros((0, 0, 3))
+DITHERING = sqrt(2)  # ratio of the RMSE of dithering to that of rounding, where all fractions of a level are as likely
+LARGEST_FLOOR = 0.02  # above any error at which rounding decides: of the widest levels of all tones
+STRIP = 64  # lines at once: their data fits a processor's cache
+CLIPPED = 1 + 2.0**-20  # light above this share of that of the highest level is clipped, and not only rounded
+
+Job = Callable[[], object]
+
+
+def map_tones(
+    light: np.ndarray,
+    pixels: np.ndarray,
+    tone: str,
+    dither: bool = False,
+    run: Callable[[list[Job]], object] | None = None,
+    threads: int = 1,
+    left: int = 0,
+    top: int = 0,
+) -> None:
+    """Write the levels of light, float64 (h, w, 3), into pixels, uint8 (h, w, 4) in the order blue, green, red, alpha.
+
+    Pixels whose light is NaN stay as they are. `run` runs jobs side by side. The first pixel is that at column `left`
+    and row `top` of the pattern that dithers.
+    """
+    tops, pattern = range(0, len(light), STRIP), (shifted_pattern(left, top) if dither else None)
+    jobs: list[Job] = [partial(map_strips, light, pixels, tone, pattern, tops[i::threads]) for i in range(threads)]
+    (run or run_in_turn)(jobs)
+
+
+def run_in_turn(jobs: list[Job]) -> None:
+    """Run jobs one after the other."""
+    for job in jobs:
+        job()
+
+
+def shifted_pattern(left: int, top: int) -> np.ndarray:
+    """Return the thresholds of dithering, shifted so that those at a column and a row come first."""
+    return np.roll(blue_noise(), (-top, -left), axis=(0, 1))
+
+
+def map_strips(light: np.ndarray, pixels: np.ndarray, tone: str, pattern: np.ndarray | None, tops: range) -> None:
+    """Map the strips of a picture whose first lines are `tops`; thresholds, if given, dither."""
+    for top in tops:
+        strip = np.ascontiguousarray(light[top : top + STRIP])
+        levels = rounding_steps(tone).count(strip) if pattern is None else dithered(strip, tone, top, pattern)
+        into, known = pixels[top : top + STRIP], strip[..., 0] == strip[..., 0]
+        if known.all():
+            into[..., 2::-1], into[..., 3] = levels, 255
+        else:
+            into[known] = np.insert(levels[known][:, ::-1], 3, 255, axis=-1)
+
+
+def dithered(light: np.ndarray, tone: str, top: int, pattern: np.ndarray) -> np.ndarray:
+    """Return the levels of some lines of a picture, the first of which is line `top`, dithered by thresholds."""
+    of_level, per_light = tone_named(tone).light, light_to_levels(tone)
+    levels = level_steps(tone).count(light)
+    share = (light - of_level.take(levels)) * per_light.take(levels)
+    rows, columns = np.arange(top, top + len(light)) % NOISE, np.arange(light.shape[1]) % NOISE
+    levels += share > pattern[np.ix_(rows, columns)][..., None]
+    return levels
+
+
+@cache
+def rounding_steps(tone: str) -> Steps:
+    """The light from which on each level is the nearest."""
+    return Steps(tone_named(tone).halfway)
+
+
+@cache
+def level_steps(tone: str) -> Steps:
+    """The light of each level."""
+    return Steps(tone_named(tone).light[1:])
+
+
+@cache
+def light_to_levels(tone: str) -> np.ndarray:
+    """Levels by light, from each level to the next; 0 for the highest, (256,)."""
+    return np.append(1 / np.diff(tone_named(tone).light), 0.0)
+
+
+def clipped_pixels(light: np.ndarray, tone: str) -> int:
+    """Count the pixels of which a channel is brighter than the highest level."""
+    return int((light > CLIPPED * tone_named(tone).light[-1]).any(axis=-1).sum())
+
+
+def rounding_error(pixels: np.ndarray, tone: str, dither: bool) -> float:
+    """Return the RMSE, in light clamped to [0, 1], of a picture's levels against the light that they stand for.
+
+    Light is taken to be anywhere between a level's neighbours: between `halfway` to both where it was rounded, and
+    with a chance that falls with the distance where it was dithered.
+    """
+    curve = tone_named(tone)
+    if dither:
+        widths = np.diff(np.minimum(curve.light, 1.0), prepend=0.0, append=1.0) ** 2
+        variances = (widths[1:] + widths[:-1]) / 12
+    else:
+        variances = np.diff(np.minimum(curve.halfway, 1.0), prepend=0.0, append=1.0) ** 2 / 12
+    counts = np.bincount(pixels[..., :3].ravel(), minlength=LEVELS)
+    return sqrt(float(counts @ variances) / max(counts.sum(), 1))
+
+
+class ToneMapper:
+    """Maps the tones of the pictures of one renderer, and keeps the light of a picture until then."""
+
+    def __init__(self, run: Callable[[list[Job]], object], threads: int, dither: bool) -> None:
+        """`run` runs jobs on so many threads."""
+        self.run = run
+        self.threads = threads
+        self.dither = dither
+        self.scratch = NO_LINEAR  # the light of the last picture for which nobody else kept it
+
+    def needed(self, scene: Scene) -> bool:
+        """Whether the levels of a scene's pictures are others than the kernel's: rounded, in proportion to light."""
+        return scene.camera.tone != PLAIN or self.dither
+
+    def light_for(
+        self, scene: Scene, pixels: np.ndarray, linear: np.ndarray | None, edges_only: bool = False
+    ) -> np.ndarray:
+        """Return the array for the light of a picture: `linear` if given, one without rows where no one needs it.
+
+        With `edges_only` the light of pixels that are not drawn is NaN, unless it is in `linear`.
+        """
+        if linear is not None or not self.needed(scene):
+            self.scratch = NO_LINEAR
+            return NO_LINEAR if linear is None else linear
+        shape = (*pixels.shape[:2], 3)
+        if self.scratch.shape != shape:
+            self.scratch = np.empty(shape)
+        if edges_only:
+            self.scratch[...] = nan
+        return self.scratch
+
+    def apply(self, scene: Scene, pixels: np.ndarray, light: np.ndarray, left: int = 0, top: int = 0) -> None:
+        """Write the levels of a picture, or of a rectangle of it that begins at a pixel, if the kernel has not."""
+        if self.needed(scene):
+            map_tones(light, pixels, scene.camera.tone, self.dither, self.run, self.threads, left, top)
+
+    def rounding(self, scene: Scene, pixels: np.ndarray) -> float:
+        """Return the RMSE of rounding or dithering a picture, in light clamped to [0, 1]."""
+        if scene.camera.tone == PLAIN:
+            return DITHERING * ROUNDING if self.dither else ROUNDING
+        return rounding_error(pixels, scene.camera.tone, self.dither)
+
+    def floor(self, scene: Scene, pixels: np.ndarray, error: float, draw: Callable[[], object]) -> float:
+        """Return the error below which rounding decides; `draw` draws a first picture, which tells it for a curve."""
+        if scene.camera.tone != PLAIN:
+            if error >= LARGEST_FLOOR:
+                return 0.0
+            draw()
+        return self.rounding(scene, pixels) / 2

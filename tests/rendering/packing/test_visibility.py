@@ -1,0 +1,385 @@
+"""Visibility culling: no shape that a ray hits is missing from the bin of the ray."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.errors import RenderError
+from minirt.kernel import interpreted
+from minirt.kernel.culling import binning
+from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR, SCALE, TOLERANCE, light_buffer_cell
+from minirt.kernel.frame import ray_direction, tile_count
+from minirt.kernel.machine_code import functions
+from minirt.kernel.rows import kind_of, read
+from minirt.kernel.stored_light import TILE
+from minirt.kernel.trace import COINCIDENT, in_cone
+from minirt.lanes import Vec, unit
+from minirt.rendering.culling import light_frustum, visibility
+from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.rendering.renderer import Renderer
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Camera, Light, Scene, parse
+from minirt.shapes import KINDS
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from tests.random_scenes import random_scene
+from tests.shapes.examples import hits
+from tests.shapes.regimes import random_directions
+
+WIDTH, HEIGHT = 70, 45  # five tiles by three, the last ones cut
+
+
+def listed(starts: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The bin of each member of the bins of a kind, and the members, one bin after the other."""
+    return np.repeat(np.arange(len(starts) - 1), np.diff(starts)), table[starts[0] : starts[-1]]
+
+
+def members(arrays: Any, starts: str, table: np.ndarray, row: Any = ...) -> np.ndarray:
+    """Whether each shape, of all kinds, is in each of the bins: (bins, shapes)."""
+    all_starts = [getattr(group, starts)[row] for group in arrays.groups]
+    found = np.zeros((len(all_starts[0]) - 1, len(arrays.slots)), bool)
+    for each in all_starts:
+        found[listed(each, table)] = True
+    return found
+
+
+class RayHits(NamedTuple):
+    """All hits of the rays through all pixels, not only the closest ones."""
+
+    tile: np.ndarray
+    shape: np.ndarray
+    distance: np.ndarray
+    in_cone: np.ndarray  # whether the ray is in the bounding cone of the shape
+
+
+def camera_hits(arrays: Any) -> RayHits:
+    """All hits of the rays of a picture."""
+    x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT)))
+    origin, direction = Vec(*arrays.camera[:3]), unit(ray_direction(arrays.camera, x, y))
+    tile = (y // TILE * tile_count(WIDTH) + x // TILE).astype(int)
+    found = [RayHits(*np.zeros((4, 0), int))]
+    for index, (hit, t) in enumerate(hits_of_all_shapes(arrays, origin, direction)):
+        cone = np.broadcast_to(in_cone(arrays.cones[index], direction), x.shape)
+        found.append(RayHits(tile[hit], np.full(hit.sum(), index), t[hit], cone[hit]))
+    return RayHits(*map(np.concatenate, zip(*found, strict=True)))
+
+
+def hits_of_all_shapes(arrays: Any, origin: Vec, direction: Vec) -> list[Any]:
+    answers = []
+    for group, i in arrays.slots:
+        rows = arrays.groups[group].rows
+        with np.errstate(all="ignore"):
+            answers.append(kind_of(rows.dtype.names).intersect(read(rows, i), origin, direction))
+    return answers
+
+
+def hard_scene(seed: int) -> Scene:
+    """Tiny and huge shapes anywhere, some at 1e8 from the origin; eye and light often inside or near a surface."""
+    random = np.random.default_rng(seed)
+    offset = random.choice([0, 0, 1e8]) * random.normal(size=3)
+
+    def place(spread: float) -> Any:
+        return tuple(offset + spread * random.normal(size=3))
+
+    def way() -> Any:
+        return tuple(random.normal(size=3).clip(-1, 1))
+
+    shapes: list[Any] = [Plane(place(3), way(), (1, 2, 3)) for _ in range(random.integers(3))]
+    for _ in range(random.choice([3, 12])):
+        size = 10.0 ** random.uniform(-3, 3)
+        shapes.append(Sphere(place(5 + size / 2), size, (1, 2, 3)))
+        shapes.append(Cylinder(place(5 + size / 2), way(), size, 10.0 ** random.uniform(-3, 3), (1, 2, 3)))
+    near = [tuple(np.array(each.centre) + 0.5 * each.diameter * np.array(way())) for each in shapes[-2:]]
+    eye, light = near if random.random() < 0.6 else (place(5), place(5))
+    return Scene((Camera(eye, way(), random.choice([1e-3, 20, 90, 170, 179.99])), Light(light, 1), *shapes))
+
+
+SCENES = [*((random_scene, seed) for seed in range(12)), *((hard_scene, seed) for seed in range(40))]
+KERNELS = pytest.mark.parametrize("kernel", [binning, functions], ids=["interpreted", "compiled"])
+
+
+@KERNELS
+@pytest.mark.parametrize(("make", "seed"), SCENES)
+def test_a_tile_lists_all_shapes_that_its_rays_hit(make: Any, seed: int, kernel: Any) -> None:
+    arrays = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
+    seen, in_tile = camera_hits(arrays), members(arrays, "tile_starts", arrays.tile_shapes)
+    assert len(in_tile) == tile_count(WIDTH) * tile_count(HEIGHT)
+    assert in_tile[seen.tile, seen.shape].all()
+    assert seen.in_cone.all()
+    assert (seen.distance >= arrays.cones[seen.shape, 4]).all()
+
+
+def outside_scene(seed: int) -> Scene:
+    """A hard scene whose shapes but a few are in a heap, with a light outside of the heap, near or far."""
+    random = np.random.default_rng(seed)
+    shapes = [each for each in hard_scene(seed).shapes if isinstance(each, Plane) or random.random() < 0.1]
+    middle, size = 10.0 ** random.uniform(0, 6) * random.normal(size=3), 10.0 ** random.uniform(-1, 2)
+    for _ in range(40):
+        place = tuple(middle + size * random.uniform(-0.5, 0.5, 3))
+        shapes.append(Sphere(place, size * 10.0 ** random.uniform(-4, -0.5), (1, 2, 3)))
+    light = middle + size * 10.0 ** random.uniform(0.1, 4) * unit_direction(random)
+    return Scene((Camera((0, 0, 0), (0, 0, 1), 90), Light(tuple(light), 1), *shapes))
+
+
+def unit_direction(random: np.random.Generator) -> Any:
+    way = random.normal(size=3)
+    return way / np.linalg.norm(way)
+
+
+@pytest.fixture
+def small_clusters(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Use frustums for small scenes, in which every shape can be tried."""
+    monkeypatch.setattr(light_frustum, "LEAST_SHAPES", 30)
+
+
+@KERNELS
+@pytest.mark.usefixtures("small_clusters")
+@pytest.mark.parametrize(("make", "seed"), [*SCENES, *((outside_scene, seed) for seed in range(40))])
+def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(make: Any, seed: int, kernel: Any) -> None:
+    arrays = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
+    random = np.random.default_rng(seed)
+    directions = random.normal(size=(3, 2000))
+    directions[:, :40] = np.round(directions[:, :40])  # along axes and diagonals too
+    directions[2, (directions == 0).all(axis=0)] = 1
+    directions /= np.linalg.norm(directions, axis=0)
+    planes = [index for index, shape in enumerate(make(seed).shapes) if shape.flat()]
+    for light, row in enumerate(arrays.lights):
+        count, buffer = (
+            6 * arrays.light_buffer_cells**2 if arrays.light_buffer_cells > 1 else 1,
+            arrays.light_buffers[light],
+        )
+        if buffer[SCALE] > 0:  # half of the directions into the frustum, some of them just beside it
+            reach = 1.1 * FRUSTUM_FACTOR / 2 * arrays.light_buffer_cells / buffer[SCALE]
+            slopes = reach * random.uniform(-1, 1, (2, 1000))
+            directions[:, 1000:] = buffer[:9].reshape(3, 3).T @ np.array([*slopes, np.ones(1000)])
+            directions /= np.linalg.norm(directions, axis=0)
+        # The list of a cell holds for close directions, too.
+        nearby = directions + 0.99 * np.sqrt(buffer[TOLERANCE]) * random_directions(random, 2000).T
+        nearby /= np.linalg.norm(nearby, axis=0)
+        nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= buffer[TOLERANCE], nearby, directions)
+        with np.errstate(all="ignore"):
+            cells = (
+                light_buffer_cell(buffer, arrays.light_buffer_cells, Vec(*nearby))
+                if arrays.light_buffer_cells > 1
+                else np.zeros(2000)
+            )
+        in_cell = members(arrays, "light_starts", arrays.light_shapes, light)
+        assert 0 <= cells.min() <= cells.max() < count <= len(in_cell)
+        left_out = {shape for shape in planes if not in_cell[:, shape].any()}
+        for shape, (hit, t) in enumerate(hits_of_all_shapes(arrays, Vec(*row[:3]), Vec(*directions))):
+            assert (t[hit] >= arrays.light_cones[light, shape, 4]).all()
+            assert (in_cone(arrays.light_cones[light, shape], Vec(*directions)) | ~hit).all()
+            assert shape in left_out or in_cell[cells[hit].astype(int), shape].all()
+
+
+@pytest.mark.parametrize(("make", "seed"), SCENES)
+def test_bins_list_each_shape_once_and_the_nearest_first(make: Any, seed: int) -> None:
+    arrays = Packing().pack(make(seed), WIDTH, HEIGHT)
+    for near, found, every in [
+        (arrays.cones[:, 4], arrays.tile_shapes, [group.tile_starts for group in arrays.groups]),
+        *(
+            (near, arrays.light_shapes, [group.light_starts[light] for group in arrays.groups])
+            for light, near in enumerate(arrays.light_cones[..., 4])
+        ),
+    ]:
+        assert np.isfinite(near).all()
+        assert (near >= 0).all()
+        for starts in every:
+            at, shapes = listed(starts, found)
+            assert (np.diff(near[shapes])[np.diff(at) == 0] >= 0).all()
+            assert len(np.unique([at, shapes], axis=1).T) == len(shapes)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_a_sphere_is_listed_only_near_the_pixels_that_show_it(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    ball = Sphere(tuple(0.5 * random.normal(size=3) + (0, 0, 5)), random.uniform(0.1, 3), (1, 2, 3))
+    arrays = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), ball)), 640, 640)
+    listed = np.diff(arrays.groups[0].tile_starts).reshape(40, 40) > 0
+    x, y = (axis.ravel() + 0.5 for axis in np.meshgrid(np.arange(640), np.arange(640)))
+    ((hit, _),) = hits_of_all_shapes(arrays, Vec(*arrays.camera[:3]), unit(ray_direction(arrays.camera, x, y)))
+    assert not hit.reshape(640, 640)[[0, -1]].any()
+    for axis in (0, 1):
+        seen, there = (np.flatnonzero(each.any(axis=axis)) for each in (hit.reshape(640, 640), listed))
+        assert there[0] in (seen[0] // TILE, seen[0] // TILE - 1)
+        assert there[-1] in (seen[-1] // TILE, seen[-1] // TILE + 1)
+
+
+def test_a_huge_ball_is_not_listed_above_its_horizon() -> None:
+    # The centre is only 3 in front of the eye, and the radius far greater.
+    planet = Sphere((0, -101, 3), 200, (1, 2, 3))
+    arrays = Packing().pack(Scene((Camera((0, 0, 0), (0, 0, 1), 90), planet)), 320, 320)
+    listed = np.diff(arrays.groups[0].tile_starts).reshape(20, 20) > 0
+    assert listed[13:].all()
+    assert not listed[:9].any()
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "radius"), [(0, 5, 1), (3, 4, 2), (-3, 1, 2), (4, 0, 1), (4, -0.5, 1), (-9, -0.1, 2)]
+)
+def test_tangents_differ_from_the_centre_by_the_angular_radius(x: float, z: float, radius: float) -> None:
+    middle, half = np.arctan2(x, z), np.arcsin(radius / np.hypot(x, z))
+    low, high = binning.tangent_slopes(x, z, radius)
+    assert low == (pytest.approx(np.tan(middle - half)) if middle - half > -np.pi / 2 else -np.inf)
+    assert high == (pytest.approx(np.tan(middle + half)) if middle + half < np.pi / 2 else np.inf)
+
+
+@KERNELS
+def test_an_infinite_ball_is_in_all_cells_at_distance_zero(kernel: Any) -> None:
+    balls, grid = np.array([[0.0, 0.0, 0.0, np.inf]]), visibility.cube_grid(2)
+    rectangles, cones, counts = np.zeros((6, 4), np.int32), np.ones((1, 5)), np.zeros(25, np.int64)
+    place = np.zeros((1, 2), np.int64)
+    for origin in (np.zeros(3), np.array([1.0, 2.0, -3.0])):
+        counts[:] = 0
+        assert kernel.project_all(origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, cones, counts) == 6
+        assert cones[0, 3:].tolist() == [-2, 0]
+        assert counts.tolist() == [1] * 24 + [0]
+
+
+def test_a_disc_around_the_eye_covers_all_slopes() -> None:
+    assert binning.tangent_slopes(0.5, -0.5, 1.0) == (-np.inf, np.inf)
+
+
+def test_quantised_distances_are_less_by_a_little_more_than_coincident_ones() -> None:
+    near = np.geomspace(1e-30, 1e30, 10_000)
+    rounded, depths = visibility.quantised_depths(near)
+    assert (rounded * (1 + COINCIDENT) <= near).all()
+    assert (rounded * (1 + 4 * COINCIDENT) > near).all()
+    assert (np.diff(depths) >= 0).all()
+    assert visibility.quantised_depths(np.array([0.0, 1e-50]))[0].tolist() == [0, 0]
+
+
+def test_depths_are_ordered_as_the_distances() -> None:
+    near = np.random.default_rng(8).permutation(np.geomspace(1e-3, 1e3, 10_000))
+    rounded, depths = visibility.quantised_depths(near)
+    order = visibility.depth_order(depths)
+    assert sorted(order.tolist()) == list(range(10_000))
+    assert (np.diff(rounded[order]) >= 0).all()
+    assert (np.diff(order)[np.diff(depths[order]) == 0] > 0).all()
+
+
+def test_bins_leave_out_most_shapes() -> None:
+    arrays = Packing().pack(random_scene(3), WIDTH, HEIGHT)
+    assert len(arrays.tile_shapes) > 0
+    scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), Light((0, 9, 0), 1), *scattered()))
+    arrays = Packing().pack(scene, WIDTH, HEIGHT)
+    assert arrays.light_buffer_cells > 1
+    in_tile = members(arrays, "tile_starts", arrays.tile_shapes)
+    assert in_tile.mean() < 0.3
+    behind = np.array([shape.centre[2] < -2 for shape in scene.shapes])
+    assert behind.any()
+    assert not in_tile[:, behind].any()
+
+
+def scattered() -> list[Any]:
+    sphere = next(kind for kind in KINDS if kind.element.code == "sp")
+    return hits(sphere, 1, 0.3, 8.0, shapes=60, rays=8).shapes
+
+
+@pytest.mark.parametrize("shapes", [1, 8, 9, 200, 2_000, 10_000])
+def test_more_shapes_have_more_cells(shapes: int) -> None:
+    grid, half = (visibility.light_buffer_cells(shape_arrays_of(count)) for count in (shapes, max(1, shapes // 2)))
+    assert grid >= half
+    assert (grid == 1) == (shapes <= 8)
+
+
+def shape_arrays_of(count: int) -> ShapeArrays:
+    tables = ShapeArrays()
+    tables.update((Sphere((0, 0, 0), 1, (1, 2, 3)),) * count)
+    return tables
+
+
+@pytest.mark.parametrize("grid", [2, 16])
+def test_a_direction_is_in_the_cell_of_its_face_row_and_column(grid: int) -> None:
+    # Directions through the centre of each cell, by the frames of the faces.
+    slopes = (2 * np.arange(grid) + 1) / grid - 1
+    expected = 0
+    for right, up, forward in visibility.FACES:
+        for down in slopes:
+            for across in slopes:
+                direction = forward + across * right + down * up
+                with np.errstate(all="ignore"):
+                    assert (
+                        light_buffer_cell(visibility.NO_LIGHT_BUFFER, grid, Vec(*map(np.float64, direction)))
+                        == expected
+                    )
+                expected += 1
+
+
+@KERNELS
+@pytest.mark.parametrize("size", [1.0, 1e-3, 1e-7])
+def test_corners_and_tangents_are_in_the_bounding_cone(size: float, kernel: Any) -> None:
+    """The cone encloses corners of triangles and rims of balls of this size, seen from a point, and hardly more."""
+    random = np.random.default_rng(7)
+    for _ in range(300):
+        way = unit_direction(random)
+        corners = 10.0 ** random.uniform(-3, 3) * (way + size * 0.4 * random.normal(size=(3, 3)))
+        axis, cosine = cone_from_origin(kernel, np.c_[corners, np.zeros(3)])
+        assert all(np.dot(axis, corner / np.linalg.norm(corner)) >= cosine for corner in corners)
+        sine = size * random.uniform(0.3, 0.99999)
+        axis, cosine = cone_from_origin(kernel, np.array([[*3 * way, 3 * sine]]))
+        aside = np.cross(way, unit_direction(random))
+        rim = np.sqrt(1 - sine * sine) * way + sine * aside / np.linalg.norm(aside)
+        assert np.dot(axis, rim / np.linalg.norm(rim)) >= cosine
+        wider = 1.01 * np.arcsin(sine) + 2e-7
+        assert cosine > np.cos(wider)
+
+
+def cone_from_origin(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]:
+    """The bounding cone of the hull of some balls, seen from the origin: axis and cosine."""
+    rectangles, cones, counts = np.zeros((6, 4), np.int32), np.zeros((1, 5)), np.zeros(25, np.int64)
+    arguments = np.zeros(3), visibility.cube_grid(2), balls, 0.0, np.array([0, len(balls)]), np.zeros((1, 2), np.int64)
+    kernel.project_all(*arguments, rectangles, 0, cones, counts)
+    return cones[0, :3], float(cones[0, 3])
+
+
+# Lists of shapes that would take too much memory are made of coarser cells, and the picture stays the same.
+
+
+SCENE = "A 0.2 255,255,255\nC 0,0,-9 0,0,1 60\nL 2,5,-6 0.7 255,255,255\npl 0,-3,0 0,1,0 90,120,150\n"
+BALLS = [f"sp {x},{y},{(x * y) % 3} 1.2 255,{20 * x + 120},90" for x in range(-4, 5) for y in range(-3, 4)]
+
+
+def scene() -> Scene:
+    """Return a scene of overlapping spheres, whose light buffer has 32 cells along an edge."""
+    return parse(SCENE + "\n".join(BALLS) + "\n", "x.rt").scene
+
+
+def light_of(scene: Scene) -> tuple[np.ndarray, int]:
+    """Return the light of a picture of the scene, and the cells of its light buffers."""
+    renderer, light = Renderer(threads=1), np.zeros((48, 64, 3))
+    assert renderer.render(scene, np.empty((48, 64, 4), np.uint8), 1, light)
+    assert renderer.packing.last is not None
+    return light, int(renderer.packing.last[2].light_buffer_cells)
+
+
+def test_coarser_cells_give_the_same_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    expected, cells = light_of(scene())
+    monkeypatch.setattr(memory_limit, "SMALL", 0)
+    monkeypatch.setattr(visibility, "QUICKLY_BUILT", 20_000)
+    coarse, fewer = light_of(scene())
+    assert fewer < cells
+    assert np.array_equal(coarse, expected)
+
+
+def test_lists_that_no_cells_make_small_enough_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(memory_limit, "SMALL", 0)
+    monkeypatch.setattr(memory_limit, "room", lambda: 64 * 48 * 4)  # enough for the picture
+    with pytest.raises(RenderError, match=r"the lists of shapes in view need about .* of memory, allowed 0 MiB"):
+        minirt.render(scene(), 64, 48, linear=False)
+
+
+def test_the_estimate_is_near_the_lists_that_are_built(monkeypatch: pytest.MonkeyPatch) -> None:
+    needs: list[int] = []
+    monkeypatch.setattr(memory_limit, "SMALL", 0)
+    monkeypatch.setattr(memory_limit, "check", lambda needed, *_: needs.append(needed))
+    arrays = Packing(interpreted).pack(scene(), 64, 48)
+    starts = sum(group.light_starts.nbytes for group in arrays.groups)
+    _, tiles, estimate, members = needs
+    assert (tiles, members) == (arrays.tile_shapes.nbytes, arrays.light_shapes.nbytes)
+    assert (members + starts) / 2 < estimate < 2 * (members + starts)

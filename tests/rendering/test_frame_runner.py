@@ -1,0 +1,174 @@
+"""Running frames on threads: cancelling, and errors of single threads."""
+
+from __future__ import annotations
+
+from itertools import count
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from minirt.kernel.frame import CANCELLED
+from minirt.kernel.stored_light import PACKET_HEIGHT
+from minirt.rendering import Renderer, frame_runner
+from minirt.rendering.frame import sample_positions
+from minirt.rendering.sampling.contrast import edge_pixels
+from minirt.scene import Scene
+from tests.kernel.pictures import ALL, AMBIENT, EYE, TWO, picture
+from tests.rendering.cancelling import ENDLESS, SAMPLES, cancelled
+from tests.rendering.sampling.test_contrast import Pixels, flat
+from tests.waiting import until
+
+
+def test_cancelling_ends_a_long_frame_and_the_next_is_right() -> None:
+    renderer = Renderer(2)
+    expected, _ = picture(ALL, 64, 48)
+    renderer.prepare(ALL)
+    pixels = np.zeros((*ENDLESS, 4), np.uint8)
+    assert not cancelled(renderer, lambda: renderer.render(ALL, pixels, SAMPLES))
+    pixels = np.zeros((48, 64, 4), np.uint8)
+    assert renderer.render(ALL, pixels)
+    assert np.array_equal(pixels, expected)
+
+
+def test_cancelling_when_nothing_is_rendered_does_nothing() -> None:
+    renderer = Renderer(1)
+    renderer.cancel()
+    assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
+    renderer.cancel()
+    assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
+
+
+def test_the_seconds_of_a_frame_are_counted_for_its_kernel(monkeypatch: pytest.MonkeyPatch) -> None:
+    renderer, counted = Renderer(1), list[float]()
+    renderer.prepare(ALL)
+    times = iter((7.0, 7.25))
+    monkeypatch.setattr(frame_runner, "perf_counter", lambda: next(times))
+    monkeypatch.setattr(renderer.kernels, "count", lambda _choice, seconds: counted.append(seconds))
+    assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
+    assert counted == [0.25]
+
+
+def test_an_error_in_one_thread_reaches_the_caller() -> None:
+    renderer = Renderer(3)
+    renderer.prepare(ALL)
+    turns, stopped = count(1), list[int]()
+
+    class Rows:
+        def run(self, words: list[int]) -> None:
+            turn = next(turns)
+            if turn == 2:
+                raise ValueError("out of order")
+            until(lambda: renderer.runner.next_row[0] >= CANCELLED, "the end of the other threads")
+            stopped.append(turn)
+
+    choose = renderer.kernels.choose
+    renderer.kernels.choose = lambda frame: choose(frame)._replace(entry=Rows())
+    with pytest.raises(ValueError, match="out of order"):
+        renderer.render(ALL, np.zeros((40, 40, 4), np.uint8))
+    assert sorted(stopped) == [1, 3]
+    renderer.kernels.choose = choose
+    assert renderer.render(ALL, np.zeros((8, 8, 4), np.uint8))
+
+
+# Rendering and refining with a given number of samples: only pixels near edges change, and cancelling is heard.
+
+
+def refined(pixels: Pixels, *passes: int) -> Pixels:
+    made = pixels.copy()
+    for samples in passes:
+        assert TWO.refine(ALL, made, samples)
+    return made
+
+
+def error(pixels: Pixels, fine: Pixels) -> float:
+    """RMSE in levels."""
+    return float(np.sqrt(((pixels.astype(float) - fine)[..., :3] ** 2).mean()))
+
+
+def near_edges(pixels: Pixels) -> NDArray[np.bool_]:
+    """Pixels that may change: so close to one at an edge that they may be in its packet."""
+    near = np.zeros(pixels.shape[:2], bool)
+    for y, x in np.argwhere(edge_pixels(pixels)):
+        near[max(y - PACKET_HEIGHT, 0) : y + PACKET_HEIGHT, max(x - 7, 0) : x + 8] = True
+    return near
+
+
+@pytest.mark.parametrize(("width", "height"), [(64, 48), (61, 47), (5, 3), (1, 1), (3, 130)])
+def test_only_packets_with_edges_change_and_get_all_their_samples(width: int, height: int) -> None:
+    one, many = picture(ALL, width, height)[0], picture(ALL, width, height, 16)[0]
+    made = refined(one, 16)
+    far = ~near_edges(one)
+    assert np.array_equal(made[far], one[far])
+    edge = edge_pixels(one)
+    assert np.array_equal(made[edge], many[edge])
+
+
+def test_the_refined_picture_is_as_good_as_one_with_as_many_samples_everywhere() -> None:
+    one, many, fine = (picture(ALL, 160, 120, samples)[0] for samples in (1, 16, 256))
+    passes = refined(one, 4, 16)
+    assert error(passes, fine) < 1.1 * error(many, fine)
+    assert error(passes, fine) < error(refined(one, 4), fine) / 2 < error(one, fine) / 4
+    assert (passes == one).all(axis=2).mean() > 0.5  # and most of it was not rendered again
+
+
+def test_refining_leaves_a_picture_without_edges_alone() -> None:
+    pixels = flat(40, 50, 77)
+    assert TWO.refine(ALL, pixels, 4)
+    assert (pixels[..., :3] == 77).all()
+
+
+def test_pictures_without_shapes_or_pixels_are_refined_at_once() -> None:
+    pixels = flat(5, 7)
+    assert TWO.refine(Scene((AMBIENT, EYE)), pixels, 4)
+    assert (pixels == (0, 0, 0, 255)).all()
+    assert TWO.refine(ALL, np.zeros((0, 7, 4), np.uint8), 4)
+
+
+def test_a_picture_that_is_not_wanted_is_not_begun() -> None:
+    pixels = picture(ALL, 30, 20)[0]
+    before = pixels.copy()
+    assert not TWO.refine(ALL, pixels, 4, is_wanted=lambda: False)
+    assert not TWO.render(ALL, pixels, 4, is_wanted=lambda: False)
+    assert np.array_equal(pixels, before)
+
+
+def test_a_cancel_before_the_first_packet_is_heard() -> None:
+    renderer = Renderer(2)
+    renderer.prepare(ALL)
+    pixels = picture(ALL, 200, 150)[0]
+    before = pixels.copy()
+
+    def is_wanted() -> bool:
+        renderer.cancel()
+        return True
+
+    assert not renderer.refine(ALL, pixels, 4, is_wanted)
+    assert np.array_equal(pixels, before)
+    assert renderer.refine(ALL, pixels, 4)
+    assert not np.array_equal(pixels, before)
+
+
+def test_cancelling_ends_a_long_pass() -> None:
+    renderer = Renderer(2)
+    renderer.prepare(ALL)
+    pixels = np.random.default_rng(1).integers(0, 256, (*ENDLESS, 4), np.uint8)  # all of its pixels differ
+    assert not cancelled(renderer, lambda: renderer.refine(ALL, pixels, SAMPLES))
+
+
+# Positions of the samples in a pixel.
+
+
+@pytest.mark.parametrize("samples", [1, 2, 3, 16, 64])
+def test_samples_lie_evenly_in_the_pixel(samples: int) -> None:
+    positions = sample_positions(samples)
+    assert positions.shape == (samples, 2)
+    assert ((positions >= 0) & (positions < 1)).all()
+    assert np.abs(positions.mean(axis=0) - 0.5).max() <= (0 if samples == 1 else 0.5 / samples)
+    assert len(np.unique(positions[:, 0])) == len(np.unique(positions[:, 1])) == samples
+    quarters = np.histogram2d(positions[:, 0], positions[:, 1], bins=2, range=[[0, 1], [0, 1]])[0]
+    assert np.ptp(quarters) <= max(1, samples / 8)
+
+
+def test_one_sample_is_in_the_centre() -> None:
+    assert sample_positions(1).tolist() == [[0.5, 0.5]]
