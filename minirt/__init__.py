@@ -73,9 +73,7 @@ MODULES = {
     "minirt.notebook": ("view",),
     "minirt.rendering": ("Renderer",),
     "minirt.rendering.buffers": ("Buffers", "buffers"),
-    "minirt.rendering.queries.rays": ("camera_rays",),
-    "minirt.rendering.queries.rays": ("Hits",),
-    "minirt.rendering.queries.rays": ("trace",),
+    "minirt.rendering.queries.rays": ("Hits", "camera_rays", "trace"),
     "minirt.saved_movie": ("save_movie",),
     "minirt.scene": (
         *("Ambient", "Background", "Camera", "FurtherLight", "Lamp", "Light", "ParallelLight", "Resolution", "Scene"),

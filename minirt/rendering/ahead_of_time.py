@@ -1,4 +1,4 @@
-"""Compiles the wide kernels ahead of time: `python -m minirt.rendering.ahead_of_time`.
+"""Compiles the generic kernels ahead of time: `python -m minirt.rendering.ahead_of_time`.
 
 They are written into a folder of the package, where `minirt.kernel.machine_code.shipped_code` finds them. Kernels that
 are there already are not compiled again.
@@ -17,15 +17,15 @@ from minirt.kernel.machine_code import cache_folder, shipped_code
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import Call, identity_of
 from minirt.kernel.machine_code.processor import processor
-from minirt.rendering.needed_kernels import packing_calls, ray_query, wide_call
-from minirt.rendering.packing.generic import WIDE_KERNELS
+from minirt.rendering.needed_kernels import generic_call, packing_calls, ray_query
+from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS
 from minirt.rendering.sampling.contrast import classify_call
 from minirt.rendering.threads import usable_cores
 
 
 def calls() -> list[list[Call]]:
     """Return calls of the kernels to compile, in groups for one process each, the slowest first."""
-    full, plain, *single = map(wide_call, sorted(WIDE_KERNELS, key=lambda each: (each.precision, each.name)))
+    full, plain, *single = map(generic_call, sorted(GENERIC_KERNELS, key=lambda each: (each.precision, each.name)))
     return [[full], [*packing_calls(), classify_call(), plain], *([each] for each in single), [ray_query()]]
 
 
@@ -48,7 +48,7 @@ def build(folder: Path, target: str) -> int:
 
 def main() -> int:
     """Compile for this machine, or for the processors that are named."""
-    parser = argparse.ArgumentParser(description="Compile the wide kernels of miniRT ahead of time.")
+    parser = argparse.ArgumentParser(description="Compile the generic kernels of miniRT ahead of time.")
     parser.add_argument("processors", nargs="*", default=[processor()], help="such as x86-64-v3; default: this one")
     parser.add_argument("--folder", type=Path, default=shipped_code.FOLDER, help="default: the one in the package")
     chosen = parser.parse_args()

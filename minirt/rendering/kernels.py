@@ -20,8 +20,8 @@ from minirt.kernel.machine_code.entry import Entry
 from minirt.kernel.machine_code.library import LIBRARY, REMEMBERED
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.frame import Frame
-from minirt.rendering.needed_kernels import calls_for, kernel_features, packing_calls, wide_call
-from minirt.rendering.packing.generic import WIDE_KERNELS, WideKernel, fitting, widened
+from minirt.rendering.needed_kernels import calls_for, generic_call, kernel_features, packing_calls
+from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel, fitting, generalised
 from minirt.scene import Scene
 
 
@@ -70,7 +70,7 @@ class BackgroundCompiler:
             try:
                 LIBRARY.compile([identity], self.process)
             except RenderError as error:
-                logging.getLogger(__name__).info("a wide kernel stays in use: %s", error)
+                logging.getLogger(__name__).info("a generic kernel stays in use: %s", error)
         self.notify()
 
     def next(self) -> str | None:
@@ -90,7 +90,7 @@ class BackgroundCompiler:
         self.process.stop()
 
 
-NARROW_AFTER = 0.5  # seconds of rendering with a wide kernel, after which a narrow one is worth compiling
+SPECIALISED_AFTER = 0.5  # seconds of rendering with a generic kernel, after which a specialised one is worth compiling
 
 
 class Choice(NamedTuple):
@@ -98,24 +98,25 @@ class Choice(NamedTuple):
 
     entry: Entry
     scene: SceneArrays
-    wide: WideKernel | None  # None for the narrow kernel
-    narrow: str  # the identity of the narrow kernel
+    generic: GenericKernel | None  # None for the specialised kernel
+    specialised: str  # the identity of the specialised kernel
 
 
 class Kernels:
     """The kernels for scenes in one precision and with one depth of reflection.
 
-    The narrow kernel of a scene has code for the scene's kinds of shapes and features alone. Where it is missing a wide
-    kernel draws the same picture, and the narrow one is compiled in the background once that is worth its time.
+    The specialised kernel of a scene has code for the scene's kinds of shapes and features alone. Where it is missing a
+    generic kernel draws the same picture, and the specialised one is compiled in the background once that is worth its
+    time.
     """
 
     def __init__(self, precision: str, depth: int) -> None:
         self.precision = precision
         self.depth = depth
-        self.narrow_after = NARROW_AFTER
-        self.wants_wide = True
-        self.narrow_kernels: dict[frozenset[Hashable], list[str]] = {}  # their identities, for each set of features
-        self.wide_seconds: dict[str, float] = {}  # of rendering with a wide kernel, by the identity of the narrow one
+        self.specialised_after = SPECIALISED_AFTER
+        self.wants_generic = True
+        self.specialised_kernels: dict[frozenset[Hashable], list[str]] = {}  # identities, for each set of features
+        self.generic_seconds: dict[str, float] = {}  # of generic kernels, by specialised one
         self.start_anew()
 
     def start_anew(self) -> None:
@@ -128,71 +129,76 @@ class Kernels:
         self.start_anew()
 
     def choose(self, frame: Frame) -> Choice:
-        """Return the narrowest kernel that is there for a frame; where there is none the narrow one is compiled."""
+        """Return the most specialised kernel that is there for a frame; where there is none compile it."""
         call = functions.frame.call(*frame)
-        narrow = LIBRARY.identity(call)
-        entry = LIBRARY.find(narrow)
+        specialised = LIBRARY.identity(call)
+        entry = LIBRARY.find(specialised)
         if entry:
-            return Choice(entry, frame.scene, None, narrow)
-        for wide in fitting(frame.scene):
-            entry = LIBRARY.find(wide_identity(wide))
+            return Choice(entry, frame.scene, None, specialised)
+        for generic in fitting(frame.scene):
+            entry = LIBRARY.find(generic_identity(generic))
             if entry:
-                return Choice(entry, widened(frame.scene, wide), wide, narrow)
-        return Choice(LIBRARY.get(call), frame.scene, None, narrow)
+                return Choice(entry, generalised(frame.scene, generic), generic, specialised)
+        return Choice(LIBRARY.get(call), frame.scene, None, specialised)
 
     def count(self, choice: Choice, seconds: float) -> None:
-        """Count the time of rendering with a kernel; where a wide one took long have the narrow one compiled."""
-        if choice.wide:
-            if len(self.wide_seconds) >= REMEMBERED:
-                self.wide_seconds.clear()
-            total = self.wide_seconds[choice.narrow] = self.wide_seconds.get(choice.narrow, 0.0) + seconds
-            if total >= self.narrow_after:
-                self.background.compile(choice.narrow)
-        elif self.wants_wide and not self.narrow_after:
-            self.compile_wide()
+        """Count the time of rendering with a kernel; where a generic one took long compile the specialised one."""
+        if choice.generic:
+            if len(self.generic_seconds) >= REMEMBERED:
+                self.generic_seconds.clear()
+            total = self.generic_seconds.get(choice.specialised, 0.0) + seconds
+            self.generic_seconds[choice.specialised] = total
+            if total >= self.specialised_after:
+                self.background.compile(choice.specialised)
+        elif self.wants_generic and not self.specialised_after:
+            self.compile_generic()
 
-    def compile_wide(self) -> None:
-        """Compile the wide kernels that are missing, in the background, so that edits need not wait for narrow ones."""
-        self.wants_wide = False
+    def compile_generic(self) -> None:
+        """Compile the missing generic kernels in the background, so that edits need not wait for specialised ones."""
+        self.wants_generic = False
         self.background.compile_later([each for each in self.for_all_scenes if not LIBRARY.has(each)])
 
     @property
-    def is_wide_kernel_there(self) -> bool:
+    def is_generic_kernel_there(self) -> bool:
         """Whether a kernel that was compiled ahead of time can draw all scenes of this precision."""
         return LIBRARY.has(self.for_all_scenes[-1])
 
     def is_ready(self, scene: Scene) -> bool:
         """Whether there are kernels that can draw a scene; a scene without shapes needs none."""
         return (
-            not scene.shapes or all(map(LIBRARY.has, self.for_all_scenes)) or all(map(LIBRARY.has, self.narrow(scene)))
+            not scene.shapes
+            or all(map(LIBRARY.has, self.for_all_scenes))
+            or all(map(LIBRARY.has, self.specialised(scene)))
         )
 
     def make_ready(self, scene: Scene) -> None:
-        """Compile the narrow kernels for a scene where no kernel can draw it. RenderError where compiling fails."""
+        """Compile the specialised kernels for a scene that no kernel can draw. RenderError where compiling fails."""
         if not self.is_ready(scene):
             self.compile(scene)
 
     @cached_property
     def for_all_scenes(self) -> list[str]:
         """The identities of kernels that are enough for all scenes, some of which single precision cannot draw."""
-        wide = [each for each in WIDE_KERNELS if each.name == "full" and each.precision in ("double", self.precision)]
-        return [*map(LIBRARY.identity, packing_calls()), *map(wide_identity, wide)]
+        generic = [
+            each for each in GENERIC_KERNELS if each.name == "full" and each.precision in ("double", self.precision)
+        ]
+        return [*map(LIBRARY.identity, packing_calls()), *map(generic_identity, generic)]
 
-    def narrow(self, scene: Scene) -> list[str]:
-        """Return the identities of the narrow kernels for a scene."""
+    def specialised(self, scene: Scene) -> list[str]:
+        """Return the identities of the specialised kernels for a scene."""
         features = kernel_features(scene)
-        if features not in self.narrow_kernels:
+        if features not in self.specialised_kernels:
             calls = calls_for(scene, self.precision, self.depth)
-            if len(self.narrow_kernels) >= REMEMBERED:
-                self.narrow_kernels.clear()
-            self.narrow_kernels[features] = list(map(LIBRARY.identity, calls))
-        return self.narrow_kernels[features]
+            if len(self.specialised_kernels) >= REMEMBERED:
+                self.specialised_kernels.clear()
+            self.specialised_kernels[features] = list(map(LIBRARY.identity, calls))
+        return self.specialised_kernels[features]
 
     def compile(self, scene: Scene) -> None:
-        """Compile those narrow kernels for a scene that are missing, in two processes. RenderError where that fails."""
+        """Compile the missing specialised kernels for a scene, in two processes. RenderError where that fails."""
         if not scene.shapes:
             return
-        *packing, drawing = self.narrow(scene)
+        *packing, drawing = self.specialised(scene)
         with ThreadPoolExecutor(1) as pool:
             first = pool.submit(LIBRARY.compile, packing, self.packing_process)
             LIBRARY.compile([drawing], self.compile_process)
@@ -206,6 +212,6 @@ class Kernels:
 
 
 @cache
-def wide_identity(wide: WideKernel) -> str:
-    """Return the identity of a wide kernel."""
-    return LIBRARY.identity(wide_call(wide))
+def generic_identity(generic: GenericKernel) -> str:
+    """Return the identity of a generic kernel."""
+    return LIBRARY.identity(generic_call(generic))

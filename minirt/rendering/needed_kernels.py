@@ -13,7 +13,7 @@ from minirt.kernel.machine_code.library import Call
 from minirt.rendering.culling.visibility import SMALL
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing.features import DEPTH, SPREAD, features, primitive_count, shape_features
-from minirt.rendering.packing.generic import FULL_DOUBLE, WideKernel, empty_arrays
+from minirt.rendering.packing.generic_kernels import FULL_DOUBLE, GenericKernel, empty_arrays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene, parse
 
@@ -43,16 +43,16 @@ PIXEL = np.zeros((1, 1, 4), np.uint8)
 
 
 def calls_for(scene: Scene, precision: str, depth: int) -> list[Call]:
-    """Return calls of the kernels for a scene: of those that pack it, and of the narrow one that draws it."""
+    """Return calls of the kernels for a scene: of those that pack it, and of the specialised one that draws it."""
     recorder = CallRecorder()
     with np.errstate(all="ignore"):  # as the compiled functions do, which are interpreted here
         arrays = Packing(recorder, precision, depth).pack(minimal_scene(scene), 1, 1)
     return [*recorder.calls.values(), functions.frame.call(*frame_arguments(arrays, PIXEL))]
 
 
-def wide_call(wide: WideKernel) -> Call:
-    """Return a call of a wide kernel."""
-    return functions.frame.call(*frame_arguments(empty_arrays(wide), PIXEL))
+def generic_call(generic: GenericKernel) -> Call:
+    """Return a call of a generic kernel."""
+    return functions.frame.call(*frame_arguments(empty_arrays(generic), PIXEL))
 
 
 def packing_calls() -> list[Call]:

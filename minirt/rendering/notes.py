@@ -10,12 +10,12 @@ from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR, SCALE
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.culling.planes import never_occludes
 from minirt.rendering.packing.features import FEATURES, features
-from minirt.rendering.packing.generic import WideKernel
+from minirt.rendering.packing.generic_kernels import GenericKernel
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Shape
 
-NO_WIDE_KERNEL = "no wide kernel: none was compiled ahead of time for these sources and this processor"
+NO_GENERIC_KERNEL = "no generic kernel: none was compiled ahead of time for these sources and this processor"
 
 
 def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Iterator[str]:
@@ -42,11 +42,11 @@ def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Itera
                 yield f"{shape_name(shape_arrays, index)} hides nothing from light {number}"
 
 
-def kernel_notes(scene: Scene, wide: WideKernel | None, compiling: bool) -> Iterator[str]:
-    """Describe the kernel that drew a scene: what it leaves out; `wide` is None for the narrow kernel of the scene."""
+def kernel_notes(scene: Scene, generic: GenericKernel | None, compiling: bool) -> Iterator[str]:
+    """Describe the kernel that drew a scene: what it leaves out; `generic` is None for the specialised one."""
     used = {type(shape) for shape in scene.shapes}
-    if wide:
-        yield f"wide kernel for all kinds of shapes and {'all' if wide.name == 'full' else 'no'} features"
+    if generic:
+        yield f"generic kernel for all kinds of shapes and {'all' if generic.name == 'full' else 'no'} features"
         if compiling:
             yield f"the kernel for {plurals(used)} alone is being compiled"
         return

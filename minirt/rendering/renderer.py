@@ -15,7 +15,7 @@ from minirt.helpers.system import ForkSafeLock, renew_after_fork
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering.frame_runner import FrameRunner, render_samples, render_to_error
 from minirt.rendering.kernels import Kernels
-from minirt.rendering.notes import NO_WIDE_KERNEL, kernel_notes
+from minirt.rendering.notes import NO_GENERIC_KERNEL, kernel_notes
 from minirt.rendering.outcome import Outcome
 from minirt.rendering.packing.camera import Crop
 from minirt.rendering.packing.features import DEPTH
@@ -82,22 +82,22 @@ class Renderer:
         choice, last = self.runner.choice, self.packing.last
         if not choice or not last:
             return []
-        missing = [] if self.kernels.is_wide_kernel_there else [NO_WIDE_KERNEL]
-        sentences = kernel_notes(last[0], choice.wide, self.kernels.background.busy)
+        missing = [] if self.kernels.is_generic_kernel_there else [NO_GENERIC_KERNEL]
+        sentences = kernel_notes(last[0], choice.generic, self.kernels.background.busy)
         return [*sentences, *missing, *self.packing.notes]
 
     def is_ready(self, scene: Scene) -> bool:
-        """Whether there is a kernel, narrow or wide, that can draw this scene."""
+        """Whether there is a kernel, specialised or generic, that can draw this scene."""
         return self.kernels.is_ready(scene)
 
     def prepare(self, scene: Scene) -> None:
-        """Load a kernel that can draw this scene. Where there is none, another process compiles the narrow one, which
-        takes seconds. RenderError where that fails.
+        """Load a kernel that can draw this scene. Where there is none, another process compiles the specialised one,
+        which takes seconds. RenderError where that fails.
         """
         self.render(scene, np.zeros((1, 1, 4), np.uint8))
 
     def specialise(self, scene: Scene) -> None:
-        """Load or compile the narrow kernel for this scene, so that measurements are those of this kernel alone.
+        """Load or compile the specialised kernel for this scene, so that measurements are those of this kernel alone.
 
         RenderError where compiling fails.
         """
@@ -105,10 +105,10 @@ class Renderer:
         self.prepare(scene)
 
     def specialise_early(self, notify: Callable[[], object] = lambda: None) -> None:
-        """Have narrow kernels compiled as soon as a wide one has drawn a picture: for windows, which stay open.
+        """Have specialised kernels compiled as soon as a generic one has drawn a picture: for windows, which stay open.
 
         `notify` is called when one has been compiled, by the thread that waited for it."""
-        self.kernels.narrow_after = 0.0
+        self.kernels.specialised_after = 0.0
         self.kernels.background.notify = notify
 
     def stop(self) -> None:

@@ -33,7 +33,7 @@ from minirt.rendering.packing.camera import (
     radius_and_focus,
 )
 from minirt.rendering.packing.features import DEPTH, SECONDARY, SPREAD, features
-from minirt.rendering.packing.generic import in_single
+from minirt.rendering.packing.generic_kernels import in_single
 from minirt.rendering.packing.lights import (
     colours_of,
     emitting_lights,

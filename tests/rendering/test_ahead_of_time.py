@@ -1,4 +1,4 @@
-"""Compiling ahead of time: every wide kernel once, and none of older sources is left."""
+"""Compiling ahead of time: every generic kernel once, and none of older sources is left."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from minirt.kernel.machine_code.code_cache import ObjectCode
 from minirt.kernel.machine_code.compile_process import CompileProcess
 from minirt.kernel.machine_code.library import identity_of
 from minirt.rendering import ahead_of_time
-from minirt.rendering.needed_kernels import wide_call
-from minirt.rendering.packing.generic import WIDE_KERNELS
+from minirt.rendering.needed_kernels import generic_call
+from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS
 
 PROCESSOR = "x86-64-v3"
 FUNCTIONS = 5  # that pack scenes
@@ -37,12 +37,12 @@ def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return done
 
 
-def test_every_wide_kernel_is_compiled_once(compiled: list[str], tmp_path: Path) -> None:
-    number = len(WIDE_KERNELS) + FUNCTIONS + 2  # and the query for single rays, and contrast
+def test_every_generic_kernel_is_compiled_once(compiled: list[str], tmp_path: Path) -> None:
+    number = len(GENERIC_KERNELS) + FUNCTIONS + 2  # and the query for single rays, and contrast
     assert ahead_of_time.build(tmp_path, PROCESSOR) == number
     assert len(set(compiled)) == len(compiled) == number == len(list(tmp_path.iterdir()))
-    for wide in WIDE_KERNELS:
-        identity = identity_of(*wide_call(wide), cache_folder.fingerprint_of(PROCESSOR))
+    for generic in GENERIC_KERNELS:
+        identity = identity_of(*generic_call(generic), cache_folder.fingerprint_of(PROCESSOR))
         assert shipped_code.read(identity, tmp_path) == ({"entry": identity}, b"code")
     assert ahead_of_time.build(tmp_path, PROCESSOR) == 0
     assert len(compiled) == number

@@ -1,4 +1,4 @@
-"""Choice of kernels: the narrow one where it is there, else a wide one until the narrow one has been compiled."""
+"""Choice of kernels: the specialised one where it is there, else a generic one until it has been compiled."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from minirt.materials import Checker
 from minirt.rendering import Renderer, kernels
 from minirt.rendering.culling.visibility import SMALL
 from minirt.rendering.frame import Frame, frame_arguments
-from minirt.rendering.kernels import Choice, Kernels, wide_identity
+from minirt.rendering.kernels import Choice, Kernels, generic_identity
 from minirt.rendering.needed_kernels import kernel_features, minimal_scene, packing_calls
-from minirt.rendering.notes import NO_WIDE_KERNEL
-from minirt.rendering.packing.generic import WIDE_KERNELS, WideKernel
+from minirt.rendering.notes import NO_GENERIC_KERNEL
+from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Light, ParallelLight, Scene, parse
 from minirt.shapes.cylinder import Cylinder
@@ -62,8 +62,8 @@ class FakeLibrary:
         return self.identity(call)
 
 
-def narrow_identity(scene: Scene, precision: str = "double") -> str:
-    """Return the identity of the narrow kernel of a scene."""
+def specialised_identity(scene: Scene, precision: str = "double") -> str:
+    """Return the identity of the specialised kernel of a scene."""
     return Library().identity(functions.frame.call(*frame_of(scene, precision)))
 
 
@@ -73,70 +73,72 @@ def choose(monkeypatch: pytest.MonkeyPatch, scene: Scene, *found: str, precision
     return Kernels(precision, 8).choose(frame_of(scene, precision))
 
 
-WIDE = {wide: wide_identity(wide) for wide in WIDE_KERNELS}
+GENERIC = {generic: generic_identity(generic) for generic in GENERIC_KERNELS}
 
 
-def wide(name: str, precision: str) -> WideKernel:
-    """Return a wide kernel."""
-    (found,) = (each for each in WIDE_KERNELS if (each.name, each.precision) == (name, precision))
+def generic(name: str, precision: str) -> GenericKernel:
+    """Return a generic kernel."""
+    (found,) = (each for each in GENERIC_KERNELS if (each.name, each.precision) == (name, precision))
     return found
 
 
-def test_the_narrowest_kernel_that_is_there_draws(monkeypatch: pytest.MonkeyPatch) -> None:
-    narrow = narrow_identity(BALL)
-    assert choose(monkeypatch, BALL, narrow, *WIDE.values()).wide is None
-    assert choose(monkeypatch, BALL, *WIDE.values()).wide == wide("plain", "double")
-    assert choose(monkeypatch, SHINY, *WIDE.values()).wide == wide("full", "double")
-    assert choose(monkeypatch, BALL, *WIDE.values(), precision="single").wide == wide("plain", "single")
-    assert choose(monkeypatch, BALL, WIDE[wide("full", "double")]).wide == wide("full", "double")
+def test_the_most_specialised_kernel_that_is_there_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    specialised = specialised_identity(BALL)
+    assert choose(monkeypatch, BALL, specialised, *GENERIC.values()).generic is None
+    assert choose(monkeypatch, BALL, *GENERIC.values()).generic == generic("plain", "double")
+    assert choose(monkeypatch, SHINY, *GENERIC.values()).generic == generic("full", "double")
+    assert choose(monkeypatch, BALL, *GENERIC.values(), precision="single").generic == generic("plain", "single")
+    assert choose(monkeypatch, BALL, GENERIC[generic("full", "double")]).generic == generic("full", "double")
 
 
-def test_a_wide_kernel_gets_the_scene_in_its_form(monkeypatch: pytest.MonkeyPatch) -> None:
-    choice = choose(monkeypatch, BALL, *WIDE.values())
+def test_a_generic_kernel_gets_the_scene_in_its_form(monkeypatch: pytest.MonkeyPatch) -> None:
+    choice = choose(monkeypatch, BALL, *GENERIC.values())
     frame = frame_of(BALL)._replace(scene=choice.scene)
-    assert Library().identity(functions.frame.call(*frame)) == WIDE[wide("plain", "double")]
+    assert Library().identity(functions.frame.call(*frame)) == GENERIC[generic("plain", "double")]
 
 
-def test_without_any_the_narrow_one_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    choice = choose(monkeypatch, BALL, WIDE[wide("full", "single")])
-    assert (choice.wide, choice.entry) == (None, narrow_identity(BALL))
+def test_without_any_the_specialised_one_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    choice = choose(monkeypatch, BALL, GENERIC[generic("full", "single")])
+    assert (choice.generic, choice.entry) == (None, specialised_identity(BALL))
     library: Any = kernels.LIBRARY
-    assert library.compiled == [narrow_identity(BALL)]
+    assert library.compiled == [specialised_identity(BALL)]
 
 
-def test_specialising_compiles_the_narrow_kernel_though_a_wide_one_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_specialising_compiles_the_specialised_kernel_though_a_generic_one_fits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     compiled: list[str] = []
-    library: Any = FakeLibrary(*WIDE.values())
+    library: Any = FakeLibrary(*GENERIC.values())
     library.compile = lambda identities, _process: compiled.extend(identities)
     monkeypatch.setattr(kernels, "LIBRARY", library)
     renderer = Renderer(1)
     monkeypatch.setattr(renderer, "prepare", lambda _scene: None)
     renderer.specialise(BALL)
-    assert narrow_identity(BALL) in compiled
+    assert specialised_identity(BALL) in compiled
 
 
-def test_a_narrow_kernel_is_compiled_once_that_is_worth_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    choice = choose(monkeypatch, BALL, *WIDE.values())
+def test_a_specialised_kernel_is_compiled_once_that_is_worth_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    choice = choose(monkeypatch, BALL, *GENERIC.values())
     asked: list[str] = []
-    for after, seconds in ((kernels.NARROW_AFTER, kernels.NARROW_AFTER / 2), (0.0, 0.0)):
+    for after, seconds in ((kernels.SPECIALISED_AFTER, kernels.SPECIALISED_AFTER / 2), (0.0, 0.0)):
         mine = Kernels("double", 8)
-        mine.narrow_after = after
+        mine.specialised_after = after
         monkeypatch.setattr(mine.background, "compile", asked.append)
         mine.count(choice, seconds)
-        assert asked == [choice.narrow] * (not after)
+        assert asked == [choice.specialised] * (not after)
         mine.count(choice, seconds)
-        assert set(asked) == {choice.narrow}
+        assert set(asked) == {choice.specialised}
         asked.clear()
 
 
-def test_a_scene_is_ready_where_wide_kernels_are(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scene_is_ready_where_generic_kernels_are(monkeypatch: pytest.MonkeyPatch) -> None:
     packing = [Library().identity(each) for each in packing_calls()]
-    narrow = [Library().identity(functions.frame.call(*frame_of(BALL)))]
+    specialised = [Library().identity(functions.frame.call(*frame_of(BALL)))]
     for found, ready in (
-        ([*packing, WIDE[wide("full", "double")]], True),
-        ([*packing, WIDE[wide("plain", "double")]], False),
-        ([WIDE[wide("full", "double")]], False),
-        ([*packing, *narrow], True),
+        ([*packing, GENERIC[generic("full", "double")]], True),
+        ([*packing, GENERIC[generic("plain", "double")]], False),
+        ([GENERIC[generic("full", "double")]], False),
+        ([*packing, *specialised], True),
         ([], False),
     ):
         monkeypatch.setattr(kernels, "LIBRARY", FakeLibrary(*found))
@@ -144,13 +146,13 @@ def test_a_scene_is_ready_where_wide_kernels_are(monkeypatch: pytest.MonkeyPatch
     assert Kernels("double", 8).is_ready(Scene(BALL.elements[:3]))
 
 
-def test_the_notes_say_where_no_wide_kernel_fits(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_notes_say_where_no_generic_kernel_fits(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     library = empty_library(monkeypatch, tmp_path)
     renderer = Renderer(1)
     picture(renderer)
-    assert NO_WIDE_KERNEL not in renderer.notes
+    assert NO_GENERIC_KERNEL not in renderer.notes
     monkeypatch.setattr(library, "has", lambda _identity: False)
-    assert NO_WIDE_KERNEL in renderer.notes
+    assert NO_GENERIC_KERNEL in renderer.notes
 
 
 def empty_library(monkeypatch: pytest.MonkeyPatch, folder: Path) -> Library:
@@ -159,8 +161,8 @@ def empty_library(monkeypatch: pytest.MonkeyPatch, folder: Path) -> Library:
     library.cache = CodeCache(folder)
     for module in (functions, kernels, kernels):
         monkeypatch.setattr(module, "LIBRARY", library)
-    if not all(library.find(each) for each in WIDE.values()):
-        skip_incomplete("wide kernels are not compiled: make all")
+    if not all(library.find(each) for each in GENERIC.values()):
+        skip_incomplete("generic kernels are not compiled: make all")
     return library
 
 
@@ -171,22 +173,22 @@ def picture(renderer: Renderer) -> bytes:
     return pixels.tobytes()
 
 
-def test_the_narrow_kernel_is_swapped_in_and_draws_the_same_bits(
+def test_the_specialised_kernel_is_swapped_in_and_draws_the_same_bits(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     library = empty_library(monkeypatch, tmp_path)
     renderer = Renderer(2)
     before = picture(renderer)
     assert renderer.runner.choice
-    assert renderer.runner.choice.wide
-    assert renderer.notes[0].startswith("wide kernel for all kinds of shapes")
+    assert renderer.runner.choice.generic
+    assert renderer.notes[0].startswith("generic kernel for all kinds of shapes")
     compiled = Event()
     renderer.specialise_early(compiled.set)
     picture(renderer)
     assert compiled.wait(HANG_LIMIT)
-    until(lambda: library.find(narrow_identity(BALL)) is not None, "the narrow kernel")
+    until(lambda: library.find(specialised_identity(BALL)) is not None, "the specialised kernel")
     assert picture(renderer) == before
-    assert renderer.runner.choice.wide is None
+    assert renderer.runner.choice.generic is None
     assert renderer.notes[0] == "kernel for spheres"
 
 
@@ -194,7 +196,7 @@ def test_the_background_compiler_has_the_lowest_priority() -> None:
     assert kernels.BackgroundCompiler().process.patient
 
 
-def test_a_wide_kernel_stays_where_the_narrow_one_cannot_be_compiled(
+def test_a_generic_kernel_stays_where_the_specialised_one_cannot_be_compiled(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     empty_library(monkeypatch, tmp_path)
@@ -211,14 +213,14 @@ def test_a_wide_kernel_stays_where_the_narrow_one_cannot_be_compiled(
     until(lambda: not renderer.kernels.background.busy, "the end of the attempt")
     assert picture(renderer) == before
     until(lambda: not renderer.kernels.background.busy, "the end of a second attempt")
-    assert asked == [[narrow_identity(BALL)]]
+    assert asked == [[specialised_identity(BALL)]]
     assert renderer.runner.choice
-    assert renderer.runner.choice.wide
+    assert renderer.runner.choice.generic
 
 
-def test_the_package_has_the_wide_kernels_for_this_machine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_package_has_the_generic_kernels_for_this_machine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     library = empty_library(monkeypatch, tmp_path)
-    identities = [*WIDE.values(), *map(library.identity, packing_calls())]
+    identities = [*GENERIC.values(), *map(library.identity, packing_calls())]
     assert all(shipped_code.read(each) for each in identities)
 
 
@@ -235,7 +237,7 @@ def test_a_kernel_is_ready_for_all_scenes_of_its_kinds(monkeypatch: pytest.Monke
     monkeypatch.setattr(LIBRARY, "has", there.__contains__)
     assert renderer.is_ready(Scene((EYE,)))
     assert not renderer.is_ready(ALL)
-    there.update(renderer.kernels.narrow(ALL))
+    there.update(renderer.kernels.specialised(ALL))
     assert renderer.is_ready(ALL)
     assert renderer.is_ready(Scene((EYE, *SHAPES[:3])))
     assert not renderer.is_ready(Scene((EYE, SHAPES[0])))

@@ -15,7 +15,7 @@ from minirt.formats.table import FORMATS, memory_of
 from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
 from minirt.rendering.packing.features import FEATURES
-from minirt.rendering.packing.generic import WIDE_KERNELS
+from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Camera, FurtherLight, Light, Scene
 from minirt.shapes import ALL_KINDS
@@ -86,19 +86,19 @@ def notes_of(*balls: Sphere) -> list[str]:
 
 def test_kinds_and_features_that_a_kernel_lacks_are_named() -> None:
     scene = Scene((CAMERA, Sphere((0, 0, 0), 1, GREY), Plane((0, -9, 0), (0, 1, 0), GREY)))
-    kernel, without, plain = kernel_notes(scene, wide=None, compiling=True)
+    kernel, without, plain = kernel_notes(scene, generic=None, compiling=True)
     others = [kind.element.plural for kind in ALL_KINDS if kind.element not in (Sphere, Plane)]
     assert (kernel, without) == ("kernel for spheres, planes", f"kernel without {', '.join(others)}")
     assert plain == f"kernel without {', '.join(FEATURES.values())}"
 
 
-def test_a_wide_kernel_is_named_with_what_it_waits_for() -> None:
+def test_a_generic_kernel_is_named_with_what_it_waits_for() -> None:
     scene = Scene((CAMERA, Sphere((0, 0, 0), 1, GREY)))
-    for wide in WIDE_KERNELS:
-        features = "all" if wide.name == "full" else "no"
-        note = f"wide kernel for all kinds of shapes and {features} features"
-        assert list(kernel_notes(scene, wide, compiling=False)) == [note]
-        assert list(kernel_notes(scene, wide, compiling=True)) == [
+    for generic in GENERIC_KERNELS:
+        features = "all" if generic.name == "full" else "no"
+        note = f"generic kernel for all kinds of shapes and {features} features"
+        assert list(kernel_notes(scene, generic, compiling=False)) == [note]
+        assert list(kernel_notes(scene, generic, compiling=True)) == [
             note,
             "the kernel for spheres alone is being compiled",
         ]

@@ -1,14 +1,3 @@
-<<<<<<<< HEAD:minirt/rendering/packing/generic_kernels.py
-"""Extends the packed arrays of a scene to the arguments of a generic kernel.
-
-A specialised kernel is compiled for the kinds of shapes and the features of one scene. A generic kernel is the same
-function, compiled for all kinds of shapes and for a fixed set of features, so that it can be compiled ahead of time:
-what a scene lacks is an array without rows, which the kernel skips. Both draw the same bits.
-
-To draw a packed scene with a generic kernel: `generic = fitting(arrays)[0]`, then call the kernel that is compiled for
-the types of `empty_arrays(generic)` with `generalised(arrays, generic)` in place of the scene. All scenes have the same
-types there.
-========
 """Forms of a packed scene: float32, and the arguments of generic kernels.
 
 float32 is less precise, with twice as many rays per SIMD register. Everything is moved so that the eye is the origin
@@ -20,9 +9,9 @@ function, compiled for all kinds of shapes and for a fixed set of features, so t
 what a scene lacks is an array without rows, which the kernel skips. Its picture has the same bits as that of the
 specialised kernel.
 
-To draw a packed scene with a generic kernel: `wide = fitting(arrays)[0]`, then call the kernel that is compiled for the
-types of `empty_arrays(wide)` with `widened(arrays, wide)` in place of the scene. All scenes have the same types there.
->>>>>>>> 99ba082 (Merge small modules of rendering and its tests by what changes together):minirt/rendering/packing/generic.py
+To draw a packed scene with a generic kernel: `generic = fitting(arrays)[0]`, then call the kernel that is compiled for
+the types of `empty_arrays(generic)` with `generalised(arrays, generic)` in place of the scene. All scenes have the same
+types there.
 """
 
 from __future__ import annotations

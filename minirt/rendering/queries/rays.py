@@ -19,7 +19,7 @@ from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.argument_block import words_of
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
-from minirt.rendering.packing.generic import widened_tree
+from minirt.rendering.packing.generic_kernels import generalised_tree
 from minirt.rendering.threads import ThreadPool, usable_cores
 from minirt.scene import Camera, Scene
 from minirt.scene.arguments import check_scene
@@ -234,13 +234,13 @@ class Tracer:
 def query(
     counter: NDArray[np.int64], tree: Tree, origins: NDArray[np.float64], directions: NDArray[np.float64], hits: Hits
 ) -> Callable[[], None]:
-    """Return a job that traces rays: by the narrowest kernel that is there, or by one that is compiled now."""
-    trees = tree, widened_tree(tree)
-    narrow, wide = (functions.trace_rays.call(counter, each, origins, directions, *hits) for each in trees)
-    for call in (narrow, wide):
+    """Return a job that traces rays: by the most specialised kernel that is there, or by one that is compiled now."""
+    trees = tree, generalised_tree(tree)
+    specialised, generic = (functions.trace_rays.call(counter, each, origins, directions, *hits) for each in trees)
+    for call in (specialised, generic):
         if entry := LIBRARY.find(LIBRARY.identity(call)):
             return partial(entry.run, words_of(call[1]))
-    return partial(LIBRARY.get(narrow).run, words_of(narrow[1]))
+    return partial(LIBRARY.get(specialised).run, words_of(specialised[1]))
 
 
 @cache

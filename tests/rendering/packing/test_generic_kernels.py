@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from minirt.rendering.frame_arguments import frame_arguments
 from numba import typeof
 
 import minirt
@@ -15,15 +16,8 @@ from minirt.kernel.bvh.nodes import WIDTH
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.materials import Checker, Specular
-<<<<<<<< HEAD:tests/rendering/packing/test_generic_kernels.py
-from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing import generic_kernels
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel, empty_arrays, fitting, generalised
-========
-from minirt.rendering.frame import frame_arguments
-from minirt.rendering.packing import generic
-from minirt.rendering.packing.generic import WIDE_KERNELS, WideKernel, empty_arrays, fitting, widened
->>>>>>>> 99ba082 (Merge small modules of rendering and its tests by what changes together):tests/rendering/packing/test_generic.py
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Background, ParallelLight, Scene, SpotLight
 from minirt.shapes.plane import Plane
@@ -223,15 +217,9 @@ def test_generalising_copies_nothing() -> None:
 
 
 def test_kinds_are_in_the_order_of_the_registry() -> None:
-<<<<<<<< HEAD:tests/rendering/packing/test_generic_kernels.py
     for generic in GENERIC_KERNELS:
         names = [group.rows.dtype.names[0].split(".")[0] for group in empty_arrays(generic).groups]
         assert names == [kind.element.title for kind in generic_kernels.ALL_KINDS]
-========
-    for wide in WIDE_KERNELS:
-        names = [group.rows.dtype.names[0].split(".")[0] for group in empty_arrays(wide).groups]
-        assert names == [kind.element.title for kind in generic.ALL_KINDS]
->>>>>>>> 99ba082 (Merge small modules of rendering and its tests by what changes together):tests/rendering/packing/test_generic.py
 
 
 def test_every_feature_has_a_generic_kernel() -> None:

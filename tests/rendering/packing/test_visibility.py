@@ -9,6 +9,7 @@ import pytest
 
 import minirt
 from minirt.errors import RenderError
+from minirt.helpers import system
 from minirt.kernel import interpreted
 from minirt.kernel.culling import binning
 from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR, SCALE, TOLERANCE, light_buffer_cell
@@ -360,7 +361,7 @@ def light_of(scene: Scene) -> tuple[np.ndarray, int]:
 
 def test_coarser_cells_give_the_same_picture(monkeypatch: pytest.MonkeyPatch) -> None:
     expected, cells = light_of(scene())
-    monkeypatch.setattr(memory_limit, "SMALL", 0)
+    monkeypatch.setattr(system, "SMALL", 0)
     monkeypatch.setattr(visibility, "QUICKLY_BUILT", 20_000)
     coarse, fewer = light_of(scene())
     assert fewer < cells
@@ -368,16 +369,16 @@ def test_coarser_cells_give_the_same_picture(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_lists_that_no_cells_make_small_enough_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(memory_limit, "SMALL", 0)
-    monkeypatch.setattr(memory_limit, "room", lambda: 64 * 48 * 4)  # enough for the picture
+    monkeypatch.setattr(system, "SMALL", 0)
+    monkeypatch.setattr(system, "room", lambda: 64 * 48 * 4)  # enough for the picture
     with pytest.raises(RenderError, match=r"the lists of shapes in view need about .* of memory, allowed 0 MiB"):
         minirt.render(scene(), 64, 48, linear=False)
 
 
 def test_the_estimate_is_near_the_lists_that_are_built(monkeypatch: pytest.MonkeyPatch) -> None:
     needs: list[int] = []
-    monkeypatch.setattr(memory_limit, "SMALL", 0)
-    monkeypatch.setattr(memory_limit, "check", lambda needed, *_: needs.append(needed))
+    monkeypatch.setattr(system, "SMALL", 0)
+    monkeypatch.setattr(system, "check_memory", lambda needed, *_: needs.append(needed))
     arrays = Packing(interpreted).pack(scene(), 64, 48)
     starts = sum(group.light_starts.nbytes for group in arrays.groups)
     _, tiles, estimate, members = needs
