@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from minirt.rendering.frame_arguments import frame_arguments
 from numba import typeof
 
 import minirt
@@ -16,6 +15,7 @@ from minirt.kernel.bvh.nodes import WIDTH
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.materials import Checker, Specular
+from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing import generic_kernels
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel, empty_arrays, fitting, generalised
 from minirt.rendering.scene_packing import Packing

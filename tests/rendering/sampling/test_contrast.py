@@ -14,7 +14,7 @@ from minirt.kernel.stored_light import PACKET_HEIGHT
 from minirt.rendering.sampling.contrast import (
     CLASSES,
     CONTRAST,
-    ROUNDING,
+    SQUARED_ROUNDING,
     STRIP,
     contrast_classes,
     edge_packets,
@@ -160,7 +160,7 @@ TALL[..., 3] = 255
 
 def test_the_estimate_covers_all_strips() -> None:
     squared = ((TALL[0].astype(float) - TALL[1])[..., :3] ** 2).mean()
-    assert estimated_error(*TALL, 1, 4) == pytest.approx(sqrt(squared / 9 + ROUNDING) / 255)
+    assert estimated_error(*TALL, 1, 4) == pytest.approx(sqrt(squared / 9 + SQUARED_ROUNDING) / 255)
 
 
 def test_an_estimate_that_is_no_longer_wanted_ends_after_a_strip() -> None:
