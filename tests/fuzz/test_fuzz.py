@@ -11,6 +11,7 @@ from minirt.errors import MiniRTError, SceneError
 from minirt.fields import scalars, triples
 from minirt.jail import decoder
 from minirt.meshes import obj_lines
+from minirt.rendering.packing import camera
 from minirt.viewer.input.recording_line import Line
 from tests.fuzz import __main__ as command
 from tests.fuzz import arguments, scene_grammar, scenes
@@ -102,8 +103,8 @@ def test_a_program_that_lets_errors_through_is_found(monkeypatch: pytest.MonkeyP
 
 
 def test_a_lens_whose_focus_has_no_reciprocal_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(lens, "SMALLEST", 0.0)
-    monkeypatch.setattr(lens, "CLOSEST", 0.0)
+    monkeypatch.setattr(camera, "SMALLEST", 0.0)
+    monkeypatch.setattr(camera, "CLOSEST", 0.0)
     line = "A 1 9,9,9\nC 0,0,0 0,0,1 60 lens:1 focus:1e-310\nsp 0,0,5 1 1,2,3"
     with pytest.raises(Warning):
         FUZZERS["extremes"].check(line.encode())
