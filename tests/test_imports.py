@@ -316,7 +316,7 @@ def test_heavy_imports_are_late(path: str) -> None:
         ("shapes", "def f():\n    from minirt.kernel.rows import row", {"kernel"}),
         ("rendering", "import_module('minirt.viewer.app.session')", {"viewer"}),
         ("mlx", "from minirt import load", {"__init__"}),
-        ("lanes", "from minirt.lanes.vec import Vec\nimport math", set()),
+        ("lanes", "from minirt.lanes import Vec\nimport math", set()),
         ("scene", "if TYPE_CHECKING:\n    from minirt.viewer import run", set()),
     ],
 )

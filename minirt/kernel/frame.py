@@ -12,8 +12,7 @@ from minirt.kernel.shading.environment import background_light, has_environment
 from minirt.kernel.shading.whitted import incoming_radiance
 from minirt.kernel.stored_light import ESTIMATE, PACKET_HEIGHT, TILE, accumulate, store_estimate, store_packet
 from minirt.kernel.trace import is_empty
-from minirt.lanes import Vec, lane, load, rarely, splat, unit, where, width
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec, lane, load, rarely, splat, unit, where, width
 
 # Samples of a reference by those of what is drawn. The error of an estimate of the error is that of four times as many
 # references with as many samples, at twice the cost of one.

@@ -13,9 +13,7 @@ from minirt.kernel.culling.light_buffer import is_close, remember_cell
 from minirt.kernel.rows import is_batched, may_meet, occludes, read
 from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, range_in_cell
 from minirt.kernel.trace import BATCH, for_each_kind, in_cone
-from minirt.lanes import Vec, any, first, greatest, lowest, rarely, where, width
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, first, greatest, lowest, rarely, where, width
 
 
 def unoccluded(

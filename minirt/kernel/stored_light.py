@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from minirt.lanes import Vec, lane, load, minimum, rarely, save, width
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec, lane, load, minimum, rarely, save, width
 
 PACKET_HEIGHT = 4  # pixels; a packet is as wide as makes one pixel for each of the `width` rays
 TILE = 16  # pixels along an edge of a tile: a thread takes a row of tiles, or so many rows of a plan, at a time

@@ -13,21 +13,21 @@ from typing import Any
 from minirt.kernel.rows import intersect, is_batched, may_meet, read, surface
 from minirt.kernel.scene_arrays import Group, SceneArrays, range_in_tile
 from minirt.lanes import (
+    Mask,
+    Number,
     Vec,
     any,
     dot,
     fabs,
     greatest,
     lowest,
+    max_norm,
     maximum,
     rarely,
     splat,
     unit_roundoff,
     where,
 )
-from minirt.lanes.largest import largest
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
 
 ROUNDING = 16  # error of a surface point: unit roundoffs of its largest coordinate and of the extent of the shape
 COINCIDENT = 2.0**-14  # two hits that differ by no more than this, relative to their distance, may be one place
@@ -149,7 +149,7 @@ def closer_hit(
         point = origin + t * direction
         _, normal = surface(shape, point)
         gap = fabs(t - best) * fabs(dot(normal, direction))  # between the surfaces
-        rounding = ROUNDING * unit_roundoff(best) * (largest(point) + largest(origin) + new_extent)
+        rounding = ROUNDING * unit_roundoff(best) * (max_norm(point) + max_norm(origin) + new_extent)
         same = contested & (gap <= 4.0 * rounding)
         closer = (closer & (same ^ True)) | (same & (index < owner))
         new_extent = where(same, maximum(new_extent, extent), new_extent)

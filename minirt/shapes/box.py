@@ -15,9 +15,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
-from minirt.lanes import Vec, copysign, fabs, maximum, minimum, rarely, splat, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, copysign, fabs, maximum, minimum, rarely, splat, where
 from minirt.records import record
 from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, own_coordinates

@@ -6,8 +6,7 @@ The pairs of a rounded result and its error are exact: two-sum (Moller 1965; Knu
 
 from __future__ import annotations
 
-from minirt.lanes import Vec, product_error, rounded_product
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec, product_error, rounded_product
 
 
 def two_sum(a: Number, b: Number) -> tuple[Number, Number]:

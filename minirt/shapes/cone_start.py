@@ -21,10 +21,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from minirt.lanes import Vec, copysign, fabs, maximum, minimum, splat, sqrt, unit_roundoff, where
-from minirt.lanes.largest import largest
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import (
+    Mask,
+    Number,
+    Vec,
+    copysign,
+    fabs,
+    max_norm,
+    maximum,
+    minimum,
+    splat,
+    sqrt,
+    unit_roundoff,
+    where,
+)
 from minirt.shapes.compensated import minus, times, value
 from minirt.shapes.quadric import clamped_minimum
 from minirt.shapes.start import axial, beside_side, between_caps, error_of_start, position_error, zero_within
@@ -71,7 +81,7 @@ def close_start(
     side = times((splat(cone.slope, a), splat(cone.slope_low, a)), height)  # its distance from the axis
     exact_level = value(minus(power, times(side, side)))
     slope = sqrt(squared * (1.0 + cone.slope * cone.slope))
-    away, position = largest(p), position_error(origin, p)
+    away, position = max_norm(p), position_error(origin, p)
     on_apex = close & (away <= position)
     error = where(on_apex, position, error_of_start(origin, p, level, slope, over))
     rounding = 2.0 * slope * error

@@ -11,9 +11,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare
-from minirt.lanes import Vec, dot
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, dot
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, length
 from minirt.shapes.bounds import bounds_of_disc

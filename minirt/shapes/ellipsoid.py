@@ -15,9 +15,7 @@ from sys import float_info
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
-from minirt.lanes import Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, own_coordinates

@@ -3,10 +3,7 @@ not hit it there."""
 
 from __future__ import annotations
 
-from minirt.lanes import Vec, dot, fabs, unit_roundoff, where
-from minirt.lanes.largest import largest
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, dot, fabs, max_norm, unit_roundoff, where
 from minirt.shapes.plane import PARALLEL
 
 CLOSE = 2.0**-20  # shares of the size of a shape: a hit nearer than that may be the place where the ray starts
@@ -19,7 +16,7 @@ def start_error(origin: Vec, f: Vec) -> Number:
     The roundings of the origin's coordinates, and of its height, which is computed from f, its difference from the
     shape's centre.
     """
-    return ROUNDINGS * unit_roundoff(f.x) * (largest(origin) + (fabs(f.x) + fabs(f.y) + fabs(f.z)))
+    return ROUNDINGS * unit_roundoff(f.x) * (max_norm(origin) + (fabs(f.x) + fabs(f.y) + fabs(f.z)))
 
 
 def least_t(origin: Vec, f: Vec, height: Number, size: float) -> Number:

@@ -18,9 +18,7 @@ import numpy as np
 
 from minirt import meshes
 from minirt.fields import FARTHEST, Colour, Length, MeshField, MeshFile, Point, Triple, declare
-from minirt.lanes import Vec, copysign, cross, dot, maximum, minimum, unit, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, copysign, cross, dot, maximum, minimum, unit, where
 from minirt.records import record
 from minirt.shapes import pyramid, triangle
 from minirt.shapes.boundary import Boundary, facing, triangle_boundary

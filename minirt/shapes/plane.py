@@ -14,9 +14,7 @@ from dataclasses import KW_ONLY
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
-from minirt.lanes import Vec, dot, fabs, unit_roundoff
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, dot, fabs, unit_roundoff
 from minirt.materials import BOARD, Checker, Compound
 from minirt.records import record
 from minirt.shapes.boundary import Boundary

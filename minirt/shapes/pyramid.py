@@ -6,10 +6,7 @@ intersection, and in a mesh with triangles as small as pixels nearly every trian
 
 from __future__ import annotations
 
-from minirt.lanes import Vec, cross, dot, maximum, minimum, splat, unit_roundoff, where
-from minirt.lanes.largest import largest
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, cross, dot, max_norm, maximum, minimum, splat, unit_roundoff, where
 
 APART = 1024  # roundings of its length by which a ray may miss the apex, or a side plane of the pyramid
 BEHIND = 4  # roundings of the coordinates by which a start may seem to lie behind the triangle
@@ -25,10 +22,10 @@ def may_meet(
     """
     a, b, c = corners[0] - apex, corners[1] - apex, corners[2] - apex
     of_a, of_b, of_c = dot(cross(b, c), direction), dot(cross(c, a), direction), dot(cross(a, b), direction)
-    size = maximum(maximum(largest(a), largest(b)), largest(c))
+    size = maximum(maximum(max_norm(a), max_norm(b)), max_norm(c))
     far = splat(size, direction.x)
     if start is not None:
-        far = far + largest(apex - start)
+        far = far + max_norm(apex - start)
         active = active & (depth_behind_plane(corners[0], normal, dot(normal, a), start) >= 0.0)
     margin = APART * unit_roundoff(direction.x) * size * far
     least, most = minimum(minimum(of_a, of_b), of_c), maximum(maximum(of_a, of_b), of_c)
@@ -41,5 +38,5 @@ def depth_behind_plane(corner: Vec, normal: Vec, height: Number, start: Vec) -> 
     `height` is the height of the plane above the apex along `normal`.
     """
     away = where(height > 0.0, splat(1.0, height), -1.0)
-    slack = BEHIND * unit_roundoff(start.x) * (largest(start) + largest(corner))
+    slack = BEHIND * unit_roundoff(start.x) * (max_norm(start) + max_norm(corner))
     return away * dot(normal, start - corner) + slack

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from math import inf, nan
 
-from minirt.lanes import any, copysign, maximum, minimum, rarely, splat, sqrt, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, any, copysign, maximum, minimum, rarely, splat, sqrt, where
 
 
 def negative_interval(a: Number, per_a: Number, b: Number, c: Number, product: Number) -> tuple[Mask, Number, Number]:

@@ -42,8 +42,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NewType, get_type_h
 import numpy as np
 
 from minirt.fields import Triple
-from minirt.lanes import Vec
-from minirt.lanes.operations import Mask
+from minirt.lanes import Mask, Vec
 from minirt.materials import Attributes
 from minirt.records import record
 from minirt.shapes.boundary import Boundary

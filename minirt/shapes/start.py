@@ -11,10 +11,7 @@ saves a kernel a third of its size.
 
 from __future__ import annotations
 
-from minirt.lanes import Vec, fabs, maximum, minimum, splat, unit_roundoff, where
-from minirt.lanes.largest import largest
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, fabs, max_norm, maximum, minimum, splat, unit_roundoff, where
 from minirt.shapes.compensated import Pair, along, minus, offset, squared_length, times
 
 CLOSE = 2.0**-6  # to a surface: share of a solid's size, or of the square of its radius there
@@ -55,7 +52,7 @@ def beside_side(level: Number, squared: Number, over: Number, half: Number) -> M
 
 def position_error(origin: Vec, p: Vec) -> Number:
     """Distance to a surface below which a ray starts on it. p is the origin in the frame of the solid."""
-    return POSITION * unit_roundoff(p.x) * maximum(largest(origin), largest(p))
+    return POSITION * unit_roundoff(p.x) * maximum(max_norm(origin), max_norm(p))
 
 
 def error_of_start(origin: Vec, p: Vec, level: Number, slope: Number, over: Number) -> Number:

@@ -13,9 +13,7 @@ from math import cos, pi, sin
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
-from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rarely, splat, sqrt, unit_roundoff, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, dot, fabs, maximum, minimum, rarely, splat, sqrt, unit_roundoff, where
 from minirt.records import record
 from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse

@@ -13,10 +13,21 @@ from math import hypot
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Point, Triple, declare, unit
-from minirt.lanes import Vec, any, dot, fabs, maximum, minimum, rarely, rounded_product, unit_roundoff, where
+from minirt.lanes import (
+    Mask,
+    Number,
+    Vec,
+    any,
+    dot,
+    fabs,
+    maximum,
+    minimum,
+    rarely,
+    rounded_product,
+    unit_roundoff,
+    where,
+)
 from minirt.lanes import cross as product
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
 from minirt.records import record
 from minirt.shapes import pyramid
 from minirt.shapes.boundary import Boundary, triangle_boundary

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from minirt.lanes import Vec
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec
 from minirt.meshes.triangles import unit
 from minirt.shapes.compensated import two_product, two_sum
 

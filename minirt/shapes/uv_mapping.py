@@ -7,10 +7,8 @@ from __future__ import annotations
 
 from math import pi
 
-from minirt.lanes import Vec, copysign, splat, where
-from minirt.lanes.angle import arctan2
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, copysign, splat, where
+from minirt.lanes.mathematics import arctan2
 from minirt.shapes.basis import from_basis
 
 TWO_PI = 2.0 * pi

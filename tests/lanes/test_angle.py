@@ -12,7 +12,7 @@ from numba import njit
 import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import load, save, width
-from minirt.lanes.angle import arctan2
+from minirt.lanes.mathematics import arctan2
 from tests.lanes.numbers import PRECISIONS, assert_same, pairs
 
 ULPS = 3.0  # what the documentation promises

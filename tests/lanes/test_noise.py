@@ -13,8 +13,8 @@ from numba import njit
 import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, load, save, width
-from minirt.lanes import noise as noise_module
-from minirt.lanes.noise import GREATEST, PERIOD, corner_gradient, noise_and_gradient, remainder
+from minirt.lanes import mathematics as noise_module
+from minirt.lanes.mathematics import GREATEST, PERIOD, corner_gradient, noise_and_gradient, remainder
 from tests.lanes.numbers import PRECISIONS
 from tests.reference import patterns as reference
 

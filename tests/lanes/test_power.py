@@ -12,7 +12,7 @@ from numba import njit
 import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import exponent, load, save, two_to
-from minirt.lanes.power import power as power_of
+from minirt.lanes.mathematics import power as power_of
 
 BASES = np.concatenate([np.linspace(0.0, 1.0, 97), 1.0 - 0.5 ** np.arange(1, 54), 0.5 ** np.arange(1, 60, 0.37)])
 EXPONENTS = (1.0, 1.5, 2.0, 7.0, 50.0, 1e3, 1e6)

@@ -14,7 +14,7 @@ import minirt.lanes.compiled  # noqa: F401
 from minirt.kernel.machine_code.compile_process import environment
 from minirt.kernel.machine_code.processor import V3
 from minirt.lanes import Vec, inverse_root, lane, load, unit, width
-from minirt.lanes.compiled.inverse_root import SERIES
+from minirt.lanes.compiled.operations import SERIES
 from tests.lanes.numbers import DTYPES, PRECISIONS
 from tests.lanes.test_operators import store
 from tests.processes import run
@@ -55,7 +55,7 @@ def test_the_error_is_within_two_units_in_the_last_place(dtype: Any) -> None:
 
 
 def refined(x: Any, estimate: Any, bits: int, series: tuple[float, ...]) -> Any:
-    """Refine an estimate of 1 / sqrt(x) as `minirt.lanes.compiled.inverse_root` does, each step rounded to `bits`."""
+    """Refine an estimate of 1 / sqrt(x) as `minirt.lanes.compiled.operations` does, each step rounded to `bits`."""
 
     def rounded(value: Any) -> Any:
         return gmpy2.mpfr(value, bits)

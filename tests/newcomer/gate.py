@@ -10,9 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Length, Point, Triple, declare
-from minirt.lanes import Vec, fabs, maximum, unit_roundoff
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, fabs, maximum, unit_roundoff
 from minirt.records import record
 from minirt.shapes.boundary import Boundary
 from minirt.shapes.shape import Ball, Bounds, Position, Shape

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 from minirt.errors import ElementError
-from minirt.lanes import Vec
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec
 from minirt.shapes import torus as module
 from minirt.shapes.shape import Position
 from minirt.shapes.torus import PackedTorus, Torus

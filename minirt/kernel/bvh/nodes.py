@@ -13,10 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.kernel.trace import COINCIDENT
-from minirt.lanes import Vec, copysign, fabs, load, maximum, minimum, width
-from minirt.lanes.largest import largest
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, copysign, fabs, load, max_norm, maximum, minimum, width
 
 WIDTH = width(np.empty(0))  # children of a node, shapes in a leaf, rays in a packet
 MARGIN = 2.0**-42  # of the coordinates; formulas err by less than 2**-47 of distance, position and size together
@@ -62,7 +59,7 @@ class Tree(NamedTuple):
 def store_rays(memory: Any, origin: Vec, direction: Vec) -> None:
     """Store the rays of a packet in its memory, prepared for the box test."""
     inverse = Vec(safe_inverse(direction.x), safe_inverse(direction.y), safe_inverse(direction.z))
-    slack = MARGIN * largest(origin)
+    slack = MARGIN * max_norm(origin)
     grow = Vec(copysign(slack, inverse.x), copysign(slack, inverse.y), copysign(slack, inverse.z))
     enter = origin + grow  # moving the ray forward moves the planes by which it enters boxes back
     leave = origin - grow

@@ -25,10 +25,7 @@ from minirt.kernel.bvh.traversal import traverse
 from minirt.kernel.rows import intersect, kind_of, occludes, read, surface
 from minirt.kernel.scene_arrays import by_reference
 from minirt.kernel.trace import closer_hit, for_each_kind
-from minirt.lanes import Vec, any, lane, load, lowest, splat, unit, where
-from minirt.lanes.largest import largest
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, lane, load, lowest, max_norm, splat, unit, where
 
 CHUNK = 16 * WIDTH  # rays that a thread claims at a time
 
@@ -166,7 +163,7 @@ def store_vec(vectors: Any, i: int, v: Vec) -> None:
 
 def rescale(v: Vec) -> Vec:
     """Scale a vector so that its largest coordinate is 1: its length then neither overflows nor underflows."""
-    size = largest(v)
+    size = max_norm(v)
     return Vec(v.x / size, v.y / size, v.z / size)
 
 

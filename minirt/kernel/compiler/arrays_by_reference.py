@@ -10,10 +10,10 @@ from numba import types
 from numba.core import cgutils
 from numba.core.typing.templates import signature
 
+from minirt import lanes
 from minirt.kernel.compiler.by_reference import DATA, SHAPE, Reference, address_of_part, is_array
-from minirt.lanes import operations
 from minirt.lanes.compiled import memory
-from minirt.lanes.compiled.registration import Result, register
+from minirt.lanes.compiled.types import Result, register
 
 INDEXED = [(Reference, types.Integer), (Reference, types.BaseTuple)]
 
@@ -82,5 +82,5 @@ def register_by_reference(function: Any, result: Result, generate: Any) -> None:
         return generate(context, builder, signature(sig.return_type, kind, *sig.args[1:]), [array, *args[1:]])
 
 
-register_by_reference(operations.load, memory.load_type, memory.load)
-register_by_reference(operations.gather, memory.gather_type, memory.gather)
+register_by_reference(lanes.load, memory.load_type, memory.load)
+register_by_reference(lanes.gather, memory.gather_type, memory.gather)

@@ -17,7 +17,7 @@ from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import lower_getattr_generic, register_model
 
 from minirt.kernel import scene_arrays
-from minirt.lanes.compiled.registration import register
+from minirt.lanes.compiled.types import register
 
 ADDRESS = ir.IntType(8).as_pointer()
 NUMBERS: dict[types.Type, int] = {}  # of types that are referred to: short, as they become parts of function names

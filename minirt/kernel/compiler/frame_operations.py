@@ -10,8 +10,7 @@ from numba import types
 from minirt.kernel import atomic_counter, stored_light
 from minirt.kernel.compiler.arrays_by_reference import data, length
 from minirt.kernel.compiler.by_reference import Reference
-from minirt.lanes.compiled.registration import register
-from minirt.lanes.compiled.types import Lanes, constant, splat
+from minirt.lanes.compiled.types import Lanes, constant, register, splat
 
 PIXEL = ir.IntType(32)
 

@@ -10,6 +10,7 @@ import sys
 from numba.extending import register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (registers the operations of the formulas)
+from minirt import lanes
 from minirt.kernel import atomic_counter, contrast, frame, scene_arrays, shadow_rays, stored_light, trace
 from minirt.kernel.compiler import frame_operations, kind_dispatch, packed_shapes, unrolled_loop  # noqa: F401
 from minirt.kernel.compiler.inlining import inline_functions_of
@@ -34,7 +35,7 @@ from minirt.kernel.shading import (
     transmission,
     whitted,
 )
-from minirt.lanes import angle, largest, noise, power, vec
+from minirt.lanes import mathematics
 from minirt.shapes import (
     ALL_KINDS,
     basis,
@@ -61,16 +62,14 @@ REGISTERED = (
     contrast.classify,
     scene_arrays.by_reference,
 )
-register_jitable(**INLINED)(vec.cross)
+for _function in (lanes.cross, lanes.max_norm):
+    register_jitable(**INLINED)(_function)
 for _module in (
     basis,
     compensated,
     cone_start,
     flat_start,
-    angle,
-    largest,
-    noise,
-    power,
+    mathematics,
     quadric,
     uv_mapping,
     pyramid,

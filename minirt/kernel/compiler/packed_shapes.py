@@ -14,8 +14,7 @@ from numba import types
 
 from minirt.kernel import rows
 from minirt.kernel.compiler.arrays_by_reference import register_by_reference
-from minirt.lanes.compiled.registration import register
-from minirt.lanes.compiled.types import VecType, common, vec_of
+from minirt.lanes.compiled.types import VecType, common, register, vec_of
 
 
 def address_of_row(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:

@@ -10,9 +10,8 @@ from numba.core import cgutils
 
 from minirt.kernel.bvh import nodes
 from minirt.kernel.shading import ray_stack
-from minirt.lanes.compiled import reductions
-from minirt.lanes.compiled.registration import register
-from minirt.lanes.compiled.types import Lanes, Mask, constant
+from minirt.lanes.compiled import memory
+from minirt.lanes.compiled.types import Lanes, Mask, constant, register
 
 INTEGER = ir.IntType(64)
 LANES = Lanes(types.float64)
@@ -72,7 +71,7 @@ def _reference_of(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> A
 
 @register(nodes.bits, lambda mask: types.int64, [(Mask,)])
 def _bits(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
-    return builder.zext(reductions.bits(builder, args[0]), INTEGER)
+    return builder.zext(memory.bits(builder, args[0]), INTEGER)
 
 
 @register(nodes.least_lane, lambda x: types.float64, [(Lanes,)])

@@ -12,9 +12,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from minirt.lanes import Vec, dot, fabs, floor, lane, minimum, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, dot, fabs, floor, lane, minimum, where
 
 SCALE, TOLERANCE = 9, 10  # indices of the last two numbers of a light buffer
 FRUSTUM_FACTOR = 2  # a frustum's grid has so many times the cells along an edge of a cube

@@ -14,8 +14,7 @@ from __future__ import annotations
 from typing import Any
 
 from minirt.kernel.scene_arrays import SceneArrays, has_rows
-from minirt.lanes import Vec, copysign, dot, inverse_root, load, save, splat, width
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec, copysign, dot, inverse_root, load, save, splat, width
 
 NUMBERS = 8  # for each ray of a packet, in a row of `rays`
 EYE, DISC = 3, 6  # the first of those of the eye and of the disc

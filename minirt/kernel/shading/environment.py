@@ -7,10 +7,8 @@ from typing import Any, NamedTuple
 
 from minirt.kernel.scene_arrays import SceneArrays, has_rows
 from minirt.kernel.shading.texture_lookup import texture_lookup
-from minirt.lanes import Vec, any, maximum, minimum, splat, sqrt, where
-from minirt.lanes.angle import arctan2
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, maximum, minimum, splat, sqrt, where
+from minirt.lanes.mathematics import arctan2
 
 
 class Environment(NamedTuple):

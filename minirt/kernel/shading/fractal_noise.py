@@ -9,9 +9,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from minirt.kernel.shading.lights import clamp_to_unit, smoothstep
-from minirt.lanes import Vec, any, copysign, fabs, splat
-from minirt.lanes.noise import noise_and_gradient
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec, any, copysign, fabs, splat
+from minirt.lanes.mathematics import noise_and_gradient
 
 SHARP, GONE = 0.2, 0.75  # footprints, in cells of the noise, at which an octave begins to fade and has faded
 MEAN_FOLD = 0.218118  # mean of the absolute noise

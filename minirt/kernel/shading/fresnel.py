@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from minirt.lanes import Vec, maximum, sqrt, where
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec, maximum, sqrt, where
 
 TINY = 2.0**-500  # keeps the quotients finite where a ray grazes a surface between two equal indices
 

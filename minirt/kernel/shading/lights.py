@@ -6,8 +6,7 @@ from math import inf
 from typing import Any
 
 from minirt.kernel.scene_arrays import has_rows
-from minirt.lanes import Vec, dot, inverse_root, maximum, minimum, splat, where
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec, dot, inverse_root, maximum, minimum, splat, where
 
 
 def incident_light(spots: Any, light: int, position: Vec, point: Vec) -> tuple[Vec, Number, Number]:

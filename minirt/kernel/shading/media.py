@@ -9,10 +9,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from minirt.lanes import Vec, any, maximum, splat, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.power import LOWEST, exp2
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, maximum, splat, where
+from minirt.lanes.mathematics import LOWEST, exp2
 
 VANISHING = 2.0**-40  # what is left of an absorption after a subtraction, relative to it, that rounding may have left
 

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from minirt.kernel.shading.fractal_noise import Fractal, faded
 from minirt.kernel.shading.lights import clamp_to_unit, smoothstep
-from minirt.lanes import Vec, copysign, fabs, floor, inverse_root, minimum, sqrt, where
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec, copysign, fabs, floor, inverse_root, minimum, sqrt, where
 
 # Of the noise: cells of the first octave in a size, their stretch along the grain, and whether it is turbulence.
 MARBLE_NOISE = 0.35, 1.0, 1.0

@@ -11,8 +11,7 @@ from typing import Any, NamedTuple
 from minirt.kernel.scene_arrays import has_rows
 from minirt.kernel.shading.fractal_noise import fractal_noise
 from minirt.kernel.shading.pattern_shares import CLOUD_NOISE, MARBLE_NOISE, WOOD_NOISE, clouds, marble, wood
-from minirt.lanes import Vec, dot, fabs, maximum, sqrt, unit
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec, dot, fabs, maximum, sqrt, unit
 
 MARBLE, WOOD, CLOUDS = 0, 1, 2  # kinds of patterns
 KIND, COLOUR, OCTAVES, PER_SIZE, ORIGIN, FRAME = 0, 1, 4, 5, 6, 9  # columns of `Patterns.rows`

@@ -8,9 +8,7 @@ import numpy as np
 
 from minirt.kernel.bvh.nodes import put, put_vec
 from minirt.kernel.scene_arrays import SceneArrays
-from minirt.lanes import Vec, lane, load, splat, width
-from minirt.lanes.operations import BYTES
-from minirt.lanes.vec import Number
+from minirt.lanes import BYTES, Number, Vec, lane, load, splat, width
 
 MIN_WEIGHT = 2.0**-10  # rays that would add less than this share of their light to a pixel are not traced
 MAX_DEPTH = 32  # the largest depth that a scene may ask for

@@ -15,10 +15,7 @@ from minirt.kernel.shading.terminator import bump_fading, has_bumps, smooth_poin
 from minirt.kernel.shading.transmission import light_through_glass
 from minirt.kernel.shadow_rays import unoccluded
 from minirt.kernel.trace import ROUNDING
-from minirt.lanes import Vec, any, dot, maximum, rarely, splat, unit_roundoff, where
-from minirt.lanes.largest import largest
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, dot, max_norm, maximum, rarely, splat, unit_roundoff, where
 
 
 def direct_light(
@@ -56,7 +53,7 @@ def direct_light(
         lit = hit & (cosine > 0.0)
         if any(lit):
             # A surface occludes no light source that lies on it.
-            tolerance = 4.0 * (rounding + ROUNDING * u * largest(position))
+            tolerance = 4.0 * (rounding + ROUNDING * u * max_norm(position))
             origin, ray, reach = start, to_light, distance - tolerance
             if scene.smooth is not None and has_rows(scene.smooth):
                 turned_away = lit & (dot(normal, to_light) <= 0.0)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from minirt.lanes import Vec, any, dot, minimum, splat, unit, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.power import power
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, dot, minimum, splat, unit, where
+from minirt.lanes.mathematics import power
 
 
 def specular(material: Vec, normal: Vec, to_light: Vec, direction: Vec, lit: Mask) -> Number:

@@ -10,10 +10,7 @@ from minirt.kernel.shading.media import filter_of
 from minirt.kernel.shading.patterns import apply_patterns, pixel_footprint
 from minirt.kernel.shading.texturing import apply_maps
 from minirt.kernel.trace import ROUNDING, for_each_kind
-from minirt.lanes import Vec, any, first, lane, rarely, splat, unit_roundoff, where
-from minirt.lanes.largest import largest
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, first, lane, max_norm, rarely, splat, unit_roundoff, where
 
 
 class Surface(NamedTuple):
@@ -35,7 +32,7 @@ class Surface(NamedTuple):
 
 def clearance(point: Vec, extent: Number) -> Number:
     """Return the offset from a surface at which a ray starts: clear of it, and of surfaces that coincide with it."""
-    return ROUNDING * unit_roundoff(extent) * (largest(point) + extent)
+    return ROUNDING * unit_roundoff(extent) * (max_norm(point) + extent)
 
 
 def surfaces(

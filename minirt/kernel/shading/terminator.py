@@ -13,9 +13,7 @@ from typing import Any
 from minirt.kernel.rows import read, smooth_point
 from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows
 from minirt.kernel.trace import for_each_kind
-from minirt.lanes import Vec, any, dot, first, lane, maximum, minimum, sqrt, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, dot, first, lane, maximum, minimum, sqrt, where
 
 ROUGHNESS = 0.125  # squared roughness of bumps whose normal leans by 45 degrees
 LEAST_COSINE = 2.0**-26  # of a shading normal that counts as leaning less than 90 degrees

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from minirt.lanes import Vec, floor, gather, maximum, minimum
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec, floor, gather, maximum, minimum
 
 
 def texture_lookup(texels: Any, pictures: Any, which: int, u: Number, v: Number) -> Vec:

@@ -8,8 +8,7 @@ from minirt.kernel.rows import mapping, read
 from minirt.kernel.scene_arrays import Group, has_rows
 from minirt.kernel.shading.texture_lookup import height_gradient, texture_lookup
 from minirt.kernel.trace import for_each_kind
-from minirt.lanes import Vec, copysign, cross, dot, fabs, floor, inverse_root, splat, unit, where
-from minirt.lanes.vec import Number
+from minirt.lanes import Number, Vec, copysign, cross, dot, fabs, floor, inverse_root, splat, unit, where
 
 
 class SurfaceMaps(NamedTuple):

@@ -14,9 +14,7 @@ from minirt.kernel.shading.fresnel import shares_at_angle
 from minirt.kernel.shading.media import absorbed, brightest, filter_of, medium_behind
 from minirt.kernel.shading.surfaces import clearance, row_of, surface_of_kind, tint
 from minirt.kernel.trace import for_each_kind
-from minirt.lanes import Vec, any, dot, fabs, first, lane, rarely, splat, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, lane, rarely, splat, where
 
 MOST_SURFACES = 256  # that a shadow ray may cross; beyond them it counts as occluded
 

@@ -20,9 +20,7 @@ from minirt.kernel.shading.ray_stack import MIN_WEIGHT, Ray, load_rays, push_ray
 from minirt.kernel.shading.shade import direct_light, own_share
 from minirt.kernel.shading.surfaces import Surface, clearance, surfaces, tint
 from minirt.kernel.trace import closest_hit
-from minirt.lanes import Vec, any, dot, maximum, rarely, splat, sqrt, unit, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, dot, maximum, rarely, splat, sqrt, unit, where
 
 
 def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:

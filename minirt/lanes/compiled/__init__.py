@@ -3,6 +3,6 @@
 A registration says for which types of arguments it holds, which type results, and which LLVM instructions compute it.
 """
 
-from minirt.lanes.compiled import float_bits, memory, operations, operators, reductions, vec
+from minirt.lanes.compiled import memory, operations, operators
 
-__all__ = ["float_bits", "memory", "operations", "operators", "reductions", "vec"]
+__all__ = ["memory", "operations", "operators"]

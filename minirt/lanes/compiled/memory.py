@@ -1,15 +1,15 @@
-"""Loads and stores of lanes, compiled: load, gather and save."""
+"""Loads, stores and reductions of lanes, compiled."""
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 from llvmlite import ir
 from numba import types
 
-from minirt.lanes import operations
-from minirt.lanes.compiled.registration import register
-from minirt.lanes.compiled.types import Lanes
+from minirt import lanes
+from minirt.lanes.compiled.types import ANY, I32, Lanes, Mask, constant, register
 
 
 def load_type(values: types.Type, start: types.Type) -> types.Type | None:
@@ -24,7 +24,7 @@ def address(context: Any, builder: ir.IRBuilder, kind: types.Type, values: Any) 
     return values if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, value=values).data
 
 
-@register(operations.load, load_type, [(types.Array, types.Integer), (types.CPointer, types.Integer)])
+@register(lanes.load, load_type, [(types.Array, types.Integer), (types.CPointer, types.Integer)])
 def load(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     """Emit the load of lanes that lie one after the other."""
     values = address(context, builder, sig.args[0], args[0])
@@ -38,7 +38,7 @@ def gather_type(values: types.Type, indices: types.Type) -> types.Type | None:
     return indices if isinstance(values, types.Array) and isinstance(indices, Lanes) else None
 
 
-@register(operations.gather, gather_type, [(types.Array, Lanes)])
+@register(lanes.gather, gather_type, [(types.Array, Lanes)])
 def gather(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     """Emit a load for each lane, and the conversion of all to the precision of the indices."""
     values = context.make_array(sig.args[0])(context, builder, value=args[0])
@@ -62,9 +62,52 @@ def save_type(x: types.Type, values: types.Type, start: types.Type) -> types.Typ
     return types.none if isinstance(values, types.Array | types.CPointer) and x == Lanes(values.dtype) else None
 
 
-@register(operations.save, save_type, [(Lanes, types.Array, types.Integer), (Lanes, types.CPointer, types.Integer)])
+@register(lanes.save, save_type, [(Lanes, types.Array, types.Integer), (Lanes, types.CPointer, types.Integer)])
 def _save(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     values = address(context, builder, sig.args[1], args[1])
     place = builder.gep(values, [context.cast(builder, args[2], sig.args[2], types.intp)])
     builder.store(args[0], builder.bitcast(place, args[0].type.as_pointer()), align=sig.args[0].number.bitwidth // 8)
     return context.get_dummy_value()
+
+
+def bits(builder: ir.IRBuilder, mask: Any) -> Any:
+    """Return a mask as an integer with one bit for each lane."""
+    return builder.bitcast(mask, ir.IntType(mask.type.count))
+
+
+@register(lanes.any, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
+def _any(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    if sig.args[0] == types.boolean:
+        return args[0]
+    integer = bits(builder, args[0])
+    return builder.icmp_unsigned("!=", integer, ir.Constant(integer.type, 0))
+
+
+@register(lanes.rarely, lambda mask: types.boolean if isinstance(mask, (Mask, types.Boolean)) else None, [(ANY,)])
+def _rarely(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    bit = ir.IntType(1)
+    expect = builder.module.declare_intrinsic("llvm.expect", [bit], ir.FunctionType(bit, [bit, bit]))
+    return builder.call(expect, [_any(context, builder, sig, args), ir.Constant(bit, 0)])
+
+
+@register(lanes.first, lambda mask: types.int64 if isinstance(mask, Mask) else None, [(Mask,)])
+def _first(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.cttz(builder.zext(bits(builder, args[0]), ir.IntType(64)), ir.Constant(ir.IntType(1), 1))
+
+
+@register(lanes.greatest, lambda x: x.number if isinstance(x, Lanes) else None, [(Lanes,)])
+def _greatest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    best = constant(args[0], -inf)
+    best = builder.select(builder.fcmp_ordered(">", args[0], best), args[0], best)
+    count = best.type.count
+    while count > 1:  # the greater of each lane and the lane half a vector further on
+        count //= 2
+        halves = (ir.Constant(ir.VectorType(I32, count), [*range(start, start + count)]) for start in (0, count))
+        low, high = (builder.shuffle_vector(best, best, half) for half in halves)
+        best = builder.select(builder.fcmp_ordered(">", low, high), low, high)
+    return builder.extract_element(best, ir.Constant(I32, 0))
+
+
+@register(lanes.lowest, lambda number: types.int64 if number == types.int64 else None, [(types.Integer,)])
+def _lowest(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
+    return builder.cttz(args[0], ir.Constant(ir.IntType(1), 1))

@@ -1,4 +1,4 @@
-"""SIMD lanes, masks and Vecs as types of numba.
+"""SIMD lanes, masks and Vecs as types of numba, and the registration of operations on them.
 
 `f64x16` and `f32x32` are sixteen or thirty-two floating-point numbers in one LLVM vector, `i1x16` and `i1x32` as many
 truth values. LLVM does arithmetic on vectors as on single numbers and spreads a vector over as many registers as it
@@ -8,15 +8,17 @@ beside a vector is first copied to all of its lanes. A Vec is three numbers, eac
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.core.datamodel import models
-from numba.extending import make_attribute_wrapper, register_model
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.extending import lower_builtin, make_attribute_wrapper, register_model
 
-from minirt.lanes.operations import BYTES
+from minirt.lanes import BYTES
 
 
 class Lanes(types.Type):
@@ -44,6 +46,8 @@ class VecType(types.Type):
         super().__init__(f"Vec({number})")
 
 
+ANY = types.Any
+Result = Callable[..., types.Type | None]  # result type for argument types; None: the operation does not take them
 I32 = ir.IntType(32)
 
 
@@ -136,3 +140,42 @@ def vec_of(context: Any, builder: ir.IRBuilder, kind: VecType, parts: list[Any])
     for index, part in enumerate(parts):
         vec = builder.insert_value(vec, part, index)
     return vec
+
+
+def register(function: Callable[..., Any], result: Result, patterns: Iterable[tuple[Any, ...]]) -> Callable[..., Any]:
+    """Decorator: compile `function`, on arguments that match one of `patterns`, to the code that a generator emits."""
+
+    def generic(self: Any, args: Any, kws: Any) -> Any:
+        kind = None if kws else result(*args)
+        return None if kind is None else signature(kind, *args)
+
+    def decorate(generate: Callable[..., Any]) -> Callable[..., Any]:
+        infer_global(function)(
+            type(f"Lanes_{function.__name__}", (AbstractTemplate,), {"key": function, "generic": generic})
+        )
+        for pattern in patterns:
+            lower_builtin(function, *pattern)(generate)
+        return generate
+
+    return decorate
+
+
+def same_numbers(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> list[Any]:
+    """Return the arguments, all as single numbers or all as lanes."""
+    target = common(*sig.args)
+    return [widen(context, builder, value, kind, target) for value, kind in zip(args, sig.args, strict=True)]
+
+
+def one_number(kind: types.Type) -> types.Type | None:
+    """Return the type of an operation on one number: that of the number."""
+    return common(kind) if is_number(kind) else None
+
+
+def two_numbers(a: types.Type, b: types.Type) -> types.Type | None:
+    """Return the type of an operation on two numbers: lanes if one of them is lanes."""
+    return common(a, b) if is_number(a) and is_number(b) else None
+
+
+def single(x: types.Type) -> types.Type | None:
+    """Return the type of one lane of x, or of x itself where that is a single number."""
+    return getattr(common(x), "number", common(x)) if is_number(x) else None

@@ -11,9 +11,7 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.lanes import Vec, any, cross, dot, fabs, minimum, splat, sqrt, where
-from minirt.lanes.operations import Mask
-from minirt.lanes.vec import Number
+from minirt.lanes import Mask, Number, Vec, any, cross, dot, fabs, minimum, splat, sqrt, where
 from minirt.shapes import Shape
 from minirt.shapes.basis import to_basis
 from minirt.shapes.cone import Cone, PackedCone

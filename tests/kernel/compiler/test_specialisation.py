@@ -14,8 +14,7 @@ from minirt.kernel.compiler.argument_types import type_of
 from minirt.kernel.compiler.options import FLAGS
 from minirt.kernel.frame import frame
 from minirt.kernel.machine_code.signature import signature_of
-from minirt.lanes.angle import ATAN_HALF
-from minirt.lanes.noise import PERIOD
+from minirt.lanes.mathematics import ATAN_HALF, PERIOD
 from minirt.materials import Checker, Clouds
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.scene_packing import Packing
