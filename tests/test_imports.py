@@ -290,11 +290,11 @@ def test_a_planted_circle_is_found() -> None:
     planted = {
         "kernel/frame.py": "",
         "kernel/bvh/__init__.py": "",
-        "kernel/bvh/nodes.py": "from minirt.kernel.culling.binning import Grid",
+        "kernel/bvh/nodes.py": "from minirt.kernel.binning import Grid",
         "kernel/bvh/build.py": "",
         "kernel/culling/__init__.py": "",
         "kernel/culling/binning.py": "",
-        "kernel/culling/light_buffer.py": "import minirt.kernel.bvh.build",
+        "kernel/culling/light_buffer.py": "import minirt.kernel.bvh_build",
     }
     assert circles(graph(planted)) == set()
     assert circles(folders(graph(planted))) == {"minirt.kernel.bvh", "minirt.kernel.culling"}
@@ -313,7 +313,7 @@ def test_heavy_imports_are_late(path: str) -> None:
         ("kernel", "from minirt.scene import Scene", {"scene"}),
         ("kernel", "import minirt.scene.parser", {"scene"}),
         ("kernel", "from minirt import scene", {"scene"}),
-        ("shapes", "def f():\n    from minirt.kernel.rows import row", {"kernel"}),
+        ("shapes", "def f():\n    from minirt.kernel.scene_arrays import row", {"kernel"}),
         ("rendering", "import_module('minirt.viewer.app.session')", {"viewer"}),
         ("mlx", "from minirt import load", {"__init__"}),
         ("lanes", "from minirt.lanes import Vec\nimport math", set()),

@@ -5,12 +5,11 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-from minirt.kernel.atomic_counter import fetch_add
+from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, TILE, accumulate, fetch_add, store_estimate, store_packet
 from minirt.kernel.scene_arrays import SceneArrays, by_reference
-from minirt.kernel.shading.apertures import remember_sample, sampled_eye
-from minirt.kernel.shading.environment import background_light, has_environment
+from minirt.kernel.shading.lights import remember_sample, sampled_eye
+from minirt.kernel.shading.texturing import background_light, has_environment
 from minirt.kernel.shading.whitted import incoming_radiance
-from minirt.kernel.stored_light import ESTIMATE, PACKET_HEIGHT, TILE, accumulate, store_estimate, store_packet
 from minirt.kernel.trace import is_empty
 from minirt.lanes import Number, Vec, lane, load, rarely, splat, unit, where, width
 
@@ -76,7 +75,7 @@ def frame(
     (`SUMS` numbers). `pixels` (h, w) receives 0xAARRGGBB; `linear` (h, w, 3) receives the unclamped radiance, unless it
     has no rows. `rays` (rows, 3 * width) has x, y and z of the directions of a packet's rays, less the direction
     through the packet's upper left corner; where the scene has a lens or light sources with a size it is longer, see
-    `minirt.kernel.shading.apertures`. `plan` (k, 5) has for each packet to draw its column and row among the packets,
+    `minirt.kernel.shading.lights`. `plan` (k, 5) has for each packet to draw its column and row among the packets,
     its first row in `rays`, its number of samples, and the first row of two reference estimates, each of
     `REFERENCE_SAMPLES` times as many samples, 0 for none. Without rows all packets take all rows of `rays`. `errors`
     (k,) receives the squared errors of packets with references, see `squared_error`. A counter set to `CANCELLED` from

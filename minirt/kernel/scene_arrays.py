@@ -1,8 +1,21 @@
-"""Structure of arrays of a scene, as the kernel reads it: all numbers float64, or all float32."""
+"""Structure of arrays of a scene, as the kernel reads it: all numbers float64, or all float32.
+
+Packed shapes are record arrays, one for each kind, with a row for each shape. The names of a row's fields begin with
+the title of the kind: the dtype of an array tells which formulas belong to it.
+"""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from functools import cache
+from typing import Any, NamedTuple, get_type_hints
+
+import numpy as np
+
+from minirt.lanes import Vec
+from minirt.shapes import ALL_KINDS, Kind
+from minirt.shapes.shape import Position
+
+Rows = Any  # an array of dtype `row_type(kind)`
 
 
 class Group(NamedTuple):
@@ -36,30 +49,30 @@ class SceneArrays(NamedTuple):
     tile_shapes: Any  # shapes of all tiles, those of a tile and kind sorted by distance
     cones: Any  # (n, 5) bounding cones as seen from the eye
     light_buffer_cells: int  # cells along an edge of a light buffer's cube; 1 if light buffers are not used
-    light_buffers: Any  # (m, 11) how directions from each light map to cells, see `minirt.kernel.culling.light_buffer`
+    light_buffers: Any  # (m, 11) how directions from each light map to cells, see `minirt.kernel.shadow_rays`
     light_shapes: Any  # shapes of all cells of all light buffers, those of a cell and kind sorted by distance
     light_cones: Any  # (m, n, 5) bounding cones as seen from each light
     groups: Any  # a tuple of Group: one for each kind of shape in the scene
     # Features that most scenes lack. A field that is None adds no code to the kernel; an array without rows means that
     # the kernel has the feature and the scene lacks it.
     spots: Any = None  # (m, 7) spot, parallel and fading lights, see `minirt.kernel.shading.lights`
-    soft: Any = None  # (m, 4) light sources with a size, see `minirt.kernel.shading.apertures`
+    soft: Any = None  # (m, 4) light sources with a size, see `minirt.kernel.shading.lights`
     lens: Any = None  # (7,) half axes of the camera's lens, and one over the distance at which it is sharp
-    specular: Any = None  # (n, 3) specular highlights, see `minirt.kernel.shading.specular`
+    specular: Any = None  # (n, 3) specular highlights, see `minirt.kernel.shading.lights`
     reflective: Any = None  # (n, 3) mirrors and glass, see `minirt.kernel.shading.whitted`
-    transparent: Any = None  # (n, 4) glass as light from light sources meets it, `minirt.kernel.shading.transmission`
-    media: Any = None  # (n, 6) tinted glass, see `minirt.kernel.shading.media`
+    transparent: Any = None  # (n, 4) glass as light from light sources meets it, `minirt.kernel.shading.shadows`
+    media: Any = None  # (n, 6) tinted glass, see `minirt.kernel.shading.surfaces`
     eye_medium: Any = None  # (3,) absorption at the eye, likewise
     fresnel: Any = None  # (n,) how far the shares of mirrors and glass are those of Fresnel's equations, from 0 to 1
     fades: Any = None  # (n, 2) one over the distances at which reflected and refracted rays are gone, or 0
     glow: Any = None  # (n,) share of its colour that a shape emits
-    smooth: Any = None  # (n,) 1 for the triangles of smooth meshes, else 0, see `minirt.kernel.shading.terminator`
+    smooth: Any = None  # (n,) 1 for the triangles of smooth meshes, else 0, see `minirt.kernel.shading.shadows`
     surface_maps: Any = None  # `minirt.kernel.shading.texturing.SurfaceMaps`
     patterns: Any = None  # `minirt.kernel.shading.patterns.Patterns`
     depth: int = 0  # most reflections and refractions along a path
     background: Any = None  # (3,) radiance along rays that hit nothing
-    environment: Any = None  # `minirt.kernel.shading.environment.Environment`
-    bvh: Any = None  # `minirt.kernel.bvh.nodes.Tree` of the shapes, for incoherent rays
+    environment: Any = None  # `minirt.kernel.shading.texturing.Environment`
+    bvh: Any = None  # `minirt.kernel.bvh_nodes.Tree` of the shapes, for incoherent rays
 
 
 def has_rows(table: Any) -> bool:
@@ -84,3 +97,79 @@ def range_in_cell(group: Group, light: int, cell: int) -> tuple[int, int]:
     if not has_rows(group.rows):
         return 0, 0
     return int(group.light_starts[light, cell]), int(group.light_starts[light, cell + 1])
+
+
+@cache
+def row_type(kind: Kind, number: type = np.float64) -> np.dtype[Any]:
+    """Return the record dtype of the rows of a kind, with components of type `number`."""
+    hints = get_type_hints(kind.packed).items()
+    return np.dtype([(field_name(kind, name), number, (3,) if hint in (Vec, Position) else ()) for name, hint in hints])
+
+
+def field_name(kind: Kind, name: str) -> str:
+    """Return the name of the row field that holds a number or Vec of a packed shape."""
+    return f"{kind.element.title}.{name}"
+
+
+@cache
+def point_fields(kind: Kind) -> tuple[str, ...]:
+    """Return the names of the row fields that are points, not directions or numbers."""
+    return tuple(field_name(kind, name) for name, hint in get_type_hints(kind.packed).items() if hint is Position)
+
+
+def kind_of(fields: Any) -> Kind:
+    """Return the kind whose rows have these field names."""
+    title = next(iter(fields)).split(".")[0]
+    return next(kind for kind in ALL_KINDS if kind.element.title == title)
+
+
+def read(rows: Rows, i: int) -> Any:
+    """Return the packed shape in row i."""
+    parts = (Vec(*part) if np.ndim(part) else part for part in rows[i])
+    return kind_of(rows.dtype.names).packed(*parts)
+
+
+def kind_of_packed(packed: type[Any]) -> Kind:
+    """Return the kind that has this class as its packed form."""
+    return next(kind for kind in ALL_KINDS if kind.packed is packed)
+
+
+def intersect(shape: Any, origin: Vec, direction: Vec) -> Any:
+    """Intersect rays with a packed shape by the formula of its kind: `intersect` of `minirt.shapes.shape`."""
+    return kind_of_packed(type(shape)).intersect(shape, origin, direction)
+
+
+def occludes(shape: Any, origin: Vec, direction: Vec) -> Any:
+    """Intersect shadow rays with a packed shape by the formula of its kind: `occludes` of `minirt.shapes.shape`."""
+    kind = kind_of_packed(type(shape))
+    return (kind.occludes or kind.intersect)(shape, origin, direction)
+
+
+def mapping(shape: Any, point: Vec, normal: Vec) -> Any:
+    """Compute texture coordinates and tangents by the formula of its kind: `mapping` of `minirt.shapes.shape`."""
+    return kind_of_packed(type(shape)).mapping(shape, point, normal)
+
+
+def shading(shape: Any, point: Vec, normal: Vec) -> Any:
+    """Compute the shading normal by the formula of its kind: `shading` of `minirt.shapes.shape`."""
+    return kind_of_packed(type(shape)).shading(shape, point, normal)
+
+
+def smooth_point(shape: Any, point: Vec, normal: Vec) -> Any:
+    """Move a point onto the smooth surface by the formula of its kind: `smooth_point` of `minirt.shapes.shape`."""
+    return kind_of_packed(type(shape)).smooth_point(shape, point, normal)
+
+
+def is_batched(rows: Rows) -> bool:
+    """Whether the shapes of these rows are culled in batches, as the triangles of meshes are."""
+    return kind_of(rows.dtype.names).batched
+
+
+def may_meet(shape: Any, apex: Vec, start: Any, direction: Vec, active: Any) -> Any:
+    """Cull rays of a packet by the test of its kind: `may_meet` of `minirt.shapes.shape`."""
+    return kind_of_packed(type(shape)).may_meet(shape, apex, start, direction, active)
+
+
+def surface(shape: Any, point: Vec) -> Any:
+    """Compute surface point and normal by the formula of its kind: `surface` of `minirt.shapes.shape`."""
+    return kind_of_packed(type(shape)).surface(shape, point)

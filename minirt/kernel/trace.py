@@ -10,8 +10,7 @@ from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.rows import intersect, is_batched, may_meet, read, surface
-from minirt.kernel.scene_arrays import Group, SceneArrays, range_in_tile
+from minirt.kernel.scene_arrays import Group, SceneArrays, intersect, is_batched, may_meet, range_in_tile, read, surface
 from minirt.lanes import (
     Mask,
     Number,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.fields import unit
-from minirt.kernel.rows import kind_of
+from minirt.kernel.scene_arrays import kind_of
 from minirt.lanes import Vec
 from minirt.rendering.packing.camera import packed_columns
 from minirt.rendering.packing.materials import placement_numbers

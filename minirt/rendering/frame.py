@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.stored_light import PACKET_HEIGHT, SUMS
+from minirt.kernel.pixels import PACKET_HEIGHT, SUMS
 from minirt.lanes import width
 from minirt.rendering.packing.camera import (
     GOLDEN_RATIO,

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR, SCALE
 from minirt.kernel.scene_arrays import SceneArrays
+from minirt.kernel.shadow_rays import FRUSTUM_FACTOR, SCALE
 from minirt.rendering.culling.planes import never_occludes
 from minirt.rendering.packing.features import FEATURES, features
 from minirt.rendering.packing.generic_kernels import GenericKernel

@@ -12,7 +12,7 @@ from PIL import Image as pillow  # noqa: N813
 
 import minirt
 from minirt.cli import arguments
-from minirt.kernel.shading import ray_stack
+from minirt.kernel.shading import whitted
 from minirt.rendering.packing import features
 from tests.cli.program import SCENE, Result
 from tests.paths import ROOT
@@ -197,7 +197,7 @@ def test_list_keys_needs_no_scene(run: Run) -> None:
 
 
 def test_depth_limits_the_reflections_and_has_a_range(run: Run, folder: Path) -> None:
-    assert (arguments.DEPTH, arguments.MAX_DEPTH) == (features.DEPTH, ray_stack.MAX_DEPTH)
+    assert (arguments.DEPTH, arguments.MAX_DEPTH) == (features.DEPTH, whitted.MAX_DEPTH)
     mirror = "A 1 255,255,255\nC 0,0,-5 0,0,1 60\nbg 0,0,255\npl 0,0,0 0,0,-1 255,0,0 mirror:1\n"
     (folder / "mirror.rt").write_text(mirror)
     for depth, colour in (("0", [255, 0, 0]), ("1", [0, 0, 255])):

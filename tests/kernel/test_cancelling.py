@@ -9,7 +9,7 @@ import pytest
 
 from minirt.kernel import frame, interpreted
 from minirt.kernel.frame import CANCELLED
-from minirt.kernel.stored_light import TILE
+from minirt.kernel.pixels import TILE
 from minirt.lanes import Vec
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.scene_packing import Packing

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from minirt.kernel.rows import read
+from minirt.kernel.scene_arrays import read
 from minirt.materials import Checker
 from minirt.rendering import Renderer
 from minirt.rendering.packing import shape_arrays

@@ -11,7 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
-from minirt.kernel import rows
+from minirt.kernel import scene_arrays
 from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, lane, load, where, width
 from minirt.rendering.packing.shape_arrays import packed_rows
@@ -68,7 +68,7 @@ def on_arrays(shapes: list[Shape], origins: Array, directions: Array, formula: A
 def shape_rows(shapes: list[Shape]) -> Any:
     """The rows of shapes of one kind, as the kernel reads them."""
     packed = np.ascontiguousarray(packed_rows([shape.pack() for shape in shapes]))
-    return packed.view(rows.row_type(kind_of(shapes[0])))[:, 0]
+    return packed.view(scene_arrays.row_type(kind_of(shapes[0])))[:, 0]
 
 
 def component_arrays(points: Array) -> Array:
@@ -84,7 +84,7 @@ def kernel() -> Any:
         for i in range(0, t.size, width(t)):
             origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
             direction = Vec(load(d[0], i), load(d[1], i), load(d[2], i))
-            hit, at = rows.intersect(rows.read(table, i // each), origin, direction)
+            hit, at = scene_arrays.intersect(scene_arrays.read(table, i // each), origin, direction)
             at = where(hit, at, np.inf)
             for ray in range(width(t)):
                 t[i + ray] = lane(at, ray)

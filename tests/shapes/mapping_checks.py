@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
-from minirt.kernel import rows
+from minirt.kernel import scene_arrays
 from minirt.kernel.compiler.options import FLAGS
 from minirt.lanes import Vec, load, save, splat, width
 from minirt.shapes import Kind, Shape
@@ -38,14 +38,14 @@ Evaluate = Callable[[Shape, Array, Array], SurfaceMapping]
 
 def table(shape: Shape, number: Any = np.float64) -> Any:
     """The row of a shape, as the kernel reads it."""
-    return execution_modes.shape_rows([shape]).astype(rows.row_type(execution_modes.kind_of(shape), number))
+    return execution_modes.shape_rows([shape]).astype(scene_arrays.row_type(execution_modes.kind_of(shape), number))
 
 
 def interpreted(shape: Shape, points: Array, normals: Array, formula: Any = None) -> SurfaceMapping:
     """`mapping` of a shape, or another formula, interpreted."""
     formula = formula or execution_modes.kind_of(shape).mapping
     with np.errstate(all="ignore"):
-        u, v, to_u, to_v = formula(rows.read(table(shape, points.dtype), 0), vec(points), vec(normals))
+        u, v, to_u, to_v = formula(scene_arrays.read(table(shape, points.dtype), 0), vec(points), vec(normals))
     u, v = (np.broadcast_to(each, points.shape[:-1]) for each in (u, v))
     return SurfaceMapping(u, v, array(to_u, points), array(to_v, points))
 
@@ -58,7 +58,7 @@ def kernel() -> Any:
         for i in range(0, out.shape[1], width(out)):
             point = Vec(load(p[0], i), load(p[1], i), load(p[2], i))
             normal = Vec(load(n[0], i), load(n[1], i), load(n[2], i))
-            u, v, to_u, to_v = rows.mapping(rows.read(table, 0), point, normal)
+            u, v, to_u, to_v = scene_arrays.mapping(scene_arrays.read(table, 0), point, normal)
             save(u, out[0], i)
             save(v, out[1], i)
             save(splat(to_u.x, u), out[2], i)

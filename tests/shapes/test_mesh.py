@@ -13,7 +13,7 @@ import minirt
 from minirt.element import pattern
 from minirt.errors import ElementError, FieldError, FileError
 from minirt.fields import MeshFile
-from minirt.kernel.rows import read, row_type
+from minirt.kernel.scene_arrays import read, row_type
 from minirt.lanes import Vec
 from minirt.meshes import Triangles
 from minirt.rendering.packing.shape_arrays import primitives_of

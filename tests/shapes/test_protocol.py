@@ -12,7 +12,7 @@ import pytest
 
 from minirt.element import fields_of, pattern
 from minirt.fields import Colour, Lengths, Point
-from minirt.kernel.rows import row_type
+from minirt.kernel.scene_arrays import row_type
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import KINDS, Kind, Shape
 from tests.shapes.checks import U

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from minirt.kernel.bvh import build, collapse, nodes, queries, traversal
+from minirt.kernel import bvh_build, bvh_nodes, bvh_traversal
 from minirt.kernel.compiler import kernel_functions, packed_blocks, traversal_operations  # noqa: F401
 from minirt.kernel.compiler.inlining import inline_functions_of
 
 REGISTERED = (
-    nodes.packet_memory,
-    nodes.put,
-    nodes.integer_at,
-    nodes.put_integer,
-    nodes.tag,
-    nodes.reference_of,
-    nodes.bits,
-    nodes.least_lane,
-    queries.read_block,
-    queries.read_one,
+    bvh_nodes.packet_memory,
+    bvh_nodes.put,
+    bvh_nodes.integer_at,
+    bvh_nodes.put_integer,
+    bvh_nodes.tag,
+    bvh_nodes.reference_of,
+    bvh_nodes.bits,
+    bvh_nodes.least_lane,
+    bvh_traversal.read_block,
+    bvh_traversal.read_one,
 )
-ENTRY_POINTS = (queries.trace_rays, build.divide, collapse.weigh, collapse.collapse)
-for _module in (nodes, traversal, build, collapse, queries):
+ENTRY_POINTS = (bvh_traversal.trace_rays, bvh_build.divide, bvh_build.weigh, bvh_build.collapse)
+for _module in (bvh_nodes, bvh_build, bvh_traversal):
     inline_functions_of(_module, besides=REGISTERED + ENTRY_POINTS)

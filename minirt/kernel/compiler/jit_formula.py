@@ -12,7 +12,7 @@ from numba import njit
 from minirt.kernel.compiler import kernel_functions  # noqa: F401  (registers the formulas of all kinds)
 from minirt.kernel.compiler.inlining import inline_functions_of
 from minirt.kernel.compiler.options import FLAGS
-from minirt.kernel.rows import read
+from minirt.kernel.scene_arrays import read
 from minirt.lanes import Vec, load, save, where, width
 from minirt.shapes import ALL_KINDS
 

@@ -11,30 +11,11 @@ from numba.extending import register_jitable
 
 import minirt.lanes.compiled  # noqa: F401  (registers the operations of the formulas)
 from minirt import lanes
-from minirt.kernel import atomic_counter, contrast, frame, scene_arrays, shadow_rays, stored_light, trace
+from minirt.kernel import binning, frame, pixels, scene_arrays, shadow_rays, trace
 from minirt.kernel.compiler import frame_operations, kind_dispatch, packed_shapes, unrolled_loop  # noqa: F401
 from minirt.kernel.compiler.inlining import inline_functions_of
 from minirt.kernel.compiler.options import INLINED
-from minirt.kernel.culling import binning, light_buffer
-from minirt.kernel.shading import (
-    apertures,
-    environment,
-    fractal_noise,
-    fresnel,
-    lights,
-    media,
-    pattern_shares,
-    patterns,
-    ray_stack,
-    shade,
-    specular,
-    surfaces,
-    terminator,
-    texture_lookup,
-    texturing,
-    transmission,
-    whitted,
-)
+from minirt.kernel.shading import lights, patterns, shade, shadows, surfaces, texturing, whitted
 from minirt.lanes import mathematics
 from minirt.shapes import (
     ALL_KINDS,
@@ -50,16 +31,16 @@ from minirt.shapes import (
 )
 
 REGISTERED = (
-    ray_stack.ray_stack,
+    whitted.ray_stack,
     trace.for_each_kind,
     trace.closest_of_kind,
     shadow_rays.unoccluded_by_kind,
-    atomic_counter.fetch_add,
-    stored_light.store_block,
+    pixels.fetch_add,
+    pixels.store_block,
     frame.frame,
     binning.project_all,
     binning.fill_bins,
-    contrast.classify,
+    pixels.classify,
     scene_arrays.by_reference,
 )
 for _function in (lanes.cross, lanes.max_norm):
@@ -76,30 +57,18 @@ for _module in (
     shape,
     start,
     binning,
-    light_buffer,
     scene_arrays,
     trace,
     shadow_rays,
-    specular,
     lights,
-    apertures,
-    texture_lookup,
     texturing,
-    fresnel,
-    media,
-    fractal_noise,
-    pattern_shares,
     patterns,
     surfaces,
-    transmission,
-    terminator,
+    shadows,
     shade,
-    environment,
-    ray_stack,
     whitted,
-    stored_light,
+    pixels,
     frame,
-    contrast,
     *(sys.modules[kind.intersect.__module__] for kind in ALL_KINDS),
 ):
     inline_functions_of(_module, besides=REGISTERED)

@@ -9,47 +9,47 @@ from typing import Any
 
 from numba.extending import overload
 
-from minirt.kernel import rows, shadow_rays, trace
+from minirt.kernel import scene_arrays, shadow_rays, trace
 from minirt.kernel.compiler.options import INLINED
 from minirt.shapes import Kind
 
 # Parameters have no annotations: numba compares them with those of the implementation.
 
 
-@overload(rows.intersect, jit_options=INLINED, strict=False)
+@overload(scene_arrays.intersect, jit_options=INLINED, strict=False)
 def _intersect(shape, origin, direction):  # type: ignore[no-untyped-def]
-    return rows.kind_of_packed(shape.instance_class).intersect
+    return scene_arrays.kind_of_packed(shape.instance_class).intersect
 
 
-@overload(rows.occludes, jit_options=INLINED, strict=False)
+@overload(scene_arrays.occludes, jit_options=INLINED, strict=False)
 def _occludes(shape, origin, direction):  # type: ignore[no-untyped-def]
-    kind = rows.kind_of_packed(shape.instance_class)
+    kind = scene_arrays.kind_of_packed(shape.instance_class)
     return kind.occludes or kind.intersect
 
 
-@overload(rows.surface, jit_options=INLINED, strict=False)
+@overload(scene_arrays.surface, jit_options=INLINED, strict=False)
 def _surface(shape, point):  # type: ignore[no-untyped-def]
-    return rows.kind_of_packed(shape.instance_class).surface
+    return scene_arrays.kind_of_packed(shape.instance_class).surface
 
 
-@overload(rows.shading, jit_options=INLINED, strict=False)
+@overload(scene_arrays.shading, jit_options=INLINED, strict=False)
 def _shading(shape, point, normal):  # type: ignore[no-untyped-def]
-    return rows.kind_of_packed(shape.instance_class).shading
+    return scene_arrays.kind_of_packed(shape.instance_class).shading
 
 
-@overload(rows.smooth_point, jit_options=INLINED, strict=False)
+@overload(scene_arrays.smooth_point, jit_options=INLINED, strict=False)
 def _smooth_point(shape, point, normal):  # type: ignore[no-untyped-def]
-    return rows.kind_of_packed(shape.instance_class).smooth_point
+    return scene_arrays.kind_of_packed(shape.instance_class).smooth_point
 
 
-@overload(rows.may_meet, jit_options=INLINED, strict=False)
+@overload(scene_arrays.may_meet, jit_options=INLINED, strict=False)
 def _may_meet(shape, apex, start, direction, active):  # type: ignore[no-untyped-def]
-    return rows.kind_of_packed(shape.instance_class).may_meet
+    return scene_arrays.kind_of_packed(shape.instance_class).may_meet
 
 
-@overload(rows.mapping, jit_options=INLINED, strict=False)
+@overload(scene_arrays.mapping, jit_options=INLINED, strict=False)
 def _mapping(shape, point, normal):  # type: ignore[no-untyped-def]
-    return rows.kind_of_packed(shape.instance_class).mapping
+    return scene_arrays.kind_of_packed(shape.instance_class).mapping
 
 
 @overload(trace.closest_of_kind, jit_options=INLINED, strict=False)
@@ -64,4 +64,4 @@ def _unoccluded_by_kind(group, visible, arguments):  # type: ignore[no-untyped-d
 
 def kind_of_group(group: Any) -> Kind:
     """Return the kind of the shapes of a group, by its type."""
-    return rows.kind_of(group.content[0].dtype.fields)
+    return scene_arrays.kind_of(group.content[0].dtype.fields)

@@ -8,8 +8,7 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 
-from minirt.kernel import rows
-from minirt.kernel.bvh import queries
+from minirt.kernel import bvh_traversal, scene_arrays
 from minirt.kernel.compiler.arrays_by_reference import register_by_reference
 from minirt.kernel.compiler.packed_shapes import address_of_row, packed_of
 from minirt.lanes.compiled.types import Lanes, VecType
@@ -23,7 +22,7 @@ def packed_in_block(blocks: Any, number: Any) -> Any:
     """Return the type of a packed shape in a block, with components of type `number`: the NamedTuple of its kind."""
     fields = blocks.dtype.fields.values()
     numbers = [VecType(number) if len(each.type.shape) == 2 else number for each in fields]
-    return types.NamedTuple(numbers, rows.kind_of(blocks.dtype.fields).packed)
+    return types.NamedTuple(numbers, scene_arrays.kind_of(blocks.dtype.fields).packed)
 
 
 def whole_block(blocks: Any, i: Any) -> Any:
@@ -48,5 +47,5 @@ def _read_one(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     return packed_of(context, builder, sig.return_type, numbers)
 
 
-register_by_reference(queries.read_block, whole_block, _read_block)
-register_by_reference(queries.read_one, one_of_block, _read_one)
+register_by_reference(bvh_traversal.read_block, whole_block, _read_block)
+register_by_reference(bvh_traversal.read_one, one_of_block, _read_one)

@@ -12,7 +12,7 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 
-from minirt.kernel import rows
+from minirt.kernel import scene_arrays
 from minirt.kernel.compiler.arrays_by_reference import register_by_reference
 from minirt.lanes.compiled.types import VecType, common, register, vec_of
 
@@ -39,10 +39,10 @@ def packed_type(array: Any, i: Any) -> Any:
     fields = [
         VecType(number) if isinstance(each.type, types.NestedArray) else number for each in array.dtype.fields.values()
     ]
-    return types.NamedTuple(fields, rows.kind_of(array.dtype.fields).packed)
+    return types.NamedTuple(fields, scene_arrays.kind_of(array.dtype.fields).packed)
 
 
-@register(rows.read, packed_type, [(types.Array, types.Integer)])
+@register(scene_arrays.read, packed_type, [(types.Array, types.Integer)])
 def _read(context: Any, builder: ir.IRBuilder, sig: Any, args: Any) -> Any:
     address = address_of_row(context, builder, sig, args)
     numbers = (builder.load(builder.gep(address, [ir.Constant(ir.IntType(64), at)])) for at in count())
@@ -58,4 +58,4 @@ def packed_of(context: Any, builder: ir.IRBuilder, kind: Any, numbers: Iterator[
     return context.make_tuple(builder, kind, parts)
 
 
-register_by_reference(rows.read, packed_type, _read)
+register_by_reference(scene_arrays.read, packed_type, _read)

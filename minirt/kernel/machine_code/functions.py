@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from minirt.kernel.bvh import build, queries
-from minirt.kernel.bvh import collapse as collapsing
-from minirt.kernel.contrast import classify as interpreted_classify
-from minirt.kernel.culling import binning
+from minirt.kernel import binning, bvh_build, bvh_traversal
+from minirt.kernel import bvh_build as collapsing
 from minirt.kernel.frame import frame as interpreted_frame
 from minirt.kernel.machine_code.library import LIBRARY, Call
+from minirt.kernel.pixels import classify as interpreted_classify
 
 
 class CompiledFunction:
@@ -29,8 +28,8 @@ class CompiledFunction:
 
 
 project_all, fill_bins = CompiledFunction(binning.project_all), CompiledFunction(binning.fill_bins)
-divide, weigh = CompiledFunction(build.divide), CompiledFunction(collapsing.weigh)
+divide, weigh = CompiledFunction(bvh_build.divide), CompiledFunction(collapsing.weigh)
 collapse = CompiledFunction(collapsing.collapse)
-trace_rays = CompiledFunction(queries.trace_rays)
+trace_rays = CompiledFunction(bvh_traversal.trace_rays)
 frame = CompiledFunction(interpreted_frame)
 classify = CompiledFunction(interpreted_classify)

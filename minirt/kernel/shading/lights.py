@@ -1,12 +1,29 @@
-"""Light sources: point, spot and parallel lights, and their fading with distance."""
+"""Light sources: point, spot and parallel lights, those with a size, and their specular highlights."""
 
 from __future__ import annotations
 
 from math import inf
 from typing import Any
 
-from minirt.kernel.scene_arrays import has_rows
-from minirt.lanes import Number, Vec, dot, inverse_root, maximum, minimum, splat, where
+from minirt.kernel.scene_arrays import SceneArrays, has_rows
+from minirt.lanes import (
+    Mask,
+    Number,
+    Vec,
+    any,
+    copysign,
+    dot,
+    inverse_root,
+    load,
+    maximum,
+    minimum,
+    save,
+    splat,
+    unit,
+    where,
+    width,
+)
+from minirt.lanes.mathematics import power
 
 
 def incident_light(spots: Any, light: int, position: Vec, point: Vec) -> tuple[Vec, Number, Number]:
@@ -41,3 +58,87 @@ def clamp_to_unit(x: Number) -> Number:
 def smoothstep(x: Number) -> Number:
     """Hermite's cubic: from 0 at 0 to 1 at 1, with slope 0 at both ends."""
     return x * x * (3.0 - 2.0 * x)
+
+
+# In scenes with a lens or with light sources that have a size, each ray of a packet has an eye and points of lights of
+# its own: a row of `rays` of `minirt.kernel.frame` has eight numbers for each ray, its direction, the offset of its eye
+# in the scene, and x and y of a point in the unit disc, which serves all lights. Each light turns the disc about its
+# centre by an angle of its own.
+#
+# A light of radius r at c is the disc about c that faces the point p that it lights. Its sample is c + r o. A shape
+# that lies between p and the sample, moved by -r o or less, lies between p and c: culling from c, by directions from p
+# to c, holds for all samples where shapes are grown by r (see `minirt.rendering.culling.visibility`).
+NUMBERS = 8  # for each ray of a packet, in a row of `rays`
+EYE, DISC = 3, 6  # the first of those of the eye and of the disc
+KEPT = 4  # column of the last row of `memory` from which the points in the disc are
+
+
+def sampled_eye(scene: SceneArrays, rays: Any) -> Vec:
+    """Return the eye of each ray of a packet: a point of the lens."""
+    like, count = load(rays, 0), width(rays)
+    eye = Vec(splat(scene.camera[0], like), splat(scene.camera[1], like), splat(scene.camera[2], like))
+    if has_rows(scene.lens):
+        first = EYE * count
+        eye = eye + Vec(load(rays, first), load(rays, first + count), load(rays, first + 2 * count))
+    return eye
+
+
+def remember_sample(scene: SceneArrays, memory: Any, rays: Any) -> None:
+    """Keep the points in the disc of a packet's rays in `memory`, where the shading of all its hits finds them."""
+    if has_rows(scene.soft):
+        count, row = width(rays), memory[memory.shape[0] - 1]
+        save(load(rays, DISC * count), row, KEPT)
+        save(load(rays, (DISC + 1) * count), row, KEPT + count)
+
+
+def sampled_position(
+    soft: Any, memory: Any, light: int, position: Vec, to_light: Vec, distance: Number
+) -> tuple[Vec, Vec, Number]:
+    """Return the sampled position of a light source for each ray, the direction towards it, and its distance.
+
+    Given are those of its centre. `soft` (m, 4) has for each light: its radius; the tangent of half its angular
+    diameter, for parallel light; and cosine and sine of the angle by which it turns the disc.
+    """
+    position = Vec(splat(position.x, distance), splat(position.y, distance), splat(position.z, distance))
+    if has_rows(soft):
+        row = memory[memory.shape[0] - 1]
+        x, y = load(row, KEPT), load(row, KEPT + width(distance))
+        across, down = perpendicular(to_light)
+        cosine, sine = soft[light, 2], soft[light, 3]
+        offset = (cosine * x - sine * y) * across + (sine * x + cosine * y) * down
+        towards = to_light + (soft[light, 0] / distance + soft[light, 1]) * offset
+        squared = dot(towards, towards)
+        per_length = inverse_root(squared)
+        position = position + soft[light, 0] * offset
+        to_light = towards * per_length
+        distance = distance * (squared * per_length)
+    return position, to_light, distance
+
+
+def perpendicular(axis: Vec) -> tuple[Vec, Vec]:
+    """Return two unit vectors that are perpendicular to a unit vector and to each other (Duff et al., Building an
+    orthonormal basis, revisited, 2017)."""
+    sign = copysign(1.0, axis.z)
+    a = -1.0 / (sign + axis.z)
+    b = axis.x * axis.y * a
+    return (
+        Vec(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x),
+        Vec(b, sign + axis.y * axis.y * a, -axis.y),
+    )
+
+
+def specular(material: Vec, normal: Vec, to_light: Vec, direction: Vec, lit: Mask) -> Number:
+    """Return the share of a light source's intensity that is reflected as a highlight, for the rays that are `lit`.
+
+    `direction` is that of the viewing ray. `material` is a row of `SceneArrays.specular`: coefficient k, exponent n and
+    1 for Blinn's form. Phong 1975: k (r.v)^n with the mirrored direction r of the light and the direction v of the
+    viewer; Blinn 1977: k (n.h)^n with the vector h halfway between light and viewer.
+    """
+    phong = 2.0 * dot(normal, to_light) * dot(normal, -direction) + dot(to_light, direction)
+    blinn = dot(normal, unit(to_light - direction))
+    base = minimum(where(material.z > 0.5, blinn, phong), 1.0)
+    shining = lit & (base > 0.0) & (material.x > 0.0)
+    share = splat(0.0, base)
+    if any(shining):
+        share = where(shining, material.x * power(where(shining, base, 1.0), material.y), 0.0)
+    return share

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from minirt.kernel.bvh import queries
+from minirt.kernel import bvh_traversal
 from minirt.kernel.scene_arrays import SceneArrays, has_rows
-from minirt.kernel.shading.apertures import sampled_position
-from minirt.kernel.shading.lights import incident_light
-from minirt.kernel.shading.ray_stack import MIN_WEIGHT
-from minirt.kernel.shading.specular import specular
-from minirt.kernel.shading.surfaces import Surface, clearance, tint
-from minirt.kernel.shading.terminator import bump_fading, has_bumps, smooth_points
-from minirt.kernel.shading.transmission import light_through_glass
+from minirt.kernel.shading.lights import incident_light, sampled_position, specular
+from minirt.kernel.shading.shadows import bump_fading, has_bumps, light_through_glass, smooth_points
+from minirt.kernel.shading.surfaces import MIN_WEIGHT, Surface, clearance, tint
 from minirt.kernel.shadow_rays import unoccluded
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Mask, Number, Vec, any, dot, max_norm, maximum, rarely, splat, unit_roundoff, where
@@ -117,7 +113,7 @@ def trace_shadow_rays(
         return unoccluded(scene, memory, light, position, towards, start, to_light, reach, lit, glass)
     if scene.transparent is not None and has_rows(scene.transparent) and not glass:
         return lit  # the BVH finds out later, for all shapes at once
-    return queries.unoccluded(scene.bvh, start, to_light, reach, lit)
+    return bvh_traversal.unoccluded(scene.bvh, start, to_light, reach, lit)
 
 
 def is_spread(scene: SceneArrays, light: int) -> bool:

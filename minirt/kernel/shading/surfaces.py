@@ -1,16 +1,107 @@
-"""Surface at each hit: point, normals, and material with textures and maps applied."""
+"""Surface at each hit: point, normals, material with maps applied, Fresnel's equations and media.
+
+`SceneArrays.media` (n, 6) has for each shape the absorption of red, green and blue inside it (Beer-Lambert law), in
+halvings of the light for each scene unit, and the shares of red, green and blue that its surface lets through: less
+than 1 for sheets, which have no inside. The absorption where shapes overlap is the sum of theirs.
+"""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from minirt.kernel.rows import read, shading, surface
-from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows
-from minirt.kernel.shading.media import filter_of
+from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, read, shading, surface
 from minirt.kernel.shading.patterns import apply_patterns, pixel_footprint
 from minirt.kernel.shading.texturing import apply_maps
 from minirt.kernel.trace import ROUNDING, for_each_kind
-from minirt.lanes import Mask, Number, Vec, any, first, lane, max_norm, rarely, splat, unit_roundoff, where
+from minirt.lanes import (
+    Mask,
+    Number,
+    Vec,
+    any,
+    first,
+    lane,
+    max_norm,
+    maximum,
+    rarely,
+    splat,
+    sqrt,
+    unit_roundoff,
+    where,
+)
+from minirt.lanes.mathematics import LOWEST, exp2
+
+MIN_WEIGHT = 2.0**-10  # rays that would add less than this share of their light to a pixel are not traced
+VANISHING = 2.0**-40  # what is left of an absorption after a subtraction, relative to it, that rounding may have left
+TINY = 2.0**-500  # keeps the quotients finite where a ray grazes a surface between two equal indices
+
+
+def reflectance(cosine: Number, ratio: Number) -> Number:
+    """Return the share of the light that is reflected, the mean over both polarisations (Fresnel 1823).
+
+    `cosine` >= 0 is that of the angle between the ray and the normal. `ratio` is the index of refraction before the
+    surface by that behind it. The rest of the light is refracted; it is none beyond the angle of total reflection.
+    """
+    squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine)
+    behind = sqrt(maximum(squared, 0.0))  # cosine of the angle between the refracted ray and the normal
+    across = (ratio * cosine - behind) / maximum(ratio * cosine + behind, TINY)
+    along = (cosine - ratio * behind) / maximum(cosine + ratio * behind, TINY)
+    return where(squared < 0.0, 1.0, 0.5 * (across * across + along * along))
+
+
+def shares_at_angle(reflective: Vec, fresnel: Number, cosine: Number, against: Number) -> Vec:
+    """Return a row of `SceneArrays.reflective` with the shares of reflection and refraction for the angle of a ray.
+
+    Glass divides both shares together by Fresnel's equations; the share of a mirror that is no glass grows as that of a
+    varnish. `fresnel`, from 0 to 1, mixes these shares with the constant ones. A ray that leaves glass has
+    `against` < 0; a mirror is alike on both sides.
+    """
+    constant, refracted, ior = reflective.x, reflective.y, reflective.z
+    is_glass = refracted > 0.0
+    share = reflectance(cosine, where(is_glass & (against < 0.0), ior, 1.0 / ior))
+    reflected = constant + fresnel * (share * where(is_glass, constant + refracted, 1.0) - constant)
+    return Vec(reflected, where(is_glass, constant + refracted - reflected, 0.0), where(is_glass, ior, 1.0))
+
+
+def absorbed(light: Vec, medium: Vec, distance: Number) -> Vec:
+    """Return what is left of light after a distance, which may be infinite, in a medium."""
+    if any(maximum(maximum(medium.x, medium.y), medium.z) > 0.0):
+        light = Vec(
+            light.x * transmittance(medium.x, distance),
+            light.y * transmittance(medium.y, distance),
+            light.z * transmittance(medium.z, distance),
+        )
+    return light
+
+
+def transmittance(absorption: Number, distance: Number) -> Number:
+    """Return the share of light that is left: 2^-(absorption * distance)."""
+    halvings = where(absorption > 0.0, absorption * distance, 0.0)
+    return exp2(maximum(-halvings, LOWEST))
+
+
+def medium_behind(medium: Vec, rates: Vec, leaves: Mask) -> Vec:
+    """Return the medium behind the surface of a shape with the absorption `rates`, which a ray enters or leaves."""
+    return Vec(
+        rate_behind(medium.x, rates.x, leaves),
+        rate_behind(medium.y, rates.y, leaves),
+        rate_behind(medium.z, rates.z, leaves),
+    )
+
+
+def rate_behind(rate: Number, change: Number, leaves: Mask) -> Number:
+    """Return the absorption of one colour behind a surface, without what rounding leaves."""
+    rest = rate - change
+    return where(leaves, where(rest > VANISHING * change, rest, 0.0), rate + change)
+
+
+def filter_of(media: Any, index: int, like: Number) -> Vec:
+    """Return the shares of light that the surface of a shape lets through, the same for all rays."""
+    return Vec(splat(media[index, 3], like), splat(media[index, 4], like), splat(media[index, 5], like))
+
+
+def brightest(light: Vec) -> Number:
+    """Return the largest channel."""
+    return maximum(maximum(light.x, light.y), light.z)
 
 
 class Surface(NamedTuple):
@@ -26,7 +117,7 @@ class Surface(NamedTuple):
     glow: Number  # the shape's row of `SceneArrays.glow`
     fresnel: Number  # the shape's row of `SceneArrays.fresnel`
     fades: Vec  # the shape's row of `SceneArrays.fades`, and 0
-    absorption: Vec  # inside the shape, see `minirt.kernel.shading.media`
+    absorption: Vec  # inside the shape, see `minirt.kernel.shading.surfaces`
     filter: Vec  # shares of the light that the surface lets through, likewise
 
 

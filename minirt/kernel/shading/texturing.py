@@ -1,14 +1,86 @@
-"""Textures, checkerboards, bump maps and normal maps of surfaces, by texture coordinates u and v."""
+"""Textures, checkerboards, bump maps and normal maps of surfaces, and the background with its environment map.
+
+Textures are looked up bilinearly, with repeat addressing, one sample for each SIMD lane.
+"""
 
 from __future__ import annotations
 
+from math import pi
 from typing import Any, NamedTuple
 
-from minirt.kernel.rows import mapping, read
-from minirt.kernel.scene_arrays import Group, has_rows
-from minirt.kernel.shading.texture_lookup import height_gradient, texture_lookup
+from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, mapping, read
 from minirt.kernel.trace import for_each_kind
-from minirt.lanes import Number, Vec, copysign, cross, dot, fabs, floor, inverse_root, splat, unit, where
+from minirt.lanes import (
+    Mask,
+    Number,
+    Vec,
+    any,
+    copysign,
+    cross,
+    dot,
+    fabs,
+    floor,
+    gather,
+    inverse_root,
+    maximum,
+    minimum,
+    splat,
+    sqrt,
+    unit,
+    where,
+)
+from minirt.lanes.mathematics import arctan2
+
+
+def texture_lookup(texels: Any, pictures: Any, which: int, u: Number, v: Number) -> Vec:
+    """Look up the colour of picture number `which` at u, v: from 0 to 1 from left to right and from bottom to top.
+
+    `texels` holds the pixels of all pictures; `pictures` has for each its first texel, width, height and channels. The
+    four pixels around a place are interpolated linearly, by its distances from their centres.
+    """
+    red = channel_lookup(texels, pictures, which, 0, u, v)
+    green = channel_lookup(texels, pictures, which, 1, u, v)
+    blue = channel_lookup(texels, pictures, which, 2, u, v)
+    return Vec(red, green, blue)
+
+
+def channel_lookup(texels: Any, pictures: Any, which: int, channel: int, u: Number, v: Number) -> Number:
+    """Look up one channel of a picture at u, v, interpolated like `texture_lookup`."""
+    base, columns, rows, step = (
+        pictures[which, 0] + channel,
+        pictures[which, 1],
+        pictures[which, 2],
+        pictures[which, 3],
+    )
+    x = u * columns - 0.5
+    y = (1.0 - v) * rows - 0.5
+    left, top = floor(x), floor(y)
+    across, down = minimum(x - left, 1.0), minimum(y - top, 1.0)  # no NaN, as in `wrap`
+    x0, x1 = wrap(left, columns), wrap(left + 1.0, columns)
+    y0, y1 = wrap(top, rows) * columns, wrap(top + 1.0, rows) * columns
+    upper = lerp(gather(texels, base + step * (y0 + x0)), gather(texels, base + step * (y0 + x1)), across)
+    lower = lerp(gather(texels, base + step * (y1 + x0)), gather(texels, base + step * (y1 + x1)), across)
+    return lerp(upper, lower, down)
+
+
+def wrap(index: Number, size: float) -> Number:
+    """Wrap the index of a pixel, a whole number, to [0, size); 0 for NaN, which rays that hit nothing have."""
+    return minimum(maximum(index - size * floor(index / size), 0.0), size - 1.0)
+
+
+def lerp(a: Number, b: Number, share: Number) -> Number:
+    """Linear interpolation from a at share 0 to b at share 1."""
+    return a + share * (b - a)
+
+
+def height_gradient(texels: Any, pictures: Any, which: int, u: Number, v: Number) -> tuple[Number, Number]:
+    """Gradient of a height map, a picture's first channel, along u and v: central differences over a pixel."""
+    columns, rows = pictures[which, 1], pictures[which, 2]
+    right = channel_lookup(texels, pictures, which, 0, u + 0.5 / columns, v)
+    left = channel_lookup(texels, pictures, which, 0, u - 0.5 / columns, v)
+    above = channel_lookup(texels, pictures, which, 0, u, v + 0.5 / rows)
+    below = channel_lookup(texels, pictures, which, 0, u, v - 0.5 / rows)
+    return (right - left) * columns, (above - below) * rows
 
 
 class SurfaceMaps(NamedTuple):
@@ -166,3 +238,45 @@ def inverse_length(v: Vec) -> Number:
     squared = dot(v, v)
     is_zero = squared == 0.0
     return where(is_zero, 0.0, inverse_root(where(is_zero, 1.0, squared)))
+
+
+class Environment(NamedTuple):
+    """An equirectangular environment map: +z is in its middle, +y along its upper edge, -x to the right of +z."""
+
+    texels: Any  # its pixels, as in `minirt.kernel.shading.texturing.SurfaceMaps`
+    pictures: Any  # (1, 4) its layout, likewise
+
+
+def has_environment(scene: SceneArrays) -> bool:
+    """Whether a scene has an environment map."""
+    return scene.environment is not None and has_rows(scene.environment.pictures)
+
+
+def background_light(scene: SceneArrays, hit: Mask, radiance: Vec, direction: Vec) -> Vec:
+    """Return `radiance` for rays that hit a shape, and the background's radiance for all other rays."""
+    if scene.background is not None:
+        radiance = where(hit, radiance, Vec(scene.background[0], scene.background[1], scene.background[2]))
+    if scene.environment is not None and has_rows(scene.environment.pictures) and any(~hit):
+        radiance = where(hit, radiance, environment_lookup(scene.environment, direction))
+    return radiance
+
+
+def weighted_background(scene: SceneArrays, weight: Number, direction: Vec) -> Vec:
+    """Return the background's radiance times the weight of each ray; black for rays of weight 0."""
+    zero = splat(0.0, weight)
+    black = Vec(zero, zero, zero)
+    return where(weight > 0.0, weight * background_light(scene, weight < 0.0, black, direction), black)
+
+
+def environment_lookup(environment: Environment, direction: Vec) -> Vec:
+    """Look up the radiance of an environment map in a direction."""
+    u, v = equirectangular(direction)
+    edge = 0.5 / environment.pictures[0, 2]  # no blending across the poles: nothing is above the upper row of pixels
+    return texture_lookup(environment.texels, environment.pictures, 0, u, minimum(maximum(v, edge), 1.0 - edge))
+
+
+def equirectangular(direction: Vec) -> tuple[Number, Number]:
+    """Equirectangular projection of a direction: u from 0 at the left to 1 at the right, v from 0 below to 1 above."""
+    u = 0.5 + arctan2(-direction.x, direction.z) * (0.5 / pi)
+    v = 0.5 + arctan2(direction.y, sqrt(direction.x * direction.x + direction.z * direction.z)) * (1.0 / pi)
+    return u, v

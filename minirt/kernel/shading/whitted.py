@@ -3,24 +3,109 @@
 
 A surface with reflectance k and transmittance g sends on a reflected and a refracted ray, and contributes 1 - k - g of
 its own shading. `SceneArrays.reflective` (n, 3) has k, g and the index of refraction of each shape. With Fresnel's
-equations k and g depend on the angle; secondary rays may fade with their length, and tinted glass absorbs them.
+equations k and g depend on the angle; secondary rays may fade with their length, and tinted glass absorbs them. Packets
+of rays that wait to be traced are on a stack.
 """
 
 from __future__ import annotations
 
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
 
-from minirt.kernel.bvh import queries
+import numpy as np
+
+from minirt.kernel import bvh_traversal
+from minirt.kernel.bvh_nodes import put, put_vec
 from minirt.kernel.scene_arrays import SceneArrays, has_rows
-from minirt.kernel.shading.environment import background_light, weighted_background
-from minirt.kernel.shading.fresnel import shares_at_angle
-from minirt.kernel.shading.media import absorbed, brightest, medium_behind
-from minirt.kernel.shading.ray_stack import MIN_WEIGHT, Ray, load_rays, push_rays, ray_stack
 from minirt.kernel.shading.shade import direct_light, own_share
-from minirt.kernel.shading.surfaces import Surface, clearance, surfaces, tint
+from minirt.kernel.shading.surfaces import (
+    MIN_WEIGHT,
+    Surface,
+    absorbed,
+    brightest,
+    clearance,
+    medium_behind,
+    shares_at_angle,
+    surfaces,
+    tint,
+)
+from minirt.kernel.shading.texturing import background_light, weighted_background
 from minirt.kernel.trace import closest_hit
-from minirt.lanes import Mask, Number, Vec, any, dot, maximum, rarely, splat, sqrt, unit, where
+from minirt.lanes import (
+    BYTES,
+    Mask,
+    Number,
+    Vec,
+    any,
+    dot,
+    lane,
+    load,
+    maximum,
+    rarely,
+    splat,
+    sqrt,
+    unit,
+    where,
+    width,
+)
+
+MAX_DEPTH = 32  # the largest depth that a scene may ask for
+# Where a packet of waiting rays has its parts, in rows of lanes; scenes without a feature leave its rows unused.
+DIRECTION, WEIGHT, LEVEL, FADE, COLOUR, MEDIUM = 3, 6, 7, 8, 9, 12
+RAY_ROWS = 15  # rows of lanes of a packet of waiting rays
+STACK_SIZE = (MAX_DEPTH + 2) * RAY_ROWS * BYTES // 8
+
+
+class Ray(NamedTuple):
+    """A packet of rays."""
+
+    origin: Vec
+    direction: Vec
+    weight: Number  # of its light in the pixel
+    fade: Number  # one over the distance at which the light is gone, or 0
+    colour: Vec  # shares of red, green and blue that tinted glass has left, in scenes that have any
+    medium: Vec  # absorption of red, green and blue along the ray, likewise
+
+
+def ray_stack() -> Any:
+    """Allocate the stack of rays still to trace; compiled, it lies on the stack of the thread."""
+    return np.zeros(STACK_SIZE)
+
+
+def push_rays(scene: SceneArrays, stack: Any, waiting: int, ray: Ray, level: int) -> int:
+    """Push a packet of rays, one level deeper, onto the stack, and return the new number of packets on it."""
+    count = width(ray.weight)
+    at = waiting * RAY_ROWS * count
+    put_vec(stack, at, ray.origin)
+    put_vec(stack, at + DIRECTION * count, ray.direction)
+    put(stack, at + WEIGHT * count, ray.weight)
+    put(stack, at + LEVEL * count, splat(level + 1.0, ray.weight))
+    if scene.fades is not None:
+        put(stack, at + FADE * count, ray.fade)
+    if scene.media is not None:
+        put_vec(stack, at + COLOUR * count, ray.colour)
+        put_vec(stack, at + MEDIUM * count, ray.medium)
+    return waiting + 1
+
+
+def load_rays(scene: SceneArrays, stack: Any, number: int, zero: Number) -> tuple[Ray, int]:
+    """Load a packet of rays from the stack, and its level."""
+    count = width(zero)
+    at = number * RAY_ROWS * count
+    fade = zero
+    colour = medium = Vec(zero, zero, zero)
+    if scene.fades is not None:
+        fade = load(stack, at + FADE * count)
+    if scene.media is not None:
+        colour, medium = load_vec(stack, at + COLOUR * count, count), load_vec(stack, at + MEDIUM * count, count)
+    origin, direction = load_vec(stack, at, count), load_vec(stack, at + DIRECTION * count, count)
+    level = int(lane(load(stack, at + LEVEL * count), 0))
+    return Ray(origin, direction, load(stack, at + WEIGHT * count), fade, colour, medium), level
+
+
+def load_vec(stack: Any, at: int, count: int) -> Vec:
+    """Load vectors, of which there are `count`, from index `at` of the stack."""
+    return Vec(load(stack, at), load(stack, at + count), load(stack, at + 2 * count))
 
 
 def incoming_radiance(scene: SceneArrays, memory: Any, tile: int, origin: Vec, direction: Vec) -> Vec:
@@ -140,7 +225,7 @@ def whitted(
             break
         waiting -= 1
         ray, level = load_rays(scene, stack, waiting, zero)
-        t, owner, extent = queries.closest_hit(scene.bvh, ray.origin, ray.direction, ray.weight > 0.0)
+        t, owner, extent = bvh_traversal.closest_hit(scene.bvh, ray.origin, ray.direction, ray.weight > 0.0)
     return radiance
 
 

@@ -11,7 +11,7 @@ from itertools import combinations
 
 import numpy as np
 
-from minirt.kernel.culling.binning import MARGIN
+from minirt.kernel.binning import MARGIN
 
 DIRECTIONS = 32  # in which extreme points are looked for
 LEAST = 1e-99  # height, so that no square of a reciprocal overflows

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from minirt.kernel.culling.binning import Grid
+from minirt.kernel.binning import Grid
 from minirt.rendering.culling.dual_hull import within_hull
 from minirt.rendering.culling.hidden_planes import COINCIDENT, MOST_WORK, nearest_runs
 from minirt.rendering.culling.planes import CellRuns, is_crowd, rounding

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.kernel.culling.binning import MARGIN, Grid
+from minirt.kernel.binning import MARGIN, Grid
 from minirt.rendering.culling.planes import CellRuns, cell_runs
 
 SMALL_BLOCK = 2**14  # planes times cells of a block that is not divided any more

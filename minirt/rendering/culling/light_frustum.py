@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.kernel.culling.binning import Grid
-from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR
+from minirt.kernel.binning import Grid
+from minirt.kernel.shadow_rays import FRUSTUM_FACTOR
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 
 LEAST_SHAPES = 1000  # in a cluster: with fewer a cube takes less time

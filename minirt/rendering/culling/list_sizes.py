@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from minirt.helpers import system
-from minirt.kernel.culling.binning import Grid
+from minirt.kernel.binning import Grid
 from minirt.rendering.culling.planes import CellRuns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.kernel.culling.binning import MARGIN, Grid
+from minirt.kernel.binning import MARGIN, Grid
 from minirt.rendering.packing.lights import light_position, radius_of, tangent_of
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Lamp, ParallelLight

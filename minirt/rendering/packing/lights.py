@@ -111,7 +111,7 @@ def tangent_of(light: Lamp) -> float:
 
 
 def sizes(lights: list[Lamp]) -> np.ndarray:
-    """A row for each of m lights, (m, 4): see `minirt.kernel.shading.apertures`."""
+    """A row for each of m lights, (m, 4): see `minirt.kernel.shading.lights`."""
     rows = [(radius_of(each), tangent_of(each), cos(TURN * i), sin(TURN * i)) for i, each in enumerate(lights)]
     return np.array(rows, np.float64).reshape(len(lights), 4)
 

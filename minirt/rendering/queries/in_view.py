@@ -10,7 +10,7 @@ import numpy as np
 
 from minirt.fields import Triple, spelled
 from minirt.kernel.frame import ray_direction
-from minirt.kernel.rows import kind_of
+from minirt.kernel.scene_arrays import kind_of
 from minirt.lanes import Vec, unit
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.shape_arrays import ShapeArrays

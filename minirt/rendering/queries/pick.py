@@ -10,7 +10,7 @@ import numpy as np
 from minirt.fields import Triple
 from minirt.kernel import interpreted
 from minirt.kernel.frame import ray_direction, tile_count
-from minirt.kernel.stored_light import TILE
+from minirt.kernel.pixels import TILE
 from minirt.kernel.trace import COINCIDENT, closest_hit
 from minirt.lanes import Vec, lane, splat, unit
 from minirt.rendering.packing.camera import camera_numbers, hit_distances, pixel_rays

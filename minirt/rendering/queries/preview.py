@@ -11,9 +11,9 @@ import numpy as np
 
 from minirt.kernel import interpreted
 from minirt.kernel.frame import ray_direction
+from minirt.kernel.pixels import to_byte_range
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.kernel.shading.whitted import incoming_radiance
-from minirt.kernel.stored_light import to_byte_range
 from minirt.lanes import Vec, unit
 from minirt.rendering.frame import thread_memory
 from minirt.rendering.packing.camera import Crop

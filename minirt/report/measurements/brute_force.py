@@ -9,7 +9,7 @@ from math import inf
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.kernel.bvh.nodes import NODE, REFERENCES, Tree
+from minirt.kernel.bvh_nodes import NODE, REFERENCES, Tree
 from minirt.kernel.frame import tile_count
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.packing.camera import Crop

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from minirt.kernel.frame import ray_direction
-from minirt.kernel.rows import kind_of_packed
+from minirt.kernel.scene_arrays import kind_of_packed
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec, dot, unit
 from minirt.rendering.notes import shape_name

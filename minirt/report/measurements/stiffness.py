@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.kernel.rows import kind_of
+from minirt.kernel.scene_arrays import kind_of
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec
 from minirt.rendering.notes import shape_name

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.kernel.bvh import collapse, nodes, queries, traversal
-from minirt.kernel.bvh.nodes import GROUPS, LEVELS, MARGIN, MEMORY, NODE, STACK, STACK_LEVEL, WIDTH, Tree, reference_of
+from minirt.kernel import bvh_build, bvh_nodes, bvh_traversal
+from minirt.kernel.bvh_nodes import GROUPS, LEVELS, MARGIN, MEMORY, NODE, STACK, STACK_LEVEL, WIDTH, Tree, reference_of
 from minirt.kernel.machine_code import functions
 from minirt.lanes import Vec
 from minirt.rendering.packing.bvh import wide_nodes
@@ -122,11 +122,11 @@ def test_leaves_are_nearly_full() -> None:
 
 def leaves_along(scene: Tree, origin: Any, direction: Any, limit: float = np.inf) -> list[int]:
     """Return the leaves that a ray visits, in order, if it hits nothing."""
-    memory = nodes.packet_memory()
+    memory = bvh_nodes.packet_memory()
     visited_leaves: list[int] = []
-    nodes.store_rays(memory, *(Vec(*(np.full(WIDTH, x) for x in v)) for v in (origin, direction)))
-    memory[nodes.HIT : nodes.HIT + WIDTH] = limit
-    traversal.traverse(lambda group, block, tree, memory, ray: visited_leaves.append(block), scene, memory, 1 << 5)
+    bvh_nodes.store_rays(memory, *(Vec(*(np.full(WIDTH, x) for x in v)) for v in (origin, direction)))
+    memory[bvh_nodes.HIT : bvh_nodes.HIT + WIDTH] = limit
+    bvh_traversal.traverse(lambda group, block, tree, memory, ray: visited_leaves.append(block), scene, memory, 1 << 5)
     return visited_leaves
 
 
@@ -143,17 +143,17 @@ def test_leaves_are_visited_nearest_first_up_to_the_limit() -> None:
 @pytest.mark.parametrize("distance", [1.0, 7.0])
 def test_leaves_behind_a_hit_are_not_visited(distance: float) -> None:
     scene = build_tree([sphere(3 * i + 0.5, 0, 0, 1) for i in range(40) for _ in range(WIDTH)])
-    memory = nodes.packet_memory()
+    memory = bvh_nodes.packet_memory()
     rays = [np.linspace(-1, 50, WIDTH), np.full(WIDTH, 0.1), np.full(WIDTH, 0.1)]
-    nodes.store_rays(memory, Vec(*rays), Vec(np.ones(WIDTH), np.zeros(WIDTH), np.zeros(WIDTH)))
-    memory[nodes.HIT : nodes.HIT + WIDTH] = np.inf
+    bvh_nodes.store_rays(memory, Vec(*rays), Vec(np.ones(WIDTH), np.zeros(WIDTH), np.zeros(WIDTH)))
+    memory[bvh_nodes.HIT : bvh_nodes.HIT + WIDTH] = np.inf
     visits = np.zeros(WIDTH, int)
 
     def hit(group: Any, block: int, tree: Tree, memory: Any, ray: int) -> None:
         visits[ray] += 1
-        memory[nodes.HIT + ray] = distance
+        memory[bvh_nodes.HIT + ray] = distance
 
-    traversal.traverse(hit, scene, memory, (1 << WIDTH) - 1 - 4)
+    bvh_traversal.traverse(hit, scene, memory, (1 << WIDTH) - 1 - 4)
     starts = 3.0 * np.arange(40)  # a ray visits at least the first leaf that it hits
     expected = [max(1, ((starts + 1 >= x) & (starts <= x + distance)).sum()) for x in rays[0]]
     expected[2] = 0  # not active
@@ -175,7 +175,10 @@ def grazing_rays(seed: int) -> tuple[list[Shape], Array, Array]:
 
 def wrong_hits(scene: Tree, shapes: list[Shape], rays: tuple[Array, Array]) -> int:
     """Count the rays that hit something else than without boxes, both interpreted."""
-    result, expected = trace(scene, *rays, queries.trace_rays), trace(brute_force(shapes), *rays, queries.trace_rays)
+    result, expected = (
+        trace(scene, *rays, bvh_traversal.trace_rays),
+        trace(brute_force(shapes), *rays, bvh_traversal.trace_rays),
+    )
     return int((result[1] != expected[1]).sum())
 
 
@@ -192,9 +195,9 @@ def test_rays_that_graze_the_sides_of_boxes_hit_what_they_hit_without_boxes() ->
 def test_boxes_without_margins_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     shapes, *rays = grazing_rays(1)
     assert wrong_hits(build_tree(shapes, Interpreted), shapes, rays) == 0
-    monkeypatch.setattr(nodes, "MARGIN", 0.0)
+    monkeypatch.setattr(bvh_nodes, "MARGIN", 0.0)
     assert wrong_hits(build_tree(shapes, Interpreted), shapes, rays) == 0  # one of the two margins is enough here
-    monkeypatch.setattr(collapse, "MARGIN", 0.0)
+    monkeypatch.setattr(bvh_build, "MARGIN", 0.0)
     assert wrong_hits(build_tree(shapes, Interpreted), shapes, rays) > 5
 
 
@@ -229,13 +232,15 @@ def axis_rays() -> tuple[list[Shape], tuple[Array, Array]]:
 
 def test_components_of_a_direction_may_be_0_or_minus_0(monkeypatch: pytest.MonkeyPatch) -> None:
     shapes, rays = axis_rays()
-    for result in (trace(build_tree(shapes), *rays), trace(build_tree(shapes), *rays, queries.trace_rays)):
+    for result in (trace(build_tree(shapes), *rays), trace(build_tree(shapes), *rays, bvh_traversal.trace_rays)):
         assert result[1].tolist() == np.repeat(range(6), 4).tolist()
         assert np.array_equal(result[0], np.full(24, 9.5))
-    near_planes = nodes.near_planes
-    tiny = lambda x: np.abs(x) if np.abs(x) * nodes.TINY == 1.0 else x  # noqa: E731  (-0 as if it were 0)
+    near_planes = bvh_nodes.near_planes
+    tiny = lambda x: np.abs(x) if np.abs(x) * bvh_nodes.TINY == 1.0 else x  # noqa: E731  (-0 as if it were 0)
     monkeypatch.setattr(
-        traversal, "near_planes", lambda inverse: near_planes(Vec(tiny(inverse.x), tiny(inverse.y), tiny(inverse.z)))
+        bvh_traversal,
+        "near_planes",
+        lambda inverse: near_planes(Vec(tiny(inverse.x), tiny(inverse.y), tiny(inverse.z))),
     )
     assert wrong_hits(build_tree(shapes), shapes, rays) > 5
 
@@ -246,6 +251,6 @@ def test_rays_along_axes_visit_no_boxes_beside_them(monkeypatch: pytest.MonkeyPa
     few = [len(leaves_along(scene, *way)) for way in ways]
     assert max(few) <= 12
     # With an infinite inverse, positions along the other axes make no difference.
-    monkeypatch.setattr(nodes, "safe_inverse", lambda x: 1.0 / x)
+    monkeypatch.setattr(bvh_nodes, "safe_inverse", lambda x: 1.0 / x)
     with np.errstate(all="ignore"):
         assert min(len(leaves_along(scene, *way)) for way in ways) > 12

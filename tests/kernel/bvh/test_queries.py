@@ -10,8 +10,8 @@ import pytest
 from numba import njit, typeof
 
 import minirt.kernel.compiler.bvh_functions  # noqa: F401  (registers what is compiled)
-from minirt.kernel.bvh import queries
-from minirt.kernel.bvh.nodes import WIDTH
+from minirt.kernel import bvh_traversal
+from minirt.kernel.bvh_nodes import WIDTH
 from minirt.kernel.compiler.options import FLAGS
 from minirt.kernel.scene_arrays import by_reference
 from minirt.lanes import Vec, lane, load, where
@@ -47,7 +47,7 @@ def test_rays_hit_what_they_hit_without_boxes(regime: str, count: int) -> None:
 
 @cache
 def shadow_queries() -> Any:
-    """Return `queries.unoccluded` for n rays of unit direction, a multiple of `WIDTH`: interpreted, and compiled."""
+    """Return `unoccluded` for n rays of unit direction, a multiple of `WIDTH`: interpreted, and compiled."""
 
     def run(scene: Any, o: Any, d: Any, distances: Any, visible: Any) -> None:
         tree = by_reference(scene)
@@ -55,7 +55,9 @@ def shadow_queries() -> Any:
             origin = Vec(load(o[0], i), load(o[1], i), load(o[2], i))
             direction = Vec(load(d[0], i), load(d[1], i), load(d[2], i))
             distance = load(distances, i)
-            answer = where(queries.unoccluded(tree, origin, direction, distance, distance > 0.0), 1.0, 0.0 * distance)
+            answer = where(
+                bvh_traversal.unoccluded(tree, origin, direction, distance, distance > 0.0), 1.0, 0.0 * distance
+            )
             for ray in range(WIDTH):
                 visible[i + ray] = lane(answer, ray)
 
@@ -86,7 +88,9 @@ def test_interpreted_and_compiled_rays_hit_the_same() -> None:
     shapes = random_shapes(random, 60)
     rays = random_rays(random, shapes, 5 * WIDTH + 3)
     for one, other in zip(
-        trace(build_tree(shapes), *rays), trace(build_tree(shapes, Interpreted), *rays, queries.trace_rays), strict=True
+        trace(build_tree(shapes), *rays),
+        trace(build_tree(shapes, Interpreted), *rays, bvh_traversal.trace_rays),
+        strict=True,
     ):
         assert np.allclose(one, other, rtol=1e-12, atol=1e-12, equal_nan=True)
 

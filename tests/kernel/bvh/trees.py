@@ -9,8 +9,8 @@ import numpy as np
 
 from minirt.element import fields_of
 from minirt.fields import Point
-from minirt.kernel.bvh import build, collapse
-from minirt.kernel.bvh.nodes import WIDTH, Group, Tree
+from minirt.kernel import bvh_build
+from minirt.kernel.bvh_nodes import WIDTH, Group, Tree
 from minirt.kernel.machine_code import functions
 from minirt.rendering.packing.bvh import aligned, block_type, build_bvh
 from minirt.rendering.packing.shape_arrays import ShapeArrays
@@ -22,9 +22,9 @@ from tests.shapes.regimes import Array, Random, log_uniform, random_directions, 
 class Interpreted:
     """The functions that build a tree, interpreted."""
 
-    divide = staticmethod(build.divide)
-    weigh = staticmethod(collapse.weigh)
-    collapse = staticmethod(collapse.collapse)
+    divide = staticmethod(bvh_build.divide)
+    weigh = staticmethod(bvh_build.weigh)
+    collapse = staticmethod(bvh_build.collapse)
 
 
 def build_tree(shapes: list[Shape], kernel: Any = functions) -> Tree:

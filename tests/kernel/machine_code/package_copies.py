@@ -9,7 +9,7 @@ from tests.paths import PACKAGE
 
 FRAME = """
 from minirt.kernel.shading.shade import tint
-from minirt.kernel.stored_light import argb
+from minirt.kernel.pixels import argb
 
 def frame(
     next_row: Any, pixels: Any, linear: Any, rays: Any, plan: Any, errors: Any, memory: Any, sums: Any,

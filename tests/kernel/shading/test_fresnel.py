@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from minirt.kernel.shading.fresnel import reflectance
+from minirt.kernel.shading.surfaces import reflectance
 from minirt.materials import Glass, Mirror
 from minirt.scene import Ambient, Background, Camera, Scene
 from minirt.shapes import Shape

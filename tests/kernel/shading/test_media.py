@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import minirt
-from minirt.kernel.shading import transmission, whitted
-from minirt.kernel.shading.media import medium_behind
+from minirt.kernel.shading import shadows, whitted
+from minirt.kernel.shading.surfaces import medium_behind
 from minirt.lanes import Vec
 from minirt.materials import Glass, Mirror, Tint
 from minirt.rendering.packing.materials import encloses
@@ -127,8 +127,8 @@ def outside_in(medium: Vec, rates: Vec, leaves: Any) -> Vec:
     ("module", "name", "wrong"),
     [
         (whitted, "medium_behind", outside_in),  # absorbs on the way outside
-        (transmission, "medium_behind", outside_in),
-        (transmission, "MOST_SURFACES", 3),  # the second of two balls
+        (shadows, "medium_behind", outside_in),
+        (shadows, "MOST_SURFACES", 3),  # the second of two balls
         (whitted, "absorbed", lambda light, medium, distance: light),
     ],
 )

@@ -7,7 +7,7 @@ from math import cos, radians, sin
 import numpy as np
 import pytest
 
-from minirt.kernel.shading.specular import specular
+from minirt.kernel.shading.lights import specular
 from minirt.lanes import Vec
 
 UP = Vec(*(np.full(16, each) for each in (0.0, 1.0, 0.0)))

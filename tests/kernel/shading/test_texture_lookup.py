@@ -11,7 +11,7 @@ from numba import njit
 
 import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel.compiler.options import FLAGS
-from minirt.kernel.shading import texture_lookup
+from minirt.kernel.shading import texturing
 from minirt.lanes import load, save, width
 from minirt.rendering.packing.materials import TexturePool
 from tests.kernel.pictures import Array
@@ -38,7 +38,7 @@ TEXELS, PICTURES = all_pictures()
 @njit(**FLAGS)
 def look_up_colours(texels: Any, pictures: Any, which: int, u: Any, v: Any, out: Any) -> None:
     for i in range(0, u.size, width(u)):
-        colour = texture_lookup.texture_lookup(texels, pictures, which, load(u, i), load(v, i))
+        colour = texturing.texture_lookup(texels, pictures, which, load(u, i), load(v, i))
         save(colour.x, out[0], i)
         save(colour.y, out[1], i)
         save(colour.z, out[2], i)
@@ -47,7 +47,7 @@ def look_up_colours(texels: Any, pictures: Any, which: int, u: Any, v: Any, out:
 @njit(**FLAGS)
 def look_up_gradients(texels: Any, pictures: Any, which: int, u: Any, v: Any, out: Any) -> None:
     for i in range(0, u.size, width(u)):
-        slope_u, slope_v = texture_lookup.height_gradient(texels, pictures, which, load(u, i), load(v, i))
+        slope_u, slope_v = texturing.height_gradient(texels, pictures, which, load(u, i), load(v, i))
         save(slope_u, out[0], i)
         save(slope_v, out[1], i)
 
@@ -62,7 +62,7 @@ def compiled(which: int, u: Array, v: Array) -> Array:
 def interpreted(which: int, u: Array, v: Array) -> Array:
     """Look up colours by the interpreted kernel, (n, 3)."""
     with np.errstate(invalid="ignore"):
-        colour = texture_lookup.texture_lookup(TEXELS, PICTURES, which, u, v)
+        colour = texturing.texture_lookup(TEXELS, PICTURES, which, u, v)
     return np.stack([colour.x, colour.y, colour.z], axis=-1)
 
 
@@ -133,5 +133,5 @@ def test_gradients_are_central_differences_over_a_pixel(which: int) -> None:
     expected = np.stack([slope_u[:, 0] * width, slope_v[:, 0] * height])
     lanes = np.empty((2, 160))
     look_up_gradients(TEXELS, PICTURES, which, u, v, lanes)
-    for got in (np.stack(texture_lookup.height_gradient(TEXELS, PICTURES, which, u, v)), lanes):
+    for got in (np.stack(texturing.height_gradient(TEXELS, PICTURES, which, u, v)), lanes):
         assert np.abs(got - expected).max() < 1e-5

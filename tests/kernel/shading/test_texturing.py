@@ -13,8 +13,7 @@ from numba import njit
 import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
 from minirt.kernel.compiler.options import FLAGS
 from minirt.kernel.shading import texturing
-from minirt.kernel.shading.texture_lookup import height_gradient
-from minirt.kernel.shading.texturing import SurfaceMaps, bump_mapped, checkered, normal_mapped
+from minirt.kernel.shading.texturing import SurfaceMaps, bump_mapped, checkered, height_gradient, normal_mapped
 from minirt.lanes import Vec, load, save, width
 from minirt.shapes import KINDS, Kind
 from tests.kernel.pictures import Array

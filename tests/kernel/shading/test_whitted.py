@@ -7,7 +7,7 @@ from math import asin, cos, degrees, radians, sin
 import numpy as np
 import pytest
 
-from minirt.kernel.shading.ray_stack import MIN_WEIGHT
+from minirt.kernel.shading.whitted import MIN_WEIGHT
 from minirt.materials import Glass
 from minirt.rendering.packing.features import DEPTH
 from minirt.scene import Ambient, Background, Camera, Scene

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import minirt
-from minirt.kernel.culling.binning import Grid
+from minirt.kernel.binning import Grid
 from minirt.rendering.culling import dual_hull, foremost_planes, hidden_planes
 from minirt.rendering.scene_packing import Packing
 from tests.rendering.culling.test_hidden_planes import HEIGHT, WIDTH, cull_all, light_of

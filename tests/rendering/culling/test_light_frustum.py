@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from minirt.fields import MeshFile
-from minirt.kernel.culling import binning
-from minirt.kernel.culling.light_buffer import SCALE, TOLERANCE, light_buffer_cell
+from minirt.kernel import binning
 from minirt.kernel.machine_code import functions
+from minirt.kernel.shadow_rays import SCALE, TOLERANCE, light_buffer_cell
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.culling import light_frustum, visibility

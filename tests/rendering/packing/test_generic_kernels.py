@@ -11,7 +11,7 @@ from numba import typeof
 
 import minirt
 from minirt.kernel import frame, interpreted
-from minirt.kernel.bvh.nodes import WIDTH
+from minirt.kernel.bvh_nodes import WIDTH
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.materials import Checker, Specular

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.kernel.stored_light import TILE
+from minirt.kernel.pixels import TILE
 from minirt.rendering import Renderer, scene_packing
 from minirt.rendering.culling.planes import signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays

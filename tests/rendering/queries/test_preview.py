@@ -10,7 +10,7 @@ import pytest
 
 import minirt
 from minirt.kernel import trace
-from minirt.kernel.rows import intersect
+from minirt.kernel.scene_arrays import intersect
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.packing.features import features

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from minirt.errors import RenderError
-from minirt.kernel.bvh.nodes import NODE, REFERENCES
+from minirt.kernel.bvh_nodes import NODE, REFERENCES
 from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.brute_force import ChangedPacking, without_boxes, without_light_buffers, without_tiles
 from minirt.report.measurements.settings import brute_force

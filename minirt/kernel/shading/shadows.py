@@ -1,4 +1,9 @@
-"""Transmission of light from light sources through glass: shadow rays that carry a share of each colour.
+"""Shadow rays at smooth and bumpy surfaces, and through glass.
+
+A facet of a smooth mesh that faces away from a light source lies in its own shadow, although its shading normals may
+still face the light source: the edge of the light shows the facets. So shadow rays start on the smooth surface that
+the normals at the corners suggest. Bumps that face a light source behind the surface would end in a hard edge: their
+light fades as the light source sets.
 
 A shadow ray that something occludes is followed from surface to surface, straight on. Opaque surfaces end it. Each
 surface of glass lets its share through; with Fresnel's equations, that of the angle outside, since a ray leaves a pane
@@ -8,17 +13,87 @@ refraction, the index of refraction, and how far Fresnel's equations count.
 
 from __future__ import annotations
 
-from minirt.kernel.bvh import queries
-from minirt.kernel.scene_arrays import SceneArrays, has_rows
-from minirt.kernel.shading.fresnel import shares_at_angle
-from minirt.kernel.shading.media import absorbed, brightest, filter_of, medium_behind
-from minirt.kernel.shading.surfaces import clearance, row_of, surface_of_kind, tint
+from typing import Any
+
+from minirt.kernel import bvh_traversal
+from minirt.kernel.scene_arrays import Group, SceneArrays, has_rows, read, smooth_point
+from minirt.kernel.shading.surfaces import (
+    absorbed,
+    brightest,
+    clearance,
+    filter_of,
+    medium_behind,
+    row_of,
+    shares_at_angle,
+    surface_of_kind,
+    tint,
+)
 from minirt.kernel.trace import for_each_kind
-from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, lane, rarely, splat, where
+from minirt.lanes import Mask, Number, Vec, any, dot, fabs, first, lane, maximum, minimum, rarely, splat, sqrt, where
 
+ROUGHNESS = 0.125  # squared roughness of bumps whose normal leans by 45 degrees
+LEAST_COSINE = 2.0**-26  # of a shading normal that counts as leaning less than 90 degrees
 MOST_SURFACES = 256  # that a shadow ray may cross; beyond them it counts as occluded
-
 Way = tuple[Vec, Vec, Vec]  # where a shadow ray starts, the shares of the light that are left, and the medium
+
+
+def smooth_points(scene: SceneArrays, owner: Number, point: Vec, normal: Vec, rays: Mask) -> Vec:
+    """Move the points of some rays from the facets of smooth meshes onto the smooth surface; other points stay.
+
+    `owner` has the indices of the shapes that the rays hit, `normal` the geometric normals on the side of the rays.
+    """
+    result = point
+    remaining = rays
+    while any(remaining):
+        index = int(lane(owner, first(remaining)))
+        owned = remaining & (owner == index)
+        if scene.smooth[index] != 0:
+            slot = scene.slots[index]
+            moved = for_each_kind(smooth_point_of_kind, scene.groups, point, (slot[0], slot[1], point, normal))
+            result = where(owned, moved, result)
+        remaining = remaining & ~owned
+    return result
+
+
+def smooth_point_of_kind(group: Group, state: Vec, arguments: tuple[int, int, Vec, Vec]) -> Vec:
+    """Move points onto the smooth surface of the shape in row i of group `number` if it is of this kind."""
+    number, i, point, normal = arguments
+    if number == group.number:
+        return smooth_point(read(group.rows, i), point, normal)
+    return state
+
+
+def bump_fading(base: Vec, bumped: Vec, to_light: Vec) -> Number:
+    """Return the share of light that bumps let through; 1 where the bumped normal is that of the surface, `base`.
+
+    The microfacet shadowing of a surface so rough that its facets have the bumped normal (Estevez, Lecocq and Stein, A
+    Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem, Ray Tracing Gems, 2019, chapter 12). With
+    the cosine c of the light over the base and the roughness a it is 2 c / (c + sqrt(c^2 + a^2 (1 - c^2))).
+    """
+    apart = bumped - base
+    chord = dot(apart, apart)  # exactly 0 for a flat bump, unlike the sine of the angle
+    leaning = maximum(1.0 - 0.5 * chord, LEAST_COSINE)  # cosine between the normals
+    squared = minimum(ROUGHNESS * chord * (1.0 - 0.25 * chord) / (leaning * leaning), 1.0)
+    cosine = maximum(dot(base, to_light), 0.0)
+    root = sqrt(cosine * cosine + squared * maximum(1.0 - cosine * cosine, 0.0))
+    total = cosine + root
+    return where(total > 0.0, 2.0 * cosine / where(total > 0.0, total, 1.0), 0.0)
+
+
+def has_bumps(scene: SceneArrays) -> bool:
+    """Whether any shape of a scene has a bump map, a normal map or a raised pattern."""
+    if scene.patterns is not None and is_used(scene.patterns.heights):
+        return True
+    if scene.surface_maps is None:
+        return False
+    return is_used(scene.surface_maps.bumps) or is_used(scene.surface_maps.normals)
+
+
+def is_used(table: Any) -> bool:
+    """Whether any shape of a scene has this kind of map."""
+    if table is None:
+        return False
+    return has_rows(table)
 
 
 def light_through_glass(
@@ -48,7 +123,7 @@ def follow_shadow_rays(
     light = Vec(where(occluded, 1.0, light.x), where(occluded, 1.0, light.y), where(occluded, 1.0, light.z))
     active = occluded
     for _ in range(MOST_SURFACES):
-        t, owner, extent = queries.closest_hit(scene.bvh, start, to_light, active)
+        t, owner, extent = bvh_traversal.closest_hit(scene.bvh, start, to_light, active)
         active = active & (t < reach)
         if not any(active):
             break

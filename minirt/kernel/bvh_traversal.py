@@ -1,35 +1,132 @@
-"""Closest-hit and shadow queries for incoherent rays, by BVH traversal; the counterpart of `minirt.kernel.trace`."""
+"""Closest-hit and shadow queries for incoherent rays, by BVH traversal; the counterpart of `minirt.kernel.trace`.
+
+All rays of a packet advance together, one step of each in turn. A step waits for memory and for pipelines, and a
+mispredicted branch costs all work that the processor began behind it. Steps of different rays do not wait for each
+other. So the rays of a packet are interleaved, and a step has no branch: in its place is a mask with one bit for each
+ray, and the nearest child is found among all lanes at once, not by sorting.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf
 from typing import Any
 
-from minirt.kernel.atomic_counter import fetch_add
-from minirt.kernel.bvh.nodes import (
+from minirt.kernel.bvh_nodes import (
     DIRECTION,
+    GROUPS,
     HIT,
+    INVERSE,
+    NEXT,
     ORIGIN,
+    REFERENCES,
+    STACK,
+    STACK_LEVEL,
+    TOP,
     WIDTH,
     Group,
     Tree,
     bits,
+    integer_at,
+    intersect_boxes,
+    leaf_number,
+    least_lane,
+    near_planes,
     packet_memory,
     put,
+    put_integer,
     put_vec,
+    reference_of,
     search_limit,
     store_rays,
+    tag,
     vec_at,
 )
-from minirt.kernel.bvh.traversal import traverse
-from minirt.kernel.rows import intersect, kind_of, occludes, read, surface
-from minirt.kernel.scene_arrays import by_reference
+from minirt.kernel.pixels import fetch_add
+from minirt.kernel.scene_arrays import by_reference, has_rows, intersect, kind_of, occludes, read, surface
 from minirt.kernel.trace import closer_hit, for_each_kind
 from minirt.lanes import Mask, Number, Vec, any, lane, load, lowest, max_norm, splat, unit, where
 
 CHUNK = 16 * WIDTH  # rays that a thread claims at a time
-
 Hit = tuple[Number, Number, Number]  # distance, index and extent of the shape that is hit
+
+
+def traverse(visit: Callable[..., None], tree: Tree, memory: Any, rays: int) -> None:
+    """Call `visit(group, block, tree, memory, ray)` for the leaves that each of the `rays` hits, the nearest first.
+
+    `rays` has one bit for each ray. Leaves beyond the distance in the first row of `HIT`, which `visit` may lessen, are
+    skipped.
+    """
+    remaining = rays
+    while remaining != 0:
+        ray = lowest(remaining)
+        remaining = remaining & (remaining - 1)
+        memory[NEXT + ray] = 0.0  # the root
+        put_integer(memory, TOP + ray, STACK - STACK_LEVEL + ray * WIDTH)
+    at_node, unfinished = rays, 0
+    while True:
+        remaining = at_node
+        while remaining != 0:
+            ray = lowest(remaining)
+            remaining = remaining & (remaining - 1)
+            unfinished = unfinished | descend(tree.nodes, memory, ray) << ray
+        if unfinished == 0:
+            return
+        at_node, at_leaf = 0, 0
+        remaining = unfinished
+        while remaining != 0:
+            ray = lowest(remaining)
+            remaining = remaining & (remaining - 1)
+            node, leaf, last = advance(memory, ray)
+            at_node = at_node | node << ray
+            at_leaf = at_leaf | leaf << ray
+            unfinished = unfinished ^ last << ray
+        for_each_kind(visit_leaves_of_kind, tree.groups, at_leaf, (visit, tree, memory))
+
+
+def descend(nodes: Any, memory: Any, ray: int) -> int:
+    """Push the children of the next node whose boxes a ray hits onto its stack; returns 1 if there are any, else 0."""
+    node = reference_of(memory[NEXT + ray])
+    planes = near_planes(vec_at(memory, INVERSE, ray))
+    hit, near = intersect_boxes(nodes, node, memory, ray, planes, search_limit(memory[HIT + ray]))
+    top = integer_at(memory, TOP + ray) + STACK_LEVEL
+    put(memory, top, where(hit, tag(near, load(nodes, node + REFERENCES)), inf))
+    pushed = int(any(hit))
+    put_integer(memory, TOP + ray, top - STACK_LEVEL * (1 - pushed))
+    return pushed
+
+
+def advance(memory: Any, ray: int) -> tuple[int, int, int]:
+    """Pop the nearest child from the top row of a ray's stack, and make it the next to visit.
+
+    Returns three flags, 1 or 0: whether the child is a node to visit, whether it is a leaf to visit, and whether the
+    stack is now empty.
+    """
+    limit = search_limit(memory[HIT + ray])
+    top = integer_at(memory, TOP + ray)
+    tags = load(memory, top)
+    nearest = least_lane(tags)
+    others = where(tags == nearest, inf, tags)
+    put(memory, top, others)
+    top = top - STACK_LEVEL * (1 - int(any(others < limit)))
+    put_integer(memory, TOP + ray, top)
+    memory[NEXT + ray] = nearest
+    in_reach = nearest < limit
+    is_node = reference_of(nearest) >= 0
+    return int(in_reach & is_node), int(in_reach & (not is_node)), int(top < STACK)
+
+
+def visit_leaves_of_kind(group: Group, rays: int, arguments: tuple[Callable[..., None], Tree, Any]) -> int:
+    """Visit the leaves of one kind of shape that the `rays` are at, one bit for each; the state is not changed."""
+    visit, tree, memory = arguments
+    remaining = rays if has_rows(group.blocks) else 0
+    while remaining != 0:
+        ray = lowest(remaining)
+        remaining = remaining & (remaining - 1)
+        leaf = leaf_number(reference_of(memory[NEXT + ray]))
+        if leaf % GROUPS == group.number:
+            visit(group, leaf // GROUPS, tree, memory, ray)
+    return rays
 
 
 def closest_hit(tree: Tree, origin: Vec, direction: Vec, active: Mask) -> Hit:

@@ -1,0 +1,97 @@
+"""Estimator of the squared error of a picture, on packets with constructed errors, and wrong estimators."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, SUMS, squared_error
+from minirt.rendering.sampling.contrast import CLASSES
+from minirt.rendering.sampling.packets import Packets
+
+Array = NDArray[np.float64]
+
+RAYS = 4 * PACKET_HEIGHT
+TRIALS, SPREAD = 500, 0.1  # of the references around the light
+SIZES, C = (20_000, 900, 100), (1e-6, 0.01, 0.3)  # of classes 0, 4 and 7, and their squared errors with one sample
+CLASSES_USED = (0, 4, 7)
+TRUE = float(np.dot(SIZES, C))
+
+
+def packet_estimates(second_reference: Callable[[Array, Array], Array]) -> tuple[Array, float]:
+    """Estimates by the kernel of one packet's squared error, and the true one; the function of the first reference and
+    of an independent one is the second."""
+    random = np.random.default_rng(4)
+    light = random.uniform(0.4, 0.6, 3 * RAYS)
+    drawn = light + random.normal(0, 0.03, 3 * RAYS)
+    found = []
+    for _ in range(TRIALS):
+        one, other = light + random.uniform(-SPREAD, SPREAD, (2, 3 * RAYS))
+        sums = np.zeros(SUMS)
+        for number, values in enumerate((drawn, one, second_reference(one, other))):
+            sums[number * ESTIMATE :][: 3 * RAYS] = values
+        found.append(squared_error(sums, PACKET_HEIGHT, 4, RAYS))
+    return np.array(found), float(((drawn - light) ** 2).sum())
+
+
+def is_true(found: Array, true: float) -> bool:
+    """Whether the mean of estimates is the true value, within four of its standard errors."""
+    return bool(abs(found.mean() - true) < 4 * found.std() / np.sqrt(len(found)))
+
+
+def test_independent_references_have_the_squared_error_as_the_mean_of_their_product() -> None:
+    assert is_true(*packet_estimates(lambda one, other: other))
+
+
+def test_reusing_the_samples_of_a_reference_is_caught() -> None:
+    assert not is_true(*packet_estimates(lambda one, other: one))
+
+
+def test_references_that_share_half_of_their_samples_are_caught() -> None:
+    assert not is_true(*packet_estimates(lambda one, other: (one + other) / 2))
+
+
+def probed_picture(samples_squared: bool = False, ignored: int = -1) -> float:
+    """Estimate by probes the error of a picture in which the packets of class 7 got 4 samples, the others one."""
+    random = np.random.default_rng(5)
+    packets = Packets(PACKET_HEIGHT, 4 * sum(SIZES), 4)
+    classes = np.repeat(CLASSES_USED, SIZES).astype(np.uint8)
+    packets.classify(classes, np.bincount(classes, minlength=CLASSES))
+    edges = packets.members(7)
+    packets.drawn(edges, np.full(len(edges), 3, np.uint8))
+    for of_class, c in zip(CLASSES_USED, C, strict=True):
+        if of_class != ignored:
+            probes = packets.members(of_class)[:100]
+            samples = 4.0 if of_class == 7 else 1.0
+            c = c / samples if samples_squared else c  # noqa: PLW2901
+            packets.probed(probes, c * samples**-1.5 * random.exponential(1, len(probes)))
+    return packets.total()
+
+
+LEFT = TRUE - SIZES[2] * C[2] * (1 - 4**-1.5)
+
+
+def test_the_error_of_a_picture_is_that_of_its_classes() -> None:
+    assert probed_picture() == pytest.approx(LEFT, rel=0.2)
+
+
+def test_a_variance_divided_twice_by_the_number_of_samples_is_caught() -> None:
+    assert probed_picture(samples_squared=True) != pytest.approx(LEFT, rel=0.2)
+
+
+def test_an_ignored_class_is_expected_from_the_others() -> None:
+    """A class without probes still counts, by its contrast."""
+    assert probed_picture(ignored=7) > 0.5 * SIZES[2] * C[2] * 4**-1.5
+
+
+def test_packets_that_are_drawn_again_are_no_probes_any_more() -> None:
+    packets = Packets(PACKET_HEIGHT, 400, 4)
+    packets.probed(np.array([3, 5, 8]), np.array([1.0, 2.0, 3.0]))
+    packets.drawn(np.array([5, 9]), np.array([1, 2], np.uint8))
+    assert packets.probes.tolist() == [3, 8]
+    assert packets.errors.tolist() == [1.0, 3.0]
+    assert packets.is_probe(np.array([3, 5, 8, 9])).tolist() == [True, False, True, False]
+    assert packets.samples == (pytest.approx((98 + 2 + 3) / 100), 3)
