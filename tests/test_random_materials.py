@@ -25,9 +25,9 @@ from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
 from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.hyperboloid import Hyperboloid
-from minirt.shapes.oriented import Oriented
 from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.plane import Plane
+from minirt.shapes.shape import Oriented
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus

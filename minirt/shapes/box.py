@@ -17,12 +17,10 @@ from typing import Any, NamedTuple
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, copysign, fabs, maximum, minimum, rarely, splat, where
 from minirt.records import record
-from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, own_coordinates
-from minirt.shapes.bounds import bounds_of_points, point_along
-from minirt.shapes.flat_start import CLOSE, start_error
-from minirt.shapes.oriented import Axial
-from minirt.shapes.shape import Ball, Position
+from minirt.shapes.frames import from_basis, to_basis
+from minirt.shapes.plane import CLOSE, start_error
+from minirt.shapes.shape import Axial, Ball, Position, bounds_of_points, point_along
 from minirt.shapes.shape import Bounds as Corners
 
 

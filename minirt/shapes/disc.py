@@ -14,10 +14,8 @@ from minirt.fields import Colour, Direction, Length, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, dot
 from minirt.records import record
 from minirt.shapes.boundary import Boundary, length
-from minirt.shapes.bounds import bounds_of_disc
-from minirt.shapes.flat_start import crossing, least_t
-from minirt.shapes.oriented import Flat
-from minirt.shapes.shape import Ball, Bounds, Position
+from minirt.shapes.plane import crossing, least_t
+from minirt.shapes.shape import Ball, Bounds, Flat, Position, bounds_of_disc
 
 
 @record()

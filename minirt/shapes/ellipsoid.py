@@ -17,16 +17,11 @@ from typing import Any, NamedTuple
 from minirt.fields import Colour, Direction, Lengths, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, rarely, splat, sqrt, unit, unit_roundoff, where
 from minirt.records import record
-from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, own_coordinates
-from minirt.shapes.bounds import point_along
-from minirt.shapes.compensated import along, divided, minus, offset, plus, times, value
-from minirt.shapes.low_parts import basis_low
-from minirt.shapes.oriented import Axial
-from minirt.shapes.quadric import negative_interval
-from minirt.shapes.shape import Ball, Bounds, Position
-from minirt.shapes.start import CLOSE, ROUNDING, position_error, splat_vec, zero_within
-from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns
+from minirt.shapes.compensated import along, basis_low, divided, minus, offset, plus, times, value
+from minirt.shapes.frames import TWO_PI, angle_in_turns, from_basis, to_basis
+from minirt.shapes.shape import Axial, Ball, Bounds, Position, point_along
+from minirt.shapes.start import CLOSE, ROUNDING, negative_interval, position_error, splat_vec, zero_within
 
 SHORTEST = float_info.min  # semi-axis, in scene units: half of a subnormal size may be 0
 

@@ -31,24 +31,21 @@ from minirt.lanes import (
     where,
 )
 from minirt.records import record
-from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis
-from minirt.shapes.bounds import bounds_of_disc, point_along, union_of_bounds
-from minirt.shapes.compensated import minus, times, two_product, value
-from minirt.shapes.low_parts import axis_low, root_low
-from minirt.shapes.oriented import Axial
-from minirt.shapes.quadric import clamped_minimum, negative_interval
-from minirt.shapes.shape import Ball, Bounds, Position
+from minirt.shapes.compensated import axis_low, minus, root_low, times, two_product, value
+from minirt.shapes.frames import from_basis, is_side, revolved_mapping, to_basis
+from minirt.shapes.shape import Axial, Ball, Bounds, Position, bounds_of_disc, point_along, union_of_bounds
 from minirt.shapes.start import (
     axial,
     beside_side,
     between_caps,
+    clamped_minimum,
     error_of_start,
+    negative_interval,
     product_of_roots,
     starts_close,
     within_shell,
 )
-from minirt.shapes.uv_mapping import is_side, revolved_mapping
 
 
 @record()

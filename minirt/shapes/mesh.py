@@ -20,11 +20,10 @@ from minirt import meshes
 from minirt.fields import FARTHEST, Colour, Length, MeshField, MeshFile, Point, Triple, declare
 from minirt.lanes import Mask, Number, Vec, copysign, cross, dot, maximum, minimum, unit, where
 from minirt.records import record
-from minirt.shapes import pyramid, triangle
+from minirt.shapes import triangle
 from minirt.shapes.boundary import Boundary, facing, triangle_boundary
-from minirt.shapes.oriented import Turnable
-from minirt.shapes.shape import Ball, Bounds, Position
-from minirt.shapes.triangle_normal import plane_normals
+from minirt.shapes.shape import Ball, Bounds, Position, Turnable
+from minirt.shapes.triangle import plane_normals
 
 BARYCENTRIC = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)  # u and v at the three corners where the file has none
 OPPOSED = 1e-3  # squared length of a mean of unit normals; below it they cancel, and the mean points anywhere
@@ -149,7 +148,7 @@ def occludes(mesh: PackedMeshTriangle, origin: Vec, direction: Vec) -> tuple[Mas
 
 def may_meet(mesh: PackedMeshTriangle, apex: Vec, start: Vec | None, direction: Vec, active: Mask) -> Mask:
     """Cull the rays of a packet with a common apex that cannot meet the triangle."""
-    return pyramid.may_meet((mesh.a, mesh.b, mesh.c), mesh.normal, apex, start, direction, active)
+    return triangle.in_pyramid((mesh.a, mesh.b, mesh.c), mesh.normal, apex, start, direction, active)
 
 
 def surface(mesh: PackedMeshTriangle, point: Vec) -> tuple[Vec, Vec]:

@@ -14,13 +14,14 @@ from dataclasses import KW_ONLY
 from typing import Any, NamedTuple
 
 from minirt.fields import Colour, Direction, Point, Triple, declare
-from minirt.lanes import Mask, Number, Vec, dot, fabs, unit_roundoff
+from minirt.lanes import Mask, Number, Vec, dot, fabs, max_norm, unit_roundoff, where
 from minirt.materials import BOARD, Checker, Compound
 from minirt.records import record
 from minirt.shapes.boundary import Boundary
-from minirt.shapes.oriented import Flat
-from minirt.shapes.shape import Ball, Position
+from minirt.shapes.shape import Ball, Flat, Position
 
+CLOSE = 2.0**-20  # shares of the size of a shape: a hit nearer than that may be the place where the ray starts
+ROUNDINGS = 4.0
 PARALLEL = 4  # error of the scalar product of two unit vectors, in unit roundoffs
 
 
@@ -80,3 +81,33 @@ def mapping(plane: PackedPlane, point: Vec, normal: Vec) -> tuple[Number, Number
 def boundary(plane: Any, point: Vec) -> Boundary:
     """Height above the plane."""
     return Boundary((dot(plane.normal, point - plane.point),))
+
+
+# What flat shapes with an edge share: rays that start on one, for all that rounding lets one know, do not hit it there.
+
+
+def start_error(origin: Vec, f: Vec) -> Number:
+    """Distance to a flat surface below which a ray starts on it.
+
+    The roundings of the origin's coordinates, and of its height, which is computed from f, its difference from the
+    shape's centre.
+    """
+    return ROUNDINGS * unit_roundoff(f.x) * (max_norm(origin) + (fabs(f.x) + fabs(f.y) + fabs(f.z)))
+
+
+def least_t(origin: Vec, f: Vec, height: Number, size: float) -> Number:
+    """The t that a hit must exceed: not 0 for rays that start on the surface, so that they do not hit it there.
+
+    `height` is that of the origin above the surface, and `size` that of the shape.
+    """
+    return where(fabs(height) <= start_error(origin, f), CLOSE * size, 0.0)
+
+
+def crossing(normal: Vec, f: Vec, height: Number, direction: Vec, least: Number) -> tuple[Mask, Number, Vec]:
+    """Whether and where a ray meets the plane of a flat shape at a t of more than the `least`: t and the point.
+
+    The ray starts at f and at this `height`, relative to the centre, as the point is.
+    """
+    slope = dot(normal, direction)
+    t = -height / slope
+    return (fabs(slope) > PARALLEL * unit_roundoff(slope)) & (t > least), t, f + t * direction

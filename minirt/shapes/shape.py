@@ -24,7 +24,7 @@ Four functions are optional:
                                           `normal`; shadow rays of `smooth` shapes start there
     may_meet(shape, apex, start, direction, active)
                                           culling: which of the active rays of a packet with a common point, the apex,
-                                          may hit the shape, see `minirt.shapes.pyramid`
+                                          may hit the shape, see `minirt.shapes.triangle`
 
 The tangents and the normal are right-handed, so that a picture seen from outside is not mirrored. At poles and apexes,
 where a picture shrinks to a point, tangents may be zero.
@@ -37,18 +37,23 @@ from __future__ import annotations
 import sys
 from abc import abstractmethod
 from collections.abc import Callable
+from math import hypot
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NewType, get_type_hints
 
 import numpy as np
 
-from minirt.fields import Triple
+from minirt.fields import Angle, Direction, Triple, declare
 from minirt.lanes import Mask, Vec
 from minirt.materials import Attributes
 from minirt.records import record
 from minirt.shapes.boundary import Boundary
+from minirt.shapes.frames import basis, facing_frame
 
 Bounds = tuple[Triple, Triple]  # axis-aligned bounding box: least and greatest corner
 Ball = tuple[Triple, float]  # centre and radius
+Frame = tuple[Vec, Vec, Vec]  # right-handed and orthonormal; the last vector is the axis or the normal
+UPRIGHT: Triple = (0.0, 1.0, 0.0)
+ROLL = "turn about its axis or normal, counter-clockwise as seen from its tip"
 Position = NewType("Position", Vec)  # a point in a packed shape; other Vecs there are directions
 
 
@@ -146,3 +151,99 @@ def kind_of(element: type[Shape]) -> Kind:
         batched=element.batched,
         infinite=element.infinite,
     )
+
+
+def point_along(point: Triple, axis: Triple, distance: float) -> Triple:
+    """The point at a distance from `point` along the unit vector `axis`."""
+    (x, y, z), (u, v, w) = point, axis
+    return x + distance * u, y + distance * v, z + distance * w
+
+
+def disc_extents(axis: Triple) -> Triple:
+    """Half extents along x, y and z of a disc of radius 1 about a unit axis.
+
+    For a component w of the axis the extent is sqrt(1 - w^2), here the root of the sum of the other two squares.
+    """
+    u, v, w = axis
+    return hypot(v, w), hypot(w, u), hypot(u, v)
+
+
+def bounds_of_disc(centre: Triple, axis: Triple, radius: float) -> Bounds:
+    """The bounding box of a disc."""
+    (x, y, z), (i, j, k) = centre, (radius * reach for reach in disc_extents(axis))
+    return (x - i, y - j, z - k), (x + i, y + j, z + k)
+
+
+def bounds_of_points(*points: Triple) -> Bounds:
+    """The bounding box of some points."""
+    xs, ys, zs = zip(*points, strict=True)
+    return (min(xs), min(ys), min(zs)), (max(xs), max(ys), max(zs))
+
+
+def union_of_bounds(*boxes: Bounds) -> Bounds:
+    """The bounding box of some boxes."""
+    return bounds_of_points(*(corner for box in boxes for corner in box))
+
+
+@record(kw_only=True)
+class Oriented(Shape):
+    """A shape that can be turned about an axis or a normal of its own."""
+
+    revolved: ClassVar[bool] = False  # whether it looks the same after such a turn if nothing lies on it
+    roll: float = declare(
+        Angle, ROLL, placeholder="degrees", keyed=True, default=0.0, sort="shapes with an axis or a normal"
+    )
+
+    @abstractmethod
+    def frame(self) -> Frame:
+        """Its own frame, which turns with it."""
+
+    @property
+    def shows_axis(self) -> bool:
+        """Whether another axis or normal changes the picture."""
+        return True
+
+    @property
+    def shows_roll(self) -> bool:
+        """Whether a turn about its axis or normal changes the picture."""
+        return not self.revolved or self.is_mapped
+
+
+@record(kw_only=True)
+class Axial(Oriented):
+    """A shape with an axis; its own frame is z, x and y, where y is the axis."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def axis(self) -> Triple: ...
+
+    def frame(self) -> Frame:
+        return basis(self.axis, self.roll)
+
+
+@record(kw_only=True)
+class Flat(Oriented):
+    """A flat shape; its own frame is right and up of a picture on it, and the normal."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def normal(self) -> Triple: ...
+
+    def frame(self) -> Frame:
+        return *facing_frame(self.normal, self.roll), Vec(*self.normal)
+
+
+@record(kw_only=True)
+class Turnable(Axial):
+    """A shape that stands upright unless it is given an axis."""
+
+    axis: Triple = declare(
+        Direction, "direction of its own y axis", keyed=True, default=UPRIGHT, sort="spheres and meshes"
+    )
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether its own axes are not those of the scene."""
+        return self.axis != UPRIGHT or self.roll % 360.0 != 0.0

@@ -1,9 +1,9 @@
-"""Rays that start on the surface of a quadric, or close to it on the scale of the solid.
+"""Quadratic equations of rays and quadrics, solved without cancellation, and rays that start on such a surface.
 
-Nearly everything cancels there. The height of such a start above the surface is computed to 32 digits
-(`minirt.shapes.compensated`), and t is counted from the start. A start whose height is no more than the rounding of its
-coordinates is on the surface, and no ray hits the surface where it starts: one that goes inwards hits the other side,
-and one that goes outwards leaves the solid.
+For rays that start on the surface of a quadric, or close to it on the scale of the solid, nearly everything cancels.
+The height of such a start above the surface is computed to 32 digits (`minirt.shapes.compensated`), and t is counted
+from the start. A start whose height is no more than the rounding of its coordinates is on the surface, and no ray hits
+the surface where it starts: one that goes inwards hits the other side, and one that goes outwards leaves the solid.
 
 Shadow rays start clear of all surfaces and need none of this: the formulas of quadrics leave it out for them, which
 saves a kernel a third of its size.
@@ -11,12 +11,63 @@ saves a kernel a third of its size.
 
 from __future__ import annotations
 
-from minirt.lanes import Mask, Number, Vec, fabs, max_norm, maximum, minimum, splat, unit_roundoff, where
+from math import inf, nan
+
+from minirt.lanes import (
+    Mask,
+    Number,
+    Vec,
+    any,
+    copysign,
+    fabs,
+    max_norm,
+    maximum,
+    minimum,
+    rarely,
+    splat,
+    sqrt,
+    unit_roundoff,
+    where,
+)
 from minirt.shapes.compensated import Pair, along, minus, offset, squared_length, times
 
 CLOSE = 2.0**-6  # to a surface: share of a solid's size, or of the square of its radius there
 POSITION = 2.0  # unit roundoffs of the largest coordinate; rounding a point moves it by at most sqrt(3) of them
 ROUNDING = 16.0  # unit roundoffs of a solid's size by which a plain height above its surface may be off, and more
+
+
+def negative_interval(a: Number, per_a: Number, b: Number, c: Number, product: Number) -> tuple[Mask, Number, Number]:
+    """Solve a t^2 + 2 b t + c = 0: whether it has real roots, and where the parabola falls below 0 and rises above it.
+
+    For a > 0 the roots are in ascending order, for a < 0 in descending order; NaN where there are none. `per_a` is
+    1 / a. q adds two numbers of the same sign, so q / a and c / q are both exact to a few roundings (Press et al.,
+    Numerical Recipes, 5.6). `product` is c, or 0 where the root c / q is to be exactly 0. With q = 0 the parabola
+    touches zero at t = 0 or, if a = 0 too, is the constant c: below zero from -infinity or from infinity on.
+    """
+    D = b * b - a * c
+    real = D >= 0.0
+    below = splat(nan, D)
+    above = below
+    if any(real):
+        q = -(b + copysign(sqrt(D), b))
+        by_a, by_c = q * per_a, product / q
+        level = q == 0.0
+        if rarely(level):
+            by_c = where(level, where(a == 0.0, where(c > 0.0, inf, -inf), 0.0), by_c)
+        falling = q < 0.0
+        below = where(falling, by_a, by_c)
+        above = where(falling, by_c, by_a)
+    return real, below, above
+
+
+def clamped_minimum(per_a: Number, b: Number, first: Number, last: Number) -> Number:
+    """The t in [first, last] at which a t^2 + 2 b t + c is least, for a >= 0; for a < 0 some t in it.
+
+    For a ray that hits a solid between two planes this point lies in the solid, within rounding. Counted from there all
+    numbers are as small as the solid is wide there, however long it is and wherever its middle is. A ray with a < 0 is
+    steeper than the solid's side, and between the planes never farther away than the solid is wide.
+    """
+    return minimum(maximum(-b * per_a, first), last)
 
 
 def within_shell(level: Number, squared: Number, over: Number, size: Number) -> Mask:

@@ -15,13 +15,10 @@ from typing import Any, NamedTuple
 from minirt.fields import Colour, Direction, Length, Point, Triple, declare, spelled
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, maximum, minimum, rarely, splat, sqrt, unit_roundoff, where
 from minirt.records import record
-from minirt.shapes.basis import from_basis, to_basis
 from minirt.shapes.boundary import Boundary, along_and_off_axis, hypotenuse
-from minirt.shapes.bounds import bounds_of_disc, point_along
-from minirt.shapes.oriented import Axial
-from minirt.shapes.shape import Ball, Bounds, Position
+from minirt.shapes.frames import TWO_PI, angle_in_turns, from_basis, longitude, to_basis
+from minirt.shapes.shape import Axial, Ball, Bounds, Position, bounds_of_disc, point_along
 from minirt.shapes.start import position_error
-from minirt.shapes.uv_mapping import TWO_PI, angle_in_turns, longitude
 
 PAD = 16.0  # unit roundoffs of a torus' outer radius by which a computed height may be off, and more
 STEPS = 100  # of Newton's method at most; most roots take less than ten

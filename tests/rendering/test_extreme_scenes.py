@@ -21,10 +21,9 @@ from minirt.rendering.scene_packing import Packing
 from minirt.report.measurements.stiffness import lost_in_single
 from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import ALL_KINDS, Shape
-from minirt.shapes.bounds import bounds_of_disc, disc_extents, point_along, union_of_bounds
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.paraboloid import Paraboloid
-from minirt.shapes.shape import Bounds
+from minirt.shapes.shape import Bounds, bounds_of_disc, disc_extents, point_along, union_of_bounds
 from tests.kernel.pictures import LAMP
 from tests.scene.strategies import SCENES, values
 from tests.shapes.examples import example

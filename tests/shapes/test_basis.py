@@ -7,7 +7,7 @@ import pytest
 
 from minirt.fields import unit
 from minirt.lanes import Vec, dot
-from minirt.shapes.basis import basis, from_basis, to_basis
+from minirt.shapes.frames import basis, from_basis, to_basis
 from tests.shapes.checks import U
 from tests.shapes.regimes import random_directions
 

@@ -11,7 +11,7 @@ import pytest
 from gmpy2 import mpfr, sqrt
 
 from minirt.lanes import Vec, dot
-from minirt.shapes.double_double import DoubleDouble
+from minirt.shapes.boundary import DoubleDouble
 from tests.oracle.vectors import BITS
 from tests.shapes.regimes import Array
 

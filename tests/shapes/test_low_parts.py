@@ -8,8 +8,8 @@ from gmpy2 import mpfr, sqrt
 
 from minirt.fields import cos_and_sin
 from minirt.lanes import Vec
-from minirt.shapes.basis import basis
-from minirt.shapes.low_parts import axis_low, basis_low, quotient_low, root_low
+from minirt.shapes.compensated import axis_low, basis_low, quotient_low, root_low
+from minirt.shapes.frames import basis
 from tests.oracle.vectors import own_axes, unit
 from tests.shapes.regimes import random_directions
 

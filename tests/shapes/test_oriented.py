@@ -13,7 +13,7 @@ from minirt.lanes import Vec
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.box import Box
 from minirt.shapes.mesh import Mesh
-from minirt.shapes.oriented import Flat, Oriented
+from minirt.shapes.shape import Flat, Oriented
 from minirt.shapes.sphere import Sphere
 from tests import oracle
 from tests.meshes.examples import named

@@ -9,8 +9,7 @@ import pytest
 
 from minirt.kernel.shading.shade import clearance
 from minirt.lanes import Vec
-from minirt.shapes.pyramid import may_meet
-from minirt.shapes.triangle import Triangle, watertight
+from minirt.shapes.triangle import Triangle, in_pyramid, watertight
 from tests.shapes.regimes import GREY
 
 COUNT = 4000
@@ -84,7 +83,7 @@ def test_no_ray_that_hits_is_culled(seed: int, regime: tuple[float, float, float
         direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), number)
         with np.errstate(all="ignore"):  # float32 may not tell corners so far away apart
             hit, _ = watertight(a, b, c, up, vec(begin, number), direction, True)
-        tried = may_meet((a, b, c), up, origin, None if start is None else vec(begin, number), direction, everything)
+        tried = in_pyramid((a, b, c), up, origin, None if start is None else vec(begin, number), direction, everything)
         assert hit.mean() > 0.1 or number is np.float32  # those that start on the triangle do not
         assert not (hit & ~tried).any()
 
@@ -98,7 +97,7 @@ def test_rays_beside_the_triangle_are_culled(seed: int) -> None:
     aim = outside @ corners - apex
     direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), np.float64)
     given = tuple(vec(each, np.float64) for each in corners), vec(normal, np.float64), vec(apex, np.float64)
-    assert not may_meet(*given, None, direction, np.ones(COUNT, bool)).any()
+    assert not in_pyramid(*given, None, direction, np.ones(COUNT, bool)).any()
 
 
 @pytest.mark.parametrize("number", [np.float64, np.float32])
@@ -114,7 +113,7 @@ def test_rays_that_leave_a_triangle_are_culled_for_it(seed: int, number: type) -
     aim = apex - points
     direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), number)
     for side in (1.0, -1.0):
-        tried = may_meet((a, b, c), up * number(side), vec(apex, number), start, direction, np.ones(COUNT, bool))
+        tried = in_pyramid((a, b, c), up * number(side), vec(apex, number), start, direction, np.ones(COUNT, bool))
         assert not tried.any()
 
 
@@ -124,5 +123,5 @@ def test_inactive_rays_stay_inactive() -> None:
     direction = vec(aim / np.linalg.norm(aim, axis=1, keepdims=True), np.float64)
     asked = np.arange(COUNT) % 3 == 0
     given = tuple(vec(each, np.float64) for each in corners), vec(normal, np.float64), vec(apex, np.float64)
-    assert np.array_equal(may_meet(*given, None, direction, asked), asked)
-    assert np.array_equal(may_meet(*given, vec(points + aim, np.float64), direction, asked), asked)
+    assert np.array_equal(in_pyramid(*given, None, direction, asked), asked)
+    assert np.array_equal(in_pyramid(*given, vec(points + aim, np.float64), direction, asked), asked)

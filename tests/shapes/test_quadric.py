@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.shapes.quadric import negative_interval
+from minirt.shapes.start import negative_interval
 
 CASES = [
     ((1, 0, -4), (True, -2, 2)),

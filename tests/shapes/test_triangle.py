@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from minirt.errors import ElementError
-from minirt.shapes.triangle import Triangle, cross
-from minirt.shapes.triangle_normal import plane_normals
+from minirt.shapes.triangle import Triangle, cross, plane_normals
 from tests.shapes.checks import U
 from tests.shapes.execution_modes import Intersect, surfaces
 from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_directions, unit

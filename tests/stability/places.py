@@ -16,7 +16,7 @@ import numpy as np
 from minirt.element import fields_of
 from minirt.fields import Direction
 from minirt.shapes import Kind, Shape
-from minirt.shapes.basis import basis
+from minirt.shapes.frames import basis
 from tests.shapes.execution_modes import kind_of, surfaces
 from tests.shapes.regimes import Array, Random, random_directions
 from tests.stability.regime import points, size

@@ -8,12 +8,11 @@ from unittest.mock import patch
 import numpy as np
 
 from minirt.lanes import Vec, copysign, dot, fabs, maximum, minimum, sqrt, where
-from minirt.shapes.basis import to_basis
 from minirt.shapes.box import PackedBox, slab_interval
-from minirt.shapes.cone import PackedCone, intersect, occludes
-from minirt.shapes.cone_start import close_start
+from minirt.shapes.cone import PackedCone, close_start, intersect, occludes
 from minirt.shapes.cylinder import PackedCylinder
 from minirt.shapes.disc import PackedDisc
+from minirt.shapes.frames import to_basis
 from minirt.shapes.plane import PackedPlane
 from minirt.shapes.sphere import PackedSphere
 from minirt.shapes.square import PackedSquare

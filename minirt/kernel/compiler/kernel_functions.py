@@ -17,18 +17,7 @@ from minirt.kernel.compiler.inlining import inline_functions_of
 from minirt.kernel.compiler.options import INLINED
 from minirt.kernel.shading import lights, patterns, shade, shadows, surfaces, texturing, whitted
 from minirt.lanes import mathematics
-from minirt.shapes import (
-    ALL_KINDS,
-    basis,
-    compensated,
-    cone_start,
-    flat_start,
-    pyramid,
-    quadric,
-    shape,
-    start,
-    uv_mapping,
-)
+from minirt.shapes import ALL_KINDS, compensated, frames, shape, start
 
 REGISTERED = (
     whitted.ray_stack,
@@ -46,14 +35,9 @@ REGISTERED = (
 for _function in (lanes.cross, lanes.max_norm):
     register_jitable(**INLINED)(_function)
 for _module in (
-    basis,
     compensated,
-    cone_start,
-    flat_start,
+    frames,
     mathematics,
-    quadric,
-    uv_mapping,
-    pyramid,
     shape,
     start,
     binning,

@@ -21,8 +21,8 @@ from minirt.rendering.packing.lights import Colours, colours_of
 from minirt.rendering.packing.textures import PATTERN_FEATURES, pack_patterns
 from minirt.scene import Scene
 from minirt.shapes import Shape
-from minirt.shapes.basis import basis
-from minirt.shapes.oriented import UPRIGHT
+from minirt.shapes.frames import basis
+from minirt.shapes.shape import UPRIGHT
 
 NumberedShapes = list[tuple[int, Shape]]  # shapes that have materials, with their indices
 BLACK = 1e30  # absorption, in halvings for each scene unit, of what lets nothing of a colour through

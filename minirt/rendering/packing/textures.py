@@ -12,8 +12,8 @@ from minirt.kernel.shading.patterns import CLOUDS, COLUMNS, MARBLE, WOOD, Patter
 from minirt.lanes import Vec, cross, unit
 from minirt.rendering.packing.lights import Colours
 from minirt.shapes import Shape
-from minirt.shapes.basis import basis
-from minirt.shapes.oriented import UPRIGHT, Flat, Oriented
+from minirt.shapes.frames import basis
+from minirt.shapes.shape import UPRIGHT, Flat, Oriented
 from minirt.shapes.triangle import Triangle
 
 PATTERN_FEATURES = {"patterns", "raised_patterns"}

@@ -13,9 +13,9 @@ from typing import Any
 
 from minirt.lanes import Mask, Number, Vec, any, cross, dot, fabs, minimum, splat, sqrt, where
 from minirt.shapes import Shape
-from minirt.shapes.basis import to_basis
 from minirt.shapes.cone import Cone, PackedCone
 from minirt.shapes.cylinder import Cylinder, PackedCylinder
+from minirt.shapes.frames import to_basis
 from minirt.shapes.hyperboloid import Hyperboloid, PackedHyperboloid
 from minirt.shapes.paraboloid import PackedParaboloid, Paraboloid
 from minirt.shapes.plane import PackedPlane, Plane

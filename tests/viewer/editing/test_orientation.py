@@ -17,8 +17,8 @@ from minirt.scene.camera_frame import camera_frame
 from minirt.shapes.box import Box
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.ellipsoid import Ellipsoid
-from minirt.shapes.oriented import Flat, Oriented
 from minirt.shapes.plane import Plane
+from minirt.shapes.shape import Flat, Oriented
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
