@@ -30,9 +30,14 @@ REGISTERED = (
     binning.project_all,
     binning.fill_bins,
     pixels.classify,
-    scene_arrays.by_reference,
 )
-for _function in (lanes.cross, lanes.max_norm):
+for _function in (
+    lanes.cross,
+    lanes.max_norm,
+    scene_arrays.has_rows,
+    scene_arrays.range_in_tile,
+    scene_arrays.range_in_cell,
+):
     register_jitable(**INLINED)(_function)
 for _module in (
     compensated,
@@ -41,7 +46,6 @@ for _module in (
     shape,
     start,
     binning,
-    scene_arrays,
     trace,
     shadow_rays,
     lights,
