@@ -288,16 +288,15 @@ def test_a_planted_circle_is_found() -> None:
     }
     assert circles(graph(planted)) == {"minirt.mlx.a", "minirt.mlx.b"}
     planted = {
-        "kernel/frame.py": "",
-        "kernel/bvh/__init__.py": "",
-        "kernel/bvh/nodes.py": "from minirt.kernel.binning import Grid",
-        "kernel/bvh/build.py": "",
-        "kernel/culling/__init__.py": "",
-        "kernel/culling/binning.py": "",
-        "kernel/culling/light_buffer.py": "import minirt.kernel.bvh_build",
+        "mlx/one/__init__.py": "",
+        "mlx/one/a.py": "from minirt.mlx.two.c import Grid",
+        "mlx/one/b.py": "",
+        "mlx/two/__init__.py": "",
+        "mlx/two/c.py": "",
+        "mlx/two/d.py": "import minirt.mlx.one.b",
     }
     assert circles(graph(planted)) == set()
-    assert circles(folders(graph(planted))) == {"minirt.kernel.bvh", "minirt.kernel.culling"}
+    assert circles(folders(graph(planted))) == {"minirt.mlx.one", "minirt.mlx.two"}
 
 
 @pytest.mark.parametrize("path", ["__init__.py", *CLI, "image.py", "bench.py"])
