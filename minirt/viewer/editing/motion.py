@@ -10,7 +10,7 @@ from minirt.fields import FARTHEST, LEAST_LENGTH, Direction, Point, Triple, clam
 from minirt.scene import Camera
 from minirt.scene.camera_frame import camera_frame, linear_combination
 from minirt.scene.elements import TONES
-from minirt.shapes.oriented import Oriented
+from minirt.shapes.shape import Oriented
 from minirt.viewer.editing.projection import dot, extent, scene_centre, subtract
 from minirt.viewer.editing.state import Frame, State, field_names
 from minirt.viewer.editing.values import NOISE, neat_direction, round_length, shows_roll

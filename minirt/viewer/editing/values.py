@@ -27,7 +27,7 @@ from minirt.fields import (
     Triple,
     neat,
 )
-from minirt.shapes.oriented import Oriented
+from minirt.shapes.shape import Oriented
 
 CHANNELS = "red", "green", "blue"
 
