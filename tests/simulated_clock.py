@@ -10,7 +10,7 @@ from minirt import bench
 from minirt.helpers import system
 from minirt.helpers.system import Run
 from minirt.kernel.frame import REFERENCE_SAMPLES
-from minirt.kernel.stored_light import PACKET_HEIGHT
+from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering import frame_runner, renderer
 from minirt.rendering.frame import Frame
 from minirt.rendering.frame_runner import FrameRunner

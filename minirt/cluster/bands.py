@@ -10,7 +10,7 @@ from itertools import pairwise
 from math import sqrt
 
 from minirt.cluster.task import Region
-from minirt.kernel.stored_light import TILE
+from minirt.kernel.pixels import TILE
 from minirt.rendering.outcome import Outcome
 
 ROWS = 64  # of a band, where the next two leave the choice

@@ -12,7 +12,7 @@ import numpy as np
 from minirt.kernel.frame import CANCELLED
 from minirt.kernel.machine_code.argument_block import words_of
 from minirt.kernel.machine_code.entry import Entry
-from minirt.kernel.stored_light import PACKET_HEIGHT
+from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.lanes import width
 from minirt.rendering.frame import Frame, frame_arguments, sum_buffer, thread_memory
 from minirt.rendering.kernels import Choice, Kernels

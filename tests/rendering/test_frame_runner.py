@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from minirt.kernel.frame import CANCELLED
-from minirt.kernel.stored_light import PACKET_HEIGHT
+from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering import Renderer, frame_runner
 from minirt.rendering.frame import sample_positions
 from minirt.rendering.sampling.contrast import edge_pixels

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.helpers import system
-from minirt.kernel.culling.binning import MARGIN, Grid
+from minirt.kernel.binning import MARGIN, Grid
 from minirt.kernel.frame import tile_count
-from minirt.kernel.stored_light import TILE
+from minirt.kernel.pixels import TILE
 from minirt.rendering.culling.light_frustum import SPREAD, Cluster, frustum_grid
 from minirt.rendering.culling.list_sizes import ADVICE, COARSEST, MEMBER, QUICKLY_BUILT, WHAT, check_lists
 from minirt.rendering.culling.planes import CellRuns, cell_runs, is_crowd, opaque_planes, signed_heights
@@ -21,7 +21,7 @@ from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
 
 # Vectors across, down and forward of the six faces of a cube, in the order of `cell_of_cube` in
-# `minirt.kernel.culling.light_buffer`.
+# `minirt.kernel.shadow_rays`.
 FACES = np.array([np.roll(np.diag([1.0, 1.0, side]), axis + 1, axis=1) for axis in range(3) for side in (1, -1)])
 # Cells by which the intervals of a cube grow so that a list holds for directions up to `SPREAD` away: at the corner of
 # a face, where slopes change most with the angle, an angle e changes them by less than 3 e.
@@ -62,7 +62,7 @@ def effective_count(kind: type[Shape], primitives: int) -> int:
 
 
 def light_buffer(cells: int, frustum: Grid | None) -> np.ndarray:
-    """The numbers (11,) by which the kernel finds the cell of a direction: see `minirt.kernel.culling.light_buffer`."""
+    """The numbers (11,) by which the kernel finds the cell of a direction: see `minirt.kernel.shadow_rays`."""
     if frustum is None:
         spread = 2 * np.sin(SPREAD * np.pi / 4 / cells)
         return np.array([*[0.0] * 10, spread * spread])
@@ -97,7 +97,7 @@ def seen_by_eye(
     radius: float = 0.0,
     per_focus: float = 0.0,
 ) -> BinnedShapes:
-    """Bin the shapes into the tiles of a rectangle of a picture. `kernel` is `minirt.kernel.culling.binning` or its
+    """Bin the shapes into the tiles of a rectangle of a picture. `kernel` is `minirt.kernel.binning` or its
     compiled form.
 
     A ray of a lens of some radius differs, at depth z, from that through its centre by the radius times

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from minirt.kernel.bvh.build import BINS, GROUP, INDEX, BinaryTree
-from minirt.kernel.bvh.nodes import GROUPS, NODE, WIDTH, Group, Tree
-from minirt.kernel.rows import kind_of, row_type
+from minirt.kernel.bvh_build import BINS, GROUP, INDEX, BinaryTree
+from minirt.kernel.bvh_nodes import GROUPS, NODE, WIDTH, Group, Tree
+from minirt.kernel.scene_arrays import kind_of, row_type
 from minirt.rendering.packing.shape_arrays import ShapeArrays, primitives_of
 from minirt.shapes import Kind
 

@@ -19,8 +19,8 @@ import numpy as np
 
 from minirt.errors import RenderError
 from minirt.fields import clamp
-from minirt.kernel.rows import kind_of
-from minirt.kernel.stored_light import PACKET_HEIGHT, TILE
+from minirt.kernel.pixels import PACKET_HEIGHT, TILE
+from minirt.kernel.scene_arrays import kind_of
 from minirt.lanes import Vec, width
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Camera
@@ -197,7 +197,7 @@ def in_disc(square: np.ndarray) -> np.ndarray:
 
 
 def with_apertures(rays: np.ndarray, places: np.ndarray, lens: np.ndarray | None) -> np.ndarray:
-    """Add to the directions of rays, (k, 3 * width), what `minirt.kernel.shading.apertures` needs: (k, 8 * width).
+    """Add to the directions of rays, (k, 3 * width), what `minirt.kernel.shading.lights` needs: (k, 8 * width).
 
     `places` (k, width, 4) are those of `aperture_places`; 0 is the centre of the lens and of the lights.
     """

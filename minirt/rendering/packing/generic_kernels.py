@@ -21,14 +21,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from minirt.kernel.bvh import nodes
-from minirt.kernel.bvh.nodes import WIDTH, Tree
-from minirt.kernel.culling.light_buffer import TOLERANCE
-from minirt.kernel.rows import kind_of, point_fields, row_type
-from minirt.kernel.scene_arrays import Group, SceneArrays
-from minirt.kernel.shading.environment import Environment
+from minirt.kernel import bvh_nodes
+from minirt.kernel.bvh_nodes import WIDTH, Tree
+from minirt.kernel.scene_arrays import Group, SceneArrays, kind_of, point_fields, row_type
 from minirt.kernel.shading.patterns import COLUMNS, ORIGIN, Patterns
-from minirt.kernel.shading.texturing import SurfaceMaps
+from minirt.kernel.shading.texturing import Environment, SurfaceMaps
+from minirt.kernel.shadow_rays import TOLERANCE
 from minirt.rendering.packing.bvh import block_type
 from minirt.shapes import ALL_KINDS, Kind
 
@@ -252,7 +250,7 @@ def without(names: tuple[str, ...], generic: GenericKernel) -> dict[str, Any]:
     return dict.fromkeys(set(names) - generic.features)
 
 
-def empty_blocks(kind: Kind, rows: np.ndarray) -> nodes.Group:
+def empty_blocks(kind: Kind, rows: np.ndarray) -> bvh_nodes.Group:
     """Return a group of a BVH for a kind without shapes."""
     unbounded = np.zeros(0, np.int64) if kind.infinite else None
-    return nodes.Group(rows, np.zeros(0, block_type(kind)), np.zeros((0, WIDTH, 2)), unbounded, ABSENT)
+    return bvh_nodes.Group(rows, np.zeros(0, block_type(kind)), np.zeros((0, WIDTH, 2)), unbounded, ABSENT)

@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from minirt.fields import cos_and_sin
-from minirt.kernel.rows import kind_of_packed
-from minirt.kernel.shading.environment import Environment
-from minirt.kernel.shading.texturing import SurfaceMaps
+from minirt.kernel.scene_arrays import kind_of_packed
+from minirt.kernel.shading.texturing import Environment, SurfaceMaps
 from minirt.lanes import Vec, dot
 from minirt.materials import Glass, Mirror, Placement, picture_cache
 from minirt.materials.picture_cache import check_textures
@@ -62,7 +61,7 @@ def refractive_index(shape: Shape) -> float:
 
 def pack_transparent(with_materials: NumberedShapes, count: int) -> np.ndarray:
     """Shares of reflection and refraction of each of `count` shapes, its refractive index, and how far Fresnel's
-    equations count: see `minirt.kernel.shading.transmission`."""
+    equations count: see `minirt.kernel.shading.shadows`."""
     rows = np.tile([0.0, 0.0, 1.0, 0.0], (count, 1))
     for i, shape in with_materials:
         if shape.glass:
@@ -72,7 +71,7 @@ def pack_transparent(with_materials: NumberedShapes, count: int) -> np.ndarray:
 
 def pack_media(with_materials: NumberedShapes, count: int, colours: Colours) -> np.ndarray:
     """Absorption of red, green and blue inside each of `count` shapes, and the shares of them that its surface lets
-    through: see `minirt.kernel.shading.media`."""
+    through: see `minirt.kernel.shading.surfaces`."""
     rows = np.tile([0.0, 0.0, 0.0, 1.0, 1.0, 1.0], (count, 1))
     for i, shape in with_materials:
         if shape.tint and shape.glass and shape.glass.share:
@@ -141,7 +140,7 @@ def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Mate
 
 
 def pack_specular(with_materials: NumberedShapes, count: int) -> np.ndarray:
-    """Specular share, exponent and model of each of `count` shapes: see `minirt.kernel.shading.specular`."""
+    """Specular share, exponent and model of each of `count` shapes: see `minirt.kernel.shading.lights`."""
     rows = np.zeros((count, 3))
     for i, shape in with_materials:
         if shape.specular:

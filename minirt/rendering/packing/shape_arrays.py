@@ -12,8 +12,8 @@ import numpy as np
 
 from minirt.element import fields_of
 from minirt.fields import Point
-from minirt.kernel.culling.binning import MARGIN
-from minirt.kernel.rows import row_type
+from minirt.kernel.binning import MARGIN
+from minirt.kernel.scene_arrays import row_type
 from minirt.lanes import Vec
 from minirt.shapes import ALL_KINDS, Ball, Shape
 from minirt.shapes.mesh import Mesh

@@ -16,7 +16,7 @@ divided by n . d. So
 which is the rule of thumb of Higham, Accuracy and Stability of Numerical Algorithms (2002), 1.6. Where a ray only
 touches a surface the condition number is infinite: t then changes by the square root of a change of the data.
 
-All this is computed with double-double numbers (`minirt.shapes.double_double`) from the numbers of the scene as they
+All this is computed with double-double numbers (`minirt.shapes.boundary`) from the numbers of the scene as they
 are, with directions and axes of exactly unit length. Of a mesh the corners of the triangles count as the scene places
 them, rounded. That nothing nearer was missed, a certificate does not say.
 """
@@ -33,9 +33,8 @@ from minirt.element import fields_of
 from minirt.fields import Angle, Direction, Length, Lengths, Point, cos_and_sin
 from minirt.lanes import Vec, dot, sqrt, where
 from minirt.shapes import ALL_KINDS, Kind, Shape
-from minirt.shapes.boundary import Boundary, hypotenuse, unit
+from minirt.shapes.boundary import Boundary, DoubleDouble, hypotenuse, unit
 from minirt.shapes.compensated import two_sum
-from minirt.shapes.double_double import DoubleDouble
 from minirt.shapes.shape import Position
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from minirt.errors import RenderError
 from minirt.helpers.system import renew_after_fork
-from minirt.kernel.bvh.nodes import Tree
+from minirt.kernel.bvh_nodes import Tree
 from minirt.kernel.frame import ray_direction
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.argument_block import words_of

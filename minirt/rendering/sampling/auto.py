@@ -2,7 +2,7 @@
 are needed.
 
 The first sweep over the picture is a plain frame of one sample a pixel, beside which some packets are probed (see
-`minirt.kernel.stored_light.squared_error`). Often that is enough. Otherwise the packets are sorted into classes by
+`minirt.kernel.pixels.squared_error`). Often that is enough. Otherwise the packets are sorted into classes by
 their contrast, and are drawn anew with the samples that `minirt.rendering.sampling.packets` chooses for their class.
 Where that takes long it is done in portions, random sets of packets, since the probes of each tell how many samples, or
 how much time, the next portions need. Where an error is asked for, the picture depends on nothing else; where a time is

@@ -14,7 +14,7 @@ import numpy as np
 
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.library import Call
-from minirt.kernel.stored_light import PACKET_HEIGHT
+from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering.outcome import ERROR_EXPONENT
 from minirt.rendering.tone_mapping import PLAIN, rounding_error, tone_named
 

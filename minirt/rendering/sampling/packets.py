@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from minirt.kernel.stored_light import PACKET_HEIGHT
+from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.rendering.outcome import ERROR_EXPONENT
 from minirt.rendering.packing.camera import GOLDEN_RATIO
 from minirt.rendering.sampling.contrast import CLASSES

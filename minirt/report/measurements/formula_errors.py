@@ -13,7 +13,7 @@ import numpy as np
 
 from minirt.helpers.system import Run, in_turn, is_disturbed
 from minirt.kernel.compiler.jit_formula import probe
-from minirt.kernel.rows import row_type
+from minirt.kernel.scene_arrays import row_type
 from minirt.rendering.packing.generic_kernels import rows_relative_to
 from minirt.rendering.packing.shape_arrays import defining_points, packed_rows
 from minirt.report.measurements import exact_hits, textbook

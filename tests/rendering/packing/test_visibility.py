@@ -10,13 +10,12 @@ import pytest
 import minirt
 from minirt.errors import RenderError
 from minirt.helpers import system
-from minirt.kernel import interpreted
-from minirt.kernel.culling import binning
-from minirt.kernel.culling.light_buffer import FRUSTUM_FACTOR, SCALE, TOLERANCE, light_buffer_cell
+from minirt.kernel import binning, interpreted
 from minirt.kernel.frame import ray_direction, tile_count
 from minirt.kernel.machine_code import functions
-from minirt.kernel.rows import kind_of, read
-from minirt.kernel.stored_light import TILE
+from minirt.kernel.pixels import TILE
+from minirt.kernel.scene_arrays import kind_of, read
+from minirt.kernel.shadow_rays import FRUSTUM_FACTOR, SCALE, TOLERANCE, light_buffer_cell
 from minirt.kernel.trace import COINCIDENT, in_cone
 from minirt.lanes import Vec, unit
 from minirt.rendering.culling import light_frustum, visibility

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from minirt.kernel.frame import REFERENCE_SAMPLES
-from minirt.kernel.stored_light import ESTIMATE, PACKET_HEIGHT, SUMS, squared_error
+from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, SUMS, squared_error
 from minirt.rendering.frame import sample_positions
 from minirt.rendering.outcome import MOST_SAMPLES
 from minirt.rendering.packing.camera import packet_pixels, packet_rays
