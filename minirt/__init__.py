@@ -210,7 +210,7 @@ def render(
     from minirt.helpers.progress import State, in_notebooks
     from minirt.image import Image, LinearImage
     from minirt.rendering.packing.camera import cut_for
-    from minirt.scene.arguments import check_scene
+    from minirt.scene.scene import check_scene
 
     check_scene(scene, "render")
     own_width, own_height = size_of(scene)

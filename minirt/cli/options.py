@@ -132,13 +132,13 @@ def with_settings(parser: argparse.ArgumentParser, options: argparse.Namespace) 
 
     They may come from anybody: what is unknown or out of range is left out.
     """
-    from minirt.scene import in_picture
+    from minirt.scene import files
 
     scene = options.scene[0]
-    if not in_picture.is_picture(scene):
+    if not files.is_picture(scene):
         return options
     try:
-        text = in_picture.settings(scene)
+        text = files.picture_settings(scene)
     except FileError as error:
         from minirt.scene.files import file_error
 

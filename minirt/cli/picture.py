@@ -141,8 +141,8 @@ def texts_for(output: str, scene: Scene, options: argparse.Namespace) -> dict[st
     """Return the texts that a picture of the scene carries."""
     import minirt
     from minirt.cli.options import settings_text
-    from minirt.scene import dump, in_picture
+    from minirt.scene import dump, files
 
     width, height = options.size or minirt.size_of(scene)
-    way = in_picture.way("" if output == "-" else output, scene.file)
-    return in_picture.texts_for(dump(scene), settings_text(options, width, height), way)
+    way = files.way_to_scene("" if output == "-" else output, scene.file)
+    return files.picture_texts(dump(scene), settings_text(options, width, height), way)

@@ -12,7 +12,7 @@ from minirt.cluster.task import Region, Settings, Task, version
 from minirt.cluster.workers import WorkerPool, Workers
 from minirt.image import Image, LinearImage
 from minirt.scene import Camera, Scene
-from minirt.scene.arguments import check_scene
+from minirt.scene.scene import check_scene
 
 
 def render_all(

@@ -18,7 +18,7 @@ from minirt.formats.table import check_bits, check_size, format_of
 from minirt.helpers import file_io
 from minirt.rendering.outcome import Outcome
 from minirt.scene import Scene
-from minirt.scene.arguments import check_scene
+from minirt.scene.scene import check_scene
 
 
 def render_to(

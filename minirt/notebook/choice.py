@@ -81,7 +81,7 @@ def view(
     `samples`, the most rays per pixel of a picture at rest. `keys` is the layout of the keyboard: auto, qwerty, azerty
     or qwertz. The other arguments are those of `minirt.render`. MlxError where neither can be opened.
     """
-    from minirt.scene.arguments import check_scene
+    from minirt.scene.scene import check_scene
     from minirt.viewer import view as view_in_window
 
     check_scene(scene, "view")

@@ -13,7 +13,7 @@ from minirt.errors import MiniRTError
 from minirt.image import Image
 from minirt.notebook.page_back_end import PageBackend
 from minirt.notebook.page_events import deliver
-from minirt.scene.arguments import check_scene
+from minirt.scene.scene import check_scene
 
 if TYPE_CHECKING:
     from minirt.scene import Scene

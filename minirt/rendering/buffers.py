@@ -16,7 +16,7 @@ from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.rays import camera_rays, trace
 from minirt.rendering.renderer import shared_renderer
 from minirt.scene import Ambient, Scene
-from minirt.scene.arguments import check_scene
+from minirt.scene.scene import check_scene
 from minirt.shapes import Shape
 
 WHITE = (255, 255, 255)

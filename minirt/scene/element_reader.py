@@ -13,10 +13,8 @@ from minirt.element import Element, cached_per_kind, fields_of, pattern
 from minirt.errors import FieldError, FileError, quoted
 from minirt.fields import Colour, Field, MeshFile
 from minirt.fields.scalars import code_point_name
-from minirt.scene.diagnostics import Log
-from minirt.scene.lines import Line, Word, first_unprintable, join_at_commas, split_at_blanks
-from minirt.scene.registry import ELEMENTS, SPELLINGS
-from minirt.scene.suggestions import GLUED, NUMERIC, hint, nearest_element, nearest_key
+from minirt.scene.lines import Line, Log, Word, first_unprintable, join_at_commas, split_at_blanks
+from minirt.scene.registry import ELEMENTS, GLUED, NUMERIC, SPELLINGS, hint, nearest_element, nearest_key
 
 SLASHES = re.compile(r"(?<![^ \t])//")
 COMMA_AND_BLANK = re.compile(r"[ \t],|,[ \t]")

@@ -12,16 +12,14 @@ from typing import Any, NamedTuple
 from minirt import jail
 from minirt.element import Element, pattern
 from minirt.errors import Problem, SceneError
-from minirt.scene import fast, files, in_picture
-from minirt.scene.diagnostics import Log
+from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.elements import Ambient
 from minirt.scene.lights import FurtherLight, Light
-from minirt.scene.lines import Line, Word, line_from
+from minirt.scene.lines import Line, Log, Word, line_from
 from minirt.scene.pages import Item
-from minirt.scene.registry import ELEMENTS
+from minirt.scene.registry import ELEMENTS, nearest_element
 from minirt.scene.scene import Scene
-from minirt.scene.suggestions import nearest_element
 
 BLOCK = 4096  # lines that the fast path reads at once
 
@@ -36,7 +34,7 @@ class Reading(NamedTuple):
 def load(path: str | os.PathLike[str], lenient: bool = False, left_handed: bool = False) -> Reading:
     """Read a scene file; SceneError with all of its errors. `left_handed` mirrors its pictures."""
     data = files.read(path)
-    scene, notices = parse(data, path, lenient, in_picture.folder(path) if in_picture.is_picture(path) else None)
+    scene, notices = parse(data, path, lenient, files.picture_folder(path) if files.is_picture(path) else None)
     if left_handed:
         scene = scene.replace(scene.camera, left_handed=True)
     return Reading(scene, notices)

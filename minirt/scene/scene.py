@@ -12,18 +12,61 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from minirt.element import Element
-from minirt.scene.concatenation import Concatenation
+from minirt.scene import writer
 from minirt.scene.elements import Ambient, Background, Camera, Resolution
 from minirt.scene.lights import Lamp
 from minirt.scene.pages import Item, Page, replace_item, split_into_pages
-from minirt.scene.plurals import Plurals
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
+
+if TYPE_CHECKING:
+    from minirt.scene.lights import FurtherLight, ParallelLight, SpotLight
+    from minirt.shapes import (
+        Box,
+        Cone,
+        Cylinder,
+        Disc,
+        Ellipsoid,
+        Hyperboloid,
+        Mesh,
+        Paraboloid,
+        Plane,
+        Sphere,
+        Square,
+        Torus,
+        Triangle,
+    )
 
 UNIQUE_KINDS = tuple(kind for kind in ELEMENTS.values() if kind.once)
 
 
-@dataclass(frozen=True, init=False)
+class Plurals:
+    """The elements of each kind as type checkers and editors see them: `scene.spheres`."""
+
+    if TYPE_CHECKING:
+        resolutions: tuple[Resolution, ...]
+        ambients: tuple[Ambient, ...]
+        backgrounds: tuple[Background, ...]
+        cameras: tuple[Camera, ...]
+        further_lights: tuple[FurtherLight, ...]
+        parallel_lights: tuple[ParallelLight, ...]
+        spot_lights: tuple[SpotLight, ...]
+        spheres: tuple[Sphere, ...]
+        planes: tuple[Plane, ...]
+        cylinders: tuple[Cylinder, ...]
+        cones: tuple[Cone, ...]
+        paraboloids: tuple[Paraboloid, ...]
+        hyperboloids: tuple[Hyperboloid, ...]
+        triangles: tuple[Triangle, ...]
+        squares: tuple[Square, ...]
+        discs: tuple[Disc, ...]
+        boxes: tuple[Box, ...]
+        tori: tuple[Torus, ...]
+        ellipsoids: tuple[Ellipsoid, ...]
+        meshes: tuple[Mesh, ...]
+
+
+@dataclass(frozen=True, init=False, eq=False)
 class Scene(Plurals):
     """An immutable scene. An edit makes a new scene, which shares all pages but one with the old.
 
@@ -31,17 +74,15 @@ class Scene(Plurals):
     with two elements of a kind that may be there once.
     """
 
-    items: Concatenation[Item]
     file: Path | None  # from which it was read
-    pages: tuple[Page, ...] = field(repr=False, compare=False)
+    pages: tuple[Page, ...] = field(repr=False)
 
     def __init__(self, items: Iterable[Item], file: Path | None = None) -> None:
         self._set_pages(tuple(split_into_pages(tuple(items))), file)
 
     def _set_pages(self, pages: tuple[Page, ...], file: Path | None) -> None:
         """Set the contents; ValueError for a wrong number of a unique element."""
-        for name, value in (("items", Concatenation(page.items for page in pages)), ("file", file), ("pages", pages)):
-            object.__setattr__(self, name, value)
+        vars(self).update(pages=pages, file=file)
         for kind in UNIQUE_KINDS:
             count = sum(type(element) is kind for page in pages if kind in page.kinds for element in page.of(kind))
             if count > 1 or (kind is Camera and count == 0):
@@ -49,10 +90,23 @@ class Scene(Plurals):
                     f"a scene has {'exactly' if kind is Camera else 'at most'} one {kind.title}, got {count}"
                 )
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene) or self.file != other.file:
+            return False
+        return self.pages == other.pages or self.items == other.items
+
+    def __hash__(self) -> int:
+        return hash((self.items, self.file))
+
     @cached_property
-    def elements(self) -> Concatenation[Element]:
+    def items(self) -> tuple[Item, ...]:
+        """The elements, comments and blank lines, in the order of the file."""
+        return self.of(object)
+
+    @cached_property
+    def elements(self) -> tuple[Element, ...]:
         """All elements, without comments and blank lines, in the order of the file."""
-        return Concatenation(page.of(Element) for page in self.pages)
+        return self.of(Element)
 
     @cached_property
     def shapes(self) -> tuple[Shape, ...]:
@@ -95,9 +149,12 @@ class Scene(Plurals):
 
     def indices_of(self, sort: type[Any]) -> Iterator[int]:
         """Yield the indices in `elements` of the instances of a type; pages without one are skipped."""
-        for start, elements, page in zip((0, *self.elements.ends), self.elements.parts, self.pages, strict=False):
+        start = 0
+        for page in self.pages:
+            elements = page.of(Element)
             if page.of(sort):
                 yield from (index for index, element in enumerate(elements, start) if isinstance(element, sort))
+            start += len(elements)
 
     if not TYPE_CHECKING:  # which sees `Plurals`
 
@@ -118,14 +175,14 @@ class Scene(Plurals):
     def replace(self, old: Element, new: Element | None = None, **changes: Any) -> Scene:
         """Return the scene with `old` replaced by `new`, or by `old` with some fields changed; ValueError when `old` is
         not in the scene."""
-        return self._edited(*self.items.locate(self.index(old)), old.replace(**changes) if new is None else new)
+        return self._edited(self.index(old), object, old.replace(**changes) if new is None else new)
 
     def add(self, *elements: Element) -> Scene:
         """Return the scene with further elements at its end; ValueError where a kind may be there only once.
 
         scene = scene.add(minirt.Sphere((0, 1, 8), 2, (255, 0, 0)))
         """
-        items = tuple(self.items)
+        items = self.items
         end = len(items) - (items[-1:] == ("",))  # before the blank line that is the end of a file
         return Scene((*items[:end], *elements, *items[end:]), self.file)
 
@@ -133,7 +190,7 @@ class Scene(Plurals):
         """Return the scene without some elements; ValueError when one is not in the scene, or is its camera."""
         scene = self
         for element in elements:
-            scene = scene._edited(*scene.items.locate(scene.index(element)))
+            scene = scene._edited(scene.index(element), object)
         return scene
 
     def save(self, path: str | os.PathLike[str] | None = None) -> None:
@@ -142,29 +199,29 @@ class Scene(Plurals):
         Comments and unchanged lines stay as they were read. Textures and meshes keep their names, which are relative to
         the folder of the file. SceneError when the file cannot be written, ValueError where there is no path.
         """
-        from minirt.scene import file_text
-
         target = self.file if path is None else path
         if target is None:
             raise ValueError("a scene that was not read from a file needs a path: scene.save('name.rt')")
-        file_text.write(self.pages, target)
+        writer.write(self.pages, target)
 
     def index(self, element: Element) -> int:
         """Return the index in `items` of the element itself, else of the first equal one; ValueError without one."""
         try:
             return indexOf(map(id, self.items), id(element))
         except ValueError:
-            return tuple(self.items).index(element)
+            return self.items.index(element)
 
     def edit(self, index: int, *new: Element) -> Scene:
         """Return the scene with `elements[index]` replaced by any number of elements."""
-        number, position = self.elements.locate(index)
-        items = self.pages[number].items
-        return self._edited(number, [i for i, item in enumerate(items) if isinstance(item, Element)][position], *new)
+        return self._edited(range(len(self.elements))[index], Element, *new)
 
-    def _edited(self, number: int, index: int, *new: Element) -> Scene:
-        """Return the scene with item `index` of page `number` replaced by any number of elements."""
+    def _edited(self, index: int, sort: type[Any], *new: Element) -> Scene:
+        """Return the scene with entry `index` of a sort, as of all items, replaced by any number of elements."""
+        number = 0
+        while index >= (length := len(self.pages[number].of(sort))):
+            index, number = index - length, number + 1
         page = self.pages[number]
+        index = [place for place, item in enumerate(page.items) if isinstance(item, sort)][index]
         scene = object.__new__(Scene)
         scene._set_pages((*self.pages[:number], *replace_item(page, index, new), *self.pages[number + 1 :]), self.file)
         if "shapes" in vars(self) and not any(isinstance(item, Shape) for item in (page.items[index], *new)):
@@ -173,5 +230,36 @@ class Scene(Plurals):
 
     def drop_caches(self) -> Scene:
         """Drop large cached values, for a scene that is kept but not shown; return the scene."""
-        vars(self).pop("shapes", None)
+        for name in ("items", "elements", "shapes"):
+            vars(self).pop(name, None)
         return self
+
+
+def dump(scene: Scene) -> str:
+    """Return the text of a scene file."""
+    return writer.text_of(scene.pages)
+
+
+def check_scene(scene: object, function: str) -> None:
+    """TypeError, which says how to load a scene, where a function got the name of its file."""
+    if isinstance(scene, (str, os.PathLike)):
+        raise TypeError(
+            f"minirt.{function} takes a scene, got the name of a file: use minirt.load({os.fspath(scene)!r})"
+        )
+
+
+def dumps(scene: Scene) -> str:
+    """Return a scene as the text of a file, the same as `Scene.save` writes.
+
+    print(minirt.dumps(scene))
+    """
+    check_scene(scene, "dumps")
+    return dump(scene)
+
+
+def save(scene: Scene, path: str | os.PathLike[str]) -> None:
+    """Write a scene file as a whole or not at all; SceneError when that fails.
+
+    An existing file keeps its permissions, and a symbolic link stays one.
+    """
+    writer.write(scene.pages, path)

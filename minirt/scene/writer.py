@@ -1,31 +1,125 @@
-"""Writer of scene files: Scene -> text."""
+"""Writer of scene files: pages of items -> text. Unchanged lines, and blanks, comments and unchanged fields of changed
+lines stay as they were read.
+"""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from typing import Any
 
-from minirt.scene import file_text
-from minirt.scene.arguments import check_scene
-from minirt.scene.scene import Scene
+from minirt.element import Element, fields_of
+from minirt.fields import Field
+from minirt.helpers import file_io
+from minirt.scene import fast, files
+from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
+from minirt.scene.lines import BOM, Log, Word, line_from
+from minirt.scene.pages import Item, Page
+from minirt.scene.registry import ELEMENTS, SPELLINGS
 
 
-def dump(scene: Scene) -> str:
+def describe(element: Element) -> str:
+    """Return the element as a new line of a scene file; its source line is ignored."""
+    fields = fields_of(type(element))
+    written = [field for field in fields if not field.keyed or getattr(element, field.name) != field.default]
+    return " ".join([element.code, *(field_text(field, element) for field in written)])
+
+
+def field_text(field: Field, element: Element) -> str:
+    """Return the text of a field in a line: `value` or `key:value`."""
+    value = field.format(getattr(element, field.name))
+    return f"{field.keys[0]}:{value}" if field.keyed else value
+
+
+def line_of(element: Element) -> str:
+    """Return the element's source line with its changed fields rewritten; a new line when the source does not fit."""
+    kind = type(element)
+    line = line_from(1, element.source)
+    log = Log("", lenient=True)
+    words = split_line(line, log) if not {"\n", "\0"} & set(line.source) else None
+    code = identify(words[0], line, log) if words else None
+    # A lenient reader makes a FurtherLight, a subclass of Light, of a second `L`.
+    slots = assign_words(kind, words, line, log) if words and code and isinstance(element, ELEMENTS[code]) else None
+    values = parse_slots(kind, slots, line, log) if slots else None
+    if not words or not slots or not values or log.errors:
+        return describe(element)
+    if all(getattr(element, field.name) == values.get(field.name, field.default) for field in fields_of(kind)):
+        return line.source
+    before, _, after = line.source.partition(line.text)
+    return before + rewrite(line.text, element, words, slots, values) + after
+
+
+def rewrite(text: str, element: Element, words: list[Word], slots: list[Slot], values: dict[str, Any]) -> str:
+    """Rewrite the line `text`, whose `slots` hold `values`, with the values of the element."""
+    absent = [field for field in fields_of(type(element)) if field.name not in values]
+    added = [field for field in absent if getattr(element, field.name) != field.default]
+    # From right to left, so that the columns of the words still to be rewritten stay valid.
+    for field in reversed(added):
+        if field.keyed:
+            text = insert(text, words[-1].end, field_text(field, element))
+    by_column = sorted(slots, key=lambda slot: slot.word.column, reverse=True)
+    for slot in by_column:
+        if slot.field.keyed:
+            text = rewrite_slot(text, slot, element, values)
+    if not all(field.keyed for field in added):
+        last = max(slot.word.end for slot in slots if not slot.field.keyed)
+        text = insert(text, last, " ".join(field_text(field, element) for field in absent if not field.keyed))
+    for slot in by_column:
+        if not slot.field.keyed:
+            text = rewrite_slot(text, slot, element, values)
+    code = words[0].raw if SPELLINGS[words[0].raw] is type(element) else element.code
+    return replace_span(text, words[0].column, words[0].end, code)
+
+
+def insert(text: str, column: int, new: str) -> str:
+    """Insert a blank and `new` at `column`."""
+    return f"{text[: column - 1]} {new}{text[column - 1 :]}"
+
+
+def rewrite_slot(text: str, slot: Slot, element: Element, values: dict[str, Any]) -> str:
+    """Rewrite a slot when the element's value differs from that of `values`; delete it when the value is None."""
+    value = getattr(element, slot.field.name)
+    if value == values[slot.field.name]:
+        return text
+    if value is None:
+        return text[: slot.word.column - 1].rstrip(" \t") + text[slot.word.end - 1 :]
+    if slot.bare:
+        return replace_span(text, slot.word.column, slot.word.end, field_text(slot.field, element))
+    return replace_span(text, slot.word.column + slot.start, slot.word.end, slot.field.format(value))
+
+
+def replace_span(text: str, start: int, end: int, new: str) -> str:
+    """Replace the text from column `start` to `end` by `new`; after several spaces the next word keeps its column."""
+    rest = text[end - 1 :]
+    following = rest.lstrip(" ")
+    gap = len(rest) - len(following)
+    if gap > 1 and following:
+        gap = max(1, gap - (len(new) - (end - start)))
+    return text[: start - 1] + new + " " * gap + following
+
+
+def text_of(pages: tuple[Page, ...]) -> str:
     """Return the text of a scene file."""
-    return file_text.text_of(scene.pages)
+    length = sum(len(page.items) for page in pages)
+    lines = [line for page in pages for line in lines_of(page.items, length)]
+    return "\n".join(lines[:1] + [line.removeprefix(BOM) for line in lines[1:]])
 
 
-def dumps(scene: Scene) -> str:
-    """Return a scene as the text of a file, the same as `Scene.save` writes.
-
-    print(minirt.dumps(scene))
-    """
-    check_scene(scene, "dumps")
-    return dump(scene)
+def lines_of(items: tuple[Item, ...], length: int) -> Iterator[str]:
+    """Yield the lines of items of a file of `length` lines."""
+    sources = [item if isinstance(item, str) else item.source for item in items]
+    for item, source, read in zip(items, sources, fast.read(sources, length), strict=True):
+        yield source if isinstance(item, str) or item == read else line_of(item)
 
 
-def save(scene: Scene, path: str | os.PathLike[str]) -> None:
+def write(pages: tuple[Page, ...], path: str | os.PathLike[str]) -> None:
     """Write a scene file as a whole or not at all; SceneError when that fails.
 
     An existing file keeps its permissions, and a symbolic link stays one.
     """
-    file_text.write(scene.pages, path)
+    files.check_name(path)
+    data = text_of(pages).encode()
+    try:
+        file_io.write(path, data)
+    except (OSError, ValueError) as error:
+        raise files.file_error(path, f"cannot be written: {file_io.reason(error)}") from None

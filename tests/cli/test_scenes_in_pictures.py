@@ -11,7 +11,7 @@ from PIL import Image as pillow  # noqa: N813
 
 import minirt
 from minirt.formats import png
-from minirt.scene import in_picture
+from minirt.scene import files
 from tests.cli.program import SCENE, Result
 
 Run = Callable[..., Result]
@@ -20,7 +20,7 @@ PIXEL = np.zeros((1, 1, 3), np.uint8)
 
 def stranger(folder: Path, **texts: str) -> str:
     """Write a picture with texts of anybody; return its name."""
-    named = {"scene": in_picture.SCENE, "settings": in_picture.SETTINGS}
+    named = {"scene": files.SCENE, "settings": files.SETTINGS}
     (folder / "strange.png").write_bytes(png.encode(PIXEL, {named[key]: text for key, text in texts.items()}))
     return "strange.png"
 
@@ -68,7 +68,7 @@ def test_metadata_can_be_left_out(run: Run) -> None:
 
 
 def test_a_scene_that_is_too_long_is_not_carried() -> None:
-    assert not in_picture.texts_for("#" * (in_picture.LONGEST_WRITTEN + 1), "")
+    assert not files.picture_texts("#" * (files.LONGEST_WRITTEN + 1), "")
 
 
 def test_frames_of_a_turntable_carry_their_own_view(run: Run) -> None:
@@ -160,6 +160,6 @@ def test_textures_are_found_from_the_picture(
 
 @pytest.mark.parametrize("way", ["/etc", "nowhere", "../nowhere", "x\0y", "y" * 5000])
 def test_a_strange_folder_is_left_out(folder: Path, way: str) -> None:
-    texts = {in_picture.SCENE: SCENE, in_picture.FOLDER: way}
+    texts = {files.SCENE: SCENE, files.FOLDER: way}
     (folder / "strange.png").write_bytes(png.encode(PIXEL, texts))
     assert minirt.load("strange.png").file == Path("strange.png")

@@ -7,7 +7,7 @@ from unittest.mock import patch
 
 from minirt.errors import Problem, SceneError
 from minirt.scene import Item, fast
-from minirt.scene.diagnostics import Log
+from minirt.scene.lines import Log
 from minirt.scene.parser import read_lines
 
 Outcome = tuple[list[Problem], list[Problem], list[object] | tuple[Problem, ...]]

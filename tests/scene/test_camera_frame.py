@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from minirt.scene import Camera
-from minirt.scene.camera_frame import camera_frame
+from minirt.scene.elements import camera_frame
 
 ROOT = sqrt(0.5)
 

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from minirt.element import Element
-from minirt.scene import Ambient, Camera, FurtherLight, Item, Light, Scene, dump, file_text, pages, parse
+from minirt.scene import Ambient, Camera, FurtherLight, Item, Light, Scene, dump, pages, parse, writer
 from minirt.scene.pages import PAGE_LENGTH, Page
 from minirt.shapes import Shape
 from minirt.shapes.plane import Plane
@@ -137,9 +137,9 @@ def test_only_changed_lines_are_rewritten(long: Scene) -> None:
         rewritten.append(element)
         return original(element)
 
-    original = file_text.line_of
+    original = writer.line_of
     changed = long.replace(long.spheres[7], diameter=3)
-    with patch.object(file_text, "line_of", line_of):
+    with patch.object(writer, "line_of", line_of):
         text = dump(changed)
     once = [each for each in changed.elements if type(each).once]
     assert list(map(id, rewritten)) == list(map(id, [*once, changed.spheres[7], changed.lights[-1]]))

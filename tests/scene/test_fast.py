@@ -21,8 +21,7 @@ from minirt.fields import Colour, Direction, Field, FieldError, Length, Point, R
 from minirt.fields.scalars import LONGEST, NUMBER, PLAIN, WHOLE, numbers, wholes
 from minirt.records import record
 from minirt.scene import describe, element_reader, fast, parse, parser
-from minirt.scene.diagnostics import Log
-from minirt.scene.lines import line_from
+from minirt.scene.lines import Log, line_from
 from minirt.scene.parser import read_lines
 from tests.scene.examples import CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, problems, scene_with
 from tests.scene.readers import exact, no_plain_lines, read_by_both

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from minirt.scene import FurtherLight, Light, dump, parse
-from minirt.scene.diagnostics import MAX_NOTICES
+from minirt.scene.lines import MAX_NOTICES
 from tests.scene.examples import AMBIENT, CAMERA, LIGHT, PLANE, SPHERE, SUBJECT, problems, read, scene_with
 
 CASES = [

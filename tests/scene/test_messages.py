@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from minirt.errors import Problem, excerpt, quoted
-from minirt.scene.suggestions import nearest, nearest_element
+from minirt.scene.registry import nearest, nearest_element
 from tests.scene.examples import problems, scene_with
 
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.scene.file_text import lines_of
+from minirt.scene.writer import lines_of
 from minirt.shapes import KINDS, Kind, Shape
 from tests.shapes.execution_modes import Array, Intersect
 from tests.stability.band import again, facts_of_many, right, surely_wrong

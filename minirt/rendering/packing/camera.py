@@ -24,7 +24,7 @@ from minirt.kernel.scene_arrays import kind_of
 from minirt.lanes import Vec, width
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Camera
-from minirt.scene.camera_frame import camera_frame
+from minirt.scene.elements import camera_frame
 
 Region: TypeAlias = tuple[int, int, int, int]  # x, y, width and height, in pixels
 

@@ -22,7 +22,7 @@ from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.generic_kernels import generalised_tree
 from minirt.rendering.threads import ThreadPool, usable_cores
 from minirt.scene import Camera, Scene
-from minirt.scene.arguments import check_scene
+from minirt.scene.scene import check_scene
 from minirt.shapes import Shape
 
 if TYPE_CHECKING:

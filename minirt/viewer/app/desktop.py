@@ -14,7 +14,7 @@ from minirt.helpers.signals import ended_by_signals
 from minirt.helpers.system import gc_paused
 from minirt.mlx import Mlx
 from minirt.scene import Scene
-from minirt.scene.arguments import check_scene
+from minirt.scene.scene import check_scene
 from minirt.viewer.app import recovery
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from minirt.element import fields_of
 from minirt.mlx.text import draw_text, measure
 from minirt.scene import Camera
-from minirt.scene.line_rewriting import field_text
+from minirt.scene.writer import field_text
 from minirt.viewer.display.painter import Outcome, Pixels
 from minirt.viewer.editing.state import Frame, State
 from minirt.viewer.editing.values import Value

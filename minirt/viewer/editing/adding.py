@@ -23,7 +23,7 @@ from minirt.fields import (
 )
 from minirt.materials import Compound
 from minirt.scene import Light, Scene
-from minirt.scene.camera_frame import camera_frame, linear_combination
+from minirt.scene.elements import camera_frame, linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.viewer.editing.motion import clamp_point

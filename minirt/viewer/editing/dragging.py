@@ -13,7 +13,7 @@ from minirt.element import Element
 from minirt.fields import Triple
 from minirt.rendering.queries.pick import pick, surface_point
 from minirt.scene import Camera
-from minirt.scene.camera_frame import linear_combination
+from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
 from minirt.viewer.editing.motion import (
     WORLD_AXES,

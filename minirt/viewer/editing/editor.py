@@ -21,7 +21,7 @@ from typing import Any
 from minirt.errors import ElementError, FieldError
 from minirt.fields import Colour, Count, Field, MeshFile, Point, number
 from minirt.scene import Camera
-from minirt.scene.camera_frame import camera_frame
+from minirt.scene.elements import camera_frame
 from minirt.viewer.editing import motion, standing, structure
 from minirt.viewer.editing.motion import (
     WORLD_AXES,

@@ -12,7 +12,7 @@ from minirt.fields import FARTHEST, LEAST_LENGTH, Point, Triple, clamp, unit
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.queries.pick import surface_normal
 from minirt.scene import Camera, Scene
-from minirt.scene.camera_frame import linear_combination
+from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
 
 Pixel = tuple[float, float]

@@ -11,8 +11,8 @@ from minirt.element import Element, fields_of
 from minirt.errors import ElementError
 from minirt.fields import Field
 from minirt.scene import Lamp
-from minirt.scene.line_rewriting import field_text
 from minirt.scene.registry import ELEMENTS
+from minirt.scene.writer import field_text
 from minirt.shapes import Shape
 from minirt.viewer.editing.adding import addable_kinds, default_element, default_value, first_lamp
 from minirt.viewer.editing.state import State, index_of, undo

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from minirt.scene import Item, Scene
-from minirt.scene.file_text import lines_of
+from minirt.scene.writer import lines_of
 
 
 class Splice(NamedTuple):

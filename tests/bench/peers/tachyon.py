@@ -10,7 +10,7 @@ from pathlib import Path
 from minirt.fields import Triple
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.scene import Scene
-from minirt.scene.camera_frame import camera_frame
+from minirt.scene.elements import camera_frame
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane

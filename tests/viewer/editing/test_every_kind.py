@@ -18,7 +18,7 @@ from minirt.fields import Direction, Picture, Point
 from minirt.materials import Compound, Mirror
 from minirt.rendering.queries.pick import covers
 from minirt.scene import Background, Camera, Resolution, Scene, dump, load, parse
-from minirt.scene.camera_frame import camera_frame, linear_combination
+from minirt.scene.elements import camera_frame, linear_combination
 from minirt.scene.registry import ELEMENTS
 from minirt.shapes import Shape
 from minirt.shapes.box import Box

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from minirt.element import Element
 from minirt.materials import Checker
 from minirt.scene import Camera, Scene, describe, dump, load, parse
-from minirt.scene.camera_frame import camera_frame
+from minirt.scene.elements import camera_frame
 from minirt.shapes.box import Box
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.ellipsoid import Ellipsoid
