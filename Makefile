@@ -27,7 +27,7 @@ $(NAME): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "miniRT needs Python 3.11 or newer: make PYTHON=python3.12")'
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) install --quiet --upgrade 'pip>=25.1' hatchling editables  # what builds the project
-	$(call INSTALL,.)
+	$(call INSTALL,'.[report]')
 	$(VENV)/bin/python -m compileall -q minirt  # also where PYTHONDONTWRITEBYTECODE would have each start compile it
 	touch $@
 
@@ -60,7 +60,7 @@ pythons: $(NAME)  ## run quick tests, a film, a window and a notebook with each 
 
 FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/test_frame.py \
             tests/kernel/test_invariances.py tests/kernel/test_single.py tests/kernel/shading/test_specular.py \
-            tests/report/measurements/test_formula_errors.py tests/report/measurements/test_operation_counts.py
+            tests/oracle/test_operation_counts.py
 # Formulas of single numbers and of numpy's arrays are the same on each processor.
 COMPILED := $(FORMULAS) -k "not numbers] and not arrays]"
 
@@ -106,15 +106,14 @@ soak: $(DEV) $(KERNELS)  ## render, and use a window, at random for long: make s
 bench: $(NAME)  ## time frames beside other programs: make bench BENCH=--quick for a short run
 	$(VENV)/bin/python -m tests.bench $(BENCH)
 
-bench-peers: $(NAME)  ## install what `make bench` compares with and draws with (Debian, Ubuntu)
+bench-peers: $(NAME)  ## install what `make bench` compares with (Debian, Ubuntu)
 	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox xvfb
 	-$(SUDO) apt-get install -y --no-install-recommends libllvm19  # for Mitsuba; older systems lack it
-	$(call INSTALL,'.[charts]' embreex mitsuba)
+	$(PIP) install --quiet embreex mitsuba
 
 REPORTED := demo figure-v4-everything eval-shadows-many
 
 report: $(NAME)  ## measure error against run time: make report REPORT=--quick for a short run
-	$(VENV)/bin/python -m minirt.report out/report/shapes $(filter --quick,$(REPORT))
 	$(foreach scene,$(REPORTED),$(NAME) scenes/$(scene).rt --report out/report/$(scene) $(REPORT) &&) true
 
 textures gallery: $(NAME)  ## draw the textures of the scenes, or render the gallery

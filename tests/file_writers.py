@@ -10,7 +10,7 @@ import numpy as np
 from minirt.formats.table import FORMATS, is_installed
 from minirt.image import Image
 from minirt.movie import save_movie
-from minirt.report.output.files import formula_files, report_files, write_files
+from minirt.report.document import write_files
 from minirt.scene import parse
 from tests.formats.pictures import picture
 from tests.report.made_up import FINDINGS, ROWS
@@ -44,17 +44,12 @@ def scene(folder: Path) -> None:
 
 def report(folder: Path) -> None:
     """Write the report of a scene."""
-    write_files(folder, report_files(FINDINGS, {ROWS[0].name: BLACK}, BLACK))
-
-
-def formulas(folder: Path) -> None:
-    """Write the report of all formulas."""
-    write_files(folder, formula_files(FINDINGS.kernels))
+    write_files(folder, FINDINGS, {ROWS[0].name: BLACK}, BLACK)
 
 
 def writers() -> dict[str, Writer]:
     """Return the writers by the names of what they write."""
-    found: dict[str, Writer] = {"scene": scene, "report": report, "formulas": formulas, "numbered": film(".png")}
+    found: dict[str, Writer] = {"scene": scene, "report": report, "numbered": film(".png")}
     for name, each in FORMATS.items():
         if is_installed(name):
             if each.is_still:

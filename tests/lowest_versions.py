@@ -17,4 +17,4 @@ def lowest_versions(*extras: str) -> list[str]:
 
 
 if __name__ == "__main__":
-    print(*lowest_versions("video"))
+    print(*lowest_versions("video", "report"))

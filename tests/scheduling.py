@@ -56,7 +56,7 @@ SLOW = (
     "tests/rendering/test_renderer.py",
     "tests/rendering/test_meshes.py",
     "tests/report/measurements/",
-    "tests/report/test_durations.py",
+    "tests/report/test_report.py",
     "tests/report/test_interruption.py",
     "tests/report/test_report.py",
     "tests/scene/test_fast.py",

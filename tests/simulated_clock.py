@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-
 import pytest
 
-from minirt import bench
 from minirt.helpers import system
-from minirt.helpers.system import Run
 from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.pixels import PACKET_HEIGHT
-from minirt.rendering import frame_runner, renderer
+from minirt.rendering import renderer
 from minirt.rendering.frame import Frame
 from minirt.rendering.frame_runner import FrameRunner
 from minirt.rendering.sampling import auto
-from minirt.report.measurements import formula_errors, picture_errors
+from minirt.report import bench, pictures
 
 PACKET_SECONDS = 1e-6  # for a packet of rays
-FORMULA_SECONDS = 1e-3  # for all rays of the first formula; the second takes twice as long, ...
 # Processor time by wall time: different enough from 1 to be told apart, but not counted as a disturbed measurement.
 PROCESSOR_SHARE = 0.95
 
@@ -42,7 +37,7 @@ class Clock:
 
 
 def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
-    """Replace the machine's clock wherever pictures or formulas are timed."""
+    """Replace the machine's clock wherever pictures are timed."""
     clock, run = Clock(), FrameRunner.run
 
     def counted(self: FrameRunner, frames: list[Frame], threads: int) -> None:
@@ -50,10 +45,9 @@ def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
         clock.rendered(sum(map(packets_of, frames)))
 
     patch.setattr(FrameRunner, "run", counted)
-    for module in (system, auto, frame_runner, renderer, picture_errors, bench):
+    for module in (system, auto, to_error, renderer, pictures, bench):
         patch.setattr(module, "perf_counter", lambda: clock.wall)
     patch.setattr(system, "process_time", clock.cpu)
-    patch.setattr(formula_errors, "in_turn", in_turn)
     return clock
 
 
@@ -70,12 +64,3 @@ def packets_of(frame: Frame) -> int:
 def packets(width: int, height: int, rays: int = 16) -> int:
     """Count the packets of `rays` rays that cover a picture."""
     return -(-height // PACKET_HEIGHT) * -(-width // (rays // PACKET_HEIGHT))
-
-
-def in_turn(works: Collection[Callable[[], object]], times: int) -> list[tuple[Run, ...]]:
-    """Replace `helpers.system.in_turn`: run each once, and report every second turn as ten times as slow."""
-    for work in works:
-        work()
-    slowness = [10.0 if turn % 2 else 1.0 for turn in range(times)]
-    seconds = [FORMULA_SECONDS * number for number in range(1, len(works) + 1)]
-    return [tuple(Run(slow * each, PROCESSOR_SHARE * slow * each) for slow in slowness) for each in seconds]

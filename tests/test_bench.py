@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt import bench, load
+from minirt import load
 from minirt.rendering import Renderer, scene_packing
+from minirt.report import bench
 from minirt.scene import Scene
 from tests.paths import ROOT
 

@@ -63,7 +63,6 @@ MAY: dict[str, set[str]] = {
         "__init__",
     },
     "notebook": {"__init__", "helpers", "errors", "scene", "image", "mlx", "viewer"},
-    "bench": {"__init__", "rendering", "scene", "helpers"},
     "report": LOW | {"__init__", "helpers", "image", "kernel", "rendering", "scene"},
     "cli": {
         "cluster",
@@ -76,7 +75,6 @@ MAY: dict[str, set[str]] = {
         "jail",
         "scene",
         "viewer",
-        "bench",
         "rendering",
         "report",
     },
@@ -87,8 +85,8 @@ MAY: dict[str, set[str]] = {
 COMPILER = {"numba", "llvmlite"}
 COMPILED = {"lanes/compiled", "kernel/compiler"}  # the only folders that import the compiler
 LOADER = "kernel/machine_code/loader.py"  # imports, late, the part of it that loads machine code
-# The program that compiles and a measurement of the report: all others do without the compiler.
-COMPILING = {"kernel/compiler", "lanes/compiled", "report/measurements"}
+# The program that compiles: all others do without the compiler.
+COMPILING = {"kernel/compiler", "lanes/compiled"}
 HEAVY = ("rendering", "viewer", "kernel", "mlx", "report")
 LATE = {"numba", "llvmlite", "pyglet", "PIL", *(f"minirt.{part}" for part in HEAVY)}
 
@@ -137,9 +135,6 @@ def sources() -> dict[str, str]:
     return {path.relative_to(PACKAGE).as_posix(): path.read_text(encoding="utf-8") for path in paths}
 
 
-CLI = [path for path in sources() if path.startswith("cli/")]
-
-
 def part(path: str) -> str:
     return path.split("/", maxsplit=1)[0].removesuffix(".py")
 
@@ -148,9 +143,9 @@ def test_every_part_has_a_rule_and_every_rule_a_part() -> None:
     assert {part(path) for path in sources()} == set(MAY)
 
 
-@pytest.mark.parametrize("path", sources())
-def test_imports_go_one_way(path: str) -> None:
-    assert wrong(part(path), sources()[path]) == set()
+def test_imports_go_one_way() -> None:
+    found = {path: wrong(part(path), source) for path, source in sources().items()}
+    assert not {path: parts for path, parts in found.items() if parts}
 
 
 def test_the_rules_have_no_circle() -> None:
@@ -299,11 +294,9 @@ def test_a_planted_circle_is_found() -> None:
     assert circles(folders(graph(planted))) == {"minirt.mlx.one", "minirt.mlx.two"}
 
 
-@pytest.mark.parametrize("path", ["__init__.py", *CLI, "image.py", "bench.py"])
-def test_heavy_imports_are_late(path: str) -> None:
-    early = imports(sources()[path], late=False)
-    allowed = {"minirt.rendering"} if path == "bench.py" else set()  # which cli imports late
-    assert not {each for each in early if any(f"{each}.".startswith(f"{heavy}.") for heavy in LATE - allowed)}
+def test_heavy_imports_are_late() -> None:
+    light = {path: source for path, source in sources().items() if path.startswith(("__init__.py", "cli/", "image.py"))}
+    assert importers(light, LATE, late=False) == {}
 
 
 @pytest.mark.parametrize(

@@ -120,8 +120,6 @@ def run_scene(parser: Arguments, options: argparse.Namespace, scene: str) -> int
         read = read_scene(options, sys.stdout if command is show else sys.stderr)
     if command is show:  # which compares what it shows with the file
         return show(with_camera_options(read, options), options, read)
-    if options.report:  # which ends itself by SIGTERM, when it has written what it has
-        return command(with_camera_options(read, options), options)
     from minirt.helpers.signals import signals_end_work
 
     with signals_end_work():

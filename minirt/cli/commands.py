@@ -67,7 +67,7 @@ def render_by_workers(scene: Scene, options: argparse.Namespace) -> int:
 
 def bench(scene: Scene, options: argparse.Namespace) -> int:
     """Measure the frame time and print it."""
-    from minirt.bench import measure, report
+    from minirt.report.bench import measure, report
 
     with progress(lambda: State("measuring")):
         measured = measure(options.scene[0], scene, options.size, options.threads, options.precision)
@@ -78,7 +78,7 @@ def bench(scene: Scene, options: argparse.Namespace) -> int:
 def report(scene: Scene, options: argparse.Namespace) -> int:
     """Measure error against run time and write the report into a folder."""
     import minirt
-    from minirt.report import report as write_report
+    from minirt.report.generate import report as write_report
 
     size = options.size or minirt.size_of(scene)
     how = options.threads, options.quick, options.ablation

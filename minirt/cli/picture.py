@@ -80,7 +80,7 @@ def render(
         if image.reached.notice:
             tell(f"notice: {image.reached.notice}")
     if options.precision == "single":
-        from minirt.report.measurements.stiffness import lost_in_single
+        from minirt.report.stiffness import lost_in_single
 
         for stiff in lost_in_single(scene, renderer.packing, width, height):
             tell(f"notice: single precision cannot show {stiff}")

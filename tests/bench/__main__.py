@@ -1,5 +1,5 @@
 """`python -m tests.bench`: benchmark miniRT against other renderers, in frames and from its start, over growing scenes,
-its latency while it refines, and its exact formulas against textbook formulas."""
+and its latency while it refines."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from minirt.rendering.threads import usable_cores
-from minirt.report.measurements.machine import processor
-from tests.bench import formulas, latencies, meshes, scenes, starts
+from minirt.report.findings import processor
+from tests.bench import latencies, meshes, scenes, starts
 from tests.bench.measure import Cells, available, take_turns
 from tests.bench.ours import MiniRT
 from tests.bench.peers.embree import Embree
@@ -80,11 +80,8 @@ def main() -> None:
     late = list(latencies.measured(latencies.COMPARED, WIDTH, HEIGHT))
     print(f"Latency while a picture of {WIDTH}x{HEIGHT} is refined:\n\n{latencies.table(late)}", end="\n\n", flush=True)
 
-    exact = list(formulas.measured())
-    print(formulas.table(exact), formulas.MEANING, sep="\n", end="\n\n")
-
     disturbed = any(cell.disturbed for cells in (compared, started, growth) for cell in cells.values())
-    if disturbed or not all(row.valid for row in exact):
+    if disturbed:
         print(f"{MARK} other programs needed the processors in every round")
     for system in systems:
         print(f"{system.name}: {system.how}")
@@ -101,7 +98,6 @@ def main() -> None:
         "starts": records(started),
         "growth": records(growth),
         "latency": latencies.records(late),
-        "formulas": formulas.records(exact),
     }
     (asked.out / "bench.json").write_text(json.dumps(found, indent=1) + "\n")
     draw(compared, started, growth, asked.out)
@@ -114,7 +110,7 @@ def names(systems: list[System]) -> list[str]:
 def draw(compared: Cells, started: Cells, growth: Cells, out: Path) -> None:
     """Draw the charts if matplotlib is installed."""
     if find_spec("matplotlib") is None:
-        print("no pictures: matplotlib is not installed (pip install -e '.[charts]')")
+        print("no pictures: matplotlib is not installed (pip install -e '.[report]')")
         return
     from tests.bench import charts
 

@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 
 from minirt.report.generate import NOTHING
-from minirt.report.interruption import Terminated, sigterm_interrupts
 from tests.cli.announcing import RENDERING
 from tests.cli.conftest import folder
 from tests.cli.program import start
@@ -25,9 +24,8 @@ ENDLESS = """
 import sys
 from math import inf
 from minirt import cli
-from minirt.report import generate
-from minirt.report.measurements import formula_errors, plan
-from minirt.report.measurements.run_times import Budget
+from minirt.report import ablation, generate, measure
+from minirt.report.pictures import Budget
 from minirt.helpers.system import runs
 from tests.cli.announcing import announce_rendering
 
@@ -41,13 +39,13 @@ budget = Budget(0.0, inf, tries=1)
 phase, short = sys.argv.pop(1), generate.QUICK._replace(samples=64, seconds=1e30, least_error=inf, budget=budget)
 generate.FULL = short
 if phase == "fitting":
-    plan.runs = endless
+    measure.runs = endless
 elif phase == "the reference":
     generate.FULL = short._replace(samples=2**20, width=1920)
 elif phase == "uniform 1":
     generate.FULL = short._replace(budget=Budget(1e9, inf, tries=1))
-elif phase == "sphere, benign":
-    formula_errors.RUNS = 10**9
+elif phase == "tiles and their cones without":
+    ablation.PAIRS = 10**9
 sys.exit(cli.main())
 """
 End = Callable[["subprocess.Popen[bytes]"], None]
@@ -72,7 +70,7 @@ def interrupted(folder: Path, phase: str, size: str, end: End) -> tuple[int, Ter
     ):
         told.leave()
         told.wait_for(phase.encode())
-        if phase != "sphere, benign":
+        if phase != "tiles and their cones without":
             told.wait_for(RENDERING)
         assert [*folder.glob("out/*")] == []
         end(process)
@@ -87,15 +85,17 @@ def interrupted(folder: Path, phase: str, size: str, end: End) -> tuple[int, Ter
 def test_before_the_first_figure_there_is_nothing_to_keep(folder: Path, phase: str) -> None:
     status, told = interrupted(folder, phase, "1920x1080", ctrl_c)
     assert status == 130
-    assert told.text.replace(RENDERING + b"\r\n", b"").endswith(f"\r\x1b[K{NOTHING}\r\n\r\x1b[K".encode())
+    assert told.text.replace(RENDERING + b"\r\n", b"").endswith(f"{NOTHING}\r\n".encode())
     assert [*folder.glob("out/*")] == []
 
 
-@pytest.mark.parametrize(("end", "expected"), [(ctrl_c, 130), (terminate, -signal.SIGTERM)])
+@pytest.mark.parametrize(("end", "expected"), [(ctrl_c, 130), (terminate, 128 + signal.SIGTERM)])
 def test_what_was_measured_is_written(folder: Path, end: End, expected: int) -> None:
-    status, told = interrupted(folder, "sphere, benign", "32x20", end)
+    status, told = interrupted(folder, "tiles and their cones without", "32x20", end)
     assert status == expected
-    remark = "Interrupted while measuring sphere, benign: this and all that would have followed is missing."
+    remark = (
+        "Interrupted while measuring tiles and their cones without: this and all that would have followed is missing."
+    )
     assert remark.encode() in told.text
     assert b"The report is in out/report.html" in told.text
     out = folder / "out"
@@ -104,39 +104,8 @@ def test_what_was_measured_is_written(folder: Path, end: End, expected: int) -> 
     found = json.loads((out / "report.json").read_text())
     assert found["interrupted"] == remark
     assert len(found["pictures"]) > 5
-    assert found["kernels"] == []
+    assert [part["sort"] for part in found["ablation"]] == ["scene"]
     assert {f"error-{row['knob']}-{row['label']}.png".replace(" ", "-") for row in found["pictures"]} <= {
         path.name for path in out.iterdir()
     }
     assert not [*out.glob(".*")]  # of a file that was half written
-
-
-def test_sigterm_ends_the_block_and_then_the_process_by_its_usual_handler() -> None:
-    came: list[int] = []
-    before = signal.signal(signal.SIGTERM, lambda number, frame: came.append(number))
-    try:
-        with pytest.raises(Terminated), sigterm_interrupts():
-            signal.raise_signal(signal.SIGTERM)
-        assert came == [signal.SIGTERM]
-    finally:
-        signal.signal(signal.SIGTERM, before)
-
-
-def test_a_second_sigterm_does_not_keep_the_files_from_being_written() -> None:
-    came: list[int] = []
-    before = signal.signal(signal.SIGTERM, lambda number, frame: came.append(number))
-
-    def twice() -> None:
-        try:
-            signal.raise_signal(signal.SIGTERM)
-        except Terminated:
-            signal.raise_signal(signal.SIGTERM)
-            came.append(0)  # the files
-            raise
-
-    try:
-        with pytest.raises(Terminated), sigterm_interrupts():
-            twice()
-        assert came == [0, signal.SIGTERM]
-    finally:
-        signal.signal(signal.SIGTERM, before)

@@ -6,7 +6,7 @@ import csv
 import hashlib
 import json
 from collections.abc import Callable
-from math import inf
+from math import inf, isfinite
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +15,14 @@ from PIL import Image
 
 import minirt
 from minirt.errors import RenderError
-from minirt.report import __main__, formulas, generate, report, report_formulas
-from minirt.report.measurements.plan import QUICK, fitting_size
-from minirt.report.measurements.run_times import Budget
-from minirt.report.output.error_image import HEAT
+from minirt.report import generate, povray
+from minirt.report.generate import report
+from minirt.report.measure import COMPILING, FULL, QUICK, Measurement, fitting_size
+from minirt.report.metrics import HEAT
+from minirt.report.pictures import Budget
+from minirt.report.settings import AUTO, KNOBS, Setting
+from minirt.report.variants import Variant
 from minirt.scene import Scene, dump
-from minirt.shapes import KINDS
 from tests.cli.conftest import folder, run
 from tests.cli.program import Result
 from tests.kernel.pictures import ALL, AMBIENT, EYE
@@ -28,7 +30,7 @@ from tests.simulated_clock import PACKET_SECONDS, Clock, packets, simulate_clock
 
 __all__ = ["folder", "run"]
 Run = Callable[..., Result]
-ROWS = {"pictures": 9, "orders": 1, "ablation": 3, "single": 1, "kernels": 6, "certificates": 4}  # at least
+ROWS = {"pictures": 9, "orders": 1, "ablation": 3, "single": 1, "certificates": 4}  # at least
 TABLES = {f"{table}.csv" for table in ROWS}
 DOCUMENTS = {"report.html", "report.md", "report.json", "diagram.svg", "reference.png"}
 
@@ -36,7 +38,7 @@ DOCUMENTS = {"report.html", "report.md", "report.json", "diagram.svg", "referenc
 @pytest.fixture(autouse=True)
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     """Use a plan with little work, and a simulated clock that only rendering moves on."""
-    plan = QUICK._replace(shapes=1, samples=64, most=4, least_error=0.01, budget=Budget(0.0, inf, tries=1))
+    plan = QUICK._replace(samples=64, most=4, least_error=0.01, budget=Budget(0.0, inf, tries=1))
     monkeypatch.setattr(generate, "QUICK", plan)
     return simulate_clock(monkeypatch)
 
@@ -64,8 +66,6 @@ def test_the_files_agree(made: Path) -> None:
     text = (made / "report.md").read_text().replace("**", "")
     for row in found["pictures"]:
         assert f"| {row['knob']} | {row['label']} | {row['samples']:.3g} | {row['rmse']:.5f} |" in text
-    for kind in {row["kind"] for row in found["kernels"]}:
-        assert f"| {kind} | this scene |" in text
 
 
 def test_a_report_can_be_repeated(made: Path) -> None:
@@ -77,7 +77,7 @@ def test_a_report_can_be_repeated(made: Path) -> None:
     assert about["processor"]
     report(ALL, "all.rt", made / "again", (64, 40), 1, quick=True)
     again = json.loads((made / "again" / "report.json").read_text())
-    for table, figures in (("pictures", ("rmse", "flip", "changed")), ("kernels", ("max_error", "hits", "false_hits"))):
+    for table, figures in (("pictures", ("rmse", "flip", "changed")), ("certificates", ("hits", "backward_largest"))):
         for figure in figures:
             assert [row[figure] for row in found[table]] == [row[figure] for row in again[table]]
 
@@ -122,26 +122,6 @@ def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
         report(ALL, "all.rt", tmp_path, (16, 16), 1, quick=True)
 
 
-def test_shape_types_without_an_exact_reference_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(formulas, "SOLIDS", {})
-    assert "formula of the sphere: none in 60 digits" in report(ALL, "all.rt", tmp_path, (16, 16), 1, quick=True)
-    assert (tmp_path / "kernels.csv").read_text().strip() == ""
-
-
-def test_the_formulas_of_all_kinds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sys.argv", ["report", str(tmp_path / "shapes"), "--quick"])
-    __main__.main()
-    rows = json.loads((tmp_path / "shapes" / "kernels.json").read_text())
-    assert {row["kind"] for row in rows} == {kind.element.title for kind in KINDS if kind.element in formulas.SOLIDS}
-    assert "| cylinder | long tube |" in (tmp_path / "shapes" / "kernels.md").read_text()
-    (tmp_path / "file").touch()
-    monkeypatch.setattr("sys.argv", ["report", str(tmp_path / "file")])
-    with pytest.raises(SystemExit, match=r"^Error\n.*file: cannot be made"):
-        __main__.main()
-    with pytest.raises(RenderError):
-        report_formulas(tmp_path / "file", quick=True)
-
-
 def test_pictures_are_as_small_as_the_time_asks() -> None:
     assert fitting_size(ALL, (64, 36), QUICK) == (64, 36)
     plan = QUICK._replace(width=320)
@@ -171,3 +151,34 @@ def test_the_program_writes_a_report(run: Run, folder: Path) -> None:
 def test_the_program_refuses_a_folder_that_is_a_file(run: Run, folder: Path) -> None:
     ended = run("ball.rt", "--report", "ball.rt", "--quick")
     assert (ended.status, ended.out, ended.err) == (1, b"", "Error\nball.rt: cannot be made: File exists\n")
+
+
+def test_the_steps_are_those_that_were_expected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    came: list[str] = []
+    step, seen = Measurement.step, list[Measurement]()
+
+    def noted(self: Measurement, what: str) -> None:
+        step(self, what)
+        came.append(what)
+        seen.append(self)
+
+    monkeypatch.setattr(Measurement, "step", noted)
+    report(ALL, "all.rt", tmp_path, (32, 20), 1, quick=True)
+    measured = seen[-1]
+    assert came[0] == "compiling"
+    assert set(came[1:]) == set(measured.seconds)
+    assert all(isfinite(seconds) and seconds > 0 for seconds in measured.seconds.values())
+    measured.step("the end")
+    assert measured.state().share == pytest.approx(1.0)
+
+
+def test_more_work_is_expected_to_take_longer() -> None:
+    measured = Measurement(ALL, "all.rt", FULL, 1)
+    measured.width, measured.height = 32, 20
+    settings = [Setting(KNOBS[0], 4), Setting(KNOBS[0], 16), Setting(AUTO, 0.01), Setting(AUTO, 0.001)]
+    lists, kernel = (Variant("", name, "", ALL, packing) for name, packing in (("l", (lambda *_: None,)), ("k", ())))
+    steps = dict(measured.steps(settings, [lists, kernel]))
+    assert steps["uniform 4"] < steps["uniform 16"]
+    assert steps["auto 0.01"] < steps["auto 0.001"]
+    assert steps["k "] == steps["l "] + COMPILING
+    assert {f"{each.knob} {each.label}" for each in povray.SETTINGS} < set(steps)

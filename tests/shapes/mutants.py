@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from minirt.lanes import Vec, dot, fabs, sqrt
-from minirt.report.measurements.textbook import meets_cylinder, meets_sphere
 from minirt.shapes.plane import PackedPlane
 from minirt.shapes.sphere import PackedSphere
 from minirt.shapes.triangle import PackedTriangle, edge_function, permuted_axes, sheared
+from tests.oracle.textbook import meets_cylinder, meets_sphere
 from tests.shapes.execution_modes import on_arrays
 
 naive_sphere = meets_sphere  # loses a small sphere far away

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from minirt.lanes import Vec
-from minirt.report.measurements import textbook
 from minirt.shapes import KINDS, Shape, start, torus
 from minirt.shapes.box import Box
 from minirt.shapes.shape import Flat
 from minirt.shapes.triangle import Triangle
+from tests.oracle import textbook
 from tests.shapes import mutants
 from tests.shapes.execution_modes import Array, Intersect, kind_of, on_arrays, vec
 

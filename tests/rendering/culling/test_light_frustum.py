@@ -17,7 +17,7 @@ from minirt.rendering.culling import light_frustum, visibility
 from minirt.rendering.culling.light_frustum import LEAST_SHAPES, MOST_OUTSIDE, Cluster, dense_cluster, frustum_grid
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
-from minirt.report.measurements.brute_force import ChangedPacking, without_light_buffers, without_tiles
+from minirt.report.settings import ChangedPacking, without_light_buffers, without_tiles
 from minirt.scene import Ambient, Camera, Light, ParallelLight, Scene
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane

@@ -1,0 +1,166 @@
+"""Error of float32, feature by feature."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator
+from math import nan
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.element import fields_of
+from minirt.materials import Attributes
+from minirt.rendering import Renderer
+from minirt.rendering.packing.camera import camera_numbers
+from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, NEEDS, PLAIN, features
+from minirt.rendering.packing.generic_kernels import precision_of
+from minirt.rendering.queries.rays import Hits, trace
+from minirt.report.metrics import Picture, changed, clamped, rmse
+from minirt.scene import Background, FurtherLight, Light, Scene, SpotLight
+from minirt.shapes import ALL_KINDS, Kind, Shape
+
+NEEDS_DOUBLE = "always float64"
+NO_KERNEL = "no kernel was compiled ahead of time"
+
+
+class SingleError(NamedTuple):
+    """Difference of float32 and float64 in a scene that is reduced to one feature, both with one sample per pixel."""
+
+    feature: str  # in words, or "shapes alone"
+    rmse: float = nan  # between the two pictures
+    largest: float = nan  # difference of a channel of a pixel
+    changed: float = nan  # pixels that differ in 8 bits
+    remark: str = ""
+
+
+def single_errors(scene: Scene, width: int, height: int, threads: int) -> Iterator[SingleError]:
+    """Compare the precisions on the shapes of a scene alone, and with each feature that the scene uses."""
+    used = features(scene)
+    double, single = Renderer(threads), Renderer(threads, "single")
+    for key in (None, *(feature for feature in FEATURES if feature in used)):
+        yield single_error(reduced(scene, key), FEATURES[key] if key else "shapes alone", width, height, double, single)
+
+
+def single_error(scene: Scene, words: str, width: int, height: int, double: Renderer, single: Renderer) -> SingleError:
+    """Compare the precisions on a scene."""
+    if precision_of(single.packing.pack(scene, width, height)) == "double":
+        return SingleError(words, remark=NEEDS_DOUBLE)
+    if not (double.is_ready(scene) and single.is_ready(scene)):
+        return SingleError(words, remark=NO_KERNEL)
+    one, other = (light(renderer, scene, width, height) for renderer in (double, single))
+    return SingleError(words, rmse(one, other), float(np.abs(one - other).max()), changed(one, other))
+
+
+def light(renderer: Renderer, scene: Scene, width: int, height: int) -> Picture:
+    """Return the clamped light of a picture with one sample per pixel."""
+    linear = np.zeros((height, width, 3))
+    renderer.render(scene, np.zeros((height, width, 4), np.uint8), 1, linear)
+    return clamped(linear)
+
+
+def reduced(scene: Scene, feature: Hashable) -> Scene:
+    """Return a scene with no other feature than the given one; None leaves the shapes alone."""
+    return Scene((kept for each in scene.elements for kept in reduced_element(each, feature)), scene.file)
+
+
+def reduced_element(element: Any, feature: Hashable) -> Iterator[Any]:
+    """Yield an element without other features; a spot becomes a point light, and parallel light is left out."""
+    match element:
+        case Shape() if ATTRIBUTES(element) != PLAIN:
+            fields = (field for field in fields_of(Attributes) if getattr(element, field.name) is not None)
+            kept = {feature, "reflective"} if feature in NEEDS else {feature}
+            others = [each.name for each in fields if each.feature_of(getattr(element, each.name)) not in kept]
+            yield element.replace(**dict.fromkeys(others))
+        case Background():
+            if feature == ("environment" if isinstance(element.paint, str) else "background"):
+                yield element
+        case Light() | SpotLight() if feature != "spots" and (element.fade or isinstance(element, SpotLight)):
+            yield FurtherLight(position=element.position, brightness=element.brightness, colour=element.colour)
+        case _:
+            if feature == "spots" or not hasattr(element, "direction") or hasattr(element, "position"):
+                yield element
+
+
+# Certificates of the hits in a picture: backward errors and condition numbers of each kind of shape.
+
+
+Array = NDArray[np.float64]
+
+RAYS = 20_000  # from the eye, and as many from what they hit
+LIMITS = (0.25, 0.5, 1.0, 2.0, 4.0)  # of the histogram of backward errors
+CLEARANCE = 2.0**-40  # by which rays start above a surface, relative to the coordinates
+
+
+class KindCertificates(NamedTuple):
+    """Certificates of the hits of one kind of shape; backward errors in units of 2^-53 (t + |o - c| + size)."""
+
+    kind: str
+    rays: str
+    hits: int
+    backward_median: float
+    backward_largest: float
+    up_to_quarter: float  # share of the hits with a backward error up to 0.25
+    up_to_half: float  # from there up to 0.5
+    up_to_1: float
+    up_to_2: float
+    up_to_4: float
+    above_4: float
+    condition_median: float
+    condition_99: float  # 99 of 100 hits have no larger one
+    condition_largest: float
+    normal_largest: float  # distance from the exact unit normal
+
+
+def hit_certificates(scene: Scene, width: int, height: int, seed: int) -> Iterator[KindCertificates]:
+    """Certify hits of rays from the eye through random points of the picture, and of rays from there in random
+    directions, as shadow rays and reflections are."""
+    random = np.random.default_rng(seed)
+    eye, right, up, forward = camera_numbers(scene.camera, width, height).reshape(4, 3)
+    x, y = random.uniform(-1, 1, (2, RAYS, 1))
+    seen = trace(scene, np.tile(eye, (RAYS, 1)), forward + x * right + y * up)
+    yield from by_kind(scene, seen, "from the eye")
+    yield from by_kind(scene, onward(scene, seen, random), "from what it sees")
+
+
+def onward(scene: Scene, seen: Hits, random: np.random.Generator) -> Hits:
+    """Trace rays in random directions from points just above or below the surfaces that were hit."""
+    hit = seen.owner >= 0
+    points, normals = seen.point[hit], seen.normal[hit]
+    directions = random.normal(size=points.shape)
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)  # uniform over the sphere
+    clearance = CLEARANCE * (np.abs(points).max(axis=1, initial=0.0) + seen.distance[hit])
+    way = np.sign((directions * normals).sum(axis=1)) * clearance
+    return trace(scene, points + way[:, None] * normals, directions)
+
+
+def by_kind(scene: Scene, hits: Hits, rays: str) -> Iterator[KindCertificates]:
+    """Summarise the certificates of the hits of each kind of shape."""
+    kinds = np.array([type(shape) for shape in scene.shapes], object)
+    for kind in ALL_KINDS:
+        of_kind = np.isin(hits.owner, np.flatnonzero(kinds == kind.element))
+        if of_kind.any():
+            yield summarised(kind, rays, *(part[of_kind] for part in hits.certificate))
+
+
+def summarised(kind: Kind, rays: str, backward: Array, condition: Array, normal: Array) -> KindCertificates:
+    """Summarise the certificates of some hits of one kind."""
+    counts, _ = np.histogram(backward, (0.0, *LIMITS, np.inf))
+    quarter, half, one, two, four, more = (counts / len(backward)).tolist()
+    return KindCertificates(
+        kind.element.title,
+        rays,
+        len(backward),
+        float(np.median(backward)),
+        float(backward.max()),
+        quarter,
+        half,
+        one,
+        two,
+        four,
+        more,
+        float(np.median(condition)),
+        float(np.quantile(condition, 0.99, method="inverted_cdf")),
+        float(condition.max()),
+        float(normal.max()),
+    )

@@ -1,0 +1,198 @@
+"""Lengths of shapes, from their fields."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minirt.element import fields_of
+from minirt.fields import Length, Lengths, Point
+from minirt.kernel.frame import ray_direction
+from minirt.kernel.scene_arrays import kind_of, kind_of_packed
+from minirt.kernel.trace import ROUNDING
+from minirt.lanes import Vec, dot, unit
+from minirt.rendering.notes import shape_name
+from minirt.rendering.packing.camera import camera_numbers, packed_columns, pixel_rays
+from minirt.rendering.packing.shape_arrays import ShapeArrays, bounding_boxes
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Scene
+from minirt.shapes import Shape
+from minirt.shapes.mesh import Mesh
+
+
+def sizes(shapes: Sequence[Shape]) -> NDArray[np.float64]:
+    """Return the lengths that define each shape of one type, or the distances of its points, (n, k).
+
+    A plane has none; a mesh has the diagonal of its bounding box.
+    """
+    if isinstance(shapes[0], Mesh):
+        diagonals: NDArray[np.float64] = np.linalg.norm(np.diff(bounding_boxes(list(shapes)), axis=1)[:, 0], axis=1)
+        return diagonals[:, None]
+
+    def columns(*sorts: type) -> list[NDArray[np.float64]]:
+        names = [each.name for each in fields_of(type(shapes[0])) if isinstance(each, sorts) and each.required]
+        return [np.array([getattr(shape, name) for shape in shapes], float).reshape(len(shapes), -1) for name in names]
+
+    points = columns(Point)
+    sides = [np.linalg.norm(one - points[i - 1], axis=1, keepdims=True) for i, one in enumerate(points)]
+    return np.hstack([*columns(Length, Lengths), *(sides if len(points) > 1 else ())] or [np.zeros((len(shapes), 0))])
+
+
+# Find stiff shapes: shapes that need more digits or more samples than the renderer has.
+
+
+DOUBLE, SINGLE = 2.0**-53, 2.0**-24  # unit roundoffs
+VISIBLE = 1 / 255  # relative error of a hit that turns a normal enough to change a level of a colour
+LISTED = 3  # shapes that are named, the worst first; the rest is counted
+
+
+class Stiff(NamedTuple):
+    """A stiff shape, the reason, and the figures that show it."""
+
+    element: str
+    why: str
+    figures: dict[str, float]
+
+    def __str__(self) -> str:
+        figures = ", ".join(f"{name} {value:.2g}" for name, value in self.figures.items())
+        return f"{self.element}: {self.why} ({figures})"
+
+
+class ShapeViews(NamedTuple):
+    """Distances, sizes and rounding errors of n primitives as seen from the eye, in scene units."""
+
+    distance: np.ndarray  # (n,) from the eye to the surface
+    size: np.ndarray  # (n,) shortest length of each shape, infinity if it has none
+    double: np.ndarray  # (n,) rounding error of a point on the surface in float64
+    single: np.ndarray  # (n,) rounding error in float32, relative to the eye
+    ahead: np.ndarray  # (n,) whether the nearest point lies in front of the camera
+
+
+def stiff_shapes(scene: Scene, tables: ShapeArrays, width: int, height: int) -> Iterator[Stiff]:
+    """Yield the stiff shapes of a scene in a picture of the given size."""
+    camera = camera_numbers(scene.camera, width, height)
+    seen = shape_views(tables, camera)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        scale = np.minimum(seen.size, seen.distance)
+        double, single = seen.double / scale, seen.single / scale
+        pixels = seen.size / (seen.distance * 2 * np.linalg.norm(camera[3:6]) / width)
+        thinness = np.where(seen.ahead & (pixels > 0), 1 / pixels, 0.0)
+    for index, element in worst(tables, np.maximum(double, single), VISIBLE):
+        small = seen.size[index] <= seen.distance[index]
+        yield Stiff(
+            element,
+            "small for its coordinates or its distance" if small else "the eye is close to it for its size",
+            {
+                "size": float(seen.size[index]),
+                "distance": float(seen.distance[index]),
+                "relative rounding of a hit, double": float(double[index]),
+                "single": float(single[index]),
+            },
+        )
+    for index, element in worst(tables, thinness, 1.0):
+        yield Stiff(element, "thinner than a pixel, so samples may miss it", {"pixels": float(pixels[index])})
+
+
+def lost_in_single(scene: Scene, packing: Packing, width: int, height: int) -> Iterator[Stiff]:
+    """Yield the shapes that look wrong in a picture that was rendered in float32."""
+    if scene.shapes and packing.pack(scene, width, height).camera.dtype == np.float32:
+        for each in stiff_shapes(scene, packing.shape_arrays, width, height):
+            if each.figures.get("single", 0.0) > VISIBLE:
+                yield each
+
+
+def worst(tables: ShapeArrays, amounts: np.ndarray, limit: float) -> Iterator[tuple[int, str]]:
+    """Yield index and name of the shapes with the largest amounts above a limit; the last name counts the rest."""
+    order = np.argsort(-amounts, kind="stable")
+    order = order[amounts[order] > limit]
+    _, first = np.unique(tables.owner[order], return_index=True)
+    order = order[np.sort(first)]  # the worst primitive of each shape
+    more = len(order) - LISTED
+    for place, index in enumerate(order[:LISTED].tolist(), 1):
+        yield index, shape_name(tables, index) + (f" and {more} more" if more > 0 and place == LISTED else "")
+
+
+def shape_views(tables: ShapeArrays, camera: np.ndarray) -> ShapeViews:
+    """Compute distances, sizes and rounding errors of all primitives as seen from the camera's eye."""
+    eye, forward = camera[:3], camera[9:]
+    nearest, size = np.zeros((len(tables.owner), 3)), np.full(len(tables.owner), np.inf)
+    for group, packed in enumerate(tables.rows):
+        selected = np.flatnonzero(tables.slots[:, 0] == group)
+        with np.errstate(all="ignore"):
+            on, _ = kind_of(packed.dtype.names).surface(packed_columns(packed), Vec(*eye))
+        nearest[selected] = np.stack([np.broadcast_to(part, len(selected)) for part in (on.x, on.y, on.z)], axis=-1)
+        if not tables.is_plane[group]:  # a bounded shape lies within its box, not everywhere on its surface's extension
+            middle, half = tables.boxes[selected, :3], tables.boxes[selected, 3:]
+            nearest[selected] = np.clip(nearest[selected], middle - half, middle + half)
+        owners, part_of = np.unique(tables.owner[selected], return_inverse=True)
+        size[selected] = sizes([tables.shapes[i] for i in owners]).min(axis=1, initial=np.inf)[part_of]
+    nearest = np.where(np.isfinite(nearest), nearest, tables.boxes[:, :3])  # at the exact centre no point is nearest
+    way = nearest - eye
+    reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]  # of the shape, seen from the eye
+    return ShapeViews(
+        np.linalg.norm(way, axis=1),
+        size,
+        ROUNDING * DOUBLE * (np.abs(nearest).max(axis=1) + np.abs(eye).max() + tables.colours_and_extents[:, 3]),
+        ROUNDING * SINGLE * (np.abs(way).max(axis=1) + reach),
+        way @ forward > 0,
+    )
+
+
+# Find coincident surfaces: pairs so close together that rounding decides which of them is seen (z-fighting).
+
+
+ACROSS, DOWN = 64, 36  # test rays over the whole picture
+LEAST = 4  # test rays that must show two close surfaces: where surfaces cross, a ray may do so by chance
+MOST_SHAPES = 1000  # shapes or mesh triangles; larger scenes are not tested
+TIE = 4 * ROUNDING  # unit roundoffs up to which `minirt.kernel.trace.closer_hit` takes two surfaces for one
+CLOSE = 1000  # times TIE: surfaces that nearly coincide
+
+
+def coincident(scene: Scene, tables: ShapeArrays) -> Iterator[Stiff]:
+    """Yield the pairs of shapes whose surfaces coincide, or nearly coincide, as seen from the eye."""
+    if not 2 <= len(tables.owner) <= MOST_SHAPES:
+        return
+    camera = pixel_rays(camera_numbers(scene.camera, ACROSS, DOWN), ACROSS, DOWN)
+    y, x = np.mgrid[:DOWN, :ACROSS].reshape(2, -1) + 0.5
+    eye, ways = camera[:3], unit(ray_direction(camera, x, y))
+    with np.errstate(all="ignore"):
+        t, slopes = all_hits(tables, Vec(*eye), ways)
+        pair = np.argsort(t, axis=0, kind="stable")[:2]
+        near, far = np.take_along_axis(t, pair, axis=0)
+        gap = (far - near) * np.take_along_axis(slopes, pair[:1], axis=0)[0]  # between the surfaces
+        points = near * np.stack([ways.x, ways.y, ways.z])
+        reach = np.abs(tables.boxes[:, :3] - eye).max(axis=1) + tables.boxes[:, 3]
+        world = np.abs(points + eye[:, None]).max(axis=0) + np.abs(eye).max()
+        double = gap / (TIE * DOUBLE * (world + tables.colours_and_extents[pair, 3].max(axis=0)))
+        single = gap / (TIE * SINGLE * (np.abs(points).max(axis=0) + reach[pair].max(axis=0)))
+        close = (double <= CLOSE) | (single <= 1)
+    close &= tables.owner[pair[0]] != tables.owner[pair[1]]  # parts of a mesh have edges in common
+    pairs = Counter(zip(*np.sort(pair[:, close], axis=0).tolist(), strict=True))
+    for (one, other), count in pairs.items():
+        selected = close & (pair.min(axis=0) == one) & (pair.max(axis=0) == other)
+        ties = {"double": float(np.median(double[selected])), "single": float(np.median(single[selected]))}
+        shared = " and ".join(precision for precision, gaps in ties.items() if gaps <= 1)
+        if count >= LEAST:
+            yield Stiff(
+                f"{shape_name(tables, one)} and {shape_name(tables, other)}",
+                f"taken for one surface in {shared} precision: the first is shown" if shared else "nearly coincide",
+                {"share of the picture": count / t.shape[1], "gap": float(np.median(gap[selected]))}
+                | {f"in roundings, {precision}": gaps for precision, gaps in ties.items()},
+            )
+
+
+def all_hits(tables: ShapeArrays, eye: Vec, ways: Vec) -> tuple[np.ndarray, np.ndarray]:
+    """For each shape and ray return the hit distance, infinity for a miss, and the cosine of ray and normal."""
+    t, slopes = np.empty((2, len(tables.owner), len(ways.x)))
+    for index, (group, row) in enumerate(tables.slots):
+        packed = packed_columns(tables.rows[group][row : row + 1])
+        kind = kind_of_packed(type(packed))
+        hit, at = kind.intersect(packed, eye, ways)
+        _, normal = kind.surface(packed, eye + at * ways)
+        t[index] = np.where(hit, at, np.inf)
+        slopes[index] = np.abs(dot(normal, ways))
+    return t, slopes

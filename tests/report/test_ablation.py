@@ -1,0 +1,222 @@
+"""The ablation tells by how much a part changes the time of a frame, and whether the picture is the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import inf, isnan, nan
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from minirt.kernel.machine_code.library import LIBRARY
+from minirt.materials import Specular
+from minirt.rendering import Renderer
+from minirt.rendering.needed_kernels import packing_calls
+from minirt.rendering.packing.features import FEATURES, features
+from minirt.report import ablation
+from minirt.report.ablation import Ablation, Part
+from minirt.report.pictures import DISTURBED_BY_OTHERS, Budget
+from minirt.report.variants import Variant, with_more, without_lists, without_unseen
+from minirt.scene import Background, FurtherLight, ParallelLight, Scene
+from minirt.shapes import ALL_KINDS
+from minirt.shapes.plane import Plane
+from minirt.shapes.torus import Torus
+from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES, interpreted
+from tests.simulated_clock import Clock, packets, simulate_clock
+
+WIDTH, HEIGHT = 32, 20
+BUDGET = Budget(0.0, inf, tries=1)
+DIMMER = Variant("feature", "dimmer light", "added", ALL.replace(ALL.lights[0], brightness=0.1))
+
+
+@pytest.fixture(autouse=True)
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """Simulate a clock that only rendering moves on."""
+    return simulate_clock(monkeypatch)
+
+
+def parts(*variants: Variant) -> list[Part]:
+    return list(Ablation(ALL, WIDTH, HEIGHT, 1, BUDGET).parts(variants, lambda name: None))
+
+
+@contextmanager
+def slow_pictures(clock: Clock, patch: pytest.MonkeyPatch, slowness: float) -> Iterator[None]:
+    """Make the pictures of variants slow."""
+    draw = ablation.Frame.draw
+
+    def slow(frame: ablation.Frame) -> None:
+        clock.slowness = slowness if frame.scene is not ALL or "ChangedPacking" in str(frame.renderer.packing) else 1.0
+        draw(frame)
+
+    with patch.context() as inner:
+        inner.setattr(ablation.Frame, "draw", slow)
+        yield
+
+
+def test_lists_change_the_time_and_not_the_picture(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
+    with slow_pictures(clock, monkeypatch, 1.25):
+        scene, *lists = parts(*without_lists(ALL))
+    assert (scene.sort, scene.change, scene.valid) == ("scene", "as it is", True)
+    assert scene.frame_ms == pytest.approx(packets(WIDTH, HEIGHT) * 1e-3)
+    assert len(lists) == 2
+    for part in lists:
+        assert part.percent == pytest.approx(25)
+        assert part.percent_low == pytest.approx(25)
+        assert part.frame_ms == pytest.approx(1.25 * scene.frame_ms)
+        assert (part.same, part.valid, part.remark) == (True, True, "")
+        assert isnan(part.compile_s)
+
+
+def test_a_variant_with_a_kernel_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The compiler is asked for the scene as it is and for the variant; a different picture is told."""
+    seconds = {id(ALL): 4.0, id(DIMMER.scene): 5.0}
+    monkeypatch.setattr(ablation, "drawing_kernel", lambda scene: seconds[id(scene)])
+    monkeypatch.setattr(ablation, "compile_seconds", lambda identity: identity)
+    scene, dimmer = parts(DIMMER)
+    assert (scene.compile_s, dimmer.compile_s) == (4.0, 5.0)
+    assert dimmer.compile_percent == pytest.approx(25)
+    assert dimmer.percent == pytest.approx(0)
+    assert not dimmer.same
+
+
+def test_disturbed_frames_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ablation, "is_disturbed", lambda run, threads: True)
+    for part in parts(*without_lists(ALL)):
+        assert (part.valid, part.remark) == (False, DISTURBED_BY_OTHERS)
+
+
+def test_a_variant_that_fails_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("minirt.report.settings.MOST", 1)
+    _, tiles, lights = parts(*without_lists(ALL))
+    assert tiles.remark.startswith("failed: 6 shapes in each of")
+    assert isnan(tiles.percent)
+    assert lights.valid
+
+
+def test_the_compiler_is_timed_whether_or_not_the_kernel_was_there() -> None:
+    """The kernel that is compiled fastest stands for all."""
+    identity = min(map(LIBRARY.identity, packing_calls()), key=len)
+    for _ in range(2):
+        assert ablation.compile_seconds(identity) > 0
+        assert LIBRARY.find(identity)
+
+
+def test_each_scene_has_the_kernel_that_draws_it() -> None:
+    specialised = Renderer(1).kernels.specialised
+    assert ablation.drawing_kernel(ALL) in specialised(ALL)
+    assert ablation.drawing_kernel(ALL) not in specialised(ALL.replace(ALL.shapes[1], mirror=0.25))
+
+
+# What the ablation adds changes no pixel, and is what it says.
+
+
+BEHIND = FurtherLight((0, 0, -400), 0.5, (255, 255, 255))  # far behind the eye
+PARALLEL = ParallelLight((0, -1, 0), 0.5, (255, 255, 255))
+
+
+@pytest.mark.parametrize(
+    "scene", [ALL, Scene((*ALL.elements, BEHIND, PARALLEL)), Scene((AMBIENT, EYE, LAMP, SHAPES[0]))]
+)
+def test_each_feature_and_each_kind_is_added_once(scene: Scene, tmp_path: Path) -> None:
+    variants, used = list(with_more(scene, tmp_path)), features(scene)
+    kinds = {type(shape) for shape in scene.shapes}
+    names = [words for key, words in FEATURES.items() if key not in used]
+    names += [kind.element.plural for kind in ALL_KINDS if kind.element not in kinds]
+    assert [variant.name for variant in variants] == names
+    parts = {"tinted glass", "Fresnel's equations"}  # which show no effect without glass
+    keys = {words: key for key, words in FEATURES.items()} | {kind.element.plural: kind.element for kind in ALL_KINDS}
+    for variant in variants:
+        extra = features(variant.scene) - used
+        assert keys[variant.name] in extra
+        extra -= {"reflective", "transparent"} if variant.name in parts else set()
+        assert len(extra) == 1
+
+
+def variants_that_stay_dark(scene: Scene, folder: Path) -> list[Variant]:
+    """Variants whose picture must be the same; a background may be seen."""
+    return [each for each in with_more(scene, folder) if "background" not in each.name]
+
+
+def test_what_is_added_is_behind_the_eye_and_all_lights(tmp_path: Path) -> None:
+    for scene in (ALL, Scene((*ALL.elements, BEHIND))):
+        forward = np.array(EYE.direction) / np.linalg.norm(EYE.direction)
+        least = min(float(np.subtract(light.position, EYE.position) @ forward) for light in scene.lights)
+        for variant in variants_that_stay_dark(scene, tmp_path):
+            if variant.scene.camera.lens:  # one sample of a lens is that of a pinhole
+                continue
+            (added,) = variant.scene.elements[len(scene.elements) :]
+            corners = added.bounds() if hasattr(added, "bounds") else (added.position,) * 2
+            if corners:  # a plane has none, and faces away
+                assert max(float(np.subtract(corner, EYE.position) @ forward) for corner in corners) < min(-0.9, least)
+
+
+def test_the_picture_is_the_same(tmp_path: Path) -> None:
+    scene, size = Scene((AMBIENT, EYE, LAMP, *SHAPES[:3])), (32, 16)
+    _, right = interpreted(scene, *size)
+    chosen = {"highlights", "mirrors and glass", "spots, parallel and fading light", "planes", "triangles", "tori"}
+    for variant in variants_that_stay_dark(scene, tmp_path):
+        if variant.name in chosen:
+            _, light = interpreted(variant.scene, *size)
+            assert np.array_equal(light, right), variant.name
+
+
+def test_a_background_replaces_that_of_the_scene(tmp_path: Path) -> None:
+    scene = Scene((*ALL.elements, Background((10, 20, 30))))
+    (picture,) = (each for each in with_more(scene, tmp_path) if each.name == FEATURES["environment"])
+    (background,) = picture.scene.of(Background)
+    assert isinstance(background.paint, str)
+
+
+def test_lists_of_a_scene() -> None:
+    def names(scene: Scene) -> list[str]:
+        return [variant.name.split()[0] for variant in without_lists(scene)]
+
+    assert names(ALL) == ["tiles", "light"]
+    assert names(Scene((AMBIENT, EYE, *SHAPES))) == ["tiles"]
+    assert names(ALL.replace(ALL.shapes[0], mirror=0.5)) == ["tiles", "light", "boxes"]
+
+
+# What is left out as unseen does nothing for the picture.
+
+
+GREY, SIZE = (128, 128, 128), (32, 20)
+MIRROR = Plane((0, 0, -60), (0, 0, 1), GREY, mirror=0.5, specular=Specular(0.5, 30.0))  # the eye and the light
+SCENE = Scene((AMBIENT, EYE, LAMP, *SHAPES[1:4] * 3, MIRROR))
+
+
+def test_materials_and_kinds_that_no_pixel_shows() -> None:
+    _, right = interpreted(SCENE, *SIZE)
+    found = {variant.name: variant.scene for variant in without_unseen(SCENE, *SIZE)}
+    assert list(found) == ["highlights", "mirrors and glass", "planes"]
+    for name, gone in (("highlights", "specular"), ("mirrors and glass", "reflective"), ("planes", Plane)):
+        assert features(SCENE) - features(found[name]) >= {gone}
+    for scene in found.values():
+        assert np.array_equal(interpreted(scene, *SIZE)[1], right)
+
+
+def test_what_is_seen_or_casts_a_shadow_stays() -> None:
+    assert list(without_unseen(ALL, *SIZE)) == []
+    above = Torus((-3, 5, -4), (0, 1, 0), 1.0, 0.3, GREY)  # out of sight, between the light and the spheres
+    assert [*without_unseen(Scene((*SCENE.elements[:-1], above)), *SIZE)] == []
+
+
+def test_where_a_mirror_is_seen_all_stays() -> None:
+    assert list(without_unseen(SCENE.replace(SCENE.shapes[1], mirror=0.2), *SIZE)) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "ratios", "seconds"),
+    [
+        ("added", [1.25] * 5, 4.0 * 5),  # a fifth of each second is saved
+        ("added", [0.9, 1.0, 1.1] * 3, nan),
+        ("without", [0.8] * 5, 6.0 * 5),
+        ("without", [1.25] * 5, nan),
+    ],
+)
+def test_a_kernel_pays_once_it_has_saved_its_compile_time(change: str, ratios: list[float], seconds: float) -> None:
+    measured = Ablation.__new__(Ablation)
+    measured.compile_s, measured.budget = 4.0, Budget(0.0, 1.0, 1)
+    found = measured.pays_after(change, ratios, 6.0)
+    assert isnan(found) if isnan(seconds) else found == pytest.approx(seconds)

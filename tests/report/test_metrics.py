@@ -1,0 +1,173 @@
+"""Error metrics of pictures, against values worked out by hand."""
+
+from __future__ import annotations
+
+from math import inf, isnan
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from minirt.report import metrics
+from minirt.report.flip import flip, perceived
+from minirt.report.metrics import (
+    HEAT,
+    STUDENT,
+    changed,
+    clamped,
+    error_image,
+    fit,
+    of_median,
+    of_rmse,
+    psnr,
+    rmse,
+    to_8_bits,
+)
+
+
+def grey(*values: float) -> np.ndarray:
+    """Make a row of grey pixels."""
+    return np.repeat(np.array(values)[None, :, None], 3, axis=2)
+
+
+def test_root_mean_square() -> None:
+    assert rmse(grey(0, 0, 0, 0), grey(0.2, 0, 0, 0)) == pytest.approx(0.1)
+    assert psnr(0.1) == pytest.approx(20)
+    assert psnr(0.0) == inf
+
+
+def test_what_a_screen_shows() -> None:
+    assert clamped(grey(0, 0.5, 7))[0, :, 0].tolist() == [0, 0.5, 1]
+
+
+def test_levels_are_those_of_the_kernel() -> None:
+    assert to_8_bits(grey(0, 0.4999 / 255, 0.5001 / 255, 1))[0, :, 0].tolist() == [0, 0, 1, 255]
+
+
+def test_a_pixel_changes_as_a_whole() -> None:
+    one, other = grey(0.1, 0.2, 0.3), grey(0.1, 0.2, 0.3001)
+    other[0, 1, 2] += 0.01
+    assert changed(one, other) == 1
+
+
+def test_heat_is_logarithmic() -> None:
+    picture = error_image(grey(0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1), grey(0, 0, 0, 0, 0, 0, 0))
+    assert picture.array[0].tolist() == HEAT[[0, 0, 0, 1, 2, 3, 4]].tolist()
+
+
+# Confidence intervals hold the truth as often as they say.
+
+
+TRIALS = 300
+
+
+def share_that_holds(truth: float, found: list[metrics.Interval]) -> float:
+    return sum(each.low <= truth <= each.high for each in found) / len(found)
+
+
+def test_the_median_lies_in_its_interval() -> None:
+    random = np.random.default_rng(1)
+    found = [of_median(random.lognormal(0, 0.1, 15).tolist()) for _ in range(TRIALS)]
+    assert 0.88 < share_that_holds(1.0, found) < 0.99
+    assert share_that_holds(1.1, found) < 0.2  # a wrong value lies outside
+    assert isnan(of_median([1.0, 2.0]).low)
+
+
+def test_the_slope_lies_in_its_interval() -> None:
+    random, x = np.random.default_rng(2), np.log([1, 2, 4, 8, 16, 32, 64])
+    lines = [fit(x, 0.3 - 0.75 * x + random.normal(0, 0.1, len(x))) for _ in range(TRIALS)]
+    assert 0.91 < share_that_holds(-0.75, [line.interval for line in lines]) < 0.98
+    assert np.mean([line.intercept for line in lines]) == pytest.approx(0.3, abs=0.02)
+    assert isnan(fit(x[:2], x[:2]).interval.low)
+    assert fit(x[:2], x[:2]).slope == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("free", [1, 5])
+def test_the_quantiles_of_student(free: int) -> None:
+    """97.5 % of Student's numbers are below the quantile."""
+    numbers = np.random.default_rng(3).standard_t(free, 200_000)
+    assert (numbers < STUDENT[free - 1]).mean() == pytest.approx(0.975, abs=0.0015)
+
+
+def test_the_rmse_of_other_pictures_of_the_same_nature_lies_in_its_interval() -> None:
+    """Errors that are equal in spots of 4 x 4 pixels: an interval from single pixels would be too narrow."""
+    random, black = np.random.default_rng(4), np.zeros((256, 256, 3))
+
+    def picture() -> np.ndarray:
+        spots = random.normal(0, 0.01, (64, 64, 3)) * random.binomial(1, 0.1, (64, 64, 1))
+        return spots.repeat(4, axis=0).repeat(4, axis=1)
+
+    truth = 0.01 * 0.1**0.5
+    found = [of_rmse(picture(), black, 0.0) for _ in range(100)]
+    assert 0.88 < share_that_holds(truth, found) <= 1.0
+    assert np.mean([each.high - each.low for each in found]) < 0.3 * truth
+
+
+def test_the_error_of_the_reference_widens_the_interval_downwards() -> None:
+    picture = np.random.default_rng(5).normal(0, 0.01, (64, 48, 3))
+    plain, doubtful = (of_rmse(picture, np.zeros_like(picture), doubt) for doubt in (0.0, 0.006))
+    assert doubtful.high == plain.high
+    assert doubtful.low == pytest.approx((plain.low**2 - 0.006**2) ** 0.5)
+    assert of_rmse(picture, np.zeros_like(picture), 1.0).low == 0.0
+
+
+def test_blocks_of_a_picture_whose_size_is_no_multiple() -> None:
+    squares = np.random.default_rng(6).random((37, 50))
+    sums, pixels = metrics.block_sums(squares)
+    assert sums.sum() == pytest.approx(squares.sum())
+    assert pixels.sum() == squares.size
+    assert sums[0] == pytest.approx(squares[:16, :16].sum())
+    assert (sums[-1], pixels[-1]) == (pytest.approx(squares[32:, 48:].sum()), 10)
+
+
+# FLIP, against figures of its authors' own program (flip-evaluator 1.7, LDR, 67 pixels per degree).
+
+
+Array = NDArray[np.float64]
+
+
+def waves(height: int = 120, width: int = 160) -> Array:
+    """Make a picture of soft and hard edges."""
+    y, x = np.mgrid[:height, :width] / 40
+    hard = (np.sin(3 * y) > 0) * 0.8 + 0.1
+    return np.stack([np.sin(x * 2 + y) * 0.5 + 0.5, hard, np.cos(x * y) * 0.5 + 0.5], -1)
+
+
+def board(contrast: float, height: int = 120, width: int = 160) -> Array:
+    """Make a grey picture with bluer and yellower squares."""
+    y, x = np.mgrid[:height, :width] // 4
+    picture = np.full((height, width, 3), 0.5)
+    picture[..., 2] += ((x + y) % 2 - 0.5) * contrast
+    return picture
+
+
+def mean(a: Array, b: Array) -> float:
+    return float(flip(perceived(a), perceived(b)).mean())
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "right"),
+    [
+        (waves(), np.roll(waves(), 1, axis=1), 0.099324),
+        (waves(), np.clip(waves() + 0.01, 0, 1), 0.083893),
+        (np.zeros((20, 20, 3)), np.ones((20, 20, 3)), 0.967386),
+        (board(0.0), board(0.8), 0.406478),
+    ],
+    ids=["shifted", "lighter", "black and white", "blue and yellow"],
+)
+def test_the_figures_of_the_authors(a: Array, b: Array, right: float) -> None:
+    assert mean(a, b) == pytest.approx(right, rel=5e-5)
+    assert mean(b, a) == pytest.approx(mean(a, b), rel=1e-12)
+
+
+def test_the_same_picture_has_no_error() -> None:
+    assert not flip(perceived(waves()), perceived(waves())).any()
+
+
+def test_an_error_is_where_the_pictures_differ() -> None:
+    one, other = waves(), waves()
+    other[60, 80] = 1 - other[60, 80]
+    errors = flip(perceived(one), perceived(other))
+    assert np.unravel_index(errors.argmax(), errors.shape) == (60, 80)
+    assert errors[60, 80] > 0.3
+    assert not errors[:30].any()

@@ -1,0 +1,278 @@
+"""The measured errors of pictures agree with an independent measurement."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import inf, isfinite, isnan
+
+import numpy as np
+import pytest
+
+import minirt
+from minirt.errors import RenderError
+from minirt.rendering import scene_packing
+from minirt.report import pictures
+from minirt.report.pictures import (
+    DISTURBED_BY_OTHERS,
+    ENOUGH,
+    Budget,
+    Reference,
+    Row,
+    SettingRenderer,
+    measure_disturbed_again,
+    measure_settings,
+    passes,
+    reference,
+)
+from minirt.report.settings import AUTO, KNOBS, Drawn, Knob, Setting, knobs_of, settings
+from minirt.scene import FurtherLight, Scene
+from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, SHAPES
+from tests.simulated_clock import PACKET_SECONDS, PROCESSOR_SHARE, Clock, packets, simulate_clock
+
+WIDTH, HEIGHT, SAMPLES = 96, 64, 1024
+EASY = Budget(seconds=0.0, longest=inf, tries=1)
+ONCE = packets(WIDTH, HEIGHT) * PACKET_SECONDS  # seconds of the simulated clock that one sample in each pixel takes
+
+
+@pytest.fixture(autouse=True)
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """Simulate a clock that only rendering moves on."""
+    return simulate_clock(monkeypatch)
+
+
+@cache
+def right() -> Reference:
+    return reference(ALL, WIDTH, HEIGHT, SAMPLES, seed=3)
+
+
+def light(samples: int) -> np.ndarray:
+    """Render a picture with the program."""
+    made = minirt.render(ALL, WIDTH, HEIGHT, samples=samples).linear
+    assert made is not None
+    return np.clip(made, 0, 1)
+
+
+def error(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.linalg.norm(a - b) / np.sqrt(a.size))
+
+
+def rows_for(*wanted: Setting, budget: Budget = EASY) -> list[Row]:
+    return [
+        row
+        for row, _ in measure_settings(
+            SettingRenderer(ALL, WIDTH, HEIGHT, 1), list(wanted), right(), budget, lambda name: None
+        )
+    ]
+
+
+@cache
+def rows() -> dict[tuple[str, float], Row]:
+    return {(row.knob, float(row.label)): row for row in rows_for(*settings(ALL, 16, 0.005))}
+
+
+@pytest.mark.parametrize("samples", [1, 4, 16])
+def test_the_error_is_that_of_an_independent_measurement(samples: int) -> None:
+    assert rows()["uniform", samples].rmse == pytest.approx(error(light(samples), light(1024)), rel=0.1)
+
+
+def test_changed_pixels_are_those_of_an_independent_measurement() -> None:
+    few, many = (minirt.render(ALL, WIDTH, HEIGHT, samples=samples).array for samples in (1, 1024))
+    assert rows()["uniform", 1].changed == pytest.approx((few != many).any(axis=-1).sum(), rel=0.1)
+
+
+def test_the_error_of_the_reference_is_what_it_says() -> None:
+    finer = light(16384)
+    assert right().error == pytest.approx(error(right().picture, finer), rel=0.5)
+    assert right().error < rows()["uniform", 16].rmse / 5
+
+
+def test_the_reference_follows_from_its_seed_and_has_other_places_than_the_pictures() -> None:
+    few = reference(ALL, 32, 16, 8, seed=3).picture
+    assert np.array_equal(few, reference(ALL, 32, 16, 8, seed=3).picture)
+    assert not np.array_equal(few, reference(ALL, 32, 16, 8, seed=4).picture)
+    plain = minirt.render(ALL, 32, 16, samples=8).linear
+    assert plain is not None
+    assert not np.array_equal(few, np.clip(plain, 0, 1))
+
+
+def test_the_reference_tells_how_far_it_is() -> None:
+    for samples in (2, 64, 100, 1024):
+        told: list[int] = []
+        reference(ALL, 16, 16, samples, 3, lambda told=told: told.append(1))  # type: ignore[misc]
+        assert len(told) == passes(samples)
+
+
+def test_more_samples_are_closer_and_take_longer() -> None:
+    one, four, sixteen = (rows()["uniform", samples] for samples in (1, 4, 16))
+    assert one.rmse > four.rmse > sixteen.rmse
+    assert one.psnr < four.psnr < sixteen.psnr
+    assert one.flip > four.flip > sixteen.flip > 0
+    for row in (one, four, sixteen):
+        assert row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
+        assert row.cpu_ms == pytest.approx(row.samples * ONCE * 1e3 * PROCESSOR_SHARE)
+
+
+def test_knobs_do_what_they_say(clock: Clock) -> None:
+    uniform, adaptive = rows()["uniform", 16], rows()["adaptive", 16]
+    assert adaptive.rmse == pytest.approx(uniform.rmse, rel=0.3)
+    stage, (knob,) = SettingRenderer(ALL, WIDTH, HEIGHT, 1), (knob for knob in KNOBS if knob.name == "adaptive")
+    stage.renderer(Setting(knob, 16))
+    before = clock.packets
+    stage.light(Setting(knob, 16))
+    once = packets(WIDTH, HEIGHT)
+    assert 2 * once < clock.packets - before < 8 * once  # of 17, if all of the picture were done again
+    assert adaptive.cpu_ms == pytest.approx((clock.packets - before) * PACKET_SECONDS * 1e3 * PROCESSOR_SHARE)
+    assert rows()["single", 4].rmse == pytest.approx(rows()["uniform", 4].rmse, rel=0.05)
+    assert rows()["single", 4].rmse != rows()["uniform", 4].rmse
+    brute = rows()["brute force", 4]
+    errors = slice(Row._fields.index("label"), Row._fields.index("not_finite"))
+    assert brute[errors] == rows()["uniform", 4][errors]
+    assert all(row.not_finite == 0 for row in rows().values())
+
+
+def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
+    mirrors = ALL.replace(ALL.shapes[0], mirror=0.5).replace(ALL.shapes[1], mirror=0.9)
+    names = [knob.name for knob in knobs_of(ALL)]
+    assert names == ["uniform", "adaptive", "auto", "single", "brute force"]
+    assert [knob.name for knob in knobs_of(mirrors)] == [*names[:3], names[4], "no bounces", "1 bounce", "3 bounces"]
+    right = reference(mirrors, WIDTH, HEIGHT, 256, seed=3)
+    wanted = [setting for setting in settings(mirrors, 16, 1.0) if setting.value == 16]
+    stage = SettingRenderer(mirrors, WIDTH, HEIGHT, 1)
+    rmse = {row.knob: row.rmse for row, _ in measure_settings(stage, wanted, right, EASY, lambda name: None)}
+    assert rmse["no bounces"] > 2 * rmse["1 bounce"] > 4 * rmse["3 bounces"] > 4 * rmse["uniform"]
+
+
+def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
+    stage = SettingRenderer(ALL, WIDTH, HEIGHT, 1)
+    (knob,) = (knob for knob in KNOBS if knob.name == "adaptive")
+    made, _ = stage.light(Setting(knob, 4))
+    once, everywhere = minirt.render(ALL, WIDTH, HEIGHT, samples=1).linear, minirt.render(ALL, WIDTH, HEIGHT, samples=4)
+    assert once is not None
+    assert everywhere.linear is not None
+    refined = (made != once).any(axis=-1)
+    assert 0.05 < refined.mean() < 0.9
+    assert np.array_equal(made[refined], everywhere.linear[refined])
+
+
+def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two lights brighter than any file may say: where both shine straight down, their sum is infinite."""
+    bright = Scene((AMBIENT, EYE, LAMP, FurtherLight(LAMP.position, 1.0), *SHAPES))
+    monkeypatch.setattr(
+        scene_packing, "positions_and_intensities", lambda lamps, _: np.array([[-4, 6, -5, 1.7e308, 1, 1]] * len(lamps))
+    )
+    stage = SettingRenderer(bright, WIDTH, HEIGHT, 1)
+    wanted = list(settings(bright, 4, 1.0))
+    rows = [row for row, _ in measure_settings(stage, wanted, right(), EASY, lambda name: None)]
+    counts = {(row.knob, int(row.label)): row.not_finite for row in rows}
+    assert 0 < counts["uniform", 1] < WIDTH * HEIGHT
+    assert counts["uniform", 4] == pytest.approx(4 * counts["uniform", 1], rel=0.05)
+    assert counts["uniform", 1] < counts["adaptive", 4] < counts["uniform", 1] + counts["uniform", 4]
+    assert counts["brute force", 1] == counts["uniform", 1]
+    assert all(isfinite(row.rmse) for row in rows)
+
+
+def test_a_setting_that_fails_stays_as_nan() -> None:
+    def fails(*_: object) -> Drawn:
+        raise RenderError("no room")
+
+    failed, good = rows_for(Setting(Knob("bad", "", picture=fails), 1), Setting(KNOBS[0], 1))
+    assert isnan(failed.rmse)
+    assert isnan(failed.wall_ms)
+    assert (failed.valid, failed.remark) == (False, "failed: no room")
+    assert good.rmse > 0
+
+
+def test_a_setting_that_takes_too_long_is_left_out() -> None:
+    wanted = [Setting(KNOBS[0], samples) for samples in (1, 4)]
+    for longest, remarks in (
+        (0.9 * ONCE, ("takes too long for more than the first run", f"left out: takes about {4 * ONCE:.2g} s")),
+        (3.9 * ONCE, ("", f"left out: takes about {4 * ONCE:.2g} s")),
+        (4.1 * ONCE, ("", "")),
+    ):
+        made = rows_for(*wanted, budget=EASY._replace(longest=longest))
+        assert tuple(row.remark for row in made) == remarks
+        assert [row.valid for row in made] == [not remark for remark in remarks]
+        for row, remark in zip(made, remarks, strict=True):
+            left_out = remark.startswith("left out")
+            assert isnan(row.wall_ms) if left_out else row.wall_ms == pytest.approx(row.samples * ONCE * 1e3)
+
+
+@pytest.mark.parametrize(("longest", "runs"), [(7.1, 7), (6.9, 3), (1.1, 3)])
+def test_slow_pictures_have_fewer_runs(longest: float, runs: int) -> None:
+    (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(longest=longest * ONCE))
+    assert (row.runs, row.valid) == (runs, True)
+
+
+def test_tries_end_where_they_take_longer_than_a_picture_may(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pictures, "is_disturbed", lambda run, threads: True)
+    for longest, runs in ((1e3, 3 * 7), (10 * ONCE, 2 * 7), (5 * ONCE, 2 * 3)):
+        (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(longest=longest, tries=3))
+        assert (row.runs, row.remark) == (runs, DISTURBED_BY_OTHERS)
+
+
+def test_runs_fill_the_time_that_they_are_given(clock: Clock) -> None:
+    right()
+    for seconds, runs in ((0.0, pictures.RUNS), (9.5 * ONCE, 10)):
+        before = clock.packets
+        rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(seconds=seconds))
+        prepared, first = 1, packets(WIDTH, HEIGHT)
+        assert clock.packets - before == prepared + first + runs * packets(WIDTH, HEIGHT)
+
+
+def test_disturbed_runs_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every second run is disturbed: seven runs leave four, which is too few, fourteen leave enough."""
+    asked: list[int] = []
+    monkeypatch.setattr(pictures, "is_disturbed", lambda run, threads: asked.append(threads) or len(asked) % 2 == 0)
+    for tries, runs, valid in ((1, pictures.RUNS, False), (2, pictures.RUNS, True)):
+        asked.clear()
+        (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(tries=tries))
+        assert (row.valid, row.remark) == (valid, "" if valid else DISTURBED_BY_OTHERS)
+        assert set(asked) == {1}
+        assert row.runs >= runs if valid else row.runs == pictures.RUNS
+    assert ENOUGH > pictures.RUNS / 2
+
+
+def test_a_disturbed_row_is_measured_again_after_all_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    busy = [True]
+    monkeypatch.setattr(pictures, "is_disturbed", lambda run, threads: busy[0])
+    wanted = [Setting(KNOBS[0], samples) for samples in (1, 4)]
+    before = rows_for(*wanted)
+    assert [row.remark for row in before] == [DISTURBED_BY_OTHERS] * 2
+    busy[0], told, stage = False, [], SettingRenderer(ALL, WIDTH, HEIGHT, 1)
+    good, *_ = rows_for(wanted[0])
+    after = measure_disturbed_again(stage, wanted, [good, before[1]], EASY, told.append)
+    assert told == ["uniform 4 again"]
+    assert after[0] == good
+    assert (after[1].valid, after[1].remark, after[1].rmse) == (True, "", before[1].rmse)
+
+
+def test_automatic_sampling_tells_what_was_asked_and_its_own_estimate() -> None:
+    row = rows()["auto", 0.005]
+    assert row.asked == 0.005
+    assert 0 < row.estimated <= 0.005
+    assert row.rmse == pytest.approx(row.estimated, rel=0.5)
+    assert 1 < row.samples < 64
+    assert [setting.label for setting in settings(ALL, 1, 0.002) if setting.knob is AUTO] == ["0.01", "0.005", "0.002"]
+    assert isnan(rows()["uniform", 4].asked)
+
+
+def test_the_error_in_8_bits_is_that_of_the_file() -> None:
+    """Rounding adds its own error, independent of that of the samples: a twelfth of a squared level."""
+    for samples in (1, 16):
+        row = rows()["uniform", samples]
+        file = minirt.render(ALL, WIDTH, HEIGHT, samples=samples).array / 255
+        assert row.rmse_8_bits == pytest.approx(error(file, right().picture), rel=1e-9)
+        assert row.rmse_8_bits == pytest.approx((row.rmse**2 + 1 / 255**2 / 12) ** 0.5, rel=0.05)
+
+
+def test_the_intervals_hold_the_values() -> None:
+    for row in rows().values():
+        assert row.rmse_low < row.rmse < row.rmse_high < 1.5 * row.rmse
+        assert row.wall_low_ms <= row.wall_ms <= row.wall_high_ms
+
+
+def test_a_scene_without_shapes_is_black() -> None:
+    black = reference(Scene((AMBIENT, EYE)), 8, 4, 16, 0)
+    assert isinstance(black, Reference)
+    assert not black.picture.any()
+    assert black.error == 0
