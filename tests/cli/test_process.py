@@ -19,7 +19,7 @@ LOADED = "import sys; print(*sorted({each.split('.')[0] for each in sys.modules}
 QUIETLY = "import contextlib, io\nfrom minirt.cli import main\nwith contextlib.redirect_stdout(io.StringIO()):\n"
 HEAVY = {"numba", "llvmlite", "pyglet", "PIL", "minirt.mlx", "minirt.viewer"}
 OTHER_WORK = {"PIL", "minirt.movie", "minirt.report", "minirt.meshes.obj"}  # other formats, reports, meshes
-OTHER_WORK |= {"minirt.materials.radiance", "minirt.materials.xpm", "minirt.helpers.system"}  # textures, slow pictures
+OTHER_WORK |= {"minirt.materials.radiance", "minirt.materials.xpm"}  # textures
 OTHER_WORK |= {"minirt.rendering.culling.hidden_planes"}  # thousands of planes
 OTHER_WORK |= {"minirt.rendering.queries.pick", "minirt.rendering.queries.preview"}  # clicks, coarse pictures
 FOR_MISTAKES = {"difflib", "logging", "subprocess"}  # needed to report a mistake, or to compile
@@ -113,7 +113,7 @@ def test_help_and_version_start_fast(folder: Path, option: str) -> None:
     """Only the standard library and a few modules of the program are imported, and few functions called."""
     assert program(folder, option).status == 0
     allowed = {"minirt", "minirt.cli", "minirt.errors"}
-    allowed |= {f"minirt.cli.{each}" for each in ("argument_values", "arguments", "example", "exit_status", "output")}
+    allowed |= {f"minirt.cli.{each}" for each in ("arguments", "output")}
     loaded = modules(f"{QUIETLY}    with contextlib.suppress(SystemExit): main(['{option}'])", folder)
     loaded -= modules("import contextlib, io", folder)
     assert {each for each in loaded if each.split(".")[0] not in sys.stdlib_module_names} == allowed
