@@ -7,7 +7,7 @@ import pytest
 from minirt.helpers import system
 from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.pixels import PACKET_HEIGHT
-from minirt.rendering import renderer
+from minirt.rendering import frame_runner, renderer
 from minirt.rendering.frame import Frame
 from minirt.rendering.frame_runner import FrameRunner
 from minirt.rendering.sampling import auto
@@ -45,7 +45,7 @@ def simulate_clock(patch: pytest.MonkeyPatch) -> Clock:
         clock.rendered(sum(map(packets_of, frames)))
 
     patch.setattr(FrameRunner, "run", counted)
-    for module in (system, auto, to_error, renderer, pictures, bench):
+    for module in (system, auto, frame_runner, renderer, pictures, bench):
         patch.setattr(module, "perf_counter", lambda: clock.wall)
     patch.setattr(system, "process_time", clock.cpu)
     return clock
