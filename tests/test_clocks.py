@@ -27,7 +27,7 @@ EXEMPT = {  # files that measure time, or run for a given time
     "stability/host_trial.py",
     "stability/mutation.py",
     "viewer/monkey.py",
-    "viewer/recovery/kill.py",
+    "viewer/kill.py",
     "mlx/maze.py",  # programs that run in simulated time
     "mlx/two_windows.py",
     *(

@@ -283,18 +283,19 @@ OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 PRIVATE_FILE, PRIVATE_FOLDER = 0o600, 0o700
 
 
-def user_folder() -> Path:
-    """Return the folder for this user's files that may be deleted at any time; RuntimeError where the user has no home.
+def user_folder(variable: str = "XDG_CACHE_HOME", on_macos: str = "Caches", usual: str = ".cache") -> Path:
+    """Return the folder of this user's files that may be deleted at any time, or of another kind that XDG names;
+    RuntimeError where the user has no home.
 
     The XDG Base Directory Specification tells programs to ignore an XDG_CACHE_HOME that is relative."""
-    named = Path(os.environ.get("XDG_CACHE_HOME", ""))
+    named = Path(os.environ.get(variable, ""))
     if named.is_absolute():
         return named
     if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches"
+        return Path.home() / "Library" / on_macos
     if sys.platform == "win32" and os.environ.get("LOCALAPPDATA"):
         return Path(os.environ["LOCALAPPDATA"])
-    return Path.home() / ".cache"
+    return Path.home() / usual
 
 
 def is_private(status: os.stat_result) -> bool:

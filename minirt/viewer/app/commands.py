@@ -11,9 +11,8 @@ from pathlib import Path
 
 from minirt.errors import SceneError
 from minirt.rendering.queries.pick import surface_point
-from minirt.scene import describe, load, save
+from minirt.scene import describe, load, parse, save
 from minirt.scene.files import check_name
-from minirt.viewer.app import recovery
 from minirt.viewer.app.session import Session
 from minirt.viewer.bindings import platform_spelling
 from minirt.viewer.display.overlay import HudLevel
@@ -28,6 +27,7 @@ from minirt.viewer.files import (
     save_recovery,
     signature,
 )
+from minirt.viewer.recovery import find_changes
 
 TEXT_SCALES = (0.5, 4.0)  # least and largest
 TEXT_STEP = 2**0.25  # factor of a key press
@@ -41,7 +41,7 @@ def save_a_copy(session: Session) -> None:
 def reload(session: Session) -> None:
     """Take the unsaved changes of an earlier run where there are some, read the file again otherwise. SceneError."""
     if session.found_changes:
-        recovery.take(session)
+        take_found(session)
     else:
         read_again(session)
 
@@ -189,6 +189,28 @@ def open_another(session: Session, path: Path) -> None:
     session.screen.banner = ""
     session.has_unused_memory = True
     session.state = initial_state(scene).with_message(f"opened: {path}{kept}")
+
+
+def offer_found(session: Session) -> None:
+    """Say that there are unsaved changes of the scene's file from an earlier run, if there are."""
+    session.found_changes = find_changes(session.path)
+    if session.found_changes:
+        session.screen.banner = f"{session.found_changes.title} found: {platform_spelling('Ctrl+R')} takes them"
+
+
+def take_found(session: Session) -> None:
+    """Show the scene with the unsaved changes that were found, as an edit. SceneError where they cannot be read."""
+    found, session.found_changes, session.screen.banner = session.found_changes, None, ""
+    if found:
+        scene = parse(found.text, session.path, session.lenient).scene
+        if session.state.scene.camera.left_handed:
+            scene = scene.replace(scene.camera, left_handed=True)
+        session.release_button()
+        session.state = state_after_reading(session.state, scene, None).with_message(
+            f"{found.title}: {platform_spelling('Ctrl+S')} saves them, {platform_spelling('Ctrl+Z')} takes them back"
+        )
+        if session.recovery and not found.beside:
+            session.recovery.replace(found.path)
 
 
 COMMANDS: dict[str, Callable[[Session], None]] = {

@@ -15,13 +15,15 @@ from minirt.helpers.system import gc_paused
 from minirt.mlx import Mlx
 from minirt.scene import Scene
 from minirt.scene.scene import check_scene
-from minirt.viewer.app import recovery
+from minirt.viewer.app.commands import offer_found
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.application_icon import application_icons
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Renderer
 from minirt.viewer.display.screen import use_one_heap
+from minirt.viewer.files import contents_differ, save_recovery
+from minirt.viewer.recovery import Recovery
 
 if TYPE_CHECKING:
     from minirt.mlx.display import Display
@@ -62,12 +64,13 @@ def run(
     renderer = renderer or minirt.renderer(threads)
     session = open_session(scene, Path(path), size, renderer, mlx or Mlx(), keys, lenient, samples, watch, saved)
     session.screen.text_scale = text_scale
-    recovery.begin(session)
-    session.mlx.mlx_lost_hook(session.display, recovery.end_at_once, session)
+    session.recovery = Recovery()
+    offer_found(session)
+    session.mlx.mlx_lost_hook(session.display, lose_window, session)
     try:
         status, stopped = run_event_loop(session)
     finally:
-        recovery.tell(recovery.end(session))
+        end_recovery(session)
     if not stopped:
         exit_at_once(status)
     return status
@@ -166,6 +169,26 @@ def fit_screen(mlx: Mlx, display: Display, size: tuple[int, int]) -> tuple[int, 
     """Return the size of a window, reduced to that of the screen if it is larger."""
     _, width, height = mlx.mlx_get_screen_size(display)
     return min(size[0], width), min(size[1], height)
+
+
+def end_recovery(session: Session) -> None:
+    """Write unsaved changes to a file beside the scene, and say so. Where that fails they stay kept: SceneError."""
+    saved = False
+    try:
+        if contents_differ(session.state.scene, session.saved):
+            copy = save_recovery(session.state.scene, session.path)
+            with suppress(OSError):  # standard output may be closed
+                print(f"The changes that were not saved are in {copy}", flush=True)
+        saved = True
+    finally:
+        if session.recovery:
+            session.recovery.close(delete=saved)
+
+
+def lose_window(session: Session) -> None:
+    """Write unsaved changes because the display has gone; errors end nothing."""
+    with suppress(Exception):
+        end_recovery(session)
 
 
 def exit_at_once(status: int) -> NoReturn:

@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 from minirt.mlx import Event
 from minirt.mlx.events import MODIFIER_KEYS
-from minirt.viewer.app import recovery
-from minirt.viewer.app.commands import COMMANDS, follow_change, open_another
+from minirt.viewer.app.commands import COMMANDS, follow_change, offer_found, open_another
 from minirt.viewer.app.mouse import Mouse
 from minirt.viewer.app.panels import ADDING, LISTS, TYPE, Choosing, Typing
 from minirt.viewer.app.session import Session
@@ -153,7 +152,7 @@ class EventDispatcher:
         """A file was dropped on the window."""
         self.session.attempt(lambda session: open_another(session, Path(file)))
         if self.session.path == Path(file):
-            recovery.offer(self.session)
+            offer_found(self.session)
         self.session.show(self.session.state)
 
     def perform(self, binding: Binding, step: float) -> None:

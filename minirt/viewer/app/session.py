@@ -28,11 +28,10 @@ from minirt.viewer.editing.dragging import DragStart
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.files import WatchedFile, error_summary, save_picture
 from minirt.viewer.key_repeat import KeyRepeat
-from minirt.viewer.recovery.journal import Journal, Version
+from minirt.viewer.recovery import FoundChanges, Recovery, Version
 
 if TYPE_CHECKING:
     from minirt.mlx.display import Display
-    from minirt.viewer.recovery.found_changes import FoundChanges
 
 
 class PressedButton(NamedTuple):
@@ -86,7 +85,7 @@ class Session:
         self.saved = saved or scene  # the scene as the file holds it
         self.file = WatchedFile(path)
         self.watches_file = watch
-        self.journal: Journal | None = None  # of unsaved changes
+        self.recovery: Recovery | None = None  # of unsaved changes
         self.found_changes: FoundChanges | None = None  # by an earlier run, which reading the file again would take
         self.keymap = Keymap(keys)
         self.key_repeat = KeyRepeat()
@@ -115,8 +114,8 @@ class Session:
 
     def update(self) -> None:
         """Request the next picture of the current scene, if one is missing, and keep its changes on disk."""
-        if self.journal:
-            self.journal.keep(Version(self.state.scene, self.saved, self.path, self.file.known))
+        if self.recovery:
+            self.recovery.keep(Version(self.state.scene, self.saved, self.path, self.file.known))
         self.refinement.request_missing(self.state.scene, moving=bool(self.key_repeat))
 
     def refresh(self) -> None:

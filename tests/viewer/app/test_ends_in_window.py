@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import minirt
-from minirt.viewer.recovery.journal_folder import name_of
+from minirt.viewer.recovery import name_of
 from tests.viewer.app.test_real_window import Viewer, picture, viewing
 from tests.viewer.scenes import WITH_CYLINDER
 from tests.waiting import until
@@ -20,17 +20,17 @@ from tests.windows import Desktop, open_desktop, require_tools
 pytestmark = pytest.mark.window
 
 
-def journals(desktop: Desktop, path: Path) -> list[Path]:
-    """Return the journals of a scene file."""
-    return list((Path(desktop.environment["XDG_STATE_HOME"]) / "minirt" / "journals").glob(f"{name_of(path)}-*"))
+def kept(desktop: Desktop, path: Path) -> list[Path]:
+    """Return the files with unsaved changes of a scene file."""
+    return list((Path(desktop.environment["XDG_STATE_HOME"]) / "minirt" / "unsaved").glob(f"{name_of(path)}-*"))
 
 
 @contextmanager
 def with_unsaved_changes(desktop: Desktop, path: Path) -> Iterator[Viewer]:
-    """Run the program; when the block begins it has deleted the sphere, and its journal says so."""
+    """Run the program; when the block begins it has deleted the sphere, and that is on disk."""
     with viewing(desktop, path) as viewer:
         viewer.key("Tab", "Tab", "Delete")
-        until(lambda: any(b"]\n" in each.read_bytes() for each in journals(desktop, path)), "the journal")
+        until(lambda: any(each.suffix == ".rt" for each in kept(desktop, path)), "unsaved changes on disk")
         yield viewer
 
 
@@ -44,7 +44,7 @@ def test_signals_end_the_program_and_keep_changes(desktop, tmp_path, number):
     assert (status, errors) == (128 + number, "")
     assert str(copy) in output
     assert minirt.load(copy).spheres == ()
-    assert journals(desktop, path) == []
+    assert kept(desktop, path) == []
 
 
 def test_a_window_without_unsaved_changes_ends_by_a_signal_and_leaves_nothing(desktop, tmp_path):
@@ -56,7 +56,7 @@ def test_a_window_without_unsaved_changes_ends_by_a_signal_and_leaves_nothing(de
         os.kill(viewer.process.pid, signal.SIGTERM)
         assert viewer.end() == (143, "", "")
     assert list(tmp_path.iterdir()) == [path]
-    assert journals(desktop, path) == []
+    assert kept(desktop, path) == []
 
 
 def test_a_killed_program_loses_nothing(desktop, tmp_path):
@@ -69,7 +69,7 @@ def test_a_killed_program_loses_nothing(desktop, tmp_path):
         viewer.key("ctrl+r", "ctrl+s", "Escape")
         assert viewer.end() == (0, "", "")
     assert minirt.load(path).spheres == ()
-    assert journals(desktop, path) == []
+    assert kept(desktop, path) == []
 
 
 def test_a_lost_connection_to_the_screen_keeps_changes(desktop, tmp_path):
@@ -81,7 +81,7 @@ def test_a_lost_connection_to_the_screen_keeps_changes(desktop, tmp_path):
     assert (status, errors) == (1, "Error\nthe connection to the X server is lost\n")
     assert str(copy) in output
     assert minirt.load(copy).spheres == ()
-    assert journals(desktop, path) == []
+    assert kept(desktop, path) == []
 
 
 def test_a_killed_x_server_keeps_changes(tmp_path):
@@ -94,4 +94,4 @@ def test_a_killed_x_server_keeps_changes(tmp_path):
         assert (status, errors) == (1, "Error\nthe connection to the X server is lost\n")
         assert str(copy) in output
         assert minirt.load(copy).spheres == ()
-        assert journals(desktop, path) == []
+        assert kept(desktop, path) == []

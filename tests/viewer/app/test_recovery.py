@@ -8,10 +8,11 @@ import pytest
 
 from minirt.mlx import Key
 from minirt.scene import dump, load
-from minirt.viewer.app import recovery
+from minirt.viewer.app import desktop
+from minirt.viewer.app.commands import offer_found
+from minirt.viewer.app.desktop import end_recovery, lose_window
 from minirt.viewer.files import WatchedFile
-from minirt.viewer.recovery import journal_file
-from minirt.viewer.recovery.journal_folder import journal_folder
+from minirt.viewer.recovery import Recovery, state_folder
 from tests.viewer.fake import TEXT, scene
 from tests.viewer.session_harness import SessionHarness
 
@@ -29,7 +30,8 @@ def opened(path) -> SessionHarness:
     """Open the scene as the program does."""
     harness = SessionHarness()
     harness.session.path, harness.session.file = path, WatchedFile(path)
-    recovery.begin(harness.session)
+    harness.session.recovery = Recovery()
+    offer_found(harness.session)
     harness.finish(0.001)
     return harness
 
@@ -38,8 +40,8 @@ def killed_after_an_edit(path) -> str:
     """Edit the scene in a program that is killed; return the text of the edited scene."""
     harness = opened(path)
     edit(harness)
-    harness.session.journal.flush()
-    harness.session.journal.close(delete=False)
+    harness.session.recovery.flush()
+    harness.session.recovery.close(delete=False)
     return dump(harness.session.state.scene)
 
 
@@ -49,9 +51,9 @@ def edit(harness: SessionHarness) -> None:
     harness.tap(Key.D)
 
 
-def journals() -> list[str]:
-    """Return the names of all journals."""
-    return [each.name for each in journal_folder().glob("*.journal")]
+def kept() -> list[str]:
+    """Return the names of all files with unsaved changes."""
+    return [each.name for each in state_folder().glob("*.rt")]
 
 
 def test_the_changes_of_a_killed_program_are_offered_and_taken(path):
@@ -63,14 +65,14 @@ def test_the_changes_of_a_killed_program_are_offered_and_taken(path):
     harness.tap(Key.CONTROL_L, Key.R)
     assert dump(harness.session.state.scene) == edited
     assert harness.session.screen.banner == ""
-    harness.session.journal.flush()
-    assert len(journals()) == 1  # that of this session
-    assert journal_file.read(harness.session.journal.path).text == edited
+    harness.session.recovery.flush()
+    assert len(kept()) == 1  # that of this session
+    assert harness.session.recovery.path.read_text() == edited
     harness.tap(Key.CONTROL_L, Key.S)
     assert path.read_text() == edited
-    harness.session.journal.flush()
-    assert journals() == []
-    recovery.end(harness.session)
+    harness.session.recovery.flush()
+    assert kept() == []
+    end_recovery(harness.session)
     assert "unsaved" not in opened(path).session.screen.banner
 
 
@@ -82,7 +84,7 @@ def test_taken_changes_can_be_undone(path):
     assert dump(harness.session.state.scene) == TEXT
     harness.tap(Key.F5)
     assert "read again" in harness.session.state.message
-    recovery.end(harness.session)
+    end_recovery(harness.session)
 
 
 def test_changes_that_nobody_takes_are_offered_again(path):
@@ -90,34 +92,35 @@ def test_changes_that_nobody_takes_are_offered_again(path):
     for _ in range(2):
         harness = opened(path)
         assert "Ctrl+R takes them" in harness.session.screen.banner
-        assert recovery.end(harness.session) is None
+        end_recovery(harness.session)
+        assert not path.with_name("scene.recovered.rt").exists()
 
 
 def test_a_clean_end_with_unsaved_changes_leaves_a_recovery_file_that_is_offered(path):
     harness = opened(path)
     edit(harness)
-    copy = recovery.end(harness.session)
-    assert copy == path.with_name("scene.recovered.rt")
-    assert journals() == []
+    end_recovery(harness.session)
+    copy = path.with_name("scene.recovered.rt")
+    assert kept() == []
     harness = opened(path)
     assert "(scene.recovered.rt) found" in harness.session.screen.banner
     harness.tap(Key.F5)
     assert dump(harness.session.state.scene) == copy.read_text()
     assert copy.exists()
-    recovery.end(harness.session)
+    end_recovery(harness.session)
 
 
 def test_two_windows_on_one_file_do_not_offer_each_other_their_changes(path):
     first = opened(path)
     edit(first)
-    first.session.journal.flush()
+    first.session.recovery.flush()
     second = opened(path)
     assert second.session.screen.banner == ""
     edit(second)
-    second.session.journal.flush()
-    assert len(journals()) == 2
+    second.session.recovery.flush()
+    assert len(kept()) == 2
     for each in (first, second):
-        recovery.end(each.session)
+        end_recovery(each.session)
     assert sorted(each.name for each in path.parent.glob("*.rt")) == [
         "scene.recovered-1.rt",
         "scene.recovered.rt",
@@ -125,24 +128,24 @@ def test_two_windows_on_one_file_do_not_offer_each_other_their_changes(path):
     ]
 
 
-def test_the_journal_stays_where_no_recovery_file_can_be_written(path, monkeypatch):
+def test_changes_stay_kept_where_no_recovery_file_can_be_written(path, monkeypatch):
     harness = opened(path)
     edit(harness)
-    harness.session.journal.flush()
+    harness.session.recovery.flush()
 
     def fail(*_: object) -> None:
         raise OSError
 
-    monkeypatch.setattr(recovery, "save_recovery", fail)
+    monkeypatch.setattr(desktop, "save_recovery", fail)
     with pytest.raises(OSError):  # noqa: PT011 - any
-        recovery.end(harness.session)
-    assert len(journals()) == 1
+        end_recovery(harness.session)
+    assert len(kept()) == 1
 
 
 def test_lost_connections_keep_changes_and_end_nothing(path, capsys):
     harness = opened(path)
     edit(harness)
-    recovery.end_at_once(harness.session)
+    lose_window(harness.session)
     copy = path.with_name("scene.recovered.rt")
     assert str(copy) in capsys.readouterr().out
     assert load(copy).scene.items == harness.session.state.scene.items
@@ -155,7 +158,7 @@ def test_changes_with_an_error_are_said_and_kept(path):
     harness.tap(Key.F5)
     assert "sphere diameter must be > 0" in harness.session.state.message
     assert copy.exists()
-    recovery.end(harness.session)
+    end_recovery(harness.session)
 
 
 def test_another_file_that_is_opened_offers_its_own_changes(path, tmp_path):
@@ -169,4 +172,4 @@ def test_another_file_that_is_opened_offers_its_own_changes(path, tmp_path):
     assert "Ctrl+R takes them" in harness.session.screen.banner
     harness.tap(Key.F5)
     assert dump(harness.session.state.scene) == edited
-    recovery.end(harness.session)
+    end_recovery(harness.session)

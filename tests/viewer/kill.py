@@ -1,10 +1,11 @@
-"""Kill a program at random moments while it edits, and read back what its journal holds.
+"""Kill a program at random moments while it edits, and read back what it kept on disk.
 
-python -m tests.viewer.recovery.kill COUNT [SEED]      # prints what was lost, in seconds; status 1 if more than one
+python -m tests.viewer.kill COUNT [SEED]     # prints what was lost, in seconds; status 1 if more than one
 """
 
 from __future__ import annotations
 
+import itertools
 import os
 import random
 import sys
@@ -16,17 +17,19 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from minirt.scene import parse
-from minirt.viewer.recovery.found_changes import find_changes
+from minirt.scene import load, parse
+from minirt.viewer.files import signature
+from minirt.viewer.recovery import Recovery, Version, find_changes
 from tests import processes
 from tests.viewer.fake import TEXT
 
+PAUSE = 0.002  # seconds between two edits
 LOSS = 1.0  # seconds of edits that may be lost
 LONGEST = 1.5  # seconds until a program is killed, after its first edit
 
 
 class Trial(NamedTuple):
-    """Edits of a killed program, and those that its journal gives back."""
+    """Edits of a killed program, and those that are on disk."""
 
     kept: list[float]  # seconds of each edit, as a process beside it saw them
     flushed: int  # the last version that was certainly on disk
@@ -41,7 +44,7 @@ class Trial(NamedTuple):
 
 @contextmanager
 def state_folder(folder: Path) -> Iterator[None]:
-    """Let journals be in a folder, for the block and programs that are started in it."""
+    """Let unsaved changes be kept in a folder, for the block and programs that are started in it."""
     before = os.environ.get("XDG_STATE_HOME")
     os.environ["XDG_STATE_HOME"] = str(folder)
     try:
@@ -53,15 +56,15 @@ def state_folder(folder: Path) -> Iterator[None]:
 
 
 def trial(folder: Path, wait: float, edits: int = 0) -> Trial:
-    """Start the program in an empty folder, kill it some seconds after its first edit, and read its journal.
+    """Start the program in an empty folder, kill it some seconds after its first edit, and read what it kept.
 
-    `edits`: as in `tests.viewer.recovery.edit_forever`.
+    `edits`: as in `edit_forever`.
     """
     path = folder / "scene.rt"
     path.write_text(TEXT)
     kept: list[float] = []
     flushed = 0
-    command = [sys.executable, "-m", "tests.viewer.recovery.edit_forever", str(path), str(edits)]
+    command = [sys.executable, "-m", "tests.viewer.kill", "edit", str(path), str(edits)]
     with state_folder(folder / "state"), processes.started(command, stdout=-1, text=True) as process:
         assert process.stdout is not None
         timer = threading.Timer(wait, process.kill)
@@ -81,6 +84,23 @@ def trial(folder: Path, wait: float, edits: int = 0) -> Trial:
     return Trial(kept, flushed, recovered, killed)
 
 
+def edit_forever(path: Path, edits: int) -> None:
+    """Edit a scene for ever: version N has a sphere of diameter N. Write a line `kept N` after each edit.
+
+    After each `edits` edits flush what is kept, and write `flushed N`; with 0 leave that to the timer.
+    """
+    saved = scene = load(path).scene
+    known, recovery, pause = signature(path), Recovery(), threading.Event()
+    for number in itertools.count(1):
+        scene = scene.replace(scene.spheres[0], diameter=float(number))
+        recovery.keep(Version(scene, saved, path, known))
+        os.write(1, b"kept %d\n" % number)
+        if edits and number % edits == 0:
+            recovery.flush()
+            os.write(1, b"flushed %d\n" % number)
+        pause.wait(PAUSE)
+
+
 def main(count: int, seed: int = 1) -> int:
     """Run the trials and print the losses."""
     chance = random.Random(seed)
@@ -93,9 +113,11 @@ def main(count: int, seed: int = 1) -> int:
     none = sum(each.recovered == 0 for each in trials)
     edits = sum(len(each.kept) for each in trials)
     print(f"{count} kills after {edits} edits: lost at most {losses[-1]:.3f} s, median {losses[count // 2]:.3f} s")
-    print(f"{none} without a journal yet; {broken} without a version that was flushed")
+    print(f"{none} with nothing kept yet; {broken} without a version that was flushed")
     return int(losses[-1] > LOSS or broken > 0)
 
 
 if __name__ == "__main__":
+    if sys.argv[1] == "edit":
+        edit_forever(Path(sys.argv[2]), int(sys.argv[3]))
     sys.exit(main(*map(int, sys.argv[1:])))

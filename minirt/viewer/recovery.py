@@ -1,0 +1,219 @@
+"""Recovery of unsaved changes: a thread writes the scene's text to the user's state folder within a second of a change.
+
+So a killed program loses no more than its last second. The file is deleted when nothing is unsaved; one that a killed
+program left is offered when the scene is opened again.
+"""
+
+from __future__ import annotations
+
+import glob
+import hashlib
+import logging
+import os
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from datetime import datetime
+from pathlib import Path
+from typing import NamedTuple
+
+from minirt.errors import FileError, SceneError
+from minirt.helpers import file_io
+from minirt.scene import Scene, dump, files
+from minirt.viewer.files import Signature, contents_differ, signature
+
+INTERVAL = 0.8  # seconds between two writes, which leaves a fifth of a second for the write itself
+KEPT = 30 * 24 * 3600  # seconds that a file is kept which nobody asks for ...
+EARLIEST = 1.7e9  # ... since 1970, in November 2023: no file is older, and one of which a wrong clock says so is kept
+
+
+class Version(NamedTuple):
+    """A version of the scene, and the version that its file holds."""
+
+    scene: Scene
+    saved: Scene
+    file: Path
+    signature: Signature  # of the file with `saved`
+
+
+class Recovery:
+    """Keeps the text of a session's scene on disk while it has unsaved changes. The thread starts with the first."""
+
+    def __init__(self) -> None:
+        self.path: Path | None = None  # of the file, while there is one
+        self._lock = -1  # descriptor of the file beside it, which is locked while this program runs
+        self._newest: Version | None = None
+        self._written: Version | None = None
+        self._obsolete: list[Path] = []  # files to delete as soon as this one holds their changes
+        self._told = False  # that the disk is full, or the like
+        self._timer: threading.Timer | None = None  # of the next write
+        self._writing = threading.Lock()
+
+    def keep(self, version: Version) -> None:
+        """Keep a version, soon; the last one that was given is the one that counts."""
+        newest, self._newest = self._newest, version
+        changed = newest.scene is not version.scene if newest else version.scene is not version.saved
+        if self._timer is None and (changed or (newest and newest.saved is not version.saved)):
+            self._timer = threading.Timer(INTERVAL, self.flush)
+            self._timer.daemon = True
+            self._timer.start()
+
+    def replace(self, path: Path) -> None:
+        """Delete the file of a killed program as soon as this one's holds its changes."""
+        self._obsolete.append(path)
+
+    def flush(self) -> None:
+        """Write the newest version now. Where that fails, a notice says so and the next change tries again."""
+        with self._writing:
+            self._timer = None
+            try:
+                if self._newest and self._newest is not self._written:
+                    self._write(self._newest)
+            except (OSError, RuntimeError) as error:  # RuntimeError: the user has no home
+                if not self._told:
+                    logging.getLogger(__name__).warning("notice: unsaved changes cannot be kept on disk: %s", error)
+                self._told = True
+
+    def close(self, *, delete: bool) -> None:
+        """Stop; `delete`: nothing in the file is needed any more."""
+        timer = self._timer
+        if timer:
+            timer.cancel()
+        if not delete:
+            self.flush()
+        with self._writing:
+            self._newest = None
+            self._end_file()
+            if delete:
+                self._delete_obsolete()
+
+    def _write(self, version: Version) -> None:
+        """Bring the file up to date with a version. OSError, RuntimeError."""
+        before, unsaved = self._written, contents_differ(version.scene, version.saved)
+        if before and (before.saved is not version.saved or not unsaved):
+            self._end_file()
+        if unsaved:
+            if self.path is None:
+                self.path, self._lock = create_locked(version)
+            file_io.write(self.path, dump(version.scene).encode(), file_io.PRIVATE_FILE)
+        if unsaved or before:
+            self._delete_obsolete()
+        self._written = version if unsaved else None
+
+    def _end_file(self) -> None:
+        """Give the file up: it is deleted when a new one holds its changes, or nothing is unsaved."""
+        if self.path:
+            os.close(self._lock)
+            self._obsolete.append(self.path)
+        self.path = self._written = None
+
+    def _delete_obsolete(self) -> None:
+        while self._obsolete:
+            delete(self._obsolete.pop())
+
+
+class FoundChanges(NamedTuple):
+    """Unsaved changes of a scene: a file of `Recovery`, or one that Escape left beside the scene."""
+
+    path: Path
+    time: float  # of the last change, in seconds since 1970
+    text: str  # of the scene with the changes
+    beside: bool  # whether the file is beside the scene
+
+    @property
+    def title(self) -> str:
+        """Their name in messages: time of day, with the date unless it is today."""
+        try:
+            when = datetime.fromtimestamp(self.time)  # in the user's own time
+        except (OSError, OverflowError, ValueError):  # beyond the year 9999, which some file systems hold
+            return f"unsaved changes ({self.path.name})"
+        date = "" if when.date() == datetime.now().date() else f"{when:%Y-%m-%d} "
+        return f"unsaved changes of {date}{when:%H:%M}{f' ({self.path.name})' if self.beside else ''}"
+
+
+def find_changes(file: Path) -> FoundChanges | None:
+    """Return the last unsaved changes of a scene file that are newer than the file and differ from it.
+
+    Changes of just the text that the file has are newer, whatever the times say: clocks are set back, too.
+    """
+    with suppress(OSError, FileError, UnicodeDecodeError):
+        data, saved = file_io.read(file, files.MAX_BYTES), file.stat().st_mtime
+        text, base = data.decode(), digest(data)
+        newest = sorted(candidates(file), key=lambda each: each.time, reverse=True)
+        return next((each for each in newest if is_newer(each, base, saved) and each.text != text), None)
+    return None
+
+
+def is_newer(changes: FoundChanges, base: str, saved: float) -> bool:
+    """Whether changes were made after the file got the text with the digest `base`, at the time `saved`."""
+    return changes.time >= saved or (not changes.beside and changes.path.name.split("-")[1] == base)
+
+
+def candidates(file: Path) -> Iterator[FoundChanges]:
+    """Yield all unsaved changes of a scene file that can be read."""
+    beside = sorted(file.parent.glob(f"{glob.escape(file.stem)}.recovered*.rt"))
+    for path in [*abandoned(file), *beside]:
+        with suppress(OSError, SceneError, UnicodeDecodeError):
+            yield FoundChanges(path, path.stat().st_mtime, files.read(path).decode(), path in beside)
+
+
+def state_folder() -> Path:
+    """Return the folder of this user's unsaved changes; RuntimeError where the user has no home."""
+    return file_io.user_folder("XDG_STATE_HOME", "Application Support", ".local/state") / "minirt" / "unsaved"
+
+
+def digest(data: bytes) -> str:
+    """Return letters and digits that tell texts, and paths, apart."""
+    return hashlib.sha256(data).hexdigest()[:24]
+
+
+def name_of(file: Path) -> str:
+    """Return how the names of the files with unsaved changes of a scene file begin."""
+    return digest(os.fsencode(os.path.realpath(file)))
+
+
+def create_locked(version: Version) -> tuple[Path, int]:
+    """Return a new name for the unsaved changes of a scene file, and the descriptor of its lock. OSError, RuntimeError.
+
+    The second part of the name is the digest of the text that was changed, if the file still holds it.
+    """
+    base = ""
+    with suppress(FileError):
+        data = file_io.read(version.file, files.MAX_BYTES)
+        is_its_file = version.saved.file == version.file and signature(version.file) == version.signature
+        base = digest(data) if is_its_file else ""
+    folder = state_folder()
+    folder.mkdir(mode=file_io.PRIVATE_FOLDER, parents=True, exist_ok=True)
+    path = folder / f"{name_of(version.file)}-{base}-{os.urandom(6).hex()}.rt"
+    return path, open_lock(path)
+
+
+def open_lock(path: Path) -> int:
+    """Open and, if no running program has, lock the file that is locked while a program writes `path`. OSError."""
+    descriptor = os.open(path.with_suffix(".lock"), os.O_RDWR | os.O_CREAT, file_io.PRIVATE_FILE)
+    if not file_io.lock(descriptor):
+        os.close(descriptor)
+        raise BlockingIOError
+    return descriptor
+
+
+def abandoned(file: Path) -> Iterator[Path]:
+    """Yield the files with unsaved changes of a scene file that no running program writes; delete very old ones."""
+    with suppress(OSError, RuntimeError):
+        for lock in sorted(state_folder().glob(f"{name_of(file)}-*.lock")):
+            path = lock.with_suffix(".rt")
+            with suppress(OSError):
+                os.close(open_lock(path))  # which also frees the lock
+                changed = path.stat().st_mtime if path.exists() else EARLIEST
+                if EARLIEST <= changed < time.time() - KEPT:
+                    delete(path)
+                else:
+                    yield path
+
+
+def delete(path: Path) -> None:
+    """Delete unsaved changes, and their lock."""
+    for each in (path, path.with_suffix(".lock")):
+        with suppress(OSError):
+            each.unlink()
