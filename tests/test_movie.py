@@ -12,7 +12,7 @@ import minirt
 from minirt.errors import RenderError
 from minirt.movie import save_movie
 from minirt.viewer.app.replay import FPS as ANIMATION_FPS
-from minirt.viewer.app.replay import TICKS, animation, turntable
+from minirt.viewer.app.replay import TICKS, record, turntable
 from minirt.viewer.editing.projection import projection_of, scene_centre
 from tests.viewer.fake import FakeRenderer, scene
 
@@ -81,7 +81,8 @@ def test_a_turntable_circles_the_scene_once():
 
 def test_an_animation_has_frames_for_its_whole_duration():
     lines = ["wait 1", "move 20,20", "hold d 0.5"]
-    frames = animation(scene(), lines, renderer=FakeRenderer(), size=(64, 48), path="scene.rt")
+    frames: list[minirt.Image] = []
+    record(scene(), lines, frames.append, renderer=FakeRenderer(), size=(64, 48), path="scene.rt")
     assert abs(len(frames) - 1.5 * ANIMATION_FPS) <= 2
     assert TICKS % ANIMATION_FPS == 0
     assert np.array_equal(frames[0].array, frames[3].array)

@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,34 +17,22 @@ from minirt.mlx.memory import Memory
 from minirt.scene import Scene
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.painter import Painter, Pixels, Renderer
+from minirt.viewer.display.painter import Painter, Pixels
 from minirt.viewer.editing.motion import orbit_camera
 from minirt.viewer.editing.projection import scene_centre
 from minirt.viewer.input.recording import add_recording
 
+if TYPE_CHECKING:
+    from minirt.rendering.renderer import Renderer
 
-def replay(
-    scene: Scene,
-    lines: Iterable[str],
-    *,
-    renderer: Renderer,
-    size: tuple[int, int],
-    path: str | os.PathLike[str],
-    file: str = "replay",
-    keys: str = "qwerty",
-    lenient: bool = False,
-    samples: int = 1,
-    hud: bool = True,
-) -> Pixels:
-    """Play `lines` (see `minirt.viewer.input.recording`) and return the last frame, (h, w, 4) BGRA.
+FPS = 12  # frames per second of an animation
+TICKS = 60  # per second of simulated time
+ARROW = ((0, 0), (0, 17), (4, 13), (7, 20), (10, 19), (7, 12), (12, 12))  # corners of the pointer, in pixels
 
-    Without `hud` the frame is the picture alone. The same lines give the same frame. `path` is the scene's file, which
-    keys may save and reload; `file` is the name of the recording in error messages. If a line is wrong, ReplayError is
-    raised before any line is played; if a command fails, such as saving, its error is raised at the end.
-    """
-    session = play(
-        scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient, samples=samples
-    )
+
+def replay(scene: Scene, lines: Iterable[str], *, hud: bool = True, **settings: Any) -> Pixels:
+    """Play `lines` as `play` does, and return the last frame, (h, w, 4) BGRA; without `hud` the picture alone."""
+    session = play(scene, lines, **settings)
     raise_failure(session)
     return session.screen.frame if hud else session.picture
 
@@ -68,9 +56,13 @@ def play(
     samples: int = 1,
     watch: Callable[[Session], object] = lambda _: None,
 ) -> Session:
-    """Play `lines` as `replay` does and return the session at the end.
+    """Play `lines` (see `minirt.viewer.input.recording`) and return the session at the end.
 
-    `watch` is called with the session sixty times per simulated second.
+    The same lines give the same frames. `path` is the scene's file, which keys may save and reload; `file` is the name
+    of the recording in error messages. `watch` is called with the session sixty times per simulated second.
+
+    If a line is wrong, ReplayError is raised before any line is played. Errors of commands, such as saving, are in the
+    session; `replay` and `record` raise the first at the end.
     """
     memory = Memory()
     add_recording(lines, file, memory)
@@ -89,11 +81,6 @@ def play(
     return session
 
 
-FPS = 12  # frames per second of an animation
-TICKS = 60  # per second of simulated time
-ARROW = ((0, 0), (0, 17), (4, 13), (7, 20), (10, 19), (7, 12), (12, 12))  # corners of the pointer, in pixels
-
-
 def turntable(scene: Scene, count: int) -> Iterator[Scene]:
     """Yield the scene from `count` positions on a circle around its centre; the frames repeat seamlessly."""
     pivot = scene_centre(scene)
@@ -102,29 +89,10 @@ def turntable(scene: Scene, count: int) -> Iterator[Scene]:
         yield scene.replace(scene.camera, camera) if number else scene
 
 
-def animation(scene: Scene, lines: Iterable[str], **settings: Any) -> list[Image]:
-    """Return the frames of a replay; the arguments are those of `record`."""
-    frames: list[Image] = []
-    record(scene, lines, frames.append, **settings)
-    return frames
-
-
-def record(
-    scene: Scene,
-    lines: Iterable[str],
-    add: Callable[[Image], object],
-    *,
-    renderer: Renderer,
-    size: tuple[int, int],
-    path: str | os.PathLike[str],
-    file: str = "replay",
-    keys: str = "qwerty",
-    lenient: bool = False,
-    samples: int = 1,
-) -> None:
+def record(scene: Scene, lines: Iterable[str], add: Callable[[Image], object], **settings: Any) -> None:
     """Give the frames of a replay to a function, FPS per simulated second, with the pointer while it is used.
 
-    Errors as for `minirt.viewer.app.replay.replay`.
+    The other arguments and the errors are those of `play`.
     """
     ticks = itertools.count()
 
@@ -132,10 +100,7 @@ def record(
         if next(ticks) % (TICKS // FPS) == 0:
             add(Image.from_bgra(with_pointer(session.screen.frame, session.window.pointer)))
 
-    session = play(
-        scene, lines, renderer=renderer, size=size, path=path, file=file, keys=keys, lenient=lenient, samples=samples,
-        watch=add_frame,
-    )  # fmt: skip
+    session = play(scene, lines, watch=add_frame, **settings)
     raise_failure(session)
     add(Image.from_bgra(session.screen.frame))
 

@@ -9,8 +9,12 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from minirt.viewer.display.painter import Job, Outcome, Painter, Renderer, paint, preview
+from minirt.viewer.display.painter import Job, Outcome, Painter, paint, preview
+
+if TYPE_CHECKING:
+    from minirt.rendering.renderer import Renderer
 
 PREVIEW_DELAY = 0.4  # seconds that a kernel may take before a preview appears: loading one takes less
 

@@ -1,63 +1,24 @@
-"""Render jobs and their outcomes, the renderer that they need, and a painter that renders at once."""
+"""Render jobs and their outcomes, and a painter that renders at once."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from minirt.rendering.sampling.contrast import estimated_error
 from minirt.scene import Scene
-from minirt.shapes import Shape
+
+if TYPE_CHECKING:
+    from minirt.rendering.renderer import Renderer
 
 Pixels: TypeAlias = NDArray[np.uint8]  # (h, w, 4) BGRA
 IsWanted: TypeAlias = Callable[[], bool]  # whether a picture is still wanted
 
 PASS_GROWTH = 4  # ratio of samples from one refinement pass to the next
-
-
-class Renderer(Protocol):
-    """The part of `minirt.rendering` that a painter needs."""
-
-    def prepare(self, scene: Scene) -> None:
-        """Compile or load the kernel that the scene needs; may take seconds."""
-
-    def stop(self) -> None:
-        """End a running `prepare` soon, if that is possible; callable from any thread."""
-
-    def specialise_early(self, notify: Callable[[], object]) -> None:
-        """Have faster kernels compiled as soon as a picture is shown; `notify` is called when one has been."""
-
-    def preview(self, scene: Scene, width: int, height: int) -> Pixels | None:
-        """Return a coarse picture, at most of that size, without a kernel; None if it would take long."""
-
-    def pick(self, scene: Scene, width: int, height: int, x: int, y: int) -> Shape | None:
-        """Return the shape that is visible at a pixel of a picture of that size."""
-
-    @property
-    def about(self) -> Sequence[str]:
-        """Notes on how the last picture was rendered."""
-
-    def is_ready(self, scene: Scene) -> bool:
-        """Whether `render` can start at once because the kernel is loaded."""
-
-    def render(self, scene: Scene, pixels: Pixels, samples: int = 1, *, is_wanted: IsWanted = ...) -> bool:
-        """Fill `pixels`; return False if cancelled.
-
-        `is_wanted` is asked once, as soon as `cancel` has effect: an earlier call of `cancel` would be lost.
-        """
-
-    def refine(self, scene: Scene, pixels: Pixels, samples: int, *, is_wanted: IsWanted = ...) -> bool:
-        """Render the edges in `pixels` with more samples; return False as `render` does."""
-
-    def give_way(self) -> None:
-        """Let the event loop go before the threads that render, from now on."""
-
-    def cancel(self) -> None:
-        """Let a running `render` or `refine` return False soon; callable from any thread."""
 
 
 @dataclass(frozen=True)
