@@ -23,8 +23,8 @@ REGISTERS = """
 import re
 import numpy as np
 from numba import njit
-from minirt.kernel.compiler import kernel_functions
-from minirt.kernel.compiler.options import FLAGS
+from minirt.kernel.compiler import object_code
+from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import load, save, width
 
 def double(x):

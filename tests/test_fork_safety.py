@@ -19,7 +19,7 @@ import pytest
 
 from minirt import meshes
 from minirt.helpers import system
-from minirt.kernel.machine_code import loader
+from minirt.kernel.machine_code import library as library_module
 from minirt.kernel.machine_code.library import Library
 from minirt.materials import picture_cache
 from minirt.rendering import Renderer
@@ -169,13 +169,13 @@ def forked_while_loading(kernels: Library, work: Callable[[], Any], monkeypatch:
     finds the lock of the library free, and that LLVM loads nothing, as LLVM has a lock of its own."""
     loading, forking, llvm = Event(), Event(), Lock()
 
-    def load(names: Any, code: Any, load: Any = loader.load) -> Any:
+    def load(code: Any, load: Any = library_module.load) -> Any:
         with llvm:
             loading.set()
             forking.wait(HANG_LIMIT)
-            return load(names, code)
+            return load(code)
 
-    monkeypatch.setattr(loader, "load", load)
+    monkeypatch.setattr(library_module, "load", load)
     os.register_at_fork(before=forking.set)  # called before the hook of the library, which was registered earlier
     thread = Thread(target=work)
     thread.start()
@@ -203,4 +203,4 @@ def test_a_library_that_loads_without_its_lock_would_be_found_here(
 ) -> None:
     kernels = library(tmp_path)
     code = object_code_of(call(double)[0], '[{"array": "<f8", "ndim": 1}]')
-    assert not forked_while_loading(kernels, lambda: loader.load(*code), monkeypatch)
+    assert not forked_while_loading(kernels, lambda: library_module.load(code), monkeypatch)

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from minirt.errors import RenderError
-from minirt.kernel.machine_code import processor, shipped_code
+from minirt.kernel.machine_code import cache, fingerprint
 from minirt.rendering import ahead_of_time
 from tests.paths import ROOT
 
@@ -46,13 +46,13 @@ def folders(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Path, str]]:
     """Folders and processors for which kernels were compiled."""
     compiled: list[tuple[Path, str]] = []
     monkeypatch.setattr(ahead_of_time, "build", lambda folder, target: compiled.append((folder, target)))
-    monkeypatch.setattr(processor, "is_linux_on_x86_64", lambda: True)
+    monkeypatch.setattr(fingerprint, "is_linux_on_x86_64", lambda: True)
     return compiled
 
 
 def test_a_wheel_has_kernels_for_both_levels(folders: list[tuple[Path, str]]) -> None:
     data, warnings = built()
-    assert [target for _, target in folders] == [processor.V3, processor.V4]
+    assert [target for _, target in folders] == [fingerprint.V3, fingerprint.V4]
     assert data == {"pure_python": False, "tag": wheel_hook.TAG, **SCENES}
     assert warnings == []
 
@@ -61,7 +61,7 @@ def test_the_project_file_includes_them(folders: list[tuple[Path, str]]) -> None
     built()
     (pattern,) = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["artifacts"]
     for folder, target in folders:
-        assert folder == shipped_code.FOLDER / target
+        assert folder == cache.SHIPPED / target
         assert fnmatch.fnmatch((folder / "0.kernel").relative_to(ROOT).as_posix(), pattern)
 
 
@@ -73,7 +73,7 @@ def test_an_editable_installation_compiles_none(folders: list[tuple[Path, str]])
 def test_other_machines_get_a_wheel_without_kernels(
     folders: list[tuple[Path, str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(processor, "is_linux_on_x86_64", lambda: False)
+    monkeypatch.setattr(fingerprint, "is_linux_on_x86_64", lambda: False)
     assert built() == ({"pure_python": True, **SCENES}, [])
     assert folders == []
 

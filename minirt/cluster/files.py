@@ -16,8 +16,9 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from minirt.helpers.file_io import PRIVATE_FOLDER, user_folder
-from minirt.kernel.machine_code import private_files
+from minirt.helpers import file_io
+from minirt.helpers.file_io import PRIVATE_FILE, PRIVATE_FOLDER, user_folder
+from minirt.kernel.machine_code.cache import make_private_folder
 
 UNUSED = 30 * 24 * 3600  # seconds after which a file is deleted
 
@@ -31,7 +32,7 @@ def folder() -> Path:
         path = user_folder() / "minirt" / "files"
         path.parents[1].mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)
         for each in (path.parent, path):
-            private_files.make_private_folder(each)
+            make_private_folder(each)
         delete_unused(path)
         if os.access(path, os.W_OK | os.X_OK):
             return path
@@ -59,7 +60,7 @@ def keep(data: bytes) -> str:
     """Keep a file and return its digest; OSError where it cannot be written."""
     digest = digest_of(data)
     if not has(digest):
-        private_files.write(folder() / digest, data)
+        file_io.write(folder() / digest, data, PRIVATE_FILE)
         checked.add(digest)
     return digest
 
@@ -69,7 +70,7 @@ def has(digest: str) -> bool:
     path = folder() / digest
     try:
         if digest not in checked or not path.exists():
-            if digest_of(private_files.read(path)) != digest:
+            if digest_of(path.read_bytes()) != digest:
                 return False
             checked.add(digest)
         os.utime(path)
@@ -80,4 +81,4 @@ def has(digest: str) -> bool:
 
 def read(digest: str) -> bytes:
     """Return the content of a file that is there; OSError otherwise."""
-    return private_files.read(folder() / digest)
+    return (folder() / digest).read_bytes()

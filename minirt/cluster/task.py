@@ -70,7 +70,6 @@ Answer = Missing | Made
 def version() -> str:
     """Return the version of the program and of the sources of its kernels."""
     import minirt
-    from minirt.kernel.machine_code.cache_folder import fingerprint_of
-    from minirt.kernel.machine_code.processor import V3
+    from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
 
     return f"{minirt.__version__} {fingerprint_of(V3)}"

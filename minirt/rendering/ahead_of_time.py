@@ -1,6 +1,6 @@
 """Compiles the generic kernels ahead of time: `python -m minirt.rendering.ahead_of_time`.
 
-They are written into a folder of the package, where `minirt.kernel.machine_code.shipped_code` finds them. Kernels that
+They are written into a folder of the package, where `minirt.kernel.machine_code.library` finds them. Kernels that
 are there already are not compiled again.
 """
 
@@ -13,10 +13,10 @@ from itertools import chain
 from pathlib import Path
 
 from minirt.errors import MiniRTError
-from minirt.kernel.machine_code import cache_folder, shipped_code
+from minirt.kernel.machine_code.cache import SHIPPED, CodeCache
 from minirt.kernel.machine_code.compile_process import CompileProcess
+from minirt.kernel.machine_code.fingerprint import fingerprint_of, processor
 from minirt.kernel.machine_code.library import Call, identity_of
-from minirt.kernel.machine_code.processor import processor
 from minirt.rendering.needed_kernels import generic_call, packing_calls, ray_query
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS
 from minirt.rendering.sampling.contrast import classify_call
@@ -32,17 +32,18 @@ def calls() -> list[list[Call]]:
 def build(folder: Path, target: str) -> int:
     """Compile the kernels for a processor that are not in a folder, and delete older ones; return the number of those
     that were compiled. RenderError where compiling fails; OSError where the folder cannot be written."""
-    fingerprint = cache_folder.fingerprint_of(target)
+    kernels, fingerprint = CodeCache(folder), fingerprint_of(target)
+    folder.mkdir(parents=True, exist_ok=True)
     groups = [[identity_of(*call, fingerprint) for call in group] for group in calls()]
-    missing = [[each for each in group if not shipped_code.read(each, folder)] for group in groups]
+    missing = [[each for each in group if not kernels.read(each)] for group in groups]
 
     def compile(identities: list[str]) -> None:
         for identity, code in zip(identities, CompileProcess().compile(identities, target), strict=True):
-            shipped_code.write(identity, code, folder)
+            kernels.write(identity, code)
 
     with ThreadPoolExecutor(usable_cores()) as pool:
         list(pool.map(compile, filter(None, missing)))
-    shipped_code.delete_others(chain.from_iterable(groups), folder)
+    kernels.delete_others(chain.from_iterable(groups))
     return sum(map(len, missing))
 
 
@@ -50,7 +51,7 @@ def main() -> int:
     """Compile for this machine, or for the processors that are named."""
     parser = argparse.ArgumentParser(description="Compile the generic kernels of miniRT ahead of time.")
     parser.add_argument("processors", nargs="*", default=[processor()], help="such as x86-64-v3; default: this one")
-    parser.add_argument("--folder", type=Path, default=shipped_code.FOLDER, help="default: the one in the package")
+    parser.add_argument("--folder", type=Path, default=SHIPPED, help="default: the one in the package")
     chosen = parser.parse_args()
     try:
         for target in chosen.processors:

@@ -10,8 +10,8 @@ from time import perf_counter
 import numpy as np
 
 from minirt.kernel.frame import CANCELLED
-from minirt.kernel.machine_code.argument_block import words_of
-from minirt.kernel.machine_code.entry import Entry
+from minirt.kernel.machine_code.arguments import words_of
+from minirt.kernel.machine_code.library import Entry
 from minirt.kernel.pixels import PACKET_HEIGHT
 from minirt.lanes import width
 from minirt.rendering.frame import Frame, frame_arguments, sum_buffer, thread_memory

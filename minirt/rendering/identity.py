@@ -8,8 +8,7 @@ from collections.abc import Iterator
 from minirt.element import Element, fields_of
 from minirt.fields import MeshFile
 from minirt.helpers import file_io
-from minirt.kernel.machine_code.cache_folder import fingerprint_of
-from minirt.kernel.machine_code.processor import V3
+from minirt.kernel.machine_code.fingerprint import V3, fingerprint_of
 from minirt.scene import Scene, dump
 
 

@@ -16,8 +16,7 @@ from typing import NamedTuple
 from minirt.errors import RenderError
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.compile_process import CompileProcess
-from minirt.kernel.machine_code.entry import Entry
-from minirt.kernel.machine_code.library import LIBRARY, REMEMBERED
+from minirt.kernel.machine_code.library import LIBRARY, REMEMBERED, Entry
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.rendering.frame import Frame
 from minirt.rendering.needed_kernels import calls_for, generic_call, kernel_features, packing_calls

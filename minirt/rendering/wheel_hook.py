@@ -24,15 +24,15 @@ class ScenesAndKernels(BuildHookInterface):  # type: ignore[misc]
         build_data["force_include"][str(Path(self.root, "scenes"))] = "minirt/scenes"  # `minirt.example`
         sys.path.insert(0, self.root)
         from minirt.errors import MiniRTError
-        from minirt.kernel.machine_code import shipped_code
-        from minirt.kernel.machine_code.processor import V3, V4, is_linux_on_x86_64
+        from minirt.kernel.machine_code.cache import SHIPPED
+        from minirt.kernel.machine_code.fingerprint import V3, V4, is_linux_on_x86_64
         from minirt.rendering.ahead_of_time import build
 
         if not is_linux_on_x86_64():
             return
         try:
             for level in (V3, V4):
-                build(Path(shipped_code.FOLDER, level), level)
+                build(Path(SHIPPED, level), level)
         except MiniRTError as error:
             self.app.display_warning(f"the wheel has no kernels, programs will compile them: {error}")
             return

@@ -13,9 +13,8 @@ import numpy as np
 
 from minirt.errors import RenderError
 from minirt.helpers.system import Run, is_disturbed, runs
-from minirt.kernel.machine_code import loader
 from minirt.kernel.machine_code.compile_process import CompileProcess
-from minirt.kernel.machine_code.library import LIBRARY
+from minirt.kernel.machine_code.library import LIBRARY, load
 from minirt.rendering import Renderer
 from minirt.rendering.needed_kernels import calls_for
 from minirt.rendering.packing.features import DEPTH
@@ -174,6 +173,6 @@ def compile_seconds(identity: str) -> float:
     (code,) = CompileProcess().compile([identity])
     after = os.times()
     with LIBRARY.lock:
-        LIBRARY.keep(identity, loader.load(*code))
+        LIBRARY.keep(identity, load(code))
     seconds = after.children_user + after.children_system - before.children_user - before.children_system
     return seconds or perf_counter() - start  # Windows does not tell the time of child processes

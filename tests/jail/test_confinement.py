@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from minirt.kernel.machine_code.processor import is_linux_on_x86_64
+from minirt.kernel.machine_code.fingerprint import is_linux_on_x86_64
 from tests.cli.program import environment
 from tests.jail.breakouts import ACTS, landlock_version, outcomes
 from tests.lines import next_line

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 import minirt.lanes.compiled  # noqa: F401
-from minirt.kernel.compiler.options import FLAGS
+from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import Vec, dot, lane, load, width
 from tests.shapes.regimes import Array
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
-from minirt.kernel.compiler.options import FLAGS
+import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
+from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import Vec, load, save, width
 from minirt.lanes import mathematics as noise_module
 from minirt.lanes.mathematics import GREATEST, PERIOD, corner_gradient, noise_and_gradient, remainder

@@ -12,7 +12,7 @@ from numba import njit
 
 import minirt.lanes.compiled  # noqa: F401
 from minirt.kernel.machine_code.compile_process import environment
-from minirt.kernel.machine_code.processor import V3
+from minirt.kernel.machine_code.fingerprint import V3
 from minirt.lanes import Vec, inverse_root, lane, load, unit, width
 from minirt.lanes.compiled.operations import SERIES
 from tests.lanes.numbers import DTYPES, PRECISIONS

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from minirt.kernel.compiler.jit_formula import probe
 from minirt.kernel.scene_arrays import row_type
 from minirt.lanes import Vec, any, dot, sqrt, unit, where
 from minirt.rendering.packing.shape_arrays import packed_rows
@@ -22,6 +21,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import PackedSphere, Sphere
 from minirt.shapes.triangle import Triangle
 from tests.oracle import textbook
+from tests.oracle.jit_formula import probe
 from tests.oracle.operation_counts import PACKET, Work, work
 from tests.oracle.random_rays import Rays
 from tests.oracle.regimes import regimes_of

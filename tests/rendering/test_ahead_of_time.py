@@ -9,9 +9,9 @@ from threading import Lock
 import pytest
 
 from minirt.errors import RenderError
-from minirt.kernel.machine_code import cache_folder, shipped_code
-from minirt.kernel.machine_code.code_cache import ObjectCode
+from minirt.kernel.machine_code.cache import CodeCache, ObjectCode
 from minirt.kernel.machine_code.compile_process import CompileProcess
+from minirt.kernel.machine_code.fingerprint import fingerprint_of
 from minirt.kernel.machine_code.library import identity_of
 from minirt.rendering import ahead_of_time
 from minirt.rendering.needed_kernels import generic_call
@@ -31,7 +31,7 @@ def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         assert target == PROCESSOR
         with lock:
             done.extend(requests)
-        return [({"entry": each}, b"code") for each in requests]
+        return [ObjectCode("entry", 0, each.encode()) for each in requests]
 
     monkeypatch.setattr(CompileProcess, "compile", compile)
     return done
@@ -42,8 +42,8 @@ def test_every_generic_kernel_is_compiled_once(compiled: list[str], tmp_path: Pa
     assert ahead_of_time.build(tmp_path, PROCESSOR) == number
     assert len(set(compiled)) == len(compiled) == number == len(list(tmp_path.iterdir()))
     for generic in GENERIC_KERNELS:
-        identity = identity_of(*generic_call(generic), cache_folder.fingerprint_of(PROCESSOR))
-        assert shipped_code.read(identity, tmp_path) == ({"entry": identity}, b"code")
+        identity = identity_of(*generic_call(generic), fingerprint_of(PROCESSOR))
+        assert CodeCache(tmp_path).read(identity) == ObjectCode("entry", 0, identity.encode())
     assert ahead_of_time.build(tmp_path, PROCESSOR) == 0
     assert len(compiled) == number
 

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from minirt.errors import RenderError
-from minirt.kernel.machine_code import functions, shipped_code
-from minirt.kernel.machine_code.code_cache import CodeCache
+from minirt.kernel.machine_code import cache, functions
+from minirt.kernel.machine_code.cache import CodeCache
 from minirt.kernel.machine_code.compile_process import CompileProcess
+from minirt.kernel.machine_code.fingerprint import processor
 from minirt.kernel.machine_code.library import LIBRARY, Library
 from minirt.materials import Checker
 from minirt.rendering import Renderer, kernels
@@ -221,7 +222,7 @@ def test_a_generic_kernel_stays_where_the_specialised_one_cannot_be_compiled(
 def test_the_package_has_the_generic_kernels_for_this_machine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     library = empty_library(monkeypatch, tmp_path)
     identities = [*GENERIC.values(), *map(library.identity, packing_calls())]
-    assert all(shipped_code.read(each) for each in identities)
+    assert all(map(CodeCache(cache.SHIPPED / processor()).read, identities))
 
 
 # Kernels: which scenes share one, and the minimal scene that it is compiled for.

@@ -10,9 +10,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
+import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
 from minirt.kernel import scene_arrays
-from minirt.kernel.compiler.options import FLAGS
+from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import Vec, lane, load, where, width
 from minirt.rendering.packing.shape_arrays import packed_rows
 from minirt.shapes import KINDS, Kind, Shape

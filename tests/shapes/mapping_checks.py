@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
+import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
 from minirt.kernel import scene_arrays
-from minirt.kernel.compiler.options import FLAGS
+from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import Vec, load, save, splat, width
 from minirt.shapes import Kind, Shape
 from minirt.shapes.paraboloid import Paraboloid

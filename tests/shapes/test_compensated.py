@@ -7,8 +7,8 @@ from fractions import Fraction
 import numpy as np
 from numba import njit
 
-import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
-from minirt.kernel.compiler.options import FLAGS
+import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
+from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import Vec, product_error, rounded_product
 from minirt.shapes.compensated import divided, minus, plus, power_of_point, times, two_product, two_sum
 

@@ -9,7 +9,9 @@ from pathlib import Path
 def compilers(program: int) -> list[int]:
     """Return the ids of the compiler processes of a program."""
     return [
-        each for each in processes() if parent(each) == program and "minirt.kernel.compiler.process" in arguments(each)
+        each
+        for each in processes()
+        if parent(each) == program and "from minirt.kernel.compiler import main; main()" in arguments(each)
     ]
 
 

@@ -3,59 +3,49 @@
 A call of such a function is replaced by its body, so machine code of its own would be made for nothing: without it a
 kernel compiles in three quarters of the time. Of numba's passes only those run that plain arithmetic, calls, branches
 and loops need, which saves another fifth.
+
+numba promises none of the private interfaces that are used here. Importing this module looks at each, and raises
+AttributeError, ImportError, KeyError or TypeError where one is missing.
 """
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import Any
 
-from numba.core.compiler import CompilerBase
-from numba.core.compiler_machinery import PassManager, register_pass
-
-from minirt.kernel.compiler.none_pruning import NoneChecks
-from minirt.kernel.compiler.numba_internals import (
-    CodeLibrary,
-    DeadBranchPrune,
-    FixupArgs,
-    IRProcessing,
-    NativeLowering,
-    NoPythonBackend,
-    NopythonTypeInference,
-    PreLowerStripPhis,
-    ReconstructSSA,
-    TranslateByteCode,
-    callees_of,
-    function_object,
-    module_to_link,
-    run_pass,
-)
+from numba import _dynfunc
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Flags
+from numba.core.compiler_machinery import PassManager, _pass_registry, register_pass
+from numba.core.registry import cpu_target
+from numba.core.typed_passes import NativeLowering, NoPythonBackend, NopythonTypeInference, PreLowerStripPhis
+from numba.core.untyped_passes import DeadBranchPrune, FixupArgs, IRProcessing, ReconstructSSA, TranslateByteCode
 
 
-class InlinedCode(CodeLibrary):
+class InlinedCode(JITCodeLibrary):
     """LLVM code of one function, which becomes machine code only as a part of the kernel that links it."""
 
     linked: Any = None  # the module of this function and of all that it calls
 
     def finalize(self) -> None:
         """Finish without optimising: the kernel is optimised once, as a whole."""
-        for function in self.module.functions:
+        for function in self._final_module.functions:
             if not function.is_declaration:
                 function.linkage = "linkonce_odr"  # copies that come with several callers are merged
-        self.mark_finalized()
+        self._finalized = True
 
-    def linked_module(self) -> Any:
-        """Return the module of this function and of all that it calls."""
+    def _get_module_for_linking(self) -> Any:
         if self.linked is None:
-            self.linked = self.module.clone()
+            self.linked = self._final_module.clone()
             for each in reversed(all_callees(self, [])):  # LLVM links only what earlier code refers to
-                module = each.module if isinstance(each, InlinedCode) else module_to_link(each)
+                module = each._final_module if isinstance(each, InlinedCode) else each._get_module_for_linking()
                 self.linked.link_in(module, preserve=True)
         return self.linked
 
 
 def all_callees(library: Any, callees: list[Any]) -> list[Any]:
     """Append to `callees` all libraries that a library calls, directly or not, callees before their callers."""
-    for each in callees_of(library):
+    for each in library._linking_libraries:
         if each not in callees:
             if isinstance(each, InlinedCode):
                 all_callees(each, callees)
@@ -65,7 +55,7 @@ def all_callees(library: Any, callees: list[Any]) -> list[Any]:
 
 @register_pass(mutates_CFG=True, analysis_only=False)
 class InlinedLowering(NativeLowering):
-    """Lower a typed function to `InlinedCode`."""
+    """Lower a typed function to `InlinedCode`. Calls of it from Python are not possible."""
 
     _name = "inlined_lowering"
 
@@ -74,24 +64,11 @@ class InlinedLowering(NativeLowering):
         state.library = library = InlinedCode(state.targetctx.codegen(), state.func_id.func_qualname)
         state.flags.no_compile = True
         super().run_pass(state)
-        function = function_object(state.cr, library)
-        state.targetctx.insert_user_function(function, state.cr.fndesc, [library])
+        place = state.cr.fndesc
+        function = _dynfunc.make_function(place.lookup_module(), place.qualname, "", 0, state.cr.env, library)
+        state.targetctx.insert_user_function(function, place, [library])
         state.cr = state.cr._replace(cfunc=function)
         return True
-
-
-PASSES = (
-    (TranslateByteCode, "read the bytecode"),
-    (FixupArgs, "number the arguments"),
-    (IRProcessing, "find the lifetimes of variables"),
-    (NoneChecks, "decide checks for None"),
-    (DeadBranchPrune, "drop branches that are never taken"),
-    (ReconstructSSA, "static single assignment"),
-    (NopythonTypeInference, "infer types"),
-    (PreLowerStripPhis, "replace phi nodes by assignments"),
-    (InlinedLowering, "lower to LLVM code"),
-    (NoPythonBackend, "hand over the result"),
-)
 
 
 class LeanPassManager(PassManager):
@@ -100,16 +77,30 @@ class LeanPassManager(PassManager):
     def run(self, state: Any) -> None:
         """Run all passes on a function."""
         for step, _ in self.passes:
-            run_pass(step, state)
+            _pass_registry.get(step).pass_inst.run_pass(state)
 
 
-class InlinedCompiler(CompilerBase):
-    """Compiles a function by the lean pipeline."""
+def passes(none_checks: type) -> PassManager:
+    """Return the passes for an inlined function; `none_checks` decides checks for None."""
+    manager = LeanPassManager("inlined")
+    for step in (TranslateByteCode, FixupArgs, IRProcessing, none_checks, DeadBranchPrune, ReconstructSSA):
+        manager.add_pass(step, step.__name__)
+    for step in (NopythonTypeInference, PreLowerStripPhis, InlinedLowering, NoPythonBackend):
+        manager.add_pass(step, step.__name__)
+    manager.finalize()
+    return manager
 
-    def define_pipelines(self) -> list[PassManager]:
-        """Return the one pipeline that there is."""
-        manager = LeanPassManager("inlined")
-        for step, description in PASSES:
-            manager.add_pass(step, description)
-        manager.finalize()
-        return [manager]
+
+def machine_code(entry: Any) -> bytes:
+    """Return the object code of a C function that `numba.cfunc` has compiled."""
+    code: bytes = entry._library._get_compiled_object()
+    return code
+
+
+# What is used above and was not imported; nothing is compiled.
+attrgetter("insert_user_function")(cpu_target.target_context)
+attrgetter("_final_module", "_finalized", "_linking_libraries", "_get_module_for_linking", "_get_compiled_object")(
+    cpu_target.target_context.codegen().create_library("check")
+)
+attrgetter("no_compile")(Flags())
+attrgetter("make_function")(_dynfunc)

@@ -1,102 +1,113 @@
-"""Compiles a function to object code with one entry point, which C can call: it takes the address of an argument block.
+"""Compiles a function to object code with one entry point, which C can call: it takes the address of its arguments.
 
-See `minirt.kernel.machine_code.argument_block`. The code refers to nothing outside of itself, neither to Python nor to
-the compiler.
+See `minirt.kernel.machine_code.arguments`. The code refers to nothing outside of itself, neither to Python nor to the
+compiler. Outside this folder the functions that kernels call are plain Python, and call each other as they stand:
+importing this module registers all of them, and numba finds the compiled form of each.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
-from functools import cache
 from importlib import import_module
+from operator import attrgetter
+from pkgutil import iter_modules
 from typing import Any
 
 from llvmlite import ir
-from numba import cfunc, types
+from numba import cfunc, from_dtype, types
 from numba.core.typing import signature
-from numba.extending import intrinsic, register_jitable
+from numba.extending import intrinsic, overload
 
-from minirt.kernel.compiler import bvh_functions, kernel_functions  # noqa: F401  (register what kernels call)
-from minirt.kernel.compiler.argument_types import type_of
-from minirt.kernel.compiler.elf_image import image_of
-from minirt.kernel.compiler.options import FAILED, FLAGS, INLINED
-from minirt.kernel.machine_code.processor import is_linux_on_x86_64
-from minirt.kernel.machine_code.signature import Signature
+from minirt import kernel, lanes, shapes
+from minirt.kernel import scene_arrays, shading, shadow_rays, trace
+from minirt.kernel.compiler import operations  # noqa: F401  (registers what it compiles)
+from minirt.kernel.compiler.by_reference import Reference
+from minirt.kernel.compiler.pipeline import FLAGS, INLINED, inline, inline_functions_of, machine_code
+from minirt.kernel.machine_code.arguments import Signature, dtype_of, tuple_class
+from minirt.kernel.machine_code.cache import ObjectCode
+from minirt.lanes.compiled.types import REGISTERED
 
 C_FLAGS = {name: value for name, value in FLAGS.items() if name != "nogil"}  # code for C never holds Python's lock
+SCALARS = {"int": types.int64, "float": types.float64}
 
 
-def object_code(function: str, signatures: list[Signature]) -> tuple[dict[str, Any], bytes]:
-    """Return names and object code of a function, "module:name", for arguments of these signatures."""
+def by_kind(function: Any, choose: Callable[[Any], Any]) -> None:
+    """Compile calls of a function as those of the one that is chosen for the kind of the first argument.
+
+    The type of a packed shape, or of a group of shapes, tells its kind: so a kernel has code for the kinds of its scene
+    alone.
+    """
+
+    def chosen(first: Any, *_: Any) -> Any:
+        if isinstance(first, Reference):
+            return choose(scene_arrays.kind_of(first.content[0].dtype.fields))
+        return choose(scene_arrays.kind_of_packed(first.instance_class))
+
+    REGISTERED.add(function)
+    overload(function, jit_options=INLINED, strict=False)(chosen)
+
+
+for _name in ("intersect", "surface", "shading", "smooth_point", "may_meet", "mapping"):
+    by_kind(getattr(scene_arrays, _name), attrgetter(_name))
+by_kind(scene_arrays.occludes, lambda kind: kind.occludes or kind.intersect)
+by_kind(trace.closest_of_kind, lambda kind: (trace.closest_one_by_one, trace.closest_batched)[kind.batched])
+by_kind(
+    shadow_rays.unoccluded_by_kind,
+    lambda kind: (shadow_rays.unoccluded_one_by_one, shadow_rays.unoccluded_batched)[kind.batched],
+)
+
+for _package in (lanes, shapes, kernel, shading):
+    inline_functions_of(_package)
+    for _module in iter_modules(_package.__path__, f"{_package.__name__}."):
+        if not _module.ispkg:
+            inline_functions_of(import_module(_module.name))
+
+
+def type_of(signature: Signature) -> Any:
+    """Return numba's type of an argument with a signature."""
+    if signature is None:
+        return types.none
+    if isinstance(signature, str):
+        return SCALARS[signature]
+    if "array" in signature:
+        return types.Array(from_dtype(dtype_of(signature)), signature["ndim"], "C")
+    kind = tuple_class(signature)
+    items = [type_of(each) for each in signature["items"]]
+    return types.BaseTuple.from_types(items, None if kind is tuple else kind)
+
+
+def object_code(function: str, signatures: list[Signature]) -> ObjectCode:
+    """Return the object code of a function, "module:name", for arguments of these signatures."""
     module, name = function.split(":")
-    plain = getattr(import_module(module), name)
-    register(plain)
-    entry = EntryPoint(plain, types.Tuple([type_of(each) for each in signatures]))
-    compiled = cfunc(types.void(types.voidptr), **C_FLAGS)(entry.function())
-    names, code = loadable(compiled.native_name, machine_code(compiled))
-    return names | {"results": entry.results}, code
+    called = getattr(import_module(module), name)
+    inline(called)
+    kinds = types.Tuple([type_of(each) for each in signatures])
+    results: list[Any] = []  # types of the integers that the function returns, known when it has been compiled
 
-
-def loadable(entry: str, code: bytes) -> tuple[dict[str, Any], bytes]:
-    """Return an image of object code where that can be loaded, else the object code itself, with its entry point."""
-    if is_linux_on_x86_64():
-        with suppress(ValueError):
-            return image_of(code, entry)
-    return {"entry": entry}, code
-
-
-@cache
-def register(function: Callable[..., Any]) -> None:
-    """Let compiled code inline a function."""
-    register_jitable(**INLINED)(function)
-
-
-class EntryPoint:
-    """An entry point of a function: it takes the address of its arguments, and stores the result behind them."""
-
-    def __init__(self, called: Callable[..., Any], kinds: Any) -> None:
-        """`kinds` is the type of the tuple of all arguments."""
-        self.called = called
-        self.kinds = kinds
-        self.results = 0  # integers that the function returns, known when the entry point has been compiled
-
-    def function(self) -> Callable[[Any], None]:
-        """Return the entry point, to be compiled."""
-        called, arguments_at, store_result = self.called, intrinsic(self.arguments_at), intrinsic(self.store_result)
-
-        def entry(address: Any) -> None:
-            store_result(address, called(*arguments_at(address)))
-
-        return entry
-
-    def arguments_at(self, _typing: Any, address: Any) -> Any:
-        """Load the arguments: typing and code of an operation."""
-
+    @intrinsic  # type: ignore[untyped-decorator]
+    def arguments_at(_typing: Any, address: Any) -> Any:
         def load(context: Any, builder: ir.IRBuilder, _signature: Any, args: Any) -> Any:
-            return builder.load(builder.bitcast(args[0], context.get_value_type(self.kinds).as_pointer()))
+            return builder.load(builder.bitcast(args[0], context.get_value_type(kinds).as_pointer()))
 
-        return signature(self.kinds, address), load
+        return signature(kinds, address), load
 
-    def store_result(self, _typing: Any, address: Any, result: Any) -> Any:
-        """Store the result: typing and code of an operation."""
-        results = list(result) if isinstance(result, types.BaseTuple) else [result] * (result != types.none)
+    @intrinsic  # type: ignore[untyped-decorator]
+    def store_result(_typing: Any, address: Any, result: Any) -> Any:
+        results[:] = list(result) if isinstance(result, types.BaseTuple) else [result] * (result != types.none)
         if any(types.unliteral(each) != types.int64 for each in results):
             raise TypeError(f"a kernel returns integers of 64 bits or nothing, not {result}")
-        self.results = len(results)
 
         def store(context: Any, builder: ir.IRBuilder, _signature: Any, args: Any) -> Any:
-            if self.results:
-                end = context.get_abi_sizeof(context.get_value_type(self.kinds))
+            if results:
+                end = context.get_abi_sizeof(context.get_value_type(kinds))
                 place = builder.gep(args[0], [ir.Constant(ir.IntType(64), end)])
                 builder.store(args[1], builder.bitcast(place, args[1].type.as_pointer()))
             return context.get_dummy_value()
 
         return signature(types.none, address, result), store
 
+    def entry(address: Any) -> None:
+        store_result(address, called(*arguments_at(address)))
 
-def machine_code(entry: Any) -> bytes:
-    """Return the object code of a C function that numba has compiled."""
-    if FAILED:
-        return import_module("minirt.kernel.compiler.documented_pipeline").machine_code(entry)
-    return import_module("minirt.kernel.compiler.numba_internals").machine_code(entry)
+    compiled = cfunc(types.void(types.voidptr), **C_FLAGS)(entry)
+    return ObjectCode(compiled.native_name, len(results), machine_code(compiled))

@@ -8,18 +8,15 @@ import subprocess
 import sys
 from contextlib import suppress
 from threading import Thread
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from minirt.errors import RenderError
-from minirt.kernel.machine_code import container
-from minirt.kernel.machine_code.cache_folder import notice
-from minirt.kernel.machine_code.code_cache import ObjectCode
-from minirt.kernel.machine_code.processor import NATIVE, V3, V4, processor
+from minirt.kernel.machine_code.cache import ObjectCode, notice, unpack
+from minirt.kernel.machine_code.fingerprint import NATIVE, V3, V4, processor
 
 # With -P nothing is imported from the current folder.
-COMMAND = (sys.executable, "-P", "-m", "minirt.kernel.compiler.process")
+COMMAND = (sys.executable, "-P", "-c", "from minirt.kernel.compiler import main; main()")
 FEATURES = {V4: "+avx512f", V3: ""}  # what NUMBA_CPU_FEATURES adds to those that a level has
-NO_KEY = b""  # of the containers that come through a pipe
 
 Request: TypeAlias = str  # the identity of a kernel: JSON of the function, its signature and the fingerprint
 
@@ -49,8 +46,9 @@ class CompileProcess:
             if message.startswith("notice: "):
                 notice("%s", message.removeprefix("notice: "))
         try:
-            return unpacked(requests, output)
-        except container.DamagedError as error:
+            lines = map(bytes.fromhex, output.decode().split())
+            return [unpack(request, line) for request, line in zip(requests, lines, strict=True)]
+        except ValueError as error:
             raise RenderError(f"the kernel cannot be compiled: what the compiler wrote is damaged, {error}") from error
 
     def run(self, requests: list[Request], target: str | None) -> tuple[int, bytes, list[str]]:
@@ -96,13 +94,3 @@ def environment(target: str) -> dict[str, str]:
     if target != NATIVE:
         chosen |= {"NUMBA_CPU_NAME": target, "NUMBA_CPU_FEATURES": FEATURES.get(target, "")}
     return inherited | chosen
-
-
-def unpacked(requests: list[Request], output: bytes) -> list[ObjectCode]:
-    """Return the kernels in the output of the process: one container after the other."""
-    codes: list[Any] = []
-    for request in requests:
-        size = container.size(output)
-        codes.append(container.unpack(NO_KEY, request, output[:size]))
-        output = output[size:]
-    return codes

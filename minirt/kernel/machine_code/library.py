@@ -1,10 +1,12 @@
-"""Library of kernels: finds the machine code of a function for a signature, or has it compiled.
+"""Library of kernels: finds the machine code of a function for a signature, loads it, or has it compiled.
 
-A kernel is looked for in memory, among those that came with the package, and in this user's cache on disk.
+A kernel is looked for in memory, among those that came with the package, and in this user's cache on disk. llvmlite
+loads it. A call passes one address of memory, without the interpreter's lock.
 """
 
 from __future__ import annotations
 
+import ctypes
 import json
 import os
 from collections.abc import Hashable, Iterable
@@ -13,16 +15,53 @@ from functools import cached_property
 from threading import Lock
 from typing import Any, TypeAlias
 
-from minirt.kernel.machine_code import cache_folder, loader, shipped_code
-from minirt.kernel.machine_code.code_cache import CodeCache, ObjectCode
+import numpy as np
+
+from minirt.kernel.machine_code import cache
+from minirt.kernel.machine_code.arguments import key_of, signature_of, words_of
+from minirt.kernel.machine_code.cache import CodeCache, ObjectCode
 from minirt.kernel.machine_code.compile_process import CompileProcess
-from minirt.kernel.machine_code.entry import Entry
-from minirt.kernel.machine_code.signature import key_of, signature_of
+from minirt.kernel.machine_code.fingerprint import fingerprint, processor
 
 Call: TypeAlias = tuple[str, tuple[Any, ...]]  # the name of a function, "module:name", and arguments
 
+FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p)
 REMEMBERED = 512  # identities, of some kilobytes each; when there are more, all are forgotten and made again
 IN_MEMORY = 24  # kernels; one that was dropped is loaded from disk again
+
+
+class Entry:
+    """Entry point of a loaded kernel for one signature. The code lives as long as this object."""
+
+    def __init__(self, address: int, results: int, code: object) -> None:
+        """`address` of the entry point; `results`: integers that the kernel returns; `code` owns the machine code."""
+        self.results = results
+        self.code = code
+        self.call = FUNCTION(address)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run the kernel, and return its result: None, an integer, or a tuple of them."""
+        return self.run(words_of(arguments))
+
+    def run(self, words: list[int]) -> Any:
+        """Run the kernel with the words of its arguments, which the caller keeps alive."""
+        block = np.array(words + [0] * self.results, np.int64)
+        self.call(block.ctypes.data)
+        results = block[len(words) :].tolist()
+        return tuple(results) if self.results > 1 else results[0] if results else None
+
+
+def load(kernel: ObjectCode) -> Entry:
+    """Load machine code into memory."""
+    from llvmlite import binding  # 30 ms, which programs that draw nothing need not wait for
+
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    machine = binding.Target.from_default_triple().create_target_machine()
+    engine = binding.create_mcjit_compiler(binding.parse_assembly(""), machine)  # which owns the machine
+    engine.add_object_file(binding.ObjectFileRef.from_data(kernel.code))
+    engine.finalize_object()
+    return Entry(engine.get_function_address(kernel.entry), kernel.results, engine)
 
 
 class Library:
@@ -41,7 +80,7 @@ class Library:
     @cached_property
     def cache(self) -> CodeCache | None:
         """The cache on disk; None where kernels cannot be kept."""
-        folder = cache_folder.folder()
+        folder = cache.folder()
         return CodeCache(folder) if folder else None
 
     def identity(self, call: Call) -> str:
@@ -51,13 +90,15 @@ class Library:
         if found is None:
             if len(self.identities) >= REMEMBERED:
                 self.identities.clear()
-            found = self.identities[key] = identity_of(*call, cache_folder.fingerprint())
+            found = self.identities[key] = identity_of(*call, fingerprint())
         return found
 
     def find(self, identity: str) -> Entry | None:
         """Return a kernel; None where it must be compiled. The disk is searched once."""
         with self.lock:
-            entry = self.entries.pop(identity, None) or self.loaded(identity)
+            entry = self.entries.pop(identity, None)
+            if not entry and (code := self.code(identity)):
+                entry = load(code)
             if entry:
                 self.keep(identity, entry)
             return entry
@@ -67,16 +108,11 @@ class Library:
         with self.lock:
             return identity in self.entries or identity in self.seen or self.code(identity) is not None
 
-    def loaded(self, identity: str) -> Entry | None:
-        """Load a kernel from the package or the disk."""
-        code = self.code(identity)
-        return loader.load(*code) if code else None
-
     def code(self, identity: str) -> ObjectCode | None:
         """Return the object code of a kernel from the package or the disk, unless it was missing there before."""
         if identity in self.missing:
             return None
-        code = shipped_code.read(identity) or (self.cache.read(identity) if self.cache else None)
+        code = CodeCache(cache.SHIPPED / processor()).read(identity) or self.on_disk([identity]).get(identity)
         if len(self.missing) >= REMEMBERED:
             self.missing.clear()
         (self.seen if code else self.missing).add(identity)
@@ -100,13 +136,12 @@ class Library:
             codes = self.on_disk(missing)  # another process may have been first
             requests = [each for each in missing if each not in codes]
             codes |= zip(requests, process.compile(requests) if requests else [], strict=True)
-            for identity in requests:
-                if self.cache:
-                    self.cache.write(identity, codes[identity])
+            if self.cache:
+                self.cache.keep({each: codes[each] for each in requests})
         for identity, code in codes.items():
             with self.lock:  # no process is forked while LLVM, whose lock it would inherit, loads
                 self.missing.discard(identity)
-                self.keep(identity, loader.load(*code))
+                self.keep(identity, load(code))
 
     def on_disk(self, identities: Iterable[str]) -> dict[str, ObjectCode]:
         """Return those of some kernels that the cache on disk has."""

@@ -48,6 +48,7 @@ class VecType(types.Type):
 
 ANY = types.Any
 Result = Callable[..., types.Type | None]  # result type for argument types; None: the operation does not take them
+REGISTERED: set[Any] = set()  # functions with a compiled form of their own
 I32 = ir.IntType(32)
 
 
@@ -150,6 +151,7 @@ def register(function: Callable[..., Any], result: Result, patterns: Iterable[tu
         return None if kind is None else signature(kind, *args)
 
     def decorate(generate: Callable[..., Any]) -> Callable[..., Any]:
+        REGISTERED.add(function)
         infer_global(function)(
             type(f"Lanes_{function.__name__}", (AbstractTemplate,), {"key": function, "generic": generic})
         )

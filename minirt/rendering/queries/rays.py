@@ -16,7 +16,7 @@ from minirt.helpers.system import renew_after_fork
 from minirt.kernel.bvh_nodes import Tree
 from minirt.kernel.frame import ray_direction
 from minirt.kernel.machine_code import functions
-from minirt.kernel.machine_code.argument_block import words_of
+from minirt.kernel.machine_code.arguments import words_of
 from minirt.kernel.machine_code.library import LIBRARY
 from minirt.rendering.packing.camera import camera_numbers, pixel_rays
 from minirt.rendering.packing.generic_kernels import generalised_tree

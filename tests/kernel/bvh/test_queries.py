@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from numba import njit, typeof
 
-import minirt.kernel.compiler.bvh_functions  # noqa: F401  (registers what is compiled)
+import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
 from minirt.kernel import bvh_traversal
 from minirt.kernel.bvh_nodes import WIDTH
-from minirt.kernel.compiler.options import FLAGS
+from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.scene_arrays import by_reference
 from minirt.lanes import Vec, lane, load, where
 from minirt.shapes import KINDS

@@ -10,8 +10,8 @@ from numba import njit
 from numba.core.errors import TypingError
 from numba.extending import register_jitable
 
-import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
-from minirt.kernel.compiler.options import FLAGS, INLINED
+import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
+from minirt.kernel.compiler.pipeline import FLAGS, INLINED
 from minirt.kernel.scene_arrays import by_reference
 from minirt.kernel.trace import for_each_kind
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
-from minirt.kernel.compiler.argument_types import type_of
-from minirt.kernel.compiler.options import FLAGS
+import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
+from minirt.kernel.compiler.object_code import type_of
+from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.frame import frame
-from minirt.kernel.machine_code.signature import signature_of
+from minirt.kernel.machine_code.arguments import signature_of
 from minirt.lanes.mathematics import ATAN_HALF, PERIOD
 from minirt.materials import Checker, Clouds
 from minirt.rendering.frame import frame_arguments

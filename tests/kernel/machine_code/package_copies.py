@@ -33,7 +33,7 @@ def copy_package(folder: Path) -> Path:
     """Copy the package into a folder. Its pictures show nothing but the ambient light on the colour 10,20,30."""
     package = folder / "minirt"
     shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__", "ahead_of_time", "viewer", "mlx"))
-    for name, function, stub in (("frame", "frame", FRAME), ("culling/binning", "project_all", PROJECT_ALL)):
+    for name, function, stub in (("frame", "frame", FRAME), ("binning", "project_all", PROJECT_ALL)):
         file = package / "kernel" / f"{name}.py"
         replace_once(file, f"def {function}(", f"def real_{function}(")
         file.write_text(file.read_text() + stub)

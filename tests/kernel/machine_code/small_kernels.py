@@ -6,28 +6,15 @@ import json
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from minirt.kernel.machine_code.code_cache import CodeCache, ObjectCode
+from minirt.kernel.machine_code.cache import CodeCache, ObjectCode
 from minirt.kernel.machine_code.compile_process import CompileProcess
-from minirt.kernel.machine_code.entry import Entry
-from minirt.kernel.machine_code.library import Call, Library
+from minirt.kernel.machine_code.library import Call, Entry, Library
 
 ARGUMENT = 1.5
-
-
-class Inner(NamedTuple):
-    line: Any
-    number: int
-
-
-class Outer(NamedTuple):
-    table: Any
-    deep: Any
-    inner: Inner
-    absent: Any = None
 
 
 def double(x: Any) -> None:
@@ -50,31 +37,6 @@ def half(x: Any) -> float:
     return 0.5 * x[0]
 
 
-def quotients(x: Any, y: Any) -> None:
-    for i in range(len(x)):
-        y[i] = x[i] / y[i]
-
-
-def step(x: Any, n: int) -> None:
-    for i in range(0, len(x), n):
-        x[i] = 1.0
-
-
-def sine(x: Any) -> None:
-    x[0] = np.sin(x[0])
-
-
-def read_back(number: int, outer: Outer, factor: float, records: Any, nothing: None, out: Any) -> int:
-    """Store a number of each argument and of each part of one."""
-    out[0], out[1] = outer.table[1, 2], outer.deep[1, 2, 3]
-    out[2], out[3] = outer.inner.line[1], outer.inner.number
-    out[4], out[5] = number, factor
-    out[6], out[7] = len(records), 9 + records.shape[0]
-    out[8], out[9] = outer.table.shape[0], outer.deep.shape[2]
-    out[10] = outer.absent is None and nothing is None
-    return number
-
-
 class Compiler(CompileProcess):
     """Compiles small kernels in this process, and counts them."""
 
@@ -89,7 +51,7 @@ class Compiler(CompileProcess):
 
 @cache
 def object_code_of(name: str, signatures: str) -> ObjectCode:
-    """Return the names and the object code of a function for signatures in JSON."""
+    """Return the object code of a function for signatures in JSON."""
     from minirt.kernel.compiler.object_code import object_code
 
     return object_code(name, json.loads(signatures))
@@ -116,7 +78,7 @@ def compiled(kernels: Library, wanted: Call, compiler: CompileProcess) -> Entry:
     return entry
 
 
-def is_found(function: Callable[..., Any], folder: Path) -> bool:
+def is_found(function: Callable[..., Any], folder: Path | None) -> bool:
     """Load a small kernel, or compile it, by a new library; return whether it was loaded. Its result is right."""
     kernels, compiler = library(folder), Compiler()
     entry = compiled(kernels, call(function), compiler)

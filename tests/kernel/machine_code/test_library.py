@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import gc
+import weakref
+from contextlib import nullcontext
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -11,12 +13,22 @@ import numpy as np
 import pytest
 
 from minirt.errors import RenderError
+from minirt.kernel.machine_code import cache
 from minirt.kernel.machine_code import library as library_module
-from minirt.kernel.machine_code import private_files
-from minirt.kernel.machine_code.code_cache import CodeCache
-from minirt.kernel.machine_code.entry import Entry
-from minirt.kernel.machine_code.library import Call, Library, identity_of
-from tests.kernel.machine_code.small_kernels import Compiler, both, call, count, double, library, square
+from minirt.kernel.machine_code.cache import CodeCache
+from minirt.kernel.machine_code.fingerprint import processor
+from minirt.kernel.machine_code.library import Call, Entry, Library, identity_of
+from tests.kernel.machine_code.small_kernels import (
+    Compiler,
+    both,
+    call,
+    compiled,
+    count,
+    double,
+    is_found,
+    library,
+    square,
+)
 
 DOUBLE, SQUARE, COUNT = call(double), call(square), call(count)
 
@@ -92,33 +104,17 @@ def test_kernels_that_cannot_be_loaded_again_stay_in_memory(monkeypatch: pytest.
     assert compiled_by(kernels, DOUBLE, SQUARE, COUNT) == 0
 
 
-def locked_in_turn(kernels: Library, calls: list[Any], monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Return the identities that a library locks while it compiles, in their order."""
-    locked: list[str] = []
-    compiling_once = CodeCache.compiling_once
-
-    def lock(cache: CodeCache, identity: str) -> Any:
-        locked.append(identity)
-        return compiling_once(cache, identity)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(CodeCache, "compiling_once", lock)
-        kernels.compile(map(kernels.identity, calls), Compiler())
-    return locked
-
-
-def test_programs_that_compile_the_same_kernels_lock_them_in_the_same_order(
+def test_programs_that_compile_the_same_kernels_lock_each_once_in_the_same_order(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Else each of two programs could hold a lock that the other waits for."""
-    calls = [DOUBLE, SQUARE, COUNT, DOUBLE]
-    orders = []
+    calls, locked = [DOUBLE, SQUARE, COUNT, DOUBLE], list[str]()
+    monkeypatch.setattr(CodeCache, "compiling_once", lambda _, identity: nullcontext(locked.append(identity)))
     for i, each in enumerate((calls, calls[::-1], calls[2:] + calls[:2])):
-        folder = tmp_path / str(i)
-        folder.mkdir(mode=0o700)
-        orders.append(locked_in_turn(library(folder), each, monkeypatch))
-    assert orders == [orders[0]] * 3
-    assert len(set(orders[0])) == len(orders[0]) == 3
+        kernels = library(tmp_path / str(i))
+        kernels.compile(map(kernels.identity, each), Compiler())
+    assert locked == locked[:3] * 3
+    assert len(set(locked)) == 3
 
 
 def test_threads_that_need_the_same_kernel_compile_it_once(tmp_path: Path) -> None:
@@ -147,24 +143,33 @@ def test_a_call_that_no_kernel_can_take_is_an_error(tmp_path: Path) -> None:
         library(tmp_path).identity((DOUBLE[0], ("text",)))
 
 
-@pytest.mark.parametrize("fault", [private_files.read, None], ids=["unreadable", "none"])
-def test_get_returns_a_kernel_that_works(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: Callable[..., Any] | None
-) -> None:
-    """Whether its file can be read or not."""
-    monkeypatch.setattr(library_module, "CompileProcess", Compiler)
+def is_freed_with_its_last_reference(kernels: Library) -> bool:
+    """Whether the machine code of a kernel lives as long as it may be called, and no longer."""
+    entry = compiled(kernels, DOUBLE, Compiler())
+    code = weakref.ref(entry.code)
+    kernels.entries.clear()
+    gc.collect()
+    values = np.array([1.5])
+    entry(values)
+    assert values == [3.0]
+    assert code() is not None
+    del entry
+    gc.collect()
+    return code() is None
+
+
+def test_the_memory_of_a_kernel_is_freed_with_its_last_reference(tmp_path: Path) -> None:
     kernels = library(tmp_path)
-    if fault:
-        kernels.get(DOUBLE)
-        kernels.entries.clear()
+    assert is_freed_with_its_last_reference(kernels)
+    assert is_freed_with_its_last_reference(kernels), "loaded from disk"
 
-        def fail(path: Path) -> bytes:
-            raise PermissionError(path)
 
-        monkeypatch.setattr(private_files, "read", fail)
-    values = np.array([4.0])
-    kernels.get(DOUBLE)(values)
-    assert values == [8.0]
+def test_a_kernel_of_the_package_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cache, "SHIPPED", tmp_path)
+    (tmp_path / processor()).mkdir()
+    assert (is_found(double, tmp_path / processor()), is_found(double, None)) == (False, True)
+    monkeypatch.setenv("NUMBA_CPU_NAME", "another")
+    assert not is_found(double, None)
 
 
 def test_any_number_of_signatures_needs_bounded_memory(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
-from minirt.kernel.compiler.options import FLAGS
+import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
+from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.shading import texturing
 from minirt.lanes import load, save, width
 from minirt.rendering.packing.materials import TexturePool

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-import minirt.kernel.compiler.kernel_functions  # noqa: F401  (registers what is compiled)
-from minirt.kernel.compiler.options import FLAGS
+import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
+from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.shading import texturing
 from minirt.kernel.shading.texturing import SurfaceMaps, bump_mapped, checkered, height_gradient, normal_mapped
 from minirt.lanes import Vec, load, save, width

@@ -1,10 +1,13 @@
-"""Signatures: the types of a kernel's arguments, as plain data that JSON can hold.
+"""Arguments of kernels: their signatures, plain data that JSON can hold, and the 64-bit words that a kernel reads.
 
-Arrays are C-contiguous. A scene has few signatures and a call must be quick, so that a signature is looked up by a key.
+The compiler lays a tuple out as its items one after the other, and an array, which is C-contiguous, as seven words or
+more: two that are 0 here, the number of items, bytes of an item, address of the data, shape and strides. There is no
+padding, as all of them have 64 bits. The kernel stores its results, integers, in the words behind the arguments.
 """
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Hashable
 from importlib import import_module
 from typing import Any, TypeAlias
@@ -14,8 +17,32 @@ import numpy as np
 Signature: TypeAlias = Any  # None, "int", "float", {"array": dtype, "ndim": n} or {"tuple": class, "items": [...]}
 
 
+def words_of(value: Any) -> list[int]:
+    """Return the words of an argument, or of a tuple of arguments. ValueError for an array that is not C-contiguous."""
+    words: list[int] = []
+    append_words(words, value)
+    return words
+
+
+def append_words(words: list[int], value: Any) -> None:
+    """Append the words of an argument."""
+    if value is None:
+        words.append(0)
+    elif isinstance(value, np.ndarray):
+        if not value.flags.c_contiguous:
+            raise ValueError("an array for a kernel must be C-contiguous")
+        words += 0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides
+    elif isinstance(value, tuple):
+        for item in value:
+            append_words(words, item)
+    elif isinstance(value, float):
+        words += struct.unpack("=q", struct.pack("=d", value))
+    else:
+        words.append(int(value))
+
+
 def key_of(value: Any) -> Hashable:
-    """Return a key that two values share only where they have the same signature."""
+    """Return a key that two values share only where they have the same signature; it is found faster than that."""
     if isinstance(value, np.ndarray):
         return value.dtype, value.ndim
     if isinstance(value, tuple):
@@ -49,9 +76,4 @@ def tuple_class(signature: Signature) -> type[tuple[Any, ...]]:
 def dtype_of(signature: Signature) -> np.dtype[Any]:
     """Return the dtype of an array, by its signature, which JSON may have turned from tuples to lists."""
     kind = signature["array"]
-    return np.dtype(kind if isinstance(kind, str) else [field(*each) for each in kind])
-
-
-def field(name: str, kind: str, shape: tuple[int, ...] = ()) -> tuple[str, str, tuple[int, ...]]:
-    """Return the description of a field of a record."""
-    return name, kind, tuple(shape)
+    return np.dtype(kind if isinstance(kind, str) else [(name, of, tuple(*shape)) for name, of, *shape in kind])

@@ -9,9 +9,8 @@ from typing import Any
 
 from numba import njit
 
-from minirt.kernel.compiler import kernel_functions  # noqa: F401  (registers the formulas of all kinds)
-from minirt.kernel.compiler.inlining import inline_functions_of
-from minirt.kernel.compiler.options import FLAGS
+from minirt.kernel.compiler import object_code  # noqa: F401  (registers the formulas of all kinds)
+from minirt.kernel.compiler.pipeline import FLAGS, inline_functions_of
 from minirt.kernel.scene_arrays import read
 from minirt.lanes import Vec, load, save, where, width
 from minirt.shapes import ALL_KINDS
