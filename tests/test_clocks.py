@@ -22,10 +22,6 @@ EXEMPT = {  # files that measure time, or run for a given time
     "waiting.py",
     "fuzz/soak.py",
     "fuzz/worker.py",
-    "stability/host_mutation.py",
-    "stability/host_tests.py",
-    "stability/host_trial.py",
-    "stability/mutation.py",
     "viewer/monkey.py",
     "viewer/kill.py",
     "mlx/maze.py",  # programs that run in simulated time

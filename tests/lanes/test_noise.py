@@ -16,7 +16,7 @@ from minirt.lanes import Vec, load, save, width
 from minirt.lanes import mathematics as noise_module
 from minirt.lanes.mathematics import GREATEST, PERIOD, corner_gradient, noise_and_gradient, remainder
 from tests.lanes.numbers import PRECISIONS
-from tests.reference import patterns as reference
+from tests.reference import texturing as reference
 
 RANDOM = np.random.default_rng(1)
 POINTS = RANDOM.uniform(-300, 300, (3, 4096))

@@ -5,8 +5,7 @@ from typing import Any
 from gmpy2 import mpfr
 from minirt.shapes.gate import Gate  # type: ignore[import-not-found]
 
-from tests.oracle.body import Body, body
-from tests.oracle.vectors import exact
+from tests.oracle.body import Body, body, exact
 
 
 @body.register

@@ -7,9 +7,9 @@ are found between its turning points. No formula is solved for t by hand.
 The numbers of scene, ray and shape are taken as they are, to the last bit; only axes and normals are scaled to exact
 unit length, as a scene intends. t is in lengths of `direction`, which may be any but 0.
 
-For another shape add a file beside these, named as the shape's own and as short as `sphere.py`: the function it
-registers with `body` takes the shape and a `swell` by which its surface is moved outwards, of a sheet its edges, and
-returns
+For another shape add a function to `bodies.py`, or a file beside it that is named as the shape's own: the function,
+which it registers with `body`, takes the shape and a `swell` by which its surface is moved outwards, of a sheet its
+edges, and returns
 
     Body((F,))                         a solid without edges
     Body((F, G, H))                    a solid that several surfaces bound, as a cylinder by its side and caps
@@ -25,13 +25,13 @@ from typing import Any
 from gmpy2 import mpfr
 
 from minirt.shapes import KINDS, Shape
-from tests.oracle.body import Body, body, crossings, file_of, normals
+from tests.oracle.body import Body, Vector, body, crossings, dot, exact, file_of, normals
 from tests.oracle.body import inside as inside_of
-from tests.oracle.vectors import Vector, dot, exact
 
+import_module(f"{__package__}.bodies")  # registers the bodies
 for _file in map(file_of, (kind.element for kind in KINDS)):
     if find_spec(_file):
-        import_module(_file)  # registers its body
+        import_module(_file)
 
 __all__ = ["Body", "body", "dot", "exact", "inside", "nearest", "normal", "onward"]
 

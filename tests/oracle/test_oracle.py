@@ -15,9 +15,7 @@ from minirt.shapes.hyperboloid import Hyperboloid
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests import oracle
-from tests.oracle.body import Body, body, crossings, gradient, inside, normals
-from tests.oracle.polynomial import Polynomial
-from tests.oracle.vectors import dot
+from tests.oracle.body import Body, Polynomial, body, crossings, dot, gradient, inside, normals
 
 GREY = (9, 9, 9)
 BALL = Sphere((0, 0, 5), 6, GREY)

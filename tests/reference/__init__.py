@@ -14,12 +14,10 @@ from numpy.typing import NDArray
 from minirt.materials import Mirror
 from minirt.scene import Camera, Scene
 from tests.reference import meshes
-from tests.reference.glass import is_sheet, is_tinted, left_by_media, mirror_and_glass, shares
 from tests.reference.hits import first_hits
-from tests.reference.light import OFF_SURFACE, shaded
+from tests.reference.light import OFF_SURFACE, is_sheet, is_tinted, left_by_media, mirror_and_glass, shaded, shares
 from tests.reference.normals import normals
-from tests.reference.patterns import footprint, patterned, patterns_of
-from tests.reference.texturing import bilinear, colour_and_normal, picture
+from tests.reference.texturing import bilinear, colour_and_normal, footprint, patterned, patterns_of, picture
 from tests.reference.vectors import DECODED, Array, dot, length, rgb, right_and_up
 
 DEPTH = 8  # reflections and refractions along a path, at most

@@ -22,8 +22,7 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from tests.reference.normals import right_and_up_on, scaled_axes
-from tests.reference.revolved import profile
-from tests.reference.vectors import Array, dot, length, own_x_and_z
+from tests.reference.vectors import Array, dot, length, own_x_and_z, profile
 
 SAME_SURFACE = 1e-10  # relative difference of distances below which two surfaces count as coincident
 

@@ -6,12 +6,19 @@ from contextvars import ContextVar
 
 import numpy as np
 
-from minirt.scene import Lamp, Light, ParallelLight, Scene, SpotLight
+from minirt.materials import Mirror
+from minirt.scene import Camera, Lamp, Light, ParallelLight, Scene, SpotLight
+from minirt.shapes.disc import Disc
+from minirt.shapes.mesh import Mesh
+from minirt.shapes.plane import Plane
 from minirt.shapes.shape import Shape
-from tests.reference.glass import light_through
-from tests.reference.normals import shading, smooth_points
-from tests.reference.patterns import patterns_of
-from tests.reference.vectors import Array, dot, length, rgb, unit
+from minirt.shapes.square import Square
+from minirt.shapes.triangle import Triangle
+from tests.reference import DEPTH, camera_frame, light_along
+from tests.reference.hits import SAME_SURFACE, crossings, first_hits, first_in_front
+from tests.reference.normals import normals, shading, smooth_points
+from tests.reference.texturing import patterns_of
+from tests.reference.vectors import DECODED, Array, dot, length, rgb, unit
 
 # The source of random points in lights and lenses; None for hard shadows and a pinhole.
 RANDOM: ContextVar[np.random.Generator | None] = ContextVar("RANDOM", default=None)
@@ -133,3 +140,147 @@ def squared_tangent(one: Array, other: Array) -> Array:
     cosine, across = dot(one, other), np.cross(one, other)
     with np.errstate(divide="ignore"):
         return dot(across, across) / cosine**2
+
+
+def mirror_and_glass(shape: Shape) -> tuple[float, float]:
+    """Shares of reflected and refracted light, at most 1 together."""
+    back = shape.mirror.share if isinstance(shape.mirror, Mirror) else 0.0
+    through = shape.glass.share if shape.glass else 0.0
+    return back / max(1.0, back + through), through / max(1.0, back + through)
+
+
+def reflectance(angle: Array, before: float, behind: float) -> Array:
+    """Share of unpolarised light that is reflected at an angle to the normal, between media of two indices."""
+    sine = np.sin(angle) * before / behind
+    with np.errstate(invalid="ignore", divide="ignore"):
+        there = np.arcsin(sine)
+        across = np.sin(angle - there) / np.sin(angle + there)
+        along = np.tan(angle - there) / np.tan(angle + there)
+    mean = (across**2 + along**2) / 2
+    return np.where(sine > 1, 1.0, np.where(angle < 1e-6, ((before - behind) / (before + behind)) ** 2, mean))
+
+
+def shares(shape: Shape, cosine: Array, outside: Array) -> tuple[Array, Array]:
+    """Shares of reflected and refracted light of rays that arrive with a cosine, from outside or from inside."""
+    back, through = mirror_and_glass(shape)
+    if not shape.fresnel:
+        return np.full(cosine.shape, back), np.full(cosine.shape, through)
+    angle = np.arccos(np.clip(cosine, 0, 1))
+    if shape.glass and through:
+        n = shape.glass.ior
+        part = np.where(outside, reflectance(angle, 1.0, n), reflectance(angle, n, 1.0))
+        reflected = part * (back + through)
+    else:
+        root = min(np.sqrt(back), 1 - 1e-9)
+        reflected = reflectance(angle, 1.0, (1 + root) / (1 - root))
+    mixed = shape.fresnel * reflected + (1 - shape.fresnel) * back
+    return mixed, (back + through - mixed if through else np.zeros_like(mixed))
+
+
+def all_crossings(shape: Shape, origins: Array, directions: Array) -> Array:
+    """The sorted distances at which lines cross a shape, (k, n), infinity behind the last ones."""
+    assert not isinstance(shape, Mesh), "the reference renderer finds only the first crossing of a mesh"
+    found = np.array(crossings(shape, origins, directions))
+    return np.sort(np.where(np.isnan(found), np.inf, found), axis=0)
+
+
+def is_tinted(shape: Shape) -> bool:
+    """Whether a shape is tinted glass."""
+    return bool(shape.tint and shape.glass and shape.glass.share)
+
+
+def is_sheet(shape: Shape) -> bool:
+    """Whether a shape has no inside."""
+    return isinstance(shape, Square | Disc | Triangle)
+
+
+def way_inside(shape: Shape, origins: Array, directions: Array, distances: Array) -> Array:
+    """The length of the part of each ray, from 0 to a distance, that lies inside a shape."""
+    if isinstance(shape, Plane):
+        height, slope = (
+            dot(origins - np.array(shape.point), np.array(shape.normal)),
+            dot(directions, np.array(shape.normal)),
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):
+            at = np.clip(np.where(slope == 0, np.inf, -height / slope), 0, distances)
+        at = np.where(-height * slope > 0, at, distances)  # what is behind the line's start does not count
+        with np.errstate(invalid="ignore"):
+            return np.where(height < 0, at, np.where(at < distances, distances - at, 0.0))
+    at = np.clip(all_crossings(shape, origins, directions), 0, distances)
+    with np.errstate(invalid="ignore"):
+        pairs = at[1::2] - at[0 : 2 * (len(at) // 2) : 2]
+    return np.nansum(pairs, axis=0)
+
+
+def left_by_media(scene: Scene, origins: Array, directions: Array, distances: Array) -> Array:
+    """Shares of red, green and blue that tinted glass leaves of light along rays up to a distance, (n, 3)."""
+    left = np.ones_like(directions)
+    for shape in scene.shapes:
+        if is_tinted(shape) and not is_sheet(shape):
+            assert shape.tint
+            way = way_inside(shape, origins, directions, distances)[:, None] / shape.tint.distance
+            left = left * np.where(way > 0, rgb(shape.tint.colour) ** way, 1.0)
+    return left
+
+
+def light_through(scene: Scene, starts: Array, towards: Array, distances: Array) -> Array:
+    """Shares of red, green and blue of a lamp that reach points through glass and past opaque shapes, (n, 3)."""
+    share = left_by_media(scene, starts, towards, distances)
+    limit = distances * (1 - SAME_SURFACE)
+    for shape in scene.shapes:
+        if mirror_and_glass(shape)[1] == 0:
+            share[first_in_front(shape, starts, towards) < limit] = 0.0
+            continue
+        for at in all_crossings(shape, starts, towards):
+            crossed = (at > 0) & (at < limit)
+            normal = normals(shape, starts[crossed] + at[crossed, None] * towards[crossed])
+            _, through = shares(shape, np.abs(dot(normal, towards[crossed])), np.ones(crossed.sum(), bool))
+            share[crossed] *= through[:, None]
+            if is_tinted(shape) and is_sheet(shape):
+                assert shape.tint
+                share[crossed] *= rgb(shape.tint.colour)
+    return share
+
+
+def render_sampled(
+    scene: Scene, width: int, height: int, samples: int, seed: int, along_the_ray: bool = False
+) -> Array:
+    """Render a scene with random samples: the mean of their light, each clamped to nothing, (height, width, 3).
+
+    `along_the_ray` is a planted error: focus measured along each ray, in place of the camera's direction.
+    """
+    before = DECODED.set(scene.camera.tone != "plain"), RANDOM.set(np.random.default_rng(seed))
+    total = np.zeros((height * width, 3))
+    for _ in range(samples):
+        origins, directions = lens_rays(scene, width, height, along_the_ray)
+        total += light_along(scene, origins, directions, np.ones((width * height, 3)), DEPTH)
+    DECODED.reset(before[0])
+    RANDOM.reset(before[1])
+    return total.reshape(height, width, 3) * (2.0**scene.camera.exposure / samples)
+
+
+def lens_rays(scene: Scene, width: int, height: int, along_the_ray: bool) -> tuple[Array, Array]:
+    """A ray through a random place of each pixel, from a random point of the lens."""
+    camera, random = scene.camera, RANDOM.get()
+    assert random
+    right, up, forward = camera_frame(camera)
+    half = np.tan(np.radians(camera.fov) / 2)
+    column, row = np.arange(width * height) % width, np.arange(width * height) // width
+    x = (2 * (column + random.random(len(column))) / width - 1) * half
+    y = (1 - 2 * (row + random.random(len(row))) / height) * half * height / width
+    ways = forward + x[:, None] * right + y[:, None] * up
+    origins = np.broadcast_to(np.array(camera.position), ways.shape)
+    if camera.lens:
+        if along_the_ray:
+            ways = ways / length(ways)[:, None]
+        sharp = origins + (camera.focus or focus_in_the_middle(scene, camera)) * ways
+        on_x, on_y = random_in_disc(len(ways))
+        origins = origins + camera.lens / 2 * (on_x[:, None] * right + on_y[:, None] * up)
+        ways = sharp - origins
+    return origins, ways / length(ways)[:, None]
+
+
+def focus_in_the_middle(scene: Scene, camera: Camera) -> float:
+    """The distance of what the middle of the picture shows."""
+    distances, _ = first_hits(scene.shapes, np.array([camera.position]), np.array([camera.direction]))
+    return float(distances[0])

@@ -19,8 +19,7 @@ from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
-from tests.reference.revolved import profile
-from tests.reference.vectors import Array, dot, length, own_x_and_z, right_and_up, turned, unit
+from tests.reference.vectors import Array, dot, length, own_x_and_z, profile, right_and_up, turned, unit
 
 
 @singledispatch

@@ -22,8 +22,7 @@ from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from minirt.shapes.triangle import Triangle
 from tests.reference.normals import normals, right_and_up_on, scaled_axes
-from tests.reference.revolved import profile
-from tests.reference.vectors import Array, dot, length, own_x_and_z, unit
+from tests.reference.vectors import Array, dot, length, own_x_and_z, profile, unit
 
 
 class SurfacePoint(NamedTuple):

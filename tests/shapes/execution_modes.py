@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
 from minirt.kernel import scene_arrays
@@ -16,8 +15,8 @@ from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.lanes import Vec, lane, load, where, width
 from minirt.rendering.packing.shape_arrays import packed_rows
 from minirt.shapes import KINDS, Kind, Shape
+from tests.shapes.regimes import Array
 
-Array = NDArray[np.float64]
 Intersect = Callable[[list[Shape], Array, Array], Array]
 
 

@@ -12,7 +12,7 @@ from gmpy2 import mpfr, sqrt
 
 from minirt.lanes import Vec, dot
 from minirt.shapes.boundary import DoubleDouble
-from tests.oracle.vectors import BITS
+from tests.oracle.body import BITS
 from tests.shapes.regimes import Array
 
 EXACT = mpfr(2) ** -101  # relative error

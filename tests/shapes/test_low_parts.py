@@ -10,7 +10,7 @@ from minirt.fields import cos_and_sin
 from minirt.lanes import Vec
 from minirt.shapes.compensated import axis_low, basis_low, quotient_low, root_low
 from minirt.shapes.frames import basis
-from tests.oracle.vectors import own_axes, unit
+from tests.oracle.body import own_axes, unit
 from tests.shapes.regimes import random_directions
 
 AXES = [(0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, -1e-300, 1.0), (0.6, 0.8, 0.0)]

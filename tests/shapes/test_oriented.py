@@ -22,7 +22,7 @@ from tests.shapes.examples import example
 from tests.shapes.execution_modes import MODES, kind_of, on_arrays, shape_rows, surfaces
 from tests.shapes.mapping_checks import interpreted
 from tests.shapes.regimes import Array, Rays, random_directions
-from tests.stability.certificates import BOUND, certified, normals_of
+from tests.stability.regime import BOUND, certified, normals_of
 
 U = 2.0**-53
 ROLLS = (90.0, 33.3, -200.0, 1e-3)

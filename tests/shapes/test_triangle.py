@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from minirt.errors import ElementError
-from minirt.shapes.triangle import Triangle, cross, plane_normals
+from minirt.shapes.triangle import Triangle, plane_normals
+from tests.oracle.body import cross
 from tests.shapes.checks import U
 from tests.shapes.execution_modes import Intersect, surfaces
 from tests.shapes.regimes import GREY, RAYS, Array, Random, log_uniform, random_directions, unit

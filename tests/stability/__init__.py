@@ -5,6 +5,6 @@ still have. `table.REGIMES` lists the regimes of every shape: those in `common` 
 fields, further ones are in the file named after the shape. The formulas run on single numbers, on arrays, compiled, and
 through `minirt.trace`; `tests.oracle` gives the right answers.
 
-`mutants` holds formulas that look right but are wrong: the same checks must fail on them. `python -m
-tests.stability.mutation` changes the real formulas, one place at a time, and lists the changes that no test notices.
+`mutants` holds formulas that look right but are wrong: the same checks must fail on them. `python -m tests.stability`
+prints the backward errors and the condition numbers of all regimes.
 """

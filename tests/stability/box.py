@@ -8,8 +8,7 @@ import numpy as np
 
 from minirt.shapes.box import Box
 from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, random_directions, unit
-from tests.stability.aimed_rays import along, at
-from tests.stability.common import COUNT
+from tests.stability.common import COUNT, along, at
 from tests.stability.places import Place, flat, line, spot
 from tests.stability.regime import Regime
 

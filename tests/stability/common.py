@@ -1,12 +1,22 @@
-"""Regimes of every kind of shape, made from its declared fields. Lengths are in sizes of the shape."""
+"""Execution modes of formulas, `minirt.trace` included, and the regimes of every kind of shape.
+
+They are made from its declared fields. Lengths are in sizes of the shape.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 
 import numpy as np
 from gmpy2 import sqrt
 
+import minirt
+from minirt.element import fields_of
+from minirt.errors import ElementError
+from minirt.fields import Length, Lengths
+from minirt.scene import Camera, Scene
 from minirt.shapes import Kind, Shape
 from minirt.shapes.cone import Cone
 from minirt.shapes.cylinder import Cylinder
@@ -16,11 +26,33 @@ from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.torus import Torus
 from tests import oracle
-from tests.oracle.body import body, gradient
-from tests.oracle.vectors import dot, exact
+from tests.oracle.body import body, dot, exact, gradient
 from tests.shapes.examples import example, on_surface, place
-from tests.shapes.regimes import RAYS, Array, Rays, log_uniform, random_directions, random_perpendiculars, unit
+from tests.shapes.execution_modes import Intersect, compiled, on_arrays, on_numbers
+from tests.shapes.regimes import RAYS, Array, Random, Rays, log_uniform, random_directions, random_perpendiculars, unit
 from tests.stability.regime import Regime
+
+EVERY = 4  # on single numbers only every n-th ray is tried, as they take long
+
+
+def few_on_numbers(shapes: list[Shape], origins: Array, directions: Array) -> Array:
+    return on_numbers(shapes, origins[:, ::EVERY], directions[:, ::EVERY])
+
+
+def traced(shapes: list[Shape], origins: Array, directions: Array) -> Array:
+    """t of rays by `minirt.trace`, each shape in a scene of its own."""
+    eye = Camera((0, 0, 0), (0, 0, 1), 60)
+    rays = zip(shapes, origins, directions, strict=True)
+    return np.stack([minirt.trace(Scene((eye, shape)), o, d).distance for shape, o, d in rays])
+
+
+MODES: dict[str, tuple[Intersect, int]] = {
+    "arrays": (on_arrays, 1),
+    "numbers": (few_on_numbers, EVERY),
+    "compiled": (compiled, 1),
+    "traced": (traced, 1),
+}
+
 
 COUNT = 8  # shapes of a regime
 QUADRICS = (Sphere, Cylinder, Cone, Paraboloid, Hyperboloid, Ellipsoid)
@@ -134,3 +166,95 @@ def common(kind: Kind) -> list[Regime]:
     if kind.element in QUADRICS:
         regimes.append(Regime("just above a huge one", partial(from_above, kind, 14), 1e-9, 0.0))
     return regimes
+
+
+Make = Callable[[Random], Shape]
+Spot = Callable[[Random, Shape], Array]  # (RAYS, 3): points of a shape, or directions
+
+
+def at(seed: int, make: Make, spot: Spot, off: tuple[float, float] = (1e-16, 1e-6), count: int = COUNT) -> Rays:
+    """Rays from everywhere at points of shapes, missing them by a distance in `off`."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, count, RAYS, 3))
+    for i in range(count):
+        shape = make(random)
+        target = spot(random, shape) + log_uniform(random, *off, RAYS, 1) * random_directions(random, RAYS)
+        directions[i] = random_directions(random, RAYS)
+        origins[i] = target - random.uniform(3, 20, (RAYS, 1)) * directions[i]
+        shapes.append(shape)
+    return Rays(shapes, origins, directions)
+
+
+def along(seed: int, make: Make, way: Spot, off: tuple[float, float] | None = None, offset: float = 0.0) -> Rays:
+    """Rays along directions, or off them by an angle (radians) in `off`, at points in and around shapes."""
+    random = np.random.default_rng(seed)
+    shapes, origins, directions = [], *np.empty((2, COUNT, RAYS, 3))
+    for i in range(COUNT):
+        shape = make(random)
+        shape = shape.replace(**{points(shape)[0]: tuple(offset * random_directions(random))}) if offset else shape
+        exact = way(random, shape)
+        angle = log_uniform(random, *off, RAYS, 1) if off else 0.0
+        directions[i] = unit(exact + angle * random_directions(random, RAYS))
+        origins[i] = place(shape) + random.uniform(-0.6, 0.6, (RAYS, 3)) - random.uniform(0, 9, (RAYS, 1)) * exact
+        shapes.append(shape)
+    return Rays(shapes, origins, directions)
+
+
+def points(shape: Shape) -> list[str]:
+    return [name for name in ("centre", "apex", "vertex") if hasattr(shape, name)]
+
+
+def axis_of(shape: Shape) -> Array:
+    return np.array(shape.axis)
+
+
+def edge(middle: Array, shape: Shape, radius: float, random: Random) -> Array:
+    """Random points of a circle about a point of the axis of a shape."""
+    return middle + radius * random_perpendiculars(random, axis_of(shape), RAYS)
+
+
+FEW = 4  # shapes of a regime
+
+
+def stretched(shape: Shape, name: str, factor: float) -> Shape:
+    """A shape with one length multiplied by a factor; of three lengths the second."""
+    value = getattr(shape, name)
+    new = (value[0], factor * value[1], value[2]) if isinstance(value, tuple) else factor * value
+    return shape.replace(**{name: new})
+
+
+def seen(kind: Kind, seed: int, name: str, factor: float) -> Rays:
+    """Rays from inside, and from 3 to 20 away at points inside; both mostly far from the middle."""
+    random = np.random.default_rng(seed)
+    shapes: list[Shape] = []
+    while len(shapes) < FEW:
+        with suppress(ElementError):
+            shapes.append(stretched(example(kind, random), name, factor))
+    places = np.stack([within(shape, random) for shape in shapes])
+    directions = random_directions(random, FEW, RAYS)
+    away = np.where(np.arange(RAYS)[:, None] % 2, random.uniform(3, 20, (FEW, RAYS, 1)), 0.0)
+    return Rays(shapes, places - away * directions, directions)
+
+
+def within(shape: Shape, random: Random) -> Array:
+    """Random points in the hull of a shape's balls, (RAYS, 3)."""
+    centres = np.array([centre for centre, _ in shape.balls()])
+    radii = np.array([radius for _, radius in shape.balls()])
+    shares = random.dirichlet(np.ones(len(centres)), RAYS)
+    return shares @ centres + 0.7 * (shares @ radii)[:, None] * random.random((RAYS, 1)) * random_directions(
+        random, RAYS
+    )
+
+
+def stretched_regimes(kind: Kind) -> list[Regime]:
+    """The regimes of a kind of solid; an answer must lie between those for a thicker and a thinner shape."""
+    found = []
+    for field in fields_of(kind.element):
+        if field.keyed or not isinstance(field, (Length, Lengths)):
+            continue
+        for factor in (1e-9, 1e9):
+            with suppress(ElementError):
+                stretched(example(kind, np.random.default_rng(1)), field.name, factor)
+                make = partial(seen, kind, 21, field.name, factor)
+                found.append(Regime(f"{field.title} times {factor:g}", make, blur=np.inf))
+    return found

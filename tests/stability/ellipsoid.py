@@ -8,8 +8,7 @@ import numpy as np
 
 from minirt.shapes.ellipsoid import Ellipsoid
 from tests.shapes.regimes import GREY, RAYS, Array, Random, Rays, log_uniform, random_directions
-from tests.stability.aimed_rays import along, at
-from tests.stability.common import COUNT
+from tests.stability.common import COUNT, along, at
 from tests.stability.places import Place, flat, spot
 from tests.stability.regime import Regime
 

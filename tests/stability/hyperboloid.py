@@ -8,7 +8,7 @@ import numpy as np
 
 from minirt.shapes.hyperboloid import Hyperboloid
 from tests.shapes.regimes import GREY, RAYS, Array, Random, random_directions, random_perpendiculars, unit
-from tests.stability.aimed_rays import along, at, axis_of, edge
+from tests.stability.common import along, at, axis_of, edge
 from tests.stability.places import Place, fan, flat, frame, line, ring
 from tests.stability.regime import Regime
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from minirt.shapes.paraboloid import Paraboloid
 from tests.shapes.regimes import GREY, RAYS, Array, Random, random_directions
-from tests.stability.aimed_rays import along, at, axis_of, edge
+from tests.stability.common import along, at, axis_of, edge
 from tests.stability.places import Place, flat, frame, ring, spot
 from tests.stability.regime import Regime
 

@@ -1,25 +1,30 @@
 """Special places of shapes: the points, lines, planes and circles at which their formulas degenerate.
 
 A shape's file in this folder declares them as `places(shape)`; those that follow from the shape's declared fields and
-from its surface are added here. `tests.stability.snapping` puts rays exactly on them.
+from its surface are added here. `tests.stability.places` puts rays exactly on them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from importlib import import_module
 from importlib.util import find_spec
+from itertools import permutations, product
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from minirt.element import fields_of
-from minirt.fields import Direction
+from minirt.errors import ElementError
+from minirt.fields import FARTHEST, Direction, Field, Length, Lengths, Point
 from minirt.shapes import Kind, Shape
 from minirt.shapes.frames import basis
+from minirt.shapes.torus import Torus
+from tests.shapes.examples import random_value
 from tests.shapes.execution_modes import kind_of, surfaces
-from tests.shapes.regimes import Array, Random, random_directions
-from tests.stability.regime import points, size
+from tests.shapes.regimes import Array, Random, random_directions, unit
+from tests.stability.regime import U, points, size
 
 STEPS = (0.0, 0.25, 0.5, 0.75, 1.0, 2.0, 4.0)  # in sizes of the shape
 TURNS = np.array([(1.0, 0.0), (0.0, 1.0), (0.6, 0.8), (0.8, 0.6)])  # cosine and sine
@@ -160,3 +165,86 @@ def turns(random: Random, n: int) -> tuple[Array, Array]:
     pair = np.where(random.random((n, 1)) < 0.7, TURNS[random.integers(len(TURNS), size=n)], anywhere)
     pair = pair * random.choice([-1.0, 1.0], (n, 2))
     return pair[:, :1], pair[:, 1:]
+
+
+TINY = (0.0, 5e-324, 1e-310, 1e-300, 1e-20)  # components of directions that take the place of a 0
+
+
+def snapped(shape: Shape, random: Random, n: int) -> tuple[Array, Array]:
+    """Origins and unit directions of n rays, (n, 3) each."""
+    special, around = places(shape), size(shape) or 1.0
+    one, other = random.integers(len(special), size=(2, n))
+    a, b = (chosen(which, [place.points(random, n) for place in special]) for which in (one, other))
+    in_one = chosen(one, [place.ways(random, a) for place in special])
+    in_other = chosen(other, [place.ways(random, b) for place in special])
+    ways = [b - a, b - a, in_one, in_other, in_other, random_directions(random, n)]
+    direction = chosen(random.integers(len(ways), size=n), ways)
+    direction = np.where(np.isfinite(direction).all(axis=-1, keepdims=True), direction, 0.0)
+    direction[~direction.any(axis=-1)] = 1.0, 0.0, 0.0
+    direction = tilted(random, unit(direction))
+    share = np.where(random.random((n, 1)) < 0.5, 2.0 ** random.integers(-3, 7, (n, 1)), 9 * random.random((n, 1)))
+    origin = np.where(random.random((n, 1)) < 0.6, a, a - around * share * direction)
+    return nudged(random, origin, around), direction
+
+
+def chosen(which: Array, points: list[Array]) -> Array:
+    """One of several (n, 3) for each ray."""
+    found: Array = np.stack(points)[which, np.arange(len(which))]
+    return found
+
+
+def nudged(random: Random, points: Array, around: float) -> Array:
+    """Half of the points by up to four units in the last place off, in some coordinates."""
+    ulp = np.where(points == 0, U * around, np.spacing(np.abs(points)))
+    return points + ulp * some_units(random, points)
+
+
+def tilted(random: Random, directions: Array) -> Array:
+    """Half of the directions by up to four units in the last place off, in some components; zeros of both signs."""
+    tiny = np.where(random.random(directions.shape) < 0.5, U, random.choice(TINY, directions.shape))
+    ulp = np.where(directions == 0, tiny, np.spacing(np.abs(directions)))
+    tilt = directions + ulp * some_units(random, directions)
+    return np.where(tilt == 0, random.choice([-1.0, 1.0], tilt.shape) * 0.0, unit(tilt))
+
+
+def some_units(random: Random, points: Array) -> Array:
+    units = random.integers(-4, 5, points.shape) * (random.random(points.shape) < 0.6)
+    return np.where(random.random((len(points), 1)) < 0.5, units, 0)
+
+
+ALIGNED = [tuple(sign * axis) for axis in np.eye(3) for sign in (1.0, -1.0)]
+TURNED = sorted(  # by 3-4-5 triangles
+    {turned for i, j in product((3.0, -3.0), (4.0, -4.0)) for turned in permutations((i / 5, j / 5, 0.0))}
+)
+LENGTHS = (0.5, 1.0, 1.25, 2.0, 2.5, 3.0, 4.0, 5.0)
+SCALES = (1.0, 1.0, 1.0, 1.0, 2.0**-40, 2.0**40, 1e-9, 1e9)
+OFFSETS = (0.0, 0.0, 1.0, 1.0, 2.0**10, 2.0**20)  # in scales
+
+
+def pose(kind: Kind, random: Random) -> Shape:
+    """A shape of round lengths at a round place: upright, turned by a 3-4-5 triangle, far away, tiny or huge; one of
+    eight is a general one."""
+    scale, offset = random.choice(SCALES), random.choice(OFFSETS)
+    middle = scale * (offset if scale * offset < FARTHEST / 100 else 1.0) * random.integers(-8, 9, 3)
+    general = random.random() < 1 / 8
+    placed = [each for each in fields_of(kind.element) if not each.keyed]
+    value_of = random_value if general else round_value
+    while True:
+        with suppress(ElementError):  # fields that contradict each other
+            shape = kind.element(**{each.name: value_of(each, random, scale, middle) for each in placed})
+            if not (isinstance(shape, Torus) and shape.tube == shape.diameter):  # a thicker one has a cavity
+                return shape
+
+
+def round_value(field: Field, random: Random, scale: float, middle: Array) -> object:
+    """A value of a field with few digits."""
+    if isinstance(field, Point):
+        return tuple(middle + scale * random.integers(-3, 4, 3))
+    if isinstance(field, Direction):
+        ways = ALIGNED if random.random() < 0.5 else TURNED
+        return ways[random.integers(len(ways))]
+    if isinstance(field, Length):
+        return scale * random.choice(LENGTHS)
+    if isinstance(field, Lengths):
+        return tuple(scale * random.choice(LENGTHS, 3))
+    return random_value(field, random, scale, middle)

@@ -1,32 +1,76 @@
-"""Regimes: rays that are hard in one respect, their exact answers, and the tolerance of answers."""
+"""Regimes: rays that are hard in one respect, their exact answers, the backward bound of all hits, and certificates."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache, cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from gmpy2 import mpfr
-from numpy.typing import NDArray
+from gmpy2 import mpfr, sqrt
 
 from minirt.element import fields_of
 from minirt.fields import Length, Lengths, Point
+from minirt.rendering.queries.certificates import Certificate, certify
+from minirt.rendering.queries.certificates import Rays as HitRays
 from minirt.shapes import Shape
 from tests import oracle
-from tests.oracle.body import body, inside
-from tests.shapes.regimes import Rays
-from tests.stability.certificates import derived_tolerance
+from tests.oracle.body import Implicit, Vector, body, dot, exact, gradient, inside, minus, unit
+from tests.shapes.execution_modes import surfaces
+from tests.shapes.regimes import Array, Rays
 
-Array = NDArray[np.float64]
+BOUND = 4.0  # of the backward error of any hit, in units of 2^-53 (t + |o - c| + size)
 U = 2.0**-53
+STEEPEST = 1e-6  # relative tolerance; beyond it the surface turns away within the error, and no first order holds
+
+
+def certified(rays: Rays, t: Array, normals: Array | None = None) -> Certificate:
+    """Certify hits at t, (m, n), of m shapes by n rays; without normals, as hits of the nearest face."""
+    hit = np.isfinite(t)
+    owners = np.nonzero(hit)[0]
+    normals = np.full((*t.shape, 3), np.nan) if normals is None else normals
+    found = certify(
+        tuple(rays.shapes),
+        owners,
+        np.zeros_like(owners),
+        HitRays(rays.origins[hit], rays.directions[hit], t[hit], normals[hit]),
+    )
+    whole = Certificate(*np.full((3, *t.shape), np.nan))
+    for all_of, these in zip(whole, found, strict=True):
+        all_of[hit] = these
+    return whole
+
+
+def normals_of(rays: Rays, t: Array) -> Array:
+    """The normals of hits at t, by the interpreted formulas."""
+    points = rays.origins + np.where(np.isfinite(t), t, 0.0)[..., None] * rays.directions
+    return surfaces(rays.shapes, points)[1]
+
+
+def derived_tolerance(rays: Rays, t: Array) -> Array:
+    """The relative tolerance of t that follows from the backward bound: the bound times the condition number."""
+    condition = certified(rays, t).condition
+    return np.minimum(BOUND * U * np.nan_to_num(condition, nan=0.0), STEEPEST)
+
+
+def away_from_surface(rays: Rays, t: Array) -> list[str]:
+    """Complaints about hits that are farther from the surface than the backward bound."""
+    errors = certified(rays, t, normals_of(rays, t)).backward_error
+    with np.errstate(invalid="ignore"):
+        beyond = np.argwhere(np.isfinite(t) & ~(errors <= BOUND)).tolist()
+    return [complaint(rays.shapes[i], rays.origins[i, j], rays.directions[i, j], errors[i, j]) for i, j in beyond]
+
+
+def complaint(shape: Shape, origin: Array, direction: Array, error: float) -> str:
+    """Say how far a hit is from the surface."""
+    return f"backward error {error:.3g}: {shape} from {origin.tolist()}, {direction.tolist()}"
 
 
 class Regime(NamedTuple):
     """A recipe for rays, and the tolerance of their answers.
 
     An answer passes that is exact within the relative error that follows from the backward bound of all hits, which is
-    the bound times the condition number of t (`tests.stability.certificates`); or within a `tolerance`, where formulas
+    the bound times the condition number of t (`tests.stability.regime`); or within a `tolerance`, where formulas
     promise more, or rays are too many to certify. Where the surface ends or turns away from the ray an
     exact answer is of no use, as rounding the ray's own numbers changes it: there it passes if it lies between those
     for a shape thicker and one thinner by `slack` roundings of t, of the distance between origin and shape and of the
@@ -136,3 +180,60 @@ def size(shape: Shape) -> float:
     lengths = [np.sum(getattr(shape, e.name)) for e in fields_of(type(shape)) if isinstance(e, (Length, Lengths))]
     first, *others = points(shape)
     return float(sum(lengths) + sum(np.linalg.norm(other - first) for other in others))
+
+
+STEPS = 40  # towards the nearest point, at most
+EXACT, NOTHING = mpfr("1e-9"), mpfr("1e-45")  # change of the distance in the last step, by the distance or by 1
+
+
+class ExactCertificate(NamedTuple):
+    """How exact a hit is: see `minirt.rendering.queries.certificates`."""
+
+    backward_error: float
+    condition: float
+    normal_error: float
+
+
+def certificate(
+    shape: Shape, origin: Sequence[Any], direction: Sequence[Any], t: float, normal: Sequence[Any]
+) -> ExactCertificate | None:
+    """Certify a hit at a distance t; None where the nearest point of the surface is not found, as the surface is curved
+    more strongly than the point is far from it."""
+    form, o, d = body(shape), exact(origin), unit(direction)
+    point = [x + mpfr(t) * y for x, y in zip(o, d, strict=True)]
+    wall = max(form.walls, key=lambda each: dot(unit(gradient(each, point)), exact(normal)))
+    nearest = foot(wall, point)
+    if nearest is None:
+        return None
+    ends = [*form.clips, *(other for other in form.walls if other is not wall)]
+    beyond = max([mpfr(0), *(height(end, point) for end in ends)])
+    away = minus(o, exact(points(shape)[0]))
+    magnitude = mpfr(t) + sqrt(dot(away, away)) + mpfr(size(shape))
+    out = unit(gradient(wall, nearest))
+    off, turned = minus(nearest, point), minus(out, exact(normal))
+    return ExactCertificate(
+        float(max(sqrt(dot(off, off)), beyond) / (mpfr(U) * magnitude)),
+        float(magnitude / (mpfr(t) * abs(dot(out, d)))),
+        float(sqrt(dot(turned, turned))),
+    )
+
+
+def height(wall: Implicit, point: Vector) -> mpfr:
+    """The height of a point above a wall, to first order."""
+    slope = gradient(wall, point)
+    steepness = sqrt(dot(slope, slope))
+    return wall(point) / steepness if steepness else mpfr("-inf")
+
+
+def foot(wall: Implicit, point: Vector) -> Vector | None:
+    """The nearest point of a wall: the foot of the perpendicular on tangent planes that approach the one there."""
+    at, before = point, mpfr(-1)
+    for _ in range(STEPS):
+        slope = gradient(wall, at)
+        share = (wall(at) + dot(slope, minus(point, at))) / dot(slope, slope)
+        at = [x - share * y for x, y in zip(point, slope, strict=True)]
+        distance = abs(share) * sqrt(dot(slope, slope))
+        if abs(distance - before) <= EXACT * distance + NOTHING:
+            return at
+        before = distance
+    return None

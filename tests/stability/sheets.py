@@ -20,8 +20,7 @@ from tests.shapes.regimes import (
     random_perpendiculars,
     unit,
 )
-from tests.stability.aimed_rays import at
-from tests.stability.common import COUNT
+from tests.stability.common import COUNT, at
 from tests.stability.places import Place, frame, line, ring, spot
 from tests.stability.regime import Regime
 

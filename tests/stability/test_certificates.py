@@ -24,11 +24,9 @@ from minirt.shapes.triangle import Triangle
 from tests.paths import SCENES
 from tests.shapes.execution_modes import on_arrays
 from tests.shapes.regimes import GREY, RAYS, Array, random_directions
-from tests.stability import exact_certificate
-from tests.stability.certificates import BOUND, certified, normals_of
+from tests.stability import regime
 from tests.stability.common import towards
-from tests.stability.exact_certificate import ExactCertificate
-from tests.stability.regime import Regime
+from tests.stability.regime import BOUND, ExactCertificate, Regime, certified, normals_of
 from tests.stability.table import REGIMES
 
 WITHIN = 0.02  # relative difference of a certificate and the exact one
@@ -61,7 +59,7 @@ def wrong(rays: Any, t: Array, normals: Array, found: Certificate, indices: Any)
     count = 0
     for i, j in indices:
         shape, origin, direction = rays.shapes[i], rays.origins[i, j], rays.directions[i, j]
-        right = exact_certificate.certificate(shape, origin, direction, t[i, j], normals[i, j])
+        right = regime.certificate(shape, origin, direction, t[i, j], normals[i, j])
         assert right is not None
         count += differs([part[i, j] for part in found], right)
     return count
@@ -164,7 +162,7 @@ def test_traced_triangles_of_meshes_are_certified_by_their_placed_corners(name: 
         if np.dot(np.cross(b - a, c - a), hits.normal[i]) < 0:
             b, c = c, b
         triangle = Triangle(tuple(a), tuple(b), tuple(c), GREY)
-        right = exact_certificate.certificate(triangle, origins[i], directions[i], hits.distance[i], hits.normal[i])
+        right = regime.certificate(triangle, origins[i], directions[i], hits.distance[i], hits.normal[i])
         assert right is not None
         found = hits.backward_error[i], hits.condition[i], hits.normal_error[i]
         checked += not differs(found, right)

@@ -14,12 +14,10 @@ import pytest
 from minirt.shapes import KINDS, Kind
 from tests.oracle.many import crossed
 from tests.shapes.execution_modes import Intersect
-from tests.stability import wrong_starts
-from tests.stability.common import common
+from tests.stability import mutants
+from tests.stability.common import MODES, common
 from tests.stability.degenerate import groups, wrong
-from tests.stability.execution_modes import MODES
-from tests.stability.places import declaration, places
-from tests.stability.poses import pose
+from tests.stability.places import declaration, places, pose
 from tests.stability.regime import posed
 
 KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
@@ -46,9 +44,9 @@ def test_every_kind_declares_its_special_places(kind: Kind) -> None:
         assert np.isfinite(points).all(), place.name
 
 
-@pytest.mark.parametrize("name", wrong_starts.VARIANTS)
+@pytest.mark.parametrize("name", mutants.VARIANTS)
 def test_a_wrong_formula_is_found(name: str) -> None:
-    title, intersect = wrong_starts.VARIANTS[name]
+    title, intersect = mutants.VARIANTS[name]
     kind = next(each for each in KINDS if each.element.title == title)
     assert next(complaints(intersect, kind, 10 * SHAPES), "")
 

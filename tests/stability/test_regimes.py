@@ -7,9 +7,8 @@ import pytest
 
 from minirt.shapes import KINDS, Kind
 from tests.shapes.execution_modes import compiled
-from tests.stability.certificates import away_from_surface
-from tests.stability.execution_modes import MODES
-from tests.stability.regime import Regime, posed
+from tests.stability.common import MODES
+from tests.stability.regime import Regime, away_from_surface, posed
 from tests.stability.table import REGIMES
 
 

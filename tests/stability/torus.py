@@ -18,8 +18,7 @@ from tests.shapes.regimes import (
     random_perpendiculars,
     unit,
 )
-from tests.stability.aimed_rays import along, at, axis_of
-from tests.stability.common import COUNT
+from tests.stability.common import COUNT, along, at, axis_of
 from tests.stability.places import Place, fan, flat, frame, ring
 from tests.stability.regime import Regime
 

@@ -17,7 +17,7 @@ from minirt.kernel.scene_arrays import by_reference
 from minirt.lanes import Vec, lane, load, where
 from minirt.shapes import KINDS
 from minirt.shapes.cylinder import Cylinder
-from tests.kernel.bvh.trees import Interpreted, brute_force, build_tree, random_rays, random_shapes, trace
+from tests.kernel.bvh.test_bvh import Interpreted, brute_force, build_tree, random_rays, random_shapes, trace
 from tests.shapes.examples import example
 
 REGIMES: dict[str, dict[str, float]] = {

@@ -22,7 +22,7 @@ from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.torus import Torus
-from tests.reference import patterns as reference
+from tests.reference import texturing as reference
 from tests.shapes.examples import example
 
 NUMBERS = {Marble: MARBLE, Wood: WOOD, Clouds: CLOUDS}

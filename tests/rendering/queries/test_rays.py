@@ -18,7 +18,7 @@ from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests import oracle
-from tests.kernel.bvh.trees import random_rays, random_shapes
+from tests.kernel.bvh.test_bvh import random_rays, random_shapes
 from tests.kernel.pictures import ALL, AMBIENT, EYE, RED, SHAPES
 from tests.processes import run
 

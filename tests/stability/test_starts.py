@@ -1,27 +1,51 @@
 """Rays that start on a surface as `minirt.kernel.shading.shade` starts them do not hit it again, and do not leave a
-solid."""
+solid.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
+from itertools import permutations, product
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
+from minirt.element import fields_of
+from minirt.fields import Length, Lengths, Point, Triple
+from minirt.scene import Ambient, Camera, Light, Scene
 from minirt.shapes import KINDS, Kind, Shape
 from minirt.shapes.box import Box
+from minirt.shapes.cone import Cone
+from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
+from minirt.shapes.hyperboloid import Hyperboloid
+from minirt.shapes.paraboloid import Paraboloid
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from minirt.shapes.torus import Torus
 from tests import oracle
+from tests.kernel.pictures import linear
 from tests.oracle.body import body
 from tests.shapes.examples import example, hits, place, shadow_offsets
 from tests.shapes.execution_modes import Intersect, compiled, kind_of, on_arrays, surfaces
-from tests.shapes.regimes import RAYS, Array, Random, Rays, log_uniform, random_directions, random_perpendiculars, unit
+from tests.shapes.regimes import (
+    GREY,
+    RAYS,
+    Array,
+    Random,
+    Rays,
+    log_uniform,
+    random_directions,
+    random_perpendiculars,
+    unit,
+)
 from tests.skipping import skip_incomplete
+from tests.stability.common import MODES
+from tests.stability.degenerate import Wrong, wrong
+from tests.stability.mutants import VARIANTS
 
 KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.element.title)
 DIRECTIONS = 1008  # a multiple of those of a packet
@@ -141,3 +165,114 @@ def test_other_offsets_do_not_pass(kind: Kind) -> None:
         assert without > 100  # of 500
         assert acne(seen(kind, 1, 100, 1e13), fixed, shadows) > 100
     assert closeness(kind, 1e-4, fixed) > 0.01
+
+
+WHITE, GREEN = (255, 255, 255), (0, 255, 0)
+AT_1_0_0 = (  # solids whose side contains the point 1,0,0
+    Sphere((0, 0, 0), 2, GREEN),
+    Cylinder((0, 0, 0), (0, 1, 0), 2, 5, GREEN),
+    Cone((0, 4, 0), (0, -1, 0), 4, 8, GREEN),
+    Paraboloid((0, -4, 0), (0, 1, 0), 2 * 2**0.5, 8, GREEN),
+    Hyperboloid((0, 0, 0), (0, 1, 0), 2, 4, 4, GREEN),
+    Ellipsoid((0, 0, 0), (0, 1, 0), (2, 6, 2), GREEN),
+    Torus((0, 0, 0), (0, 1, 0), 1.4, 0.6, GREEN),
+)
+
+
+def scaled(shape: Shape, factor: float) -> Shape:
+    """A shape that is larger by a factor, as seen from the origin: each number is rounded once."""
+    new = {}
+    for field in fields_of(type(shape)):
+        value = getattr(shape, field.name)
+        if isinstance(field, Length):
+            new[field.name] = factor * value
+        elif isinstance(field, Point | Lengths):
+            new[field.name] = tuple(factor * part for part in value)
+    return shape.replace(**new)
+
+
+def surface_place(shape: Shape) -> str:
+    """The name of the field that places a shape."""
+    return next(field.name for field in fields_of(type(shape)) if isinstance(field, Point))
+
+
+def picture(eye: Camera, lamp: Light, shape: Shape, width: int, height: int, scale: float = 1.0) -> np.ndarray:
+    """The green light of a picture of a shape. The other solids are far behind the eye: one kernel is for all."""
+    behind = [scaled(each, scale / 8).replace(**{surface_place(each): (0, 0, -1e3 * scale)}) for each in AT_1_0_0]
+    return linear(Scene((Ambient(0.3, WHITE), eye, lamp, shape, *behind)), width, height)[..., 1]
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-6, 1e-3, 1e4, 1e9])
+@pytest.mark.parametrize("shape", AT_1_0_0, ids=lambda shape: shape.title)
+def test_an_eye_on_the_surface_sees_the_inside_on_one_side_and_nothing_on_the_other(shape: Shape, scale: float) -> None:
+    eye = Camera((scale, 0, 0), (0, 0, 1), 90)
+    lamp = Light((0, 0, 0.7 * scale), 1.0)
+    lit = picture(eye, lamp, scaled(shape, scale), 41, 31, scale)
+    outside, inside = lit[10:21, :18], lit[10:21, 23:]
+    assert (outside == 0).all()
+    assert (inside >= 0.3 * (1 - 1e-15)).all()
+    assert np.abs(np.diff(inside, axis=1)).max() < 0.1  # no grain
+    assert inside.max() > 0.4 or isinstance(shape, Torus)  # the lamp is inside, too
+
+
+@pytest.mark.parametrize("size", [3, 21, 31, 101])
+def test_a_cone_seen_along_its_axis_has_no_hole(size: int) -> None:
+    eye = Camera((0, 0, -10.4), (0, 0, 1), 60)
+    cone = Cone((0, 0, 3.42), (0, 0, -1), 0.8, 3.42, WHITE)
+    seen = picture(eye, Light((0, 0, -10), 0.5), cone, size, size) > 0
+    assert seen[size // 2, size // 2]
+    assert (seen == seen[::-1]).all()
+    assert (seen == seen[:, ::-1]).all()
+
+
+DIAGONAL = 0.5**0.5 - 2.0**-53
+HARD: dict[str, tuple[Cone, Triple, Triple]] = {
+    "from the rim beside a generator: it passes the apex 5e-10 off": (
+        Cone((-3, 3, -3), (-1, 0, 0), 1, 0.5, GREY),
+        (-3.5, 2.5, -3),
+        (DIAGONAL, DIAGONAL, 7.071067804794406e-10),
+    ),
+    "from a few units in the last place off such a place": (
+        Cone((-9, 3, -2), (0, 0, -1), 2, 1, GREY),
+        (-8.999999999999993, 1.9999999999999987, -2.9999999999999987),
+        (7.071067804794406e-10, DIAGONAL, DIAGONAL),
+    ),
+    "from the side next to the apex, along the axis": (
+        Cone((5e-09, 9.000000000000001e-09, -6.000000000000001e-09), (1, 0, 0), 4e-09, 1e-09, GREY),
+        (5.000000000000002e-09, 9.000000000000001e-09, -6.000000000000004e-09),
+        (1, 0, 0),
+    ),
+    "from the side next to the apex, into the cone": (
+        Cone((-7, -3, -2), (1, 0, 0), 5, 1.25, GREY),
+        (-6.999999999999999, -2.9999999999999982, -2),
+        (0.7978288025342568, 0.4789216007715009, 0.36620117717071443),
+    ),
+    "from the plane of the apex, within its rounding": (
+        Cone((2e-09, -2e-09, 0), (0.8, 0.6, 0), 2e-09, 1e-09, GREY),
+        (2e-09, -2e-09, 1.4881708671378342e-26),
+        (0.9877619588255825, -0.14110885126079764, -0.0664424923742803),
+    ),
+}
+
+
+def complaints(intersect: Intersect, name: str) -> Iterator[Wrong]:
+    cone, origin, direction = HARD[name]
+    for order, signs in product(permutations(range(3)), product((-1.0, 1.0), repeat=3)):
+
+        def posed(v: tuple[float, ...], order: tuple[int, ...] = order, signs: tuple[float, ...] = signs) -> Array:
+            return np.array(v)[list(order)] * signs
+
+        turned = cone.replace(apex=tuple(posed(cone.apex)), axis=tuple(posed(cone.axis)))
+        yield from wrong(intersect, turned, posed(origin)[None], posed(direction)[None])
+
+
+@pytest.mark.parametrize("mode", ["arrays", "numbers"])
+@pytest.mark.parametrize("name", HARD)
+def test_rays_from_the_side_have_right_ends(name: str, mode: str) -> None:
+    assert not [str(each) for each in complaints(MODES[mode][0], name)]
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_a_wrong_formula_of_starts_is_found(name: str) -> None:
+    variants = VARIANTS["cone with a blurred start"], VARIANTS["cone with the formula of shadow rays"]
+    assert any(next(complaints(intersect, name), None) for _, intersect in variants)

@@ -1,0 +1,217 @@
+"""Rays at the edges of slivers hit them; those close to the rim of a solid hit the right part of it.
+
+They may miss it within 64 roundings of t, of the distance from the origin to the shape and of the shape's size. A ray
+that close may miss the rim and hit the shape far behind it, such as the other end of a hyperboloid.
+"""
+
+from __future__ import annotations
+
+from math import hypot
+from typing import Any
+
+import numpy as np
+import pytest
+from gmpy2 import mpfr, sqrt
+
+import minirt
+from minirt.fields import MeshFile
+from minirt.meshes import Triangles
+from minirt.scene import Ambient, Camera, Light, Scene
+from minirt.shapes import Shape
+from minirt.shapes.hyperboloid import Hyperboloid
+from minirt.shapes.mesh import Mesh
+from minirt.shapes.triangle import Triangle
+from tests.kernel.pictures import linear
+from tests.oracle.body import cross, dot, exact, minus
+from tests.oracle.body import unit as exact_unit
+from tests.shapes import mutants
+from tests.shapes.examples import shadow_offsets
+from tests.shapes.execution_modes import Intersect, compiled, surfaces
+from tests.shapes.regimes import GREY, Array, Random, Rays, log_uniform, random_directions, random_perpendiculars, unit
+from tests.stability.common import MODES
+from tests.stability.regime import posed
+from tests.stability.table import REGIMES
+
+RIMS: dict[str, tuple[tuple[str, float], ...]] = {  # for each rim its height above the point, in heights of the shape
+    "cylinder": (("centre", -0.5), ("centre", 0.5)),
+    "hyperboloid": (("centre", -0.5), ("centre", 0.5)),
+    "cone": (("apex", 1.0),),
+    "paraboloid": (("vertex", 1.0),),
+}
+AT_THE_RIM = {kind.element.title: regime for kind, regime in REGIMES if regime.name == "at the rim"}
+
+
+def beside_rim(shape: Any, point: str, share: float, origin: Any, direction: Any) -> mpfr:
+    """Distance of a ray from a rim, to first order: from the rim's tangent where the ray crosses its plane."""
+    axis, d = exact_unit(shape.axis), exact(direction)
+    p = minus(exact(origin), exact(getattr(shape, point)))
+    s = (mpfr(share) * mpfr(shape.height) - dot(p, axis)) / dot(d, axis)
+    crossed = [a + s * b for a, b in zip(p, d, strict=True)]
+    radial = minus(crossed, [dot(crossed, axis) * x for x in axis])
+    radius = sqrt(dot(radial, radial))
+    out = [x / radius for x in radial]
+    across = cross(d, cross(axis, out))  # the way and the tangent are both perpendicular to it
+    return abs(radius - mpfr(shape.diameter) / 2) * abs(dot(out, across)) / sqrt(dot(across, across))
+
+
+def beside(shape: Shape, origin: Any, direction: Any) -> float:
+    return float(min(beside_rim(shape, *rim, origin, direction) for rim in RIMS[shape.title]))
+
+
+def wrong(title: str, intersect: Intersect) -> int:
+    """Number of rays with a wrong answer that pass all rims farther away than that."""
+    right = posed(AT_THE_RIM[title])
+    shapes, origins, directions = right.rays
+    t = intersect(*right.rays)
+    with np.errstate(invalid="ignore"):
+        elsewhere = (t != right.t) & ~(np.abs(t - right.t) <= 1e-12 * right.t)
+    rays = np.argwhere(elsewhere).tolist()
+    return sum(beside(shapes[i], origins[i, j], directions[i, j]) > right.swell(i, j) for i, j in rays)
+
+
+@pytest.mark.parametrize("way", ["arrays", "compiled"])
+@pytest.mark.parametrize("title", RIMS)
+def test_only_rays_within_64_roundings_of_a_rim_may_take_it_for_another_place(title: str, way: str) -> None:
+    assert wrong(title, MODES[way][0]) == 0
+
+
+def test_a_crack_is_found() -> None:
+    assert wrong("cylinder", mutants.with_formula(mutants.meets_cylinder)) > 0
+
+
+def sharpness(shape: Hyperboloid) -> float:
+    """Distance by which the rim of a hyperboloid moves if its side and its caps move by 1: the sharper, the farther."""
+    radius, waist, half = shape.diameter / 2, shape.waist / 2, shape.height / 2
+    falling = (radius**2 - waist**2) / half
+    steepest = hypot(radius, falling)  # half of the gradient's length at the rim
+    mean = (waist * steepest) ** 0.5  # as in the oracle, which moves the rim's side by a little more than 1
+    return hypot(1.0, ((steepest**2 / mean + mean) / 2 + falling) / radius)
+
+
+def test_so_close_to_the_rim_of_a_hyperboloid_rounding_chooses_between_its_ends() -> None:
+    right = posed(AT_THE_RIM["hyperboloid"])
+    ambiguous = 0
+    for i, shape in enumerate(right.rays.shapes):
+        for j in range(right.t.shape[1]):
+            thicker, thinner = right.thicker_and_thinner(i, j)
+            if np.isfinite(thinner) and thinner - thicker > 1e-3 * thicker:
+                close = right.swell(i, j) * sharpness(shape)
+                assert beside(shape, right.rays.origins[i, j], right.rays.directions[i, j]) <= close
+                ambiguous += 1
+    assert ambiguous > 0
+
+
+ASPECTS = (1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-12)  # height by longest edge
+SCALES = (1e-6, 1e-3, 1.0, 60.0, 1e4, 1e9)  # longest edge
+WHITE = (255, 255, 255)
+AMBIENT = 0.25
+
+
+def sliver(random: Random, aspect: float, scale: float) -> Triangle:
+    """A triangle about the origin, its corners in any order and its highest point anywhere above the longest edge."""
+    along = scale * random_directions(random)
+    foot = random.uniform(0, 1) * along
+    corners = np.array([0 * along, along, foot + aspect * scale * random_perpendiculars(random, along)])
+    corners += random.uniform(-1, 0) * along
+    return Triangle(*map(tuple, random.permutation(corners).tolist()), GREY)
+
+
+def corners_of(triangle: Triangle) -> Array:
+    return np.array([triangle.a, triangle.b, triangle.c])
+
+
+def mesh_of(triangles: list[Triangle]) -> Mesh:
+    """A mesh of triangles that share no corners."""
+    points = np.concatenate([corners_of(each) for each in triangles])
+    return Mesh(MeshFile("slivers.obj", Triangles(points, np.arange(len(points)).reshape(-1, 3))), (0, 0, 0), 1.0, GREY)
+
+
+def scene_of(random: Random, aspect: float, scale: float) -> tuple[Scene, float]:
+    """A mesh of one sliver, seen from as near as the sliver is high, and its light: ambient and diffuse."""
+    shape = sliver(random, aspect, scale)
+    normal = np.array(shape.normal()) * random.choice([-1.0, 1.0])
+    spot = random.dirichlet(np.full(3, 4.0)) @ corners_of(shape)
+    view = unit(-normal + 0.5 * random_directions(random))
+    eye = Camera(tuple(spot - aspect * scale * view), tuple(view.clip(-1, 1)), 50)
+    cosine = random.uniform(0.05, 1)
+    to_light = cosine * normal + np.sqrt(1 - cosine**2) * random_perpendiculars(random, normal)
+    light = Light(tuple(spot + 1e4 * scale * to_light), 0.5, WHITE)
+    drawn = mesh_of([shape]).replace(colour=WHITE)
+    return Scene((Ambient(AMBIENT, WHITE), eye, light, drawn)), AMBIENT + 0.5 * cosine
+
+
+SHAPES, COUNT = 30, 64
+ASPECT = pytest.mark.parametrize("aspect", ASPECTS)
+
+
+def aimed(seed: int, aspect: float, scale: float) -> Rays:
+    """Rays at slivers, from a thousandth of their length to ten lengths away."""
+    random = np.random.default_rng(seed)
+    slivers = [sliver(random, aspect, scale) for _ in range(SHAPES)]
+    corners = np.stack([corners_of(each) for each in slivers])
+    targets = random.dirichlet(np.ones(3), (SHAPES, COUNT)) @ corners
+    directions = random_directions(random, SHAPES, COUNT)
+    return Rays([*slivers], targets - scale * log_uniform(random, 1e-3, 10, SHAPES, COUNT, 1) * directions, directions)
+
+
+def acne(seed: int, aspect: float, scale: float, intersect: Intersect) -> tuple[int, int]:
+    """Number of rays that hit, and of those that hit again, where there is nothing to hit, after they were sent on as
+    shadow rays are: half of them grazing the sliver, to a slope of 1e-10."""
+    rays = aimed(seed, aspect, scale)
+    t = intersect(*rays)
+    hit = np.isfinite(t)
+    on, out = surfaces(rays.shapes, rays.origins + np.where(hit, t, 1.0)[..., None] * rays.directions)
+    out = np.where((out * rays.directions).sum(axis=-1, keepdims=True) > 0, -out, out)
+    random = np.random.default_rng(seed)
+    slope = np.where(
+        random.random((SHAPES, COUNT, 1)) < 0.5,
+        log_uniform(random, 1e-10, 0.01, SHAPES, COUNT, 1),
+        random.uniform(0.01, 1, (SHAPES, COUNT, 1)),
+    )
+    onwards = unit(slope * out + np.sqrt(1 - slope**2) * unit(np.cross(out, random_directions(random, SHAPES, COUNT))))
+    again = intersect(rays.shapes, on + shadow_offsets(on, rays.shapes) * out, onwards)
+    return int(hit.sum()), int((hit & np.isfinite(again)).sum())
+
+
+@ASPECT
+@pytest.mark.parametrize("scale", SCALES)
+def test_no_ray_hits_the_sliver_again_from_which_it_starts(scale: float, aspect: float) -> None:
+    hit, again = acne(1, aspect, scale, compiled)
+    assert hit > 0.95 * SHAPES * COUNT
+    assert again == 0
+
+
+@pytest.mark.parametrize("scale", SCALES)
+def test_the_mean_of_the_corners_has_acne(scale: float) -> None:
+    hit, again = acne(1, 1e-5, scale, mutants.with_formula(mutants.mean_of_corners))
+    assert again > 0.05 * hit
+
+
+@ASPECT
+def test_no_ray_hits_the_sliver_of_a_mesh_again_from_which_it_starts(aspect: float) -> None:
+    for seed, scale in enumerate(SCALES):
+        random = np.random.default_rng(seed)
+        made = sliver(random, aspect, scale)
+        scene = Scene((Camera((0, 0, 0), (0, 0, 1), 60), mesh_of([made])))
+        targets = random.dirichlet(np.ones(3), COUNT) @ corners_of(made)
+        directions = random_directions(random, COUNT)
+        found = minirt.trace(scene, targets - scale * directions, directions)
+        hit = np.isfinite(found.distance)
+        assert hit.sum() > 0.9 * COUNT
+        on, out = found.point[hit], found.normal[hit]
+        out = np.where((out * directions[hit]).sum(axis=-1, keepdims=True) > 0, -out, out)
+        onwards = unit(
+            log_uniform(random, 1e-10, 1, len(out), 1) * out + np.cross(out, random_directions(random, len(out)))
+        )
+        again = minirt.trace(scene, on + shadow_offsets(on[None], [made])[0] * out, onwards)
+        assert np.isinf(again.distance).all()
+
+
+@ASPECT
+def test_the_slivers_of_meshes_are_lit(aspect: float) -> None:
+    for seed, scale in enumerate(SCALES):
+        scene, light = scene_of(np.random.default_rng(seed), aspect, scale)
+        found = linear(scene)[..., 0]
+        seen = found >= AMBIENT / 2
+        assert seen.sum() > 20
+        assert np.abs(found[seen] - light).max() < 1e-3
