@@ -11,7 +11,7 @@ import pytest
 from numba import njit
 
 from minirt.kernel.machine_code.compile_process import environment
-from minirt.kernel.machine_code.processor import V3
+from minirt.kernel.machine_code.fingerprint import V3
 from minirt.lanes import Vec, dot, greatest, inverse_root, lane, load, lowest, unit, width
 from minirt.lanes.compiled.operations import SERIES
 from tests.lanes.numbers import DTYPES, PRECISIONS, assert_same, edges
@@ -137,10 +137,10 @@ def lowest_bit(number: int) -> int:
 def test_the_greatest_number_is_found_in_any_lane(interpreted: bool, dtype: Any) -> None:
     count = 128 // np.dtype(dtype).itemsize
     function = greatest_of.py_func if interpreted else greatest_of
-    for lane in range(count):
+    for index in range(count):
         for each in edges(dtype):
             values = np.full(count, each, dtype)
-            values[lane] = 2.5
+            values[index] = 2.5
             expected = 2.5 if np.isnan(each) else max(2.5, float(each))
             assert function(values) == expected
     assert function(np.arange(count, dtype=dtype)) == count - 1

@@ -20,7 +20,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from tests.kernel.pictures import EVERY, linear
-from tests.reference.light import render_sampled
+from tests.reference import render_sampled
 
 WHITE = (255, 255, 255)
 FLOOR = Plane((0, 0, 0), (0, 1, 0), WHITE)
