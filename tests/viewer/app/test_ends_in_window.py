@@ -19,10 +19,20 @@ from tests.windows import Desktop, open_desktop, require_tools
 
 pytestmark = pytest.mark.window
 
+LOST = "Error\nthe connection to the X server is lost\n"
+
 
 def kept(desktop: Desktop, path: Path) -> list[Path]:
     """Return the files with unsaved changes of a scene file."""
     return list((Path(desktop.environment["XDG_STATE_HOME"]) / "minirt" / "unsaved").glob(f"{name_of(path)}-*"))
+
+
+def check_recovered(desktop: Desktop, path: Path, output: str) -> None:
+    """Check that the changed scene is beside the file, as the program has said, and kept nowhere else."""
+    copy = path.with_name("scene.recovered.rt")
+    assert str(copy) in output
+    assert minirt.load(copy).spheres == ()
+    assert kept(desktop, path) == []
 
 
 @contextmanager
@@ -34,17 +44,17 @@ def with_unsaved_changes(desktop: Desktop, path: Path) -> Iterator[Viewer]:
         yield viewer
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
-def test_signals_end_the_program_and_keep_changes(desktop, tmp_path, number):
+@pytest.mark.parametrize("number", [None, signal.SIGTERM, signal.SIGHUP])
+def test_escape_and_signals_end_the_program_and_keep_changes(desktop, tmp_path, number):
     path = tmp_path / "scene.rt"
     with with_unsaved_changes(desktop, path) as viewer:
-        os.kill(viewer.process.pid, number)
+        if number:
+            os.kill(viewer.process.pid, number)
+        else:
+            viewer.key("Escape")
         status, output, errors = viewer.end()
-    copy = path.with_name("scene.recovered.rt")
-    assert (status, errors) == (128 + number, "")
-    assert str(copy) in output
-    assert minirt.load(copy).spheres == ()
-    assert kept(desktop, path) == []
+    assert (status, errors) == (128 + number if number else 0, "")
+    check_recovered(desktop, path, output)
 
 
 def test_a_window_without_unsaved_changes_ends_by_a_signal_and_leaves_nothing(desktop, tmp_path):
@@ -77,11 +87,8 @@ def test_a_lost_connection_to_the_screen_keeps_changes(desktop, tmp_path):
     with with_unsaved_changes(desktop, path) as viewer:
         desktop.run("xdotool", "windowkill", str(viewer.window))
         status, output, errors = viewer.end()
-    copy = path.with_name("scene.recovered.rt")
-    assert (status, errors) == (1, "Error\nthe connection to the X server is lost\n")
-    assert str(copy) in output
-    assert minirt.load(copy).spheres == ()
-    assert kept(desktop, path) == []
+    assert (status, errors) == (1, LOST)
+    check_recovered(desktop, path, output)
 
 
 def test_a_killed_x_server_keeps_changes(tmp_path):
@@ -90,8 +97,5 @@ def test_a_killed_x_server_keeps_changes(tmp_path):
     with open_desktop() as desktop, with_unsaved_changes(desktop, path) as viewer:
         desktop.kill_server()
         status, output, errors = viewer.end()
-        copy = path.with_name("scene.recovered.rt")
-        assert (status, errors) == (1, "Error\nthe connection to the X server is lost\n")
-        assert str(copy) in output
-        assert minirt.load(copy).spheres == ()
-        assert kept(desktop, path) == []
+        assert (status, errors) == (1, LOST)
+        check_recovered(desktop, path, output)

@@ -17,13 +17,6 @@ BROKEN = TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -7")
 
 
 @pytest.fixture
-def path(tmp_path):
-    file = tmp_path / "scene.rt"
-    file.write_text(TEXT)
-    return file
-
-
-@pytest.fixture
 def harness(path):
     harness = SessionHarness()
     harness.session.path, harness.session.file = path, WatchedFile(path)

@@ -12,7 +12,7 @@ import pytest
 
 import minirt
 from tests.viewer.app.test_real_window import SIZE, Viewer, picture, viewing
-from tests.viewer.process_tree import compilers, group
+from tests.viewer.idle_waits import compilers, group
 from tests.viewer.scenes import SPHERE_ON_PLANE
 from tests.waiting import until
 from tests.windows import Desktop
@@ -49,11 +49,6 @@ def first_run(desktop: Desktop, tmp_path: Path) -> Iterator[FirstRun]:
 def test_escape_does_not_wait_for_the_compiler(first_run):
     first_run.viewer.key("Escape")
     assert first_run.viewer.end() == (0, "", "")
-
-
-def test_an_interrupt_does_not_wait_for_the_compiler(first_run):
-    os.kill(first_run.viewer.process.pid, signal.SIGINT)
-    assert first_run.viewer.end() == (130, "", "")
 
 
 def test_ctrl_c_in_the_terminal_also_ends_the_compiler_silently(first_run):

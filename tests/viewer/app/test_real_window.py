@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 import minirt
 from minirt.rendering.sampling.contrast import edge_pixels
+from tests.processes import until_stopped
 from tests.viewer.idle_waits import until_at_rest, until_only_one_runs
 from tests.viewer.scenes import WITH_CYLINDER
 from tests.waiting import HANG_LIMIT, until
@@ -89,26 +90,96 @@ def picture(path: Path, size: tuple[int, int] = SIZE, passes: tuple[int, ...] = 
     return pixels[..., 2::-1]
 
 
-def test_the_window_shows_the_refined_picture(viewer):
-    viewer.key("i", "i")
-    refined = picture(viewer.path)
-    viewer.shows(refined)
-    plain = minirt.render(minirt.load(viewer.path), *SIZE).array
-    many = minirt.render(minirt.load(viewer.path), *SIZE, samples=16).array
+def check_refined(refined: NDArray[np.uint8], path: Path) -> None:
+    """Check that a refined picture has the edges of one with 16 samples in each pixel, and is plain elsewhere."""
+    plain = minirt.render(minirt.load(path), *SIZE).array
+    many = minirt.render(minirt.load(path), *SIZE, samples=16).array.astype(int)
     edge = edge_pixels(np.dstack([plain, np.full(plain.shape[:2], 255, np.uint8)]))
-    assert np.abs(many.astype(int) - refined)[edge].mean() < 0.05 * np.abs(many.astype(int) - plain)[edge].mean()
+    assert np.abs(many - refined)[edge].mean() < 0.05 * np.abs(many - plain)[edge].mean()
     assert (plain == refined).all(axis=2).mean() > 0.75
-    viewer.key("Escape")
+
+
+def check_name_and_icon(viewer: Viewer) -> None:
+    """Check the name and the icons by which the desktop knows the application."""
+
+    def properties() -> bytes:
+        return viewer.desktop.run("xprop", "-id", str(viewer.window), "-notype", "WM_CLASS", "32c", "_NET_WM_ICON")
+
+    until(lambda: b"_NET_WM_ICON = 16, 16, " in properties(), "the icon")
+    name, _, words = properties().partition(b"_NET_WM_ICON = ")
+    assert name.strip() == b'WM_CLASS = "minirt", "miniRT"'
+    icon = np.array(words.split(b", "), np.uint32)
+    sizes = []
+    while len(icon):
+        width, height = icon[:2].tolist()
+        drawn, icon = icon[2 : 2 + width * height].reshape(height, width), icon[2 + width * height :]
+        assert (drawn[0, 0] >> 24, drawn[height // 2, width // 2] >> 24) == (0, 255)  # transparent beside the ball
+        sizes.append((width, height))
+    assert sizes == [(16, 16), (32, 32), (64, 64)]
+
+
+def test_the_refined_picture_is_shown_at_rest_hidden_covered_moved_resized_and_clicked(viewer, desktop, tmp_path):
+    viewer.key("i", "i")
+    still = picture(viewer.path)
+    viewer.shows(still)
+    check_refined(still, viewer.path)
+    check_name_and_icon(viewer)
+    until_only_one_runs(viewer.process.pid, 8)  # the thread that watches the file
+
+    desktop.minimise(viewer.window)
+    desktop.restore(viewer.window)
+    viewer.shows(still)
+    with viewing(desktop, tmp_path / "other.rt", (900, 700)) as cover:
+        for window in (viewer.window, cover.window):
+            desktop.run("xdotool", "windowmove", "--sync", str(window), "100", "100")
+        desktop.activate(cover.window)
+        desktop.close_button(cover.window)
+        assert cover.end() == (0, "", "")
+    viewer.shows(still)
+
+    desktop.activate(viewer.window)
+    desktop.keydown("d")
+    seen = set()
+
+    def moving() -> bool:
+        seen.add(desktop.screenshot(viewer.window).tobytes())
+        return len(seen) > 5
+
+    until(moving, "five pictures while a key is held")
+    desktop.keyup("d")
+    viewer.key("Home")
+    viewer.shows(still)
+
+    place = desktop.run("xdotool", "getwindowgeometry", str(viewer.window))
+    for size in (SCREEN, SIZE, SCREEN, SIZE):
+        viewer.key("F11")
+        assert desktop.find("miniRT - scene.rt", size) == viewer.window
+        viewer.shows(picture(viewer.path, size))
+    until(lambda: desktop.run("xdotool", "getwindowgeometry", str(viewer.window)) == place, "its place")
+
+    for n in range(30):
+        desktop.run("xdotool", "windowsize", str(viewer.window), str(200 + 13 * n), str(400 - 7 * n))
+    desktop.resize(viewer.window, 333, 222)
+    viewer.shows(picture(viewer.path, (333, 222)))
+    desktop.resize(viewer.window, *SIZE)
+    viewer.shows(still)
+
+    viewer.key("ctrl+c")
+    until(lambda: not np.array_equal(desktop.screenshot(viewer.window), still), "the message")
+    desktop.click(viewer.window, 160, 130)  # the sphere
+    viewer.shows(still)
+    viewer.key("Delete", "ctrl+s", "Escape")
     assert viewer.end() == (0, "", "")
+    assert minirt.load(viewer.path).spheres == ()
 
 
-def test_with_one_sample_the_window_shows_the_picture_of_the_library(desktop, tmp_path):
-    with viewing(desktop, tmp_path / "scene.rt", options=("--samples", "1")) as viewer:
+def test_with_one_sample_the_picture_is_the_library_s_and_a_window_that_watches_no_file_does_nothing(desktop, tmp_path):
+    with viewing(desktop, tmp_path / "scene.rt", options=("--samples", "1", "--no-watch")) as viewer:
         viewer.key("i", "i")
         plain = minirt.render(minirt.load(viewer.path), *SIZE).array
         assert np.array_equal(plain, picture(viewer.path, passes=()))
         viewer.shows(plain)
-        until_at_rest(viewer.process.pid)
+        until_at_rest(viewer.process.pid, 100)
         assert np.array_equal(desktop.screenshot(viewer.window), plain)
         viewer.key("Escape")
         assert viewer.end() == (0, "", "")
@@ -139,16 +210,22 @@ def test_escape_right_after_the_start_ends_the_program(viewer):
     assert viewer.end() == (0, "", "")
 
 
-def test_the_close_button_ends_the_program(viewer):
-    viewer.desktop.close_button(viewer.window)
-    assert viewer.end() == (0, "", "")
-
-
-def test_ctrl_c_in_the_terminal_ends_the_program(viewer):
+def test_keys_of_a_stopped_program_count_when_it_goes_on_and_ctrl_c_ends_it(viewer):
+    path = viewer.path
     viewer.key("i", "i")
-    viewer.shows(picture(viewer.path))
+    viewer.shows(picture(path))
+    os.killpg(viewer.process.pid, signal.SIGSTOP)
+    assert until_stopped(viewer.process)
+    viewer.key("Tab", "Tab", "e", "ctrl+s")
+    before = path.read_text()
+    os.killpg(viewer.process.pid, signal.SIGCONT)
+    until(lambda: path.read_text() != before, "the saved scene")
+    assert minirt.load(path).spheres[0].centre[1] > 0
+    viewer.key("Tab")  # clears the message
+    viewer.shows(picture(path))
     os.killpg(viewer.process.pid, signal.SIGINT)
     assert viewer.end() == (130, "", "")
+    assert list(path.parent.iterdir()) == [path]
 
 
 @pytest.mark.each_python
@@ -165,101 +242,16 @@ def test_keys_edit_and_save_the_scene(viewer):
     assert viewer.end() == (0, "", "")
 
 
-def test_unsaved_changes_are_kept(viewer):
-    viewer.key("Tab", "Tab", "Delete", "Escape")
-    copy = viewer.path.with_name("scene.recovered.rt")
-    status, output, errors = viewer.end()
-    assert (status, errors) == (0, "")
-    assert str(copy) in output
-    assert minirt.load(copy).spheres == ()
-
-
-def test_after_thirty_sizes_the_last_is_shown(viewer):
-    viewer.key("i", "i")
-    for n in range(30):
-        viewer.desktop.run("xdotool", "windowsize", str(viewer.window), str(200 + 13 * n), str(400 - 7 * n))
-    viewer.desktop.resize(viewer.window, 333, 222)
-    viewer.shows(picture(viewer.path, (333, 222)))
-    viewer.key("Escape")
-    assert viewer.end() == (0, "", "")
-
-
-def test_a_window_shows_its_picture_again_after_hiding_and_covering(viewer, desktop, tmp_path):
-    viewer.key("i", "i")
-    still = picture(viewer.path)
-    viewer.shows(still)
-    desktop.minimise(viewer.window)
-    desktop.restore(viewer.window)
-    viewer.shows(still)
-    with viewing(desktop, tmp_path / "other.rt", (900, 700)) as cover:
-        for window in (viewer.window, cover.window):
-            desktop.run("xdotool", "windowmove", "--sync", str(window), "100", "100")
-        desktop.activate(cover.window)
-        cover.key("Escape")
-        assert cover.end() == (0, "", "")
-    viewer.shows(still)
-    viewer.key("Escape")
-    assert viewer.end() == (0, "", "")
-
-
-def test_an_idle_window_runs_only_the_thread_that_watches_its_file(viewer):
+def test_dropped_files_are_opened(viewer, tmp_path):
     viewer.key("i", "i")
     viewer.shows(picture(viewer.path))
-    until_only_one_runs(viewer.process.pid, 8)
+    for types in (1, 3, 5):
+        other = tmp_path / f"another {types}.rt"
+        other.write_text(WITH_CYLINDER.replace("sp 0,0,0 2", f"sp 0,0,0 1.{types}"))
+        where = [str(viewer.window), "20", "20"]
+        viewer.desktop.run(sys.executable, "-m", "tests.mlx.drag_source", *where, str(types), str(other))
+        assert viewer.desktop.find(f"miniRT - {other.name}") == viewer.window
+        viewer.key("Tab")  # clears the message
+        viewer.shows(picture(other))
     viewer.key("Escape")
     assert viewer.end() == (0, "", "")
-
-
-def test_an_idle_window_that_does_not_watch_its_file_does_nothing(desktop, tmp_path):
-    with viewing(desktop, tmp_path / "scene.rt", options=("--no-watch",)) as viewer:
-        viewer.key("i", "i")
-        viewer.shows(picture(viewer.path))
-        until_at_rest(viewer.process.pid, 100)
-        viewer.key("Escape")
-        assert viewer.end() == (0, "", "")
-
-
-def test_a_held_key_moves_until_it_is_released(viewer):
-    viewer.key("i", "i")
-    still = picture(viewer.path)
-    viewer.shows(still)
-    viewer.desktop.activate(viewer.window)
-    viewer.desktop.keydown("d")
-    seen = set()
-
-    def moving() -> bool:
-        seen.add(viewer.desktop.screenshot(viewer.window).tobytes())
-        return len(seen) > 5
-
-    until(moving, "five pictures")
-    viewer.desktop.keyup("d")
-    viewer.key("Home")
-    viewer.shows(still)
-    viewer.key("Escape")
-    assert viewer.end() == (0, "", "")
-
-
-def test_full_screen_and_back_show_the_picture_in_the_same_window(viewer):
-    viewer.key("i", "i")
-    viewer.desktop.run("xdotool", "windowmove", "--sync", str(viewer.window), "300", "200")
-    place = viewer.desktop.run("xdotool", "getwindowgeometry", str(viewer.window))
-    for size in (SCREEN, SIZE, SCREEN, SIZE):
-        viewer.key("F11")
-        assert viewer.desktop.find("miniRT - scene.rt", size) == viewer.window
-        viewer.shows(picture(viewer.path, size))
-    until(lambda: viewer.desktop.run("xdotool", "getwindowgeometry", str(viewer.window)) == place, "its place")
-    viewer.key("Escape")
-    assert viewer.end() == (0, "", "")
-
-
-def test_the_camera_is_copied_and_a_click_selects(viewer):
-    viewer.key("i", "i")
-    still = picture(viewer.path)
-    viewer.shows(still)
-    viewer.key("ctrl+c")
-    until(lambda: not np.array_equal(viewer.desktop.screenshot(viewer.window), still), "the message")
-    viewer.desktop.click(viewer.window, 160, 130)  # the sphere
-    viewer.shows(still)
-    viewer.key("Delete", "ctrl+s", "Escape")
-    assert viewer.end() == (0, "", "")
-    assert minirt.load(viewer.path).spheres == ()

@@ -50,35 +50,6 @@ def test_escape_ends_with_0_and_prints_nothing(tmp_path, capfd):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_close_button_ends_with_0(tmp_path):
-    memory = Script()
-    memory.close_button()
-    assert run_program(memory, tmp_path / "scene.rt") == 0
-
-
-def test_unsaved_changes_are_kept_and_named(tmp_path, capfd):
-    memory = Script()
-    for key in (Key.TAB, Key.D, Key.ESCAPE):
-        memory.tap(key)
-    assert run_program(memory, tmp_path / "scene.rt") == 0
-    copy = tmp_path / "scene.recovered.rt"
-    assert str(copy) in capfd.readouterr().out
-    assert copy.read_text() != TEXT
-
-
-def test_ctrl_c_ends_with_130_and_keeps_changes(tmp_path, capfd):
-    def interrupt() -> None:
-        raise KeyboardInterrupt
-
-    memory = Script()
-    memory.tap(Key.TAB)
-    memory.tap(Key.D)
-    memory.do(interrupt)
-    assert run_program(memory, tmp_path / "scene.rt") == 130
-    assert (tmp_path / "scene.recovered.rt").exists()
-    assert capfd.readouterr().err == ""
-
-
 def test_an_unexpected_exception_becomes_a_render_error(tmp_path):
     renderer = FakeRenderer()
     renderer.error = ValueError("odd")

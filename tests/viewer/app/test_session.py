@@ -7,7 +7,7 @@ from functools import partial
 import pytest
 
 from minirt.errors import FileError, RenderError
-from minirt.mlx import Key
+from minirt.mlx import Button, Cursor, Key
 from minirt.viewer.display.background_painter import BackgroundPainter
 from minirt.viewer.display.painter import Job, Outcome
 from minirt.viewer.display.refinement import FRAME_TIME
@@ -177,3 +177,20 @@ def test_a_picture_that_shows_something_is_not_remarked_on():
     harness = SessionHarness()
     harness.finish(0.001)
     assert harness.session.state.message == ""
+
+
+@pytest.mark.parametrize(
+    ("button", "shape"), [(Button.LEFT, Cursor.TURN), (Button.MIDDLE, Cursor.GRAB), (Button.RIGHT, Cursor.TURN)]
+)
+def test_a_drag_changes_the_pointer_until_the_button_is_released(button: Button, shape: Cursor) -> None:
+    harness = SessionHarness()
+    shapes = []
+    for act in (
+        lambda: harness.memory.button_press(button, 20, 20),
+        lambda: harness.memory.motion(30, 25),
+        lambda: harness.memory.button_release(button, 30, 25),
+    ):
+        act()
+        harness.memory.play()
+        shapes.append(harness.session.window.cursor)
+    assert shapes == [Cursor.ARROW, shape, Cursor.ARROW]

@@ -209,25 +209,19 @@ def check_following(viewer: Viewer, edited: Scene) -> None:
     viewer.shows(still(parse(WITH_CYLINDER).scene))
 
 
-LETTERS = {
-    "qwerty": ("us", ["a", "d", "d", "w", "w", "w", "s", "q", "e", "e"]),
-    "azerty": ("fr", ["q", "d", "d", "z", "z", "z", "s", "a", "e", "e"]),
-    "qwertz": ("de", ["a", "d", "d", "w", "w", "w", "s", "q", "e", "e"]),
-}
+LETTERS = ["q", "d", "d", "z", "z", "z", "s", "a", "e", "e"]
 TYPED = [".", ".", ".", ",", "+", "+", "+", "-"]
 CHORDS = ["Ctrl+Z", "Ctrl+Z", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z", "Tab", "Tab", "v", "Shift+N", "n", "Return", "e"]
 
 
-@pytest.mark.parametrize("keys", LETTERS)
-def test_the_keys_of_a_layout_match_the_replay(desktop, tmp_path, keys):
-    layout, letters = LETTERS[keys]
-    desktop.run("setxkbmap", layout)
+def test_the_keys_of_azerty_match_the_replay(desktop, tmp_path):
+    desktop.run("setxkbmap", "fr")
     try:
-        with viewing(desktop, tmp_path / "scene.rt", options=("--keys", keys), program=FROZEN_CLOCK) as viewer:
+        with viewing(desktop, tmp_path / "scene.rt", options=("--keys", "azerty"), program=FROZEN_CLOCK) as viewer:
             viewer.key("i", "i")
             viewer.shows(still(load(viewer.path).scene))
-            twin = Twin(viewer, tmp_path / "twin", keys)
-            twin.do("move 160,120", *(f"press {key}" for key in (*letters, *TYPED, *CHORDS)))
+            twin = Twin(viewer, tmp_path / "twin", "azerty")
+            twin.do("move 160,120", *(f"press {key}" for key in (*LETTERS, *TYPED, *CHORDS)))
             played = twin.state.scene
             assert played.items == twin.replayed().scene.items
             viewer.shows(still(played))

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from minirt.mlx import Key
-from minirt.scene import Camera, Scene
+from minirt.scene import Camera
 from minirt.shapes import Shape
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.marks import GOLD, Marks, bgra
 from minirt.viewer.display.overlay import HudLevel
-from minirt.viewer.display.painter import Outcome, Pixels
+from minirt.viewer.display.painter import Outcome
 from minirt.viewer.display.screen import Screen
 from minirt.viewer.editing.state import State
 from tests.viewer.session_harness import SessionHarness
@@ -98,25 +98,6 @@ def test_words_come_without_a_picture(harness: SessionHarness, action: str) -> N
     assert harness.session.refinement.latest is picture
 
 
-def test_words_that_come_only_with_the_picture_are_noticed(
-    harness: SessionHarness, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(Session, "draw_late_words", lambda _: None)
-    late = [action for action, play in ACTIONS.items() if not words_come(harness, play)]
-    assert {"add", "attribute", "grow", "turn"} <= {*late}
-
-
-def test_words_of_an_older_scene_are_noticed(harness: SessionHarness, monkeypatch: pytest.MonkeyPatch) -> None:
-    draw, old = Screen.draw, harness.session.state
-    monkeypatch.setattr(Screen, "draw", lambda self, _state, *rest: draw(self, old, *rest))
-    harness.memory.text("+")
-    harness.memory.wait(MOMENT)
-    harness.memory.play()
-    frame = harness.memory.screenshot()
-    monkeypatch.undo()
-    assert not np.array_equal(words(frame), words(expected_frame(harness.session, harness.session.state)))
-
-
 def outline_fits(harness: SessionHarness, play: Play) -> bool:
     """Whether the outline after an action is that of a shape in the picture that is shown, or there is none."""
     play(harness)
@@ -141,20 +122,6 @@ def outline_mask(shown: Outcome, shape: Shape) -> np.ndarray:
 def test_the_outline_fits_the_picture_that_is_shown(harness: SessionHarness, action: str) -> None:
     assert golden(harness.memory.screenshot()).any()
     assert outline_fits(harness, ACTIONS[action])
-
-
-def test_an_outline_of_the_current_scene_over_an_older_picture_is_noticed(
-    harness: SessionHarness, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    draw = Marks.draw
-
-    def draw_current(self: Marks, pixels: Pixels, state: State, _shown: Scene, scale: float, moving: bool) -> None:
-        draw(self, pixels, state, state.scene, scale, moving)
-
-    monkeypatch.setattr(Marks, "draw", draw_current)
-    for action in ("add", "grow", "drag"):
-        assert not outline_fits(harness, ACTIONS[action]), action
-        harness.finish(0.001)
 
 
 def test_the_outline_stays_on_an_edited_shape_and_waits_for_a_new_one(harness: SessionHarness) -> None:

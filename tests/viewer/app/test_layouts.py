@@ -24,8 +24,6 @@ KEYBOARDS = {  # X11's names, with the option --keys and the key codes of letter
     "fr": ("azerty", None),
     "de": ("qwertz", None),
     "us dvorak": ("qwerty", None),
-    "fr bepo": ("qwerty", None),
-    "ru": ("qwerty", LETTER_CODES),
     "gr": ("qwerty", LETTER_CODES),
 }
 SIZE = (320, 240)
