@@ -64,7 +64,9 @@ def until_only_one_runs(process: int, times: int) -> None:
 def compilers(program: int) -> list[int]:
     """Return the ids of the compiler processes of a program."""
     return [
-        each for each in processes() if parent(each) == program and "from minirt.kernel.compiler import main; main()" in arguments(each)
+        each
+        for each in processes()
+        if parent(each) == program and "from minirt.kernel.compiler import main; main()" in arguments(each)
     ]
 
 
