@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import minirt
-from minirt.report.generate import report
+from minirt.report.measure import report
 
 ROOT = Path(__file__).parent.parent
 SHOWN = {"demo": "demo", "eval-shadows-many": "shadows"}  # scene -> name of the diagram

@@ -78,7 +78,7 @@ def bench(scene: Scene, options: argparse.Namespace) -> int:
 def report(scene: Scene, options: argparse.Namespace) -> int:
     """Measure error against run time and write the report into a folder."""
     import minirt
-    from minirt.report.generate import report as write_report
+    from minirt.report.measure import report as write_report
 
     size = options.size or minirt.size_of(scene)
     how = options.threads, options.quick, options.ablation

@@ -8,7 +8,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from minirt.errors import RenderError
-from minirt.report.findings import Findings, pareto_front, recommended
+from minirt.report.findings import Findings, pareto_front, recommended, title
 from minirt.report.pictures import OURS, Row
 
 if TYPE_CHECKING:
@@ -29,7 +29,8 @@ STYLE = {
     **dict.fromkeys(("figure.facecolor", "axes.facecolor"), PAPER),
 }
 NEAR = 3.0  # the axis reaches a floor unless it lies below all errors by more than this factor
-LEAST_RANGE = 6.0  # ratio of the ends of an axis
+BESIDE: dict[str, Any] = {"textcoords": "offset points", "fontsize": "small"}  # of labels
+LEAST_RANGE, MANY = 6.0, 200.0  # least ratio of the ends of an axis; beyond `MANY` only powers of ten have labels
 
 
 def require_matplotlib() -> None:
@@ -61,9 +62,7 @@ def draw(found: Findings, size: tuple[float, float]) -> str:
         scale(axes)
         figure.legend(loc="outside lower left", ncols=2 if size == NARROW else 5, frameon=False, fontsize="small")
         text = StringIO()
-        figure.savefig(
-            text, format="svg", metadata={"Date": None, "Title": f"{found.subject.scene}: error against run time"}
-        )
+        figure.savefig(text, format="svg", metadata={"Date": None, "Title": title(found)})
     return text.getvalue()
 
 
@@ -82,25 +81,15 @@ def places(rows: list[Row]) -> tuple[list[float], list[float]]:
 def draw_line(axes: Axes, name: str, rows: list[Row], colour: str, mark: str) -> None:
     """Draw the points of a render option with their confidence intervals, and the number of samples at each."""
     style: dict[str, Any] = {"color": colour, "linewidth": 1.6, "linestyle": "-" if rows[0].program == OURS else ":"}
-    axes.plot(*places(rows), marker=mark, markersize=5.5, label=name, **style)
+    x, y = places(rows)
+    axes.plot(x, y, marker=mark, markersize=5.5, label=name, **style)
     hollow = [row for row in rows if not row.valid]
     axes.plot(*places(hollow), mark, markersize=5.5, markerfacecolor=PAPER, color=colour)
+    bars: dict[str, Any] = {"colors": colour, "linewidth": 1, "alpha": 0.75}
+    axes.hlines(y, [row.rmse_low for row in rows], [row.rmse_high for row in rows], **bars)
+    axes.vlines(x, [row.wall_low_ms for row in rows], [row.wall_high_ms for row in rows], **bars)
     for row in rows:
-        for low, high, bar in (
-            (row.rmse_low, row.rmse_high, axes.hlines),
-            (row.wall_low_ms, row.wall_high_ms, axes.vlines),
-        ):
-            if isfinite(low + high):
-                bar(row.wall_ms if bar == axes.hlines else row.rmse, low, high, colors=colour, linewidth=1, alpha=0.75)
-        axes.annotate(
-            row.label,
-            (row.rmse, row.wall_ms),
-            (5, 4),
-            textcoords="offset points",
-            color=colour,
-            fontsize="small",
-            zorder=4,
-        )
+        axes.annotate(row.label, (row.rmse, row.wall_ms), (5, 4), color=colour, **BESIDE)
 
 
 def draw_floors(axes: Axes, found: Findings, least: float) -> None:
@@ -109,12 +98,8 @@ def draw_floors(axes: Axes, found: Findings, least: float) -> None:
     for name, error in floors.items():
         if error * NEAR >= least:
             axes.axvline(error, color=MUTED, linestyle="--", linewidth=1, zorder=0)
-            turned: dict[str, Any] = {
-                "rotation": "vertical",
-                "transform": axes.get_xaxis_transform(),
-                "fontsize": "small",
-            }
-            axes.text(error, 0.98, f" {name}: {error:.2g}", color=MUTED, ha="right", va="top", **turned)
+            place: dict[str, Any] = {"xycoords": axes.get_xaxis_transform(), "rotation": 90, "ha": "right", "va": "top"}
+            axes.annotate(f"{name}: {error:.2g}", (error, 0.98), (-2, 0), color=MUTED, **place, **BESIDE)
 
 
 def scale(axes: Axes) -> None:
@@ -123,14 +108,11 @@ def scale(axes: Axes) -> None:
 
     axes.margins(0.08)
     axes.autoscale_view()
-    for axis, (low, high), set_limits in (
-        (axes.xaxis, axes.get_xlim(), axes.set_xlim),
-        (axes.yaxis, axes.get_ylim(), axes.set_ylim),
-    ):
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = axis.get_view_interval()
         widening = max(1.0, LEAST_RANGE * low / high) ** 0.5
-        set_limits(low / widening, high * widening)
-        decades = high / low > 200
-        axis.set_major_locator(LogLocator(subs=(1.0,) if decades else (1.0, 2.0, 5.0)))
+        axis.set_view_interval(low / widening, high * widening, ignore=True)
+        axis.set_major_locator(LogLocator(subs=(1.0,) if high / low > MANY else (1.0, 2.0, 5.0)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
         axis.set_minor_formatter(NullFormatter())
     axes.grid(alpha=0.3)

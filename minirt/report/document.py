@@ -11,7 +11,7 @@ from minirt.errors import RenderError
 from minirt.helpers import file_io
 from minirt.image import Image
 from minirt.report.chart import NARROW, WIDE, draw, on_page
-from minirt.report.findings import Findings, as_csv, as_json, choices, recommended
+from minirt.report.findings import Findings, as_csv, as_json, choices, recommended, title
 from minirt.report.metrics import Picture as Light
 from minirt.report.metrics import error_image, to_8_bits
 from minirt.report.page import Column, Document, Picture
@@ -143,7 +143,7 @@ def caption(row: Row) -> str:
 def document(found: Findings, pictures: list[Picture]) -> Document:
     """Return the report of a scene: the diagram first, then what follows from it, then pictures and tables."""
     about = found.subject
-    page = Document(f"{about.scene}: error against run time")
+    page = Document(title(found))
     if found.interrupted:
         page.notice(found.interrupted)
     versions = ", ".join(f"{name} {version}" for name, version in about.versions.items())

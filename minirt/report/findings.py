@@ -159,6 +159,11 @@ def choices(rows: list[Row], doubt: float) -> list[dict[str, Any]]:
     return [{"wanted": wanted, "best": row, "disturbed": disturbed} for wanted, row in best.items()]
 
 
+def title(found: Findings) -> str:
+    """Return the title of the report."""
+    return f"{found.subject.scene}: error against run time"
+
+
 def recommended(found: Findings) -> list[Row]:
     """Return the rows that are the best for some wanted error or time."""
     best = (choice["best"] for choice in choices(found.pictures, found.reference_error))

@@ -1,22 +1,27 @@
-"""Measure a scene for its report: how much, in which order, and how long each step is expected to take."""
+"""Generate a report: measure a scene and write the results into a folder, also when the user interrupts it."""
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Iterator
 from math import ceil, log2
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 import numpy as np
 
 from minirt.errors import RenderError
-from minirt.helpers.progress import State
+from minirt.helpers.progress import State, progress
 from minirt.helpers.system import runs
 from minirt.rendering import Renderer
 from minirt.rendering.notes import kernel_notes
 from minirt.rendering.threads import usable_cores
 from minirt.report import povray
 from minirt.report.ablation import PAIRS, Ablation, Part
+from minirt.report.chart import require_matplotlib
+from minirt.report.document import PAGE, summary, write_files
 from minirt.report.findings import EIGHT_BITS, Findings, orders, subject
 from minirt.report.metrics import Picture
 from minirt.report.pictures import (
@@ -37,6 +42,7 @@ from minirt.report.variants import Variant, with_more, without_lists, without_un
 from minirt.scene import Scene
 
 SEED = 20240607
+NOTHING = "Interrupted before anything was measured; no report was written."
 REFERENCE = "the reference"  # name of its steps
 # Expected durations, from which the progress bar tells the remaining time.
 ONE_SAMPLE, CONVERGENCE = 0.02, 0.75  # a usual RMSE of a picture with one sample per pixel, and order of convergence
@@ -195,3 +201,50 @@ def identical_without_culling(pictures: dict[str, Picture]) -> list[int]:
         if (picture := pictures.get(f"brute force {samples}")) is not None
         and np.array_equal(picture, pictures.get(f"uniform {samples}", 0))
     ]
+
+
+def report(
+    scene: Scene,
+    name: str,
+    folder: str | os.PathLike[str],
+    size: tuple[int, int],
+    threads: int | None,
+    quick: bool,
+    ablation: bool = False,
+) -> str:
+    """Write the report of a scene into a folder, which is created if needed, and return a summary of it.
+
+    With `ablation` it tells what each absent feature and kind of shape would cost, each of which needs a kernel of its
+    own. KeyboardInterrupt ends the measurements: what was measured until then is written, standard error says so, and
+    it is raised again. RenderError if the scene has no shapes, matplotlib is missing or a file cannot be written.
+    """
+    if not scene.shapes:
+        raise RenderError(f"{name}: a scene without shapes has no errors to report")
+    require_matplotlib()
+    make_folder(folder)
+    measurement = Measurement(scene, name, QUICK if quick else FULL, threads)
+    try:
+        with TemporaryDirectory(prefix="minirt-report-") as files, progress(measurement.state):
+            measurement.run(size, Path(files), ablation)
+    except KeyboardInterrupt:
+        missing = f"Interrupted while measuring {measurement.what}: this and all that would have followed is missing."
+        print(write_report(measurement, folder, missing) or NOTHING, file=sys.stderr, flush=True)
+        raise
+    return write_report(measurement, folder)
+
+
+def write_report(measurement: Measurement, folder: str | os.PathLike[str], interrupted: str = "") -> str:
+    """Write the files of a report, and return its summary; nothing if no picture was measured."""
+    found = measurement.findings(interrupted)
+    if not (found and measurement.reference):
+        return ""
+    write_files(folder, found, measurement.pictures, measurement.reference.picture)
+    return f"{summary(found)}\nThe report is in {Path(folder, PAGE)}"
+
+
+def make_folder(folder: str | os.PathLike[str]) -> None:
+    """Create the folder before the measurements begin, so that a wrong path fails at once. RenderError."""
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RenderError(f"{os.fspath(folder)}: cannot be made: {error.strerror or error}") from None

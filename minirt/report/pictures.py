@@ -1,4 +1,4 @@
-"""Time a piece of work until enough of its runs were not disturbed by other programs."""
+"""Error and run time of pictures under all settings, against a reference of many samples at other positions."""
 
 from __future__ import annotations
 
@@ -17,11 +17,24 @@ from minirt.lanes import width as lanes_of
 from minirt.rendering import Renderer
 from minirt.rendering.frame import frame_arguments, sample_positions
 from minirt.rendering.packing.camera import aperture_places, has_apertures, packet_rays, with_apertures
-from minirt.report import flip
-from minirt.report.metrics import Picture, changed, clamped, of_median, of_rmse, psnr, rmse, to_8_bits
+from minirt.report.metrics import (
+    Perceived,
+    Picture,
+    changed,
+    clamped,
+    flip,
+    of_median,
+    of_rmse,
+    perceived,
+    psnr,
+    rmse,
+    to_8_bits,
+)
 from minirt.report.settings import Drawn, Setting
 from minirt.scene import Scene
 
+OURS = "miniRT"
+PASS = 32  # samples per pixel of one call of the kernel for the reference
 RUNS = 7  # of a round
 FEW = 3  # of a round, of work so slow that `RUNS` of them would take longer than a picture may
 ENOUGH = 5  # undisturbed runs, for a median with a confidence interval
@@ -60,12 +73,6 @@ def measure_times(work: Callable[[], object], first: Run, threads: int, budget: 
     return Times(found, DISTURBED_BY_OTHERS)
 
 
-# Reference picture: many samples per pixel, at other positions than those of the compared pictures.
-
-
-PASS = 32  # samples per pixel of one call of the kernel
-
-
 class Reference(NamedTuple):
     """A picture in float64, its samples per pixel and its estimated error."""
 
@@ -83,64 +90,29 @@ def reference(
     the RMSE of their mean is half of the RMSE between them.
     """
     renderer, random = Renderer(), np.random.default_rng(seed)
-    one, other = (
-        clamped(
-            half_reference(
-                renderer,
-                scene,
-                width,
-                height,
-                (sample_positions(samples // 2) + random.random(2)) % 1.0,
-                step,
-                2 * seed + half,
-            )
-        )
-        for half in range(2)
-    )
-    return Reference((one + other) / 2, samples, rmse(one, other) / 2)
+    pixels, linear = np.zeros((height, width, 4), np.uint8), np.zeros((height, width, 3))
+    halves = []
+    for half in range(2):
+        places, total = (sample_positions(samples // 2) + random.random(2)) % 1.0, np.zeros((height, width, 3))
+        for start in range(0, len(places), PASS):
+            some = places[start : start + PASS]
+            traced = renderer.packing.pack(scene, width, height)
+            rays = packet_rays(traced.camera, some)
+            if has_apertures(traced):
+                discs = aperture_places(len(places), 1, lanes_of(traced.camera), 2 * seed + half)
+                rays = with_apertures(rays, discs[start : start + PASS], traced.lens)
+            arguments = frame_arguments(traced, pixels, linear=linear)._replace(rays=rays)
+            renderer.runner.next_row = arguments.next_row  # so that it can be cancelled
+            renderer.runner.run([arguments], renderer.threads)
+            total += linear * len(some)
+            step()
+        halves.append(clamped(total / len(places)))
+    return Reference((halves[0] + halves[1]) / 2, samples, rmse(*halves) / 2)
 
 
 def passes(samples: int) -> int:
     """Return the number of steps that rendering a reference takes."""
     return 2 * -(-(samples // 2) // PASS)
-
-
-def half_reference(
-    renderer: Renderer,
-    scene: Scene,
-    width: int,
-    height: int,
-    places: np.ndarray,
-    step: Callable[[], object],
-    seed: int = 0,
-) -> Picture:
-    """Render the mean radiance over sample positions `places`, (n, 2) in units of a pixel.
-
-    `seed` chooses those in lens and lights.
-    """
-    total = np.zeros((height, width, 3))
-    if not scene.shapes:
-        return total
-    pixels, linear = np.zeros((height, width, 4), np.uint8), np.zeros((height, width, 3))
-    for start in range(0, len(places), PASS):
-        some = places[start : start + PASS]
-        traced = renderer.packing.pack(scene, width, height)
-        rays = packet_rays(traced.camera, some)
-        if has_apertures(traced):
-            discs = aperture_places(len(places), 1, lanes_of(traced.camera), seed)[start : start + PASS]
-            rays = with_apertures(rays, discs, traced.lens)
-        arguments = frame_arguments(traced, pixels, linear=linear)._replace(rays=rays)
-        renderer.runner.next_row = arguments.next_row  # so that it can be cancelled
-        renderer.runner.run([arguments], renderer.threads)
-        total += linear * len(some)
-        step()
-    return total / len(places)
-
-
-# Measure the error and the run time of pictures against a reference picture.
-
-
-OURS = "miniRT"
 
 
 class Row(NamedTuple):
@@ -196,19 +168,10 @@ class SettingRenderer:
             self.ready[setting.knob.name] = renderer, compiled - start, (perf_counter() - compiled) * 1e3
         return self.ready[setting.knob.name]
 
-    def light(self, setting: Setting) -> tuple[Picture, Drawn]:
-        """Return the picture of a setting, and how it was drawn."""
-        linear = np.zeros((*self.pixels.shape[:2], 3))
-        return linear, self.draw(setting, linear)
-
     def draw(self, setting: Setting, linear: Picture | None = None) -> Drawn:
         """Draw the picture of a setting."""
         renderer, *_ = self.renderer(setting)
         return setting.knob.picture(renderer, self.scene, self.pixels, setting.value, linear)
-
-    def times(self, setting: Setting, first: Run, budget: Budget) -> Times:
-        """Time a setting after the warm-up run `first`."""
-        return measure_times(lambda: self.draw(setting), first, self.threads, budget)
 
 
 def measure_settings(
@@ -218,7 +181,7 @@ def measure_settings(
 
     `step` is called with the name of each setting before it is measured.
     """
-    right = flip.perceived(reference.picture)
+    right = perceived(reference.picture)
     cost: dict[str, float] = {}  # seconds for a unit of work
     for setting in settings:
         step(setting.name)
@@ -237,25 +200,16 @@ def measure_settings(
 
 
 def measure_setting(
-    stage: SettingRenderer, setting: Setting, reference: Reference, right: flip.Perceived, budget: Budget
+    stage: SettingRenderer, setting: Setting, reference: Reference, right: Perceived, budget: Budget
 ) -> tuple[Row, Picture]:
     """Measure one setting; return its row and its picture."""
     _, compile_s, sort_ms = stage.renderer(setting)
-    drawn: list[tuple[Picture, Drawn]] = []
-    (first,) = runs(lambda: drawn.append(stage.light(setting)), 1, 0.0)
-    light, how = drawn[0]
-    row = Row(
-        setting.knob.name,
-        setting.label,
-        samples=how.samples,
-        not_finite=how.not_finite,
-        asked=how.asked,
-        estimated=how.estimated,
-        sort_ms=sort_ms,
-        compile_s=compile_s,
-    )
+    light, drawn = np.zeros((*stage.pixels.shape[:2], 3)), list[Drawn]()
+    (first,) = runs(lambda: drawn.append(stage.draw(setting, light)), 1, 0.0)
+    row = Row(setting.knob.name, setting.label, sort_ms=sort_ms, compile_s=compile_s)._replace(**drawn[0]._asdict())
     picture = clamped(light)
-    return with_times(with_errors(row, picture, reference, right), stage.times(setting, first, budget)), picture
+    times = measure_times(partial(stage.draw, setting), first, stage.threads, budget)
+    return with_times(with_errors(row, picture, reference, right), times), picture
 
 
 def measure_disturbed_again(
@@ -269,13 +223,14 @@ def measure_disturbed_again(
             step(f"{row.name} again")
             setting = by_name[row.name]
             (first,) = runs(partial(stage.draw, setting), 1, 0.0)
-            measured.append(with_times(row, stage.times(setting, first, budget)))
+            again = measure_times(partial(stage.draw, setting), first, stage.threads, budget)
+            measured.append(with_times(row, again))
         else:
             measured.append(row)
     return measured
 
 
-def with_errors(row: Row, picture: Picture, reference: Reference, right: flip.Perceived) -> Row:
+def with_errors(row: Row, picture: Picture, reference: Reference, right: Perceived) -> Row:
     """Return a row with the errors of its picture; `right` is the reference as it is perceived."""
     error, rounded = rmse(picture, reference.picture), to_8_bits(picture) / 255
     low, high = of_rmse(picture, reference.picture, reference.error)
@@ -285,7 +240,7 @@ def with_errors(row: Row, picture: Picture, reference: Reference, right: flip.Pe
         rmse_high=high,
         rmse_8_bits=rmse(rounded, reference.picture),
         psnr=psnr(error),
-        flip=float(flip.flip(flip.perceived(picture), right).mean()),
+        flip=float(flip(perceived(picture), right).mean()),
         changed=changed(picture, reference.picture),
     )
 

@@ -1,4 +1,4 @@
-"""Scenes in POV-Ray's language, limited to what means exactly the same there.
+"""Lines of POV-Ray in the diagram: scenes in its language, limited to what means exactly the same there, and its runs.
 
 POV-Ray's Lambert term, ambient light, Phong and Blinn highlights and mirrors are those of miniRT. Textures, glass and
 lights that fade or have a direction are not translated.
@@ -22,8 +22,7 @@ from minirt.materials import Attributes
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import DEPTH
 from minirt.rendering.packing.materials import mirror_of
-from minirt.report import flip
-from minirt.report.metrics import Picture, rmse
+from minirt.report.metrics import Picture, perceived, rmse
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Reference, Row, Times, with_errors, with_times
 from minirt.scene import Ambient, Lamp, Light, Scene
 from minirt.shapes import Shape
@@ -95,12 +94,8 @@ def finish(shape: Shape) -> str:
     mirror, highlight = mirror_of(shape).share, ""
     if shape.specular:
         share, exponent, blinn = shape.specular.share, shape.specular.exponent, shape.specular.blinn
-        names = (
-            (f"specular {share}", f"roughness {1 / exponent}")
-            if blinn
-            else (f"phong {share}", f"phong_size {exponent}")
-        )
-        highlight = " ".join(names)
+        phong = f"phong {share} phong_size {exponent}"
+        highlight = f"specular {share} roughness {1 / exponent}" if blinn else phong
     own = f"ambient {1 - mirror} diffuse {1 - mirror}"
     return f"pigment {{ rgb {vector(shape.colour)} / 255 }} finish {{ {own} reflection {mirror} {highlight} }}"
 
@@ -123,9 +118,6 @@ def vector(numbers: Iterable[float]) -> str:
 def number(value: float) -> str:
     """Format a number to all its digits, without a negative zero."""
     return repr(float(value) + 0.0)
-
-
-# Lines of POV-Ray in the diagram: its error and time on the same scene, where the scene can be translated exactly.
 
 
 PROGRAM, COMMAND = "POV-Ray", ("povray",)
@@ -184,8 +176,11 @@ class PovRay:
 
         RenderError, before the first row, if its picture is not that of the scene.
         """
-        self.check(right)
-        perceived = flip.perceived(right.picture)
+        _, picture = self.drawn(uniform(CHECKED))
+        error = rmse(picture, right.picture)
+        if error > SAME:
+            raise RenderError(f"{PROGRAM} shows something else: RMSE {error:.2g} at {CHECKED**2} samples per pixel")
+        seen = perceived(right.picture)
         slow: set[str] = set()
         for setting in SETTINGS:
             step(f"{setting.knob} {setting.label}")
@@ -193,25 +188,22 @@ class PovRay:
             if setting.knob in slow:
                 yield row._replace(remark="left out: takes too long"), None
                 continue
-            runs = [self.run(setting)]
-            picture = self.picture()
-            if runs[0].wall > longest:
+            run, picture = self.drawn(setting)
+            runs = [run]
+            if run.wall > longest:
                 slow.add(setting.knob)
-            while runs[0].wall <= longest and len(self.calm(runs)) < RUNS and len(runs) < MOST_RUNS:
-                runs.append(self.run(setting))
+            while run.wall <= longest and len(self.calm(runs)) < RUNS and len(runs) < MOST_RUNS:
+                runs.append(self.drawn(setting)[0])
             calm = self.calm(runs)
             times = Times(calm) if calm else Times(runs, DISTURBED_BY_OTHERS)
-            yield with_times(with_errors(row, picture, right, perceived), times), picture
+            yield with_times(with_errors(row, picture, right, seen), times), picture
 
-    def check(self, right: Reference) -> None:
-        """Compare a picture of some samples per pixel with the reference. RenderError if it shows something else."""
-        self.run(uniform(CHECKED))
-        error = rmse(self.picture(), right.picture)
-        if error > SAME:
-            raise RenderError(f"{PROGRAM} shows something else: RMSE {error:.2g} at {CHECKED**2} samples per pixel")
+    def calm(self, runs: list[Run]) -> list[Run]:
+        """Return the undisturbed runs."""
+        return [run for run in runs if not is_disturbed(run, self.threads)]
 
-    def run(self, setting: Setting) -> Run:
-        """Render with a setting; return the time that POV-Ray took for the rays."""
+    def drawn(self, setting: Setting) -> tuple[Run, Picture]:
+        """Render with a setting; return the time that POV-Ray took for the rays, and linear light in 16 bits."""
         command = [*COMMAND, f"+W{self.width}", f"+H{self.height}", f"+WT{self.threads}", "-D", "-V", "+FP16"]
         paths = "File_Gamma=1.0", "+Iscene.pov", "+Opicture.ppm"
         ended = subprocess.run([*command, *paths, *setting.options], cwd=self.folder, capture_output=True, check=False)
@@ -219,19 +211,10 @@ class PovRay:
         found = TRACE.findall(printed)
         if ended.returncode or not found:
             raise RenderError(f"{PROGRAM} failed: {printed.strip()[-200:]}")
-        wall, cpu = map(float, found[-1])
-        return Run(wall, cpu + TICK)
-
-    def calm(self, runs: list[Run]) -> list[Run]:
-        """Return the undisturbed runs."""
-        return [run for run in runs if not is_disturbed(run, self.threads)]
-
-    def picture(self) -> Picture:
-        """Read the last picture: linear light in 16 bits."""
         data = (self.folder / "picture.ppm").read_bytes()
         header = HEADER.match(data)
         if not header:
             raise RenderError(f"{PROGRAM} wrote no picture of 16 bits")
-        numbers = np.frombuffer(data, ">u2", offset=header.end())
-        light: Picture = numbers.reshape(self.height, self.width, 3) / 65535.0
-        return light
+        light: Picture = np.frombuffer(data, ">u2", offset=header.end()).reshape(self.height, self.width, 3) / 65535.0
+        wall, cpu = map(float, found[-1])
+        return Run(wall, cpu + TICK), light

@@ -82,9 +82,6 @@ def reduced_element(element: Any, feature: Hashable) -> Iterator[Any]:
                 yield element
 
 
-# Certificates of the hits in a picture: backward errors and condition numbers of each kind of shape.
-
-
 Array = NDArray[np.float64]
 
 RAYS = 20_000  # from the eye, and as many from what they hit
@@ -128,6 +125,7 @@ def onward(scene: Scene, seen: Hits, random: np.random.Generator) -> Hits:
     hit = seen.owner >= 0
     points, normals = seen.point[hit], seen.normal[hit]
     directions = random.normal(size=points.shape)
+    directions /= np.abs(directions).max(axis=1, keepdims=True)
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)  # uniform over the sphere
     clearance = CLEARANCE * (np.abs(points).max(axis=1, initial=0.0) + seen.distance[hit])
     way = np.sign((directions * normals).sum(axis=1)) * clearance
@@ -146,21 +144,11 @@ def by_kind(scene: Scene, hits: Hits, rays: str) -> Iterator[KindCertificates]:
 def summarised(kind: Kind, rays: str, backward: Array, condition: Array, normal: Array) -> KindCertificates:
     """Summarise the certificates of some hits of one kind."""
     counts, _ = np.histogram(backward, (0.0, *LIMITS, np.inf))
-    quarter, half, one, two, four, more = (counts / len(backward)).tolist()
+    far = np.quantile(condition, 0.99, method="inverted_cdf")
+    figures = [np.median(condition), far, condition.max(), normal.max()]
     return KindCertificates(
         kind.element.title,
         rays,
         len(backward),
-        float(np.median(backward)),
-        float(backward.max()),
-        quarter,
-        half,
-        one,
-        two,
-        four,
-        more,
-        float(np.median(condition)),
-        float(np.quantile(condition, 0.99, method="inverted_cdf")),
-        float(condition.max()),
-        float(normal.max()),
+        *map(float, [np.median(backward), backward.max(), *(counts / len(backward)), *figures]),
     )

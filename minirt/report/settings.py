@@ -91,9 +91,6 @@ def shapes_by_kind(arrays: SceneArrays) -> tuple[np.ndarray, np.ndarray]:
     return members, np.concatenate([[0], np.cumsum(np.bincount(kinds, minlength=len(arrays.groups)))])
 
 
-# Table of the render settings that a report compares: one knob is turned at a time.
-
-
 COUNTS = (1, 4, 16, 64)  # samples per pixel
 MORE_COUNTS = (1, 2, 4, 8, 16, 32, 64)  # for a line whose order of convergence is wanted best
 ERRORS = (0.01, 0.005, 0.002, 0.001, 0.0005)  # asked of automatic sampling
@@ -112,7 +109,7 @@ Picture = Callable[[Renderer, Scene, np.ndarray, float, "np.ndarray | None"], Dr
 
 
 def uniform_samples(
-    renderer: Renderer, scene: Scene, pixels: np.ndarray, samples: float, linear: np.ndarray | None = None
+    renderer: Renderer, scene: Scene, pixels: np.ndarray, samples: float, linear: np.ndarray | None
 ) -> Drawn:
     """Render with the same number of samples in each pixel."""
     renderer.render(scene, pixels, int(samples), linear)

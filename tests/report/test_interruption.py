@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from minirt.report.generate import NOTHING
+from minirt.report.measure import NOTHING
 from tests.cli.announcing import RENDERING
 from tests.cli.conftest import folder
 from tests.cli.program import start
@@ -24,7 +24,8 @@ ENDLESS = """
 import sys
 from math import inf
 from minirt import cli
-from minirt.report import ablation, generate, measure
+from minirt.report import measure
+from minirt.report import ablation, measure
 from minirt.report.pictures import Budget
 from minirt.helpers.system import runs
 from tests.cli.announcing import announce_rendering
@@ -36,14 +37,14 @@ def endless(work, least, seconds):
 announce_rendering()
 
 budget = Budget(0.0, inf, tries=1)
-phase, short = sys.argv.pop(1), generate.QUICK._replace(samples=64, seconds=1e30, least_error=inf, budget=budget)
-generate.FULL = short
+phase, short = sys.argv.pop(1), measure.QUICK._replace(samples=64, seconds=1e30, least_error=inf, budget=budget)
+measure.FULL = short
 if phase == "fitting":
     measure.runs = endless
 elif phase == "the reference":
-    generate.FULL = short._replace(samples=2**20, width=1920)
+    measure.FULL = short._replace(samples=2**20, width=1920)
 elif phase == "uniform 1":
-    generate.FULL = short._replace(budget=Budget(1e9, inf, tries=1))
+    measure.FULL = short._replace(budget=Budget(1e9, inf, tries=1))
 elif phase == "tiles and their cones without":
     ablation.PAIRS = 10**9
 sys.exit(cli.main())

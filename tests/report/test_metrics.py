@@ -9,7 +9,6 @@ import pytest
 from numpy.typing import NDArray
 
 from minirt.report import metrics
-from minirt.report.flip import flip, perceived
 from minirt.report.metrics import (
     HEAT,
     STUDENT,
@@ -17,8 +16,10 @@ from minirt.report.metrics import (
     clamped,
     error_image,
     fit,
+    flip,
     of_median,
     of_rmse,
+    perceived,
     psnr,
     rmse,
     to_8_bits,

@@ -15,9 +15,8 @@ from PIL import Image
 
 import minirt
 from minirt.errors import RenderError
-from minirt.report import generate, povray
-from minirt.report.generate import report
-from minirt.report.measure import COMPILING, FULL, QUICK, Measurement, fitting_size
+from minirt.report import measure, povray
+from minirt.report.measure import COMPILING, FULL, QUICK, Measurement, fitting_size, report
 from minirt.report.metrics import HEAT
 from minirt.report.pictures import Budget
 from minirt.report.settings import AUTO, KNOBS, Setting
@@ -39,7 +38,7 @@ DOCUMENTS = {"report.html", "report.md", "report.json", "diagram.svg", "referenc
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     """Use a plan with little work, and a simulated clock that only rendering moves on."""
     plan = QUICK._replace(samples=64, most=4, least_error=0.01, budget=Budget(0.0, inf, tries=1))
-    monkeypatch.setattr(generate, "QUICK", plan)
+    monkeypatch.setattr(measure, "QUICK", plan)
     return simulate_clock(monkeypatch)
 
 
