@@ -108,8 +108,7 @@ bench: $(NAME)  ## time frames beside other programs: make bench BENCH=--quick f
 
 bench-peers: $(NAME)  ## install what `make bench` compares with (Debian, Ubuntu)
 	$(SUDO) apt-get install -y --no-install-recommends g++ povray tachyon-bin-nox xvfb
-	-$(SUDO) apt-get install -y --no-install-recommends libllvm19  # for Mitsuba; older systems lack it
-	$(PIP) install --quiet embreex mitsuba
+	$(PIP) install --quiet embreex
 
 REPORTED := demo figure-v4-everything eval-shadows-many
 

@@ -136,8 +136,8 @@ def error_image(picture: Picture, reference: Picture) -> Image:
 
 
 # FLIP: perceived difference of two pictures that alternate on a screen, in [0, 1] for each pixel, for pictures of low
-# dynamic range (Andersson et al., FLIP: A Difference Evaluator for Alternating Images, 2020). Colours are blurred by the
-# contrast sensitivity of the eye and compared in L*a*b*; differences of edges and points amplify the colour difference.
+# dynamic range (Andersson et al., FLIP: A Difference Evaluator for Alternating Images, 2020). Colours are blurred by
+# the contrast sensitivity of the eye and compared in L*a*b*; differences of edges and points amplify them.
 # Pictures are (h, w, 3) sRGB in [0, 1].
 
 PER_DEGREE = 0.7 * (3840 / 0.7) * radians(1.0)  # pixels per degree: a screen of 3840 pixels and 0.7 m, seen from 0.7 m

@@ -1,5 +1,5 @@
-"""`python -m tests.bench`: benchmark miniRT against other renderers, in frames and from its start, over growing scenes,
-and its latency while it refines."""
+"""`python -m tests.bench`: benchmark miniRT against other renderers, in frames, from its start and over growing
+scenes."""
 
 from __future__ import annotations
 
@@ -13,21 +13,17 @@ from typing import NamedTuple
 
 from minirt.rendering.threads import usable_cores
 from minirt.report.findings import processor
-from tests.bench import latencies, meshes, scenes, starts
-from tests.bench.measure import Cells, available, take_turns
+from tests.bench import scenes, starts
+from tests.bench.measure import MARK, Cells, Setting, System, available, records, table, take_turns
 from tests.bench.ours import MiniRT
 from tests.bench.peers.embree import Embree
-from tests.bench.peers.mitsuba import Mitsuba
-from tests.bench.peers.povray import PovRay
-from tests.bench.peers.tachyon import Tachyon
-from tests.bench.system import Setting, System
-from tests.bench.table import MARK, records, table
+from tests.bench.peers.programs import PovRay, Tachyon
 from tests.bench.yardstick import Yardstick
 
 Maker = Callable[[Setting], System]
 
 OWN: list[Maker] = [partial(MiniRT, precision="double"), partial(MiniRT, precision="single"), Yardstick]
-PEERS: list[Maker] = [Embree, Mitsuba, Tachyon, PovRay]
+PEERS: list[Maker] = [Embree, Tachyon, PovRay]
 WIDTH, HEIGHT = 1280, 720
 
 
@@ -66,7 +62,7 @@ def main() -> None:
     print(f"{processor()}, {usable_cores()} processors; {asked.threads} threads each.")
     print(f"{WIDTH}x{HEIGHT} pixels, a ray for each and a shadow ray to each light. Median of {plan.rounds} rounds")
     print("in which the systems take turns; the second figure is a multiple of the first row.\n", flush=True)
-    four = [*scenes.compared(folder), meshes.compared(folder)]
+    four = [*scenes.compared(folder), scenes.compared(folder)]
     compared = take_turns(systems, four, plan.rounds, plan.seconds)
     print(table(compared, names(systems), [scene.stem for scene in four]), end="\n\n", flush=True)
 
@@ -76,9 +72,6 @@ def main() -> None:
     grown = [scenes.grown(folder, count) for count in scenes.COUNTS if count <= plan.most]
     growth = take_turns(own, grown, plan.grown_rounds, plan.seconds)
     print(table(growth, names(own), [scene.stem for scene in grown], "spheres in view"), end="\n\n")
-
-    late = list(latencies.measured(latencies.COMPARED, WIDTH, HEIGHT))
-    print(f"Latency while a picture of {WIDTH}x{HEIGHT} is refined:\n\n{latencies.table(late)}", end="\n\n", flush=True)
 
     disturbed = any(cell.disturbed for cells in (compared, started, growth) for cell in cells.values())
     if disturbed:
@@ -97,7 +90,6 @@ def main() -> None:
         "compared": records(compared),
         "starts": records(started),
         "growth": records(growth),
-        "latency": latencies.records(late),
     }
     (asked.out / "bench.json").write_text(json.dumps(found, indent=1) + "\n")
     draw(compared, started, growth, asked.out)

@@ -8,8 +8,7 @@ from typing import Any
 from matplotlib import pyplot, rcParams
 from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
-from tests.bench.measure import Cells
-from tests.bench.table import figure
+from tests.bench.measure import Cells, figure
 
 COLOURS = {"miniRT double": "#d1495b", "miniRT single": "#edae49", "C++ yardstick": "#7a8b99"}
 OTHERS = "#30638e"

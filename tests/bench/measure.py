@@ -4,15 +4,53 @@ from __future__ import annotations
 
 import os
 import sys
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
 from time import perf_counter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from minirt.rendering.threads import usable_cores
-from tests.bench.system import MissingError, System
+
+INSTALL = "`make bench-peers` installs it"  # on Debian and Ubuntu
+
+
+class MissingError(Exception):
+    """Raised for a system that cannot be measured here; the text says what is missing."""
+
+
+class Setting(NamedTuple):
+    """Settings that all systems share."""
+
+    width: int
+    height: int
+    threads: int
+    folder: Path  # for files that systems write
+
+
+class System(ABC):
+    """A ray tracer; `MissingError` if it is not installed."""
+
+    name: str
+    how: str  # what its time includes
+
+    def __init__(self, setting: Setting) -> None:
+        self.setting = setting
+
+    def renders(self, path: Path) -> bool:
+        """Whether the system has all that a scene needs."""
+        return True
+
+    @abstractmethod
+    def frame_times(self, path: Path, seconds: float) -> list[float]:
+        """Render frames of a scene file for about `seconds`, at least one; return the milliseconds of each."""
+
+    def picture(self, path: Path) -> Path:
+        """Return the path of the scene's picture, for systems that write one."""
+        return self.setting.folder / f"{path.stem}-{self.name}.png"
+
 
 PROCESSOR_TIME = Path("/proc/stat")  # processor time of all programs, in ticks
 QUIET = 0.1  # processors that others may use before a round counts as disturbed
@@ -99,3 +137,61 @@ def take_turns(systems: list[System], scenes: list[Path], rounds: int, seconds: 
                     times = system.frame_times(scene, seconds)
                     cell.rounds.append(Round(median(times), elsewhere(start, clock())))
     return cells
+
+
+MARK = "*"  # marks a figure that other programs disturbed
+LACKING = "-"  # for a scene that a system does not render
+
+
+def figure(ms: float) -> str:
+    """Format milliseconds in three significant digits, without an exponent."""
+    digits = 2 if ms < 9.995 else 1 if ms < 99.95 else 0
+    return f"{ms:.{digits}f}"
+
+
+def times(ratio: float) -> str:
+    """Format a ratio in two significant digits, without an exponent."""
+    digits = 2 if ratio < 0.995 else 1 if ratio < 9.95 else 0
+    return f"x{ratio:.{digits}f}"
+
+
+def table(cells: Cells, systems: list[str], scenes: list[str], title: str = "ms a frame") -> str:
+    """Return a table with a row per system and a column per scene; ratios are to the first row, which has all."""
+    rows = [[title, *scenes]]
+    rows += [[system, *(text(cells, system, scene, systems[0]) for scene in scenes)] for system in systems]
+    return aligned(rows)
+
+
+def text(cells: Cells, system: str, scene: str, first: str) -> str:
+    """Format a figure, marked if other programs disturbed it, and its ratio to the first system's."""
+    if (system, scene) not in cells:
+        return LACKING
+    cell = cells[system, scene]
+    ratio = times(cell.ms / cells[first, scene].ms)
+    return f"{figure(cell.ms)}{MARK if cell.disturbed else ' '} {ratio:>5}"
+
+
+def aligned(rows: list[list[str]]) -> str:
+    """Align rows of cells: the first column to the left, the others to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = (
+        "  ".join(text.ljust(width) if i == 0 else text.rjust(width) for i, (text, width) in enumerate(cells))
+        for cells in (zip(row, widths, strict=True) for row in rows)
+    )
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def records(cells: Cells) -> list[dict[str, Any]]:
+    """Return the results for a JSON file."""
+    return [
+        {
+            "system": system,
+            "scene": scene,
+            "ms": round(cell.ms, 3),
+            "disturbed": cell.disturbed,
+            "rounds": [round(each.ms, 3) for each in cell.rounds],
+            "elsewhere": [round(each.elsewhere, 2) for each in cell.rounds],
+            "threads": cell.threads,
+        }
+        for (system, scene), cell in cells.items()
+    ]

@@ -11,7 +11,7 @@ import numpy as np
 
 from minirt import load
 from minirt.rendering import Renderer
-from tests.bench.system import Setting, System
+from tests.bench.measure import Setting, System
 
 LEAST_FRAMES = 3
 RECENT = 4  # packed scenes that are kept

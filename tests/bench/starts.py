@@ -1,20 +1,193 @@
-"""The table of starts: miniRT's, cold and warm, in files and in windows, beside peers that are programs."""
+"""Whole starts: from the start of a program to its picture, in a file or in a window on a screen in memory (Xvfb).
+
+A cold start finds an empty cache of compiled kernels, a warm one the cache of earlier starts.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import ExitStack
-from functools import partial
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from functools import cache, partial
 from pathlib import Path
+from time import perf_counter, sleep
+from typing import NamedTuple
 
-from tests.bench.measure import Cells, available, take_turns
-from tests.bench.peers.povray import PovRay
-from tests.bench.peers.tachyon import Tachyon
-from tests.bench.start import HEIGHT, WIDTH, FileStart, PeerStart
-from tests.bench.system import MissingError, Setting, System
-from tests.bench.table import table
-from tests.bench.virtual_screen import virtual_screen
-from tests.bench.window_start import WindowStart
+import numpy as np
+from numpy.typing import NDArray
+
+import minirt
+from tests.bench.measure import INSTALL, Cells, MissingError, Setting, System, available, table, take_turns
+from tests.bench.peers.programs import Command, PovRay, Tachyon
+from tests.processes import run, started
+from tests.waiting import HANG_LIMIT
+
+Pixels = NDArray[np.uint8]  # (height, width, 3), red green blue
+
+
+class Screen(NamedTuple):
+    """A running screen: its name for DISPLAY, and a view of its memory that follows what is drawn."""
+
+    name: str
+    pixels: Pixels
+
+
+@contextmanager
+def virtual_screen(width: int, height: int) -> Iterator[Screen]:
+    """Start a screen, which ends with the block; `MissingError` if Xvfb is not installed."""
+    if not shutil.which("Xvfb"):
+        raise MissingError(f"windows: Xvfb is not installed; {INSTALL}")
+    with tempfile.TemporaryDirectory() as folder:
+        reader, writer = os.pipe()
+        command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{width}x{height}x24"]
+        command += ["-fbdir", folder, "-nolisten", "tcp", "-noreset"]
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        with os.fdopen(reader) as number, started(command, pass_fds=(writer,), **quiet) as server:
+            os.close(writer)
+            name = number.readline().strip()  # comes when the server is ready; empty if it ended
+            if not name:
+                raise MissingError("windows: Xvfb does not start")
+            try:
+                yield Screen(f":{name}", pixels_of(Path(folder) / "Xvfb_screen0"))
+            finally:
+                server.terminate()  # rather than kill, so that it removes its files
+                server.wait()
+
+
+def pixels_of(dump: Path) -> Pixels:
+    """Map a file in X Window Dump format: a header of big-endian words, a colour table, rows of 32-bit pixels."""
+    header = np.fromfile(dump, ">u4", 25)
+    header_size, width, height, row_size, colours = (int(header[i]) for i in (0, 4, 5, 12, 19))
+    if header[11] != 32 or header[7] != 0:  # bits per pixel; byte order, 0 is least significant first
+        raise ValueError("the pixels of the screen are not 32-bit BGRX")
+    rows = np.memmap(dump, np.uint8, "r", offset=header_size + 12 * colours, shape=(height, row_size))
+    return rows[:, : 4 * width].reshape(height, width, 4)[..., 2::-1]
+
+
+WIDTH, HEIGHT = 320, 240
+
+
+class Start(System):
+    """Starts of miniRT."""
+
+    where: str
+
+    def __init__(self, setting: Setting, cold: bool) -> None:
+        super().__init__(setting)
+        self.name = f"miniRT {self.where}, {'cold' if cold else 'warm'}"
+        self.how = "the whole program" + (" with an empty cache of kernels" if cold else "")
+        self.cold = cold
+        self.warmed: set[Path] = set()
+
+    def command(self, path: Path, *options: str) -> list[str]:
+        """Return the command that starts miniRT with a scene."""
+        size = ["--size", f"{WIDTH}x{HEIGHT}", "--threads", str(self.setting.threads)]
+        return [sys.executable, "-m", "minirt", str(path), *size, *options]
+
+    def frame_times(self, path: Path, seconds: float) -> list[float]:
+        with self.cache_folder() as folder:
+            environment = os.environ | {"XDG_CACHE_HOME": str(folder)}
+            if not self.cold and path not in self.warmed:
+                run_checked(self.command(path, "--bench"), environment)  # which waits for the best kernel
+                self.warmed.add(path)
+            return [self.start(path, environment) * 1e3]
+
+    @contextmanager
+    def cache_folder(self) -> Iterator[Path]:
+        """Yield the cache folder of a start: an empty one, or one for all warm starts."""
+        if self.cold:
+            with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+                yield Path(folder)
+        else:
+            yield (self.setting.folder / "cache").absolute()
+
+    def start(self, path: Path, environment: dict[str, str]) -> float:
+        """Start the program and return the seconds to its picture."""
+        raise NotImplementedError
+
+
+class FileStart(Start):
+    """Starts of miniRT that write a picture."""
+
+    where = "-o"
+
+    def start(self, path: Path, environment: dict[str, str]) -> float:
+        command = self.command(path, "-o", str(self.picture(path)))
+        begin = perf_counter()
+        run_checked(command, environment)
+        return perf_counter() - begin
+
+
+class PeerStart(System):
+    """Starts of another ray tracer: the whole program, from a scene in its own language."""
+
+    how = "the whole program"
+
+    def __init__(self, kind: type[Command], setting: Setting) -> None:
+        super().__init__(setting)
+        peer = kind(setting)
+        self.name = peer.name
+        self.prepared = cache(peer.prepared)
+
+    def frame_times(self, path: Path, seconds: float) -> list[float]:
+        command = self.prepared(path)
+        begin = perf_counter()
+        run_checked(command, dict(os.environ))
+        return [(perf_counter() - begin) * 1e3]
+
+
+def run_checked(command: list[str], environment: dict[str, str]) -> None:
+    """Run a program; RuntimeError if it fails."""
+    ran = run(command, env=environment, text=True)
+    if ran.returncode:
+        raise RuntimeError(f"{' '.join(command)}: {ran.stderr or ran.stdout}")
+
+
+POLL = 2e-3  # seconds between two looks at the screen
+COMPARED = slice(HEIGHT // 4, HEIGHT * 7 // 8)  # rows without the words of the window
+WRONG = 1e-3  # share of pixels that may differ by more than 1 of 255
+
+
+class WindowStart(Start):
+    """Starts of miniRT until its window shows the right picture: at full resolution, with one sample per pixel."""
+
+    where = "window"
+
+    def __init__(self, setting: Setting, cold: bool, screen: Screen) -> None:
+        super().__init__(setting, cold)
+        self.screen = screen
+
+    def start(self, path: Path, environment: dict[str, str]) -> float:
+        right = right_picture(path)
+        environment = {key: value for key, value in environment.items() if key != "WAYLAND_DISPLAY"}
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        begin = perf_counter()
+        options = {"env": environment | {"DISPLAY": self.screen.name}} | quiet
+        with started(self.command(path, "--samples", "1"), **options) as program:
+            while not shows(self.screen.pixels[:HEIGHT, :WIDTH], right):
+                if program.poll() is not None or perf_counter() - begin > HANG_LIMIT:
+                    raise RuntimeError(f"{self.name} on {path}: no right picture")
+                sleep(POLL)
+            took = perf_counter() - begin
+        while shows(self.screen.pixels[:HEIGHT, :WIDTH], right):  # until the closed window has left the screen
+            sleep(POLL)
+        return took
+
+
+@cache
+def right_picture(path: Path) -> Pixels:
+    """Return the picture that a window shows of a scene."""
+    return minirt.render(minirt.load(path), WIDTH, HEIGHT).array
+
+
+def shows(window: Pixels, right: Pixels) -> bool:
+    """Whether a window shows the right picture, beside its words; not a coarse or an unfinished one."""
+    difference = np.abs(window[COMPARED].astype(np.int16) - right[COMPARED])
+    return bool((difference.max(axis=-1) > 1).mean() <= WRONG)
 
 
 def measured(setting: Setting, scenes: list[Path], rounds: int) -> tuple[Cells, list[str]]:

@@ -1,9 +1,7 @@
 """Embree 4 from the package `embreex`, called as in C: packets of 16 coherent rays on all threads (`frames.cpp`).
 
-The package's own Python interface traces single rays on one thread, which is no fair comparison. Shading is vector code
-of the same packets. Spheres are Embree's own; it has no planes and no capped cylinders, so these are triangles: 2 * 64
-for the side of a cylinder, 64 for each cap, two for a plane. Its time is that of the whole frame, without building its
-BVH.
+The package's own Python interface traces single rays on one thread, which is no fair comparison. Its time is that of
+the whole frame, without building its BVH. It has no planes and no capped cylinders: these are triangles.
 """
 
 from __future__ import annotations
@@ -19,15 +17,18 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from minirt import load
+from minirt.fields import Triple
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.scene import Scene
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.mesh import Mesh
+from minirt.shapes.plane import Plane
 from minirt.shapes.shape import Shape
 from minirt.shapes.sphere import Sphere
-from tests.bench.compiler import compiled
-from tests.bench.peers.command import light
+from tests.bench.measure import Setting, System
 from tests.bench.peers.embree.library import Device, library
-from tests.bench.peers.triangles import triangulated
-from tests.bench.system import Setting, System
+from tests.bench.triangles import Corners, Triangles, light, triangulated
+from tests.bench.yardstick import compiled
 
 SOURCE = Path(__file__).with_name("frames.cpp")
 COHERENT, ALL_FEATURES = 1 << 16, 0xFFFFFFFF

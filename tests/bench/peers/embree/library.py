@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.bench.peers.triangles import Triangles
-from tests.bench.system import INSTALL, MissingError
+from tests.bench.measure import INSTALL, MissingError
+from tests.bench.triangles import Triangles
 
 TRIANGLES, SPHERES = 0, 50  # RTCGeometryType
 INDEX, VERTEX = 0, 1  # RTCBufferType

@@ -1,4 +1,4 @@
-"""Planes, cylinders and meshes as triangles."""
+"""Lights and shapes as the peers take them: planes, cylinders and meshes as triangles."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minirt.fields import Triple
+from minirt.scene import Ambient, Light
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.plane import Plane
@@ -65,3 +66,11 @@ def plane(shape: Plane) -> Corners:
     u, v = (ENDLESS * each for each in across(shape.normal))
     point = np.array(shape.point)
     return np.array([[point - u - v, point + u - v, point + u + v], [point - u - v, point + u + v, point - u + v]])
+
+
+def light(source: Ambient | Light | None) -> Triple:
+    """Return the radiance of a light source, red green blue in [0, 1]; black for None."""
+    if source is None:
+        return 0.0, 0.0, 0.0
+    red, green, blue = (source.brightness * level / 255 for level in source.colour)
+    return red, green, blue

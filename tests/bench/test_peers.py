@@ -1,0 +1,111 @@
+"""The pictures of the yardstick and of the peers are those of miniRT, so that their times measure the same work."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import minirt
+from tests.bench import scenes
+from tests.bench.measure import MissingError, Setting, System
+from tests.bench.peers.embree import Embree
+from tests.bench.peers.programs import Command, PovRay, Tachyon
+from tests.bench.yardstick import Yardstick
+from tests.compare import Bytes, edges
+
+WIDTH, HEIGHT = 320, 176
+LINES = """\
+A 0.5 255,255,255
+C 0,1,-10 0,0,1 90
+L -4,6,-5 0.6 255,0,0
+l 5,5,-8 0.3 255,255,255
+pl 0,-2,0 0,1,0 102,204,255
+sp 1,2,3 4 255,51,0
+cy -3,0,0 0.6,0.8,0 2 5 0,255,0
+"""
+HEAD = "A 0.2 255,255,255\nC 0,3,-20 0,-0.1,1 60\npl 0,-2,0 0,1,0 200,200,200\n"
+RING = "".join(f"sp {x},0,{z} 2 200,{100 + 10 * x},50\n" for x in (-6, -3, 0, 3, 6) for z in (-6, 6))
+COLUMNS = "cy 8,0,0 0.5,1,0.2 2 4 60,90,220\ncy 1,1,-18 0,0.05,1 1 30 220,90,60\n"  # one beside the eye
+LAMPS = ["0,0.5,0", "-30,40,-20", "2,0,-4"]  # beside and among the shapes
+
+
+def made(kind: type[System], folder: Path) -> System:
+    """Return a system; the test is skipped where it is not installed."""
+    try:
+        return kind(Setting(WIDTH, HEIGHT, 2, folder))
+    except MissingError as reason:
+        pytest.skip(str(reason))
+
+
+def shows_the_same(picture: Bytes, ours: Bytes, tolerance: int) -> bool:
+    """Whether a peer's picture differs from ours at edges alone."""
+    wrong = (np.abs(picture.astype(int) - ours).max(axis=-1) > tolerance) & ~edges(ours)
+    return bool(wrong.mean() < 1e-3) and bool(ours.std() > 20)
+
+
+# Embree's prisms have flat sides, and Tachyon's rays go through the corners of pixels.
+@pytest.mark.parametrize(("kind", "tolerances"), [(PovRay, (1, 1)), (Tachyon, (6, 12)), (Embree, (12, 1))])
+def test_peers_show_the_same_scene_and_mesh(kind: type[System], tolerances: tuple[int, int], tmp_path: Path) -> None:
+    (tmp_path / "scene.rt").write_text(LINES)
+    for path, tolerance in zip((tmp_path / "scene.rt", scenes.waves(tmp_path, 1000)), tolerances, strict=True):
+        system = made(kind, tmp_path)
+        assert min(system.frame_times(path, 0)) > 0
+        picture = np.asarray(Image.open(system.picture(path)).convert("RGB"))
+        assert shows_the_same(picture, minirt.render(minirt.load(path), WIDTH, HEIGHT).array, tolerance)
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"), [("sp 1,2,3 4", "sp 1,2,3 3.5"), ("l 5,5,-8 0.3", "l 5,5,-8 0.2"), ("A 0.5", "A 0.4")]
+)
+def test_another_scene_is_found(text: str, wrong: str, tmp_path: Path) -> None:
+    ours, other = (
+        minirt.render(minirt.parse(lines).scene, WIDTH, HEIGHT).array for lines in (LINES, LINES.replace(text, wrong))
+    )
+    assert shows_the_same(ours, ours, 0)
+    assert not shows_the_same(other, ours, 12)
+
+
+@pytest.mark.parametrize(
+    ("kind", "printed", "ms"),
+    [
+        (PovRay, "  Trace Time:       0 hours  0 minutes  0 seconds (0.169 seconds)\n  using 2 thread(s)", 169),
+        (Tachyon, "Scene Parsing Time: 1.0 seconds\n  Ray Tracing Time:     0.2383 seconds\n", 238.3),
+    ],
+)
+def test_the_time_that_they_print(kind: type[Command], printed: str, ms: float) -> None:
+    unset: Command = kind.__new__(kind)  # whether it is installed or not
+    assert unset.milliseconds(printed) == pytest.approx(ms)
+
+
+def test_the_yardstick_shows_the_compared_scenes_with_any_lamp(tmp_path: Path) -> None:
+    yardstick = made(Yardstick, tmp_path)
+    paths = [*scenes.compared(tmp_path)[:3], scenes.grown(tmp_path, 1000)]
+    for number, lamp in enumerate(LAMPS):
+        paths.append(tmp_path / f"lamp-{number}.rt")
+        paths[-1].write_text(f"{HEAD}L {lamp} 0.7 255,255,255\n{RING}{COLUMNS}")
+    for path in paths:
+        yardstick.run(path, "--seconds", "0", "--ppm", str(tmp_path / "picture.ppm"))
+        picture = np.asarray(Image.open(tmp_path / "picture.ppm"))
+        ours = minirt.render(minirt.load(path), WIDTH, HEIGHT).array
+        assert shows_the_same(picture, ours, 2), path  # where light falls at a grazing angle, float32 shows
+
+
+@pytest.mark.parametrize(
+    ("line", "complaint"),
+    [
+        ("sp 0,3,-20 2 255,0,0", "the eye is inside"),
+        ("sp 0,9,0 2 255,0,0", "a lamp is inside"),
+        ("co 0,0,0 0,1,0 2 2 255,0,0", "5: unknown element"),
+        ("sp 0,0,0 2 255,0,0 mirror:0.5", "5: no number"),
+    ],
+)
+def test_what_the_yardstick_cannot_render_it_refuses(tmp_path: Path, line: str, complaint: str) -> None:
+    yardstick = made(Yardstick, tmp_path)
+    path = tmp_path / "scene.rt"
+    path.write_text(f"{HEAD}L 0,9,0 0.7 255,255,255\n{line}\n")
+    with pytest.raises(RuntimeError, match=complaint):
+        yardstick.run(path)
+    assert not yardstick.renders(scenes.waves(tmp_path, 100))
