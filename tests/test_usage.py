@@ -42,21 +42,6 @@ def test_growth_after_the_warm_up_is_noticed(growth, expected: bool) -> None:
     assert len(record.settled) == 51
 
 
-def test_a_part_that_took_too_long_is_measured_once() -> None:
-    shown: list[str] = []
-    record = Record(10, lambda: Usage(10**8, 7, 3), shown.append)
-    for share in (0.0, 0.05, 0.55, 0.58, 1.0):
-        record.note(share)
-    assert list(record.usages) == [5, 10]
-    assert shown == ["5/10: 100.0 MB, 7 files, 3 threads", "10/10: 100.0 MB, 7 files, 3 threads"]
-
-
-def test_a_short_soak_run_measures_each_part() -> None:
-    record = Record(6, Usage.of)
-    assert soak.soak(lambda pictures: pictures / 24, 1, record) == 24
-    assert list(record.usages) == [1, 2, 3, 4, 5, 6]
-
-
 def test_a_leak_of_each_picture_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     leaked: list[np.ndarray] = []
     monkeypatch.setattr(soak, "render", lambda *_: leaked.append(np.ones(2**18)))

@@ -23,24 +23,6 @@ m.mlx_loop(mlx)
 """
 
 
-@pytest.fixture
-def without_xdotool_and_wmctrl(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pretend that two tools are not installed."""
-    monkeypatch.setattr(windows.shutil, "which", lambda tool: None if tool in ("xdotool", "wmctrl") else tool)
-
-
-def test_a_skipped_test_says_what_is_missing_and_how_to_install_it(without_xdotool_and_wmctrl, monkeypatch):
-    monkeypatch.delenv("MINIRT_REQUIRE_WINDOW", raising=False)
-    with pytest.raises(pytest.skip.Exception, match=r"need xdotool, wmctrl; .*: apt-get install .*\bxdotool wmctrl\b"):
-        require_tools()
-
-
-def test_missing_tools_fail_the_test_if_windows_are_required(without_xdotool_and_wmctrl, monkeypatch):
-    monkeypatch.setenv("MINIRT_REQUIRE_WINDOW", "1")
-    with pytest.raises(pytest.fail.Exception, match="apt-get install"):
-        require_tools()
-
-
 @pytest.mark.window
 def test_a_desktop_whose_window_manager_does_not_start_leaves_no_display(desktop, tmp_path, monkeypatch):
     broken = tmp_path / "openbox"
