@@ -10,9 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from tests import windows
 from tests.waiting import HANG_LIMIT
-from tests.windows import MANAGER_VARIABLE, Desktop, open_desktop, require_tools
+from tests.windows import MANAGER_VARIABLE, Desktop, open_desktop
 
 WINDOW = """
 from minirt.mlx import Mlx

@@ -16,7 +16,7 @@ from collections import Counter
 from contextlib import suppress
 from pathlib import Path
 
-from tests.fuzz.table import FUZZERS
+from tests.fuzz.worker import FUZZERS
 from tests.paths import ROOT
 from tests.processes import started
 from tests.waiting import HANG_LIMIT

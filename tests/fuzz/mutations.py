@@ -1,8 +1,28 @@
-"""Mutations of bytes that know no format: bits flipped, parts deleted, doubled, exchanged and inserted."""
+"""A fuzzer: one function makes an input, another one checks what the program says to it; and mutations of bytes."""
 
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
+from typing import NamedTuple
+
+
+class Fuzzer(NamedTuple):
+    """Makes inputs at random, and checks each.
+
+    `check` returns the verdict on an input, such as "accepted". AssertionError for a wrong verdict; any other exception
+    is a crash.
+    """
+
+    make: Callable[[random.Random], bytes]
+    check: Callable[[bytes], str]
+    short: int  # inputs of the short run in `make test`
+
+
+def seeded(name: str, number: int) -> random.Random:
+    """Return the random numbers of one input: the same for the same fuzzer and number, on every machine."""
+    return random.Random(f"{name} {number}")
+
 
 ODD = (
     *(b"\0", b"\r", b"\n", b"\v", b"\f", b"\x80", b"\xff", b"\xef\xbb\xbf", b"\xff\xfe", b"\xed\xa0\x80"),
@@ -16,16 +36,22 @@ LONGEST = 24  # bytes that a mutation takes out or doubles
 
 
 def mutated(data: bytes, chance: random.Random) -> bytes:
-    """Return the data with one to four mutations."""
+    """Return the data with one to four mutations, which know no format."""
     for _ in range(chance.choice((1, 1, 1, 2, 3, 4))):
-        data = chance.choice(MUTATIONS)(data, chance)
+        begin, at, odd = chance.randint(0, len(data)), chance.randint(0, len(data)), chance.choice(INSERTED)
+        end = min(len(data), begin + chance.randint(1, LONGEST))
+        data = chance.choice(
+            (
+                flip(data, chance),
+                data[:at],  # cut off
+                data[:begin] + data[end:],  # a short part deleted,
+                data[:end] + data[begin:end] + data[end:],  # doubled,
+                data[:at] + data[begin:end] + data[at:],  # copied to another place;
+                *[data[:at] + odd + data[at:]] * 2,  # something odd inserted,
+                *[data[:begin] + odd + data[end:]] * 2,  # put in the place of a part
+            )
+        )
     return data
-
-
-def place(data: bytes, chance: random.Random) -> tuple[int, int]:
-    """Return the begin and the end of a short part of the data."""
-    begin = chance.randint(0, len(data))
-    return begin, min(len(data), begin + chance.randint(1, LONGEST))
 
 
 def flip(data: bytes, chance: random.Random) -> bytes:
@@ -34,42 +60,3 @@ def flip(data: bytes, chance: random.Random) -> bytes:
         return data
     at = chance.randrange(len(data))
     return data[:at] + bytes([data[at] ^ 1 << chance.randrange(8)]) + data[at + 1 :]
-
-
-def delete(data: bytes, chance: random.Random) -> bytes:
-    """Delete a short part."""
-    begin, end = place(data, chance)
-    return data[:begin] + data[end:]
-
-
-def double(data: bytes, chance: random.Random) -> bytes:
-    """Write a short part twice."""
-    begin, end = place(data, chance)
-    return data[:end] + data[begin:end] + data[end:]
-
-
-def insert(data: bytes, chance: random.Random) -> bytes:
-    """Insert something odd."""
-    at = chance.randint(0, len(data))
-    return data[:at] + chance.choice(INSERTED) + data[at:]
-
-
-def replace(data: bytes, chance: random.Random) -> bytes:
-    """Replace a short part by something odd."""
-    begin, end = place(data, chance)
-    return data[:begin] + chance.choice(INSERTED) + data[end:]
-
-
-def cut(data: bytes, chance: random.Random) -> bytes:
-    """Cut the data off."""
-    return data[: chance.randint(0, len(data))]
-
-
-def move(data: bytes, chance: random.Random) -> bytes:
-    """Copy a short part to another place."""
-    begin, end = place(data, chance)
-    at = chance.randint(0, len(data))
-    return data[:at] + data[begin:end] + data[at:]
-
-
-MUTATIONS = (flip, delete, double, insert, insert, replace, replace, cut, move)

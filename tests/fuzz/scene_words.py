@@ -5,46 +5,17 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 
-from tests.fuzz import scene_fields as fields
-from tests.fuzz import scene_grammar as grammar
-from tests.fuzz.scene_files import MESHES, PICTURES
+from tests.fuzz import grammar
+from tests.fuzz.grammar import MESHES, PICTURES
 
 Chance = random.Random
 WORD_EDGES = (
-    "0",
-    "1",
-    "-1",
-    "0.5",
-    "180",
-    "255",
-    "1e15",
-    "-1e15",
-    "5e-324",
-    "1e-400",
-    "1e400",
-    "360",
-    "+1",
-    "1.",
-    ".5",
-)
+    "0", "1", "-1", "0.5", "180", "255", "1e15", "-1e15", "5e-324", "1e-400", "1e400", "360", "+1", "1.", ".5",
+)  # fmt: skip
 WRONG = (
-    "nan",
-    "inf",
-    "1_0",
-    "0x1",
-    "--1",
-    "",
-    "٣",
-    "1e",
-    "2..0",
-    "20f",
-    "1.1",
-    "256",
-    "-0.5",
-    "2e15",
-    "0,0,0",
+    "nan", "inf", "1_0", "0x1", "--1", "", "٣", "1e", "2..0", "20f", "1.1", "256", "-0.5", "2e15", "0,0,0",
     "file.png",
-)
+)  # fmt: skip
 
 
 def number(chance: Chance) -> str:
@@ -97,11 +68,11 @@ MAKERS: dict[str, Callable[[Chance], str]] = {
     "tone": lambda chance: chance.choice(("plain", "srgb", "filmic")), "exposure": within(-20, 20),
     "lens": size, "focus": size, "fade": size, "size": lambda chance: repr(chance.uniform(0, 90)), "rim": RATIO,
 }  # fmt: skip
-FIELDS: dict[fields.Test, Callable[[Chance], str]] = {
-    fields.ratio: RATIO, fields.colour: COLOUR, fields.point: POINT, fields.direction: DIRECTION,
-    fields.may_be_zero: DIRECTION, fields.length: size, fields.lengths: three(size), fields.picture: picture,
-    fields.mesh: lambda chance: chance.choice(MESHES),
-    fields.paint: lambda chance: chance.choice((COLOUR, picture))(chance),
+FIELDS: dict[grammar.Test, Callable[[Chance], str]] = {
+    grammar.ratio: RATIO, grammar.colour: COLOUR, grammar.point: POINT, grammar.direction: DIRECTION,
+    grammar.may_be_zero: DIRECTION, grammar.length: size, grammar.lengths: three(size), grammar.picture: picture,
+    grammar.mesh: lambda chance: chance.choice(MESHES),
+    grammar.paint: lambda chance: chance.choice((COLOUR, picture))(chance),
 }  # fmt: skip
 
 

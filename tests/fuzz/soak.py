@@ -21,9 +21,9 @@ import numpy as np
 from minirt.errors import SceneError
 from minirt.scene import Scene, parse
 from tests import environment
-from tests.fuzz.extremes import PRECISIONS, make, renderer
-from tests.fuzz.fuzzer import seeded
-from tests.fuzz.scene_files import folder
+from tests.fuzz.grammar import folder
+from tests.fuzz.mutations import seeded
+from tests.fuzz.scenes import PRECISIONS, make_extreme, renderer
 from tests.usage import Record, Usage
 
 LARGEST = (320, 240)  # pixels of a picture; small ones are as frequent
@@ -35,7 +35,7 @@ def soak(share: Callable[[int], float], seed: int, record: Record) -> int:
     while (progress := share(pictures)) < 1:
         chance = seeded("soak", seed * 10**9 + number)
         number += 1
-        scene = read(make(chance))
+        scene = read(make_extreme(chance))
         if scene is not None:
             render(scene, chance)
             pictures += 1

@@ -13,10 +13,18 @@ from collections import Counter
 from pathlib import Path
 
 from tests import environment
-from tests.fuzz.fuzzer import Fuzzer, seeded
-from tests.fuzz.table import FUZZERS
+from tests.fuzz import inputs, scenes
+from tests.fuzz.mutations import Fuzzer, seeded
 from tests.guards import must_end
 
+FUZZERS = {
+    "scenes": scenes.SCENES,
+    "meshes": inputs.MESHES,
+    "pictures": inputs.PICTURES,
+    "replays": inputs.REPLAYS,
+    "arguments": inputs.ARGUMENTS,
+    "extremes": scenes.EXTREMES,
+}
 MOST_KEPT = 20  # inputs that failed
 
 

@@ -1,34 +1,129 @@
-"""Strict grammar of scene files, written from the format's description: the referee of the parser.
-
-It shares nothing with the parser but the description: a table of elements, and a predicate for each kind of field.
-"""
+"""Strict grammar of scene files, written from the format's description: the referee of the parser, with which it shares
+nothing else. A table of elements, a predicate for each kind of field, and the files that random scenes name."""
 
 from __future__ import annotations
 
 import math
 import re
+import tempfile
 import unicodedata
+from collections.abc import Callable
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
+from pathlib import Path
 
-from tests.fuzz.scene_fields import (
-    FARTHEST,
-    Test,
-    between,
-    colour,
-    direction,
-    length,
-    lengths,
-    may_be_zero,
-    mesh,
-    paint,
-    parts,
-    picture,
-    point,
-    ratio,
-    value_of,
-    whole,
-)
+from PIL import Image
+
+PICTURES, MESHES = ("a.png", "maps/b+1.png"), ("ball.obj",)
+FOLDER = tempfile.TemporaryDirectory(prefix="minirt-fuzz-")
+
+
+@cache
+def folder() -> Path:
+    """Return the folder, with its files."""
+    made = Path(FOLDER.name)
+    for name in PICTURES:
+        (made / name).parent.mkdir(exist_ok=True)
+        Image.new("RGB", (4, 2), (200, 120, 40)).save(made / name)
+    for name in MESHES:
+        (made / name).write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n")
+    return made
+
+
+def exists(name: str, suffix: str) -> bool:
+    """Whether a scene in the folder can name a file so, with this suffix."""
+    try:
+        path = folder() / name
+        return bool(name) and path.is_file() and path.suffix == suffix
+    except (OSError, ValueError):
+        return False
+
+
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+WHOLE = re.compile(r"[+-]?\d+", re.ASCII)
+LONGEST, FARTHEST = 300, 1e15
+
+Test = Callable[[str], bool]
+
+
+def value_of(text: str) -> float:
+    """Return the value of a number; NaN for what is none."""
+    value = float(text) if len(text) <= LONGEST and NUMBER.fullmatch(text) else math.nan
+    return value if math.isfinite(value) else math.nan
+
+
+def between(low: float, high: float) -> Test:
+    """Return the test of a number in an interval."""
+    return lambda text: low <= value_of(text) <= high
+
+
+def whole(low: int, high: int) -> Test:
+    """Return the test of a whole number in an interval."""
+    return lambda text: len(text) <= LONGEST and bool(WHOLE.fullmatch(text)) and low <= int(text) <= high
+
+
+def length(text: str) -> bool:
+    """Whether a text is a length."""
+    return 0 < value_of(text) <= FARTHEST
+
+
+def three(part: Test) -> Test:
+    """Return the test of three parts with commas between them."""
+    return lambda text: text.count(",") == 2 and all(map(part, text.split(",")))
+
+
+ratio, byte, point, lengths = between(0, 1), whole(0, 255), three(between(-FARTHEST, FARTHEST)), three(length)
+colour, component = three(byte), three(between(-1, 1))
+
+
+def without_homogeneous_zero(text: str) -> str:
+    """Return a direction without its fourth component, if that is 0."""
+    head, _, last = text.rpartition(",")
+    return head if text.count(",") == 3 and value_of(last) == 0 else text
+
+
+def may_be_zero(text: str) -> bool:
+    """Whether a text is the direction of a camera, which may be 0,0,0."""
+    return component(without_homogeneous_zero(text))
+
+
+def direction(text: str) -> bool:
+    """Whether a text is a direction."""
+    text = without_homogeneous_zero(text)
+    return component(text) and any(map(value_of, text.split(",")))
+
+
+def picture(text: str) -> bool:
+    """Whether a text is the name of a picture."""
+    return exists(text, ".png")
+
+
+def mesh(text: str) -> bool:
+    """Whether a text is the name of a mesh."""
+    return exists(text, ".obj")
+
+
+def paint(text: str) -> bool:
+    """Whether a text is a colour or the name of a picture."""
+    return colour(text) if "," in text else picture(text)
+
+
+def parts(*tests: tuple[int, Test], least: int) -> Test:
+    """Return the test of values with commas between them; each takes some parts, and the last ones may be left out."""
+
+    def test(text: str) -> bool:
+        words, count = text.split(","), 0
+        for width, each in tests:
+            if not words and count >= least:
+                return True
+            if len(words) < width or not each(",".join(words[:width])):
+                return False
+            words, count = words[width:], count + 1
+        return not words
+
+    return test
+
 
 KEY = re.compile(r"([A-Za-z_]+):(.*)", re.DOTALL)
 HEX_COLOUR = re.compile(r"#([0-9A-Fa-f]{3}){1,2}([ \t]|$)")

@@ -1,0 +1,341 @@
+"""Fuzzers of the command line, of meshes, pictures and recordings: how an input is made, and how it is checked."""
+
+from __future__ import annotations
+
+import io
+import os
+import random
+import re
+import tempfile
+import warnings
+from contextlib import chdir, redirect_stderr, redirect_stdout
+from functools import cache
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from minirt.cli import main
+from minirt.errors import FileError, ReplayError
+from minirt.helpers.system import limit_memory
+from minirt.jail.decoder import SIDE
+from minirt.materials import picture_cache
+from minirt.meshes import obj, obj_lines
+from minirt.meshes.obj_lines import Block, Counts, ObjError
+from minirt.meshes.triangles import Triangles
+from minirt.mlx.memory import Memory
+from minirt.viewer.app.replay import play
+from minirt.viewer.bindings import BINDINGS, KEYS, MOUSE
+from minirt.viewer.input.recording import add_recording
+from tests.fuzz.mutations import Fuzzer, flip, mutated
+from tests.viewer.fake import TEXT, FakeRenderer, scene
+from tests.viewer.monkey import lines
+
+EMPTY = "A 1 9,99,255\nC 0,0,0 0,0,1 60\n"  # nothing to draw, so that no kernel is needed
+VALUES = (
+    "", "-", "0", "1", "2", "16", "auto", "8x6", "0x0", "16384x1", "16385x1", "nan", "inf", "-1", "1e-3", "1-2", "2-1",
+    "srgb", "plain", "single", "double", "azerty", "scene.rt", "missing.rt", "broken.rt", ".", "/dev/null", "a.png",
+    "a.nothing", "{name}.png", "a\udcff.png", "é", "9" * 400, "bash", "demo", "nothing", "300M", "4GiB",
+)  # fmt: skip
+WITH_VALUE = (
+    "--size", "--samples", "--turntable", "--frames", "--bits", "--quality", "--error", "--time", "--tone",
+    "--exposure",
+    "--fallback", "--keys", "--text-scale",
+    "--precision", "--depth", "--config", "--completion", "--example", "-o",
+    "--threads", "--memory",
+)  # fmt: skip
+ALONE = (
+    "--metadata", "--no-metadata", "--strict", "--dither", "--left-handed", "--watch", "--no-watch", "--lenient",
+    "--json", "--quick", "--list-keys", "-v", "--version", "--help", "--nothing", "--", "-x", "--siz", "--s",
+)  # fmt: skip
+DEFAULTS = (
+    'samples = 4\nsize = "8x6"\n',
+    "dither = true\n",
+    "quality = 101\n",
+    "threads = [1]\n",
+    "x",
+    "\0",
+    "a.b = 1\n",
+)
+OK, FAILED, USAGE = 0, 1, 2
+SEPARATOR = b"\0"
+FOLDER = tempfile.TemporaryDirectory(prefix="minirt-fuzz-")
+WORK = Path(FOLDER.name)  # for the files of an input
+
+
+def make_arguments(chance: random.Random) -> bytes:
+    """Make arguments, separated by zeros; the first is the text of a file of defaults."""
+    words = [chance.choice(("scene.rt", "scene.rt", "scene.rt", chance.choice(VALUES)))]
+    for _ in range(chance.choice((0, 1, 1, 2, 3, 5))):
+        name, value = chance.choice(WITH_VALUE), chance.choice(VALUES)
+        words += chance.choice(([name, value], [f"{name}={value}"], [name], [chance.choice(ALONE)], [value]))
+    encoded = [word.encode("utf-8", "surrogateescape") for word in words]
+    if chance.random() < 0.4:
+        at = chance.randrange(len(encoded))
+        encoded[at] = mutated(encoded[at], chance).replace(SEPARATOR, b"")
+    defaults = chance.choice(DEFAULTS).encode().replace(SEPARATOR, b"\x01")
+    return SEPARATOR.join([defaults if chance.random() < 0.2 else b"", *encoded])
+
+
+def check_arguments(data: bytes) -> str:
+    """Run the program with the arguments, and `--check`, which renders nothing."""
+    defaults, *words = data.split(SEPARATOR)
+    (WORK / "scene.rt").write_text(EMPTY)
+    (WORK / "broken.rt").write_text("A 2\n")
+    (WORK / "defaults.toml").write_bytes(defaults)
+    arguments = [os.fsdecode(word) for word in words]
+    configuration = ["--config=defaults.toml"] if defaults else ["--config="]
+    try:
+        status, out, err = run_program(["--check", *configuration, *arguments], WORK)
+    finally:
+        limit_memory(None)
+    assert status in (OK, FAILED, USAGE), f"status {status}"
+    assert "Traceback" not in out + err
+    assert not status or err.startswith("Error\n") or "\nError\n" in err, f"status {status} with {err!r}"
+    assert status or "Error\n" not in err, f"an error with status 0: {err!r}"
+    return ("accepted", "failed", "refused")[status]
+
+
+def run_program(arguments: list[str], folder: Path) -> tuple[int, str, str]:
+    """Run the program in a folder; return its status, standard output and standard error."""
+    streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8", errors="surrogateescape") for _ in range(2)]
+    with chdir(folder), redirect_stdout(streams[0]), redirect_stderr(streams[1]):
+        try:
+            status: object = main(arguments)
+        except SystemExit as error:
+            status = error.code
+    texts = []
+    for stream in streams:
+        stream.flush()
+        stream.seek(0)
+        texts.append(stream.read())
+    return (status if isinstance(status, int) else OK if status is None else -1), *texts  # type: ignore[return-value]
+
+
+ARGUMENTS = Fuzzer(make_arguments, check_arguments, 60)
+
+
+# Meshes: the fast and the diagnosing reader agree, and the size of blocks changes nothing.
+
+NUMBERS = ("0", "1", "-1", "0.5", "1e15", "-1e15", "5e-324", "1e-400", ".5", "1.", "+2", "1e3")
+OTHERS = ("", "# é", "g a", "s off", "usemtl x", "o # y", "l 1 2", "\t", "v 1 2 \\", "#v")
+SMALL_BLOCK = 60  # bytes
+
+
+def mesh_number(chance: random.Random) -> str:
+    """Return a mesh_number."""
+    return chance.choice(NUMBERS) if chance.random() < 0.2 else f"{chance.gauss(0, 2):.{chance.randint(0, 9)}f}"
+
+
+def make_mesh(chance: random.Random) -> bytes:
+    """Make a mesh, mutated or not; most are written as programs write them."""
+    points, uvs, normals = chance.randint(3, 9), chance.choice((0, 0, 2, 5)), chance.choice((0, 0, 1, 4))
+    lines = []
+    for key, count, width in (("v", points, 3), ("vt", uvs, 2), ("vn", normals, 3)):
+        lines += [" ".join((key, *(mesh_number(chance) for _ in range(width)))) for _ in range(count)]
+    faces = [face(points, uvs, normals, chance) for _ in range(chance.randint(1, 6))]
+    lines += faces if chance.random() < 0.8 else [*faces, *lines]
+    if chance.random() < 0.3:
+        lines.insert(chance.randint(0, len(lines)), chance.choice(OTHERS))
+    if chance.random() < 0.1:
+        chance.shuffle(lines)
+    data = chance.choice(("\n", "\n", "\r\n")).join([*lines, ""]).encode()
+    return mutated(data, chance) if chance.random() < 0.6 else data
+
+
+def face(points: int, uvs: int, normals: int, chance: random.Random) -> str:
+    """Return a face of some corners."""
+    words = []
+    for _ in range(chance.choice((3, 3, 3, 4, 5))):
+        parts = [str(chance.randint(1, count) * chance.choice((1, 1, -1))) if count else "" for count in
+                 (points, uvs, normals)]  # fmt: skip
+        words.append("/".join(parts).rstrip("/"))
+    return " ".join(("f", *words))
+
+
+def check_mesh(data: bytes) -> str:
+    """Compare the readers; a mesh that is accepted is finite and names corners that exist."""
+    lines = BytesIO(data).readlines()
+    quick = obj_lines.read_quickly(lines, Counts())
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            careful = obj_lines.diagnose(lines, Counts())
+        except ObjError:
+            careful = None
+        assert not quick or same(quick, careful), "the fast reader accepts what the diagnosing reader does not"
+        whole, blocks = mesh_of(data), mesh_in_small_blocks(data)
+    assert (whole is None) == (blocks is None), "the size of blocks decides whether a mesh is accepted"
+    if whole is None or blocks is None:
+        return "refused"
+    for name in ("points", "corners", "normals", "uvs"):
+        assert np.array_equal(getattr(whole, name), getattr(blocks, name)), f"the size of blocks changes {name}"
+    assert np.isfinite(whole.points).all()
+    assert whole.corners.min() >= 0
+    assert whole.corners.max() < len(whole.points)
+    return "accepted"
+
+
+def same(one: Block, other: Block | None) -> bool:
+    """Whether two readers have read the same."""
+    return other is not None and all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+
+
+def mesh_of(data: bytes) -> Triangles | None:
+    """Return the triangles of a mesh; None where it is refused."""
+    try:
+        return obj.parse(data)
+    except ObjError:
+        return None
+
+
+def mesh_in_small_blocks(data: bytes) -> Triangles | None:
+    """Return the triangles of a mesh that is read in blocks of a line or two."""
+    whole, obj.BLOCK_BYTES = obj.BLOCK_BYTES, SMALL_BLOCK
+    try:
+        return mesh_of(data)
+    finally:
+        obj.BLOCK_BYTES = whole
+
+
+MESHES = Fuzzer(make_mesh, check_mesh, 300)
+
+
+# Pictures on surfaces and as skies: damaged files of each format give pixels, or an error about the file.
+
+FORMATS = (
+    *(("PNG", mode, {}) for mode in ("RGB", "RGBA", "L", "P", "1", "I;16", "LA")),
+    *(("JPEG", mode, {}) for mode in ("RGB", "L", "CMYK")), ("BMP", "RGB", {}), ("GIF", "P", {}), ("PPM", "RGB", {}),
+    *(("TIFF", "RGB", {"compression": name}) for name in ("raw", "tiff_lzw", "tiff_adobe_deflate", "packbits", "jpeg")),
+    ("TGA", "RGB", {}), ("TGA", "RGB", {"compression": "tga_rle"}), ("WEBP", "RGB", {}), ("WEBP", "RGBA",
+                                                                                        {"lossless": True}),
+)  # fmt: skip
+XPM = b'/* XPM */\nstatic char *a[] = {\n"2 2 2 1",\n"a c #FF8800",\n"b c #0000FF",\n"ab",\n"ba"\n};\n'
+RADIANCE = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 8\n" + 2 * (b"\2\2\0\10" + 4 * b"\x88\x80")
+SIZE = (9, 7)
+READERS = (picture_cache.picture, picture_cache.heights, picture_cache.sky)
+
+
+@cache
+def originals() -> list[bytes]:
+    """Return a small file of each format."""
+    noise = Image.frombytes("RGB", SIZE, bytes(random.Random(1).randbytes(3 * SIZE[0] * SIZE[1])))
+    files = [XPM, RADIANCE]
+    for name, mode, options in FORMATS:
+        file = io.BytesIO()
+        noise.convert("L").convert(mode).save(file, name, **options) if mode == "I;16" else noise.convert(mode).save(
+            file, name, **options
+        )
+        files.append(file.getvalue())
+    return files
+
+
+def make_picture(chance: random.Random) -> bytes:
+    """Make a picture; nine of ten are damaged, most of them by a few bits, so that decoders get far."""
+    data = chance.choice(originals())
+    kind = chance.random()
+    if kind < 0.1:
+        return data
+    for _ in range(chance.randint(1, 4)):
+        data = flip(data, chance)
+    return data if kind < 0.6 else data[: chance.randint(0, len(data))] if kind < 0.7 else mutated(data, chance)
+
+
+def check_picture(data: bytes) -> str:
+    """Read the picture in all ways; an original is accepted in at least one."""
+    path = WORK / "picture"
+    path.write_bytes(data)
+    accepted = 0
+    for read in READERS:
+        try:
+            pixels = read(path)
+        except FileError as error:
+            check_message(str(error), path)
+            continue
+        accepted += 1
+        assert pixels.ndim == (2 if read is picture_cache.heights else 3)
+        assert 0 < pixels.size <= 3 * SIDE**2
+        assert np.isfinite(pixels).all()
+    assert accepted or data not in originals(), "a good picture is refused"
+    return "accepted" if accepted else "refused"
+
+
+def check_message(message: str, path: Path) -> None:
+    """Check that a message is one line that names the file."""
+    assert str(path) in message
+    assert "\n" not in message, f"an error of several lines: {message}"
+
+
+PICTURES = Fuzzer(make_picture, check_picture, 150)
+
+
+# Recordings: each is refused with a place, or played in a window in memory, or only read where that would take long.
+
+NAME = "keys.txt"
+LAYOUTS = ("qwerty", "azerty", "qwertz")
+CHORDS = [key for binding in BINDINGS for key in binding.keys if not any(key.endswith(part) for part in MOUSE)]
+LONG = re.compile(rb"[0-9]{2,}|[eE][+]?[0-9]")  # seconds, or pixels
+
+
+def make_replay(chance: random.Random) -> bytes:
+    """Make a recording, mutated or not."""
+    monkey = lines(chance)
+    made = [next(monkey) for _ in range(chance.randint(1, 12))]
+    for _ in range(chance.randint(0, 6)):
+        made.insert(chance.randint(0, len(made)), replay_line(chance))
+    data = "\n".join(made).encode()
+    return mutated(data, chance) if chance.random() < 0.6 else data
+
+
+def replay_line(chance: random.Random) -> str:
+    """Return a replay_line that the monkey has not."""
+    key, held = chance.choice(CHORDS), chance.choice(("a", "d", "Left", "Shift+Up", "PageUp", "R"))
+    return chance.choice(
+        (
+            f"press {key}", f"press {key}",
+            f"hold {held} 0.{chance.randint(0, 9)}", f"press {chance.choice(list(KEYS))}",
+            f"text {chance.choice(('0.5', '+-', '1,2,3', 'é', 'a=b'))}", "wait 0.5", "hide", "show", "close", "# note",
+            "drop scene.rt", "drop nothing.png",
+            "press Return", "press Escape", "resize 1x1", "move 9999,0",
+        )
+    )  # fmt: skip
+
+
+def check_replay(data: bytes) -> str:
+    """Read the recording, and play it if that is quick."""
+    recorded = data.decode("utf-8", "replace").splitlines()
+    refusal = refused(recorded)
+    if refusal:
+        assert refusal.startswith(f"{NAME}:")
+        return "refused"
+    timed = [each.split() for each in data.split(b"\n") if each.split()[:1] in ([b"wait"], [b"hold"])]
+    seconds = [word for words in timed for word in words]
+    if any(map(LONG.search, seconds)) or data.count(b"\n") > 100:
+        return "read"
+    path = WORK / "scene.rt"
+    path.write_text(TEXT)
+    play(
+        scene(), recorded, renderer=FakeRenderer(), size=(64, 48), path=path, file=NAME,
+        keys=LAYOUTS[len(data) % len(LAYOUTS)],
+    )  # fmt: skip
+    forget_files()
+    return "played"
+
+
+def refused(recorded: list[str]) -> str:
+    """Return the error of a recording; nothing where it is read."""
+    try:
+        add_recording(recorded, NAME, Memory())
+    except ReplayError as error:
+        return str(error)
+    return ""
+
+
+def forget_files() -> None:
+    """Delete what a session has written beside its scene: screenshots and copies."""
+    for each in WORK.iterdir():
+        each.unlink()
+
+
+REPLAYS = Fuzzer(make_replay, check_replay, 15)
