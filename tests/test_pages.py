@@ -126,6 +126,7 @@ def test_the_scene_is_read_and_the_errors_are_printed_as_shown(
     errors = block("scenes/README.md", "", "Error\n")
     wrong = re.findall(r"^    (s.*)$", errors, re.MULTILINE)
     (folder / "scene.rt").write_text("\n".join(["A 0.2 255,255,255", "C 0,2,-12 0,-0.1,1 60", "", *wrong]))
+    capsys.readouterr()
     assert main(["scene.rt"]) == 1
     assert capsys.readouterr().err == errors
 

@@ -28,7 +28,8 @@ cy -3,0,0 0.6,0.8,0 2 5 0,255,0
 """
 HEAD = "A 0.2 255,255,255\nC 0,3,-20 0,-0.1,1 60\npl 0,-2,0 0,1,0 200,200,200\n"
 RING = "".join(f"sp {x},0,{z} 2 200,{100 + 10 * x},50\n" for x in (-6, -3, 0, 3, 6) for z in (-6, 6))
-COLUMNS = "cy 8,0,0 0.5,1,0.2 2 4 60,90,220\ncy 1,1,-18 0,0.05,1 1 30 220,90,60\n"  # one beside the eye
+COLUMNS = "cy 8,0,0 0.5,1,0.2 2 4 60,90,220\ncy -8,0,0 -0.3,1,0 2 4 60,220,90\n"
+BESIDE_THE_EYE = "cy 1,1,-18 0,0.05,1 1 30 220,90,60\n"
 LAMPS = ["0,0.5,0", "-30,40,-20", "2,0,-4"]  # beside and among the shapes
 
 
@@ -62,7 +63,7 @@ def test_peers_show_the_same_scene_and_mesh(kind: type[System], tolerances: tupl
 )
 def test_another_scene_is_found(text: str, wrong: str, tmp_path: Path) -> None:
     ours, other = (
-        minirt.render(minirt.parse(lines).scene, WIDTH, HEIGHT).array for lines in (LINES, LINES.replace(text, wrong))
+        minirt.render(minirt.loads(lines), WIDTH, HEIGHT).array for lines in (LINES, LINES.replace(text, wrong))
     )
     assert shows_the_same(ours, ours, 0)
     assert not shows_the_same(other, ours, 12)
@@ -85,7 +86,7 @@ def test_the_yardstick_shows_the_compared_scenes_with_any_lamp(tmp_path: Path) -
     paths = [*scenes.compared(tmp_path)[:3], scenes.grown(tmp_path, 1000)]
     for number, lamp in enumerate(LAMPS):
         paths.append(tmp_path / f"lamp-{number}.rt")
-        paths[-1].write_text(f"{HEAD}L {lamp} 0.7 255,255,255\n{RING}{COLUMNS}")
+        paths[-1].write_text(f"{HEAD}L {lamp} 0.7 255,255,255\n{RING}{COLUMNS}{BESIDE_THE_EYE}")
     for path in paths:
         yardstick.run(path, "--seconds", "0", "--ppm", str(tmp_path / "picture.ppm"))
         picture = np.asarray(Image.open(tmp_path / "picture.ppm"))
