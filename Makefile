@@ -59,8 +59,7 @@ pythons: $(NAME)  ## run quick tests, a film, a window and a notebook with each 
 	$(VENV)/bin/python -m tests.pythons
 
 FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/test_frame.py \
-            tests/kernel/test_invariances.py tests/kernel/test_single.py tests/kernel/shading/test_lights.py \
-            tests/oracle/test_operation_counts.py
+            tests/kernel/test_invariances.py tests/kernel/test_single.py tests/kernel/shading/test_lights.py
 # Formulas of single numbers and of numpy's arrays are the same on each processor.
 COMPILED := $(FORMULAS) -k "not numbers] and not arrays]"
 
