@@ -76,7 +76,7 @@ lowest: $(NAME)  ## run a short part of the tests with the lowest versions of th
 	    $$($(VENV)/bin/python -m tests.lowest_versions)
 	mkdir -p $(LOWEST)/cache
 	XDG_CACHE_HOME=$(abspath $(LOWEST)/cache) $(LOWEST)/bin/python -m pytest --numprocesses $(WORKERS) \
-	    -m "not window" tests/jail tests/materials tests/formats tests/kernel/compiler \
+	    -m "not window" tests/materials tests/formats tests/kernel/compiler \
 	    tests/kernel/test_single.py tests/mlx tests/test_faulty_writes.py tests/test_image.py
 
 check: $(DEV)  ## lint and check types

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from minirt import jail
 from tests import environment, scheduling
 from tests.paths import ROOT
 from tests.windows import desktop
@@ -17,7 +16,6 @@ from tests.windows import desktop
 __all__ = ["desktop"]
 
 environment.prepare()  # before the compiler is imported, which reads the environment once
-jail.trust_all_files()  # no process for each picture that a test makes; the tests of the jail and of programs have one
 
 # A slow machine is no failure: hypothesis has no time limits.
 settings.register_profile("miniRT", deadline=None, suppress_health_check=[HealthCheck.too_slow])

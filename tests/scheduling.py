@@ -38,7 +38,6 @@ SLOW = (
     "tests/cli/test_streams.py",
     "tests/cluster/",
     "tests/fuzz/",
-    "tests/jail/",
     "tests/kernel/",
     "tests/lanes/test_operators.py",
     "tests/materials/test_textures.py",

@@ -21,7 +21,7 @@ from minirt import meshes
 from minirt.helpers import system
 from minirt.kernel.machine_code import library as library_module
 from minirt.kernel.machine_code.library import Library
-from minirt.materials import picture_cache
+from minirt.materials import pictures
 from minirt.rendering import Renderer
 from minirt.rendering.queries.rays import Tracer
 from tests.cli.program import SCENE, environment
@@ -129,7 +129,7 @@ RENDERER, TRACER = Renderer(1), Tracer(1)
 LOCKS: dict[str, Callable[[], Any]] = {
     "renderer": lambda: RENDERER.busy,
     "tracer": lambda: TRACER.busy,
-    "pictures": lambda: picture_cache.lock.lock,
+    "pictures": lambda: pictures.lock.lock,
     "meshes": lambda: meshes.lock.lock,
 }
 

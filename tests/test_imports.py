@@ -20,18 +20,17 @@ LOW = {"errors", "records", "fields", "element", "lanes", "materials", "shapes"}
 MAY: dict[str, set[str]] = {
     "errors": set(),
     "helpers": {"errors"},
-    "jail": {"errors", "helpers"},
     "lanes": set(),
     "records": set(),
     "fields": {"errors", "records"},
     "element": {"errors", "records", "fields"},
-    "materials": {"errors", "records", "fields", "element", "helpers", "jail"},
+    "materials": {"errors", "records", "fields", "element", "helpers", "formats"},
     "meshes": {"errors", "fields", "helpers"},
     "shapes": {"lanes", "records", "fields", "element", "materials", "meshes"},
     "formats": {"errors", "helpers"},
-    "scene": LOW - {"lanes"} | {"meshes", "helpers", "jail", "formats"},
+    "scene": LOW - {"lanes"} | {"meshes", "helpers", "formats"},
     "kernel": {"errors", "lanes", "shapes", "helpers"},
-    "rendering": LOW | {"helpers", "jail", "kernel", "scene"},
+    "rendering": LOW | {"helpers", "kernel", "scene"},
     "image": {"errors", "helpers", "formats", "rendering"},
     "cluster": LOW - {"lanes", "shapes", "materials", "records", "fields"}
     | {
@@ -46,7 +45,7 @@ MAY: dict[str, set[str]] = {
     },
     "movie": {"errors", "helpers", "image", "formats"},
     "saved_movie": {"image", "movie", "helpers"},
-    "mlx": {"errors"},
+    "mlx": {"errors", "formats"},
     "viewer": {
         "errors",
         "helpers",
@@ -71,7 +70,6 @@ MAY: dict[str, set[str]] = {
         "helpers",
         "formats",
         "image",
-        "jail",
         "scene",
         "viewer",
         "rendering",

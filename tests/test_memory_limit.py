@@ -126,7 +126,7 @@ def test_textures_count_together_and_links_once(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(system, "check_memory", lambda needed, *_: needs.append(needed))
     pool = TexturePool(scene)
     for number in range(4):
-        pool.number(f"{number}.png", minirt.materials.picture_cache.picture)
+        pool.number(f"{number}.png", minirt.materials.pictures.picture)
     texels = pool.arrays()["texels"]
     assert texels.dtype == np.float32
     assert max(needs) == needs[-1] == texels.nbytes == 3 * 64 * 64 * 3 * 4

@@ -257,12 +257,6 @@ def argument_parser() -> Arguments:
     add = parser.add_argument_group("inspect").add_argument
     add("--check", action="store_true", help="read the scene and report its errors; render nothing")
     add("--lenient", action="store_true", help="accept older scenes: several L, blanks around commas, ...")
-    add(
-        "--trust",
-        action=argparse.BooleanOptionalAction,
-        help="decode all pictures in this process (--trust) or in a confined one (--no-trust); by default in this one "
-        "those that were decoded well before",
-    )
     add("--bench", action="store_true", help="measure the frame time: of an eye at rest, and of a moving one")
     add("--json", action="store_true", help="with --bench: print JSON")
     add(

@@ -20,11 +20,8 @@ STANDARD_INPUT = "standard input"
 
 def read_scene(options: argparse.Namespace, stream: TextIO) -> Scene:
     """Load the scene; print its notices, one for each tolerated mistake, to `stream`."""
-    from minirt import jail
     from minirt.scene import load
 
-    if options.trust is not None:
-        (jail.trust_all_files if options.trust else jail.trust_no_files)()
     if options.example:
         return read_example(options)
     from minirt.helpers.progress import State

@@ -14,7 +14,7 @@ from minirt.mlx.events import Event
 from minirt.mlx.window import Window
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from os import PathLike
 
     from numpy.typing import NDArray
@@ -154,9 +154,8 @@ class Calls:
 
     def mlx_xpm_to_image(self, mlx_ptr: WindowHost, xpm_data: Sequence[str]) -> ImageAndSize:
         """Return (image, width, height) of the strings of an XPM file."""
-        from minirt.mlx.xpm import read_xpm
-
-        return self._mlx_image_of(lambda: read_xpm(xpm_data))
+        strings = (text.encode("latin-1", "replace") for text in xpm_data)
+        return self._mlx_image_of(lambda: _read_xpm(strings, "the strings"))
 
     def _mlx_image_of(self, read: Callable[[], NDArray[np.uint8]]) -> ImageAndSize:
         """Return the image that `read` makes with its size, or (None, 0, 0)."""
@@ -181,9 +180,20 @@ def _read_picture(filename: FileName) -> NDArray[np.uint8]:
 
 def _read_xpm_file(filename: FileName) -> NDArray[np.uint8]:
     """Read an XPM file as BGRA. Raises MlxError."""
-    from minirt.mlx.xpm import read_xpm, strings_of
+    from minirt.formats.xpm import strings_of
 
     try:
-        return read_xpm(strings_of(Path(filename).read_text(encoding="latin-1")))
-    except (OSError, ValueError, MlxError) as error:
-        raise MlxError(f"{filename} cannot be read as an XPM picture: {error}") from error
+        data = Path(filename).read_bytes()
+    except (OSError, ValueError) as error:
+        raise MlxError(f"{filename} cannot be read: {error}") from error
+    return _read_xpm(strings_of(data), str(filename))
+
+
+def _read_xpm(strings: Iterator[bytes], name: str) -> NDArray[np.uint8]:
+    """Read the strings of an XPM file as BGRA. Raises MlxError."""
+    from minirt.formats.xpm import XpmError, read_header, read_pixels
+
+    try:
+        return read_pixels(strings, read_header(strings))
+    except XpmError as error:
+        raise MlxError(f"{name} cannot be read as an XPM picture: {error}") from error

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from minirt import jail
 from minirt.helpers.system import TooLargeError
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import Group, SceneArrays
@@ -75,8 +74,7 @@ class Packing:
         place = width, height, crop or Crop(width, height)
         if self.last and self.last[0] is scene and self.last[1] == place:
             return self.last[2]
-        with jail.session():  # for textures of a scene that was not read from a file
-            arrays = self.pack_double(scene, *place)
+        arrays = self.pack_double(scene, *place)
         if self.precision == "single" and fits_single(arrays):
             arrays = in_single(arrays, self.shape_arrays.boxes)
         self.last = scene, place, arrays

@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
-from minirt import jail
 from minirt.element import Element, cached_per_kind, fields_of, pattern
 from minirt.errors import FieldError, FileError, quoted
 from minirt.fields import Colour, Field, MeshFile
@@ -223,11 +222,10 @@ def load_files(slot: Slot, value: Any, kind: type[Element], line: Line, log: Log
             log.error(line, column, f"{kind.title} {slot.field.title} {message}", length)
             return None
     for file in slot.field.pictures(value):
-        jail.expect(log.folder / file.name)
-        from minirt.materials import picture_cache
+        from minirt.materials import pictures
 
         try:
-            picture_cache.reader(file.heights, file.sky)(log.folder / file.name)
+            pictures.reader(file.heights, file.sky)(log.folder / file.name)
         except FileError as error:
             column, length = slot.span(file.part)
             message = f"must be a picture file, got {quoted(file.name)}: {error.reason}"

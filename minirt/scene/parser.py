@@ -9,7 +9,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from minirt import jail
 from minirt.element import Element, pattern
 from minirt.errors import Problem, SceneError
 from minirt.scene import fast, files
@@ -53,7 +52,7 @@ def parse(
     if isinstance(text, str):
         text = text.encode("utf-8", "surrogatepass")  # a lone surrogate is reported as a byte that is not UTF-8
     log = Log(name, lenient, folder)
-    with garbage_collection_paused(), jail.session():
+    with garbage_collection_paused():
         items = read_lines(files.decode(text, name).split("\n"), log)
     if log.errors:
         raise SceneError(tuple(sorted(log.errors, key=lambda error: (error.line, error.column))))

@@ -175,7 +175,7 @@ def children(folder: Path) -> list[Path]:
 
 def is_usable_picture(scene: Scene, name: str) -> bool:
     """Whether a scene line can spell the name and the file holds a picture."""
-    from minirt.materials.picture_cache import picture  # loads numpy and Pillow, which no other key needs
+    from minirt.materials.pictures import picture  # loads numpy and Pillow, which no other key needs
 
     try:
         picture(scene.beside(file_name(name, ",")))

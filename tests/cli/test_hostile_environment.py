@@ -12,7 +12,7 @@ import pytest
 from tests.cli.program import PROGRAM, Result, environment, program
 from tests.processes import run
 
-ARGUMENTS = ("ball.rt", "--size", "16x16", "--no-trust", "-o")
+ARGUMENTS = ("ball.rt", "--size", "16x16", "-o")
 TEXTURED = "A 0.2 255,255,255\nC 0,0,-5 0,0,1 70\nL -4,3,-3 0.7 255,255,255\nsp 0,0,0 2 10,0,255 texture:x.ppm\n"
 ENVIRONMENTS: dict[str, dict[str, str | None]] = {
     "no home": {"HOME": None, "XDG_CACHE_HOME": None},

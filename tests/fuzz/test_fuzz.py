@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from minirt.jail import decoder
 
 from minirt.errors import MiniRTError, SceneError
 from minirt.fields import scalars
-from minirt.jail import decoder
 from minirt.meshes import obj_lines
 from minirt.rendering.packing import camera
 from minirt.viewer.input.recording_line import Line

@@ -10,8 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from minirt.errors import FileError, SceneError
-from minirt.jail.decoder import SIDE
-from minirt.materials.picture_cache import heights, picture, sky
+from minirt.materials.pictures import SIDE, heights, picture, sky
 from minirt.materials.radiance import RadianceError, read_header, read_pixels
 from minirt.scene import load, parse
 from tests.kernel.pictures import linear

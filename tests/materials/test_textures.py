@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from minirt.materials.picture_cache import picture
+from minirt.materials.pictures import picture
 from tests.paths import ROOT
 
 FOLDER = ROOT / "scenes" / "textures"

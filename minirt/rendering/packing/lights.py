@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from minirt.materials import picture_cache
+from minirt.materials import pictures
 from minirt.rendering.tone_mapping import decode_srgb, tone_named
 from minirt.scene import Ambient, Camera, Lamp, Light, ParallelLight, Scene, SpotLight
 
@@ -46,11 +46,11 @@ class Colours(NamedTuple):
     @property
     def texture(self) -> Callable[[Path], np.ndarray]:
         """The function that reads a picture file as shares of light, as bytes where they are in proportion to them."""
-        return decoded_texture if self.decodes else picture_cache.picture
+        return decoded_texture if self.decodes else pictures.picture
 
     def sky(self, path: Path) -> np.ndarray:
         """Read a picture file as the light of a sky, exposed; bytes where they are in proportion to light in [0, 1]."""
-        pixels = picture_cache.sky(path)
+        pixels = pictures.sky(path)
         if pixels.dtype == np.uint8 and (self.decodes or self.gain != 1):
             pixels = self.of_bytes.take(pixels)
         if self.gain == 1:
@@ -66,7 +66,7 @@ class Colours(NamedTuple):
 
 def decoded_texture(path: Path) -> np.ndarray:
     """Read a picture file as shares of light, decoded by the transfer function of sRGB."""
-    return Colours(decodes=True).of_bytes.take(picture_cache.picture(path))
+    return Colours(decodes=True).of_bytes.take(pictures.picture(path))
 
 
 def colours_of(camera: Camera) -> Colours:

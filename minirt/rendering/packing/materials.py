@@ -13,8 +13,8 @@ from minirt.fields import cos_and_sin
 from minirt.kernel.scene_arrays import kind_of_packed
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
 from minirt.lanes import Vec, dot
-from minirt.materials import Glass, Mirror, Placement, picture_cache
-from minirt.materials.picture_cache import check_textures
+from minirt.materials import Glass, Mirror, Placement, pictures
+from minirt.materials.pictures import check_textures
 from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
 from minirt.rendering.packing.lights import Colours, colours_of
 from minirt.rendering.packing.textures import PATTERN_FEATURES, pack_patterns
@@ -181,9 +181,9 @@ def pack_surface_maps(
         if shape.texture:
             textures[i] = pool.number(shape.texture, colours.texture)
         if shape.bump and shape.bump.strength:
-            bumps[i] = pool.number(shape.bump.file, picture_cache.heights), shape.bump.strength
+            bumps[i] = pool.number(shape.bump.file, pictures.heights), shape.bump.strength
         if shape.normal_map:
-            normals[i] = pool.number(shape.normal_map, picture_cache.picture)
+            normals[i] = pool.number(shape.normal_map, pictures.picture)
         if shape.uv or shape.map_frame():
             placements[i] = placement_numbers(shape)
         is_mapped[i] = bool(shape.checker or shape.texture or bumps[i, 0] or shape.normal_map)
@@ -226,7 +226,7 @@ class TexturePool:
         """Load an image and return its number, from 1 on. FileError where it cannot be read."""
         if (read, file) not in self.numbers:
             path = self.scene.beside(file)
-            key = read, *picture_cache.identity(path)
+            key = read, *pictures.identity(path)
             if key not in self.numbers_of_files:
                 self.images.append(read(path))
                 check_textures(self.images)

@@ -2,24 +2,48 @@
 
 from __future__ import annotations
 
+import io
 import os
+import random
 import struct
 import zlib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from minirt.errors import FileError
-from minirt.materials import picture_files
-from minirt.materials.picture_cache import heights, picture
+from minirt.helpers import system
+from minirt.materials import pictures
+from minirt.materials.pictures import heights, picture
 from minirt.rendering.packing.lights import Colours
 from minirt.rendering.packing.materials import TexturePool
 from minirt.scene import parse
 from tests.guards import must_not_open
 
 COLOURS = np.array([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [10, 20, 30]], [[255, 255, 255], [0, 0, 0]]], np.uint8)
+
+
+NOISE = np.random.default_rng(1).integers(0, 256, (13, 17, 3), np.uint8)
+
+
+def encoded(form: str, mode: str = "RGB", **options: Any) -> bytes:
+    """Return the file of a picture of noise."""
+    buffer = io.BytesIO()
+    Image.fromarray(NOISE).convert(mode).save(buffer, form, **options)
+    return buffer.getvalue()
+
+
+FILES = {
+    **{form: encoded(form) for form in ("PNG", "JPEG", "BMP", "GIF", "TIFF", "PPM", "TGA", "WEBP")},
+    **{f"TIFF {each}": encoded("TIFF", compression=each) for each in ("tiff_lzw", "jpeg", "packbits")},
+    "fax": encoded("TIFF", "1", compression="group4"),
+    "CMYK": encoded("JPEG", "CMYK"),
+    "palette": encoded("PNG", "P"),
+    "moving WEBP": encoded("WEBP", save_all=True, append_images=[Image.new("RGB", (17, 13))]),
+}
 
 
 def refusal(path: Path) -> str:
@@ -107,8 +131,8 @@ def test_heights_keep_16_bits_and_colours_are_rounded_to_8(tmp_path: Path) -> No
 def test_a_file_is_decoded_once_and_again_when_it_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "a.png"
     decoded: list[Path] = []
-    real = picture_files.decode
-    monkeypatch.setattr(picture_files, "decode", lambda path: decoded.append(path) or real(path))
+    real = pictures.decode
+    monkeypatch.setattr(pictures, "decode", lambda path: decoded.append(path) or real(path))
     Image.fromarray(COLOURS).save(path)
     first = picture(path)
     assert picture(path) is first
@@ -148,15 +172,81 @@ def test_files_without_a_picture_are_refused(tmp_path: Path) -> None:
     assert refusal(tmp_path / "program.eps") == "is not a picture"  # nobody runs programs that a scene names
 
 
-def test_every_truncated_picture_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "a.png"
-    random = np.random.default_rng(1)
-    Image.fromarray(random.integers(0, 256, (8, 8, 3), np.uint8)).save(path)
-    whole = path.read_bytes()
-    for end in range(1, len(whole) - 24, 7):  # the last bytes say only that it ends, and are sums
-        path.write_bytes(whole[:end])
+@pytest.mark.parametrize("name", FILES)
+def test_every_truncated_picture_is_read_or_refused(tmp_path: Path, name: str) -> None:
+    data, path = FILES[name], tmp_path / "a"
+    step = max(len(data) // 40, 1)
+    for end in (*range(1, len(data) // 2, step), len(data)):
+        path.write_bytes(data[:end])
         os.utime(path, ns=(end, end))
-        assert refusal(path).startswith(("is not a picture", "is a damaged picture ("))
+        if end == len(data):
+            assert picture(path).shape == (13, 17, 3)
+        else:
+            assert refusal(path).startswith(("is not a picture", "is a damaged picture ("))
+
+
+def after(form: str, beginning: int, part: bytes) -> bytes:
+    """Return a file with many equal parts behind its beginning."""
+    return FILES[form][:beginning] + part * PARTS + FILES[form][beginning:]
+
+
+PARTS = 3000
+TEXT = b"tEXta\0b"
+OF_MANY_PARTS = {
+    "JPEG, padding of a marker": after("JPEG", 2, b"\xff"),
+    "JPEG, comments": after("JPEG", 2, b"\xff\xfe\0\4ab"),
+    "PNG, texts": after("PNG", 33, struct.pack(">I", 3) + TEXT + struct.pack(">I", zlib.crc32(TEXT))),
+    "GIF, comments": after("GIF", 13 + 3 * 2 ** (1 + (FILES["GIF"][10] & 7)), b"\x21\xfe\x01a\0"),
+    "PPM, blanks": FILES["PPM"][:3] + b" " * PARTS + FILES["PPM"][3:],
+}
+
+
+@pytest.mark.parametrize("name", OF_MANY_PARTS)
+def test_a_file_of_too_many_parts_is_refused(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "few").write_bytes(FILES[name.partition(",")[0]])
+    (tmp_path / "many").write_bytes(OF_MANY_PARTS[name])
+    monkeypatch.setattr(pictures, "MOST_PARTS", 500)  # ordinary files have fewer
+    expected = picture(tmp_path / "few")
+    assert refusal(tmp_path / "many") == "is a damaged picture (it has more than 500 parts)"
+    monkeypatch.setattr(pictures, "MOST_PARTS", 10 * PARTS)
+    assert np.array_equal(picture(tmp_path / "many"), expected)
+
+
+def test_a_jpeg_of_too_many_scans_is_refused(tmp_path: Path) -> None:
+    data = encoded("JPEG", progressive=True)
+    scan = data[data.rindex(b"\xff\xda") : -2]
+    for count in (100, 200):
+        (tmp_path / f"{count}").write_bytes(data[:-2] + scan * count + data[-2:])
+    assert picture(tmp_path / "100").shape == (13, 17, 3)
+    assert refusal(tmp_path / "200") == "is a damaged picture (it has more than 200 scans)"
+
+
+def test_comments_in_plain_pictures_are_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    plain = f"P3\n17 13\n255\n{' '.join(map(str, NOISE.ravel()))}\n".encode()
+    commented = plain.replace(b"\n", b" # 1 2 3\n#\n\n#4\r") + b"#" * 10_000
+    (tmp_path / "a.ppm").write_bytes(commented)
+    monkeypatch.setattr(pictures, "MOST_PARTS", 2000)
+    assert np.array_equal(picture(tmp_path / "a.ppm"), NOISE)
+
+
+def test_damaged_bytes_give_a_picture_or_a_reason(tmp_path: Path) -> None:
+    chance, path = random.Random(1), tmp_path / "a"
+    for name, data in FILES.items():
+        for number in range(40):
+            at = chance.randrange(len(data))
+            path.write_bytes(data[:at] + chance.randbytes(4) + data[at + 4 :])
+            os.utime(path, ns=(number, number))
+            try:
+                shape = picture(path).shape
+            except FileError as error:
+                shape = (len(error.reason.splitlines()),)  # one line
+            assert shape == (1,) or len(shape) == 3, name
+
+
+def test_memory_is_checked_before_a_picture_is_decoded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "large.png").write_bytes(png(8192, 8192))  # which could not be decoded
+    monkeypatch.setattr(system, "room", lambda: 2**28)
+    assert refusal(tmp_path / "large.png").startswith("a picture of 8192x8192 pixels needs about 512 MiB of memory")
 
 
 def png(width: int, height: int) -> bytes:
@@ -174,7 +264,8 @@ def png(width: int, height: int) -> bytes:
     [
         (8193, 1, "has 8193x1 pixels, more than 8192x8192"),
         (1, 8193, "has 1x8193 pixels, more than 8192x8192"),
-        (10_000, 10_000, "has 10000x10000 pixels, more than 8192x8192"),
+        (9000, 9000, "has 9000x9000 pixels, more than 8192x8192"),
+        (10_000, 10_000, "has more than 8192x8192 pixels"),
         (60_000, 60_000, "has more than 8192x8192 pixels"),
     ],
 )

@@ -1,0 +1,158 @@
+"""Reader of XPM pictures: C source with strings that hold a header, colours, and rows of characters.
+
+Textures and programs of MiniLibX use it. Colours are #RGB to #RRRRGGGGBBBB, or names of X11: red, Light Goldenrod,
+SeaGreen3, grey50.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
+
+COMMENT_OR_STRING = re.compile(rb'/\*.*?(?:\*/|\Z)|//[^\n]*+|"((?:[^"\\\n]++|\\.)*+)"', re.DOTALL)
+HEADER = re.compile(rb"\s*+(\d{1,9})\s+(\d{1,9})\s+(\d{1,9})\s+(\d{1,9})\b.*", re.DOTALL)
+HEX = re.compile(r"#((?:[0-9a-fA-F]{3}){1,4})")
+KEYS = ("c", "g", "g4", "m", "s")  # colour, grey, four levels of grey, black and white, symbol; the best one first
+MOST_COLOURS = 2**18
+LONGEST = 8  # characters of a pixel
+LONGEST_DEFINITION = 1000  # characters of a colour
+TRANSPARENT = 0
+
+# Colours of X11 that CSS lacks, or that are others in CSS.
+OWN = {
+    "gray": 0xBEBEBE,
+    "grey": 0xBEBEBE,
+    "green": 0x00FF00,
+    "maroon": 0xB03060,
+    "purple": 0xA020F0,
+    "navyblue": 0x000080,
+    "violetred": 0xD02090,
+    "lightgoldenrod": 0xEEDD82,
+    "lightslateblue": 0x8470FF,
+}
+
+# The first of four shades of a colour: 2, 3 and 4 are as much darker as `SHADES` says, but for a few.
+FIRST_SHADES = """
+antiquewhite FFEFDB aquamarine 7FFFD4 azure F0FFFF bisque FFE4C4 blue 0000FF brown FF4040 burlywood FFD39B cadetblue
+98F5FF chartreuse 7FFF00 chocolate FF7F24 coral FF7256 cornsilk FFF8DC cyan 00FFFF darkgoldenrod FFB90F darkolivegreen
+CAFF70 darkorange FF7F00 darkorchid BF3EFF darkseagreen C1FFC1 darkslategray 97FFFF deeppink FF1493 deepskyblue 00BFFF
+dodgerblue 1E90FF firebrick FF3030 gold FFD700 goldenrod FFC125 green 00FF00 honeydew F0FFF0 hotpink FF6EB4 indianred
+FF6A6A ivory FFFFF0 khaki FFF68F lavenderblush FFF0F5 lemonchiffon FFFACD lightblue BFEFFF lightcyan E0FFFF
+lightgoldenrod FFEC8B lightpink FFAEB9 lightsalmon FFA07A lightskyblue B0E2FF lightsteelblue CAE1FF lightyellow FFFFE0
+magenta FF00FF maroon FF34B3 mediumorchid E066FF mediumpurple AB82FF mistyrose FFE4E1 navajowhite FFDEAD olivedrab
+C0FF3E orange FFA500 orangered FF4500 orchid FF83FA palegreen 9AFF9A paleturquoise BBFFFF palevioletred FF82AB
+peachpuff FFDAB9 pink FFB5C5 plum FFBBFF purple 9B30FF red FF0000 rosybrown FFC1C1 royalblue 4876FF salmon FF8C69
+seagreen 54FF9F seashell FFF5EE sienna FF8247 skyblue 87CEFF slateblue 836FFF slategray C6E2FF snow FFFAFA springgreen
+00FF7F steelblue 63B8FF tan FFA54F thistle FFE1FF tomato FF6347 turquoise 00F5FF violetred FF3E96 wheat FFE7BA yellow
+FFFF00
+"""
+SHADES = (1.0, 0.9355, 0.8065, 0.5485)
+OTHER_SHADES = {"hotpink2": 0xEE6AA7, "hotpink3": 0xCD6090, "hotpink4": 0x8B3A62}
+
+
+class XpmError(ValueError):
+    """An error in an XPM picture."""
+
+
+class Header(NamedTuple):
+    """The header of an XPM picture."""
+
+    width: int
+    height: int
+    colours: int
+    length: int  # characters of a pixel
+
+
+def strings_of(source: bytes) -> Iterator[bytes]:
+    """Yield the strings of C source; comments are skipped."""
+    for found in COMMENT_OR_STRING.finditer(source):
+        if found[1] is not None:
+            yield re.sub(rb"\\(.)", rb"\1", found[1], flags=re.DOTALL) if b"\\" in found[1] else found[1]
+
+
+def read_header(strings: Iterator[bytes]) -> Header:
+    """Read the first string of a picture; XpmError where it is no header."""
+    text = next(strings, b"")
+    match = HEADER.fullmatch(text)
+    if not match:
+        raise XpmError(f"expected a header such as '16 16 2 1', got {shown(text)}")
+    header = Header(*map(int, match.groups()))
+    if not header.width or not header.height:
+        raise XpmError(f"it has {header.width}x{header.height} pixels")
+    if not 1 <= header.colours <= MOST_COLOURS:
+        raise XpmError(f"it has {header.colours} colours, and may have 1 to {MOST_COLOURS}")
+    if not 1 <= header.length <= LONGEST:
+        raise XpmError(f"a pixel has {header.length} characters, and may have 1 to {LONGEST}")
+    return header
+
+
+def read_pixels(strings: Iterator[bytes], header: Header) -> np.ndarray:
+    """Return the pixels from the strings behind the header, uint8 (height, width, 4): blue, green, red, and alpha.
+
+    Transparent pixels are 0, 0, 0, 0. XpmError.
+    """
+    width, height, count, length = header
+    definitions = list(islice(strings, count))
+    if len(definitions) < count:
+        raise XpmError(f"it has {len(definitions)} colours of {count}")
+    colours = {line[:length]: colour(line[length:]) for line in definitions}
+    words = np.empty((height, width), "<u4")
+    number = 0
+    for number, row in enumerate(islice(strings, height), 1):
+        try:
+            words[number - 1] = [colours[row[at : at + length]] for at in range(0, width * length, length)]
+        except KeyError as error:
+            raise XpmError(f"row {number}: {shown(error.args[0])} is no colour") from None
+    if number < height:
+        raise XpmError(f"it has {number} rows of {height}")
+    return words.view(np.uint8).reshape(height, width, 4)
+
+
+def colour(definition: bytes) -> int:
+    """Return the colour 0xAARRGGBB of a definition such as ` c #FF8000 m white s roof`; XpmError."""
+    values: dict[str, str] = {}
+    key = ""
+    for word in definition[:LONGEST_DEFINITION].decode("latin-1").split():
+        # A key is a value, too, where one is missing: `c g` is a colour named g.
+        if word in KEYS and (not key or key in values):
+            key = word
+        elif key:
+            values[key] = f"{values.get(key, '')}{word}"
+    value = next((values[key] for key in KEYS[:-1] if key in values), "")
+    if match := HEX.fullmatch(value):
+        digits = len(match[1]) // 3
+        most = int(16**digits) - 1
+        levels = (int(match[1][at : at + digits], 16) for at in range(0, 3 * digits, digits))
+        red, green, blue = ((510 * level + most) // (2 * most) for level in levels)
+        return 0xFF000000 | red << 16 | green << 8 | blue
+    name = value.lower()
+    if name in ("none", "transparent"):
+        return TRANSPARENT
+    if name not in names():
+        raise XpmError(f"expected a colour such as 'c #FF8000', 'c red' or 'c None', got {shown(definition)}")
+    return 0xFF000000 | names()[name]
+
+
+@cache
+def names() -> dict[str, int]:
+    """All names of colours, in lower case without spaces, and their colours 0xRRGGBB."""
+    from PIL.ImageColor import colormap, getrgb
+
+    colours = {name: int.from_bytes(bytes(getrgb(name)[:3]), "big") for name in colormap} | OWN
+    words = FIRST_SHADES.split()
+    for name, first in zip(words[::2], map(bytes.fromhex, words[1::2]), strict=True):
+        for number, share in enumerate(SHADES, 1):
+            colours[f"{name}{number}"] = int.from_bytes(bytes(int(level * share) for level in first), "big")
+    for percent in range(101):
+        colours[f"gray{percent}"] = colours[f"grey{percent}"] = int(2.55 * percent + 0.5) * 0x010101
+    return colours | OTHER_SHADES
+
+
+def shown(text: bytes) -> str:
+    """Return a part of a file for a message."""
+    return repr(text.strip()[:40].decode("ascii", "replace"))

@@ -1,0 +1,203 @@
+"""Picture files as arrays of colours, light or heights. Each file is decoded once, and again when it has changed.
+
+Pictures may come from strangers. Pillow decodes them, in a few raster formats; regular files alone are read, and bytes,
+pixels and memory are limited before anything is decoded. XPM and Radiance pictures are read in Python.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from weakref import WeakValueDictionary
+
+import numpy as np
+
+from minirt.errors import FileError, printable
+from minirt.helpers import file_io, system
+from minirt.helpers.system import ForkSafeLock, TooLargeError
+
+SIDE = 8192  # pixels
+FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TIFF", "PPM", "TGA", "WEBP")  # raster formats: no programs, no fonts
+RADIANCE, XPM = b"#?", b"/* XPM */"  # how these files begin
+MOST_PARTS = 1_000_000  # of a file; a TIFF of 8192x8192 pixels has 262,144 tiles of 16x16
+MOST_SCANS = 200  # of a JPEG, each of which takes up to 0.1 s; usual ones have a dozen
+SCAN = b"\xff\xda"
+PLAIN_PNM = (b"P1", b"P2", b"P3")  # text, in which Pillow takes 3 us for a comment
+COMMENTS = re.compile(rb"(?:#[^\r\n]*+[\r\n]*+)++")
+DEEP_MODES = ("I", "I;16", "I;16L", "I;16B")  # of Pillow, grey of 16 or 32 bits; all others become red, green and blue
+DEEP = 65535  # the highest level of 16 bits
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear red, green and blue (ITU-R BT.709)
+DECODING = 8  # bytes of a pixel while a picture is decoded and converted
+TEXEL = 4  # bytes of a channel of a pixel in the arrays of the kernel
+
+Stamp = tuple[int, int, int, int]  # device, inode, size and time of change of a file
+Read = Callable[[Path], np.ndarray]
+
+entries: dict[tuple[Read, str], tuple[Stamp, np.ndarray]] = {}
+shared: WeakValueDictionary[tuple[Read, Stamp], np.ndarray] = WeakValueDictionary()
+lock = ForkSafeLock()
+
+
+def picture(path: str | os.PathLike[str]) -> np.ndarray:
+    """Red, green and blue of a picture file, uint8 (h, w, 3), the upper row first; read-only. FileError if
+    unreadable."""
+    return cached(colours, path)
+
+
+def sky(path: str | os.PathLike[str]) -> np.ndarray:
+    """A picture file as a sky: as `picture`, or of a Radiance picture its light, float32 (h, w, 3); read-only."""
+    return cached(light_or_colours, path)
+
+
+def heights(path: str | os.PathLike[str]) -> np.ndarray:
+    """A picture file as a height map, float32 (h, w): its luminance from 0 to 1, with up to 16 bits; read-only."""
+    return cached(brightness, path)
+
+
+def reader(heights_wanted: bool, sky_wanted: bool) -> Read:
+    """The function that reads a picture file as a height map, as a sky, or as colours."""
+    return heights if heights_wanted else sky if sky_wanted else picture
+
+
+def identity(path: str | os.PathLike[str]) -> tuple[int, int]:
+    """The device and the inode of a picture file, which all links to it share. FileError if it cannot be read."""
+    status = file_io.status(path, file_io.LARGEST_ASSET)
+    return status.st_dev, status.st_ino
+
+
+def cached(read: Read, path: str | os.PathLike[str]) -> np.ndarray:
+    """The array that `read` makes from a file, read again only if the file has changed; one for all links to it."""
+    path = Path(path)
+    status = file_io.status(path, file_io.LARGEST_ASSET)
+    stamp = (status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns)
+    key = read, os.path.abspath(path)  # noqa: PTH100 - a link is not followed: its target may change
+    with lock:
+        if key not in entries or entries[key][0] != stamp:
+            entries.pop(key, None)
+            array = shared.get((read, stamp))
+            if array is None:
+                try:
+                    array = read(path)
+                    check_textures([array])
+                except TooLargeError as error:
+                    raise FileError(path, str(error)) from None
+                array.flags.writeable = False
+                shared[read, stamp] = array
+            entries[key] = stamp, array
+        return entries[key][1]
+
+
+def check_textures(arrays: list[np.ndarray]) -> None:
+    """Check that there is room for the texels of these arrays, which a kernel reads; `TooLargeError` otherwise."""
+    need = TEXEL * sum(array.size for array in arrays)
+    system.check_memory(need, "the textures need", "smaller pictures need less")
+
+
+def colours(path: Path) -> np.ndarray:
+    """Red, green and blue of a file, uint8 (h, w, 3)."""
+    pixels = decode(path)
+    if pixels.dtype != np.uint8:
+        pixels = np.rint(pixels / 257).astype(np.uint8)
+    return np.ascontiguousarray(pixels if pixels.ndim == 3 else np.repeat(pixels[..., None], 3, axis=2))
+
+
+def light_or_colours(path: Path) -> np.ndarray:
+    """The light of a Radiance picture; red, green and blue of any other file."""
+    data = file_io.read(path, file_io.LARGEST_ASSET)
+    if not data.startswith(RADIANCE):
+        return colours(path)
+    from minirt.materials import radiance
+
+    try:
+        header = radiance.read_header(data)
+        check_size(path, header.width, header.height)
+        return radiance.read_pixels(data, header)
+    except radiance.RadianceError as error:
+        raise FileError(path, f"is a damaged Radiance picture: {error}") from None
+
+
+def brightness(path: Path) -> np.ndarray:
+    """Luminance of a file from 0 to 1, float32 (h, w)."""
+    pixels = decode(path)
+    grey = pixels.astype(np.float32)
+    if pixels.ndim == 3:
+        grey = grey @ LUMINANCE
+    return np.clip(grey / np.iinfo(pixels.dtype).max, 0, 1)
+
+
+def check_size(path: Path, width: int, height: int) -> None:
+    """Check the size of a picture that is not decoded yet; FileError when it has no pixels or too many."""
+    if max(width, height) > SIDE:
+        raise FileError(path, f"has {width}x{height} pixels, more than {SIDE}x{SIDE}")
+    if not width or not height:
+        raise FileError(path, f"has {width}x{height} pixels")
+    system.check_picture(height, width, DECODING)
+
+
+def decode(path: Path) -> np.ndarray:
+    """Decode a file: uint8 (h, w, 3), or uint16 (h, w) for 16-bit grey. FileError if it holds no picture."""
+    data = file_io.read(path, file_io.LARGEST_ASSET)
+    if not data:
+        raise FileError(path, "is empty")
+    if data.startswith(RADIANCE):
+        raise FileError(path, "is a Radiance picture, which only a sky may be: 'bg file'")
+    return decode_xpm(path, data) if data.startswith(XPM) else decode_by_pillow(path, data)
+
+
+def decode_xpm(path: Path, data: bytes) -> np.ndarray:
+    """Red, green and blue of an XPM file, uint8 (h, w, 3); transparent pixels are black. FileError."""
+    from minirt.formats import xpm
+
+    strings = xpm.strings_of(data)
+    try:
+        header = xpm.read_header(strings)
+        check_size(path, header.width, header.height)
+        return xpm.read_pixels(strings, header)[..., 2::-1]
+    except xpm.XpmError as error:
+        raise FileError(path, f"is a damaged XPM picture: {error}") from None
+
+
+class Parts(io.BytesIO):
+    """The bytes of a file. Pillow takes 1 us for each part of it, and a file may have a part for each byte."""
+
+    reads = 0
+
+    def read(self, size: int | None = -1) -> bytes:
+        """Return the next bytes; ValueError after `MOST_PARTS` calls."""
+        self.reads += 1
+        if self.reads > MOST_PARTS:
+            raise ValueError(f"it has more than {MOST_PARTS:,} parts")
+        return super().read(size)
+
+
+def decode_by_pillow(path: Path, data: bytes) -> np.ndarray:
+    """Decode the bytes of a file, as `decode`; FileError."""
+    from PIL import Image as pillow  # noqa: N813
+    from PIL import UnidentifiedImageError
+
+    if data.startswith(PLAIN_PNM):
+        data = COMMENTS.sub(b"\n", data)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about oddities of a file that is decoded
+            warnings.simplefilter("error", pillow.DecompressionBombWarning)
+            image = pillow.open(Parts(data), formats=FORMATS)  # reads the header alone
+            check_size(path, *image.size)
+            if image.format == "JPEG" and data.count(SCAN) > MOST_SCANS:
+                raise ValueError(f"it has more than {MOST_SCANS:,} scans")
+            pixels = np.asarray(image if image.mode in DEEP_MODES else image.convert("RGB"))
+    except (FileError, TooLargeError):
+        raise
+    except (pillow.DecompressionBombError, pillow.DecompressionBombWarning):
+        raise FileError(path, f"has more than {SIDE}x{SIDE} pixels") from None
+    except UnidentifiedImageError:
+        raise FileError(path, "is not a picture") from None
+    except MemoryError:
+        raise FileError(path, "needs more memory than there is to decode it") from None
+    except Exception as error:  # damaged files make decoders raise anything
+        raise FileError(path, f"is a damaged picture ({printable(str(error))})") from None
+    return pixels if pixels.ndim == 3 else np.clip(pixels, 0, DEEP).astype(np.uint16)
