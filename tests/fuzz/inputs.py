@@ -14,13 +14,13 @@ from io import BytesIO
 from pathlib import Path
 
 import numpy as np
-from minirt.jail.decoder import SIDE
 from PIL import Image
 
 from minirt.cli import main
 from minirt.errors import FileError, ReplayError
 from minirt.helpers.system import limit_memory
 from minirt.materials import picture_cache
+from minirt.materials.pictures import SIDE
 from minirt.meshes import obj, obj_lines
 from minirt.meshes.obj_lines import Block, Counts, ObjError
 from minirt.meshes.triangles import Triangles

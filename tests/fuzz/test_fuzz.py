@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import pytest
-from minirt.jail import decoder
+from pathlib import Path
 
-from minirt.errors import MiniRTError, SceneError
+import pytest
+
+from minirt.errors import FileError, MiniRTError, SceneError
 from minirt.fields import scalars
+from minirt.materials import pictures
 from minirt.meshes import obj_lines
 from minirt.rendering.packing import camera
 from minirt.viewer.input.recording_line import Line
@@ -67,11 +69,11 @@ def test_a_fast_reader_of_meshes_that_counts_wrongly_is_found(monkeypatch: pytes
         run("meshes", FUZZERS["meshes"].short)
 
 
-def test_a_decoder_whose_errors_are_not_caught_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def careless(_: object) -> None:
-        raise OSError("broken data stream")
+def test_a_decoder_that_refuses_good_pictures_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def strict(path: Path, _: bytes) -> None:
+        raise FileError(path, "broken data stream")
 
-    monkeypatch.setattr(decoder, "pixels_of", careless)
+    monkeypatch.setattr(pictures, "decode_by_pillow", strict)
     with pytest.raises(AssertionError, match="a good picture is refused"):
         run("pictures", FUZZERS["pictures"].short)
 
