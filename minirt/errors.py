@@ -17,6 +17,7 @@ Only `minirt.cli` prints them.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 
@@ -51,6 +52,18 @@ def printable(text: str) -> str:
 def quoted(text: str, width: int = 40) -> str:
     """Quote a text for a message: control characters escaped, cut to `width` characters."""
     return repr(text if len(text) <= width else text[: width - 1] + "…")
+
+
+def nearest(word: str, known: Iterable[str], cutoff: float = 0.6, count: int = 1) -> list[str]:
+    """Return the known words whose spelling is most like a word's, the most similar first, `count` at most."""
+    from difflib import get_close_matches
+
+    return get_close_matches(word[:40], list(known), count, cutoff)
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Return `, did you mean 'Tab'?` for a similar known word, or an empty string."""
+    return "".join(f", did you mean '{each}'?" for each in nearest(word, known))
 
 
 def excerpt(text: str, column: int, length: int, width: int = 100) -> str:

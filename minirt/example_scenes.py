@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from minirt.errors import FileError
+from minirt.errors import FileError, nearest
 
 if TYPE_CHECKING:
     from minirt.scene import Scene
@@ -48,7 +47,7 @@ def example(name: str = "demo") -> Scene:
 
     known = examples()
     if name not in known:
-        near = get_close_matches(name, known, 3)
+        near = nearest(name, known, count=3)
         hint = f"did you mean {' or '.join(near)}?" if near else f"the examples are {', '.join(known)}"
         raise FileError(name, f"there is no such example scene; {hint}")
     path = folder() / f"{name}.rt"

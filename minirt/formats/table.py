@@ -10,7 +10,7 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
-from minirt.errors import RenderError
+from minirt.errors import RenderError, nearest
 
 ANY_SIDE = 2**31 - 1
 FLOAT = 32  # bits of a channel of floating-point numbers
@@ -93,9 +93,7 @@ def hint(suffix: str, name: str | None) -> str:
         return ": this Pillow was built without it, try .png"
     if suffix in (".pbm", ".pgm", ".ico", ".icns"):
         return f": it cannot hold {'colours' if suffix in ('.pbm', '.pgm') else 'large pictures'}, try .png"
-    from difflib import get_close_matches
-
-    return f", try {next(iter(get_close_matches(suffix[:40], COMMON, 1, 0.7)), COMMON[0])}"
+    return f", try {next(iter(nearest(suffix, COMMON, 0.7)), COMMON[0])}"
 
 
 def check_size(path: str | os.PathLike[str], name: str, width: int, height: int) -> None:

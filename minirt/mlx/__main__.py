@@ -16,7 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from minirt.errors import MlxError
+from minirt.errors import MlxError, ReplayError
 from minirt.mlx import recording
 from minirt.mlx.api import Mlx
 from minirt.mlx.arguments import MaybeNone, integer
@@ -45,7 +45,7 @@ def main(argv: Sequence[str] | None = None) -> Any:
             status = _run(options.program, options.arguments)
         finally:  # even after an exception
             saved = backend is None or backend.finish()
-    except MlxError as error:
+    except (MlxError, ReplayError) as error:
         print(f"mlx: {error}", file=sys.stderr)
         return FAILED
     return status if saved else FAILED
@@ -86,7 +86,7 @@ def _headless(options: argparse.Namespace) -> Headless:
             lines = options.events.read_text(encoding="utf-8").splitlines()
         except (OSError, ValueError) as error:
             raise MlxError(f"{options.events} cannot be read: {error}") from error
-        recording.add_script(lines, str(options.events), backend)
+        recording.add_recording(lines, str(options.events), backend, types=False)
     simulate_process(backend)
     return backend
 

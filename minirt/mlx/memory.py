@@ -20,6 +20,7 @@ import sys
 import threading
 import time
 from collections import deque
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -47,7 +48,8 @@ class Memory(Backend):
     screen: width and height in pixels.
     patience: real seconds after the end of the script in which the program has to end, or MlxError is raised.
 
-    The methods of the script take the target window; None is the first window that is open when the step is played.
+    The methods of the script take the target window; None is the selected one, at first the oldest, of those that are
+    open when the step is played.
     """
 
     def __init__(self, screen: tuple[int, int] = (2560, 1600), patience: float = 30.0) -> None:
@@ -63,6 +65,8 @@ class Memory(Backend):
         self._screens: dict[Window, NDArray[np.uint8]] = {}
         self._sizes: dict[Window, tuple[int, int]] = {}  # of the frame buffers
         self._windowed: dict[Window, tuple[int, int]] = {}  # sizes of full-screen windows before
+        self._selected = 0  # number of the window that steps without a window act on
+        self._last: NDArray[np.uint8] | None = None  # the picture that was shown last, in any window
 
     # --- the script: steps of the user, in this order ---
 
@@ -134,6 +138,14 @@ class Memory(Backend):
         """Wait, in real time, until `mlx_wake` is called."""
         self.do(self._await_wake)
 
+    def select(self, number: int) -> None:
+        """Let the next steps act on another window, 0 for the oldest."""
+        self.do(partial(setattr, self, "_selected", number))
+
+    def save(self, file: Path) -> None:
+        """Save the picture of the selected window or, if it is closed, the one that was shown last. MlxError."""
+        self.do(partial(self._save, file))
+
     def do(self, action: Callable[[], object]) -> None:
         """Add any other step, for example to check a picture half way. May be called from any thread."""
         self._script.append(action)
@@ -184,7 +196,12 @@ class Memory(Backend):
         return list(self.display.windows)
 
     def _target(self, window: Window | None) -> Window:
-        return self.display.windows[0] if window is None else window
+        if window is not None:
+            return window
+        windows = self.display.windows
+        if self._selected >= len(windows):
+            raise MlxError(f"there is no window {self._selected + 1}: {len(windows)} are open")
+        return windows[self._selected]
 
     def _settle(self) -> None:
         """Take turns until no hook calls `mlx_wake`."""
@@ -212,6 +229,18 @@ class Memory(Backend):
         self._sizes[window] = width, height
         window.on_resize(width, height)
 
+    def _save(self, file: Path) -> None:
+        from PIL import Image
+
+        windows = self.windows if self._display else []
+        pixels = self._screens[windows[self._selected]] if self._selected < len(windows) else self._last
+        if pixels is None:
+            raise MlxError("there is no picture: no window was opened")
+        try:
+            Image.fromarray(pixels[..., 2::-1]).save(file)
+        except (OSError, ValueError) as error:
+            raise MlxError(f"{file} cannot be written: {error}") from error
+
     # --- the rest of the contract of a back end ---
 
     def open(self, display: Loop) -> None:
@@ -228,7 +257,7 @@ class Memory(Backend):
 
     def show(self, window: Window) -> None:
         window.shown.take_changes()
-        self._screens[window] = stretch(window.shown.pixels, *self._sizes[window])
+        self._screens[window] = self._last = stretch(window.shown.pixels, *self._sizes[window])
 
     def wake(self) -> None:
         self._wakeup.set()
@@ -271,16 +300,14 @@ class Memory(Backend):
 
 
 class Headless(Memory):
-    """A scripted user who leaves a tick of the loop between two steps, and clicks the close button at the end.
+    """A user who leaves a tick of the loop between two steps, and clicks the close button at the end.
 
-    picture: the file of the last picture, or None. `selected`: the number of the window that the steps act on.
+    picture: the file of the last picture, or None.
     """
 
     def __init__(self, picture: Path | None, screen: tuple[int, int]) -> None:
         super().__init__(screen)
         self.picture = picture
-        self.selected = 0
-        self._last: NDArray[np.uint8] | None = None  # the picture that was shown last, in any window
 
     def run(self) -> None:
         """Play the script; then save the picture, click the close button, and end the loop if that did not."""
@@ -298,41 +325,17 @@ class Headless(Memory):
         """Save the last picture, if one is asked for. False if that failed; the reason is printed."""
         try:
             if self.picture:
-                self.save(self.picture)
+                self._save(self.picture)
         except MlxError as error:
             print(f"mlx: {error}", file=sys.stderr)
             return False
         return True
 
-    def save(self, file: Path) -> None:
-        """Save the picture of the selected window or, if it is closed, the one that was shown last. Raises MlxError."""
-        from PIL import Image
-
-        windows = self.windows if self._display else []
-        pixels = self.screenshot(windows[self.selected]) if self.selected < len(windows) else self._last
-        if pixels is None:
-            raise MlxError("there is no picture: no window was opened")
-        try:
-            Image.fromarray(pixels[..., 2::-1]).save(file)
-        except (OSError, ValueError) as error:
-            raise MlxError(f"{file} cannot be written: {error}") from error
-
-    def show(self, window: Window) -> None:
-        super().show(window)
-        self._last = self.screenshot(window)
+    def pass_time(self, seconds: float) -> None:
+        """Let simulated time pass, without turns of the loop."""
+        self._now += seconds
 
     def _pause(self) -> None:
         """Let the program handle what came, and take one tick of the loop."""
         self.display.turn(tick=False)
         self._advance(TICK)
-
-    def pass_time(self, seconds: float) -> None:
-        self._now += seconds
-
-    def _target(self, window: Window | None) -> Window:
-        if window is not None:
-            return window
-        windows = self.windows
-        if self.selected >= len(windows):
-            raise MlxError(f"there is no window {self.selected + 1}: {len(windows)} are open")
-        return windows[self.selected]

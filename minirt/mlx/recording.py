@@ -1,154 +1,252 @@
-"""Scripts of events: one step a line; `#` begins a comment. Positions are pixels of the window.
+"""Recorded input: one command a line; `#` begins a comment. Positions and sizes are pixels of the window.
 
-press KEY              Escape, a, 1, F5, Shift+a, 65307   click x,y [middle|right]
-hold KEY seconds       down KEY, up KEY                   drag x,y x,y [middle|right]
-wait seconds           hide, show, close                  wheel up|down [count] [x,y]
-window NUMBER          picture FILE                       move x,y
+press KEY            a, 1, F5, PageUp, Ctrl+Shift+S     click x,y [left|middle|right]
+hold KEY seconds     down KEY, up KEY                   drag x,y x,y [left|middle|right]
+text CHARACTERS      wait seconds                       wheel up|down [count] [x,y]
+resize WxH           hide, show, close                  move x,y
+drop FILE            window NUMBER                      picture FILE
 """
 
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Iterable
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NoReturn
 
-from minirt.errors import MlxError
+from minirt.errors import Problem, ReplayError, did_you_mean, quoted
 from minirt.mlx.events import Button, Key
 
 if TYPE_CHECKING:
-    from minirt.mlx.memory import Headless
+    from minirt.mlx.memory import Memory
 
-
-KEYS = {"".join(map(str.capitalize, key.name.split("_"))): int(key) for key in Key}
-MODIFIERS = {"Shift": Key.SHIFT_L, "Ctrl": Key.CONTROL_L, "Alt": Key.ALT_L, "Super": Key.SUPER_L}
+WORD = re.compile(r"\S+")
+PIXEL = re.compile(r"([0-9]{1,5}),([0-9]{1,5})")
+SIZE = re.compile(r"([0-9]{1,5})x([0-9]{1,5})")
+MAX_PIXELS = 32767
+MAX_SECONDS = 100_000
+MAX_COUNT = 1000  # steps of the wheel, windows
+KEYS = {"".join(map(str.capitalize, key.name.split("_"))): int(key) for key in Key}  # PageUp, A, F1
+MODIFIERS = {"Ctrl": Key.CONTROL_L, "Shift": Key.SHIFT_L, "Alt": Key.ALT_L, "Super": Key.SUPER_L}
 BUTTONS = {"left": Button.LEFT, "middle": Button.MIDDLE, "right": Button.RIGHT}
 DIRECTIONS = {"up": 1, "down": -1}
-MOVES = 10  # of a drag
-GREATEST = 100_000  # pixels, seconds, steps
+DRAG_MOVES, DRAG_SECONDS = 12, 0.4
 
-Step = Callable[..., None]
+Keys = list[int]
 
 
-def add_script(lines: Iterable[str], file: str, user: Headless) -> None:
-    """Add the steps of a script to those of the user. Raises MlxError for the first line that is wrong."""
-    for number, line in enumerate(lines, 1):
-        command, *arguments = line.split("#")[0].split() or [""]
-        if not command:
-            continue
+def add_recording(lines: Iterable[str], file: str, user: Memory, *, types: bool = True) -> None:
+    """Add the commands of a recording to the script of `user`. ReplayError for the first command that is wrong.
+
+    types: characters other than letters are typed, as the viewer reads them, and Ctrl is Cmd on macOS; otherwise they
+    are pressed, as programs for MiniLibX read them, which know keys alone.
+    """
+    for number, text in enumerate(lines, 1):
+        line = Line(file, number, text, types=types)
+        if line.words:
+            usage, run = COMMANDS[line.choice(0, COMMANDS, "command")]
+            run(user, *line.arguments(usage))
+
+
+class Line:
+    """The words of a line before its comment. The command has index 0, its arguments follow."""
+
+    def __init__(self, file: str, number_in_file: int, text: str, *, types: bool = True) -> None:
+        self.file = file
+        self.number = number_in_file
+        self.text = text.rstrip("\r\n")
+        self.types = types
+        matches = list(WORD.finditer(self.text))
+        end = next((index for index, word in enumerate(matches) if word[0].startswith("#")), len(matches))
+        self.words = [word[0] for word in matches[:end]]
+        self.columns = [word.start() + 1 for word in matches[:end]]
+
+    def arguments(self, usage: str) -> list[Any]:
+        """Return the values of the arguments that a usage names; those in brackets may be missing."""
+        kinds = usage.split()[1:]
+        count, has_rest = len(self.words) - 1, usage.endswith(("CHARACTERS", "FILE"))
+        if count < sum(each[0] != "[" for each in kinds) or (count > len(kinds) and not has_rest):
+            self.fail(min(count, len(kinds) + 1), f"expected '{usage}'")
+        read = [getattr(self, READERS[each.strip("[]")]) for each in kinds[:count]]
+        return [each(index) for index, each in enumerate(read, 1)]
+
+    def fail(self, index: int, message: str) -> NoReturn:
+        """Raise a ReplayError that points at a word."""
+        problem = Problem(self.file, self.number, self.columns[index], self.text, message, len(self.words[index]))
+        raise ReplayError(str(problem))
+
+    def choice(self, index: int, options: Iterable[str], noun: str) -> str:
+        """Return a word that must be one of the options."""
+        word, options = self.words[index], list(options)
+        if word not in options:
+            hint = did_you_mean(word, options)
+            self.fail(index, f"unknown {noun} {quoted(word)}{hint}; expected one of {', '.join(options)}")
+        return word
+
+    def keys(self, index: int) -> Keys | str:
+        """Parse a key: return its code, those of its modifiers before, or a character that is typed."""
+        word = self.words[index]
+        if word in MODIFIERS:
+            return [self.modifier(word, index)]
+        before, plus, name = word.rpartition("+")
+        if plus and not name and before[-1:] in ("", "+"):  # the key itself is +
+            before, name = before[:-1], plus
+        codes = [self.modifier(each, index) for each in before.split("+")] if before else []
+        if len(name) == 1 and self.types and not codes and not (name.isascii() and name.isalpha()):
+            if self.words[0] != "press":
+                self.fail(index, f"{quoted(word)} is typed, not held; expected a key like Left, d or Shift+d")
+            return name
+        if len(name) == 1:
+            return [*codes, ord(name.lower())]
+        if name.isascii() and name.isdigit() and len(name) <= len(str(max(Key))):
+            return [*codes, int(name)]
+        if name not in KEYS:
+            self.unknown_key(name, index)
+        return [*codes, KEYS[name]]
+
+    def modifier(self, name: str, index: int) -> int:
+        """Return the key of a modifier."""
+        if name not in MODIFIERS:
+            self.unknown_key(name, index)
+        return Key.COMMAND_L if name == "Ctrl" and self.types and sys.platform == "darwin" else MODIFIERS[name]
+
+    def unknown_key(self, name: str, index: int) -> NoReturn:
+        """Refuse a key or a modifier."""
+        hint = did_you_mean(name, (*KEYS, *MODIFIERS))
+        self.fail(index, f"unknown key {quoted(name)}{hint}; expected a key like Tab, a, F5, Ctrl+S or 65307")
+
+    def button(self, index: int) -> int:
+        """Parse the name of a mouse button."""
+        return BUTTONS[self.choice(index, BUTTONS, "button")]
+
+    def direction(self, index: int) -> int:
+        """Parse a direction of the wheel."""
+        return DIRECTIONS[self.choice(index, DIRECTIONS, "direction")]
+
+    def seconds(self, index: int) -> float:
+        """Parse a time in seconds."""
         try:
-            if command not in STEPS:
-                raise ValueError(f"unknown command {command!r}; expected one of {', '.join(STEPS)}")
-            STEPS[command](user, *arguments)
-        except ValueError as error:
-            raise MlxError(f"{file}:{number}: {error}") from error
-        except TypeError as error:  # too few arguments, or too many
-            raise MlxError(f"{file}:{number}: wrong number of arguments for {command!r}") from error
+            value = float(self.words[index])
+        except ValueError:
+            value = -1.0
+        if not 0 <= value <= MAX_SECONDS:
+            self.fail(index, f"expected seconds from 0 to {MAX_SECONDS}, got {quoted(self.words[index])}")
+        return value
+
+    def count(self, index: int) -> int:
+        """Parse a number of steps or of a window."""
+        word = self.words[index]
+        if not (word.isascii() and word.isdigit() and 1 <= int(word[:5]) <= MAX_COUNT):
+            self.fail(index, f"expected a count from 1 to {MAX_COUNT}, got {quoted(word)}")
+        return int(word)
+
+    def pixel(self, index: int) -> tuple[int, int]:
+        """Parse a pixel x,y."""
+        return self.pair(PIXEL, 0, "x,y", index)
+
+    def size(self, index: int) -> tuple[int, int]:
+        """Parse a size WxH in pixels."""
+        return self.pair(SIZE, 1, "WxH", index)
+
+    def pair(self, pattern: re.Pattern[str], low: int, form: str, index: int) -> tuple[int, int]:
+        """Parse two numbers of pixels."""
+        match = pattern.fullmatch(self.words[index])
+        if not match or not all(low <= int(part) <= MAX_PIXELS for part in match.groups()):
+            self.fail(index, f"expected {form}, each from {low} to {MAX_PIXELS}, got {quoted(self.words[index])}")
+        return int(match[1]), int(match[2])
+
+    def rest(self, index: int) -> str:
+        """Return the rest of the line, words with single blanks between."""
+        return " ".join(self.words[index:])
 
 
-def key_codes(text: str) -> list[int]:
-    """Return the codes of a key with the codes of its modifiers before. Raises ValueError."""
-    *modifiers, name = text.split("+") if len(text) > 1 else [text]
-    if unknown := next((word for word in modifiers if word not in MODIFIERS), None):
-        raise ValueError(f"unknown modifier {unknown!r}; expected one of {', '.join(MODIFIERS)}")
-    codes: list[int] = [MODIFIERS[word] for word in modifiers]
-    if len(name) == 1:
-        return [*codes, ord(name.lower())]
-    if name.isascii() and name.isdigit():
-        return [*codes, int(name)]
-    if name not in KEYS:
-        raise ValueError(f"unknown key {name!r}; expected one like a, 1, Escape, PageUp, F5, Shift+a or 65307")
-    return [*codes, KEYS[name]]
+def press(user: Memory, keys: Keys | str) -> None:
+    """Press and release keys, or type a character."""
+    if isinstance(keys, str):
+        user.text(keys)
+    else:
+        user.tap(*keys)
 
 
-def press(user: Headless, key: str) -> None:
-    """Press and release a key."""
-    down(user, key)
-    up(user, key)
+def hold(user: Memory, keys: Keys, seconds: float) -> None:
+    """Hold keys down for some seconds."""
+    down(user, keys)
+    user.wait(seconds)
+    up(user, keys)
 
 
-def hold(user: Headless, key: str, seconds: str) -> None:
-    """Hold a key down for some seconds."""
-    down(user, key)
-    user.wait(amount(seconds))
-    up(user, key)
+def down(user: Memory, keys: Keys) -> None:
+    """Press keys."""
+    for key in keys:
+        user.press(key)
 
 
-def down(user: Headless, key: str) -> None:
-    """Press a key and its modifiers."""
-    for code in key_codes(key):
-        user.press(code)
+def up(user: Memory, keys: Keys) -> None:
+    """Release keys."""
+    for key in reversed(keys):
+        user.release(key)
 
 
-def up(user: Headless, key: str) -> None:
-    """Release a key and its modifiers."""
-    for code in reversed(key_codes(key)):
-        user.release(code)
+def text(user: Memory, characters: str) -> None:
+    """Type characters one by one."""
+    for character in characters.replace(" ", ""):
+        user.text(character)
 
 
-def click(user: Headless, place: str, button: str = "left") -> None:
-    """Click at a place."""
-    user.motion(*position(place))
-    user.click(*position(place), one_of(BUTTONS, button))
+def click(user: Memory, place: tuple[int, int], button: int = Button.LEFT) -> None:
+    """Move to a pixel and click."""
+    user.motion(*place)
+    user.click(*place, button)
 
 
-def drag(user: Headless, start: str, end: str, button: str = "left") -> None:
-    """Drag in a straight line."""
-    (x, y), (to_x, to_y) = position(start), position(end)
+def drag(user: Memory, start: tuple[int, int], end: tuple[int, int], button: int = Button.LEFT) -> None:
+    """Drag from one pixel to another in a straight line."""
+    (x, y), (to_x, to_y) = start, end
     user.motion(x, y)
-    user.button_press(one_of(BUTTONS, button), x, y)
-    for move in range(1, MOVES + 1):
-        user.motion(x + (to_x - x) * move // MOVES, y + (to_y - y) * move // MOVES)
-    user.button_release(one_of(BUTTONS, button), to_x, to_y)
+    user.button_press(button, x, y)
+    for step in range(1, DRAG_MOVES + 1):
+        user.motion(x + (to_x - x) * step // DRAG_MOVES, y + (to_y - y) * step // DRAG_MOVES)
+        user.wait(DRAG_SECONDS / DRAG_MOVES)
+    user.button_release(button, to_x, to_y)
 
 
-def wheel(user: Headless, direction: str, count: str = "1", place: str = "0,0") -> None:
+def wheel(user: Memory, direction: int, count: int = 1, place: tuple[int, int] = (0, 0)) -> None:
     """Turn the wheel."""
-    user.scroll(one_of(DIRECTIONS, direction) * int(amount(count)), *position(place))
+    user.scroll(direction * count, *place)
 
 
-def window(user: Headless, number: str) -> None:
-    """Let the next steps act on another window; they are numbered from 1, the oldest first."""
-    user.do(partial(setattr, user, "selected", max(1, int(amount(number))) - 1))
-
-
-def amount(text: str) -> float:
-    """Return a number. Raises ValueError."""
-    value = float(text)
-    if not 0 <= value <= GREATEST:
-        raise ValueError(f"expected a number from 0 to {GREATEST}, got {text}")
-    return value
-
-
-def position(text: str) -> tuple[int, int]:
-    """Return the numbers of x,y. Raises ValueError."""
-    found = re.fullmatch(r"(\d{1,5}),(\d{1,5})", text)
-    if not found:
-        raise ValueError(f"expected x,y in pixels, got {text!r}")
-    return int(found[1]), int(found[2])
-
-
-def one_of(options: dict[str, Button] | dict[str, int], word: str) -> int:
-    """Return the value of a word. Raises ValueError."""
-    if word not in options:
-        raise ValueError(f"expected one of {', '.join(options)}, got {word!r}")
-    return options[word]
-
-
-STEPS: dict[str, Step] = {
-    "press": press,
-    "hold": hold,
-    "down": down,
-    "up": up,
-    "wait": lambda user, seconds: user.wait(amount(seconds)),
-    "click": click,
-    "drag": drag,
-    "move": lambda user, place: user.motion(*position(place)),
-    "wheel": wheel,
-    "hide": lambda user: user.minimise(True),
-    "show": lambda user: user.minimise(False),
-    "close": lambda user: user.close_button(),
-    "window": window,
-    "picture": lambda user, file: user.do(partial(user.save, Path(file))),
+READERS = {  # methods of `Line` that read the arguments of a usage
+    "KEY": "keys",
+    "seconds": "seconds",
+    "x,y": "pixel",
+    "WxH": "size",
+    "left|middle|right": "button",
+    "up|down": "direction",
+    "count": "count",
+    "NUMBER": "count",
+    "CHARACTERS": "rest",
+    "FILE": "rest",
+}
+COMMANDS: dict[str, tuple[str, Callable[..., None]]] = {  # by their first words
+    usage.split()[0]: (usage, run)
+    for usage, run in (
+        ("press KEY", press),
+        ("hold KEY seconds", hold),
+        ("down KEY", down),
+        ("up KEY", up),
+        ("text CHARACTERS", text),
+        ("wait seconds", lambda user, seconds: user.wait(seconds)),
+        ("click x,y [left|middle|right]", click),
+        ("drag x,y x,y [left|middle|right]", drag),
+        ("move x,y", lambda user, place: user.motion(*place)),
+        ("wheel up|down [count] [x,y]", wheel),
+        ("drop FILE", lambda user, file: user.drop(file)),
+        ("resize WxH", lambda user, size: user.resize(*size)),
+        ("hide", lambda user: user.minimise(True)),
+        ("show", lambda user: user.minimise(False)),
+        ("close", lambda user: user.close_button()),
+        ("window NUMBER", lambda user, number: user.select(number - 1)),
+        ("picture FILE", lambda user, file: user.save(Path(file))),
+    )
 }

@@ -25,9 +25,9 @@ from minirt.meshes import obj, obj_lines
 from minirt.meshes.obj_lines import Block, Counts, ObjError
 from minirt.meshes.triangles import Triangles
 from minirt.mlx.memory import Memory
+from minirt.mlx.recording import add_recording
 from minirt.viewer.app.replay import play
 from minirt.viewer.bindings import BINDINGS, KEYS, MOUSE
-from minirt.viewer.input.recording import add_recording
 from tests.fuzz.mutations import Fuzzer, flip, mutated
 from tests.viewer.fake import TEXT, FakeRenderer, scene
 from tests.viewer.monkey import lines

@@ -10,8 +10,8 @@ from minirt.errors import FileError, MiniRTError, SceneError
 from minirt.fields import scalars
 from minirt.materials import pictures
 from minirt.meshes import obj_lines
+from minirt.mlx.recording import Line
 from minirt.rendering.packing import camera
-from minirt.viewer.input.recording_line import Line
 from tests.fuzz import grammar, inputs, scenes
 from tests.fuzz.mutations import Fuzzer, seeded
 from tests.fuzz.worker import FUZZERS

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from minirt.viewer.input.recording_line import Line
+from minirt.mlx.recording import Line
 from tests.windows import Desktop
 
 NAMES = {

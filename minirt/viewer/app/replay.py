@@ -14,13 +14,13 @@ import numpy as np
 from minirt.image import Image
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
+from minirt.mlx.recording import add_recording
 from minirt.scene import Scene
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Painter, Pixels
 from minirt.viewer.editing.motion import orbit_camera
 from minirt.viewer.editing.projection import scene_centre
-from minirt.viewer.input.recording import add_recording
 
 if TYPE_CHECKING:
     from minirt.rendering.renderer import Renderer
@@ -56,7 +56,7 @@ def play(
     samples: int = 1,
     watch: Callable[[Session], object] = lambda _: None,
 ) -> Session:
-    """Play `lines` (see `minirt.viewer.input.recording`) and return the session at the end.
+    """Play `lines` (see `minirt.mlx.recording`) and return the session at the end.
 
     The same lines give the same frames. `path` is the scene's file, which keys may save and reload; `file` is the name
     of the recording in error messages. `watch` is called with the session sixty times per simulated second.

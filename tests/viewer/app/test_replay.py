@@ -155,7 +155,7 @@ def test_the_camera_goes_to_the_clipboard():
         ("wait -1", 6, "expected seconds"),
         ("hold + 1", 6, "typed, not held"),
         ("  click 1;2", 9, "expected x,y"),
-        ("click 1,2 middle", 11, "expected one of right"),
+        ("click 1,2 top", 11, "expected one of left, middle, right"),
         ("wheel upp", 7, "did you mean 'up'?"),
         ("wheel up 0", 10, "expected a count"),
         ("resize 0x5", 8, "expected WxH"),

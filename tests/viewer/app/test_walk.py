@@ -14,6 +14,7 @@ from PIL import Image
 import minirt
 from minirt.mlx import Mlx
 from minirt.mlx.memory import Memory
+from minirt.mlx.recording import add_recording
 from minirt.scene import Scene, dump, load, parse
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.replay import play
@@ -21,7 +22,6 @@ from minirt.viewer.app.session import Session
 from minirt.viewer.display.help_pages import help_pages
 from minirt.viewer.display.painter import Painter
 from minirt.viewer.editing.state import State
-from minirt.viewer.input.recording import add_recording
 from tests.viewer.app.test_real_window import SIZE, Viewer, viewing
 from tests.viewer.scenes import WITH_CYLINDER
 from tests.viewer.xdotool import do
