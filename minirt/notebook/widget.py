@@ -60,10 +60,8 @@ class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
             size,
             minirt.renderer(threads, precision, dither=dither),
             Mlx(self._backend),
-            keys,
-            lenient=False,
+            keys=keys,
             samples=samples,
-            watch=False,
         )
         window = self._session.window
         super().__init__(width=window.width, height=window.height)

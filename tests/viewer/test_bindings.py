@@ -71,14 +71,6 @@ def test_escape_is_found_with_any_modifiers():
     assert Keymap().find(Key.C, Modifier.ALT) is None
 
 
-def test_azerty_moves_with_the_same_fingers():
-    keymap = Keymap("azerty")
-    found = {key.name: keymap.find(key).action for key in (Key.Q, Key.D, Key.Z, Key.S, Key.A, Key.E)}
-    assert found == {"Q": "left", "D": "right", "Z": "forward", "S": "back", "A": "down", "E": "up"}
-    assert keymap.find(Key.W) is None
-    assert keymap.find(Key.Z, Modifier.ACCEL).action == "undo"
-
-
 @pytest.mark.parametrize(("name", "layout"), [("fr_FR", "azerty"), ("de_DE", "qwerty"), (None, "qwerty")])
 def test_auto_follows_the_locale(monkeypatch, name, layout):
     monkeypatch.setattr("locale.getlocale", lambda: (name, "UTF-8"))

@@ -65,11 +65,6 @@ class TestReload:
         assert (session.picture == colour_of(session.state.scene)).all()
         assert not contents_differ(session.state.scene, session.saved)
 
-    def test_can_be_undone(self, path):
-        session = played(*SELECT_SPHERE, "press -", "press Ctrl+R", "press Ctrl+Z", path=path)
-        assert session.state.scene.spheres[0].diameter < 2
-        assert contents_differ(session.state.scene, session.saved)
-
     def test_of_a_broken_file_keeps_the_picture_and_shows_the_error(self, path):
         path.write_text(TEXT.replace("sp 0,0,0 2", "sp 0,0,0 -2").replace("cy 3", "cy x"))
         session = played("press d", "press F5", path=path)
@@ -85,12 +80,6 @@ class TestReload:
 
 
 class TestRecovery:
-    def test_is_written_beside_the_file(self, path):
-        changed = played(*SELECT_SPHERE, "press Delete", path=path).state.scene
-        copy = save_recovery(changed, path)
-        assert copy == path.with_name("scene.recovered.rt")
-        assert load(copy).scene.items == changed.items
-
     @pytest.mark.skipif(os.name == "nt", reason="a folder that does not exist is the same everywhere else")
     def test_goes_to_a_temporary_folder_if_that_fails(self, tmp_path):
         copy = save_recovery(scene(), tmp_path / "none" / "scene.rt")

@@ -16,7 +16,7 @@ from minirt.viewer.files import signature
 from minirt.viewer.recovery import KEPT, FoundChanges, Recovery, Version, find_changes, state_folder
 from tests.guards import must_end, must_not_open
 from tests.viewer.fake import TEXT
-from tests.viewer.kill import Trial, trial
+from tests.viewer.kill import trial
 
 OTHER = TEXT.replace("sp 0,0,0 2", "sp 0,0,0 7")
 
@@ -157,11 +157,6 @@ def test_a_full_disk_gives_one_notice_and_the_next_change_tries_again(recovery, 
 def test_a_killed_program_leaves_a_whole_version(tmp_path, wait):
     result = trial(tmp_path, wait, edits=40)
     assert result.flushed <= result.recovered <= len(result.kept) + 1  # one may be on disk before it is reported
-
-
-def test_losses_are_counted_from_the_first_lost_edit():
-    assert Trial([1.0, 2.0, 3.0], 0, 1, 3.5).lost == 1.5
-    assert Trial([1.0, 2.0, 3.0], 3, 3, 3.5).lost == 0.0
 
 
 def test_the_newest_changes_are_found(path):

@@ -31,6 +31,8 @@ from minirt.viewer.recovery import find_changes
 
 TEXT_SCALES = (0.5, 4.0)  # least and largest
 TEXT_STEP = 2**0.25  # factor of a key press
+DELETED = "{} was deleted by another program: {} writes it again"
+UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and keeps the other as a copy"
 
 
 def save_a_copy(session: Session) -> None:
@@ -104,15 +106,6 @@ def toggle_full_screen(session: Session) -> None:
     """Let the window fill the screen, or give it its former size."""
     session.full_screen = not session.full_screen
     session.mlx.mlx_set_fullscreen(session.window, session.full_screen)
-
-
-def quit(session: Session) -> None:
-    """End the session."""
-    session.quit()
-
-
-DELETED = "{} was deleted by another program: {} writes it again"
-UNSAVED = "{} was changed by another program: {} reads it, {} saves yours and keeps the other as a copy"
 
 
 def save_scene(session: Session) -> None:
@@ -227,5 +220,5 @@ COMMANDS: dict[str, Callable[[Session], None]] = {
     "smaller text": scale_text(1 / TEXT_STEP),
     "usual text": reset_text,
     "toggle full screen": toggle_full_screen,
-    "quit": quit,
+    "quit": Session.quit,
 }

@@ -8,7 +8,7 @@ import zlib
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import numpy as np
 
@@ -27,7 +27,6 @@ from minirt.viewer.files import contents_differ, save_recovery
 from minirt.viewer.recovery import Recovery
 
 if TYPE_CHECKING:
-    from minirt.mlx.display import Display
     from minirt.rendering.renderer import Renderer
 
 OK, INTERRUPTED = 0, 130
@@ -63,8 +62,8 @@ def run(
     If the renderer cannot be stopped (inside the compiler), the process ends here at once.
     """
     use_one_heap()
-    renderer = renderer or minirt.renderer(threads)
-    session = open_session(scene, Path(path), size, renderer, mlx or Mlx(), keys, lenient, samples, watch, saved)
+    options = {"keys": keys, "lenient": lenient, "samples": samples, "watch": watch, "saved": saved}
+    session = open_session(scene, Path(path), size, renderer or minirt.renderer(threads), mlx or Mlx(), **options)
     session.screen.text_scale = text_scale
     session.recovery = Recovery()
     offer_found(session)
@@ -97,7 +96,7 @@ def view(
     check_scene(scene, "view")
     renderer = minirt.renderer(threads, precision, dither=dither)
     path = scene.file or Path("scene.rt")
-    session = open_session(scene, path, size, renderer, mlx or Mlx(), keys, lenient=False, samples=samples, watch=False)
+    session = open_session(scene, path, size, renderer, mlx or Mlx(), keys=keys, samples=samples)
     status, _ = run_event_loop(session)
     if status == INTERRUPTED:
         raise KeyboardInterrupt
@@ -105,36 +104,18 @@ def view(
 
 
 def open_session(
-    scene: Scene,
-    path: Path,
-    size: tuple[int, int] | None,
-    renderer: Renderer,
-    mlx: Mlx,
-    keys: str,
-    lenient: bool,
-    samples: int,
-    watch: bool,
-    saved: Scene | None = None,
+    scene: Scene, path: Path, size: tuple[int, int] | None, renderer: Renderer, mlx: Mlx, **options: Any
 ) -> Session:
-    """Open a session with its window, connected to the window's events. MlxError."""
+    """Open a session with its window, connected to the window's events; `options` are those of `Session`. MlxError."""
     mlx.mlx_set_options(strict=True)
     display = mlx.mlx_init()
     try:
         with gc_paused():
-            session = Session(
-                mlx,
-                display,
-                scene,
-                path=path,
-                size=fit_screen(mlx, display, size or minirt.size_of(scene)),
-                painter=partial(BackgroundPainter, renderer),
-                pick=renderer.pick,
-                keys=keys,
-                lenient=lenient,
-                samples=samples,
-                watch=watch,
-                saved=saved,
-            )
+            _, *screen = mlx.mlx_get_screen_size(display)
+            wanted = size or minirt.size_of(scene)
+            fitting = min(wanted[0], screen[0]), min(wanted[1], screen[1])
+            painter = partial(BackgroundPainter, renderer)
+            session = Session(mlx, display, scene, path, fitting, painter, renderer.pick, **options)
             EventDispatcher(session).connect()
             mlx.mlx_set_window_icon(session.window, application_icons())
             return session
@@ -175,12 +156,6 @@ def run_event_loop(session: Session) -> tuple[int, bool]:
         session.file.close()
         stopped = session.refinement.painter.close(STOP_TIMEOUT)
     return statuses[0] if statuses else OK, stopped
-
-
-def fit_screen(mlx: Mlx, display: Display, size: tuple[int, int]) -> tuple[int, int]:
-    """Return the size of a window, reduced to that of the screen if it is larger."""
-    _, width, height = mlx.mlx_get_screen_size(display)
-    return min(size[0], width), min(size[1], height)
 
 
 def end_recovery(session: Session) -> None:

@@ -68,10 +68,10 @@ def play(
     add_recording(lines, file, memory)
     mlx = Mlx(memory)
     display = mlx.mlx_init()
+    painter = partial(Painter, renderer)
     session = Session(
-        mlx, display, scene, path=Path(path), size=size, painter=partial(Painter, renderer), pick=renderer.pick,
-        keys=keys, lenient=lenient, samples=samples,
-    )  # fmt: skip
+        mlx, display, scene, Path(path), size, painter, renderer.pick, keys=keys, lenient=lenient, samples=samples
+    )
     EventDispatcher(session).connect()
     memory.after_tick = lambda: watch(session)
     try:

@@ -15,6 +15,7 @@ from minirt.rendering.queries.pick import pick, surface_point
 from minirt.scene import Camera
 from minirt.scene.elements import linear_combination
 from minirt.shapes import Shape
+from minirt.viewer.editing.adding import dropped, stand
 from minirt.viewer.editing.motion import (
     WORLD_AXES,
     can_turn,
@@ -27,7 +28,6 @@ from minirt.viewer.editing.motion import (
     turn_camera,
 )
 from minirt.viewer.editing.projection import UP, Projection, aim, extent, projection_of, scene_centre, subtract
-from minirt.viewer.editing.standing import dropped, stand
 from minirt.viewer.editing.state import State
 
 PIXEL_CENTRE = 0.5  # pixels

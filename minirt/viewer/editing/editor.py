@@ -22,7 +22,8 @@ from minirt.errors import ElementError, FieldError
 from minirt.fields import Colour, Count, Field, MeshFile, Point, number
 from minirt.scene import Camera
 from minirt.scene.elements import camera_frame
-from minirt.viewer.editing import motion, standing, structure
+from minirt.viewer.editing import motion, structure
+from minirt.viewer.editing.adding import drop, keep_standing
 from minirt.viewer.editing.motion import (
     WORLD_AXES,
     can_turn,
@@ -33,7 +34,6 @@ from minirt.viewer.editing.motion import (
     turn_axis,
     turn_camera,
 )
-from minirt.viewer.editing.standing import keep_standing
 from minirt.viewer.editing.state import (
     Frame,
     State,
@@ -146,7 +146,7 @@ def change_value(sign: float, state: State, amount: float, now: float) -> State:
     new = state.element.replace(
         **{active.field.name: active.stepped(state.element, sign * amount, partial(next_file, state.scene))}
     )
-    changed = state.edit_element(standing.keep_standing(state, new), f"value {active.name}", now)
+    changed = state.edit_element(keep_standing(state, new), f"value {active.name}", now)
     if changed is state:
         value = active.get(state.element)
         if isinstance(value, str | MeshFile):
@@ -200,7 +200,7 @@ EDITS: dict[str, Edit] = {
     "shrink": partial(change_value, -1.0),
     "nearer": partial(turn_wheel, 1.0),
     "farther": partial(turn_wheel, -1.0),
-    "drop": standing.drop,
+    "drop": drop,
     "next value": next_value,
     "add attribute": structure.add_attribute,
     "remove attribute": structure.remove_attribute,

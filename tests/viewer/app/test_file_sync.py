@@ -7,7 +7,7 @@ import pytest
 from minirt.errors import SceneError
 from minirt.mlx import Key
 from minirt.scene import load
-from minirt.viewer.app.commands import follow_change, open_another, save_scene
+from minirt.viewer.app.commands import open_another, save_scene
 from minirt.viewer.files import WatchedFile
 from tests.viewer.fake import TEXT, colour_of, scene
 from tests.viewer.session_harness import SessionHarness
@@ -187,12 +187,6 @@ class TestDrop:
         assert harness.session.state.scene is before
         assert harness.session.path == path
         assert name in harness.session.state.message
-
-
-def test_a_change_is_followed_without_the_watching_thread(harness, path):
-    write(path, OTHER)
-    follow_change(harness.session)
-    assert harness.session.state.scene.spheres[0].diameter == 7
 
 
 def test_a_file_that_cannot_be_written_is_not_copied_first(harness, path):

@@ -135,13 +135,6 @@ def test_an_error_of_picking_is_a_message_over_the_picture() -> None:
     assert "brick.png" in harness.session.state.message
 
 
-def test_an_unknown_exception_ends_the_program_with_a_render_error():
-    harness = SessionHarness()
-    harness.painter.renderer.error = ZeroDivisionError("division by zero")
-    with pytest.raises(RenderError, match="ZeroDivisionError: division by zero"):
-        harness.finish(0.001)
-
-
 def test_a_screenshot_waits_for_the_final_picture(tmp_path):
     harness = SessionHarness(samples=4)
     harness.session.path = tmp_path / "scene.rt"

@@ -19,8 +19,8 @@ from minirt.scene import Scene, dump, load, parse
 from minirt.viewer.app.events import EventDispatcher
 from minirt.viewer.app.replay import play
 from minirt.viewer.app.session import Session
-from minirt.viewer.display.help_pages import help_pages
 from minirt.viewer.display.painter import Painter
+from minirt.viewer.display.screen import help_pages
 from minirt.viewer.editing.state import State
 from tests.viewer.app.test_real_window import SIZE, Viewer, viewing
 from tests.viewer.scenes import WITH_CYLINDER
@@ -74,19 +74,18 @@ FROZEN_CLOCK = "tests.viewer.frozen_clock"
 class Twin:
     """A viewer on the screen, with a frozen clock, and a session in memory that gets the same input."""
 
-    def __init__(self, viewer: Viewer, folder: Path, keys: str = "qwerty") -> None:
+    def __init__(self, viewer: Viewer, folder: Path) -> None:
         self.viewer = viewer
         folder.mkdir()
         self.path = folder / "twin.rt"
         self.path.write_text(WITH_CYLINDER)
-        self.keys = keys
         self.renderer = minirt.renderer(None)
         self.lines: list[str] = []
         self.memory = Memory()
         mlx = Mlx(self.memory)
         self.session = Session(
             mlx, mlx.mlx_init(), self.start, path=self.path, size=SIZE, painter=partial(Painter, self.renderer),
-            pick=self.renderer.pick, keys=keys,
+            pick=self.renderer.pick, keys="qwerty",
         )  # fmt: skip
         EventDispatcher(self.session).connect()
 
@@ -102,7 +101,7 @@ class Twin:
     @property
     def help_pages(self) -> int:
         """The number of pages of the help, each of which a press of its key turns."""
-        return len(help_pages(self.keys, *SIZE, self.session.screen.text_size).pages)
+        return len(help_pages("qwerty", *SIZE, self.session.screen.text_size).pages)
 
     def do(self, *lines: str) -> None:
         """Perform lines of a recording in both."""
@@ -113,7 +112,7 @@ class Twin:
 
     def replayed(self) -> State:
         """Return the state after all lines are replayed at once, as by `miniRT --replay`."""
-        return play(self.start, self.lines, renderer=self.renderer, size=SIZE, path=self.path, keys=self.keys).state
+        return play(self.start, self.lines, renderer=self.renderer, size=SIZE, path=self.path).state
 
     def check_agreement(self) -> None:
         """Wait until the window shows the picture of the session in memory, except where a message is; then save.
@@ -207,29 +206,3 @@ def check_following(viewer: Viewer, edited: Scene) -> None:
     assert np.array_equal(viewer.desktop.screenshot(viewer.window)[half], brighter[half])
     write(WITH_CYLINDER)
     viewer.shows(still(parse(WITH_CYLINDER).scene))
-
-
-LETTERS = ["q", "d", "d", "z", "z", "z", "s", "a", "e", "e"]
-TYPED = [".", ".", ".", ",", "+", "+", "+", "-"]
-CHORDS = ["Ctrl+Z", "Ctrl+Z", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z", "Tab", "Tab", "v", "Shift+N", "n", "Return", "e"]
-
-
-def test_the_keys_of_azerty_match_the_replay(desktop, tmp_path):
-    desktop.run("setxkbmap", "fr")
-    try:
-        with viewing(desktop, tmp_path / "scene.rt", options=("--keys", "azerty"), program=FROZEN_CLOCK) as viewer:
-            viewer.key("i", "i")
-            viewer.shows(still(load(viewer.path).scene))
-            twin = Twin(viewer, tmp_path / "twin", "azerty")
-            twin.do("move 160,120", *(f"press {key}" for key in (*LETTERS, *TYPED, *CHORDS)))
-            played = twin.state.scene
-            assert played.items == twin.replayed().scene.items
-            viewer.shows(still(played))
-            twin.do("press ?")
-            until(lambda: desktop.screenshot(viewer.window).mean() < still(played).mean() / 2, "the help")
-            twin.do(*["press ?"] * twin.help_pages, "press Ctrl+S")
-            until(lambda: viewer.path.read_text() == dump(played), "the saved file")
-            viewer.key("Escape")
-            assert viewer.end() == (0, "", "")
-    finally:
-        desktop.run("setxkbmap", "us")

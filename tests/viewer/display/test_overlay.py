@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from minirt.mlx import Key
 from minirt.mlx.text import measure
 from minirt.viewer.bindings import BINDINGS, FINE_NOTE
-from minirt.viewer.display import help_pages
-from minirt.viewer.display.help_pages import draw_help, width_of
+from minirt.viewer.display import screen
 from minirt.viewer.display.overlay import (
     MARGIN,
     PADDING,
@@ -28,6 +27,7 @@ from minirt.viewer.display.overlay import (
     text_size,
 )
 from minirt.viewer.display.painter import Job, Outcome
+from minirt.viewer.display.screen import draw_help, width_of
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.state import initial_state
 from tests.viewer.fake import TEXT, scene
@@ -170,9 +170,9 @@ SIZES = [(320, 240), (640, 480), (1280, 720), (1900, 300), (3840, 2160)]
 DARK = 255 // 4
 
 
-def table(width: int, height: int) -> help_pages.Help:
+def table(width: int, height: int) -> screen.Help:
     """Return the help of a window of that size."""
-    return help_pages.help_pages("qwerty", width, height, text_size(width, height, overlay_scale(width, height, 1, 1)))
+    return screen.help_pages("qwerty", width, height, text_size(width, height, overlay_scale(width, height, 1, 1)))
 
 
 def drawn(width: int, height: int, number: int) -> NDArray[np.uint8]:

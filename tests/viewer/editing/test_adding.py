@@ -14,7 +14,7 @@ from minirt.viewer.editing.adding import addable_kinds, default_element
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import State, initial_state
-from tests.viewer.fake import TEXT, played, scene
+from tests.viewer.fake import TEXT, scene
 
 BARE = "A 0.2 255,255,255\nC 3,1,4 0.6,-0.2,0.7 50 roll:30\n"
 
@@ -71,17 +71,6 @@ def test_after_an_edit_another_element_of_the_same_kind_is_added() -> None:
         assert type(other.element) is kind
         if action != "undo":
             assert len(other.scene.elements) == len(state.scene.elements) + 1
-
-
-def test_a_new_element_is_written_at_the_end_of_the_file(tmp_path) -> None:
-    path = tmp_path / "scene.rt"
-    path.write_text(TEXT)
-    played("press N", "press Ctrl+S", path=path)
-    old, new = TEXT.splitlines(), path.read_text().splitlines()
-    assert new[: len(old)] == old
-    assert [line[:3] for line in new[len(old) :]] == ["sp "]
-    assert len(new[-1].split()[1].split(",")) == 3
-    assert len(new[-1]) < 40
 
 
 def test_undo_restores_the_selection() -> None:

@@ -26,7 +26,7 @@ from minirt.shapes.ellipsoid import Ellipsoid
 from minirt.shapes.mesh import Mesh
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
-from minirt.viewer.editing.adding import addable_kinds, default_record
+from minirt.viewer.editing.adding import addable_kinds
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import projection_of
 from minirt.viewer.editing.state import State, field_names, index_of, initial_state, position_of
@@ -237,13 +237,3 @@ def test_repeating_replaces_an_attribute_only_directly_after_adding_it() -> None
     assert shiny.element.specular.share == pytest.approx(0.55)
     assert "no attribute" in apply(shiny.select(0), "remove attribute").message
     assert apply(both, "remove attribute").element == shiny.element
-
-
-def test_every_kind_is_made_from_its_table_alone() -> None:
-    state = initial_state(parse(BARE).scene)
-    for kind in ADDED:
-        if kind is Mesh:
-            with pytest.raises(LookupError, match="no mesh beside"):
-                default_record(kind, state)
-            continue
-        assert type(default_record(kind, state)) is kind

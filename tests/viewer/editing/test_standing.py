@@ -14,10 +14,9 @@ from minirt.scene import Scene, load
 from minirt.shapes import Shape
 from minirt.shapes.box import Box
 from minirt.shapes.sphere import Sphere
-from minirt.viewer.editing.adding import addable_kinds, default_element
+from minirt.viewer.editing.adding import addable_kinds, default_element, dropped
 from minirt.viewer.editing.editor import apply
 from minirt.viewer.editing.projection import SHARE, Aim, aim, looked_at_distance, projection_of
-from minirt.viewer.editing.standing import dropped
 from minirt.viewer.editing.state import State, initial_state
 from tests.viewer.fake import scene
 
