@@ -19,7 +19,7 @@ from PIL import Image
 from minirt.cli import main
 from minirt.errors import FileError, ReplayError
 from minirt.helpers.system import limit_memory
-from minirt.materials import picture_cache
+from minirt.materials import pictures
 from minirt.materials.pictures import SIDE
 from minirt.meshes import obj, obj_lines
 from minirt.meshes.obj_lines import Block, Counts, ObjError
@@ -214,7 +214,7 @@ FORMATS = (
 XPM = b'/* XPM */\nstatic char *a[] = {\n"2 2 2 1",\n"a c #FF8800",\n"b c #0000FF",\n"ab",\n"ba"\n};\n'
 RADIANCE = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 8\n" + 2 * (b"\2\2\0\10" + 4 * b"\x88\x80")
 SIZE = (9, 7)
-READERS = (picture_cache.picture, picture_cache.heights, picture_cache.sky)
+READERS = (pictures.picture, pictures.heights, pictures.sky)
 
 
 @cache
@@ -254,7 +254,7 @@ def check_picture(data: bytes) -> str:
             check_message(str(error), path)
             continue
         accepted += 1
-        assert pixels.ndim == (2 if read is picture_cache.heights else 3)
+        assert pixels.ndim == (2 if read is pictures.heights else 3)
         assert 0 < pixels.size <= 3 * SIDE**2
         assert np.isfinite(pixels).all()
     assert accepted or data not in originals(), "a good picture is refused"
