@@ -51,32 +51,19 @@ class Chord(NamedTuple):
     modifiers: Modifier = Modifier.NONE
 
 
-def key_named(name: str) -> Key | None:
-    """Return the key with this name (`Tab`, `PageUp`, `a`, `F5`), or None."""
-    return KEYS.get(name.upper() if len(name) == 1 else name)
-
-
 def parse_chord(spelling: str) -> Chord:
-    """Parse the spelling of a chord. ValueError with the unknown part as message."""
+    """Parse the spelling of a chord of the table. KeyError for an unknown key or modifier."""
     before, plus, name = spelling.rpartition("+")
-    if plus and not name and before[-1:] in ("", "+"):  # the key itself is +
+    if plus and not name:  # the key itself is +
         before, name = before[:-1], plus
-    modifier_names = before.split("+") if before else []
     modifiers = Modifier.NONE
-    for word in modifier_names:
-        if word not in MODIFIERS:
-            raise ValueError(word)
+    for word in filter(None, before.split("+")):
         modifiers |= MODIFIERS[word]
     if name in MOUSE:
         return Chord(MOUSE[name], modifiers)
-    key = key_named(name)
-    if key is not None:
-        return Chord(key, modifiers)
-    if len(name) == 1 and not name.isalnum() and not modifier_names:
-        return Chord(name)
-    if len(name) == 1 and modifiers == Modifier.ACCEL and name in PRINTED:
-        return Chord(PRINTED[name], modifiers)
-    raise ValueError(name)
+    if len(name) == 1 and not name.isalpha():
+        return Chord(PRINTED[name], modifiers) if modifiers else Chord(name)
+    return Chord(KEYS[name.upper() if len(name) == 1 else name], modifiers)
 
 
 def platform_spelling(spelling: str) -> str:

@@ -102,29 +102,24 @@ class WatchedFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._known = signature(path)
-        self._reported = self._known
+        self.known = signature(path)  # as it was last read or written here
+        self._reported = self.known
         self._closed = threading.Event()
 
     def accept(self, seen: Signature) -> None:
         """Record the signature of the file as it was just read or written here."""
-        self._known = self._reported = seen
-
-    @property
-    def known(self) -> Signature:
-        """The signature of the file as it was last read or written here."""
-        return self._known
+        self.known = self._reported = seen
 
     @property
     def missing(self) -> bool:
         """Whether the file was there, and is not any more."""
-        return self._known is not None and signature(self.path) is None
+        return self.known is not None and signature(self.path) is None
 
     @property
     def changed(self) -> bool:
         """Whether another program has written the file since."""
         now = signature(self.path)
-        return now is not None and now != self._known
+        return now is not None and now != self.known
 
     def watch(self, notify: Callable[[], object]) -> None:
         """Start a thread that calls `notify` when the file was changed or deleted and two checks found it the same."""
@@ -173,28 +168,26 @@ def children(folder: Path) -> list[Path]:
         return []
 
 
-def is_usable_picture(scene: Scene, name: str) -> bool:
-    """Whether a scene line can spell the name and the file holds a picture."""
+def read_picture(scene: Scene, name: str) -> str | None:
+    """Return the name; None if a scene line cannot spell it or the file holds no picture."""
     from minirt.materials.pictures import picture  # loads numpy and Pillow, which no other key needs
 
-    try:
+    with suppress(FieldError, FileError):
         picture(scene.beside(file_name(name, ",")))
-    except (FieldError, FileError):
-        return False
-    return True
-
-
-def pictures(scene: Scene) -> Iterator[str]:
-    """Yield the names of the usable pictures."""
-    return (name for name in asset_names(scene) if is_usable_picture(scene, name))
+        return name
+    return None
 
 
 def read_mesh(scene: Scene, name: str) -> MeshFile | None:
     """Read a mesh; None if a scene line cannot spell the name or the file holds no mesh."""
-    try:
+    with suppress(FieldError, FileError):
         return MeshFile(file_name(name), load_mesh(scene.beside(name)))
-    except (FieldError, FileError):
-        return None
+    return None
+
+
+def pictures(scene: Scene) -> Iterator[str]:
+    """Yield the names of the usable pictures."""
+    return filter(None, (read_picture(scene, name) for name in asset_names(scene)))
 
 
 def meshes(scene: Scene) -> Iterator[MeshFile]:
@@ -205,9 +198,10 @@ def meshes(scene: Scene) -> Iterator[MeshFile]:
 def next_file(scene: Scene, file: str | MeshFile, steps: float) -> str | MeshFile:
     """Return the next usable picture or mesh after `file`, cyclically; the previous one if `steps` is negative."""
     if isinstance(file, MeshFile):
-        candidates = cycle_after(asset_names(scene, MESH_SUFFIXES), file.name, steps)
-        return next(filter(None, (read_mesh(scene, each) for each in candidates)), file)
-    return next((each for each in cycle_after(asset_names(scene), file, steps) if is_usable_picture(scene, each)), file)
+        names = cycle_after(asset_names(scene, MESH_SUFFIXES), file.name, steps)
+        return next(filter(None, (read_mesh(scene, name) for name in names)), file)
+    names = cycle_after(asset_names(scene), file, steps)
+    return next(filter(None, (read_picture(scene, name) for name in names)), file)
 
 
 def cycle_after(names: list[str], name: str, steps: float) -> list[str]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 from minirt.errors import SceneError
@@ -75,31 +76,11 @@ def toggle_hud(session: Session) -> None:
     session.screen.level = HudLevel((session.screen.level + 1) % len(HudLevel))
 
 
-def toggle_icons(session: Session) -> None:
-    """Show or hide the icons of lights."""
-    session.screen.marks.icons = not session.screen.marks.icons
-
-
-def toggle_help(session: Session) -> None:
-    """Show the table of keys, its next page, or after the last page the picture."""
-    session.screen.turn_help_page()
-
-
-def scale_text(factor: float) -> Callable[[Session], None]:
-    """Return a command that makes the text larger or smaller."""
-
-    def command(session: Session) -> None:
-        screen = session.screen
-        screen.text_scale = min(max(screen.text_scale * factor, TEXT_SCALES[0]), TEXT_SCALES[-1])
-        session.state = session.state.with_message(f"text: {screen.text_scale:.0%}")
-
-    return command
-
-
-def reset_text(session: Session) -> None:
-    """Give the text its usual size."""
-    session.screen.text_scale = 1.0
-    session.state = session.state.with_message("text: 100%")
+def scale_text(session: Session, factor: float) -> None:
+    """Make the text larger or smaller; 0 gives it its usual size."""
+    screen = session.screen
+    screen.text_scale = min(max(screen.text_scale * factor, TEXT_SCALES[0]), TEXT_SCALES[-1]) if factor else 1.0
+    session.state = session.state.with_message(f"text: {screen.text_scale:.0%}")
 
 
 def toggle_full_screen(session: Session) -> None:
@@ -214,11 +195,11 @@ COMMANDS: dict[str, Callable[[Session], None]] = {
     "copy camera": copy_camera,
     "focus": focus,
     "toggle HUD": toggle_hud,
-    "toggle icons": toggle_icons,
-    "toggle help": toggle_help,
-    "larger text": scale_text(TEXT_STEP),
-    "smaller text": scale_text(1 / TEXT_STEP),
-    "usual text": reset_text,
+    "toggle icons": lambda session: session.screen.marks.toggle_icons(),
+    "toggle help": lambda session: session.screen.turn_help_page(),
+    "larger text": partial(scale_text, factor=TEXT_STEP),
+    "smaller text": partial(scale_text, factor=1 / TEXT_STEP),
+    "usual text": partial(scale_text, factor=0.0),
     "toggle full screen": toggle_full_screen,
     "quit": Session.quit,
 }

@@ -7,10 +7,11 @@ any key that means nothing to the list leaves it there, as the last change.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
-from minirt.element import fields_of
 from minirt.mlx import Key
 from minirt.viewer.app.session import Session
 from minirt.viewer.display.overlay import Panel
@@ -81,6 +82,7 @@ class Choice(NamedTuple):
 
     title: str
     key: int | str  # number of a kind of element, or name of an attribute
+    make: Callable[[float], State]  # adds it at a time
 
 
 class Choosing:
@@ -110,7 +112,7 @@ class Choosing:
             self._letters = ""
             self._of_elements = action in ADDING
             self._before = before
-            self._choices = list(element_choices(before) if self._of_elements else attribute_choices(before))
+            self._choices = element_choices(before) if self._of_elements else attribute_choices(before)
         self.show()
 
     def end(self) -> None:
@@ -150,14 +152,9 @@ class Choosing:
     def choose(self, choice: Choice) -> None:
         """Replace the last choice in the scene by another one."""
         session = self.session
-        state = session.state.with_message("")
-        if isinstance(choice.key, int):
-            state = structure.add_kind(choice.key, state, session.now)
-        else:
-            state = structure.add_named(choice.key, state, session.now)
-        session.state = state
+        session.state = choice.make(session.now)
         self.show()
-        session.show(state)
+        session.show(session.state)
 
     def cancel(self) -> None:
         """Take the last choice out of the scene again, and close the list."""
@@ -199,12 +196,17 @@ class Choosing:
 
 def element_choices(state: State) -> list[Choice]:
     """The kinds of elements that can be added to a scene."""
-    kinds = addable_kinds(state.scene)
-    made = structure.default_elements(kinds, range(len(kinds)), state)
-    return [Choice(kinds[number].title, number) for number, _ in made]
+    before = structure.before_adding(state, structure.ELEMENT)
+    kinds = addable_kinds(before.scene)
+    made = structure.default_elements(kinds, range(len(kinds)), before)
+    return [Choice(kinds[number].title, number, partial(structure.added, before, number, new)) for number, new in made]
 
 
 def attribute_choices(state: State) -> list[Choice]:
     """The attributes that the selected element lacks."""
-    titles = {field.name: field.title for field in fields_of(type(state.element))}
-    return [Choice(titles[field.name], field.name) for field, _ in structure.missing_attributes(state.element, state)]
+    before = structure.before_adding(state, structure.ATTRIBUTE)
+    missing = structure.missing_attributes(before.element, before)
+    return [
+        Choice(field.title, field.name, partial(structure.with_attribute, before, field.name, value))
+        for field, value in missing
+    ]

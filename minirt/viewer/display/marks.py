@@ -61,6 +61,10 @@ class Marks:
             self._outline, self._outline_key = outline_pixels(shape, camera, width, height, rays), key
         return self._outline
 
+    def toggle_icons(self) -> None:
+        """Show or hide the icons of all lights."""
+        self.icons = not self.icons
+
     def visible_icons(self, scene: Scene, selected: int | None, view: Projection, scale: float) -> list[Icon]:
         """Return the icons that are shown: all if the user wants them, else that of the selected element."""
         return place_icons(scene, icon_owners(scene, selected, self.icons), view, scale)

@@ -79,18 +79,6 @@ def add(step: int, state: State, _amount: float, now: float) -> State:
     return added(before, number, element, now)
 
 
-def add_kind(number: int, state: State, now: float) -> State:
-    """Add an element of the kind with this number, or replace the one that was just added."""
-    before = before_adding(state)
-    return next(
-        (
-            added(before, number, made, now)
-            for _, made in default_elements(addable_kinds(before.scene), [number], before)
-        ),
-        state,
-    )
-
-
 def added(before: State, number: int, element: Element, now: float) -> State:
     """The state with a new element, which is selected. The first shape of a scene without any lamp brings one."""
     last = len(before.scene.elements) - 1
@@ -113,13 +101,6 @@ def add_attribute(state: State, _amount: float, now: float) -> State:
     names = [field.name for field, _ in missing]
     number = (names.index(last) + 1) % len(missing) if last in names else 0
     return with_attribute(before, missing[number][0].name, missing[number][1], now)
-
-
-def add_named(name: str, state: State, now: float) -> State:
-    """Add the attribute of this name, or replace the one that was just added."""
-    before = before_adding(state, ATTRIBUTE)
-    value = next((value for field, value in missing_attributes(before.element, before) if field.name == name), None)
-    return state if value is None else with_attribute(before, name, value, now)
 
 
 def with_attribute(before: State, name: str, value: Any, now: float) -> State:
