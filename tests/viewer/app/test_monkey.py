@@ -16,7 +16,7 @@ from tests.viewer.scenes import WITH_CYLINDER
 MAX_GROWTH = 40e6  # bytes: pictures of other sizes may need them
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_random_input_in_memory_loses_nothing(seed: int, tmp_path) -> None:
     path = tmp_path / "scene.rt"
     path.write_text(WITH_CYLINDER)
@@ -40,10 +40,10 @@ def test_random_input_in_memory_loses_nothing(seed: int, tmp_path) -> None:
 
 @pytest.mark.window
 def test_random_input_in_a_window_causes_no_error_and_no_leak(desktop, tmp_path) -> None:
-    report = monkey.run_monkey(desktop, lambda done: done / 180, 1, tmp_path)
+    report = monkey.run_monkey(desktop, lambda done: done / 105, 1, tmp_path)
     assert (report.status, report.errors) == (0, "")
     assert report.record.after.memory < report.record.before.memory + MAX_GROWTH
-    assert report.lines >= 180
+    assert report.lines >= 105
 
 
 @pytest.mark.window
