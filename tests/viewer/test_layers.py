@@ -8,7 +8,7 @@ import pytest
 
 from tests.paths import PACKAGE
 
-LAYERS = ("bindings", "key_repeat", "input", "files", "recovery", "editing", "display", "app")  # lowest first
+LAYERS = ("bindings", "key_repeat", "files", "recovery", "editing", "display", "app")  # lowest first
 IMPORT = re.compile(r"^\s*(?:from|import) minirt\.viewer\.(\w+)", re.MULTILINE)
 
 
