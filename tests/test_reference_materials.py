@@ -18,8 +18,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from tests.reference import LEAST, light_along, render, sky
-from tests.reference.normals import normals
-from tests.reference.uv_mapping import surface_point
+from tests.reference.uv_mapping import normals, surface_point
 from tests.reference.vectors import dot, unit
 
 WHITE, BLACK, GREY = (255, 255, 255), (0, 0, 0), (51, 51, 51)

@@ -1,19 +1,30 @@
-"""All features in one scene: the compiled kernel renders the picture that the interpreted kernel renders."""
+"""Whole frames: all features in one scene as interpreted, cancelled frames, and single precision."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image as pillow  # noqa: N813
 
+from minirt.kernel import frame
+from minirt.kernel import interpreted as kernel
+from minirt.kernel.frame import CANCELLED
+from minirt.kernel.pixels import TILE
+from minirt.lanes import Vec
 from minirt.materials import Bump, Checker, Glass, Mirror, Specular, Tint
-from minirt.scene import Background, FurtherLight, Light, ParallelLight, Scene, SpotLight
+from minirt.rendering import Renderer
+from minirt.rendering.frame import frame_arguments
+from minirt.rendering.scene_packing import Packing
+from minirt.scene import Background, Camera, FurtherLight, Light, ParallelLight, Scene, SpotLight
 from minirt.shapes.cylinder import Cylinder
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from tests.kernel.pictures import AMBIENT, BLUE, EYE, GREEN, ONE, RED, WHITE, interpreted, picture
+from tests.kernel.pictures import ALL, AMBIENT, BLUE, EYE, GREEN, ONE, RED, WHITE, interpreted, linear, picture
+from tests.kernel.test_invariances import changed, interior, scaled
+from tests.random_scenes import random_scene
 
 
 @pytest.fixture
@@ -78,3 +89,110 @@ def test_each_feature_changes_the_picture(scene: Scene, element_type: type, chan
     element = next(each for each in scene.elements if type(each) is element_type)
     without = scene.replace(element, **change)
     assert (interpreted(scene, 16, 10)[1] != interpreted(without, 16, 10)[1]).any(axis=-1).mean() > 0.02
+
+
+WIDTH, HEIGHT, SAMPLES = 40, 24, 2
+PACKETS = 10 * 6 * SAMPLES
+
+
+class Counter:
+    """A row counter that cancels the frame after a number of reads."""
+
+    def __init__(self, reads: float) -> None:
+        self.row, self.reads_left = 0, reads
+
+    def __getitem__(self, index: int) -> int:
+        self.reads_left -= 1
+        return CANCELLED if self.reads_left < 0 else self.row
+
+    def __setitem__(self, index: int, row: int) -> None:
+        self.row = row
+
+
+def packets_after(reads: float, monkeypatch: pytest.MonkeyPatch) -> tuple[int, int]:
+    """Count the packets traced before and after a frame is cancelled, which happens after some reads of the counter."""
+    counter, counts = Counter(reads), [0, 0]
+    packet = frame.packet_radiance
+
+    def counting_packet(*arguments: Any) -> Vec:
+        counts[counter.reads_left <= 0] += 1
+        return packet(*arguments)
+
+    monkeypatch.setattr(frame, "packet_radiance", counting_packet)
+    traced = Packing(kernel).pack(ALL, WIDTH, HEIGHT)
+    arguments = frame_arguments(traced, np.zeros((HEIGHT, WIDTH, 4), np.uint8), SAMPLES)
+    with np.errstate(all="ignore"):
+        frame.frame(*arguments._replace(next_row=counter))
+    before, after = counts
+    return before, after
+
+
+def test_all_packets_are_traced_if_nobody_cancels(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert packets_after(np.inf, monkeypatch) == (PACKETS, 0)
+
+
+@pytest.mark.parametrize("reads", [0, 1, 2, 3, 4, 20, 60, PACKETS - TILE])
+def test_at_most_one_packet_is_traced_after_a_cancel(reads: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    before, after = packets_after(reads, monkeypatch)
+    assert reads - 6 <= before <= reads  # three more reads for each row of tiles
+    assert after <= 1
+
+
+ONE_SCENE, TWO = Renderer(1, "single"), Renderer(2, "single")
+
+
+def single(scene: Scene, renderer: Renderer = TWO) -> Any:
+    """Render a scene in single precision."""
+    return linear(scene, 60, 40, renderer=renderer)
+
+
+def test_single_precision_differs_from_double_by_rounding_away_from_edges() -> None:
+    difference = np.abs(single(ALL) - linear(ALL, 60, 40)).max(axis=-1)
+    assert 0 < difference[interior(ALL, 60, 40)].max() < 2e-5
+    assert np.quantile(difference, 0.99) < 2e-5
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_random_scenes_differ_from_double_precision_at_edges_only(seed: int) -> None:
+    scene = random_scene(seed)
+    difference = np.abs(single(scene) - linear(scene, 60, 40)).max(axis=-1)
+    assert np.quantile(difference, 0.98) < 1 / 255
+
+
+@pytest.mark.parametrize("shift", [(1e8, 0, 0), (-1e6, 1e7, 1e6), (1e4, -1e4, 1e3)])
+def test_coordinates_are_relative_to_the_eye(shift: tuple[float, float, float]) -> None:
+    moved = changed(ALL, lambda p: tuple(x + y for x, y in zip(p, shift, strict=True)))
+    difference = np.abs(single(moved) - single(ALL)).max(axis=-1)
+    assert np.quantile(difference, 0.99) < 1e-4
+
+
+def test_rounding_before_the_eye_is_subtracted_is_noticed() -> None:
+    def far(p: Any) -> Any:
+        return tuple(float(np.float32(x + 1e6)) for x in p)
+
+    difference = np.abs(single(changed(ALL, far)) - single(ALL)).max(axis=-1)
+    assert difference.max() > 0.1
+
+
+def test_any_number_of_threads_gives_the_same_bits() -> None:
+    assert np.array_equal(single(ALL, ONE_SCENE), single(ALL, TWO))
+
+
+@pytest.mark.parametrize("power", [-20, -1, 1, 20])
+def test_a_scene_scaled_by_a_power_of_two_gives_the_same_bits(power: int) -> None:
+    assert np.array_equal(single(scaled(ALL, 2.0**power)), single(ALL))
+
+
+def test_interpreted_and_compiled_pictures_differ_by_rounding() -> None:
+    difference = np.abs(interpreted(ALL, precision="single")[1] - linear(ALL, 24, 16, renderer=TWO)).max(axis=-1)
+    assert np.quantile(difference, 0.98) < 2e-5
+
+
+def test_light_buffers_find_all_of_many_shapes() -> None:
+    random = np.random.default_rng(5)
+    balls = [Sphere(tuple(random.uniform(-3, 3, 3)), 0.5, WHITE) for _ in range(300)]
+    scene = Scene((*ALL.elements[:2], *ALL.lights, *balls))
+    assert isinstance(scene.elements[1], Camera)
+    difference = np.abs(single(scene) - linear(scene, 60, 40)).max(axis=-1)
+    assert np.quantile(difference, 0.97) < 1e-4
+    assert EYE in scene.elements

@@ -1,4 +1,4 @@
-"""Operators of Vec on single numbers, on lanes and on a mix of them, interpreted and compiled."""
+"""Vec, reductions and square roots on single numbers, on lanes and on a mix of them, interpreted and compiled."""
 
 from __future__ import annotations
 
@@ -14,8 +14,7 @@ from minirt.kernel.machine_code.compile_process import environment
 from minirt.kernel.machine_code.fingerprint import V3
 from minirt.lanes import Vec, dot, greatest, inverse_root, lane, load, lowest, unit, width
 from minirt.lanes.compiled.operations import SERIES
-from tests.lanes.numbers import DTYPES, PRECISIONS, assert_same, edges
-from tests.lanes.test_operators import store
+from tests.lanes.test_operators import DTYPES, PRECISIONS, assert_same, edges, store
 from tests.processes import run
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from minirt.materials import Mirror
 from minirt.scene import Camera, Scene
-from tests.reference import meshes
+from tests.reference import hits
 from tests.reference.hits import first_hits
 from tests.reference.light import (
     OFF_SURFACE,
@@ -26,8 +26,8 @@ from tests.reference.light import (
     shaded,
     shares,
 )
-from tests.reference.normals import normals
 from tests.reference.texturing import bilinear, colour_and_normal, footprint, patterned, patterns_of, picture
+from tests.reference.uv_mapping import normals
 from tests.reference.vectors import DECODED, Array, dot, length, rgb, right_and_up
 
 DEPTH = 8  # reflections and refractions along a path, at most

@@ -15,8 +15,8 @@ from minirt.shapes.shape import Shape
 from minirt.shapes.square import Square
 from minirt.shapes.triangle import Triangle
 from tests.reference.hits import SAME_SURFACE, crossings, first_in_front
-from tests.reference.normals import normals, shading, smooth_points
 from tests.reference.texturing import patterns_of
+from tests.reference.uv_mapping import normals, shading, smooth_points
 from tests.reference.vectors import Array, dot, length, rgb, unit
 
 # The source of random points in lights and lenses; None for hard shadows and a pinhole.

@@ -21,8 +21,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.shape import Shape
 from minirt.shapes.square import Square
 from minirt.shapes.triangle import Triangle
-from tests.reference.normals import right_and_up_on, shading
-from tests.reference.uv_mapping import placed, surface_point
+from tests.reference.uv_mapping import placed, right_and_up_on, shading, surface_point
 from tests.reference.vectors import Array, dot, length, own_x_and_z, rgb, unit
 
 

@@ -12,9 +12,8 @@ from minirt.rendering import buffers as module
 from minirt.rendering.buffers import Buffers
 from tests import reference
 from tests.reference.hits import first_hits
-from tests.reference.normals import normals
 from tests.reference.texturing import colour_and_normal
-from tests.reference.uv_mapping import placed, surface_point
+from tests.reference.uv_mapping import normals, placed, surface_point
 
 SIZE = (48, 32)
 WHITE = (255, 255, 255)

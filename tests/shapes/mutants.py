@@ -10,8 +10,6 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-import numpy as np
-
 from minirt.lanes import Mask, Number, Vec, any, dot, fabs, minimum, splat, sqrt, where
 from minirt.shapes.cone import PackedCone
 from minirt.shapes.cylinder import PackedCylinder
@@ -119,26 +117,6 @@ def nearer(found: tuple[Mask, Number], best: Number) -> Number:
     """Return the lesser of the best distance and a hit."""
     hit, t = found
     return where(hit, minimum(t, best), best)
-
-
-def first(r0: Any, r1: Any) -> Any:
-    """The least root above 0, or the greater one if there is none."""
-    near, far = np.minimum(r0, r1), np.maximum(r0, r1)
-    return np.where(near > 0, near, far)
-
-
-def accepts_nan(sphere: PackedSphere, origin: Vec, direction: Vec) -> Any:
-    """A sphere's formula whose test for a hit is inverted, so that NaN is a hit."""
-    f = origin - sphere.centre
-    g = f - dot(f, direction) * direction
-    chord = sphere.radius * sphere.radius - dot(g, g)
-    return ~(chord < 0), first(-dot(f, direction) - sqrt(chord), -dot(f, direction) + sqrt(chord))
-
-
-def naive_quadratic(a: Any, _: Any, b: Any, c: Any, _product: Any) -> Any:
-    """`negative_interval` by the schoolbook formula, which cancels."""
-    D = b * b - a * c
-    return D >= 0, (-b - sqrt(D)) / a, (-b + sqrt(D)) / a
 
 
 def hits_behind(plane: PackedPlane, origin: Vec, direction: Vec) -> Any:

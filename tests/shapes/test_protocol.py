@@ -122,6 +122,16 @@ def test_the_hull_of_its_balls_contains_it(kind: Kind, size: float, offset: floa
             assert len(balls) == len(seen.shapes[0].balls())
 
 
+@pytest.mark.parametrize("mode", MODES)
+def test_nan_is_a_miss(kind: Kind, mode: str) -> None:
+    shape = example(kind, np.random.default_rng(8))
+    rays = np.tile(np.array([place(shape) - 5.0, unit(np.ones(3))]), (16, 1, 1))
+    for i in range(6):
+        rays[i, i // 3, i % 3] = np.nan
+    t = MODES[mode]([shape], rays[None, :, 0], rays[None, :, 1])[0]
+    assert np.isinf(t[:6]).all()
+
+
 def test_the_three_modes_agree(kind: Kind) -> None:
     random = np.random.default_rng(5)
     shapes = [example(kind, random) for _ in range(20)]

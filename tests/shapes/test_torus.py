@@ -5,62 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from minirt.errors import ElementError
 from minirt.lanes import Mask, Number, Vec
 from minirt.shapes import torus as module
 from minirt.shapes.shape import Position
 from minirt.shapes.torus import PackedTorus, Torus
-from tests.shapes.checks import U
-from tests.shapes.execution_modes import Intersect, compiled, on_arrays, surfaces, vec
+from tests.shapes.checks import shoot
+from tests.shapes.execution_modes import Intersect, compiled, on_arrays, vec
 from tests.shapes.regimes import GREY, RAYS, random_directions, unit
-from tests.shapes.test_sphere import shoot
 
 RING = Torus((0, 1, 5), (0, 1, 0), 6, 2, GREY)  # radii 3 and 1
-
-
-def test_answers_known_by_hand(intersect: Intersect) -> None:
-    rays = [
-        ((0, 1, 0), (0, 0, 1)),  # the outer side
-        ((0, 1, 0), (0, 0, -1)),  # behind
-        ((0, 1, 2), (0, 0, 1)),  # from inside the tube
-        ((0, 1, 2), (0, 0, -1)),
-        ((0, 1, 5), (0, 0, 1)),  # from the middle of the hole
-        ((0, 1, 4), (0, 0, -1)),  # from inside the hole
-        ((0, 1, 8), (0, 0, 1)),  # from inside the far tube
-        ((0, 1, 9.5), (0, 0, 1)),  # beyond it
-        ((0, 9, 5), (0, -1, 0)),  # through the hole
-        ((0, 9, 2), (0, -1, 0)),  # the top
-        ((0.6 * 3, 9, 5 + 0.8 * 3), (0, -1, 0)),
-        ((0, 9, 6.2), (0, -1, 0)),  # past the inner equator
-        ((0, 9, 7.5), (0, -1, 0)),  # half a radius off the circle
-        ((0, 9, 9.1), (0, -1, 0)),  # outside
-        ((0, 2.1, 0), (0, 0, 1)),  # over it
-        ((0, 1, 5), (0.6, 0, 0.8)),
-    ]
-    expected = [1, np.inf, 1, 1, 2, 1, 1, np.inf, np.inf, 7, 7, np.inf, 8 - 0.75**0.5, np.inf, np.inf, 2]
-    assert shoot(intersect, RING, *rays) == pytest.approx(expected, rel=1e-15)
-    assert shoot(intersect, RING.replace(axis=(0, -1, 0)), *rays) == pytest.approx(expected, rel=1e-15)
-
-
-def test_each_of_four_crossings_is_hit_from_before_it(intersect: Intersect) -> None:
-    rays = [((0, 1, z), (0, 0, 1)) for z in (-4, 1.5, 3.5, 6.5, 7.5, 9.5)]
-    assert shoot(intersect, RING, *rays) == pytest.approx([5, 1.5, 3.5, 0.5, 1.5, np.inf], rel=1e-15)
-
-
-def test_an_eye_on_the_surface_sees_the_far_wall_or_nothing(intersect: Intersect) -> None:
-    rays = [((0, 1, 1), (0, 0, 1)), ((0, 1, 1), (0, 0, -1)), ((0, 2, 2), (0, 1, 0)), ((0, 2, 2), (0, -1, 0))]
-    assert shoot(intersect, RING, *rays) == pytest.approx([2, np.inf, np.inf, 2], rel=1e-15)
-
-
-def test_without_a_hole_its_centre_is_a_point(intersect: Intersect) -> None:
-    full = RING.replace(tube=6)  # radii 3 and 3
-    rays = [((0, 9, 5.5), (0, -1, 0)), ((0, 1, -5), (0, 0, 1)), ((0, 9, 8), (0, -1, 0))]
-    assert shoot(intersect, full, *rays) == pytest.approx([8 - (9 - 2.5**2) ** 0.5, 4, 5], rel=1e-15)
-
-
-def test_nan_is_a_miss(intersect: Intersect) -> None:
-    rays = [((np.nan, 1, 0), (0, 0, 1)), ((0, np.nan, 0), (0, 0, 1)), ((0, 1, 0), (np.nan, 0, 1))]
-    assert shoot(intersect, RING, *rays) == [np.inf] * 3
 
 
 @pytest.mark.parametrize("tube", [2, 6])
@@ -140,35 +93,6 @@ def test_only_rays_near_the_torus_are_solved(monkeypatch: pytest.MonkeyPatch) ->
     asked.clear()
     on_arrays([RING], rays[None, :, 0], rays[None, :, 1])
     assert np.array_equal(asked, [near])
-
-
-def test_the_surface_is_the_nearest_point_and_the_normal_points_outwards() -> None:
-    points = np.array([[0, 1, 0.9], [0, 1, 3.01], [3, 2.01, 5], [0, 0.01, 8], [0.1, 1, 2], [0, 1, 5]])
-    on, normal = surfaces([RING], points[None])
-    assert np.abs(on[0, :4] - [[0, 1, 1], [0, 1, 3], [3, 2, 5], [0, 0, 8]]).max() <= 8 * U * 5
-    assert np.abs(normal[0, :4] - [[0, 0, -1], [0, 0, 1], [0, 1, 0], [0, -1, 0]]).max() <= 4 * U
-    # A point on the axis, where every point of the ring is as near, moves to one of them.
-    assert np.abs(np.linalg.norm(on[0, 5] - [0, 1, 5]) - 2) <= 8 * U * 5
-    assert normal[0, 5, 1] == 0
-
-
-def test_its_box_and_its_balls() -> None:
-    assert RING.bounds() == ((-4, 0, 1), (4, 2, 9))
-    assert RING.replace(centre=(7, 8, 9)).bounds() == ((3, 7, 5), (11, 9, 13))
-    turned = RING.replace(axis=(0.6, 0.8, 0))
-    assert turned.bounds() == (pytest.approx((-3.4, -1.8, 1)), pytest.approx((3.4, 3.8, 9)))
-    assert len(RING.balls()) == 8
-    middles = np.array([centre for centre, _ in RING.balls()])
-    assert np.allclose(np.linalg.norm(middles - RING.centre, axis=1), 3 / np.cos(np.pi / 8))
-    assert np.allclose(middles[:, 1], 1)
-    assert np.allclose(np.linalg.norm(middles - np.roll(middles, 1, axis=0), axis=1), 6 * np.tan(np.pi / 8))
-    assert {radius for _, radius in RING.balls()} == {1}
-
-
-def test_a_tube_wider_than_the_ring_is_refused() -> None:
-    with pytest.raises(ElementError, match="torus tube must be at most the diameter, 6, got 7"):
-        RING.replace(tube=7)
-    assert RING.replace(tube=6).tube == 6
 
 
 def test_a_newton_step_out_of_the_bracket_is_not_taken(intersect: Intersect) -> None:

@@ -21,7 +21,7 @@ from minirt.scene import parse
 from tests.paths import PACKAGE, ROOT
 from tests.processes import run
 from tests.shapes.execution_modes import compiled, kernel
-from tests.shapes.test_sphere import BENIGN
+from tests.shapes.regimes import aimed, sphere
 
 COMPILERS = {"njit", "jit", "vectorize", "guvectorize", "cfunc", "stencil"}
 BALL = "A 0.2 255,255,255\nC 0,0,-4 0,0,1 60\nL 5,5,-5 0.7 255,255,255\nsp 0,0,0 2 255,60,60\n"
@@ -66,7 +66,7 @@ def test_no_source_compiles_with_other_flags() -> None:
 
 
 def test_contraction_is_the_only_fast_math_of_instructions() -> None:
-    compiled(*BENIGN[0])
+    compiled(*aimed(sphere, 1))
     code = "\n".join(kernel().inspect_llvm().values())
     assert " contract " in code
     for forbidden in (" fast ", " nnan ", " ninf ", " nsz ", " arcp ", " reassoc ", " afn "):

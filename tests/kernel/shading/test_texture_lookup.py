@@ -3,18 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from numba import njit
+from PIL import Image
+from PIL import Image as pillow  # noqa: N813
 
-import minirt.kernel.compiler.object_code  # noqa: F401  (registers what is compiled)
+import minirt
+import minirt.kernel.compiler.object_code
+from minirt.fields import Triple
 from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.shading import texturing
 from minirt.lanes import load, save, width
 from minirt.rendering.packing.materials import TexturePool
-from tests.kernel.pictures import Array
+from minirt.scene import Ambient, Background, Camera, Scene
+from minirt.shapes import KINDS, Shape
+from minirt.shapes.box import Box
+from minirt.shapes.cone import Cone
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
+from minirt.shapes.hyperboloid import Hyperboloid
+from minirt.shapes.paraboloid import Paraboloid
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
+from minirt.shapes.torus import Torus
+from minirt.shapes.triangle import Triangle
+from tests.kernel.pictures import BLUE, GREEN, RED, WHITE, Array, interpreted, linear
+from tests.skipping import skip_incomplete
 
 RANDOM = np.random.default_rng(1)
 IMAGES = [  # three channels or one; one pixel wide or high; landscape and portrait
@@ -59,15 +79,15 @@ def compiled(which: int, u: Array, v: Array) -> Array:
     return out.T
 
 
-def interpreted(which: int, u: Array, v: Array) -> Array:
-    """Look up colours by the interpreted kernel, (n, 3)."""
+def looked_up(which: int, u: Array, v: Array) -> Array:
+    """Look up colours by the looked_up kernel, (n, 3)."""
     with np.errstate(invalid="ignore"):
         colour = texturing.texture_lookup(TEXELS, PICTURES, which, u, v)
     return np.stack([colour.x, colour.y, colour.z], axis=-1)
 
 
 Lookup = Callable[[int, Array, Array], Array]
-EITHER = pytest.mark.parametrize("lookup", [interpreted, compiled])
+EITHER = pytest.mark.parametrize("lookup", [looked_up, compiled])
 
 
 def picture_of(which: int) -> Array:
@@ -135,3 +155,132 @@ def test_gradients_are_central_differences_over_a_pixel(which: int) -> None:
     look_up_gradients(TEXELS, PICTURES, which, u, v, lanes)
     for got in (np.stack(texturing.height_gradient(TEXELS, PICTURES, which, u, v)), lanes):
         assert np.abs(got - expected).max() < 1e-5
+
+
+GREY = (9, 9, 9)
+UP, DOWN, FRONT = (0, 1, 0), (0, -1, 0), (0, 0, -1)
+SHAPES: tuple[Shape, ...] = (
+    Sphere((0, 0, 0), 4, GREY),
+    Plane((0.5, -0.5, 0), FRONT, GREY),
+    Cylinder((0, 0, 0), UP, 3, 3, GREY),
+    Cone((0, 2, 0), DOWN, 3, 4, GREY),
+    Paraboloid((0, -0.5, 0), UP, 3, 2, GREY),
+    Hyperboloid((0, 0, 0), UP, 2, 3, 3, GREY),
+    Triangle((1.95, -1.95, 0), (-2.05, -1.95, 0), (1.95, 2.05, 0), GREY),  # its longest edge goes through the middle
+    Square((0, 0, 0), FRONT, 3, GREY),
+    Disc((0, 0, 0), FRONT, 3, GREY),
+    Box((0, 0, 0), UP, (3, 3, 3), GREY),
+    Torus((0, 0, 0), UP, 3, 2, GREY),
+    Ellipsoid((0, 0, 0), UP, (3, 4, 2), GREY),
+)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a picture of four squares: red and green above, blue and white below."""
+    squares = np.array([[RED, GREEN], [BLUE, WHITE]], np.uint8)
+    Image.fromarray(squares.repeat(32, 0).repeat(32, 1)).save(tmp_path / "quarters.png")
+    return tmp_path
+
+
+def scene_of(folder: Path, shape: Shape, eye: Triple = (0, 0, -9), direction: Triple = (0, 0, 1)) -> Scene:
+    """A textured shape under ambient light alone, which shows the texture's own colours."""
+    textured = shape.replace(texture="quarters.png")
+    return Scene((Ambient(1, WHITE), Camera(eye, direction, 10), textured), folder / "scene.rt")
+
+
+def quarter_colours(light: np.ndarray) -> np.ndarray:
+    """Return the colours of four pixels around the middle: upper left, upper right, lower left, lower right."""
+    high, wide = light.shape[:2]
+    rows, columns = (np.array([n // 2 - n // 8, n // 2 + n // 8]) for n in (high, wide))
+    found: np.ndarray = light[np.ix_(rows, columns)].reshape(4, 3) * 255
+    return found
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.title)
+def test_a_texture_seen_from_the_front_is_upright_and_not_mirrored(shape: Shape, folder: Path) -> None:
+    scene = scene_of(folder, shape)
+    for light in (linear(scene, 32, 32), interpreted(scene, 32, 32)[1]):
+        expected = [RED, (0, 0, 0) if isinstance(shape, Triangle) else GREEN, BLUE, WHITE]
+        assert np.abs(quarter_colours(light) - expected).max() < 1e-3
+
+
+@pytest.mark.parametrize("kind", [Plane, Square, Disc])
+@pytest.mark.parametrize(("normal", "eye"), [(UP, (0, 9, 0)), (DOWN, (0, -9, 0))])
+def test_textures_of_floors_and_ceilings_are_upright_seen_vertically(
+    kind: type[Shape], normal: Triple, eye: Triple, folder: Path
+) -> None:
+    corner = (-0.5, 0, normal[1] * 0.5) if kind is Plane else (0, 0, 0)
+    shape = kind(corner, normal, *(() if kind is Plane else (3.0,)), GREY)
+    light = linear(scene_of(folder, shape, eye, (0, -normal[1], 0)), 32, 32)
+    assert np.abs(quarter_colours(light) - [RED, GREEN, BLUE, WHITE]).max() < 1e-3
+
+
+def test_every_kind_is_tested() -> None:
+    missing = {kind.element for kind in KINDS} - {type(shape) for shape in SHAPES}
+    if missing:
+        skip_incomplete(f"no painted {', '.join(kind.title for kind in missing)}: add one to SHAPES in {__file__}")
+
+
+PALE = (255, 255, 255)
+FAR_OFF = Sphere((0, 0, 1e6), 1e-3, PALE)  # so that the scene is not empty
+# Eight columns of 45 degrees, four rows of 45 degrees: red encodes the column, green the row.
+COLUMNS, ROWS = 8, 4
+SQUARES = np.stack([*np.mgrid[:ROWS, :COLUMNS][::-1] * 30, np.zeros((ROWS, COLUMNS))], axis=-1).astype(np.uint8)
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    # Large squares, so that interpolation leaves the middle of each in one colour.
+    large = np.repeat(np.repeat(SQUARES, 16, axis=0), 16, axis=1)
+    pillow.fromarray(large).save(tmp_path / "sky.png")
+    return tmp_path / "scene.rt"
+
+
+def middle_colour(file: Path, direction: Triple, *shapes: Shape) -> tuple[int, int, int]:
+    """Return the colour of the single pixel of a picture in some direction."""
+    items = (Ambient(1, PALE), Camera((5, 6, 7), direction, 1e-3), Background("sky.png"), *shapes)
+    red, green, blue = minirt.render(Scene(items, file), 1, 1).array[0, 0].tolist()
+    return red, green, blue
+
+
+@pytest.mark.parametrize("shapes", [(FAR_OFF,), ()])
+@pytest.mark.parametrize(
+    ("longitude", "latitude", "column", "row"),
+    # Longitude from +z towards -x, which is to the right looking along +z; latitude from the horizon towards +y.
+    [(22.5, 22.5, 4, 1), (-22.5, 22.5, 3, 1), (112.5, -22.5, 6, 2), (-157.5, 67.5, 0, 0), (157.5, -67.5, 7, 3)],
+)
+def test_directions_map_to_pixels_of_the_environment_map(
+    file: Path, longitude: float, latitude: float, column: int, row: int, shapes: tuple[Shape, ...]
+) -> None:
+    a, b = np.radians([longitude, latitude])
+    direction = (-np.sin(a) * np.cos(b), np.sin(b), np.cos(a) * np.cos(b))
+    assert middle_colour(file, direction, *shapes) == (30 * column, 30 * row, 0)
+
+
+def test_straight_up_is_the_upper_row_of_the_environment_map(file: Path) -> None:
+    assert middle_colour(file, (0, 1, 0), FAR_OFF)[1] == 0
+    assert middle_colour(file, (0, -1, 0), FAR_OFF)[1] == 90  # not interpolated with the row at the other pole
+
+
+def test_a_mirror_reflects_the_environment_map(file: Path) -> None:
+    ball = Sphere((5, 6, 9), 2, PALE, mirror=1.0)
+    # Straight back, which is on the seam.
+    assert middle_colour(file, (0, 0, 1), ball) in {(0, 45, 0), (210, 45, 0), (105, 45, 0)}
+    # The normal is halfway between the directions to the eye and to the mirrored square.
+    mirrored = np.array([-np.sin(np.radians(112.5)), 0, np.cos(np.radians(112.5))]) * np.cos(np.radians(22.5))
+    mirrored[1] = np.sin(np.radians(22.5))
+    normal = mirrored - [0, 0, 1]
+    normal /= np.linalg.norm(normal)
+    hit = np.array([5, 6, 9]) + normal
+    eye = hit - [0, 0, 2]
+    items = (Camera(tuple(eye), (0, 0, 1), 1e-6), Background("sky.png"), ball)
+    assert minirt.render(Scene(items, file), 1, 1).array[0, 0].tolist() == [180, 30, 0]
+
+
+def test_a_background_colour_fills_pixels_without_shapes() -> None:
+    items = (Ambient(1, PALE), Camera((0, 0, -9), (0, 0, 1), 60), Background((20, 130, 240)))
+    for shapes in ((), (Sphere((0, 0, 0), 2, (255, 0, 0)),)):
+        picture = minirt.render(Scene((*items, *shapes)), 16, 16).array
+        assert picture[0, 0].tolist() == [20, 130, 240]
+        assert picture[8, 8].tolist() == ([255, 0, 0] if shapes else [20, 130, 240])

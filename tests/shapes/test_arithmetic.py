@@ -1,0 +1,299 @@
+"""Arithmetic of the formulas of shapes: compensated, low parts, double-double, quadratic equations and frames."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from fractions import Fraction
+from math import inf
+from typing import Any
+
+import numpy as np
+import pytest
+from gmpy2 import mpfr, sqrt
+from numba import njit
+
+from minirt.fields import cos_and_sin, unit
+from minirt.kernel.compiler.pipeline import FLAGS
+from minirt.lanes import Vec, dot, product_error, rounded_product
+from minirt.shapes.boundary import DoubleDouble
+from minirt.shapes.compensated import (
+    axis_low,
+    basis_low,
+    divided,
+    minus,
+    plus,
+    power_of_point,
+    quotient_low,
+    root_low,
+    times,
+    two_product,
+    two_sum,
+)
+from minirt.shapes.frames import basis, from_basis, to_basis
+from minirt.shapes.start import negative_interval
+from tests.oracle.body import BITS, own_axes
+from tests.oracle.body import unit as exact_unit
+from tests.shapes.checks import U
+from tests.shapes.regimes import Array, random_directions
+
+RANDOM = np.random.default_rng(1)
+PAIRS = RANDOM.normal(size=(200, 2)) * 10.0 ** RANDOM.integers(-20, 20, (200, 2))
+
+
+def test_a_sum_and_its_error_are_exact() -> None:
+    for a, b in PAIRS:
+        total, low = two_sum(a, b)
+        assert Fraction(total) + Fraction(low) == Fraction(a) + Fraction(b)
+
+
+def test_a_product_and_its_error_are_exact() -> None:
+    for a, b in PAIRS:
+        product, low = two_product(a, b)
+        assert Fraction(product) + Fraction(low) == Fraction(a) * Fraction(b)
+
+
+def test_compiled_sums_and_products_are_the_same() -> None:
+    @njit(**FLAGS)
+    def parts(a: float, b: float) -> tuple[float, float, float]:
+        product = rounded_product(a, b)
+        return product, product_error(a, b), product + 1.0  # the sum must not be fused with the product
+
+    for a, b in PAIRS:
+        assert parts(a, b) == (a * b, product_error(a, b), a * b + 1.0)
+
+
+def test_compiled_a_product_that_is_used_once_is_not_fused_with_the_sum() -> None:
+    @njit(**FLAGS)
+    def rest(a: float, b: float, product: float) -> float:
+        return rounded_product(a, b) - product
+
+    assert all(rest(a, b, a * b) == 0 for a, b in PAIRS)
+
+
+def test_the_power_of_a_point_is_exact_near_the_surface() -> None:
+    for exponent in range(-6, 4):
+        x, y, z = RANDOM.normal(size=3)
+        point = np.array([x, y, z]) + np.array([0.6, 0.8, 0.0]) * (5e8 + 10.0**exponent)
+        squares = sum((Fraction(a) - Fraction(b)) ** 2 for a, b in zip(point, (x, y, z), strict=True))
+        right = squares - Fraction(5e8) ** 2
+        found = power_of_point(Vec(*point), Vec(x, y, z), np.float64(5e8))
+        assert abs(Fraction(found) - right) <= abs(right) * Fraction(1, 2**50)
+
+
+def test_pairs_have_twice_the_precision() -> None:
+    for a, b in PAIRS:
+        x, y = (a, a * 1e-17), (b, b * -2e-17)
+        one, other = (Fraction(high) + Fraction(low) for high, low in (x, y))
+        expected = (one + other, one - other, one * other, one / Fraction(b))
+        for found, right in zip((plus(x, y), minus(x, y), times(x, y), divided(x, b, 1 / b)), expected, strict=True):
+            scale = max(abs(right), abs(one), abs(other)) if found != times(x, y) else abs(right)
+            assert abs(sum(map(Fraction, found)) - right) <= scale * Fraction(1, 2**100)
+
+
+LOW_AXES = [(0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, -1e-300, 1.0), (0.6, 0.8, 0.0)]
+LOW_AXES += map(tuple, random_directions(np.random.default_rng(1), 50).tolist())
+LENGTHS = np.random.default_rng(2).uniform(0.5, 2, (100, 2)) * 10.0 ** np.random.default_rng(3).integers(
+    -9, 9, (100, 2)
+)
+
+
+def missing(exact: list[mpfr], high: Vec, low: Vec) -> float:
+    """The largest difference between an exact vector and the sum of its rounded one and what that lacks."""
+    parts = zip(exact, (high.x, high.y, high.z), (low.x, low.y, low.z), strict=True)
+    return max(float(abs(x - mpfr(a) - mpfr(b))) for x, a, b in parts)
+
+
+def test_an_axis_is_known_to_32_digits() -> None:
+    for axis in LOW_AXES:
+        assert missing(exact_unit(axis), Vec(*axis), axis_low(axis)) <= 2.0**-104
+
+
+@pytest.mark.parametrize("roll", [0.0, 90.0, -270.0, 1e-7, 33.3, -200.0])
+def test_a_basis_is_known_to_32_digits(roll: float) -> None:
+    c, s = exact_unit((*cos_and_sin(roll), 0.0))[:2]  # the turn that is meant has exactly this tangent
+    for axis in LOW_AXES:
+        z, x, y = basis(axis, roll)
+        z_low, x_low, y_low = basis_low(axis, roll, z, x, y)
+        found = (x, x_low), (y, y_low), (z, z_low)
+        own_x, own_y, own_z = own_axes(axis, 0.0)
+        rolled_x = [c * a - s * b for a, b in zip(own_x, own_z, strict=True)]
+        rolled_z = [c * b + s * a for a, b in zip(own_x, own_z, strict=True)]
+        for exact, (high, low) in zip((rolled_x, own_y, rolled_z), found, strict=True):
+            opposite = [-part for part in exact]  # may be meant just as well
+            assert min(missing(exact, high, low), missing(opposite, high, low)) <= 2.0**-102
+
+
+def test_slopes_are_known_to_32_digits() -> None:
+    for a, b in LENGTHS.tolist():
+        slope = a / 2 / b
+        low = quotient_low((a,), (2.0, b), slope)
+        assert abs(mpfr(a) / mpfr(b) / 2 - mpfr(slope) - mpfr(low)) <= slope * 2.0**-104
+        exact = sqrt(mpfr(3 * a) ** 2 - mpfr(a) ** 2) / mpfr(b)
+        low = root_low(3 * a, a, b, float(exact))
+        assert abs(exact - mpfr(float(exact)) - mpfr(low)) <= exact * 2.0**-100
+
+
+def test_numbers_beyond_all_bounds_lack_nothing() -> None:
+    assert quotient_low((1e300,), (1e-300,), np.inf) == 0.0
+    assert root_low(1.0, 1.0, 2.0, 0.0) == 0.0
+
+
+EXACT = mpfr(2) ** -101  # relative error
+COUNT = 200
+
+
+def random_number(seed: int) -> DoubleDouble:
+    """Numbers of all sizes and signs, whose low parts are as large as they may be."""
+    random = np.random.default_rng(seed)
+    high = random.normal(size=COUNT) * 10.0 ** random.uniform(-20, 20, COUNT)
+    return DoubleDouble(high, 0.5 * random.uniform(-1, 1, COUNT) * np.spacing(high))
+
+
+def exact(x: Any) -> list[mpfr]:
+    """The numbers in 60 digits."""
+    if isinstance(x, DoubleDouble):
+        return [mpfr(float(high)) + mpfr(float(low)) for high, low in zip(x.high, x.low, strict=True)]
+    return [mpfr(float(part)) for part in x]
+
+
+@pytest.mark.parametrize("operation", [operator.add, operator.sub, operator.mul, operator.truediv])
+@pytest.mark.parametrize("plain", [None, 0, 1])
+def test_arithmetic(operation: Callable[[Any, Any], Any], plain: int | None) -> None:
+    assert BITS > 2 * 101
+    pair: list[Any] = [random_number(1), random_number(2)]
+    if plain is not None:
+        pair[plain] = pair[plain].high  # a float64
+    found = exact(operation(*pair))
+    for one, other, result in zip(*map(exact, pair), found, strict=True):
+        right = operation(one, other)
+        assert abs(result - right) <= EXACT * abs(right)
+
+
+def test_sums_that_cancel_are_exact() -> None:
+    one = random_number(3)
+    for moved in (one * (1.0 + 2.0**-40), DoubleDouble(one.high, -one.low)):
+        for a, b, result in zip(*map(exact, (one, moved, one - moved)), strict=True):
+            assert abs(result - (a - b)) <= EXACT * abs(a - b)
+
+
+def test_roots_and_amounts() -> None:
+    one = abs(random_number(4))
+    assert (one.high > 0).all()
+    for x, root in zip(*map(exact, (one, one.root())), strict=True):
+        assert abs(root - sqrt(x)) <= EXACT * root
+    nothing = DoubleDouble(np.array([0.0, -1e-40]), 0.0, Vec(1.0, 2.0, 3.0)).root()
+    assert nothing.high.tolist() == [0, 0]
+    assert nothing.slope.x.tolist() == [0, 0]
+    power = np.full(COUNT, -800)
+    assert np.array_equal(one.scaled(power).scaled(-power).high, one.high)
+
+
+def test_gradients() -> None:
+    """x^2 y / z, sqrt(x y + z^2) and |-z|, at random points."""
+    x, y, z = np.random.default_rng(5).uniform(1, 2, (3, COUNT))
+    axes = (Vec(1.0, 0.0, 0.0), Vec(0.0, 1.0, 0.0), Vec(0.0, 0.0, 1.0))
+    a, b, c = (DoubleDouble(part, 0.0, axis) for part, axis in zip((x, y, z), axes, strict=True))
+    root = np.sqrt(x * y + z * z)
+    cases = [
+        (a * a * b / c, (2 * x * y / z, x * x / z, -x * x * y / z**2)),
+        ((a * b + c * c).root(), (y / root / 2, x / root / 2, z / root)),
+        (abs(-c), (0 * x, 0 * x, 0 * x + 1)),
+        (dot(Vec(a, b, c), Vec(b, 2.0, x)) - 1.0, (y, x + 2, x)),
+    ]
+    for number, right in cases:
+        found = (number.slope.x, number.slope.y, number.slope.z)
+        assert all(close(one, other) for one, other in zip(found, right, strict=True))
+
+
+def close(found: Array, right: Array) -> bool:
+    return bool(np.allclose(found, right, rtol=1e-14, atol=0))
+
+
+CASES = [
+    ((1, 0, -4), (True, -2, 2)),
+    ((1, -3, 8), (True, 2, 4)),
+    ((1, 3, 8), (True, -4, -2)),
+    ((1, 0, 4), (False, None, None)),  # never below zero
+    ((1, 0, 0), (True, 0, 0)),  # touches it at 0
+    ((0, 0, -1), (True, -inf, np.nan)),  # a constant below zero: a ray along the axis, inside
+    ((0, 0, 0), (True, -inf, np.nan)),
+    ((0, 0, 1), (True, inf, np.nan)),  # and one above zero
+    ((0, 3, 6), (True, -inf, -1)),  # a line
+    ((0, -3, 6), (True, 1, inf)),
+    ((1, 1e8, 1), (True, -2e8, -5e-9)),  # the small root, which the formula of school loses
+    ((1, -1e8, 1), (True, 5e-9, 2e8)),
+    ((-1, 0, 4), (True, 2, -2)),  # below zero again after the second root
+    ((-1, 3, -8), (True, 4, 2)),
+    ((-1, -3, -8), (True, -2, -4)),
+    ((-1, 0, -4), (False, None, None)),
+    ((-1, 0, 0), (True, 0, 0)),
+    ((np.nan, 1, 1), (False, None, None)),
+    ((1, np.nan, 1), (False, None, None)),
+    ((1, 1, np.nan), (False, None, None)),
+]
+
+
+def solved(a: Any, b: Any, c: Any) -> tuple[Any, Any, Any]:
+    return negative_interval(a, 1 / a, b, c, c)
+
+
+@pytest.mark.parametrize(("coefficients", "expected"), CASES)
+def test_where_a_quadratic_is_below_zero(coefficients: tuple[float, ...], expected: tuple[object, ...]) -> None:
+    with np.errstate(all="ignore"):
+        met, below, above = solved(*map(np.float64, coefficients))
+    assert met == expected[0]
+    if met:
+        assert (below, above) == pytest.approx(expected[1:], rel=4e-16, abs=0, nan_ok=True)
+    else:
+        assert np.isnan(below)
+        assert np.isnan(above)
+
+
+def test_many_quadratics_at_once() -> None:
+    with np.errstate(all="ignore"):
+        met, below, above = solved(*np.array([coefficients for coefficients, _ in CASES], float).T)
+    assert met.tolist() == [expected[0] for _, expected in CASES]
+    assert list(zip(below[met], above[met], strict=True)) == [
+        pytest.approx(expected[1:], rel=4e-16, abs=0, nan_ok=True) for _, expected in CASES if expected[0]
+    ]
+    assert np.isnan(below[~met]).all()
+    assert np.isnan(above[~met]).all()
+
+
+def test_a_root_that_is_only_rounding_is_exactly_zero_and_the_other_one_stays() -> None:
+    for b, other in ((3.0, -6.0), (-3.0, 6.0)):
+        for c in (1e-17, -1e-17):
+            met, below, above = negative_interval(*map(np.float64, (1, 1, b, c, 0)))
+            assert met
+            assert sorted((below, above)) == sorted((0.0, other))
+
+
+POLES = [(0, 0, 1), (0, 0, -1), (1e-300, 0, -1), (1e-8, 1e-9, -1), (0, 1e-17, -1), (1, 0, -0.0), (0, 1, 0.0)]
+AXES = [*map(unit, POLES), *map(tuple, random_directions(np.random.default_rng(1), 200))]
+
+
+@pytest.mark.parametrize("axis", AXES[:10])
+def test_known_axes(axis: tuple[float, float, float]) -> None:
+    assert_orthonormal(axis)
+
+
+def test_random_axes() -> None:
+    for axis in AXES:
+        assert_orthonormal(axis)
+
+
+def assert_orthonormal(axis: tuple[float, float, float]) -> None:
+    u, v, w = basis(axis)
+    assert (w.x, w.y, w.z) == axis
+    for a, b, product in ((u, u, 1), (v, v, 1), (u, v, 0), (u, w, 0), (v, w, 0)):
+        assert abs(dot(a, b) - product) <= 8 * U
+    turned = np.cross((u.x, u.y, u.z), (v.x, v.y, v.z))  # right-handed
+    assert np.abs(turned - (w.x, w.y, w.z)).max() <= 8 * U
+
+
+def test_transforming_there_and_back_changes_nothing() -> None:
+    frame = basis(unit((0.3, -0.5, -0.8)))
+    p = Vec(1.0, 2.0, 3.0)
+    q = from_basis(*frame, to_basis(*frame, p))
+    assert max(abs(q.x - 1), abs(q.y - 2), abs(q.z - 3)) <= 32 * U

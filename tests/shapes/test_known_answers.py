@@ -1,0 +1,556 @@
+"""Hits, points of surfaces, boxes and balls of every shape, against answers known by hand.
+
+Rays that are hard for the formulas are in `tests.stability`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from minirt.errors import ElementError
+from minirt.shapes import Shape
+from minirt.shapes.box import Box
+from minirt.shapes.cone import Cone
+from minirt.shapes.cylinder import Cylinder
+from minirt.shapes.disc import Disc
+from minirt.shapes.ellipsoid import Ellipsoid
+from minirt.shapes.hyperboloid import Hyperboloid
+from minirt.shapes.paraboloid import Paraboloid
+from minirt.shapes.plane import Plane
+from minirt.shapes.sphere import Sphere
+from minirt.shapes.square import Square
+from minirt.shapes.torus import Torus
+from minirt.shapes.triangle import Triangle
+from tests.shapes.checks import U, shoot
+from tests.shapes.execution_modes import Intersect, surfaces
+from tests.shapes.mapping_checks import interpreted
+from tests.shapes.regimes import GREY
+
+NEVER = np.inf
+BALL = Sphere((0, 0, 5), 6, GREY)  # radius 3: its edge is seen from the origin along a 3-4-5 triangle
+FLOOR = Plane((7, -2, 9), (0, 1, 0), GREY)
+TUBE = Cylinder((0, 0, 5), (0, 1, 0), 6, 4, GREY)  # radius 3, from y = -2 to y = 2
+TENT = Cone((0, 4, 5), (0, -1, 0), 6, 4, GREY)  # radius 3 at y = 0: its sides are the long ones of 3-4-5 triangles
+RIGHT = Cone((0, 0, 5), (0, -1, 0), 8, 4, GREY)  # its lines go down as far as they go aside
+BOWL = Paraboloid((0, -1, 5), (0, 1, 0), 4, 4, GREY)  # x^2 + (z - 5)^2 = y + 1, from y = -1 to y = 3
+TOWER = Hyperboloid((0, 0, 5), (0, 1, 0), 6, 10, 8, GREY)  # x^2 + (z - 5)^2 = 9 + y^2, from y = -4 to y = 4
+EVEN = Hyperboloid((0, 0, 5), (0, 1, 0), 15, 17, 8, GREY)  # x^2 + (z - 5)^2 = 7.5^2 + y^2, exactly
+FLAT_TOWER = Hyperboloid((0, 0, 5), (0, 1, 0), 6, 10, 2, GREY)  # x^2 + (z - 5)^2 = 9 + 16 y^2, from y = -1 to y = 1
+TUBE_TOWER = Hyperboloid((0, 0, 5), (0, 1, 0), 6, 6, 4, GREY)  # a waist as wide as the ends
+EGG = Ellipsoid((0, 0, 5), (0, 1, 0), (4, 2, 6), GREY)  # semi-axes 2, 1 and 3 along x, y and z
+TURNED_EGG = Ellipsoid((0, 0, 5), (1, 0, 0), (4, 2, 6), GREY)  # 1, 2 and 3: its y axis is the scene's x
+SAIL = Triangle((-2, 0, 5), (2, 0, 5), (0, 3, 8), GREY)
+BOARD = Square((0, 1, 5), (0.6, 0, -0.8), 4, GREY)  # 2 to each side, turned by a 3-4-5 triangle, and upright
+PLATE = Disc((0, 1, 5), (0.6, 0, -0.8), 4, GREY)  # radius 2, turned likewise
+BLOCK = Box((0, 1, 5), (0, 1, 0), (2, 4, 6), GREY)  # from -1, -1, 2 to 1, 3, 8
+RING = Torus((0, 1, 5), (0, 1, 0), 6, 2, GREY)  # radii 3 and 1
+
+Ray = tuple[tuple[float, ...], tuple[float, ...], float]  # origin, direction and t, infinity for a miss
+SIDE = (4.9**2 - 9) ** 0.5  # height at which the side of the tower is 4.9 wide
+HITS: list[tuple[Shape, list[Ray]]] = [
+    (
+        BALL,
+        [
+            ((0, 0, 0), (0, 0, 1), 2),  # head on
+            ((0, 0, 0), (0, 0, -1), NEVER),  # behind
+            ((0, 0, 5), (0.6, 0, 0.8), 3),  # from the centre
+            ((0, 0, 4), (0, 0, -1), 2),  # from inside, the near wall
+            ((0, 0, 4), (0, 0, 1), 4),  # from inside, the far wall
+            ((1.8, 0, 0), (0, 0, 1), 2.6),  # 1.8 off the axis: 2.4 before the centre
+            ((3, 0, 0), (0, 0, 1), 5),  # touching it
+            ((3.1, 0, 0), (0, 0, 1), NEVER),  # past it
+            ((0, 0, 9), (0, 0, 1), NEVER),  # away from it
+            ((0, 0, 2), (0, 0, 1), 6),  # from the surface, the far wall
+            ((0, 0, 2), (0, 0, -1), NEVER),  # and nothing
+        ],
+    ),
+    (
+        FLOOR,
+        [
+            ((0, 0, 0), (0, -1, 0), 2),
+            ((0, 0, 0), (0, 1, 0), NEVER),
+            ((0, -5, 0), (0, 1, 0), 3),  # from below
+            ((0, 1, 0), (0.8, -0.6, 0), 5),
+            ((0, 1, 0), (1, 0, 0), NEVER),  # along it
+            ((0, -2, 0), (1, 0, 0), NEVER),  # in it
+            ((0, -2, 0), (0, -1, 0), NEVER),  # from it
+        ],
+    ),
+    (
+        TUBE,
+        [
+            ((0, 0, 0), (0, 0, 1), 2),  # the side, head on
+            ((0, 0, 0), (0, 0, -1), NEVER),  # behind
+            ((0, 0, 5), (1, 0, 0), 3),  # from the centre to the side
+            ((0, 0, 5), (0, 1, 0), 2),  # from the centre to the cap, along the axis
+            ((0, 9, 5), (0, -1, 0), 7),  # the cap from above
+            ((2.9, 9, 5), (0, -1, 0), 7),  # the cap near its rim
+            ((3.1, 9, 5), (0, -1, 0), NEVER),  # past the rim
+            ((1.8, 0, 0), (0, 0, 1), 2.6),  # 1.8 off the axis: 2.4 before it
+            ((0, 2.1, 0), (0, 0, 1), NEVER),  # over it
+            ((0, 5, 5), (0.6, -0.8, 0), 3.75),  # the cap at x = 2.25
+            ((0, -1.9, 5), (0.6, -0.8, 0), 0.125),  # from inside, the bottom
+            ((0, 0, 5), (0.8, 0.6, 0), 10 / 3),  # from inside, the cap before the side
+            ((0, 0, 2), (0, 0, 1), 6),  # from the side, the far wall
+            ((0, 0, 2), (0, 0, -1), NEVER),
+            ((0, 2, 5), (0, -1, 0), 4),  # from a cap
+            ((0, 2, 5), (0, 1, 0), NEVER),
+        ],
+    ),
+    (
+        TENT,
+        [
+            ((0, 2, 0), (0, 0, 1), 3.5),  # the side, half-way up
+            ((0, 2, 0), (0, 0, -1), NEVER),  # behind
+            ((0, 9, 5), (0, -1, 0), 5),  # the apex, along the axis
+            ((1.5, 9, 5), (0, -1, 0), 7),  # the side from above
+            ((1.5, -1, 5), (0, 1, 0), 1),  # the base
+            ((3.1, -1, 5), (0, 1, 0), NEVER),  # past the rim
+            ((0, 1, 5), (0, -1, 0), 1),  # from inside, the base
+            ((0, 1, 5), (0, 1, 0), 3),  # from inside, the apex
+            ((0, 1, 5), (1, 0, 0), 2.25),  # from inside, the side
+            ((0, 6, 0), (0, 0, 1), NEVER),  # over it, where its mirror image would be
+            ((0, 6, 5), (0.6, 0.8, 0), NEVER),  # within that, upwards
+            ((0, 6, 5), (0.6, -0.8, 0), NEVER),  # within that, downwards and along the side
+            ((-3, 0.5, 5), (0.8, 0.6, 0), 0.375 / 0.35),  # in, from beside it
+            ((0, 2, 3.5), (0, 0, 1), 3),  # from the side
+            ((0, 2, 3.5), (0, 0, -1), NEVER),
+            ((0, 0, 5), (0, 1, 0), 4),  # from the base
+            ((0, 0, 5), (0, -1, 0), NEVER),
+        ],
+    ),
+    (
+        RIGHT,
+        [
+            ((-2, 2, 5), (1, -1, 0), 2),  # along one of its lines
+            ((-2, 2, 6), (1, -1, 0), NEVER),  # beside it
+            ((-4, 2, 5), (2, -1, 0), 2),  # at the apex and nowhere else
+        ],
+    ),
+    (
+        BOWL,
+        [
+            ((0, 0, 0), (0, 0, 1), 4),  # the side
+            ((0, 0, 0), (0, 0, -1), NEVER),  # behind
+            ((0, -3, 5), (0, 1, 0), 2),  # the vertex, along the axis
+            ((1, -3, 5), (0, 1, 0), 3),  # the side, along the axis
+            ((1, 9, 5), (0, -1, 0), 6),  # the cap
+            ((2.1, 9, 5), (0, -1, 0), NEVER),  # past the rim
+            ((0, 0, 5), (0, 1, 0), 3),  # from inside, the cap
+            ((0, 0, 5), (0, -1, 0), 1),  # from inside, the vertex
+            ((0, 1.25, 5), (1, 0, 0), 1.5),  # from inside, the side
+            ((0, 3.1, 0), (0, 0, 1), NEVER),  # over it
+            ((0, -1.1, 0), (0, 0, 1), NEVER),  # under it
+            ((0, 5, 5), (1, -1, 0), 2),  # the rim and nothing else
+            ((0.25, -0.25, 5), (-0.6, 0.8, 0), (1.1 + 2.2**0.5) / 0.72),  # inside: 0.36 t^2 - 1.1 t = 0.6875
+            ((0, 0, 4), (0, 0, 1), 2),  # from the side
+            ((0, 0, 4), (0, 0, -1), NEVER),
+            ((0, 3, 5), (0, -1, 0), 4),  # from the cap
+            ((0, 3, 5), (0, 1, 0), NEVER),
+        ],
+    ),
+    (
+        TOWER,
+        [
+            ((0, 0, -5), (0, 0, 1), 7),  # the waist
+            ((0, 0, -5), (0, 0, -1), NEVER),  # behind
+            ((0, 9, 5), (0, -1, 0), 5),  # the cap, along the axis
+            ((4.9, 9, 5), (0, -1, 0), 5),  # the cap near its rim
+            ((5.1, 9, 5), (0, -1, 0), NEVER),  # past the rim
+            ((0, 0, 5), (0, 1, 0), 4),  # from the centre, the cap
+            ((0, 0, 5), (1, 0, 0), 3),  # from the centre, the side
+            ((4.9, 3.95, 5), (0, -1, 0), 3.95 - SIDE),  # from inside, out of the side above the waist
+            ((4.9, 0, 5), (0, -1, 0), SIDE),  # from beside the waist, into the lower half
+            ((4.9, -3.95, 5), (0, -1, 0), 0.05),  # from inside there, the lower cap
+            ((0, 4.1, -5), (0, 0, 1), NEVER),  # over it
+            # From x = 4 a ray down the outside of the waist enters above it, leaves, and enters again below.
+            *(((4, y, 5), (0, -1, 0), t) for y, t in ((9, 5), (3.9, 3.9 - 7**0.5), (2, 2 + 7**0.5), (0, 7**0.5))),
+            *(((4, y, 5), (0, -1, 0), t) for y, t in ((-3, 1), (-5, NEVER))),
+            ((-6.6e8, 0, 5 - 8.8e8), (0.6, 0, 0.8), 1.1e9 - 3),  # from far away
+        ],
+    ),
+    (
+        EVEN,
+        [
+            ((0, 0, -2.5), (0, 0, 1), 15),  # from the side
+            ((0, 0, -2.5), (0, 0, -1), NEVER),
+            ((0, 4, 5), (0, -1, 0), 8),  # from a cap
+            ((0, 4, 5), (0, 1, 0), NEVER),
+            ((8.125, 3.125, 5), (0, -1, 0), 6.25),  # from the side, out of the upper half and into the lower one
+            ((8.125, -3.125, 5), (0, -1, 0), 0.875),  # out of its cap
+            ((8.125, -4, 5), (0, -1, 0), NEVER),
+            ((-6, -6, 12), (1, 1, 0), 2),  # along an asymptote, inside of it
+            ((-6, -6, 13), (1, 1, 0), NEVER),  # beside it
+            ((4.5, 6, 5), (2, -1, 0), 2),  # at the rim and nowhere else
+        ],
+    ),
+    (
+        TUBE_TOWER,
+        [((1.8, 0, 0), (0, 0, 1), 2.6), ((2.9, 9, 5), (0, -1, 0), 7), ((0, 0, 5), (0.8, 0.6, 0), 10 / 3)],
+    ),
+    (
+        EGG,
+        [
+            ((0, 0, 0), (0, 0, 1), 2),  # the near end of the longest axis
+            ((0, 0, 0), (0, 0, -1), NEVER),  # behind
+            ((0, 0, 5), (1, 0, 0), 2),  # from the centre, along each axis
+            ((0, 0, 5), (0, -1, 0), 1),
+            ((0, 0, 4), (0, 0, -1), 2),  # from inside, the near wall
+            ((1.2, 0, 0), (0, 0, 1), 2.6),  # x / 2 = 0.6: z is 0.8 of 3 off the centre
+            ((0, 0.6, 0), (0, 0, 1), 2.6),  # y / 1 = 0.6, too
+            ((2, 0, 0), (0, 0, 1), 5),  # touching it
+            ((2.01, 0, 0), (0, 0, 1), NEVER),  # past it
+            ((0, 0, 9), (0, 0, 1), NEVER),  # away from it
+            ((0, 0, 2), (0, 0, 1), 6),  # from the surface
+            ((0, 0, 2), (0, 0, -1), NEVER),
+        ],
+    ),
+    (TURNED_EGG, [((0, 0, 5), (1, 0, 0), 1), ((0, 0, 5), (0, 1, 0), 2), ((0, 0, 5), (0, 0, 1), 3)]),
+    (EGG.replace(centre=(0, 0, 1e6), sizes=(4e-3, 2e-3, 6e-3)), [((0, 0, 0), (0, 0, 1), 1e6 - 3e-3)]),
+    (
+        BOARD,
+        [
+            ((0, 1, 0), (0, 0, 1), 5),
+            ((0, 1, 0), (0, 0, -1), NEVER),  # behind
+            ((0, 1, 9), (0, 0, -1), 4),  # from its back
+            ((1.59, 2.99, 0), (0, 0, 1), 5 + 0.75 * 1.59),  # near a corner: 3/4 of that deeper
+            ((1.61, 2.99, 0), (0, 0, 1), NEVER),  # beside it
+            ((1.59, 3.01, 0), (0, 0, 1), NEVER),  # over it
+            ((-1.59, -0.99, 0), (0, 0, 1), 5 - 0.75 * 1.59),
+            ((-1.61, 0, 0), (0, 0, 1), NEVER),
+            ((0, -1.01, 0), (0, 0, 1), NEVER),
+            ((0, 3, 0), (0, 0, 1), 5),  # the very edge
+            ((-1, 1, 4.25), (0.8, 0, 0.6), NEVER),  # along it
+            ((0, 1, 5), (0, 0, 1), NEVER),  # from it
+        ],
+    ),
+    (BOARD.replace(normal=(0, 0, -1)), [((2, 1, 0), (0, 0, 1), 5), ((2.01, 1, 0), (0, 0, 1), NEVER)]),
+    (  # a floor has its edges along x and z
+        BOARD.replace(normal=(0, 1, 0)),
+        [
+            ((1.99, 3, 6.99), (0, -1, 0), 2),
+            ((2.01, 3, 5), (0, -1, 0), NEVER),
+            ((0, 3, 7.01), (0, -1, 0), NEVER),
+        ],
+    ),
+    (
+        PLATE,
+        [
+            ((0, 1, 0), (0, 0, 1), 5),
+            ((0, 1, 0), (0, 0, -1), NEVER),  # behind
+            ((0, 1, 9), (0, 0, -1), 4),  # from its back
+            ((1.59, 1, 0), (0, 0, 1), 5 + 0.75 * 1.59),  # near the rim: 3/4 of that deeper
+            ((1.61, 1, 0), (0, 0, 1), NEVER),  # past it
+            ((0, 2.99, 0), (0, 0, 1), 5),
+            ((0, 3, 0), (0, 0, 1), 5),  # the very rim
+            ((0, 3.01, 0), (0, 0, 1), NEVER),
+            ((1.2, 2.4, 0), (0, 0, 1), NEVER),  # where a square would be: 1.5 aside and 1.4 up
+            ((-1, 1, 4.25), (0.8, 0, 0.6), NEVER),  # along it
+            ((0, 1, 5), (0, 0, 1), NEVER),  # from it
+        ],
+    ),
+    (
+        BLOCK,
+        [
+            ((0, 0, 0), (0, 0, 1), 2),
+            ((0, 0, 0), (0, 0, -1), NEVER),  # behind
+            ((0, 0, 9), (0, 0, -1), 1),
+            ((0, 9, 5), (0, -1, 0), 6),
+            ((-9, 1, 5), (1, 0, 0), 8),
+            ((0, 1, 5), (1, 0, 0), 1),  # from the centre
+            ((0, 1, 5), (0, 1, 0), 2),
+            ((0, 1, 5), (0, 0, 1), 3),
+            ((0.99, 2.99, 0), (0, 0, 1), 2),  # near an edge
+            *((origin, (0, 0, 1), NEVER) for origin in ((1.01, 0, 0), (-1.01, 0, 0), (0, 3.01, 0), (0, -1.01, 0))),
+            ((-9, 1, 8.01), (1, 0, 0), NEVER),
+            ((-4, 0, 5), (0.6, 0.8, 0), NEVER),  # over it
+            ((-2.5, 0, 5), (0.6, 0.8, 0), 2.5),  # at the side, 2 up
+            ((-2, 2, 5), (0.5**0.5, 0.5**0.5, 0), 2**0.5),  # at the very edge
+            ((0, 0, 2), (0, 0, 1), 6),  # from a face
+            ((0, 0, 2), (0, 0, -1), NEVER),
+            ((0, 3, 5), (0, -1, 0), 4),
+            ((0, 3, 5), (0, 1, 0), NEVER),
+        ],
+    ),
+    (
+        RING,
+        [
+            ((0, 1, 0), (0, 0, 1), 1),  # the outer side
+            ((0, 1, 0), (0, 0, -1), NEVER),  # behind
+            ((0, 1, 2), (0, 0, 1), 1),  # from inside the tube
+            ((0, 1, 2), (0, 0, -1), 1),
+            ((0, 1, 5), (0, 0, 1), 2),  # from the middle of the hole
+            ((0, 1, 4), (0, 0, -1), 1),  # from inside the hole
+            ((0, 1, 8), (0, 0, 1), 1),  # from inside the far tube
+            ((0, 1, 9.5), (0, 0, 1), NEVER),  # beyond it
+            ((0, 9, 5), (0, -1, 0), NEVER),  # through the hole
+            ((0, 9, 2), (0, -1, 0), 7),  # the top
+            ((1.8, 9, 7.4), (0, -1, 0), 7),
+            ((0, 9, 6.2), (0, -1, 0), NEVER),  # past the inner equator
+            ((0, 9, 7.5), (0, -1, 0), 8 - 0.75**0.5),  # half a radius off the circle
+            ((0, 9, 9.1), (0, -1, 0), NEVER),  # outside
+            ((0, 2.1, 0), (0, 0, 1), NEVER),  # over it
+            ((0, 1, 5), (0.6, 0, 0.8), 2),
+            # Each of four crossings is hit from before it.
+            *(((0, 1, z), (0, 0, 1), t) for z, t in ((-4, 5), (1.5, 1.5), (3.5, 3.5), (6.5, 0.5), (7.5, 1.5))),
+            ((0, 1, 1), (0, 0, 1), 2),  # from the surface
+            ((0, 1, 1), (0, 0, -1), NEVER),
+            ((0, 2, 2), (0, 1, 0), NEVER),
+            ((0, 2, 2), (0, -1, 0), 2),
+        ],
+    ),
+    (  # without a hole, radii 3 and 3
+        RING.replace(tube=6),
+        [
+            ((0, 9, 5.5), (0, -1, 0), 8 - (9 - 2.5**2) ** 0.5),
+            ((0, 1, -5), (0, 0, 1), 4),
+            ((0, 9, 8), (0, -1, 0), 5),
+        ],
+    ),
+]
+
+
+def title(value: object) -> str:
+    return value.title if isinstance(value, Shape) else ""
+
+
+@pytest.mark.parametrize(("shape", "rays"), HITS, ids=title)
+def test_hits(intersect: Intersect, shape: Shape, rays: list[Ray]) -> None:
+    expected = pytest.approx([t for *_, t in rays], rel=3e-15)
+    assert shoot(intersect, shape, *((origin, direction) for origin, direction, _ in rays)) == expected
+
+
+@pytest.mark.parametrize("shape", [FLOOR, TUBE, PLATE, BLOCK, RING], ids=title)
+def test_a_shape_turned_upside_down_is_hit_alike(intersect: Intersect, shape: Shape) -> None:
+    rays = next(rays for each, rays in HITS if each is shape)
+    name = "axis" if hasattr(shape, "axis") else "normal"
+    opposite = shape.replace(**{name: tuple(-x for x in getattr(shape, name))})
+    expected = pytest.approx([t for *_, t in rays], rel=1e-15)
+    assert shoot(intersect, opposite, *((origin, direction) for origin, direction, _ in rays)) == expected
+
+
+@pytest.mark.parametrize(("slope", "seen"), [(1e-6, True), (np.nextafter(4 * U, 1), True), (4 * U, False), (0, False)])
+@pytest.mark.parametrize("shape", [FLOOR, PLATE, BOARD], ids=title)
+def test_a_parallel_ray_misses(intersect: Intersect, shape: Shape, slope: float, seen: bool) -> None:
+    lying = shape.replace(normal=(0, 1, 0))
+    x, y, z = getattr(lying, "centre", None) or lying.point
+    (t,) = shoot(intersect, lying, ((x, y + slope, z), (1, -slope, 0)))
+    assert t == (pytest.approx(1, abs=1e-3 if slope > U * 8 else 1) if seen else NEVER)
+
+
+def flank(x: float, y: float) -> tuple[float, ...]:
+    """The unit vector along x, y."""
+    return (x / np.hypot(x, y), y / np.hypot(x, y), 0)
+
+
+REACH, HEIGHT = (9 + 3.9**2) ** 0.5, 7**0.5 / 4
+SURFACES: list[tuple[Shape, list[tuple[tuple[float, ...], ...]]]] = [  # points, moved onto the surface, and normals
+    (
+        TUBE,
+        [
+            ((3.001, 1, 5), (3, 1, 5), (1, 0, 0)),
+            ((0, 0, 1.99), (0, 0, 2), (0, 0, -1)),
+            ((2, 2.001, 5), (2, 2, 5), (0, 1, 0)),
+            ((2, 1.999, 5), (2, 2, 5), (0, 1, 0)),
+            ((1, -2.01, 5), (1, -2, 5), (0, -1, 0)),
+            ((0, -1.99, 5), (0, -2, 5), (0, -1, 0)),
+        ],
+    ),
+    (
+        TENT,
+        [
+            ((1.508, 2.006, 5), (1.5, 2, 5), (0.8, 0.6, 0)),
+            ((1, 0.001, 5), (1, 0, 5), (0, -1, 0)),
+            ((1, -0.01, 5), (1, 0, 5), (0, -1, 0)),
+            ((0, 4, 5), (0, 4, 5), (0, 1, 0)),
+        ],
+    ),
+    (  # across the axis where the side is steep, along it where it is flat
+        BOWL,
+        [
+            ((1.01, 0, 5), (1, 0, 5), flank(2, -1)),
+            ((0, -1.01, 5), (0, -1, 5), (0, -1, 0)),
+            ((0.25, -0.9, 5), (0.25, -0.9375, 5), flank(0.5, -1)),
+            ((1, 3.01, 5), (1, 3, 5), (0, 1, 0)),
+            ((1, 2.99, 5), (1, 3, 5), (0, 1, 0)),
+            ((0.76, -0.4375, 5), (0.75, -0.4375, 5), flank(1.5, -1)),
+        ],
+    ),
+    (
+        TOWER,
+        [
+            ((3.01, 0, 5), (3, 0, 5), (1, 0, 0)),
+            ((-5.01, 3.9, 5), (-REACH, 3.9, 5), flank(-REACH, -3.9)),
+            ((1, 4.01, 5), (1, 4, 5), (0, 1, 0)),
+            ((1, -3.99, 5), (1, -4, 5), (0, -1, 0)),
+        ],
+    ),
+    (TUBE_TOWER, [((3.01, 1, 5), (3, 1, 5), (1, 0, 0))]),
+    (  # along the axis where the side is flat
+        FLAT_TOWER,
+        [
+            ((4, 0.65, 5), (4, HEIGHT, 5), flank(4, -16 * HEIGHT)),
+            ((4, -0.65, 5), (4, -HEIGHT, 5), flank(4, 16 * HEIGHT)),
+        ],
+    ),
+    (SAIL, [((0.5, 1, 6.5), (0.5, 1.25, 6.25), (0, -(0.5**0.5), 0.5**0.5)), ((0.5, 1, 5.5), (0.5, 0.75, 5.75), ())]),
+    (BOARD, [((0.06, 2, 4.92), (0, 2, 5), BOARD.normal), ((0.8, 1, 5.6), (0.8, 1, 5.6), BOARD.normal)]),
+    (PLATE, [((0.06, 2, 4.92), (0, 2, 5), PLATE.normal), ((0.8, 1, 5.6), (0.8, 1, 5.6), PLATE.normal)]),
+    (FLOOR, [((0.3, -2.5, 7), (0.3, -2, 7), (0, 1, 0)), ((-9, 1, 1), (-9, -2, 1), (0, 1, 0))]),
+    (BALL, [((0, 0, 2.5), (0, 0, 2), (0, 0, -1)), ((4.8, 0, 8.6), (2.4, 0, 6.8), (0.8, 0, 0.6))]),
+    (
+        BLOCK,
+        [
+            ((1.01, 0, 5), (1, 0, 5), (1, 0, 0)),
+            ((-0.99, 0, 5), (-1, 0, 5), (-1, 0, 0)),
+            ((0, 3.01, 5), (0, 3, 5), (0, 1, 0)),
+            ((0, -0.99, 5), (0, -1, 5), (0, -1, 0)),
+            ((0, 0, 2.01), (0, 0, 2), (0, 0, -1)),
+            ((0.5, 2, 8.01), (0.5, 2, 8), (0, 0, 1)),
+        ],
+    ),
+    (
+        RING,
+        [
+            ((0, 1, 0.9), (0, 1, 1), (0, 0, -1)),
+            ((0, 1, 3.01), (0, 1, 3), (0, 0, 1)),
+            ((3, 2.01, 5), (3, 2, 5), (0, 1, 0)),
+            ((0, 0.01, 8), (0, 0, 8), (0, -1, 0)),
+        ],
+    ),
+]
+
+
+@pytest.mark.parametrize(("shape", "cases"), SURFACES, ids=title)
+def test_points_move_onto_the_surface(shape: Shape, cases: list[tuple[tuple[float, ...], ...]]) -> None:
+    on, normal = surfaces([shape], np.array([point for point, *_ in cases], float)[None])
+    assert np.abs(on[0] - [right for _, right, _ in cases]).max() <= 8 * U * 5
+    for found, (_, _, right) in zip(normal[0], cases, strict=True):
+        assert not right or np.abs(found - right).max() <= 4 * U
+
+
+def test_points_beside_the_special_places_of_a_surface() -> None:
+    on, normal = surfaces([FLAT_TOWER], np.array([[[2.9, 0.2, 5]]]))  # inside the waist: onto it
+    assert on[0, 0, 1] == 0
+    assert np.abs(normal[0, 0] - [1, 0, 0]).max() <= 4 * U
+    _, normal = surfaces([BOWL], np.array([[[0.6, -1.01, 5]]]))  # below the vertex
+    assert np.abs(normal[0, 0] - [0, -1, 0]).max() <= 4 * U
+    on, normal = surfaces([RING], np.array([[[0, 1, 5.0]]]))  # on the axis, where every point of the ring is as near
+    assert np.abs(np.linalg.norm(on[0, 0] - [0, 1, 5]) - 2) <= 8 * U * 5
+    assert normal[0, 0, 1] == 0
+    slopes = np.array([[1, 0, 0], [0, -1, 0], [0.3, 0.8, 0], [0, 0.6, -2.4 / 9]])
+    normals = slopes / np.linalg.norm(slopes, axis=-1, keepdims=True)
+    for off in (1e-9, -1e-9):  # onto an ellipsoid along the normal
+        right = np.array([[2, 0, 5], [0, -1, 5], [1.2, 0.8, 5], [0, 0.6, 5 - 2.4]])
+        on, found = surfaces([EGG], (right + off * normals)[None])
+        assert np.abs(on[0] - right).max() <= 8 * U * 5
+        assert np.abs(found[0] - normals).max() <= 1e-8
+
+
+@pytest.mark.parametrize(
+    ("shape", "corner", "shares", "side"),
+    [(BOWL, (2, 3), (1.275, 1.287), (4, -1)), (TOWER, (5, 4), (2.07, 2.09), (5, -4))],
+    ids=title,
+)
+def test_near_a_rim_points_move_to_the_nearer_wall(
+    shape: Shape, corner: tuple[float, float], shares: tuple[float, float], side: tuple[float, float]
+) -> None:
+    over = 1e-4  # and between these shares of it beside the rim both walls are as near
+    points = np.array([[corner[0] + aside * over, corner[1] + over, 5] for aside in shares])
+    _, normal = surfaces([shape], points[None])
+    assert np.abs(normal[0] - [[0, 1, 0], flank(*side)]).max() <= 1e-4
+
+
+TURNED = (0.6, 0, 0.8)
+DISH = Paraboloid((0, 0, 0), (0.6, 0.8, 0), 4, 1, GREY)  # along y it bulges 3 / 4 as far from the axis as the rim
+BOUNDS: list[tuple[Shape, tuple[float, ...], tuple[float, ...]]] = [
+    (BALL, (-3, -3, 2), (3, 3, 8)),
+    (Cylinder((1, 2, 3), TURNED, 10, 20, GREY), (-9, -3, -8), (11, 7, 14)),
+    (Cone((1, 2, 3), TURNED, 10, 20, GREY), (1, -3, 3), (17, 7, 22)),
+    (BOWL, (-2, -1, 3), (2, 3, 7)),
+    (BOWL.replace(axis=(1, 0, 0)), (0, -3, 3), (4, 1, 7)),  # the box of the rim and the vertex
+    (BOWL.replace(axis=(0.6, 0.8, 0)), (-4 / 15, -1.1125, 3), (4, 3.4, 7)),  # bulges beyond both
+    (DISH, (-1, -0.45, -2), (2.2, 2, 2)),
+    (DISH.replace(axis=(-0.6, -0.8, 0)), (-2.2, -2, -2), (1, 0.45, 2)),
+    (Hyperboloid((1, 2, 3), TURNED, 4, 10, 20, GREY), (-9, -3, -8), (11, 7, 14)),
+    (EGG, (-2, -1, 2), (2, 1, 8)),
+    (TURNED_EGG, (-1, -2, 2), (1, 2, 8)),
+    (SAIL, (-2, 0, 5), (2, 3, 8)),
+    (BOARD, (-1.6, -1, 3.8), (1.6, 3, 6.2)),
+    (PLATE, (-1.6, -1, 3.8), (1.6, 3, 6.2)),
+    (BLOCK, (-1, -1, 2), (1, 3, 8)),
+    (BLOCK.replace(axis=(0.6, 0.8, 0)), (-2, -1.2, 2), (2, 3.2, 8)),
+    (RING, (-4, 0, 1), (4, 2, 9)),
+    (RING.replace(centre=(7, 8, 9)), (3, 7, 5), (11, 9, 13)),
+    (RING.replace(axis=(0.6, 0.8, 0)), (-3.4, -1.8, 1), (3.4, 3.8, 9)),
+]
+
+
+@pytest.mark.parametrize(("shape", "low", "high"), BOUNDS, ids=title)
+def test_boxes(shape: Shape, low: tuple[float, ...], high: tuple[float, ...]) -> None:
+    assert shape.bounds() == (pytest.approx(low), pytest.approx(high))
+
+
+def test_the_box_of_a_wide_disc_that_is_hardly_tilted() -> None:
+    # Its rim rises by radius times tilt, though 1 - cos^2 of the tilt is nothing in float64.
+    _, (_, top, _) = Cylinder((0, 0, 0), (1e-9, 1, 0), 2e6, 1e-6, GREY).bounds()
+    assert top == pytest.approx(1e6 * 1e-9 + 5e-7, rel=1e-12)
+
+
+def test_balls() -> None:
+    assert BALL.balls() == (((0, 0, 5), 3),)
+    ends = Cylinder((1, 2, 3), TURNED, 10, 20, GREY).balls()
+    assert ends == ((pytest.approx((7, 2, 11)), 5), (pytest.approx((-5, 2, -5)), 5))
+    assert Hyperboloid((1, 2, 3), TURNED, 4, 10, 20, GREY).balls() == ends[::-1]
+    assert Cone((1, 2, 3), TURNED, 10, 20, GREY).balls() == (((1, 2, 3), 0), (pytest.approx((13, 2, 19)), 5))
+    assert BOWL.balls() == (((0, -1, 5), 1), ((0, 3, 5), 2))
+    assert sorted(EGG.balls()) == [((x, 0, z), 1) for x in (-1, 1) for z in (3, 7)]
+    assert SAIL.balls() == ((SAIL.a, 0), (SAIL.b, 0), (SAIL.c, 0))
+    assert PLATE.balls() == (((0, 1, 5), 2),)
+    assert sorted(BOARD.balls())[0] == (pytest.approx((-1.6, -1, 3.8)), 0)
+    assert {radius for _, radius in (*BOARD.balls(), *BLOCK.balls())} == {0}
+    assert (len(BOARD.balls()), len(BLOCK.balls()), len(RING.balls())) == (4, 8, 8)
+    middles = np.array([centre for centre, _ in RING.balls()])
+    assert np.allclose(np.linalg.norm(middles - RING.centre, axis=1), 3 / np.cos(np.pi / 8))
+    assert np.allclose(middles[:, 1], 1)
+    assert np.allclose(np.linalg.norm(middles - np.roll(middles, 1, axis=0), axis=1), 6 * np.tan(np.pi / 8))
+    assert {radius for _, radius in RING.balls()} == {1}
+
+
+@pytest.mark.parametrize(
+    ("shape", "name", "least", "refused", "message"),
+    [
+        (TOWER, "diameter", 6, 5, "hyperboloid waist must be at most the diameter, 5, got 6"),
+        (RING, "tube", 6, 7, "torus tube must be at most the diameter, 6, got 7"),
+    ],
+    ids=title,
+)
+def test_sizes_that_contradict_each_other_are_refused(
+    shape: Shape, name: str, least: float, refused: float, message: str
+) -> None:
+    with pytest.raises(ElementError, match=message):
+        shape.replace(**{name: refused})
+    assert getattr(shape.replace(**{name: least}), name) == least
+
+
+@pytest.mark.parametrize(
+    ("axis", "axes"),
+    [
+        ((0, 1, 0), [(1, 0, 0), (0, 1, 0), (0, 0, 1)]),
+        ((1, 0, 0), [(0, -1, 0), (1, 0, 0), (0, 0, 1)]),
+        ((0, 0, 1), [(1, 0, 0), (0, 0, 1), (0, -1, 0)]),
+        ((0.6, 0.8, 0), [(0.8, -0.6, 0), (0.6, 0.8, 0), (0, 0, 1)]),
+    ],
+)
+def test_the_axes_of_a_box_are_those_of_the_scene_until_it_is_turned(
+    axis: tuple[float, ...], axes: list[tuple[float, ...]]
+) -> None:
+    assert np.allclose([(v.x, v.y, v.z) for v in BLOCK.replace(axis=axis).axes()], axes, atol=1e-12)
+
+
+def test_pictures_on_a_box_are_as_wide_and_high_as_its_faces() -> None:
+    faces = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
+    found = interpreted(BLOCK, BLOCK.centre + faces * [1, 2, 3], faces)
+    assert found.along_u.tolist() == [[0, 0, -6], [0, 0, 6], [2, 0, 0], [2, 0, 0], [2, 0, 0], [-2, 0, 0]]
+    assert found.along_v.tolist() == [[0, 4, 0], [0, 4, 0], [0, 0, -6], [0, 0, 6], [0, 4, 0], [0, 4, 0]]
