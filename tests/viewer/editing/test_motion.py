@@ -29,7 +29,7 @@ from minirt.viewer.editing.motion import rotate, rotate_direction
 from minirt.viewer.editing.projection import scene_size
 from minirt.viewer.editing.state import State, initial_state
 from minirt.viewer.editing.values import round_changes, values
-from tests.reference.normals import right_and_up_on
+from tests.reference.uv_mapping import right_and_up_on
 from tests.reference.vectors import own_x_and_z
 from tests.viewer.fake import played, scene
 
