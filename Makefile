@@ -59,7 +59,7 @@ pythons: $(NAME)  ## run quick tests, a film, a window and a notebook with each 
 	$(VENV)/bin/python -m tests.pythons
 
 FORMULAS := tests/lanes tests/shapes tests/kernel/test_features.py tests/kernel/test_frame.py \
-            tests/kernel/test_invariances.py tests/kernel/test_single.py tests/kernel/shading/test_lights.py
+            tests/kernel/test_invariances.py tests/kernel/shading/test_lights.py
 # Formulas of single numbers and of numpy's arrays are the same on each processor.
 COMPILED := $(FORMULAS) -k "not numbers] and not arrays]"
 
@@ -77,7 +77,7 @@ lowest: $(NAME)  ## run a short part of the tests with the lowest versions of th
 	mkdir -p $(LOWEST)/cache
 	XDG_CACHE_HOME=$(abspath $(LOWEST)/cache) $(LOWEST)/bin/python -m pytest --numprocesses $(WORKERS) \
 	    -m "not window" tests/materials tests/formats tests/kernel/compiler \
-	    tests/kernel/test_single.py tests/mlx tests/test_faulty_writes.py tests/test_image.py
+	    tests/kernel/test_features.py tests/mlx tests/test_faulty_writes.py tests/test_image.py
 
 check: $(DEV)  ## lint and check types
 	$(VENV)/bin/ruff check .
