@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, NoReturn
 
 from minirt import DEFAULT_ERROR
 from minirt.cli.output import say, tell
+from minirt.errors import nearest
 
 OK = 0  # exit statuses
 FAILED = 1  # an error in a scene, in rendering or in writing
@@ -30,7 +31,6 @@ LEAST_MEMORY, MOST_MEMORY = 2**20, 2**50  # bytes
 MAX_EXPOSURE = 20.0  # EV, up and down
 UNKNOWN = re.compile(r"unrecognized arguments: (-\S*)")
 CHOICE = re.compile(r"argument (?P<option>.*?): invalid choice: '?(?P<value>.*?)'? \(choose from (?P<choices>.*)\)")
-NEAR = 0.6  # similarity from which on a word is suggested, from 0 to 1
 TEXT_SCALES = 0.5, 4.0  # least and largest, as with keys in the window
 
 
@@ -324,10 +324,7 @@ def clearer(parser: argparse.ArgumentParser, message: str) -> str:
 
 def suggestion(word: str, known: Iterable[str]) -> str:
     """Return `, did you mean --size?`, or '' without a word that is near."""
-    from difflib import get_close_matches
-
-    near = get_close_matches(word[:40], list(known), 1, NEAR)
-    return f", did you mean {near[0]}?" if near else ""
+    return "".join(f", did you mean {each}?" for each in nearest(word, known))
 
 
 def in_words(choices: str) -> str:

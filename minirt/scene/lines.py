@@ -6,7 +6,8 @@ Blanks (spaces and tabs, nothing else) separate words. A `#` begins a comment wh
 from __future__ import annotations
 
 import re
-from itertools import islice
+from itertools import compress, count, islice
+from operator import not_
 from pathlib import Path
 from typing import NamedTuple
 
@@ -68,20 +69,12 @@ def line_from(number: int, source: str) -> Line:
 def first_unprintable(line: Line) -> int:
     """Return the index of the first carriage return, or of the first character before the comment that cannot be seen.
 
-    Tabs are seen. The search halves the line, so that no loop in Python looks at each character.
+    Tabs are seen. No loop in Python looks at each character.
     """
     carriage_return = line.text.find("\r")
-    start, end = 0, carriage_return if 0 <= carriage_return < line.end else line.end
-    body = line.text[:end].replace("\t", " ")
-    if body.isprintable():
-        return carriage_return
-    while end - start > 1:
-        middle = (start + end) // 2
-        if body[start:middle].isprintable():
-            start = middle
-        else:
-            end = middle
-    return start
+    body = line.text[: line.end].replace("\t", " ")
+    hidden = next(compress(count(), map(not_, map(str.isprintable, body))), carriage_return)
+    return hidden if carriage_return < 0 else min(hidden, carriage_return)
 
 
 def split_at_blanks(body: str) -> list[Word]:

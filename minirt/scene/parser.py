@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import gc
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from minirt.element import Element, pattern
 from minirt.errors import Problem, SceneError
+from minirt.helpers.system import gc_paused
 from minirt.scene import fast, files
 from minirt.scene.element_reader import Slot, assign_words, identify, parse_slots, split_line
 from minirt.scene.elements import Ambient
@@ -52,7 +50,7 @@ def parse(
     if isinstance(text, str):
         text = text.encode("utf-8", "surrogatepass")  # a lone surrogate is reported as a byte that is not UTF-8
     log = Log(name, lenient, folder)
-    with garbage_collection_paused():
+    with gc_paused(freeze=False):  # a reader makes no cycles, and the search for them takes a quarter of its time
         items = read_lines(files.decode(text, name).split("\n"), log)
     if log.errors:
         raise SceneError(tuple(sorted(log.errors, key=lambda error: (error.line, error.column))))
@@ -68,18 +66,6 @@ def loads(text: str | bytes, lenient: bool = False) -> Scene:
         scene = minirt.loads("A 0.2 255,255,255\nC 0,0,-9 0,0,1 60\nsp 0,0,0 2 255,0,0")
     """
     return parse(text, lenient=lenient).scene
-
-
-@contextmanager
-def garbage_collection_paused() -> Iterator[None]:
-    """Pause cyclic garbage collection: a reader makes no cycles, and the search would take a quarter of its time."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
 
 
 def read_lines(sources: list[str], log: Log) -> list[Item]:

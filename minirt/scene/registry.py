@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from minirt.element import Element, fields_of, pattern
+from minirt.errors import nearest
 from minirt.fields import Field
 from minirt.materials import Compound
 from minirt.scene.elements import Ambient, Background, Camera, Resolution
@@ -45,15 +46,10 @@ FOREIGN_KEYS = {
 }
 
 
-def nearest(word: str, known: list[str]) -> str:
+def nearest_word(word: str, known: list[str]) -> str:
     """Return the entry of `known` with the most similar spelling, or '' when none is similar."""
-    word = word[:40]
-    for entry in known:
-        if entry.lower() in (word.lower(), word.translate(LOOKALIKES).lower()):
-            return entry
-    import difflib
-
-    return next(iter(difflib.get_close_matches(word, known, n=1, cutoff=0.6)), "")
+    meant = word[:40].lower(), word[:40].translate(LOOKALIKES).lower()
+    return next((entry for entry in known if entry.lower() in meant), "") or next(iter(nearest(word, known)), "")
 
 
 def nearest_element(word: str) -> str:
@@ -62,13 +58,13 @@ def nearest_element(word: str) -> str:
     if glued and glued[1] in SPELLINGS:
         return SPELLINGS[glued[1]].code
     names = {name: kind.code for kind in ELEMENTS.values() for name in (kind.title, kind.plural)}
-    return nearest(word, list(ELEMENTS)) or names.get(nearest(word, list(names)), "")
+    return nearest_word(word, list(ELEMENTS)) or names.get(nearest_word(word, list(names)), "")
 
 
 def nearest_key(word: str, known: list[str]) -> str:
     """Return the key of `known` that `word` may mean, or ''."""
     key = next((key for prefix, key in FOREIGN_KEYS.items() if word.lower().startswith(prefix)), "")
-    return key if key in known else nearest(word, known)
+    return key if key in known else nearest_word(word, known)
 
 
 def hint(word: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from minirt.errors import Problem, excerpt, quoted
-from minirt.scene.registry import nearest, nearest_element
+from minirt.scene.registry import nearest_element, nearest_word
 from tests.scene.examples import problems, scene_with
 
 
@@ -62,4 +62,4 @@ def test_a_misspelled_identifier_or_a_name_suggests_an_element(word: str, meant:
 
 
 def test_no_known_words_give_no_suggestion() -> None:
-    assert nearest("roll", []) == ""
+    assert nearest_word("roll", []) == ""
