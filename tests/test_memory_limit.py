@@ -14,7 +14,7 @@ import minirt
 from minirt.cli import main
 from minirt.cli.arguments import memory_size
 from minirt.helpers import system
-from minirt.rendering.packing.materials import TexturePool
+from minirt.rendering.packing.materials import Reader
 from tests.cli.program import SCENE
 
 MIB = 2**20
@@ -124,7 +124,7 @@ def test_textures_count_together_and_links_once(tmp_path: Path, monkeypatch: pyt
     scene = minirt.load(tmp_path / "x.rt")
     needs: list[int] = []
     monkeypatch.setattr(system, "check_memory", lambda needed, *_: needs.append(needed))
-    pool = TexturePool(scene)
+    pool = Reader(scene)
     for number in range(4):
         pool.number(f"{number}.png", minirt.materials.pictures.picture)
     texels = pool.arrays()["texels"]

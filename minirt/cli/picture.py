@@ -52,7 +52,7 @@ def render(
     from time import perf_counter
 
     import minirt
-    from minirt.rendering.queries.in_view import notice_about
+    from minirt.rendering.queries.preview import notice_about
 
     width, height = options.size or minirt.size_of(scene)
     rows = check_region(options, output, width, height)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -59,6 +59,7 @@ class Field(Immutable, ABC):
     sort: str = ""  # of an attribute that all elements of a sort have: the name of the sort
     placeholder: str = ""  # of an attribute: stands for its value in the format of a line; the unit if empty
     feature: str = ""  # of an attribute of shapes: the feature of the kernel that draws it
+    packed: Callable[[Any, Any], Any] | None = None  # of the same: the row of a value in the array of its feature
     mapped: bool = False  # of an attribute of shapes: whether it lies on their surface, and turns with them
     initial: Any = None  # the editor's first value; of a length in the scene, as a factor of the usual one
     name: str = ""
@@ -134,6 +135,10 @@ class Field(Immutable, ABC):
     def feature_of(self, value: Any) -> str:
         """The feature that the kernel needs to draw `value`; empty if it has no effect."""
         return self.feature if value else ""
+
+    def rows(self, value: Any, _shape: Any, reader: Any) -> dict[str, Any]:
+        """The rows of a shape with `value` in the arrays of the kernel, by feature: see `minirt.materials`."""
+        return {self.feature: self.packed(value, reader)} if self.packed else {}
 
     @property
     def required(self) -> bool:

@@ -31,8 +31,7 @@ class Grid(NamedTuple):
     scale_y: float
     middle_y: float
     margin: float  # by how many cells intervals grow before they are rounded to cells
-    cells: int  # cells of all frames, and that of the directions elsewhere
-    elsewhere: int  # the cell of all directions that are in no frame; -1 if there is none
+    cells: int  # of all frames
     first_column: int = 0  # the first of the frame that has cells, where only a rectangle of it has any
     first_row: int = 0
 
@@ -54,15 +53,13 @@ def project_all(
     Shape i lies in the convex hull of `spheres[first[i]:first[i + 1]]`, (b, 4) centre and radius, grown by `slack`; the
     cells of its kind begin at `slots[i, 0]` times one more than the grid has. Writes to `rectangles`, (r, 4) shape,
     first cell, columns and rows, from number `used` on; to `cones` the `bounding_cone` of each shape with a rectangle;
-    and adds to `counts` the number of rectangles that cover each cell. A shape that can be hit in directions outside of
-    all frames has a rectangle of the cell `elsewhere`.
+    and adds to `counts` the number of rectangles that cover each cell.
     """
     stride = grid.cells + 1
     for shape in range(cones.shape[0]):
         before = used
-        enclosed = False
         for face in range(grid.frames.shape[0]):
-            column, row, columns, rows, enclosed = projected_rectangle(
+            column, row, columns, rows = projected_rectangle(
                 origin, grid, face, spheres, first[shape], first[shape + 1], slack
             )
             if columns > 0 and rows > 0:
@@ -76,14 +73,6 @@ def project_all(
                     start = cell + line * grid.across
                     for covered in range(start, start + columns):
                         counts[covered] += 1
-        if grid.elsewhere >= 0 and first[shape] < first[shape + 1] and not enclosed:
-            cell = slots[shape, 0] * stride + grid.elsewhere
-            rectangles[used, 0] = shape
-            rectangles[used, 1] = cell
-            rectangles[used, 2] = 1
-            rectangles[used, 3] = 1
-            used += 1
-            counts[cell] += 1
         if used > before:
             bounding_cone(origin, spheres, first[shape], first[shape + 1], slack, cones[shape])
     return used
@@ -91,11 +80,10 @@ def project_all(
 
 def projected_rectangle(
     origin: Any, grid: Grid, face: int, spheres: Any, start: int, end: int, slack: float
-) -> tuple[int, int, int, int, bool]:
+) -> tuple[int, int, int, int]:
     """Project the convex hull of some spheres, grown by `slack`, to a rectangle of a frame's cells.
 
-    Returns first column, first row, columns and rows; no columns or no rows if the frame cannot see the hull. The last
-    result is whether the rectangle, with its margin, lies wholly in the frame.
+    Returns first column, first row, columns and rows; no columns or no rows if the frame cannot see the hull.
     """
     half_x = (grid.middle_x + grid.margin) / grid.scale_x  # slopes at the edges of the grid
     half_y = (grid.middle_y + grid.margin) / grid.scale_y
@@ -111,7 +99,7 @@ def projected_rectangle(
         z = frame[2, 0] * px + frame[2, 1] * py + frame[2, 2] * pz
         behind &= z <= -radius
         if behind and i + 1 == end:
-            return 0, 0, 0, 0, False
+            return 0, 0, 0, 0
         x = frame[0, 0] * px + frame[0, 1] * py + frame[0, 2] * pz
         y = frame[1, 0] * px + frame[1, 1] * py + frame[1, 2] * pz
         left &= x + half_x * z < -slant_x * radius
@@ -120,7 +108,7 @@ def projected_rectangle(
         below &= y - half_y * z > slant_y * radius
         beside |= z <= radius
         if i + 1 == end and (left | right | above | below):
-            return 0, 0, 0, 0, False
+            return 0, 0, 0, 0
         low, high = tangent_slopes(x, z, radius)
         low_x, high_x = min(low_x, low), max(high_x, high)
         low, high = tangent_slopes(y, z, radius)
@@ -128,9 +116,9 @@ def projected_rectangle(
     if beside and end - start > 1:  # parts of the hull may project beyond all spheres
         low_x, high_x, low_y, high_y = -inf, inf, -inf, inf
     middle_x, middle_y = grid.middle_x - grid.first_column, grid.middle_y - grid.first_row
-    column, columns, all_across = cell_interval(low_x, high_x, grid.scale_x, middle_x, grid.margin, grid.across)
-    row, rows, all_down = cell_interval(low_y, high_y, grid.scale_y, middle_y, grid.margin, grid.down)
-    return column, row, columns, rows, all_across and all_down
+    column, columns = cell_interval(low_x, high_x, grid.scale_x, middle_x, grid.margin, grid.across)
+    row, rows = cell_interval(low_y, high_y, grid.scale_y, middle_y, grid.margin, grid.down)
+    return column, row, columns, rows
 
 
 def tangent_slopes(x: float, z: float, radius: float) -> tuple[float, float]:
@@ -150,19 +138,14 @@ def tangent_slopes(x: float, z: float, radius: float) -> tuple[float, float]:
     return low, high
 
 
-def cell_interval(
-    low: float, high: float, scale: float, middle: float, margin: float, cells: int
-) -> tuple[int, int, bool]:
-    """First cell and number of cells, in a row of so many, that the slopes from `low` to `high` cover.
-
-    The last result is whether the whole interval, with its margin, lies in the row.
-    """
+def cell_interval(low: float, high: float, scale: float, middle: float, margin: float, cells: int) -> tuple[int, int]:
+    """First cell and number of cells, in a row of so many, that the slopes from `low` to `high` cover."""
     begin = low * scale + middle - margin
     end = high * scale + middle + margin
     if not (begin < cells and end >= 0.0):
-        return 0, 0, False
+        return 0, 0
     start = int(max(begin, 0.0))
-    return start, int(min(end, cells - 1.0)) + 1 - start, begin >= 0.0 and end < cells
+    return start, int(min(end, cells - 1.0)) + 1 - start
 
 
 def bounding_cone(origin: Any, spheres: Any, start: int, end: int, slack: float, cone: Any) -> None:

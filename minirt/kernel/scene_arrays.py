@@ -49,7 +49,7 @@ class SceneArrays(NamedTuple):
     tile_shapes: Any  # shapes of all tiles, those of a tile and kind sorted by distance
     cones: Any  # (n, 5) bounding cones as seen from the eye
     light_buffer_cells: int  # cells along an edge of a light buffer's cube; 1 if light buffers are not used
-    light_buffers: Any  # (m, 11) how directions from each light map to cells, see `minirt.kernel.shadow_rays`
+    light_tolerances: Any  # (m,) how far around their cells the lists of light buffers hold, squared
     light_shapes: Any  # shapes of all cells of all light buffers, those of a cell and kind sorted by distance
     light_cones: Any  # (m, n, 5) bounding cones as seen from each light
     groups: Any  # a tuple of Group: one for each kind of shape in the scene

@@ -1,18 +1,71 @@
-"""The registry of materials: what surfaces are made of, one class and one field of `Attributes` each.
+"""The registry of materials: highlights and glow, and the fields by which every shape may have a material.
 
-Another material is a class in `surfaces` or `maps`, with its manual page, and a field here. Parser, writer, editor,
-documentation, the public name `minirt.Glass` and the features of the kernel derive from that. What is left to write is
-how it is packed (`minirt.rendering.packing.materials`) and how it changes light (`minirt.kernel.shading`).
+Another material is a class with its manual page and its rows in the arrays of the kernel, and a field of `Attributes`.
+Parser, writer, editor, documentation, the public name `minirt.Glass`, the features of the kernel, packing, reports and
+the measurement of what a feature costs derive from that. What is left to write is how it changes light, where no
+feature of the kernel does that yet (`minirt.kernel.shading`, `minirt.rendering.packing.features`).
 """
 
+from __future__ import annotations
+
+from functools import partial
 from typing import Any
 
 from minirt.element import Element, fields_of
-from minirt.fields import declare
-from minirt.materials.compound import Compound
+from minirt.fields import Factor, Flag, Real, declare
+from minirt.materials.compound import Compound, Material
+from minirt.materials.glass import Fresnel, Glass, Mirror, Tint
 from minirt.materials.maps import Bump, Checker, Clouds, Marble, NormalMap, Placement, Texture, Wood
-from minirt.materials.surfaces import Fresnel, Glass, Glow, Mirror, Specular, Tint
 from minirt.records import record
+
+GREATEST = 1e6  # exponent: its highlight is a tenth of a degree wide
+
+
+@record()
+class Specular(Material):
+    """Specular highlight: `specular:share,exponent[,blinn]`, in short `spc:`.
+
+    Every light that reaches a point adds `share` of its intensity times cos(a)^`exponent`, whatever the colour of the
+    surface. `a` is the angle between the mirrored direction of the light and the direction to the eye (Phong 1975,
+    Illumination for Computer Generated Pictures), or with `blinn` the angle between the normal and the direction
+    half-way between light and eye (Blinn 1977, Models of Light Reflection for Computer Synthesized Pictures). The
+    greater the exponent, the smaller the highlight; with `blinn` a highlight of the same size takes about four times
+    the exponent.
+
+        sp 0,0,20 8 200,30,30 specular:0.6,50
+    """
+
+    title, feature = "specular", "specular"
+    share: float = declare(Real, "share of the light", low=0.0, high=1.0, step=0.05, initial=0.5)
+    exponent: float = declare(Factor, "how smooth", high=GREATEST, initial=30.0)
+    blinn: bool = declare(Flag, "from the halfway direction", default=False)
+
+    def has_effect(self) -> bool:
+        return self.share > 0.0
+
+    def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
+        return {"specular": (self.share, self.exponent, self.blinn)}
+
+
+# Glow: `glow:share`.
+#
+# Light of the shape's own, the emitted term of the rendering equation: `share` times the colour of the surface, with
+# its texture and checkerboard, is added to the light of every point, whatever shines on it or lies between it and the
+# lamps. It is seen by the eye and in mirrors and glass. It lights nothing else: put a lamp beside or inside what
+# should.
+#
+#     sp 0,0,20 8 255,200,120 glow:0.8
+Glow = partial(
+    Real,
+    unit="ratio",
+    low=0.0,
+    high=1.0,
+    step=0.05,
+    placeholder="share",
+    initial=0.5,
+    feature="glow",
+    packed=lambda share, reader: share * reader.gain,
+)
 
 SHARED: dict[str, Any] = {"keyed": True, "sort": "shapes"}
 MAPPED: dict[str, Any] = {"mapped": True} | SHARED

@@ -17,6 +17,13 @@ class Material(Record):
 
     feature: ClassVar[str]  # a key of `minirt.rendering.packing.features.FEATURES`
 
+    def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
+        """The rows of a shape with this material in the arrays of the kernel, by their names.
+
+        `reader` has the scene's way to read colours and pictures: `minirt.rendering.packing.materials.Reader`.
+        """
+        return {}
+
     def has_effect(self) -> bool:
         """Whether the picture shows it: a material without effect costs no feature of the kernel."""
         return True
@@ -85,6 +92,9 @@ class Compound(Field):
 
     def feature_of(self, value: Material) -> str:
         return value.used_feature()
+
+    def rows(self, value: Material, shape: Any, reader: Any) -> dict[str, Any]:
+        return value.rows(shape, reader)
 
     @property
     def pattern(self) -> str:

@@ -6,6 +6,7 @@ Each is a class whose text is its manual page, or a field that names a picture.
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 from minirt.fields import Angle, Colour, Count, Length, Picture, Real, Triple, declare
 from minirt.materials.compound import Material
@@ -28,6 +29,9 @@ class Checker(Material):
     size: float = declare(Length, "side of a square, in u and v", unit="")
     colour: Triple = declare(Colour, "the second colour", default=(0, 0, 0))
 
+    def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
+        return {"checks": (self.size, *reader.shares(self.colour))}
+
 
 # Texture: `texture:file`, in short `txm:`.
 #
@@ -36,7 +40,7 @@ class Checker(Material):
 # read; the path begins at the folder of the scene file, and must not contain blanks or `#`.
 #
 #     sp 0,0,20 8 255,255,255 texture:textures/planet.png
-Texture = partial(Picture, feature="textures")
+Texture = partial(Picture, feature="textures", packed=lambda file, reader: reader.texture(file))
 
 
 @record()
@@ -60,6 +64,9 @@ class Bump(Material):
     def has_effect(self) -> bool:
         return self.strength != 0.0
 
+    def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
+        return {"bumps": (reader.heights(self.file), self.strength)} if self.has_effect() else {}
+
 
 # Normal map: `normal:file`, in short `nm:`.
 #
@@ -68,7 +75,7 @@ class Bump(Material):
 # means 1. The colour 128,128,255 changes nothing (Cohen, Olano and Manocha 1998, Appearance-Preserving Simplification).
 #
 #     sp 0,0,20 8 200,120,80 normal:textures/bricks-normal.png
-NormalMap = partial(Picture, feature="normals")
+NormalMap = partial(Picture, feature="normals", packed=lambda file, reader: reader.normals(file))
 
 
 FARTHEST = 1e6  # in u or v

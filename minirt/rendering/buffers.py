@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from minirt.fields import unit
 from minirt.kernel.scene_arrays import kind_of
 from minirt.lanes import Vec
-from minirt.rendering.packing.camera import packed_columns
 from minirt.rendering.packing.materials import placement_numbers
+from minirt.rendering.packing.ray_casting import packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.queries.rays import camera_rays, trace
 from minirt.rendering.renderer import shared_renderer

@@ -10,10 +10,10 @@ import numpy as np
 from minirt.kernel import interpreted
 from minirt.kernel.machine_code import functions
 from minirt.kernel.machine_code.library import Call
-from minirt.rendering.culling.visibility import SMALL
 from minirt.rendering.frame import frame_arguments
 from minirt.rendering.packing.features import DEPTH, SPREAD, features, primitive_count, shape_features
 from minirt.rendering.packing.generic_kernels import FULL_DOUBLE, GenericKernel, empty_arrays
+from minirt.rendering.packing.visibility import SMALL
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene, parse
 

@@ -7,10 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from minirt.kernel.scene_arrays import SceneArrays
-from minirt.kernel.shadow_rays import FRUSTUM_FACTOR, SCALE
-from minirt.rendering.culling.planes import never_occludes
-from minirt.rendering.packing.features import FEATURES, features
+from minirt.rendering.packing.features import WORDS, features
 from minirt.rendering.packing.generic_kernels import GenericKernel
+from minirt.rendering.packing.planes import never_occludes
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.scene import Scene
 from minirt.shapes import ALL_KINDS, Shape
@@ -26,11 +25,12 @@ def notes(scene: Scene, shape_arrays: ShapeArrays, arrays: SceneArrays) -> Itera
     if arrays.light_buffer_cells == 1:
         yield f"light buffer: none, every shape is tried ({shapes})"
     else:
-        yield f"light buffer: {' or '.join(light_buffer_sizes(arrays))} per light ({shapes})"
+        cells = arrays.light_buffer_cells
+        yield f"light buffer: 6 x {cells} x {cells} cells per light ({shapes})"
     for name in ("specular", "reflective"):
         rows = getattr(arrays, name)
         if rows is not None and not len(rows):
-            yield f"no pixel can show {FEATURES[name]}: skipped"
+            yield f"no pixel can show {WORDS[name]}: skipped"
     for number, light in enumerate(scene.lights, 1):
         if not light.brightness:
             yield f"light {number} has brightness 0"
@@ -54,16 +54,7 @@ def kernel_notes(scene: Scene, generic: GenericKernel | None, compiling: bool) -
     if unused := {kind.element for kind in ALL_KINDS} - used:
         yield f"kernel without {plurals(unused)}"
     used_features = features(scene)
-    yield f"kernel without {', '.join(words for feature, words in FEATURES.items() if feature not in used_features)}"
-
-
-def light_buffer_sizes(arrays: SceneArrays) -> Iterator[str]:
-    """Describe the cells of the lights: on the faces of a cube, or in a frustum towards a cluster of shapes."""
-    frustum, edge = arrays.light_buffers[:, SCALE] > 0, FRUSTUM_FACTOR * arrays.light_buffer_cells
-    if not frustum.all() or not len(frustum):
-        yield f"6 x {arrays.light_buffer_cells} x {arrays.light_buffer_cells} cells"
-    if frustum.any():
-        yield f"{edge} x {edge} cells in a frustum"
+    yield f"kernel without {', '.join(words for feature, words in WORDS.items() if feature not in used_features)}"
 
 
 def plurals(elements: set[type[Shape]]) -> str:

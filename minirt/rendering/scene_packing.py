@@ -11,22 +11,11 @@ import numpy as np
 from minirt.helpers.system import TooLargeError
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import Group, SceneArrays
-from minirt.rendering.culling.light_frustum import dense_cluster
-from minirt.rendering.culling.list_sizes import COARSEST
-from minirt.rendering.culling.planes import never_occludes
-from minirt.rendering.culling.visibility import (
-    BinnedShapes,
-    light_buffer_cells,
-    seen_by_eye,
-    seen_by_light,
-    seen_by_parallel_light,
-)
 from minirt.rendering.notes import notes
 from minirt.rendering.packing.bvh import build_bvh
 from minirt.rendering.packing.camera import (
     Crop,
     camera_numbers,
-    distance_in_the_middle,
     lens_numbers,
     placed_rays,
     radius_and_focus,
@@ -43,8 +32,18 @@ from minirt.rendering.packing.lights import (
     spot_parameters,
 )
 from minirt.rendering.packing.materials import effective, medium_at, pack_environment, pack_materials, without_unseen
+from minirt.rendering.packing.planes import never_occludes
+from minirt.rendering.packing.ray_casting import distance_in_the_middle
 from minirt.rendering.packing.shape_arrays import ShapeArrays, smooth_primitives
-from minirt.scene import ParallelLight, Scene
+from minirt.rendering.packing.visibility import (
+    COARSEST,
+    BinnedShapes,
+    light_buffer_cells,
+    seen_by_eye,
+    seen_by_light,
+    seen_by_parallel_light,
+)
+from minirt.scene import Scene
 from minirt.shapes import Shape
 
 
@@ -97,18 +96,17 @@ class Packing:
         radius, per_focus = radius_and_focus(lens)
         view = camera, width, height, crop, radius, per_focus
         eye = cached((camera.tobytes(), *view[1:]), seen_by_eye, self.kernel, shapes, *view)
-        cells, dense = light_buffer_cells(shapes), cached("cluster", dense_cluster, shapes)
-        cells = self.cells_that_fit.get(len(sources), cells)
+        cells = self.cells_that_fit.get(len(sources), light_buffer_cells(shapes))
         while True:
             try:
-                binned, keys = self.seen_by_lights(scene, cells, dense, cached, radius)
+                binned, keys = self.seen_by_lights(scene, cells, cached, radius)
                 break
             except TooLargeError:
                 if cells <= COARSEST:
                     raise
                 cells //= 2
                 self.cells_that_fit[len(sources)] = cells
-        light_starts, light_shapes, light_cones, light_buffers = cached(keys, joined_light_buffers, binned, eye)
+        light_starts, light_shapes, light_cones, light_tolerances = cached(keys, joined_light_buffers, binned, eye)
         materials = cached(
             ("materials", used, colours.decodes, colours.gain if "glow" in used else 1.0),
             pack_materials,
@@ -130,7 +128,7 @@ class Packing:
             tile_shapes=eye.members,
             cones=eye.cones,
             light_buffer_cells=cells,
-            light_buffers=light_buffers,
+            light_tolerances=light_tolerances,
             light_shapes=light_shapes,
             light_cones=light_cones,
             groups=tuple(map(Group, shapes.rows, eye.starts, light_starts, count())),
@@ -149,7 +147,7 @@ class Packing:
         )
 
     def seen_by_lights(
-        self, scene: Scene, cells: int, dense: Any, cached: Callable[..., Any], radius: float
+        self, scene: Scene, cells: int, cached: Callable[..., Any], radius: float
     ) -> tuple[list[BinnedShapes], Hashable]:
         """Bin the shapes into the light buffers of all lights, and return also what they depend on.
 
@@ -161,14 +159,14 @@ class Packing:
         keys: list[Hashable] = []
         for light, position in zip(sources, positions_and_intensities(sources, colours)[:, :3], strict=True):
             skipped = never_occludes(shapes, eye, light, radius)
-            if isinstance(light, ParallelLight) or (light.size and cells > 1):  # by the BVH
+            if not light.place or (light.size and cells > 1):  # by the BVH
                 keys.append(("spread", cells, skipped.tobytes()))
                 binned.append(cached(keys[-1], seen_by_parallel_light, shapes, cells, skipped))
             else:
                 size = radius_of(light)
                 keys.append((cells, position.tobytes(), skipped.tobytes(), size))
                 alike = 1 if binned else copies  # lists that are estimated to be like it: the first stands for all
-                at = dense, position, cells, skipped, size, alike
+                at = position, cells, skipped, size, alike
                 binned.append(cached(keys[-1], seen_by_light, self.kernel, shapes, *at))
         return binned, tuple(keys)
 
@@ -203,21 +201,18 @@ def fits_single(arrays: SceneArrays) -> bool:
 def joined_light_buffers(
     lights: list[BinnedShapes], eye: BinnedShapes
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Join the bins of m lights: starts (kinds, m, cells + 1), members, cones (m, n, 5), light buffers (m, 11)."""
+    """Join the bins of m lights: starts (kinds, m, cells + 1), members, cones (m, n, 5), tolerances (m,)."""
+    tolerances = np.array([each.tolerance for each in lights])
     if len(lights) == 1:
-        return lights[0].starts[:, None], lights[0].members, lights[0].cones[None], lights[0].light_buffer[None]
+        return lights[0].starts[:, None], lights[0].members, lights[0].cones[None], tolerances
     if not lights:
         return (
             np.zeros((len(eye.starts), 0, 1), np.int64),
             eye.members[:0],
             np.zeros((0, *eye.cones.shape)),
-            np.zeros((0, 11)),
+            np.zeros(0),
         )
     offsets = np.cumsum([0, *(len(each.members) for each in lights[:-1])])
     starts = np.stack([each.starts + offset for each, offset in zip(lights, offsets, strict=True)], axis=1)
-    return (
-        starts,
-        np.concatenate([each.members for each in lights]),
-        np.stack([each.cones for each in lights]),
-        np.stack([each.light_buffer for each in lights]),
-    )
+    cones = np.stack([each.cones for each in lights])
+    return starts, np.concatenate([each.members for each in lights]), cones, tolerances

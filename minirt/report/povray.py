@@ -19,9 +19,9 @@ from minirt.element import fields_of
 from minirt.errors import RenderError
 from minirt.helpers.system import Run, is_disturbed
 from minirt.materials import Attributes
+from minirt.materials.glass import mirror_of
 from minirt.rendering.packing.camera import camera_numbers
 from minirt.rendering.packing.features import DEPTH
-from minirt.rendering.packing.materials import mirror_of
 from minirt.report.metrics import Picture, perceived, rmse
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Reference, Row, Times, with_errors, with_times
 from minirt.scene import Ambient, Lamp, Light, Scene

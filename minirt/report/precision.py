@@ -13,11 +13,11 @@ from minirt.element import fields_of
 from minirt.materials import Attributes
 from minirt.rendering import Renderer
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, NEEDS, PLAIN, features
+from minirt.rendering.packing.features import ATTRIBUTES, NEEDS, PLAIN, WORDS, features
 from minirt.rendering.packing.generic_kernels import precision_of
 from minirt.rendering.queries.rays import Hits, trace
 from minirt.report.metrics import Picture, changed, clamped, rmse
-from minirt.scene import Background, FurtherLight, Light, Scene, SpotLight
+from minirt.scene import Background, Lamp, Scene
 from minirt.shapes import ALL_KINDS, Kind, Shape
 
 NEEDS_DOUBLE = "always float64"
@@ -38,8 +38,8 @@ def single_errors(scene: Scene, width: int, height: int, threads: int) -> Iterat
     """Compare the precisions on the shapes of a scene alone, and with each feature that the scene uses."""
     used = features(scene)
     double, single = Renderer(threads), Renderer(threads, "single")
-    for key in (None, *(feature for feature in FEATURES if feature in used)):
-        yield single_error(reduced(scene, key), FEATURES[key] if key else "shapes alone", width, height, double, single)
+    for key in (None, *(feature for feature in WORDS if feature in used)):
+        yield single_error(reduced(scene, key), WORDS[key] if key else "shapes alone", width, height, double, single)
 
 
 def single_error(scene: Scene, words: str, width: int, height: int, double: Renderer, single: Renderer) -> SingleError:
@@ -75,11 +75,11 @@ def reduced_element(element: Any, feature: Hashable) -> Iterator[Any]:
         case Background():
             if feature == ("environment" if isinstance(element.paint, str) else "background"):
                 yield element
-        case Light() | SpotLight() if feature != "spots" and (element.fade or isinstance(element, SpotLight)):
-            yield FurtherLight(position=element.position, brightness=element.brightness, colour=element.colour)
+        case Lamp() if feature != "spots" and "spots" in element.features():
+            if plain := element.without_features():
+                yield plain
         case _:
-            if feature == "spots" or not hasattr(element, "direction") or hasattr(element, "position"):
-                yield element
+            yield element
 
 
 Array = NDArray[np.float64]

@@ -16,7 +16,8 @@ from minirt.kernel.scene_arrays import kind_of, kind_of_packed
 from minirt.kernel.trace import ROUNDING
 from minirt.lanes import Vec, dot, unit
 from minirt.rendering.notes import shape_name
-from minirt.rendering.packing.camera import camera_numbers, packed_columns, pixel_rays
+from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.ray_casting import packed_columns
 from minirt.rendering.packing.shape_arrays import ShapeArrays, bounding_boxes
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Scene

@@ -16,7 +16,7 @@ from minirt.fields import Colour, Direction, Length, Lengths, MeshField, Picture
 from minirt.image import Image
 from minirt.materials import Attributes, Clouds, Compound, Glass
 from minirt.rendering.packing.camera import camera_numbers
-from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, NEEDS, PLAIN, features, material_features
+from minirt.rendering.packing.features import ATTRIBUTES, NEEDS, PLAIN, WORDS, features, material_features
 from minirt.rendering.scene_packing import Packing
 from minirt.report.settings import Change, without_boxes, without_light_buffers, without_tiles
 from minirt.scene import Background, Camera, FurtherLight, Scene, SpotLight
@@ -53,7 +53,7 @@ def with_more(scene: Scene, folder: Path) -> Iterator[Variant]:
     plain = invisible.shape(next(iter({type(shape) for shape in scene.shapes}), ALL_KINDS[0].element))
     for feature, added in invisible.features(plain).items():
         if feature not in used:
-            yield Variant("feature", FEATURES[feature], "added", with_element(scene, added))
+            yield Variant("feature", WORDS[feature], "added", with_element(scene, added))
     for kind in ALL_KINDS:
         if kind.element not in set(map(type, scene.shapes)):
             shape = invisible.shape(kind.element)
@@ -95,7 +95,7 @@ class InvisibleElements:
         found["lens"] = self.camera.replace(lens=self.size, focus=1.0)
         found["background"] = Background(DARK)
         found["environment"] = Background(self.picture())
-        return {feature: found[feature] for feature in FEATURES}
+        return {feature: found[feature] for feature in WORDS}
 
     def shape(self, kind: type[Shape]) -> Shape:
         """Return a shape of a kind."""
@@ -158,7 +158,7 @@ def without_unseen(scene: Scene, width: int, height: int) -> Iterator[Variant]:
     if "reflective" in used:
         return
     materials = {feature for shape in scene.shapes for feature in material_features(shape)}
-    for feature, words in FEATURES.items():
+    for feature, words in WORDS.items():
         if feature in materials - used:
             yield Variant("unseen", words, "without", Scene(stripped(scene, feature), scene.file))
     if "parallel" in features(scene):  # whose shadow rays need no list

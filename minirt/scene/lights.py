@@ -5,6 +5,7 @@ A light source gives a surface its colour times its brightness times the cosine 
 
 from __future__ import annotations
 
+from math import cos, radians
 from typing import TYPE_CHECKING, Any
 
 from minirt.element import Element
@@ -16,6 +17,8 @@ WHITE = (255, 255, 255)
 DOWN = (0.0, -1.0, 0.0)
 FADE = "distance at which its light has faded to nothing"
 SIZE = "diameter; soft shadows"
+ALL_DIRECTIONS = (0.0, 0.0, 0.0, -2.0, 1.0)  # the cone of a light that shines in all directions
+STEEPEST = 1e30  # the steepness of a spot whose rim has no width
 
 
 @record()
@@ -32,6 +35,35 @@ class Lamp(Element):
 
         @property
         def size(self) -> float | None: ...
+
+    # What the kernel reads of it: see `minirt.kernel.shading.lights`.
+
+    @property
+    def place(self) -> Triple | None:
+        """The place that it shines from; None for a light from infinitely far away."""
+        return getattr(self, "position", None)
+
+    def cone(self) -> tuple[float, ...]:
+        """Axis, cosine at the edge of the cone, and steepness: 1 / (cosine at full intensity - cosine at the edge)."""
+        return ALL_DIRECTIONS
+
+    def fading(self) -> float:
+        """One over the distance at which it has faded to nothing; 0 if it does not."""
+        fade: float | None = getattr(self, "fade", None)
+        return 1 / fade if fade else 0.0
+
+    def features(self) -> tuple[str, ...]:
+        """The features of the kernel that it needs: see `minirt.rendering.packing.features`."""
+        needs = {
+            "spots": self.cone() != ALL_DIRECTIONS or self.fading() > 0.0,
+            "parallel": not self.place,
+            "soft": bool(self.size),
+        }
+        return tuple(name for name, needed in needs.items() if needed)
+
+    def without_features(self) -> Lamp | None:
+        """Return a point light in its place; None for a light from infinitely far away."""
+        return FurtherLight(self.place, self.brightness, self.colour) if self.place else None
 
 
 @record()
@@ -81,6 +113,9 @@ class ParallelLight(Lamp):
         initial=2.0,
     )
 
+    def cone(self) -> tuple[float, ...]:
+        return (*self.direction, -2.0, 1.0)
+
 
 @record()
 class SpotLight(Lamp):
@@ -102,3 +137,12 @@ class SpotLight(Lamp):
     )
     fade: float | None = declare(Length, FADE, keyed=True, default=None, placeholder="distance", initial=16.0)
     size: float | None = declare(Length, SIZE, keyed=True, default=None, placeholder="diameter", initial=1.0)
+
+    def cone(self) -> tuple[float, ...]:
+        half = radians(self.angle) / 2
+        end, full = cos(half), cos(half * (1 - self.rim))
+        return (*self.direction, end, 1 / (full - end) if full - end > 1 / STEEPEST else STEEPEST)
+
+
+LAMPS = (Light, FurtherLight, ParallelLight, SpotLight)
+PUBLIC = {kind.__name__: kind for kind in LAMPS}

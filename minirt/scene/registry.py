@@ -9,12 +9,12 @@ from minirt.errors import nearest
 from minirt.fields import Field
 from minirt.materials import Compound
 from minirt.scene.elements import Ambient, Background, Camera, Resolution
-from minirt.scene.lights import FurtherLight, Light, ParallelLight, SpotLight
+from minirt.scene.lights import LAMPS
 from minirt.shapes import ALL_KINDS
 
 KNOWN: tuple[type[Element], ...] = (
     *(Resolution, Ambient, Background, Camera),
-    *(Light, FurtherLight, ParallelLight, SpotLight),
+    *LAMPS,
     *(kind.element for kind in ALL_KINDS),
 )
 

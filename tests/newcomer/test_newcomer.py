@@ -1,7 +1,7 @@
 """A made-up shape and material, added as `minirt/README.md` says, pass the questions asked of every kind.
 
 They are added to a copy of the project: for the shape its file, a line in the registry, its oracle and its special
-places; for the material its file, an import and a field in the registry, and the lines that pack it.
+places; for the material its class and a field in the registry.
 """
 
 from __future__ import annotations
@@ -51,22 +51,13 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.copy(HERE / "gate_oracle.py", root / "tests/oracle/gate.py")
     shutil.copy(HERE / "gate_places.py", root / "tests/stability/gate.py")
 
-    shutil.copy(HERE / "sheen.py", package / "materials")
     registry = package / "materials/__init__.py"
-    add_line(
-        registry,
-        "from minirt.materials.surfaces import Fresnel, Glass, Glow, Mirror, Specular, Tint",
-        "from minirt.materials.sheen import Sheen",
-    )
+    _, sheen = (HERE / "sheen.py").read_text().split("# The class, which goes into minirt/materials/__init__.py.\n")
+    add_line(registry, 'MAPPED: dict[str, Any] = {"mapped": True} | SHARED', sheen)
     add_line(
         registry,
         '    marble: Marble | None = declare(Compound, "veins of marble", record=Marble, default=None, shared=MAPPED)',
         '    sheen: Sheen | None = declare(Compound, "soft highlight", record=Sheen, default=None, shared=SHARED)',
-    )
-    add_line(
-        package / "rendering/packing/materials.py",
-        "            rows[i] = shape.specular.share, shape.specular.exponent, shape.specular.blinn",
-        "        if shape.sheen:\n            rows[i] = shape.sheen.share, 1.0, False",
     )
     return root
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import asin, atan, hypot, tan
 from typing import Any
 
@@ -11,7 +10,6 @@ import pytest
 
 import minirt
 from minirt.kernel.frame import tile_count
-from minirt.rendering import frame_runner, scene_packing, tone_mapping
 from minirt.rendering.packing import camera
 from minirt.rendering.packing.camera import Crop
 from minirt.rendering.scene_packing import Packing
@@ -62,42 +60,6 @@ def test_samples_of_lenses_and_soft_lights_are_those_of_the_picture(samples: int
 def test_a_region_of_a_scene_without_shapes() -> None:
     assert_same(SKY)
     assert_same(Scene((SKY.camera,)))
-
-
-def without_place(made: Callable[..., Any]) -> Callable[..., Any]:
-    """A function whose argument `crop`, the last one, begins at the corner of the picture."""
-
-    def wrong(*arguments: Any) -> Any:
-        *others, place = arguments
-        return made(*others, place and place._replace(left=0, top=0))
-
-    return wrong
-
-
-@pytest.mark.parametrize("part", ["rays", "lists", "variants", "dithering"])
-def test_each_part_that_forgot_its_place_would_be_noticed(part: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    scene, settings = EVERY, {"threads": 1}
-    if part == "rays":
-        rays = scene_packing.placed_rays
-        monkeypatch.setattr(
-            scene_packing, "placed_rays", lambda camera, crop: rays(camera, camera._replace(left=0, top=0))
-        )
-    elif part == "lists":
-        binned = scene_packing.seen_by_eye
-        monkeypatch.setattr(
-            scene_packing,
-            "seen_by_eye",
-            lambda *given: binned(*given[:5], given[5]._replace(left=0, top=0), *given[6:]),
-        )
-    elif part == "variants":
-        scene, settings = soft_scene(), {"samples": 4, "threads": 1}
-        monkeypatch.setattr(frame_runner, "frame_arguments", without_place(frame_runner.frame_arguments))
-    else:
-        settings = {"dither": True, "threads": 1}
-        map_tones = tone_mapping.map_tones
-        monkeypatch.setattr(tone_mapping, "map_tones", lambda *given: map_tones(*given[:6]))
-    with pytest.raises(AssertionError):
-        assert_same(scene, REGIONS[1:2], **settings)
 
 
 def test_a_region_takes_the_tiles_that_it_touches_and_no_others() -> None:

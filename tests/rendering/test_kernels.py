@@ -17,12 +17,12 @@ from minirt.kernel.machine_code.fingerprint import processor
 from minirt.kernel.machine_code.library import LIBRARY, Library
 from minirt.materials import Checker
 from minirt.rendering import Renderer, kernels
-from minirt.rendering.culling.visibility import SMALL
 from minirt.rendering.frame import Frame, frame_arguments
 from minirt.rendering.kernels import Choice, Kernels, generic_identity
 from minirt.rendering.needed_kernels import kernel_features, minimal_scene, packing_calls
 from minirt.rendering.notes import NO_GENERIC_KERNEL
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel
+from minirt.rendering.packing.visibility import SMALL
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Ambient, Light, ParallelLight, Scene, parse
 from minirt.shapes.cylinder import Cylinder

@@ -67,7 +67,7 @@ def smoothstep(x: Number) -> Number:
 #
 # A light of radius r at c is the disc about c that faces the point p that it lights. Its sample is c + r o. A shape
 # that lies between p and the sample, moved by -r o or less, lies between p and c: culling from c, by directions from p
-# to c, holds for all samples where shapes are grown by r (see `minirt.rendering.culling.visibility`).
+# to c, holds for all samples where shapes are grown by r (see `minirt.rendering.packing.visibility`).
 NUMBERS = 8  # for each ray of a packet, in a row of `rays`
 EYE, DISC = 3, 6  # the first of those of the eye and of the disc
 KEPT = 4  # column of the last row of `memory` from which the points in the disc are

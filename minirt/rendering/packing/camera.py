@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from functools import cache, lru_cache
 from itertools import pairwise
-from math import inf, pi, radians, tan
+from math import pi, radians, tan
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -20,9 +20,7 @@ import numpy as np
 from minirt.errors import RenderError
 from minirt.fields import clamp
 from minirt.kernel.pixels import PACKET_HEIGHT, TILE
-from minirt.kernel.scene_arrays import kind_of
-from minirt.lanes import Vec, width
-from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.lanes import width
 from minirt.scene import Camera
 from minirt.scene.elements import camera_frame
 
@@ -131,27 +129,6 @@ def lens_numbers(camera: Camera, focus: float) -> np.ndarray:
 def radius_and_focus(lens: np.ndarray | None) -> tuple[float, float]:
     """The radius of a lens, and one over the distance of what is in focus; 0 and 0 without a lens."""
     return (0.0, 0.0) if lens is None else (float(np.linalg.norm(lens[:3])), float(lens[6]))
-
-
-def distance_in_the_middle(shape_arrays: ShapeArrays, camera: np.ndarray) -> float:
-    """The distance of the shape in the middle of the picture; infinite without one."""
-    with np.errstate(all="ignore"):
-        return float(hit_distances(shape_arrays, Vec(*camera[:3]), Vec(*camera[9:12])).min(initial=inf))
-
-
-def hit_distances(shape_arrays: ShapeArrays, origin: Vec, direction: Vec) -> np.ndarray:
-    """The distances at which a ray hits each primitive, infinite where it does not."""
-    distance = np.full(len(shape_arrays.slots), inf)
-    for group, rows in enumerate(shape_arrays.rows):
-        hit, t = kind_of(rows.dtype.names).intersect(packed_columns(rows), origin, direction)
-        distance[shape_arrays.slots[:, 0] == group] = np.where(hit, t, inf)
-    return distance
-
-
-def packed_columns(rows: Any) -> Any:
-    """Pack rows of shapes of one kind as one shape whose numbers are arrays."""
-    parts = (rows[name] for name in rows.dtype.names)
-    return kind_of(rows.dtype.names).packed(*(Vec(*part.T) if part.ndim > 1 else part for part in parts))
 
 
 GOLDEN_RATIO = (5**0.5 - 1) / 2  # its conjugate, 0.618...

@@ -4,37 +4,63 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
 from operator import attrgetter
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from minirt.element import Element, fields_of
+from minirt.kernel.shading.texturing import SurfaceMaps
 from minirt.materials import Attributes
 from minirt.materials.compound import Material
-from minirt.scene import Background, Camera, Lamp, Light, ParallelLight, Scene, SpotLight
+from minirt.scene import Background, Camera, Lamp, Scene
 from minirt.shapes import Shape
 
-# The names of features in words, by the field of `minirt.kernel.scene_arrays` or `minirt.kernel.shading.texturing`.
+
+class Feature(NamedTuple):
+    """What most scenes lack: code of the kernel, and an array that is None where it is not compiled for it."""
+
+    words: str = ""  # in notes and reports; empty for a part of another feature
+    absent: float | tuple[float, ...] | None = None  # of the array of rows: the row of a shape or a light without it
+    of_shapes: bool = True  # whether it has a row for each shape
+    single: bool = False  # whether kernels in single precision have it, too
+    dtype: type = np.float64
+    needs: str = ""  # without effect where a shape lacks this feature
+    secondary: bool = False  # whether only reflected and refracted rays have it
+
+    def rows(self, count: int, number: Any = None) -> np.ndarray:
+        """Return rows for shapes or lights without the feature; `number` is the type of those that are no integers."""
+        absent: Any = self.absent
+        dtype = number if number and self.dtype is np.float64 else self.dtype
+        return np.full((count, *np.shape(absent)), absent, dtype)
+
+
+# By the field of `minirt.kernel.scene_arrays.SceneArrays` or of `minirt.kernel.shading.texturing.SurfaceMaps`.
 FEATURES = {
-    "specular": "highlights",
-    "reflective": "mirrors and glass",
-    "media": "tinted glass",
-    "fresnel": "Fresnel's equations",
-    "glow": "glow",
-    "checks": "checkerboards",
-    "textures": "textures",
-    "bumps": "bumps",
-    "normals": "maps of normals",
-    "placements": "scaled and turned maps",
-    "patterns": "marble, wood and clouds",
-    "raised_patterns": "raised patterns",
-    "soft": "lights with a size",
-    "lens": "a lens",
-    "spots": "spots, parallel and fading light",
-    "background": "a coloured background",
-    "environment": "a picture as background",
+    "specular": Feature("highlights", (0.0, 0.0, 0.0), single=True),
+    "reflective": Feature("mirrors and glass", (0.0, 0.0, 1.0), secondary=True),
+    "media": Feature("tinted glass", (0.0, 0.0, 0.0, 1.0, 1.0, 1.0), needs="transparent", secondary=True),
+    "fresnel": Feature("Fresnel's equations", 0.0, needs="reflective", secondary=True),
+    "glow": Feature("glow", 0.0, single=True),
+    "checks": Feature("checkerboards", (0.0,) * 4, single=True),
+    "textures": Feature("textures", 0, dtype=np.int64),
+    "bumps": Feature("bumps", (0.0, 0.0)),
+    "normals": Feature("maps of normals", 0, dtype=np.int64),
+    "placements": Feature("scaled and turned maps", (0.0,) * 15, single=True),
+    "patterns": Feature("marble, wood and clouds", of_shapes=False, single=True),
+    "raised_patterns": Feature("raised patterns", of_shapes=False),
+    "soft": Feature("lights with a size", (0.0,) * 4, of_shapes=False, single=True),
+    "lens": Feature("a lens", 0.0, of_shapes=False, single=True),
+    "spots": Feature("spots, parallel and fading light", (0.0,) * 7, of_shapes=False, single=True),
+    "background": Feature("a coloured background", of_shapes=False, single=True),
+    "environment": Feature("a picture as background", of_shapes=False),
+    "transparent": Feature("", (0.0, 0.0, 1.0, 0.0), secondary=True),
+    "fades": Feature("", (0.0, 0.0), secondary=True),
 }
-NEEDS = {"media": "transparent", "fresnel": "reflective"}  # features without effect where a shape lacks the other one
-COORDINATE_MAPS = frozenset({"checks", "textures", "bumps", "normals"})  # features that look up u and v
-SECONDARY = frozenset({"reflective", "transparent", "media", "fresnel", "fades"})  # features of secondary rays
+WORDS = {name: feature.words for name, feature in FEATURES.items() if feature.words}
+NEEDS = {name: feature.needs for name, feature in FEATURES.items() if feature.needs}
+SECONDARY = frozenset(name for name, feature in FEATURES.items() if feature.secondary)
+MAPS = tuple(name for name in SurfaceMaps._fields if name in FEATURES)
+COORDINATE_MAPS = frozenset(MAPS) - {"placements"}  # features that look up u and v
 SPREAD = frozenset({"parallel", "soft"})  # features of light sources that are not points: shadow rays share no end
 DEPTH = 8  # reflections and refractions of a ray, at most
 MATERIALS = tuple((field.name, field) for field in fields_of(Attributes))
@@ -73,22 +99,12 @@ def features_of(item: Element | str) -> Iterable[Hashable]:
         plain = ATTRIBUTES(item) == PLAIN and not item.smooth
         return (kind,) if plain else (kind, *shape_features(item))
     if isinstance(item, Lamp) and item.brightness and any(item.colour):
-        return light_features(item)
+        return item.features()
     if isinstance(item, Camera) and item.lens:
         return ("lens",)
     if isinstance(item, Background):
         return (("environment",) if isinstance(item.paint, str) else ("background",)) if any(item.paint) else ()
     return ()
-
-
-def light_features(light: Lamp) -> Iterable[str]:
-    """The features that a light needs."""
-    soft = ("soft",) if light.size else ()
-    if isinstance(light, ParallelLight):
-        return "spots", "parallel", *soft
-    if isinstance(light, SpotLight) or (isinstance(light, Light) and light.fade is not None):
-        return "spots", *soft
-    return soft
 
 
 def shape_features(shape: Shape) -> Iterable[str]:

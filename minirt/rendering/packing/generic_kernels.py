@@ -16,6 +16,7 @@ types there.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache, partial
 from typing import Any, NamedTuple
 
@@ -26,8 +27,8 @@ from minirt.kernel.bvh_nodes import WIDTH, Tree
 from minirt.kernel.scene_arrays import Group, SceneArrays, kind_of, point_fields, row_type
 from minirt.kernel.shading.patterns import COLUMNS, ORIGIN, Patterns
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
-from minirt.kernel.shadow_rays import TOLERANCE
 from minirt.rendering.packing.bvh import block_type
+from minirt.rendering.packing.features import FEATURES, MAPS
 from minirt.shapes import ALL_KINDS, Kind
 
 MARGIN = 2.0**-21  # of a cosine: a few roundings of a scalar product of unit vectors
@@ -48,36 +49,29 @@ def in_single(arrays: SceneArrays, boxes: np.ndarray) -> SceneArrays:
         tile_shapes=arrays.tile_shapes,
         cones=widened_cones(arrays.cones),
         light_buffer_cells=arrays.light_buffer_cells,
-        light_buffers=narrowed_light_buffers(arrays.light_buffers),
+        light_tolerances=narrowed(arrays.light_tolerances),
         light_shapes=arrays.light_shapes,
         light_cones=widened_cones(arrays.light_cones),
         groups=tuple(group._replace(rows=rows_relative_to(group.rows, eye)) for group in arrays.groups),
-        spots=optional_single(arrays.spots),
-        soft=optional_single(arrays.soft),
-        lens=optional_single(arrays.lens),
-        specular=optional_single(arrays.specular),
-        glow=optional_single(arrays.glow),
-        surface_maps=arrays.surface_maps
-        and arrays.surface_maps._replace(
-            checks=optional_single(arrays.surface_maps.checks),
-            placements=optional_single(arrays.surface_maps.placements),
-        ),
+        surface_maps=arrays.surface_maps and arrays.surface_maps._replace(**singles(arrays.surface_maps, MAPS)),
         patterns=arrays.patterns and patterns_relative_to(arrays.patterns, eye),
         smooth=arrays.smooth,
-        background=optional_single(arrays.background),
+        **singles(arrays, ROWS),
     )
 
 
-def optional_single(numbers: np.ndarray | None) -> np.ndarray | None:
-    """Round an optional array to float32; None stays None."""
-    return None if numbers is None else as_single(numbers)
+def singles(arrays: Any, names: Iterable[str]) -> dict[str, Any]:
+    """Return the arrays of the features that single precision has, rounded to float32; None stays None."""
+    found = {name: getattr(arrays, name) for name in names if FEATURES[name].single}
+    return {name: None if each is None else as_single(each) for name, each in found.items()}
 
 
 def patterns_relative_to(patterns: Patterns, eye: np.ndarray) -> Patterns:
     """Move the frames of patterns so that the eye is the origin, and round them to float32."""
     rows = patterns.rows.copy()
     rows[:, ORIGIN : ORIGIN + 3] -= eye
-    return patterns._replace(rows=as_single(rows), heights=optional_single(patterns.heights))
+    heights = None if patterns.heights is None else as_single(patterns.heights)
+    return patterns._replace(rows=as_single(rows), heights=heights)
 
 
 def as_single(numbers: np.ndarray) -> np.ndarray:
@@ -97,11 +91,9 @@ def widened_cones(cones: np.ndarray) -> np.ndarray:
     return cones
 
 
-def narrowed_light_buffers(light_buffers: np.ndarray) -> np.ndarray:
-    """Round the parameters of light buffers to float32 so that fewer directions count as close to another."""
-    light_buffers = light_buffers.copy()
-    light_buffers[:, TOLERANCE] = np.maximum(np.sqrt(light_buffers[:, TOLERANCE]) - MARGIN, 0.0) ** 2
-    return as_single(light_buffers)
+def narrowed(tolerances: np.ndarray) -> np.ndarray:
+    """Round the tolerances of light buffers to float32 so that fewer directions count as close to another."""
+    return as_single(np.maximum(np.sqrt(tolerances) - MARGIN, 0.0) ** 2)
 
 
 def rows_relative_to(rows: np.ndarray, eye: np.ndarray) -> np.ndarray:
@@ -130,13 +122,10 @@ class GenericKernel(NamedTuple):
 
 
 OPTIONAL = tuple(name for name, default in SceneArrays._field_defaults.items() if default is None)
-MAPS = ("checks", "textures", "bumps", "normals", "placements")
+ROWS = tuple(name for name in OPTIONAL if name in FEATURES and name not in ("patterns", "environment"))
 PLAIN = frozenset({"smooth"})  # as meshes are among all kinds of shapes
 FULL = frozenset(OPTIONAL + MAPS)
-# See `fits_single`.
-FULL_SINGLE = PLAIN | {
-    *("spots", "soft", "lens", "specular", "glow", "surface_maps", "patterns", "background", "checks", "placements")
-}
+FULL_SINGLE = PLAIN | {"surface_maps"} | {name for name, feature in FEATURES.items() if feature.single}
 
 FULL_DOUBLE = GenericKernel("full", "double", FULL)
 # The most specialised first.
@@ -201,16 +190,9 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
         np.zeros(0, np.int32),
     )
     rows = [np.zeros(0, row_type(kind, number)) for kind in ALL_KINDS]
-    maps = SurfaceMaps(
-        checks=numbers((0, 4)),
-        textures=integers(0),
-        bumps=np.zeros((0, 2)),
-        normals=integers(0),
-        placements=numbers((0, 15)),
-        used=integers(0),
-        texels=NO_TEXELS,
-        pictures=NO_PICTURES,
-    )
+    maps = {name: FEATURES[name].rows(0, number) for name in MAPS if name in generic.features}
+    features: dict[str, Any] = {name: FEATURES[name].rows(0, number) for name in ROWS if name != "background"}
+    lacking: dict[str, Any] = dict.fromkeys(set(OPTIONAL) - generic.features)
     whole = SceneArrays(
         camera=numbers(14),
         ambient=numbers(3),
@@ -220,34 +202,22 @@ def empty_arrays(generic: GenericKernel) -> SceneArrays:
         tile_shapes=indices,
         cones=numbers((0, 5)),
         light_buffer_cells=1,
-        light_buffers=numbers((0, 11)),
+        light_tolerances=numbers(0),
         light_shapes=indices,
         light_cones=numbers((0, 0, 5)),
         groups=tuple(Group(each, integers(0), integers((0, 0)), ABSENT) for each in rows),
-        spots=numbers((0, 7)),
-        soft=numbers((0, 4)),
-        lens=numbers(0),
-        specular=numbers((0, 3)),
-        reflective=numbers((0, 3)),
-        transparent=numbers((0, 4)),
-        media=numbers((0, 6)),
         eye_medium=numbers(3),
-        fresnel=numbers(0),
-        fades=numbers((0, 2)),
-        glow=numbers(0),
         patterns=Patterns(integers((0, 2)), numbers((0, COLUMNS)), numbers(0)),
         smooth=integers(0),
-        surface_maps=maps._replace(**without(MAPS, generic)),
-        background=numbers(3),
+        surface_maps=SurfaceMaps(
+            **dict.fromkeys(MAPS) | maps, used=integers(0), texels=NO_TEXELS, pictures=NO_PICTURES
+        ),
         environment=Environment(NO_TEXELS, NO_PICTURES),
         bvh=Tree(numbers(0), numbers(0), integers((0, 2)), tuple(map(empty_blocks, ALL_KINDS, rows))),
+        **features,
+        background=numbers(3),
     )
-    return whole._replace(**without(OPTIONAL, generic))
-
-
-def without(names: tuple[str, ...], generic: GenericKernel) -> dict[str, Any]:
-    """Return None for each of the features that a generic kernel lacks."""
-    return dict.fromkeys(set(names) - generic.features)
+    return whole._replace(**lacking)
 
 
 def empty_blocks(kind: Kind, rows: np.ndarray) -> bvh_nodes.Group:

@@ -1,9 +1,11 @@
-"""Packs materials, textures and environment maps into the arrays of the kernel; None where no shape needs one."""
+"""Packs materials, textures and environment maps into the arrays of the kernel; None where no shape needs one.
+
+Each material states its own rows: see `minirt.materials.Material.rows`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Set
-from math import log2, sqrt
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,9 +15,9 @@ from minirt.fields import cos_and_sin
 from minirt.kernel.scene_arrays import kind_of_packed
 from minirt.kernel.shading.texturing import Environment, SurfaceMaps
 from minirt.lanes import Vec, dot
-from minirt.materials import Glass, Mirror, Placement, pictures
+from minirt.materials import Placement, pictures
 from minirt.materials.pictures import check_textures
-from minirt.rendering.packing.features import ATTRIBUTES, PLAIN
+from minirt.rendering.packing.features import ATTRIBUTES, FEATURES, MAPS, MATERIALS, PLAIN
 from minirt.rendering.packing.lights import Colours, colours_of
 from minirt.rendering.packing.textures import PATTERN_FEATURES, pack_patterns
 from minirt.scene import Scene
@@ -23,91 +25,8 @@ from minirt.shapes import Shape
 from minirt.shapes.frames import basis
 from minirt.shapes.shape import UPRIGHT
 
-NumberedShapes = list[tuple[int, Shape]]  # shapes that have materials, with their indices
-BLACK = 1e30  # absorption, in halvings for each scene unit, of what lets nothing of a colour through
-HIGHEST_ROOT = 1.0 - 1e-9  # of the reflectance of a varnish; that of a perfect mirror would have an infinite index
-
-
-def mirror_of(shape: Shape) -> Mirror:
-    """Return the mirror of a shape; one of share 0 where it has none."""
-    return shape.mirror if isinstance(shape.mirror, Mirror) else Mirror(0.0)
-
-
-def shares(shape: Shape) -> tuple[float, float]:
-    """Return the shares of reflected and refracted light of a shape, scaled down to 1 where their sum exceeds it."""
-    reflected, refracted = mirror_of(shape).share, shape.glass.share if shape.glass else 0.0
-    total = max(1.0, reflected + refracted)
-    return reflected / total, refracted / total
-
-
-def pack_reflective(with_materials: NumberedShapes, count: int) -> np.ndarray:
-    """Share of reflection, share of refraction and refractive index of each of `count` shapes: see
-    `minirt.kernel.shading.whitted`."""
-    rows = np.tile([0.0, 0.0, 1.0], (count, 1))
-    for i, shape in with_materials:
-        rows[i] = *shares(shape), refractive_index(shape)
-    return rows
-
-
-def refractive_index(shape: Shape) -> float:
-    """Return the refractive index of a shape; that of a varnish where it is a mirror with Fresnel reflection."""
-    if shape.glass and shape.glass.share:
-        return shape.glass.ior
-    if not shape.fresnel:
-        return 1.0
-    root = min(sqrt(mirror_of(shape).share), HIGHEST_ROOT)
-    return (1.0 + root) / (1.0 - root)
-
-
-def pack_transparent(with_materials: NumberedShapes, count: int) -> np.ndarray:
-    """Shares of reflection and refraction of each of `count` shapes, its refractive index, and how far Fresnel's
-    equations count: see `minirt.kernel.shading.shadows`."""
-    rows = np.tile([0.0, 0.0, 1.0, 0.0], (count, 1))
-    for i, shape in with_materials:
-        if shape.glass:
-            rows[i] = *shares(shape), refractive_index(shape), shape.fresnel or 0.0
-    return rows
-
-
-def pack_media(with_materials: NumberedShapes, count: int, colours: Colours) -> np.ndarray:
-    """Absorption of red, green and blue inside each of `count` shapes, and the shares of them that its surface lets
-    through: see `minirt.kernel.shading.surfaces`."""
-    rows = np.tile([0.0, 0.0, 0.0, 1.0, 1.0, 1.0], (count, 1))
-    for i, shape in with_materials:
-        if shape.tint and shape.glass and shape.glass.share:
-            if shape.solid:
-                rows[i, :3] = absorption(shape, colours)
-            else:
-                rows[i, 3:] = colours.shares(shape.tint.colour)
-    return rows
-
-
-def absorption(shape: Shape, colours: Colours) -> np.ndarray:
-    """Return the absorption of red, green and blue by the tint of a shape, in halvings for each scene unit."""
-    assert shape.tint
-    shares = colours.shares(shape.tint.colour)
-    return np.array([-log2(share) / shape.tint.distance if share else BLACK for share in shares])
-
-
-def pack_fresnel(with_materials: NumberedShapes, count: int) -> np.ndarray:
-    """Share of Fresnel reflection of each of `count` shapes."""
-    rows = np.zeros(count)
-    for i, shape in with_materials:
-        rows[i] = shape.fresnel or 0.0
-    return rows
-
-
-def pack_fades(with_materials: NumberedShapes, count: int) -> np.ndarray:
-    """One over the distances at which reflected and refracted rays of each of `count` shapes are gone; 0 for never."""
-    rows = np.zeros((count, 2))
-    for i, shape in with_materials:
-        glass = shape.glass or Glass(1.0)
-        rows[i] = [1.0 / fade if fade else 0.0 for fade in (mirror_of(shape).fade, glass.fade)]
-    return rows
-
-
-MAP_FEATURES = {"checks", "textures", "bumps", "normals", "placements"}  # features that `pack_surface_maps` packs
-Reader = Callable[[Path], np.ndarray]
+PictureReader = Callable[[Path], np.ndarray]
+OF_SHAPES = {name for name, feature in FEATURES.items() if feature.of_shapes}  # features with a row for each shape
 
 
 class Materials(NamedTuple):
@@ -126,76 +45,38 @@ class Materials(NamedTuple):
 
 def pack_materials(scene: Scene, owner: np.ndarray, used: Set[Hashable]) -> Materials:
     """Pack the materials of n primitives for the features that a scene uses; `owner` (n,) has the shape of each."""
-    if not used & PACKED:  # without a look at each of a million shapes
+    if not used & (OF_SHAPES | PATTERN_FEATURES):  # without a look at each of a million shapes
         return Materials()
     with_materials = [(i, shape) for i, shape in enumerate(scene.shapes) if ATTRIBUTES(shape) != PLAIN]
-    count, colours = len(scene.shapes), colours_of(scene.camera)
-    rows = {name: pack(with_materials, count)[owner] for name, pack in ROW_PACKERS.items() if name in used}
-    for name, pack_colours in COLOUR_PACKERS.items():
-        if name in used:
-            rows[name] = pack_colours(with_materials, count, colours)[owner]
-    maps = pack_surface_maps(scene, with_materials, owner, used) if used & MAP_FEATURES else None
-    patterns = pack_patterns(with_materials, owner, used, colours) if used & PATTERN_FEATURES else None
-    return Materials(**rows, surface_maps=maps, patterns=patterns)
-
-
-def pack_specular(with_materials: NumberedShapes, count: int) -> np.ndarray:
-    """Specular share, exponent and model of each of `count` shapes: see `minirt.kernel.shading.lights`."""
-    rows = np.zeros((count, 3))
+    reader = Reader(scene)
+    arrays = {name: FEATURES[name].rows(len(scene.shapes)) for name in FEATURES if name in used & OF_SHAPES}
     for i, shape in with_materials:
-        if shape.specular:
-            rows[i] = shape.specular.share, shape.specular.exponent, shape.specular.blinn
-    return rows
+        for name, row in rows_of(shape, reader):
+            if name in arrays:
+                arrays[name][i] = row
+    packed = {name: array[owner] for name, array in arrays.items()}
+    maps = {name: packed.pop(name) for name in MAPS if name in packed}
+    surface_maps = pack_surface_maps(maps, reader, len(owner)) if maps else None
+    patterns = pack_patterns(with_materials, owner, used, reader.colours) if used & PATTERN_FEATURES else None
+    return Materials(**packed, surface_maps=surface_maps, patterns=patterns)
 
 
-def pack_glow(with_materials: NumberedShapes, count: int, colours: Colours) -> np.ndarray:
-    """Share of its colour that each of `count` shapes emits, exposed."""
-    rows = np.zeros(count)
-    for i, shape in with_materials:
-        rows[i] = (shape.glow or 0.0) * colours.gain
-    return rows
+def rows_of(shape: Shape, reader: Reader) -> list[tuple[str, Any]]:
+    """Return the rows of a shape in the arrays of features, by their names."""
+    values = zip(MATERIALS, ATTRIBUTES(shape), strict=True)
+    rows = [
+        row for (_, field), value in values if value is not None for row in field.rows(value, shape, reader).items()
+    ]
+    return [*rows, ("placements", placement_numbers(shape))] if shape.uv or shape.map_frame() else rows
 
 
-ROW_PACKERS = {  # by feature, a field of `Materials`
-    "specular": pack_specular,
-    "reflective": pack_reflective,
-    "transparent": pack_transparent,
-    "fresnel": pack_fresnel,
-    "fades": pack_fades,
-}
-COLOUR_PACKERS = {"media": pack_media, "glow": pack_glow}  # those that read colours, or emit light
-PACKED = {*ROW_PACKERS, *COLOUR_PACKERS, *MAP_FEATURES, *PATTERN_FEATURES}
-
-
-def pack_surface_maps(
-    scene: Scene, with_materials: NumberedShapes, owner: np.ndarray, used: Set[Hashable]
-) -> SurfaceMaps:
-    """Checkers, textures, bump maps and normal maps: see `minirt.kernel.shading.texturing`."""
-    count, pool, colours = len(scene.shapes), TexturePool(scene), colours_of(scene.camera)
-    checks = np.zeros((count, 4))
-    textures, normals, is_mapped = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count, np.int64)
-    bumps, placements = np.zeros((count, 2)), np.zeros((count, 15))
-    for i, shape in with_materials:
-        if shape.checker:
-            checks[i] = shape.checker.size, *colours.shares(shape.checker.colour)
-        if shape.texture:
-            textures[i] = pool.number(shape.texture, colours.texture)
-        if shape.bump and shape.bump.strength:
-            bumps[i] = pool.number(shape.bump.file, pictures.heights), shape.bump.strength
-        if shape.normal_map:
-            normals[i] = pool.number(shape.normal_map, pictures.picture)
-        if shape.uv or shape.map_frame():
-            placements[i] = placement_numbers(shape)
-        is_mapped[i] = bool(shape.checker or shape.texture or bumps[i, 0] or shape.normal_map)
-    return SurfaceMaps(
-        checks=checks[owner] if "checks" in used else None,
-        textures=textures[owner] if "textures" in used else None,
-        bumps=bumps[owner] if "bumps" in used else None,
-        normals=normals[owner] if "normals" in used else None,
-        placements=placements[owner] if "placements" in used else None,
-        used=is_mapped[owner],
-        **pool.arrays(),
-    )
+def pack_surface_maps(maps: dict[str, np.ndarray], reader: Reader, count: int) -> SurfaceMaps:
+    """Join the rows of maps and their pictures: see `minirt.kernel.shading.texturing`."""
+    used = np.zeros(count, np.int64)
+    for name, rows in maps.items():
+        if name != "placements":
+            used |= rows.reshape(count, -1)[:, 0] != 0
+    return SurfaceMaps(**(dict.fromkeys(MAPS) | maps), used=used, **reader.arrays())
 
 
 def placement_numbers(shape: Shape) -> tuple[float, ...]:
@@ -208,21 +89,35 @@ def placement_numbers(shape: Shape) -> tuple[float, ...]:
 
 def pack_environment(scene: Scene, file: str) -> Environment:
     """Pack the environment map of a background."""
-    pool = TexturePool(scene)
-    pool.number(file, colours_of(scene.camera).sky)
-    return Environment(**pool.arrays())
+    reader = Reader(scene)
+    reader.number(file, reader.colours.sky)
+    return Environment(**reader.arrays())
 
 
-class TexturePool:
-    """The images that a scene names, each loaded once, whatever the number of names and links that its file has."""
+class Reader:
+    """Reads the colours and the pictures of a scene, each picture once, whatever the number of names and links."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self.numbers: dict[tuple[Reader, str], int] = {}
-        self.numbers_of_files: dict[tuple[Reader, int, int], int] = {}  # by device and inode
+        self.colours = colours_of(scene.camera)
+        self.shares, self.gain = self.colours.shares, self.colours.gain
+        self.numbers: dict[tuple[PictureReader, str], int] = {}
+        self.numbers_of_files: dict[tuple[PictureReader, int, int], int] = {}  # by device and inode
         self.images: list[np.ndarray] = []
 
-    def number(self, file: str, read: Reader) -> int:
+    def texture(self, file: str) -> int:
+        """Load colours as shares of light, and return the number of the picture."""
+        return self.number(file, self.colours.texture)
+
+    def heights(self, file: str) -> int:
+        """Load a height map and return its number."""
+        return self.number(file, pictures.heights)
+
+    def normals(self, file: str) -> int:
+        """Load a normal map and return its number."""
+        return self.number(file, pictures.picture)
+
+    def number(self, file: str, read: PictureReader) -> int:
         """Load an image and return its number, from 1 on. FileError where it cannot be read."""
         if (read, file) not in self.numbers:
             path = self.scene.beside(file)
@@ -259,7 +154,7 @@ def medium_at(point: np.ndarray, shapes: tuple[Shape, ...], colours: Colours) ->
     total = np.zeros(3)
     for shape in shapes:
         if ATTRIBUTES(shape) != PLAIN and shape.tint and shape.glass and shape.glass.share and encloses(shape, point):
-            total += absorption(shape, colours)
+            total += shape.tint.absorption(colours)
     return total
 
 

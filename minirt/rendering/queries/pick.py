@@ -1,25 +1,33 @@
-"""Picking: the shape that a pixel shows and the point on it, by the interpreted formulas of the kernel, for one ray and
-all shapes of a kind at once."""
+"""Questions about pixels and shapes: what a pixel shows, where, which pixels a shape covers, how far it can fall.
+
+Rays are cast by the interpreted formulas of the kernel, see `minirt.rendering.packing.ray_casting`.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterable
 
 import numpy as np
 
 from minirt.fields import Triple
 from minirt.kernel import interpreted
-from minirt.kernel.frame import ray_direction, tile_count
+from minirt.kernel.frame import tile_count
 from minirt.kernel.pixels import TILE
+from minirt.kernel.scene_arrays import kind_of_packed
 from minirt.kernel.trace import COINCIDENT, closest_hit
-from minirt.lanes import Vec, lane, splat, unit
-from minirt.rendering.packing.camera import camera_numbers, hit_distances, pixel_rays
+from minirt.lanes import Vec, lane, splat
+from minirt.rendering.packing.camera import camera_numbers, pixel_rays
+from minirt.rendering.packing.ray_casting import camera_ray, cast, distances_of, hit_distances
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.rendering.queries.silhouette import covered_pixels
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, Scene
-from minirt.shapes import ALL_KINDS, Shape
+from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
+from minirt.shapes.shape import Bounds
+
+COUNT = 33  # rays along a side of a footprint: odd, so that one is in the middle
+COARSE = 9  # where a mesh takes part, whose triangles are all tested
+START = 1 / 1024  # of the shape's height: how far above its top the rays begin, so that they meet a surface there
 
 
 def pick(
@@ -31,14 +39,14 @@ def pick(
     """
     shape_arrays = shape_arrays or ShapeArrays()
     shape_arrays.update(scene.shapes)
-    camera = pixel_rays(camera_numbers(scene.camera, width, height), width, height)
-    origin, direction = Vec(*camera[:3]), unit(ray_direction(camera, x + 0.5, y + 0.5))
-    with np.errstate(all="ignore"):
-        nearest = nearest_primitives(shape_arrays, origin, direction)
-        owners = np.unique(shape_arrays.owner[nearest])
-        if len(owners) < 2:
-            return shape_arrays.shapes[int(owners[0])] if len(owners) else None
-        # Surfaces that may coincide: let the kernel's rule decide.
+    origin, direction = camera_ray(scene.camera, width, height, x + 0.5, y + 0.5)
+    distance = hit_distances(shape_arrays, origin, direction)
+    near = distance <= distance.min(initial=np.inf) * (1 + 2 * COINCIDENT)
+    nearest = np.flatnonzero(np.isfinite(distance) & near)
+    owners = np.unique(shape_arrays.owner[nearest])
+    if len(owners) < 2:
+        return shape_arrays.shapes[int(owners[0])] if len(owners) else None
+    with np.errstate(all="ignore"):  # surfaces that may coincide: let the kernel's rule decide
         parts = [
             shape_arrays.shapes[each].some(
                 nearest[shape_arrays.owner[nearest] == each] - shape_arrays.first_primitive[each]
@@ -47,26 +55,27 @@ def pick(
         ]
         packing = Packing(interpreted)
         arrays = packing.pack(Scene((scene.camera, *parts), scene.file), width, height)
-        rays = Vec(*(splat(part, camera) for part in (direction.x, direction.y, direction.z)))
+        rays = Vec(*(splat(part, arrays.camera) for part in (direction.x, direction.y, direction.z)))
         _, owner, _ = closest_hit(arrays, y // TILE * tile_count(width) + x // TILE, origin, rays)
     return shape_arrays.shapes[int(owners[packing.shape_arrays.owner[int(lane(owner, 0))]])]
 
 
 def surface_point(shape: Shape, camera: Camera, width: int, height: int, x: int, y: int) -> Triple | None:
     """The point of a shape at the centre of pixel x, y; None where the shape is not there."""
-    hit, t, origin, direction = pixel_hits(shape, camera, width, height, x, y)
-    point = origin + float(t) * direction
-    return (float(point.x), float(point.y), float(point.z)) if hit else None
+    origin, direction = camera_ray(camera, width, height, x + 0.5, y + 0.5)
+    t = float(distances_of(shape, origin, direction).min())
+    point = origin + t * direction
+    return (float(point.x), float(point.y), float(point.z)) if t < np.inf else None
 
 
 def surface_normal(shape: Shape, point: Triple, direction: Triple) -> Triple:
     """The unit normal of a shape at a point of its surface, towards where a ray of this direction comes from."""
-    kind = next(kind for kind in ALL_KINDS if kind.element is type(shape))
     with np.errstate(all="ignore"):
         if isinstance(shape, Mesh):
-            hit, t = kind.intersect(shape.pack(), Vec(*point) - Vec(*direction), Vec(*direction))
-            shape = shape.some(np.array([np.argmin(np.where(hit, abs(t - 1.0), np.inf))]))
-        _, normal = kind.surface(shape.pack(), Vec(*point))
+            t = cast(shape.pack(), Vec(*point) - Vec(*direction), Vec(*direction))
+            shape = shape.some(np.array([np.argmin(np.abs(t - 1.0))]))
+        packed = shape.pack()
+        _, normal = kind_of_packed(type(packed)).surface(packed, Vec(*point))
     x, y, z = (float(np.ravel(part)[0]) for part in (normal.x, normal.y, normal.z))
     facing = -1.0 if x * direction[0] + y * direction[1] + z * direction[2] > 0 else 1.0
     return facing * x + 0.0, facing * y + 0.0, facing * z + 0.0
@@ -79,23 +88,105 @@ def covers(shape: Shape, camera: Camera, width: int, height: int, x: np.ndarray,
         covered = covered_pixels(shape, camera, width, height)
         inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
         return inside & (covered is not None and covered[np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)])
-    return np.broadcast_to(pixel_hits(shape, camera, width, height, x, y)[0], x.shape)
+    distances = distances_of(shape, *camera_ray(camera, width, height, x + 0.5, y + 0.5))
+    return np.broadcast_to(distances < np.inf, x.shape)
 
 
-def pixel_hits(shape: Shape, camera: Camera, width: int, height: int, x: Any, y: Any) -> tuple[Any, Any, Vec, Vec]:
-    """Whether and where rays through pixels hit a shape, their origin and directions; for a mesh, only one ray."""
+def clearance(shape: Shape, others: Iterable[Shape]) -> tuple[float, Shape | None]:
+    """Height of a bounded shape above that of `others` which it meets first, and this one; negative if it sinks in.
+
+    Infinite if there is none beneath its top. Vertical rays sample the shape's footprint. Their middle one is exact, so
+    that shapes whose middles lie above each other touch; elsewhere the error is of the second order in the spacing.
+    """
+    box = shape.bounds()
+    assert box
+    near = [other for other in others if is_near(box, other.bounds())]
+    count = COARSE if any(isinstance(each, Mesh) for each in (shape, *near)) else COUNT
+    (west, bottom, south), (east, top, north) = box
+    share = (np.arange(count) + 0.5) / count
+    x, z = (each.ravel() for each in np.meshgrid(west + (east - west) * share, south + (north - south) * share))
+    height = top - bottom or east - west
+    start = top + START * height
+    underside = bottom - height + vertical(shape, x, bottom - height, z, 1.0)
+    gap, support = np.inf, None
+    for other in near:
+        with np.errstate(invalid="ignore"):  # where rays miss both
+            gaps = underside - (start - vertical(other, x, start, z, -1.0))
+        least = float(np.where(np.isfinite(gaps), gaps, np.inf).min())
+        gap, support = (least, other) if least < gap else (gap, support)
+    return gap, support
+
+
+def is_near(box: Bounds, other: Bounds | None) -> bool:
+    """Whether a box may lie beneath another: their footprints overlap and it does not begin above."""
+    if other is None:
+        return True
+    (west, _, south), (east, top, north) = box
+    return other[0][0] <= east and other[1][0] >= west and other[0][2] <= north and other[1][2] >= south and (
+        other[0][1] < top
+    )  # fmt: skip
+
+
+def vertical(shape: Shape, x: np.ndarray, y: float, z: np.ndarray, up: float) -> np.ndarray:
+    """Distances along vertical rays, up or down, from x, y, z to a shape; infinite where they miss it."""
+    nothing = np.zeros_like(x)
+    return distances_of(shape, Vec(x, nothing + y, z), Vec(nothing, nothing + up, nothing))
+
+
+def covered_pixels(mesh: Mesh, camera: Camera, width: int, height: int) -> np.ndarray | None:
+    """Whether the mesh covers the centre of each pixel, (h, w), with no other shape in front; None where some of it is
+    beside or behind the eye.
+
+    Seen from a point, the number of triangles facing it that cover a pixel is the winding number of the loops of their
+    edges about the pixel. An edge between two such triangles is in two loops that cancel. So only the edges that do not
+    cancel are drawn, some hundred of a hundred thousand: a row of pixels is a running sum of the edges that cross it.
+    """
+    triangles = mesh.triangles
     numbers = pixel_rays(camera_numbers(camera, width, height), width, height)
-    kind = next(kind for kind in ALL_KINDS if kind.element is type(shape))
-    with np.errstate(all="ignore"):
-        origin, direction = Vec(*numbers[:3]), unit(ray_direction(numbers, x + 0.5, y + 0.5))
-        hit, t = kind.intersect(shape.pack(), origin, direction)
-        if isinstance(shape, Mesh):
-            hit, t = hit.any(), np.where(hit, t, np.inf).min()
-        return hit, t, origin, direction
+    eye, corner, across, down = numbers.reshape(4, 3)
+    x, y, depth = np.linalg.inv(np.stack([across, down, corner], axis=1)) @ (mesh.placed(triangles.points) - eye).T
+    if depth[triangles.used].min() <= 0:
+        return None
+    with np.errstate(all="ignore"):  # points that no triangle has may be anywhere
+        x, y = x / depth, y / depth
+    covered = np.zeros((height, width), bool)
+    # The back of a closed mesh lies behind its front.
+    for facing in facing_triangles(x, y, triangles.corners)[: 1 if triangles.closed else 2]:
+        start, end = silhouette_edges(facing, triangles.corners, triangles.edges)
+        covered |= winding_numbers(x[start], y[start], x[end], y[end], width, height) != 0
+    return covered
 
 
-def nearest_primitives(shape_arrays: ShapeArrays, origin: Vec, direction: Vec) -> np.ndarray:
-    """Indices of the nearest primitive that a ray hits, and of those so close behind that they may coincide with it."""
-    distance = hit_distances(shape_arrays, origin, direction)
-    least = distance.min(initial=np.inf)
-    return np.flatnonzero(np.isfinite(distance) & (distance <= least * (1 + 2 * COINCIDENT)))
+def facing_triangles(x: np.ndarray, y: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Whether each triangle is seen from its front, and whether from its back."""
+    (ax, bx, cx), (ay, by, cy) = x[corners].T, y[corners].T
+    area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+    return area > 0, area < 0
+
+
+def silhouette_edges(facing: np.ndarray, corners: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Start and end points of the edges of the triangles in `facing` that do not cancel.
+
+    `edges` (m, 3) has the numbers of the edges of each triangle; edges with the same two ends have the same number.
+    """
+    faces = corners[facing]
+    start, end, edge = faces.ravel(), np.roll(faces, -1, axis=1).ravel(), edges[facing].ravel()
+    balance = np.bincount(edge, np.sign(end - start), edges.max() + 1)
+    remaining = balance[edge] != 0
+    return start[remaining], end[remaining]
+
+
+def winding_numbers(
+    ax: np.ndarray, ay: np.ndarray, bx: np.ndarray, by: np.ndarray, width: int, height: int
+) -> np.ndarray:
+    """The winding number of edges from points a to b about the centre of each pixel, (h, w)."""
+    # The rows whose centre lies between the ends; the lower end counts, the higher does not.
+    first, last = (np.clip(np.ceil(each - 0.5), 0, height).astype(np.int64) for each in (ay, by))
+    rows = np.abs(last - first)
+    edge = np.repeat(np.arange(len(rows)), rows)
+    row = np.minimum(first, last)[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(rows) - rows, rows)
+    crossing = ax[edge] + (row + 0.5 - ay[edge]) * (bx - ax)[edge] / (by - ay)[edge]
+    column = np.clip(np.ceil(crossing - 0.5), 0, width).astype(np.int64)
+    turns = np.bincount(row * (width + 1) + column, np.sign(last - first)[edge], height * (width + 1))
+    winding: np.ndarray = np.cumsum(np.rint(turns).reshape(height, width + 1)[:, :width], axis=1)
+    return winding

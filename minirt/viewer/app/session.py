@@ -159,7 +159,7 @@ class Session:
             return
         self._judged = self.saved
         if latest.pixels is not None and not self.state.message:
-            from minirt.rendering.queries.in_view import notice_about
+            from minirt.rendering.queries.preview import notice_about
 
             self.state = self.state.with_message(notice_about(latest.job.scene, latest.pixels[..., :3]))
 

@@ -25,7 +25,7 @@ from minirt.fields import (
     clamp,
 )
 from minirt.materials import Compound
-from minirt.rendering.queries.beneath import clearance
+from minirt.rendering.queries.pick import clearance
 from minirt.scene import Light, Scene
 from minirt.scene.elements import camera_frame, linear_combination
 from minirt.scene.registry import ELEMENTS

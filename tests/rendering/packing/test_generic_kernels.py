@@ -11,19 +11,16 @@ from numba import typeof
 
 import minirt
 from minirt.kernel import frame, interpreted
-from minirt.kernel.bvh_nodes import WIDTH
 from minirt.kernel.machine_code import functions
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.materials import Checker, Specular
 from minirt.rendering.frame import frame_arguments
-from minirt.rendering.packing import generic_kernels
 from minirt.rendering.packing.generic_kernels import GENERIC_KERNELS, GenericKernel, empty_arrays, fitting, generalised
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Background, ParallelLight, Scene, SpotLight
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from tests import paths
-from tests.kernel.pictures import ALL, AMBIENT, EVERY, EYE, LAMP, WHITE
+from tests.kernel.pictures import ALL, AMBIENT, EYE, LAMP, WHITE
 from tests.make_goldens import SCENES
 from tests.meshes.examples import soup
 from tests.random_scenes import random_scene
@@ -32,8 +29,6 @@ PRECISIONS = ("double", "single")
 SUN = ParallelLight((0.3, -0.9, 0.2), 0.3)
 BALLS = tuple(Sphere((i - 5, 0.5 * (i % 3), i % 4), 1.5, (200, 20 * i, 90)) for i in range(12))
 FLOOR = Plane((0, -1, 0), (0, 1, 0), WHITE)
-
-ROWS = ("lights", "colours_and_extents", "slots", "tile_shapes", "cones", "light_buffers", "light_shapes")
 
 
 def packed(scene: Scene, precision: str = "double", depth: int = 8, width: int = 96, height: int = 72) -> SceneArrays:
@@ -66,30 +61,6 @@ def every_form(scene: Scene) -> list[tuple[SceneArrays, GenericKernel]]:
     return [(arrays, generic) for arrays in forms.values() for generic in fitting(arrays)]
 
 
-def test_the_arrays_of_a_generic_kernel_have_its_precision() -> None:
-    for generic in GENERIC_KERNELS:
-        assert empty_arrays(generic).lights.dtype == (np.float32 if generic.precision == "single" else np.float64)
-
-
-def test_the_arrays_of_a_generic_kernel_are_those_of_a_scene_without_lights_and_shapes() -> None:
-    arrays = empty_arrays(next(each for each in GENERIC_KERNELS if (each.name, each.precision) == ("full", "double")))
-    packed = Packing().pack(minirt.load(paths.SCENES / "figure-v4-everything.rt"), 8, 8)
-    for name in ROWS:
-        assert getattr(arrays, name).shape == (0, *getattr(packed, name).shape[1:]), name
-    assert (arrays.spots.shape, arrays.specular.shape, arrays.reflective.shape) == ((0, 7), (0, 3), (0, 3))
-    maps = arrays.surface_maps
-    assert (maps.checks.shape, maps.bumps.shape) == ((0, 4), (0, 2))
-    assert (maps.textures.shape, maps.normals.shape, maps.used.shape) == ((0,), (0,), (0,))
-    assert (arrays.camera.shape, arrays.ambient.shape, arrays.background.shape) == ((14,), (3,), (3,))
-    assert (arrays.light_buffer_cells, arrays.light_cones.shape) == (1, (0, 0, 5))
-    assert (arrays.bvh.nodes.shape, arrays.bvh.extents.shape, arrays.bvh.slots.shape) == ((0,), (0,), (0, 2))
-    for group, leaves in zip(arrays.groups, arrays.bvh.groups, strict=True):
-        assert (len(group.rows), group.tile_starts.shape, group.light_starts.shape) == (0, (0,), (0, 0))
-        assert (len(leaves.rows), len(leaves.blocks), leaves.labels.shape) == (0, 0, (0, WIDTH, 2))
-        assert leaves.rows.dtype == group.rows.dtype
-        assert leaves.unbounded is None or leaves.unbounded.shape == (0,)
-
-
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_generic_kernels_draw_the_same_bits_as_the_specialised_one(path: Path) -> None:
     arrays = packed(minirt.load(path))
@@ -105,13 +76,6 @@ def test_generic_kernels_in_single_precision_do_so_too(stem: str) -> None:
     for generic in fitting(arrays):
         assert generic.precision == "single"
         assert same_bits(arrays, generalised(arrays, generic)), generic
-
-
-@pytest.mark.parametrize("stem", ["demo", "shapes", "gallery-marbles"])
-def test_several_samples_have_the_same_bits(stem: str) -> None:
-    arrays = packed(minirt.load(f"scenes/{stem}.rt"))
-    for generic in fitting(arrays):
-        assert same_bits(arrays, generalised(arrays, generic), samples=4), generic
 
 
 SPECIAL = {
@@ -133,12 +97,6 @@ def test_special_scenes_have_the_same_bits(name: str) -> None:
         assert same_bits(arrays, generalised(arrays, generic)), generic
 
 
-@pytest.mark.parametrize("depth", [0, 1])
-def test_any_depth_has_the_same_bits(depth: int) -> None:
-    arrays = packed(SPECIAL["parallel light, a BVH and mirrors"], depth=depth)
-    assert same_bits(arrays, generalised(arrays, fitting(arrays)[0]))
-
-
 def test_the_interpreted_kernel_draws_the_same_bits_too() -> None:
     for scene in (ALL, SPECIAL["parallel light, a BVH and mirrors"]):
         arrays = Packing(interpreted).pack(scene, 24, 16)
@@ -151,23 +109,6 @@ def test_the_interpreted_kernel_draws_the_same_bits_too() -> None:
         assert np.array_equal(*pictures)
 
 
-def test_groups_with_wrong_numbers_are_noticed() -> None:
-    arrays = packed(EVERY)
-    generic = generalised(arrays, fitting(arrays)[0])
-    first, second, *others = generic.groups
-    swapped = (first._replace(number=second.number), second._replace(number=first.number), *others)
-    assert same_bits(arrays, generic)
-    assert not same_bits(arrays, generic._replace(groups=swapped))
-
-
-def test_another_rounding_is_noticed() -> None:
-    arrays = packed(ALL)
-    generic = generalised(arrays, fitting(arrays)[0])
-    other = generic.ambient.copy()
-    other[0] = np.nextafter(other[0], 1)
-    assert not same_bits(arrays, generic._replace(ambient=other))
-
-
 @pytest.mark.parametrize("scenes", ["files", "random", "special"])
 def test_all_scenes_have_the_types_of_the_empty_one(scenes: str) -> None:
     several = {
@@ -178,14 +119,6 @@ def test_all_scenes_have_the_types_of_the_empty_one(scenes: str) -> None:
     for scene in several:
         for arrays, generic in every_form(scene):
             assert types_of(generalised(arrays, generic)) == types_of(empty_arrays(generic))
-
-
-def test_other_types_are_noticed() -> None:
-    for generic in GENERIC_KERNELS:
-        empty = empty_arrays(generic)
-        assert types_of(empty._replace(tile_shapes=np.zeros(0, np.int64))) != types_of(empty)
-        assert types_of(empty._replace(camera=np.zeros(24, empty.camera.dtype)[::2])) != types_of(empty)
-    assert len({str(types_of(empty_arrays(generic))) for generic in GENERIC_KERNELS}) == len(GENERIC_KERNELS)
 
 
 def test_the_most_specialised_kernel_comes_first() -> None:
@@ -214,12 +147,6 @@ def test_generalising_copies_nothing() -> None:
         if arrays.bvh:
             assert generic.bvh.nodes is arrays.bvh.nodes
             assert {id(group) for group in arrays.bvh.groups} <= {id(group) for group in generic.bvh.groups}
-
-
-def test_kinds_are_in_the_order_of_the_registry() -> None:
-    for generic in GENERIC_KERNELS:
-        names = [group.rows.dtype.names[0].split(".")[0] for group in empty_arrays(generic).groups]
-        assert names == [kind.element.title for kind in generic_kernels.ALL_KINDS]
 
 
 def test_every_feature_has_a_generic_kernel() -> None:

@@ -12,6 +12,7 @@ from minirt.element import fields_of
 from minirt.errors import FileError
 from minirt.kernel.scene_arrays import SceneArrays
 from minirt.materials import Attributes, Bump, Checker, Compound, Glass, Mirror, Specular, Tint
+from minirt.materials.glass import BLACK
 from minirt.rendering import Renderer
 from minirt.rendering.packing import materials
 from minirt.rendering.packing.features import FEATURES, features
@@ -19,7 +20,6 @@ from minirt.rendering.packing.materials import Materials, pack_environment, pack
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, FurtherLight, Scene
 from minirt.shapes import Shape
-from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from minirt.shapes.square import Square
 from tests.kernel.pictures import ALL, EYE, ONE, TWO, interpreted, linear
@@ -40,12 +40,10 @@ def scene_of(folder: Path, *shapes: Shape) -> Scene:
     return Scene((Camera((0, 0, -9), (0, 0, 1), 60), *shapes), folder / "scene.rt")
 
 
-def test_every_material_names_a_feature_that_is_packed() -> None:
+def test_every_material_names_a_feature() -> None:
     for field in fields_of(Attributes):
         feature = field.record.feature if isinstance(field, Compound) else field.feature
         assert feature in FEATURES, f"{field.name} needs a feature in minirt/rendering/packing/features.py"
-        packed = materials.PACKED
-        assert feature in packed, f"{feature} needs a function in minirt/rendering/packing/materials.py"
 
 
 def test_plain_shapes_have_no_material_arrays(tmp_path: Path) -> None:
@@ -91,7 +89,7 @@ def test_mirrors_and_glass_have_their_rows(tmp_path: Path) -> None:
     packed = pack_materials(scene, np.arange(4), features(scene))
     assert np.allclose(packed.reflective, [[0.25, 0, 3], [0, 0.9, 1.5], [0.5, 0.5, 1.5], [0, 0, 1]])
     assert np.allclose(packed.transparent, [[0, 0, 1, 0], [0, 0.9, 1.5, 0], [0.5, 0.5, 1.5, 0], [0, 0, 1, 0]])
-    assert np.allclose(packed.media[1], [np.log2(5) / 2, 0, materials.BLACK, 1, 1, 1])
+    assert np.allclose(packed.media[1], [np.log2(5) / 2, 0, BLACK, 1, 1, 1])
     assert np.allclose(packed.media[[0, 2, 3]], [[0, 0, 0, 1, 1, 1], [0, 0, 0, 0.2, 1, 0], [0, 0, 0, 1, 1, 1]])
     assert np.array_equal(packed.fresnel, [0.5, 0, 0, 1])
     assert np.allclose(packed.fades, [[0.25, 0], [0, 0.125], [0, 0], [0, 0]])
@@ -171,20 +169,6 @@ def test_what_a_mirror_or_glass_may_show_stays(shape: Sphere) -> None:
     assert rows(scene) == (len(scene.shapes), len(scene.shapes))
 
 
-def test_a_wrong_rule_would_be_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Culling highlights by what the eye alone sees changes the picture in a mirror."""
-    wide = BEHIND.replace(specular=Specular(1.0, 1.0), diameter=6.0)
-    scene = Scene((*ALL.elements, wide)).replace(MIRROR, mirror=0.9)
-    _, right = interpreted(scene, *SIZE)
-
-    def wrong(materials, changed, seen):  # type: ignore[no-untyped-def]
-        return materials._replace(specular=materials.specular[:0])
-
-    monkeypatch.setattr("minirt.rendering.scene_packing.without_unseen", wrong)
-    _, found = interpreted(Scene(scene.elements), *SIZE)
-    assert not np.array_equal(found, right)
-
-
 @pytest.mark.parametrize(("renderer", "scene"), [(ONE, HIDDEN), (TWO, HIDDEN), (Renderer(1, "single"), SHINING)])
 def test_no_bit_of_the_picture_changes(renderer: Renderer, scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also while the eye turns towards what was hidden, and back."""
@@ -195,18 +179,6 @@ def test_no_bit_of_the_picture_changes(renderer: Renderer, scene: Scene, monkeyp
         right = [linear(Scene(each.elements), *SIZE, 2, renderer) for each in (scene, turned, scene)]
     for some, others in zip(found, right, strict=True):
         assert np.array_equal(some, others)
-
-
-def test_planes_that_reach_into_the_picture_are_seen() -> None:
-    floor = Plane((0, -1.5, 0), (0, 1, 0), GREY, mirror=0.5)
-    sky = Plane((0, 0, -60), (0, 0, 1), GREY, mirror=0.5)
-    assert len(packed(Scene((*ALL.elements, floor))).reflective) == len(ALL.shapes) + 1
-    assert len(packed(Scene((*ALL.elements, sky))).reflective) == 0
-
-
-def test_single_precision() -> None:
-    assert packed(SHINING, "single").specular.shape == (0, 3)
-    assert packed(SHINING, "single").specular.dtype == np.float32
 
 
 def test_light_shines_through_glass_that_is_not_seen() -> None:
@@ -226,9 +198,3 @@ def test_the_notes_tell() -> None:
     packing = Packing()
     packing.pack(HIDDEN, *SIZE)
     assert {"no pixel can show highlights: skipped", "no pixel can show mirrors and glass: skipped"} <= {*packing.notes}
-
-
-def test_effective_materials() -> None:
-    nothing = materials.Materials()
-    assert materials.effective(nothing) == (None, None)
-    assert materials.without_unseen(nothing, materials.effective(nothing), np.arange(3)) is nothing

@@ -9,7 +9,7 @@ import pytest
 
 from minirt.kernel.pixels import TILE
 from minirt.rendering import Renderer, scene_packing
-from minirt.rendering.culling.planes import signed_heights
+from minirt.rendering.packing.planes import signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.scene_packing import Packing
 from minirt.scene import Camera, FurtherLight, Light, Scene

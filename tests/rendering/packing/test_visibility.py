@@ -15,10 +15,10 @@ from minirt.kernel.frame import ray_direction, tile_count
 from minirt.kernel.machine_code import functions
 from minirt.kernel.pixels import TILE
 from minirt.kernel.scene_arrays import kind_of, read
-from minirt.kernel.shadow_rays import FRUSTUM_FACTOR, SCALE, TOLERANCE, light_buffer_cell
-from minirt.kernel.trace import COINCIDENT, in_cone
+from minirt.kernel.shadow_rays import light_buffer_cell
+from minirt.kernel.trace import in_cone
 from minirt.lanes import Vec, unit
-from minirt.rendering.culling import light_frustum, visibility
+from minirt.rendering.packing import visibility
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.rendering.renderer import Renderer
 from minirt.rendering.scene_packing import Packing
@@ -131,14 +131,7 @@ def unit_direction(random: np.random.Generator) -> Any:
     return way / np.linalg.norm(way)
 
 
-@pytest.fixture
-def small_clusters(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Use frustums for small scenes, in which every shape can be tried."""
-    monkeypatch.setattr(light_frustum, "LEAST_SHAPES", 30)
-
-
 @KERNELS
-@pytest.mark.usefixtures("small_clusters")
 @pytest.mark.parametrize(("make", "seed"), [*SCENES, *((outside_scene, seed) for seed in range(40))])
 def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(make: Any, seed: int, kernel: Any) -> None:
     arrays = Packing(kernel).pack(make(seed), WIDTH, HEIGHT)
@@ -149,25 +142,14 @@ def test_a_light_buffer_cell_lists_all_shapes_that_are_hit_through_it(make: Any,
     directions /= np.linalg.norm(directions, axis=0)
     planes = [index for index, shape in enumerate(make(seed).shapes) if shape.flat()]
     for light, row in enumerate(arrays.lights):
-        count, buffer = (
-            6 * arrays.light_buffer_cells**2 if arrays.light_buffer_cells > 1 else 1,
-            arrays.light_buffers[light],
-        )
-        if buffer[SCALE] > 0:  # half of the directions into the frustum, some of them just beside it
-            reach = 1.1 * FRUSTUM_FACTOR / 2 * arrays.light_buffer_cells / buffer[SCALE]
-            slopes = reach * random.uniform(-1, 1, (2, 1000))
-            directions[:, 1000:] = buffer[:9].reshape(3, 3).T @ np.array([*slopes, np.ones(1000)])
-            directions /= np.linalg.norm(directions, axis=0)
+        edge, tolerance = arrays.light_buffer_cells, arrays.light_tolerances[light]
+        count = 6 * edge**2 if edge > 1 else 1
         # The list of a cell holds for close directions, too.
-        nearby = directions + 0.99 * np.sqrt(buffer[TOLERANCE]) * random_directions(random, 2000).T
+        nearby = directions + 0.99 * np.sqrt(tolerance) * random_directions(random, 2000).T
         nearby /= np.linalg.norm(nearby, axis=0)
-        nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= buffer[TOLERANCE], nearby, directions)
+        nearby = np.where(((nearby - directions) ** 2).sum(axis=0) <= tolerance, nearby, directions)
         with np.errstate(all="ignore"):
-            cells = (
-                light_buffer_cell(buffer, arrays.light_buffer_cells, Vec(*nearby))
-                if arrays.light_buffer_cells > 1
-                else np.zeros(2000)
-            )
+            cells = light_buffer_cell(Vec(*nearby), edge) if edge > 1 else np.zeros(2000)
         in_cell = members(arrays, "light_starts", arrays.light_shapes, light)
         assert 0 <= cells.min() <= cells.max() < count <= len(in_cell)
         left_out = {shape for shape in planes if not in_cell[:, shape].any()}
@@ -219,16 +201,6 @@ def test_a_huge_ball_is_not_listed_above_its_horizon() -> None:
     assert not listed[:9].any()
 
 
-@pytest.mark.parametrize(
-    ("x", "z", "radius"), [(0, 5, 1), (3, 4, 2), (-3, 1, 2), (4, 0, 1), (4, -0.5, 1), (-9, -0.1, 2)]
-)
-def test_tangents_differ_from_the_centre_by_the_angular_radius(x: float, z: float, radius: float) -> None:
-    middle, half = np.arctan2(x, z), np.arcsin(radius / np.hypot(x, z))
-    low, high = binning.tangent_slopes(x, z, radius)
-    assert low == (pytest.approx(np.tan(middle - half)) if middle - half > -np.pi / 2 else -np.inf)
-    assert high == (pytest.approx(np.tan(middle + half)) if middle + half < np.pi / 2 else np.inf)
-
-
 @KERNELS
 def test_an_infinite_ball_is_in_all_cells_at_distance_zero(kernel: Any) -> None:
     balls, grid = np.array([[0.0, 0.0, 0.0, np.inf]]), visibility.cube_grid(2)
@@ -239,28 +211,6 @@ def test_an_infinite_ball_is_in_all_cells_at_distance_zero(kernel: Any) -> None:
         assert kernel.project_all(origin, grid, balls, 0.0, np.array([0, 1]), place, rectangles, 0, cones, counts) == 6
         assert cones[0, 3:].tolist() == [-2, 0]
         assert counts.tolist() == [1] * 24 + [0]
-
-
-def test_a_disc_around_the_eye_covers_all_slopes() -> None:
-    assert binning.tangent_slopes(0.5, -0.5, 1.0) == (-np.inf, np.inf)
-
-
-def test_quantised_distances_are_less_by_a_little_more_than_coincident_ones() -> None:
-    near = np.geomspace(1e-30, 1e30, 10_000)
-    rounded, depths = visibility.quantised_depths(near)
-    assert (rounded * (1 + COINCIDENT) <= near).all()
-    assert (rounded * (1 + 4 * COINCIDENT) > near).all()
-    assert (np.diff(depths) >= 0).all()
-    assert visibility.quantised_depths(np.array([0.0, 1e-50]))[0].tolist() == [0, 0]
-
-
-def test_depths_are_ordered_as_the_distances() -> None:
-    near = np.random.default_rng(8).permutation(np.geomspace(1e-3, 1e3, 10_000))
-    rounded, depths = visibility.quantised_depths(near)
-    order = visibility.depth_order(depths)
-    assert sorted(order.tolist()) == list(range(10_000))
-    assert (np.diff(rounded[order]) >= 0).all()
-    assert (np.diff(order)[np.diff(depths[order]) == 0] > 0).all()
 
 
 def test_bins_leave_out_most_shapes() -> None:
@@ -294,23 +244,6 @@ def shape_arrays_of(count: int) -> ShapeArrays:
     return tables
 
 
-@pytest.mark.parametrize("grid", [2, 16])
-def test_a_direction_is_in_the_cell_of_its_face_row_and_column(grid: int) -> None:
-    # Directions through the centre of each cell, by the frames of the faces.
-    slopes = (2 * np.arange(grid) + 1) / grid - 1
-    expected = 0
-    for right, up, forward in visibility.FACES:
-        for down in slopes:
-            for across in slopes:
-                direction = forward + across * right + down * up
-                with np.errstate(all="ignore"):
-                    assert (
-                        light_buffer_cell(visibility.NO_LIGHT_BUFFER, grid, Vec(*map(np.float64, direction)))
-                        == expected
-                    )
-                expected += 1
-
-
 @KERNELS
 @pytest.mark.parametrize("size", [1.0, 1e-3, 1e-7])
 def test_corners_and_tangents_are_in_the_bounding_cone(size: float, kernel: Any) -> None:
@@ -339,8 +272,6 @@ def cone_from_origin(kernel: Any, balls: np.ndarray) -> tuple[np.ndarray, float]
 
 
 # Lists of shapes that would take too much memory are made of coarser cells, and the picture stays the same.
-
-
 SCENE = "A 0.2 255,255,255\nC 0,0,-9 0,0,1 60\nL 2,5,-6 0.7 255,255,255\npl 0,-3,0 0,1,0 90,120,150\n"
 BALLS = [f"sp {x},{y},{(x * y) % 3} 1.2 255,{20 * x + 120},90" for x in range(-4, 5) for y in range(-3, 4)]
 

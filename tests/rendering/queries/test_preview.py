@@ -14,18 +14,33 @@ from minirt.kernel.scene_arrays import intersect
 from minirt.lanes import Vec
 from minirt.rendering import Renderer
 from minirt.rendering.packing.features import features
-from minirt.rendering.queries.preview import BUDGET, FEWEST, RAY, SHAPE, preview, render_interpreted
-from minirt.scene import Ambient, Camera, Light, Scene
+from minirt.rendering.packing.shape_arrays import ShapeArrays
+from minirt.rendering.queries import preview as module
+from minirt.rendering.queries.pick import pick
+from minirt.rendering.queries.preview import (
+    BUDGET,
+    FEWEST,
+    RAY,
+    SHAPE,
+    is_blank,
+    notice_about,
+    preview,
+    render_interpreted,
+    visible_shapes,
+)
+from minirt.scene import Ambient, Camera, Light, Scene, load, parse
 from minirt.shapes.sphere import Sphere
 from tests.kernel import pictures
-from tests.paths import scene_files
+from tests.kernel.pictures import EVERY, TWO
+from tests.paths import SCENES, scene_files
+from tests.random_scenes import random_scene
 
 MIRRORS = ("material-mirror",)
 PLAIN = Renderer(2, depth=0)
-SCENES = scene_files()
+FILES = scene_files()
 
 
-@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_every_interpreted_picture_equals_the_compiled_one(path: Path) -> None:
     scene = minirt.load(path, lenient=True)
     if "reflective" in features(scene) and path.stem not in MIRRORS:
@@ -88,3 +103,94 @@ def test_a_preview_uses_its_budget(count: int, calls: list[int]) -> None:
 def test_a_scene_that_exceeds_the_budget_has_no_preview(calls: list[int]) -> None:
     assert preview(balls(10_000), 1920, 1080) is None
     assert not calls
+
+
+# The notice that nothing is in view, and the camera that it names, tested by rendering it.
+
+
+WIDTH, HEIGHT = 96, 54
+HEAD = "A 0.2 255,255,255\nC 0,0,0 0,0,-1 60\nL 5,9,5 0.7 255,255,255\n"
+SUBJECT = load(SCENES / "subject-as-printed.rt").scene
+AWAY = {
+    "the subject's example": SUBJECT,
+    "every kind": EVERY.replace(EVERY.camera, Camera((0, 1e4, -9), (0, 0.5, -1), 40)),
+    "a tiny sphere": parse(f"{HEAD}sp 3,2,5 1e-7 255,0,0\n").scene,
+    "a huge sphere": parse(f"{HEAD}sp 0,0,1e9 1e8 255,0,0\n").scene,
+    "far from the origin": parse(f"{HEAD}sp 1e8,0,1e8 2 255,0,0\nsp 1e8,0,100000003 2 0,255,0\n").scene,
+    "a plane alone": parse(f"{HEAD}pl 0,-3,0 0,1,0 200,90,90\n".replace("0,0,-1", "0,1,0")).scene,
+    "a narrow view": parse(f"{HEAD}sp 0,0,9 1 255,0,0\ncy 3,0,9 0,1,0 1 1 0,255,0\n".replace("60", "0.5")).scene,
+    "a toned picture": parse(f"{HEAD}sp 0,0,9 1 255,0,0\n".replace("60", "60 tone:srgb exposure:1 roll:20")).scene,
+    "a mesh": parse(f"{HEAD}ob {SCENES}/meshes/icosahedron.obj 1,2,3 2 90,200,90\n", SCENES / "a.rt").scene,
+}
+
+
+def render(scene: Scene) -> np.ndarray:
+    """Render a picture: (h, w, 3)."""
+    pixels = np.zeros((HEIGHT, WIDTH, 4), np.uint8)
+    assert TWO.render(scene, pixels)
+    return pixels[..., 2::-1]
+
+
+def shown_by(scene: Scene, notice: str) -> Scene:
+    """The scene as the camera of a notice sees it."""
+    assert notice.startswith("nothing is in view; this line would show the scene: C ")
+    line = notice.partition("scene: ")[2]
+    camera, notices = parse(f"A 0 0,0,0\n{line}\n")
+    assert not notices
+    return scene.replace(scene.camera, camera.camera)
+
+
+@pytest.mark.parametrize("name", AWAY)
+def test_the_camera_that_is_named_shows_the_scene(name: str) -> None:
+    scene = AWAY[name]
+    shown = shown_by(scene, notice_about(scene, render(scene)))
+    picture = render(shown)
+    assert not is_blank(picture)
+    assert notice_about(shown, picture) == ""
+    assert shown.camera.tone == scene.camera.tone
+    y, x = np.mgrid[3:HEIGHT:8, 3:WIDTH:8].reshape(2, -1)
+    seen = {id(pick(shown, WIDTH, HEIGHT, *at)) for at in zip(x.tolist(), y.tolist(), strict=True)} - {id(None)}
+    wanted = scene.shapes if len(scene.shapes) < 4 else scene.shapes[: len(scene.shapes) // 2]
+    assert len(seen) >= len(wanted)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_scenes_are_shown(seed: int) -> None:
+    scene = random_scene(seed)
+    x, y, z = scene.camera.position
+    away = scene.replace(scene.camera, Camera((x + 1e7, y + 3e7, z), (0.3, 0.9, 0), 1))
+    picture = render(away)
+    if notice := notice_about(away, picture):
+        assert not is_blank(render(shown_by(away, notice)))
+    else:  # a plane is everywhere
+        assert not is_blank(picture) or scene.planes
+
+
+def test_pictures_that_show_something_have_no_notice() -> None:
+    black = parse("A 0 0,0,0\nC 0,0,-5 0,0,1 60\nsp 0,0,0 2 255,0,0\n").scene
+    empty = parse("A 0 0,0,0\nC 0,0,-5 0,0,1 60\n").scene
+    for scene in (EVERY, black, empty, load(SCENES / "subject.rt").scene, load(SCENES / "sky.rt").scene):
+        assert notice_about(scene, render(scene)) == ""
+
+
+def test_a_scene_of_many_shapes_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    blank = np.zeros((9, 16, 3), np.uint8)
+    monkeypatch.setattr(module, "MOST_PRIMITIVES", 2)
+    assert notice_about(SUBJECT, blank) == ""
+
+
+def test_dithering_of_an_even_picture_is_still_blank() -> None:
+    picture = np.full((70, 70, 3), 100, np.uint8)
+    picture[::3, 1::2] += 1
+    assert is_blank(picture)
+    picture[65, 3, 1] = 103
+    assert not is_blank(picture)
+
+
+def test_the_shapes_that_rays_meet_are_those_of_a_click(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "COLUMNS", 6)
+    monkeypatch.setattr(module, "ROWS", 4)
+    arrays = ShapeArrays()
+    arrays.update(EVERY.shapes)
+    clicked = {pick(EVERY, 30, 20, x, y) for x in range(2, 30, 5) for y in range(2, 20, 5)} - {None}
+    assert clicked == {EVERY.shapes[i] for i in visible_shapes(arrays, EVERY.camera, 30, 20)}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
 from tests import oracle
 from tests.kernel.bvh.test_bvh import random_rays, random_shapes
-from tests.kernel.pictures import ALL, AMBIENT, EYE, RED, SHAPES
+from tests.kernel.pictures import AMBIENT, EYE, RED
 from tests.processes import run
 
 FLOOR = Plane((0, -1, 0), (0, 1, 0), RED)
@@ -138,16 +137,6 @@ def test_the_bvh_is_built_anew_for_an_edited_scene_and_kept_for_the_same_one(mon
     assert len(built) == 3
 
 
-def test_several_threads_may_trace_at_once() -> None:
-    scenes = [ALL.replace(ALL.spheres[0], diameter=1 + i / 4) for i in range(8)]
-    many = random_rays(np.random.default_rng(1), list(SHAPES), 2000)
-    expected = [minirt.trace(each, *many) for each in scenes]
-    with ThreadPoolExecutor(8) as pool:
-        found = list(pool.map(lambda each: minirt.trace(each, *many), scenes * 4))
-    for right, hits in zip(expected * 4, found, strict=True):
-        assert all(np.array_equal(one, other, equal_nan=True) for one, other in zip(right, hits, strict=True))
-
-
 def test_hits_have_certificates() -> None:
     hits = minirt.trace(scene(BALL, FLOOR), np.zeros((4, 3)), [[0, 0, 1], [0, -1, 1], [0, 1, 0], [0, -3, 0]])
     assert hits.owner.tolist() == [0, 1, -1, 1]
@@ -172,12 +161,6 @@ def test_certificates_are_computed_on_first_use_alone(monkeypatch: pytest.Monkey
     assert len(calls) == 1
     with pytest.raises(ValueError, match=r"^only hits that"):
         _ = hits._replace(distance=hits.distance).condition
-
-
-def test_no_rays_and_no_shapes_have_certificates() -> None:
-    assert minirt.trace(scene(BALL), np.zeros((0, 3)), np.zeros((0, 3))).condition.shape == (0,)
-    for part in minirt.trace(scene(), [[0, 0, 0]], [[0, 0, 1]]).certificate:
-        assert np.isnan(part).tolist() == [True]
 
 
 def test_hits_of_many_shapes_are_backward_stable() -> None:

@@ -54,12 +54,6 @@ def test_packets_keep_their_samples() -> None:
     assert error(allocated, packets) <= 0.5 * squared_error(C, packets)
 
 
-def test_packets_that_cannot_improve_stay() -> None:
-    full = PACKETS[:, ::-1]
-    assert cost(allocate(C, full, 0.0, np.inf), full) == 0
-    assert cost(allocate(C, PACKETS, 2 * WHOLE, np.inf)) < 0.01 * PACKETS.sum()
-
-
 def test_coefficients_are_those_of_constructed_errors() -> None:
     classes, counts = RANDOM.integers(0, CLASSES, 90_000), RANDOM.choice(COUNTS[:12], 90_000)
     errors = C[classes] * counts**-1.5 * RANDOM.normal(1, 3, 90_000)  # some of the products are negative

@@ -11,19 +11,12 @@ from numpy.typing import NDArray
 from minirt.kernel.frame import REFERENCE_SAMPLES
 from minirt.kernel.pixels import ESTIMATE, PACKET_HEIGHT, SUMS, squared_error
 from minirt.rendering.frame import sample_positions
-from minirt.rendering.outcome import MOST_SAMPLES
 from minirt.rendering.packing.camera import packet_pixels, packet_rays
 from minirt.rendering.sampling.contrast import CLASSES
 from minirt.rendering.sampling.packets import Packets
 from minirt.rendering.sampling.sample_table import COUNTS, SampleTable, random_shifts, table_rays
 
 WIDTH = 4 * PACKET_HEIGHT
-
-
-def test_numbers_of_samples_grow_by_at_most_a_half() -> None:
-    assert COUNTS[:8].tolist() == [1, 2, 3, 4, 6, 8, 12, 16]
-    assert COUNTS[-1] == MOST_SAMPLES
-    assert (COUNTS[2:] / COUNTS[1:-1] <= 1.5).all()
 
 
 def test_drawn_samples_are_those_of_a_uniform_picture() -> None:
@@ -103,14 +96,6 @@ def test_independent_references_have_the_squared_error_as_the_mean_of_their_prod
     assert is_true(*packet_estimates(lambda one, other: other))
 
 
-def test_reusing_the_samples_of_a_reference_is_caught() -> None:
-    assert not is_true(*packet_estimates(lambda one, other: one))
-
-
-def test_references_that_share_half_of_their_samples_are_caught() -> None:
-    assert not is_true(*packet_estimates(lambda one, other: (one + other) / 2))
-
-
 def probed_picture(samples_squared: bool = False, ignored: int = -1) -> float:
     """Estimate by probes the error of a picture in which the packets of class 7 got 4 samples, the others one."""
     random = np.random.default_rng(5)
@@ -135,20 +120,6 @@ def test_the_error_of_a_picture_is_that_of_its_classes() -> None:
     assert probed_picture() == pytest.approx(LEFT, rel=0.2)
 
 
-def test_a_variance_divided_twice_by_the_number_of_samples_is_caught() -> None:
-    assert probed_picture(samples_squared=True) != pytest.approx(LEFT, rel=0.2)
-
-
 def test_an_ignored_class_is_expected_from_the_others() -> None:
     """A class without probes still counts, by its contrast."""
     assert probed_picture(ignored=7) > 0.5 * SIZES[2] * C[2] * 4**-1.5
-
-
-def test_packets_that_are_drawn_again_are_no_probes_any_more() -> None:
-    packets = Packets(PACKET_HEIGHT, 400, 4)
-    packets.probed(np.array([3, 5, 8]), np.array([1.0, 2.0, 3.0]))
-    packets.drawn(np.array([5, 9]), np.array([1, 2], np.uint8))
-    assert packets.probes.tolist() == [3, 8]
-    assert packets.errors.tolist() == [1.0, 3.0]
-    assert packets.is_probe(np.array([3, 5, 8, 9])).tolist() == [True, False, True, False]
-    assert packets.samples == (pytest.approx((98 + 2 + 3) / 100), 3)

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from minirt.fields import Triple
-from minirt.rendering.queries.beneath import clearance
-from minirt.rendering.queries.pick import pick, surface_point
+from minirt.rendering.queries.pick import clearance, pick, surface_point
 from minirt.scene import Scene, load
 from minirt.shapes import Shape
 from minirt.shapes.box import Box

@@ -1,5 +1,6 @@
 """Visibility culling: bins the shapes that the eye sees into screen tiles, and the shapes that a light sees into the
-cells of its light buffer (Haines and Greenberg, The light buffer: a shadow-testing accelerator, 1986)."""
+cells of its light buffer (Haines and Greenberg, The light buffer: a shadow-testing accelerator, 1986).
+"""
 
 from __future__ import annotations
 
@@ -12,10 +13,8 @@ from minirt.helpers import system
 from minirt.kernel.binning import MARGIN, Grid
 from minirt.kernel.frame import tile_count
 from minirt.kernel.pixels import TILE
-from minirt.rendering.culling.light_frustum import SPREAD, Cluster, frustum_grid
-from minirt.rendering.culling.list_sizes import ADVICE, COARSEST, MEMBER, QUICKLY_BUILT, WHAT, check_lists
-from minirt.rendering.culling.planes import CellRuns, cell_runs, is_crowd, opaque_planes, signed_heights
 from minirt.rendering.packing.camera import Crop
+from minirt.rendering.packing.planes import cell_runs, signed_heights
 from minirt.rendering.packing.shape_arrays import ShapeArrays
 from minirt.shapes import Shape
 from minirt.shapes.mesh import Mesh
@@ -23,6 +22,7 @@ from minirt.shapes.mesh import Mesh
 # Vectors across, down and forward of the six faces of a cube, in the order of `cell_of_cube` in
 # `minirt.kernel.shadow_rays`.
 FACES = np.array([np.roll(np.diag([1.0, 1.0, side]), axis + 1, axis=1) for axis in range(3) for side in (1, -1)])
+SPREAD = 0.5  # of the mean angle of a cell: the list of a cell holds for all directions so close to one in it
 # Cells by which the intervals of a cube grow so that a list holds for directions up to `SPREAD` away: at the corner of
 # a face, where slopes change most with the angle, an angle e changes them by less than 3 e.
 CUBE_MARGIN = 3 * SPREAD * np.pi / 4
@@ -32,12 +32,19 @@ SMALL = 8
 FEW, SIDE_BY_SIDE = 200, 8
 CELLS_BY_SHAPES = ((SMALL, 1), (30, 16), (200, 32), (20_000, 64), (50_000, 128), (500_000, 256), (np.inf, 512))
 
+# Estimates of the memory that lists of shapes take, before they are built.
+MEMBER, START = 4, 8  # bytes of a member and of a start of a list
+COARSEST = 16  # cells along an edge of a light buffer that memory limits
+QUICKLY_BUILT = 2**29  # bytes of lists that are built within seconds
+WHAT = "the lists of shapes in view need"
+ADVICE = "fewer or smaller shapes, or fewer lights, need less"
+RUN = 120  # bytes of a plane in a row of cells, while its runs are computed
+SAMPLE = 128  # shapes whose members are counted for an estimate
+
 # Positive floating-point numbers sort like their bits, the exponent first. Depths sort by their upper 25 bits, from
 # 2^-128 on: a relative precision of 2^-13, which is more than `minirt.kernel.trace.COINCIDENT`.
 DROPPED_BITS = 39
 LEAST_DEPTH = (1023 - 128) << (52 - DROPPED_BITS)
-
-NO_LIGHT_BUFFER = np.zeros(11)
 
 
 class BinnedShapes(NamedTuple):
@@ -46,7 +53,7 @@ class BinnedShapes(NamedTuple):
     starts: np.ndarray  # (kinds, cells + 1)
     members: np.ndarray
     cones: np.ndarray  # (n, 5) as in `minirt.kernel.scene_arrays`
-    light_buffer: np.ndarray = NO_LIGHT_BUFFER  # (11,)
+    tolerance: float = 0.0  # of the lists of a light
 
 
 def light_buffer_cells(shape_arrays: ShapeArrays) -> int:
@@ -61,12 +68,10 @@ def effective_count(kind: type[Shape], primitives: int) -> int:
     return min(primitives, FEW + primitives // SIDE_BY_SIDE) if kind is Mesh else primitives
 
 
-def light_buffer(cells: int, frustum: Grid | None) -> np.ndarray:
-    """The numbers (11,) by which the kernel finds the cell of a direction: see `minirt.kernel.shadow_rays`."""
-    if frustum is None:
-        spread = 2 * np.sin(SPREAD * np.pi / 4 / cells)
-        return np.array([*[0.0] * 10, spread * spread])
-    return np.array([*frustum.frames.ravel(), frustum.scale_x, (SPREAD / frustum.scale_x) ** 2])
+def tolerance(cells: int) -> float:
+    """The square of the distance up to which lists hold around a cell: see `minirt.kernel.shadow_rays`."""
+    spread = 2 * np.sin(SPREAD * np.pi / 4 / cells)
+    return float(spread * spread)
 
 
 def screen_grid(camera: np.ndarray, width: int, height: int, crop: Crop) -> Grid:
@@ -77,14 +82,14 @@ def screen_grid(camera: np.ndarray, width: int, height: int, crop: Crop) -> Grid
     frames = np.stack([right / half_width, -up / half_height, forward])[None]
     across, down = tile_count(width), tile_count(height)
     first = crop.left // TILE, crop.top // TILE
-    return Grid(frames, across, down, x / half_width, x, y / half_height, y, 1 / TILE, across * down, -1, *first)
+    return Grid(frames, across, down, x / half_width, x, y / half_height, y, 1 / TILE, across * down, *first)
 
 
 @cache
 def cube_grid(cells: int) -> Grid:
     """The six faces of the cube around a light as a grid, so many cells along an edge."""
     half = cells / 2
-    return Grid(FACES, cells, cells, half, half, half, half, CUBE_MARGIN, 6 * cells * cells, -1)
+    return Grid(FACES, cells, cells, half, half, half, half, CUBE_MARGIN, 6 * cells * cells)
 
 
 def seen_by_eye(
@@ -111,13 +116,12 @@ def seen_by_eye(
         balls = balls.copy()
         balls[:, 3] += radius * np.maximum(np.abs(1.0 - per_focus * ends).max(axis=0) - 1.0, 0.0)
     grid = screen_grid(camera, width, height, crop)
-    return bin_shapes(kernel, shape_arrays, balls, camera[:3], grid, none, radius, radius * per_focus, hiding=~none)
+    return bin_shapes(kernel, shape_arrays, balls, camera[:3], grid, none, radius, radius * per_focus)
 
 
 def seen_by_light(
     kernel: Any,
     shape_arrays: ShapeArrays,
-    cluster: Cluster | None,
     light: np.ndarray,
     cells: int,
     skipped: np.ndarray,
@@ -128,15 +132,14 @@ def seen_by_light(
 
     `TooLargeError` where there is no room for so many copies of its lists.
     """
-    frustum = frustum_grid(cluster, light, cells)
-    grid = cube_grid(cells) if frustum is None else frustum
-    largest = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED
-    hiding = opaque_planes(shape_arrays) if is_crowd(len(skipped), grid) else None
-    lists = copies, largest, hiding
-    binned = bin_shapes(kernel, shape_arrays, shape_arrays.balls, np.array(light), grid, skipped, radius, 0.0, *lists)
+    largest, origin = QUICKLY_BUILT if cells > COARSEST else system.UNLIMITED, np.array(light)
+    lists = copies, largest
+    binned = bin_shapes(
+        kernel, shape_arrays, shape_arrays.balls, origin, cube_grid(cells), skipped, radius, 0.0, *lists
+    )
     if cells == 1:
         return in_one_cell(shape_arrays, binned.cones, skipped)
-    return binned._replace(light_buffer=light_buffer(cells, frustum))
+    return binned._replace(tolerance=tolerance(cells))
 
 
 def seen_by_parallel_light(shape_arrays: ShapeArrays, cells: int, skipped: np.ndarray) -> BinnedShapes:
@@ -160,39 +163,28 @@ def bin_shapes(
     lean: float = 0.0,
     copies: int = 1,
     largest: int = system.UNLIMITED,
-    hiding: np.ndarray | None = None,
 ) -> BinnedShapes:
     """Bin the shapes, which `balls` enclose, into the cells of a grid of directions from a point.
 
     The lists hold for rays from all points within `radius`, in the directions of a cell. They hold for planes in
-    directions, not normalised, up to `lean` away, too. Nobody asks for planes behind one that is `hiding` (p,).
+    directions, not normalised, up to `lean` away, too.
     """
     height = signed_heights(shape_arrays.planes, origin, radius)
     shown = ~skipped
-    runs: CellRuns | None = None
-    if hiding is not None and is_crowd(int(shown.sum()), grid):
-        from minirt.rendering.culling.foremost_planes import seen_planes
-
-        shown, runs = seen_planes(shape_arrays, shown, height, origin, grid, hiding, radius)
     planes, heights = shape_arrays.planes[shown], height[shown]
     towards = -np.sign(heights[:, None]) * planes[:, :3]
-    check_lists(kernel, shape_arrays, balls, origin, grid, copies, largest, len(planes), runs)
+    check_lists(kernel, shape_arrays, balls, origin, grid, copies, largest, len(planes))
     kinds, stride = len(shape_arrays.rows), grid.cells + 1
     cones, counts = np.zeros((len(shape_arrays.slots), 5)), np.zeros(kinds * stride, np.int64)
     plane_rectangles = np.zeros((0, 4), np.int64)
     if len(planes):
-        plane, cell, columns = cell_runs(grid, towards, lean) if runs is None else runs
+        plane, cell, columns = cell_runs(grid, towards, lean)
         shape = shape_arrays.plane_indices[shown][plane]
         cell += shape_arrays.slots[shape, 0] * stride
-        if grid.elsewhere >= 0:
-            indices = shape_arrays.plane_indices[shown]
-            shape = np.concatenate([shape, indices])
-            cell = np.concatenate([cell, shape_arrays.slots[indices, 0] * stride + grid.elsewhere])
-            columns = np.concatenate([columns, np.ones(shown.sum(), np.int64)])
         plane_rectangles = np.stack([shape, cell, columns, np.ones_like(cell)], axis=1)
         begins, ends = (np.bincount(each, minlength=len(counts)) for each in (cell, cell + columns))
         counts = np.cumsum(begins - ends)
-    rectangles = np.empty((len(plane_rectangles) + len(cones) * max(len(grid.frames), 2), 4), np.int32)
+    rectangles = np.empty((len(plane_rectangles) + len(cones) * len(grid.frames), 4), np.int32)
     rectangles[: len(plane_rectangles)] = plane_rectangles
     slack = MARGIN * float(np.abs(origin).max()) + radius
     output = rectangles, len(plane_rectangles), cones, counts
@@ -233,3 +225,41 @@ def in_one_cell(shape_arrays: ShapeArrays, cones: np.ndarray, skipped: np.ndarra
     order = np.lexsort((cones[shapes, 4], kinds))
     starts = np.searchsorted(kinds[order], np.arange(len(shape_arrays.rows))[:, None] + [0, 1])
     return BinnedShapes(starts, shapes[order].astype(np.int32), cones)
+
+
+def check_lists(
+    kernel: Any,
+    shape_arrays: ShapeArrays,
+    balls: np.ndarray,
+    origin: np.ndarray,
+    grid: Grid,
+    copies: int,
+    largest: int,
+    planes: int,
+) -> None:
+    """Check that there is memory for the lists of all cells, and copies of them, and that they have at most `largest`
+    bytes; `TooLargeError` otherwise. Each plane is taken to be in half of the cells."""
+    shapes, kinds = len(shape_arrays.slots), len(shape_arrays.rows)
+    fixed = copies * kinds * (grid.cells + 1) * START + planes * len(grid.frames) * grid.down * RUN
+    if system.is_small_need(fixed + copies * shapes * grid.cells * MEMBER):
+        return
+    members = planes * grid.cells / 2
+    if len(grid.frames) > 1:  # tiles, which are binned for every picture, are not estimated
+        members += estimated_members(kernel, shape_arrays, balls, origin, grid)
+    system.check_memory(int(fixed + copies * members * MEMBER), WHAT, ADVICE, largest)
+
+
+def estimated_members(
+    kernel: Any, shape_arrays: ShapeArrays, balls: np.ndarray, origin: np.ndarray, grid: Grid
+) -> float:
+    """Estimate the members of the lists of all cells, infinite planes left out, from those of some shapes."""
+    shapes = len(shape_arrays.slots)
+    chosen = np.unique(np.linspace(0, shapes - 1, min(SAMPLE, shapes)).astype(np.int64))
+    begins, ends = shape_arrays.first_ball[chosen], shape_arrays.first_ball[chosen + 1]
+    first = np.concatenate([[0], np.cumsum(ends - begins)]).astype(shape_arrays.first_ball.dtype)
+    kept = np.concatenate([balls[begin:end] for begin, end in zip(begins, ends, strict=True)])
+    counts = np.zeros(len(shape_arrays.rows) * (grid.cells + 1), np.int64)
+    rectangles = np.empty((len(chosen) * len(grid.frames), 4), np.int32)
+    cones = np.zeros((len(chosen), 5))
+    kernel.project_all(origin, grid, kept, 0.0, first, shape_arrays.slots[chosen], rectangles, 0, cones, counts)
+    return int(counts.sum()) / len(chosen) * shapes

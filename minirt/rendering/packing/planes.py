@@ -9,9 +9,7 @@ import numpy as np
 from minirt.kernel.binning import MARGIN, Grid
 from minirt.rendering.packing.lights import light_position, radius_of, tangent_of
 from minirt.rendering.packing.shape_arrays import ShapeArrays
-from minirt.scene import Lamp, ParallelLight
-
-CROWD = 2**24  # planes times cells, from which on hidden planes are culled
+from minirt.scene import Lamp
 
 
 class CellRuns(NamedTuple):
@@ -20,11 +18,6 @@ class CellRuns(NamedTuple):
     planes: np.ndarray  # (r,) index of the plane
     first: np.ndarray  # (r,) the first cell
     lengths: np.ndarray  # (r,) number of cells
-
-
-def is_crowd(planes: int, grid: Grid) -> bool:
-    """Whether so many planes are worth culling."""
-    return planes * grid.cells > CROWD
 
 
 def signed_heights(planes: np.ndarray, point: np.ndarray, radius: float = 0.0) -> np.ndarray:
@@ -70,8 +63,8 @@ def never_hit(
 def never_occludes(shape_arrays: ShapeArrays, eye: np.ndarray, light: Lamp, radius: float = 0.0) -> np.ndarray:
     """Whether each plane hides nothing that an eye in a lens of some radius sees from a light; False for transparent
     planes."""
-    if isinstance(light, ParallelLight):
-        harmless = never_hit(shape_arrays.planes, eye, -np.array(light.direction), radius, tangent_of(light))
+    if not light.place:
+        harmless = never_hit(shape_arrays.planes, eye, -np.array(light.cone()[:3]), radius, tangent_of(light))
     else:
         harmless = same_side(shape_arrays.planes, eye, light_position(light), radius, radius_of(light))
     skipped: np.ndarray = harmless & opaque_planes(shape_arrays)

@@ -1,4 +1,4 @@
-"""Materials that change how light leaves a surface: highlights, mirrors, glass and glow.
+"""Mirrors, glass and its tint, and Fresnel's equations for both.
 
 Each is a class whose text is its manual page, or a field of one number where it has only one value.
 """
@@ -6,37 +6,15 @@ Each is a class whose text is its manual page, or a field of one number where it
 from __future__ import annotations
 
 from functools import partial
+from math import log2, sqrt
+from typing import Any
 
-from minirt.fields import FARTHEST, Colour, Factor, Flag, Length, Real, Triple, declare
+from minirt.fields import FARTHEST, Colour, Length, Real, Triple, declare
 from minirt.materials.compound import Material
 from minirt.records import record
 
-GREATEST = 1e6  # exponent: its highlight is a tenth of a degree wide
-
-
-@record()
-class Specular(Material):
-    """Specular highlight: `specular:share,exponent[,blinn]`, in short `spc:`.
-
-    Every light that reaches a point adds `share` of its intensity times cos(a)^`exponent`, whatever the colour of the
-    surface. `a` is the angle between the mirrored direction of the light and the direction to the eye (Phong 1975,
-    Illumination for Computer Generated Pictures), or with `blinn` the angle between the normal and the direction
-    half-way between light and eye (Blinn 1977, Models of Light Reflection for Computer Synthesized Pictures). The
-    greater the exponent, the smaller the highlight; with `blinn` a highlight of the same size takes about four times
-    the exponent.
-
-        sp 0,0,20 8 200,30,30 specular:0.6,50
-    """
-
-    title, feature = "specular", "specular"
-    share: float = declare(Real, "share of the light", low=0.0, high=1.0, step=0.05, initial=0.5)
-    exponent: float = declare(Factor, "how smooth", high=GREATEST, initial=30.0)
-    blinn: bool = declare(Flag, "from the halfway direction", default=False)
-
-    def has_effect(self) -> bool:
-        return self.share > 0.0
-
-
+BLACK = 1e30  # absorption, in halvings for each scene unit, of what lets nothing of a colour through
+HIGHEST_ROOT = 1.0 - 1e-9  # of the reflectance of a varnish; that of a perfect mirror would have an infinite index
 Fade = partial(Real, low=0.0, high=FARTHEST, step=0.5, unit="scene unit, 0 for never", placeholder="fade")
 
 
@@ -62,6 +40,9 @@ class Mirror(Material):
 
     def further_features(self) -> tuple[str, ...]:
         return ("fades",) if self.fade else ()
+
+    def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
+        return secondary_rays(shape)
 
 
 @record()
@@ -93,6 +74,38 @@ class Glass(Material):
     def further_features(self) -> tuple[str, ...]:
         return ("transparent", "fades") if self.fade else ("transparent",)
 
+    def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
+        return secondary_rays(shape)
+
+
+def mirror_of(shape: Any) -> Mirror:
+    """Return the mirror of a shape; one of share 0 where it has none."""
+    return shape.mirror if isinstance(shape.mirror, Mirror) else Mirror(0.0)
+
+
+def secondary_rays(shape: Any) -> dict[str, Any]:
+    """Return the rows of a shape with `mirror:` or `glass:`, by feature.
+
+    They have the shares of mirrored and refracted light, scaled down to 1 where their sum exceeds it, and the index of
+    refraction; and one over the distances at which either light is gone, 0 for never.
+    """
+    mirror, glass = mirror_of(shape), shape.glass or Glass(1.0, 0.0)
+    total = max(1.0, mirror.share + glass.share)
+    row = mirror.share / total, glass.share / total, refractive_index(shape)
+    fades = [1.0 / fade if fade else 0.0 for fade in (mirror.fade, glass.fade)]
+    through = {"transparent": (*row, shape.fresnel or 0.0)} if shape.glass else {}
+    return {"reflective": row, "fades": fades, **through}
+
+
+def refractive_index(shape: Any) -> float:
+    """Return the refractive index of a shape; that of a varnish where it is a mirror with Fresnel reflection."""
+    if shape.glass and shape.glass.share:
+        return float(shape.glass.ior)
+    if not shape.fresnel:
+        return 1.0
+    root = min(sqrt(mirror_of(shape).share), HIGHEST_ROOT)
+    return (1.0 + root) / (1.0 - root)
+
 
 @record()
 class Tint(Material):
@@ -117,6 +130,17 @@ class Tint(Material):
     def has_effect(self) -> bool:
         return self.colour != (255, 255, 255)
 
+    def rows(self, shape: Any, reader: Any) -> dict[str, Any]:
+        if not (shape.glass and shape.glass.share):
+            return {}
+        if shape.solid:
+            return {"media": (*self.absorption(reader), 1.0, 1.0, 1.0)}
+        return {"media": (0.0, 0.0, 0.0, *reader.shares(self.colour))}
+
+    def absorption(self, reader: Any) -> list[float]:
+        """The absorption of red, green and blue inside, in halvings for each scene unit."""
+        return [-log2(share) / self.distance if share else BLACK for share in reader.shares(self.colour)]
+
 
 # Fresnel reflection of glass and mirrors: `fresnel:share`; `fresnel` alone is `fresnel:1`.
 #
@@ -130,15 +154,14 @@ class Tint(Material):
 # does: `mirror:0.04` is a polished floor. A shape with neither `glass:` nor `mirror:` shows no difference.
 #
 #     sp 0,0,20 8 255,255,255 glass:1.5 fresnel
-Fresnel = partial(Real, unit="ratio", low=0.0, high=1.0, step=0.1, placeholder="share", initial=1.0, feature="fresnel")
-
-
-# Glow: `glow:share`.
-#
-# Light of the shape's own, the emitted term of the rendering equation: `share` times the colour of the surface, with
-# its texture and checkerboard, is added to the light of every point, whatever shines on it or lies between it and the
-# lamps. It is seen by the eye and in mirrors and glass. It lights nothing else: put a lamp beside or inside what
-# should.
-#
-#     sp 0,0,20 8 255,200,120 glow:0.8
-Glow = partial(Real, unit="ratio", low=0.0, high=1.0, step=0.05, placeholder="share", initial=0.5, feature="glow")
+Fresnel = partial(
+    Real,
+    unit="ratio",
+    low=0.0,
+    high=1.0,
+    step=0.1,
+    placeholder="share",
+    initial=1.0,
+    feature="fresnel",
+    packed=lambda share, _: share,
+)
