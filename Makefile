@@ -79,12 +79,13 @@ lowest: $(NAME)  ## run a short part of the tests with the lowest versions of th
 	    -m "not window" tests/materials tests/formats tests/kernel/compiler \
 	    tests/kernel/test_features.py tests/mlx tests/test_faulty_writes.py tests/test_image.py
 
-check: $(DEV)  ## lint and check types
+check: $(DEV)  ## lint, check types, and compare lines with the budget
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
 	$(VENV)/bin/mypy
 	$(VENV)/bin/python -m tests.typed.snippets out/snippets
 	$(VENV)/bin/mypy --strict tests/typed/every_name.py out/snippets/*.py
+	$(VENV)/bin/python -m tests.budget
 
 types: $(DEV)  ## check the types of the public names with pyright, too, which needs Node.js
 	$(PIP) install --quiet pyright

@@ -64,10 +64,6 @@ class Page:
         self.call("Page.navigate", url=file.as_uri())
         self.receive(lambda message: message.get("method") == "Page.loadEventFired")
 
-    def run_scripts(self, allowed: bool) -> None:
-        """Let pages that are opened from now on run scripts, or not."""
-        self.call("Emulation.setScriptExecutionDisabled", value=not allowed)
-
     def value(self, script: str) -> Any:
         """Return the value of a JavaScript expression."""
         found = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)

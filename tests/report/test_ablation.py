@@ -14,12 +14,12 @@ from minirt.kernel.machine_code.library import LIBRARY
 from minirt.materials import Specular
 from minirt.rendering import Renderer
 from minirt.rendering.needed_kernels import packing_calls
-from minirt.rendering.packing.features import WORDS, features
+from minirt.rendering.packing.features import FEATURES, features
 from minirt.report import ablation
 from minirt.report.ablation import Ablation, Part
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Budget
 from minirt.report.variants import Variant, with_more, without_lists, without_unseen
-from minirt.scene import Background, FurtherLight, ParallelLight, Scene
+from minirt.scene import FurtherLight, ParallelLight, Scene
 from minirt.shapes import ALL_KINDS
 from minirt.shapes.plane import Plane
 from minirt.shapes.torus import Torus
@@ -122,11 +122,11 @@ PARALLEL = ParallelLight((0, -1, 0), 0.5, (255, 255, 255))
 def test_each_feature_and_each_kind_is_added_once(scene: Scene, tmp_path: Path) -> None:
     variants, used = list(with_more(scene, tmp_path)), features(scene)
     kinds = {type(shape) for shape in scene.shapes}
-    names = [words for key, words in WORDS.items() if key not in used]
+    names = [words for key, words in FEATURES.items() if key not in used]
     names += [kind.element.plural for kind in ALL_KINDS if kind.element not in kinds]
     assert [variant.name for variant in variants] == names
     parts = {"tinted glass", "Fresnel's equations"}  # which show no effect without glass
-    keys = {words: key for key, words in WORDS.items()} | {kind.element.plural: kind.element for kind in ALL_KINDS}
+    keys = {words: key for key, words in FEATURES.items()} | {kind.element.plural: kind.element for kind in ALL_KINDS}
     for variant in variants:
         extra = features(variant.scene) - used
         assert keys[variant.name] in extra
@@ -160,22 +160,6 @@ def test_the_picture_is_the_same(tmp_path: Path) -> None:
         if variant.name in chosen:
             _, light = interpreted(variant.scene, *size)
             assert np.array_equal(light, right), variant.name
-
-
-def test_a_background_replaces_that_of_the_scene(tmp_path: Path) -> None:
-    scene = Scene((*ALL.elements, Background((10, 20, 30))))
-    (picture,) = (each for each in with_more(scene, tmp_path) if each.name == WORDS["environment"])
-    (background,) = picture.scene.of(Background)
-    assert isinstance(background.paint, str)
-
-
-def test_lists_of_a_scene() -> None:
-    def names(scene: Scene) -> list[str]:
-        return [variant.name.split()[0] for variant in without_lists(scene)]
-
-    assert names(ALL) == ["tiles", "light"]
-    assert names(Scene((AMBIENT, EYE, *SHAPES))) == ["tiles"]
-    assert names(ALL.replace(ALL.shapes[0], mirror=0.5)) == ["tiles", "light", "boxes"]
 
 
 # What is left out as unseen does nothing for the picture.

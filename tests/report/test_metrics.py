@@ -112,15 +112,6 @@ def test_the_error_of_the_reference_widens_the_interval_downwards() -> None:
     assert of_rmse(picture, np.zeros_like(picture), 1.0).low == 0.0
 
 
-def test_blocks_of_a_picture_whose_size_is_no_multiple() -> None:
-    squares = np.random.default_rng(6).random((37, 50))
-    sums, pixels = metrics.block_sums(squares)
-    assert sums.sum() == pytest.approx(squares.sum())
-    assert pixels.sum() == squares.size
-    assert sums[0] == pytest.approx(squares[:16, :16].sum())
-    assert (sums[-1], pixels[-1]) == (pytest.approx(squares[32:, 48:].sum()), 10)
-
-
 # FLIP, against figures of its authors' own program (flip-evaluator 1.7, LDR, 67 pixels per degree).
 
 

@@ -75,11 +75,6 @@ def test_the_error_is_that_of_an_independent_measurement(samples: int) -> None:
     assert rows()["uniform", samples].rmse == pytest.approx(error(light(samples), light(1024)), rel=0.1)
 
 
-def test_changed_pixels_are_those_of_an_independent_measurement() -> None:
-    few, many = (minirt.render(ALL, WIDTH, HEIGHT, samples=samples).array for samples in (1, 1024))
-    assert rows()["uniform", 1].changed == pytest.approx((few != many).any(axis=-1).sum(), rel=0.1)
-
-
 def test_the_error_of_the_reference_is_what_it_says() -> None:
     finer = light(16384)
     assert right().error == pytest.approx(error(right().picture, finer), rel=0.5)
@@ -142,18 +137,6 @@ def test_bounces_are_a_knob_of_scenes_that_have_them() -> None:
     assert rmse["no bounces"] > 2 * rmse["1 bounce"] > 4 * rmse["3 bounces"] > 4 * rmse["uniform"]
 
 
-def test_the_picture_of_the_adaptive_knob_is_that_of_a_refined_one() -> None:
-    stage = SettingRenderer(ALL, WIDTH, HEIGHT, 1)
-    (knob,) = (knob for knob in KNOBS if knob.name == "adaptive")
-    made, _ = stage.light(Setting(knob, 4))
-    once, everywhere = minirt.render(ALL, WIDTH, HEIGHT, samples=1).linear, minirt.render(ALL, WIDTH, HEIGHT, samples=4)
-    assert once is not None
-    assert everywhere.linear is not None
-    refined = (made != once).any(axis=-1)
-    assert 0.05 < refined.mean() < 0.9
-    assert np.array_equal(made[refined], everywhere.linear[refined])
-
-
 def test_light_that_is_not_finite_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two lights brighter than any file may say: where both shine straight down, their sum is infinite."""
     bright = Scene((AMBIENT, EYE, LAMP, FurtherLight(LAMP.position, 1.0), *SHAPES))
@@ -201,22 +184,6 @@ def test_a_setting_that_takes_too_long_is_left_out() -> None:
 def test_slow_pictures_have_fewer_runs(longest: float, runs: int) -> None:
     (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(longest=longest * ONCE))
     assert (row.runs, row.valid) == (runs, True)
-
-
-def test_tries_end_where_they_take_longer_than_a_picture_may(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pictures, "is_disturbed", lambda run, threads: True)
-    for longest, runs in ((1e3, 3 * 7), (10 * ONCE, 2 * 7), (5 * ONCE, 2 * 3)):
-        (row,) = rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(longest=longest, tries=3))
-        assert (row.runs, row.remark) == (runs, DISTURBED_BY_OTHERS)
-
-
-def test_runs_fill_the_time_that_they_are_given(clock: Clock) -> None:
-    right()
-    for seconds, runs in ((0.0, pictures.RUNS), (9.5 * ONCE, 10)):
-        before = clock.packets
-        rows_for(Setting(KNOBS[0], 1), budget=EASY._replace(seconds=seconds))
-        prepared, first = 1, packets(WIDTH, HEIGHT)
-        assert clock.packets - before == prepared + first + runs * packets(WIDTH, HEIGHT)
 
 
 def test_disturbed_runs_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -269,10 +236,3 @@ def test_the_intervals_hold_the_values() -> None:
     for row in rows().values():
         assert row.rmse_low < row.rmse < row.rmse_high < 1.5 * row.rmse
         assert row.wall_low_ms <= row.wall_ms <= row.wall_high_ms
-
-
-def test_a_scene_without_shapes_is_black() -> None:
-    black = reference(Scene((AMBIENT, EYE)), 8, 4, 16, 0)
-    assert isinstance(black, Reference)
-    assert not black.picture.any()
-    assert black.error == 0

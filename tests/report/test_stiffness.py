@@ -146,8 +146,3 @@ def test_a_cap_on_a_wall_is_found_and_surfaces_that_cross_are_not() -> None:
     way = ray_direction(camera, 40.5, 10.5)  # one of the rays that are tried, onto the line where both planes cross
     across = Plane((9 * way.x, 9 * way.y, 9 * way.z), (0.3, 0.4711, -0.8), RED)
     assert close(wall, Sphere((0, 0, 9), 6, RED), across) == []
-
-
-def test_the_text_has_the_figures() -> None:
-    found = Stiff("sphere 1", "small", {"size": 1e-6, "single": 0.1234})
-    assert str(found) == "sphere 1: small (size 1e-06, single 0.12)"
