@@ -1,6 +1,7 @@
-"""Lines and files of each part against the budget in CONTRIBUTING.md: python -m tests.budget; status 1 where one is above.
+"""Lines and files of each part against the budget in CONTRIBUTING.md: python -m tests.budget
 
-A file counts for the closest folder or pattern, and for the sum. A number is raised in CONTRIBUTING.md, where reviewers see it.
+The status is 1 where one is above. A file counts for the closest folder or pattern, and for the sum. A number is raised
+in CONTRIBUTING.md, where reviewers see it.
 """
 
 from __future__ import annotations
