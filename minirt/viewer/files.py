@@ -103,7 +103,7 @@ class WatchedFile:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.known = signature(path)  # as it was last read or written here
-        self._reported = self.known
+        self._reported = self._seen = self.known
         self._closed = threading.Event()
 
     def accept(self, seen: Signature) -> None:
@@ -129,14 +129,18 @@ class WatchedFile:
         """Stop watching."""
         self._closed.set()
 
+    def check(self) -> bool:
+        """Whether a change is to be reported now: the last two checks found the same, which was not reported."""
+        before, self._seen = self._seen, signature(self.path)
+        if self._seen == before and self._seen != self._reported:
+            self._reported = self._seen
+            return True
+        return False
+
     def _watch(self, notify: Callable[[], object]) -> None:
-        before = self._reported
         while not self._closed.wait(INTERVAL):
-            now = signature(self.path)
-            if now == before and now != self._reported:
-                self._reported = now
+            if self.check():
                 notify()
-            before = now
 
 
 def signature(path: Path) -> Signature:

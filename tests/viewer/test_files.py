@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from minirt.scene import load
-from minirt.viewer import files
-from minirt.viewer.files import Signature, WatchedFile, contents_differ, save_recovery, signature
+from minirt.viewer.files import WatchedFile, contents_differ, save_recovery, signature
 from tests.viewer.fake import TEXT, colour_of, played, scene
-from tests.waiting import HANG_LIMIT, until
+from tests.waiting import until
 
 SELECT_SPHERE = ("press Tab", "press Tab")
 
@@ -106,100 +103,48 @@ def write(path, text: str) -> None:
     new.replace(path)
 
 
-class SteppedWatch:
-    """A watched file whose thread checks it only when the test says so."""
-
-    def __init__(self, path: Path) -> None:
-        self.notified = 0  # how often a change was reported
-        self.file = WatchedFile(path)
-        self._allowed = threading.Semaphore(0)
-        self._checks = 0
-        self._started = 0
-
-    def start(self) -> None:
-        self.file.watch(self._notify)
-
-    def check(self, times: int = 1) -> None:
-        """Allow so many checks of the file; return when the thread begins the next one and has reported any change."""
-        self._checks += times
-        self._allowed.release(times)
-        until(lambda: self._started == self._checks + 1, "a check of the file")
-
-    def signature(self, path: Path) -> Signature:
-        """Replace `minirt.viewer.files.signature`: wait until the test allows a check."""
-        if threading.current_thread().name == "minirt-watch":
-            self._started += 1
-            self._allowed.acquire(timeout=HANG_LIMIT)
-        return signature(path)
-
-    def close(self) -> None:
-        self.file.close()
-        self._allowed.release()
-
-    def _notify(self) -> None:
-        self.notified += 1
+def reports(watched: WatchedFile, checks: int) -> list[int]:
+    """Return the numbers, from 1, of the checks that report a change."""
+    return [number for number in range(1, checks + 1) if watched.check()]
 
 
-@pytest.fixture
-def watch(path, monkeypatch) -> Iterator[SteppedWatch]:
-    monkeypatch.setattr(files, "INTERVAL", 0.001)
-    watch = SteppedWatch(path)
-    monkeypatch.setattr(files, "signature", watch.signature)
-    watch.start()
-    yield watch
-    watch.close()
-
-
-def test_a_change_is_reported_once(path, watch):
-    watch.check(4)
-    assert watch.notified == 0
-    write(path, OTHER)
-    watch.check()
-    assert watch.notified == 0  # it may still be written
-    watch.check()
-    assert watch.notified == 1
-    watch.check(4)
-    assert watch.notified == 1
-    assert watch.file.changed
-
-
-def test_writes_of_the_viewer_itself_are_not_reported(path, watch):
-    path.write_text(OTHER)
-    watch.file.accept(signature(path))
-    watch.check(4)
-    assert watch.notified == 0
-    assert not watch.file.changed
-
-
-def test_a_change_is_reported_when_the_file_is_stable(path, monkeypatch):
-    signatures = [(1, 1, 1), (2, 2, 1), (3, 3, 1), (4, 4, 1), (4, 4, 1), (4, 4, 1), (4, 4, 1)]
-    seen: list[object] = []
-
-    def next_signature(_path) -> object:
-        seen.append(signatures[min(len(seen), len(signatures) - 1)])
-        return seen[-1]
-
-    monkeypatch.setattr(files, "signature", next_signature)
-    monkeypatch.setattr(files, "INTERVAL", 0.001)
+def test_a_change_is_reported_once_as_soon_as_the_file_is_stable(path):
     watched = WatchedFile(path)
-    notified: list[int] = []
-    watched.watch(lambda: notified.append(len(seen)))
-    until(lambda: len(seen) > len(signatures), "enough checks")
-    watched.close()
-    assert notified == [5]
+    assert reports(watched, 4) == []
+    for text in (OTHER, OTHER + OTHER):
+        write(path, text)
+        assert reports(watched, 1) == []  # it may still be written
+    assert reports(watched, 4) == [1]
+    assert watched.changed
 
 
-def test_a_deleted_file_is_reported_once_and_again_when_it_is_back(path, watch):
-    assert not watch.file.missing
+def test_writes_of_the_viewer_itself_are_not_reported(path):
+    watched = WatchedFile(path)
+    path.write_text(OTHER)
+    watched.accept(signature(path))
+    assert reports(watched, 4) == []
+    assert not watched.changed
+
+
+def test_a_deleted_file_is_reported_once_and_again_when_it_is_back(path):
+    watched = WatchedFile(path)
+    assert not watched.missing
     path.unlink()
-    watch.check(4)
-    assert watch.notified == 1
-    assert watch.file.missing
-    assert not watch.file.changed
+    assert reports(watched, 4) == [2]
+    assert watched.missing
+    assert not watched.changed
     path.write_text(TEXT)
-    watch.check(2)
-    assert watch.notified == 2
-    assert not watch.file.missing
+    assert reports(watched, 2) == [2]
+    assert not watched.missing
+
+
+def test_a_thread_checks_the_file_until_it_is_closed(path):
+    watched, notified = WatchedFile(path), threading.Event()
+    watched.watch(notified.set)
+    write(path, OTHER)
+    until(notified.is_set, "the report")
+    watched.close()
+    until(lambda: all(each.name != "minirt-watch" for each in threading.enumerate()), "the end of the thread")
 
 
 def test_a_file_that_never_was_there_is_not_missing(tmp_path):

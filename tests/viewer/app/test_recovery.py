@@ -110,24 +110,6 @@ def test_a_clean_end_with_unsaved_changes_leaves_a_recovery_file_that_is_offered
     end_recovery(harness.session)
 
 
-def test_two_windows_on_one_file_do_not_offer_each_other_their_changes(path):
-    first = opened(path)
-    edit(first)
-    first.session.recovery.flush()
-    second = opened(path)
-    assert second.session.screen.banner == ""
-    edit(second)
-    second.session.recovery.flush()
-    assert len(kept()) == 2
-    for each in (first, second):
-        end_recovery(each.session)
-    assert sorted(each.name for each in path.parent.glob("*.rt")) == [
-        "scene.recovered-1.rt",
-        "scene.recovered.rt",
-        "scene.rt",
-    ]
-
-
 def test_changes_stay_kept_where_no_recovery_file_can_be_written(path, monkeypatch):
     harness = opened(path)
     edit(harness)

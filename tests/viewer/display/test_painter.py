@@ -78,11 +78,6 @@ def test_a_kernel_that_was_compiled_meanwhile_renews_the_notes(harness):
     assert harness.notifications.acquire(timeout=HANG_LIMIT)
 
 
-def test_a_coarser_picture_covers_the_window(harness):
-    harness.painter.request(Job(JOB.scene, 65, 48, divisor=4))
-    assert harness.outcomes(1)[0].pixels.shape == (12, 17, 4)
-
-
 def test_during_an_urgent_picture_only_the_latest_request_is_kept(harness):
     harness.start(replace(JOB, urgent=True))
     for width in (10, 20, 64):
