@@ -14,7 +14,7 @@ from minirt.kernel.machine_code.library import LIBRARY
 from minirt.materials import Specular
 from minirt.rendering import Renderer
 from minirt.rendering.needed_kernels import packing_calls
-from minirt.rendering.packing.features import FEATURES, features
+from minirt.rendering.packing.features import WORDS, features
 from minirt.report import ablation
 from minirt.report.ablation import Ablation, Part
 from minirt.report.pictures import DISTURBED_BY_OTHERS, Budget
@@ -122,11 +122,11 @@ PARALLEL = ParallelLight((0, -1, 0), 0.5, (255, 255, 255))
 def test_each_feature_and_each_kind_is_added_once(scene: Scene, tmp_path: Path) -> None:
     variants, used = list(with_more(scene, tmp_path)), features(scene)
     kinds = {type(shape) for shape in scene.shapes}
-    names = [words for key, words in FEATURES.items() if key not in used]
+    names = [words for key, words in WORDS.items() if key not in used]
     names += [kind.element.plural for kind in ALL_KINDS if kind.element not in kinds]
     assert [variant.name for variant in variants] == names
     parts = {"tinted glass", "Fresnel's equations"}  # which show no effect without glass
-    keys = {words: key for key, words in FEATURES.items()} | {kind.element.plural: kind.element for kind in ALL_KINDS}
+    keys = {words: key for key, words in WORDS.items()} | {kind.element.plural: kind.element for kind in ALL_KINDS}
     for variant in variants:
         extra = features(variant.scene) - used
         assert keys[variant.name] in extra
