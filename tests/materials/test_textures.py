@@ -44,19 +44,6 @@ def test_the_globe_is_the_one_that_its_script_draws(tmp_path: Path, monkeypatch:
         assert np.abs(np.roll(small, 16, axis=1) - large).mean() > 16, name
 
 
-def test_the_sky_of_the_globe_has_points_for_stars() -> None:
-    # A star is brighter than all that is three pixels away.
-    light = np.asarray(Image.open(FOLDER / "space.png").convert("L"), int)[1000:2000]
-    rows, columns = np.nonzero(light[3:-3, 3:-3] > 200)
-    assert len(rows) > 50
-    around = np.max([light[rows + 3 + i, columns + 3 + j] for i, j in ((0, 3), (3, 0), (0, -3), (-3, 0))], axis=0)
-    assert np.median(around) < 30
-
-
-def test_textures_are_small() -> None:
-    assert sum(path.stat().st_size for path in FOLDER.iterdir()) < 2_100_000
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_textures_have_no_seam(name: str) -> None:
     # Across the border neighbours differ no more than elsewhere; tiles fit to themselves from top to bottom, too.
@@ -65,12 +52,6 @@ def test_textures_have_no_seam(name: str) -> None:
         steps = np.abs(np.diff(pixels, axis=axis)).mean(axis=(1 - axis, 2))
         seam = np.abs(pixels.take(0, axis) - pixels.take(-1, axis)).mean()
         assert seam <= 1.5 * steps.max(), (name, axis)
-
-
-@pytest.mark.parametrize("name", ["planet.png", "stars.png", "evening.png"])
-def test_maps_of_a_globe_are_one_colour_at_its_poles(name: str) -> None:
-    pixels = picture(FOLDER / name).astype(float)
-    assert pixels[[0, -1]].std(axis=1).max() < 12, name
 
 
 def test_the_normals_of_bricks_are_those_of_their_heights() -> None:

@@ -15,8 +15,8 @@ from minirt.scene import Background, FurtherLight, Light, ParallelLight, Scene, 
 from minirt.shapes import KINDS, Kind
 from minirt.shapes.plane import Plane
 from minirt.shapes.sphere import Sphere
-from tests.scene.bad_attributes import BACKGROUNDS, LIGHTS, SHAPES, Case
-from tests.scene.examples import AMBIENT, CAMERA, CYLINDER, LIGHT, PLANE, SPHERE, notices, problems, read, scene_with
+from tests.scene.bad_attributes import BACKGROUNDS, LIGHTS, SHAPES
+from tests.scene.examples import CYLINDER, LIGHT, PLANE, SPHERE, notices, problems, read, scene_with
 from tests.shapes.examples import example
 
 ABSENT = dict.fromkeys(
@@ -231,10 +231,3 @@ def test_absent_attributes_take_no_memory_in_a_shape() -> None:
     shapes = read(f"{SPHERE} mirror:0.5", SPHERE, f"{SPHERE} # a comma ,", " \tsp 0,0,20 1e1 1,2,3").spheres
     assert [set(vars(shape)) & set(ABSENT) for shape in shapes] == [{"mirror"}, set(), set(), set()]
     assert Scene([*read().elements, *shapes]).spheres == shapes
-
-
-def test_no_case_is_listed_twice() -> None:
-    cases: list[Case] = SHAPES + LIGHTS + BACKGROUNDS
-    assert len({line for line, _, _ in cases}) == len(cases)
-    assert AMBIENT.startswith("A ")
-    assert CAMERA.startswith("C ")

@@ -11,44 +11,8 @@ from tests.guards import must_end
 from tests.scene.examples import CYLINDER, SUBJECT, WHOLE
 from tests.scene.strategies import texts
 
-ODD = [
-    "\r",
-    "\n",
-    "\v",
-    "\f",
-    "\x85",
-    "\u2028",
-    "\xa0",
-    "\ufeff",
-    "\ud800",
-    "\0",
-    "\u2212",
-    "٣",
-    ",",
-    " ",
-    "#",
-    "//",
-    ":",
-    ".",
-]
-ODD += [
-    "nan",
-    "1e999",
-    "1_0",
-    "0x1",
-    "--",
-    "sp",
-    "L ",
-    "roll:",
-    "roll:1",
-    "\t,",
-    "e",
-    "9" * 299,
-    "9" * 309,
-    "1e309",
-    "255,255,255",
-    "C 0,0,0 0,0,1 7",
-]
+ODD = [*"\r\n\v\f\x85\u2028\xa0\ufeff\ud800\0\u2212٣, #:.", "//", "L ", "\t,", "C 0,0,0 0,0,1 7", "9" * 299, "9" * 309]
+ODD += ["nan", "1e999", "1_0", "0x1", "--", "sp", "roll:", "roll:1", "e", "1e309", "255,255,255"]
 LIGHTS = (
     "C 0,0,0,1 0,0,1 7 roll:3\nL 0,0,0 1\nL 0, 0, 0 1 2.5,0,0 // a\nL 0,0,0,0 .5 1,2,3\nl 0,0,0 1\n"  # lenient only
 )
@@ -94,18 +58,12 @@ def test_a_damaged_file_is_read_or_refused(text: str) -> None:
     check_outcome(text)
 
 
-@given(st.text())
+@given(st.binary() | st.text())
 @settings(max_examples=200)
 @example("sp 0,0,0 1 1,1,1,\n,")
 @example("\r")
 @example(" ,")
-def test_any_text_is_read_or_refused(text: str) -> None:
-    check_outcome(text)
-
-
-@given(st.binary())
-@settings(max_examples=200)
-def test_any_bytes_are_read_or_refused(data: bytes) -> None:
+def test_any_bytes_and_texts_are_read_or_refused(data: bytes | str) -> None:
     check_outcome(data)
 
 

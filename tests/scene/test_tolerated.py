@@ -137,10 +137,3 @@ def test_a_direction_is_normalised_with_a_notice_when_its_length_was_far_from_1(
     assert math.hypot(*plane.normal) == pytest.approx(1, abs=4 * 2**-53)
     assert plane.source == line
     assert notices(line) == ([(3, 10, notice)] if notice else [])
-
-
-def test_ten_thousand_spheres_are_read_in_order() -> None:
-    lines = [f"sp {index},0,20 1 255,0,{index % 256}" for index in range(10_000)]
-    spheres = parse(scene_with(*lines)).scene.spheres
-    assert [sphere.centre[0] for sphere in spheres] == list(range(10_000))
-    assert [sphere.source for sphere in spheres] == lines
