@@ -75,14 +75,15 @@ MODULES = {
     "minirt.rendering.buffers": ("Buffers", "buffers"),
     "minirt.rendering.queries.rays": ("Hits", "camera_rays", "trace"),
     "minirt.saved_movie": ("save_movie",),
-    "minirt.scene": (
-        *("Ambient", "Background", "Camera", "FurtherLight", "Lamp", "Light", "ParallelLight", "Resolution", "Scene"),
-        *("SpotLight", "dumps", "loads"),
-    ),
+    "minirt.scene": (*("Ambient", "Background", "Camera", "Lamp", "Resolution", "Scene", "dumps", "loads"),),
     "minirt.shapes": ("Shape",),
 }
 HOMES = {name: module for module, names in MODULES.items() for name in names}
-REGISTRIES = ("minirt.shapes", "minirt.materials")  # the names in their `PUBLIC` are public here, too
+REGISTRIES = (
+    "minirt.shapes",
+    "minirt.materials",
+    "minirt.scene.lights",
+)  # the names in their `PUBLIC` are public here, too
 OWN = ("DEFAULT_ERROR", "DEFAULT_SIZE", "RenderError", "load", "render", "renderer", "size_of")
 
 if not TYPE_CHECKING:
@@ -109,7 +110,7 @@ def public_names() -> list[str]:
 
 @cache
 def registered() -> dict[str, type]:
-    """The shapes and materials by their public names: `minirt.Sphere`, `minirt.Glass`."""
+    """The shapes, materials and lights by their public names: `minirt.Sphere`, `minirt.Glass`, `minirt.Light`."""
     return {name: kind for home in REGISTRIES for name, kind in import_module(home).PUBLIC.items()}
 
 

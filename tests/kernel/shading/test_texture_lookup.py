@@ -18,7 +18,7 @@ from minirt.fields import Triple
 from minirt.kernel.compiler.pipeline import FLAGS
 from minirt.kernel.shading import texturing
 from minirt.lanes import load, save, width
-from minirt.rendering.packing.materials import TexturePool
+from minirt.rendering.packing.materials import Reader
 from minirt.scene import Ambient, Background, Camera, Scene
 from minirt.shapes import KINDS, Shape
 from minirt.shapes.box import Box
@@ -47,7 +47,7 @@ COLOURED = range(6)
 
 def all_pictures() -> tuple[Any, Any]:
     """Return all pictures as the kernel reads them: texels and layout."""
-    pool = TexturePool.__new__(TexturePool)
+    pool = Reader.__new__(Reader)
     pool.images = IMAGES
     return tuple(pool.arrays().values())  # type: ignore[return-value]
 
