@@ -64,7 +64,6 @@ def settled(shape: Shape, aim: Aim, scene: Scene, stride: float) -> Shape:
     normal, (middle, _) = aim.normal, middle_of(shape)
     point = tidy_point(aim.point, normal, stride)
     at, _ = translate(shape, subtract(point, middle), 1.0)
-    assert isinstance(at, Shape)
     rests = LEVEL < normal[1] < 1
     standing = stand(at, point, UP if rests else normal)
     if rests:
@@ -104,9 +103,7 @@ def lowest_along(shape: Shape, direction: Triple) -> float | None:
 
 def shifted(shape: Shape, direction: Triple, distance: float) -> Shape:
     """Move a shape along a direction."""
-    moved, _ = translate(shape, direction, distance)
-    assert isinstance(moved, Shape)
-    return moved
+    return translate(shape, direction, distance)[0]
 
 
 def middle_of(shape: Shape) -> tuple[Triple, float]:

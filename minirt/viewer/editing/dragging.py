@@ -92,7 +92,6 @@ def place(state: State, start: DragStart, x: int, y: int) -> State:
     middle = extent(shape)
     assert middle
     at, _ = translate(shape, subtract(there.point, middle[0]), 1.0)
-    assert isinstance(at, Shape)
     standing = stand(at, there.point, UP)
     return state.edit_element(dropped(standing, others, state.stride) or standing, *CHANGE)
 

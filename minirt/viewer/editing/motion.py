@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import atan, atan2, copysign, cos, degrees, dist, fmod, fsum, hypot, pi, radians, sin, tan
-from typing import Any
+from typing import Any, TypeVar
 
 from minirt.element import Element, fields_of
 from minirt.fields import FARTHEST, LEAST_LENGTH, Direction, Point, Triple, clamp, spelled, unit, upright
@@ -14,11 +14,13 @@ from minirt.viewer.editing.projection import dot, extent, scene_centre, subtract
 from minirt.viewer.editing.state import Frame, State, field_names
 from minirt.viewer.editing.values import NOISE, neat_direction, round_length, shows_roll
 
+Moved = TypeVar("Moved", bound=Element)
+
 STEEPEST = pi / 2 - 1e-8  # radians: nobody sees the difference to straight up, which would have no heading
 WORLD_AXES: dict[Frame, Triple] = {Frame.X: (1.0, 0.0, 0.0), Frame.Y: (0.0, 1.0, 0.0), Frame.Z: (0.0, 0.0, 1.0)}
 
 
-def translate(element: Element, axis: Triple, distance: float) -> tuple[Element, bool]:
+def translate(element: Moved, axis: Triple, distance: float) -> tuple[Moved, bool]:
     """Move all points of an element along `axis`, clamped to the format's range. Returns whether it was clamped."""
     points = {name: getattr(element, name) for name in field_names(type(element), Point)}
     offset = [distance * part for part in axis]

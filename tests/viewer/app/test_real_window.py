@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 import minirt
 from minirt.rendering.sampling.contrast import edge_pixels
+from minirt.scene import Scene
 from tests.processes import until_stopped
 from tests.viewer.idle_waits import until_at_rest, until_only_one_runs
 from tests.viewer.scenes import WITH_CYLINDER
@@ -80,14 +81,19 @@ def viewer(desktop: Desktop, tmp_path: Path) -> Iterator[Viewer]:
         yield opened
 
 
-def picture(path: Path, size: tuple[int, int] = SIZE, passes: tuple[int, ...] = (4, 16)) -> NDArray[np.uint8]:
-    """Render the scene in a file, refined as in a window in which nothing moves."""
-    scene, renderer = minirt.load(path), minirt.renderer(None)
+def still(scene: Scene, size: tuple[int, int] = SIZE, passes: tuple[int, ...] = (4, 16)) -> NDArray[np.uint8]:
+    """Render a scene, refined as in a window in which nothing moves."""
+    renderer = minirt.renderer(None)
     pixels = np.zeros((size[1], size[0], 4), np.uint8)
     renderer.render(scene, pixels)
     for samples in passes:
         renderer.refine(scene, pixels, samples)
     return pixels[..., 2::-1]
+
+
+def picture(path: Path, size: tuple[int, int] = SIZE, passes: tuple[int, ...] = (4, 16)) -> NDArray[np.uint8]:
+    """Render the scene in a file as `still` does."""
+    return still(minirt.load(path), size, passes)
 
 
 def check_refined(refined: NDArray[np.uint8], path: Path) -> None:

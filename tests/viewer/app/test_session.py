@@ -95,16 +95,6 @@ def test_of_many_window_sizes_only_the_last_is_rendered():
     assert harness.painter.close(HANG_LIMIT)
 
 
-def test_the_old_picture_is_stretched_until_the_new_one_comes():
-    harness = SessionHarness()
-    harness.hide_overlay()
-    harness.finish(0.001)
-    harness.memory.resize(30, 20)
-    harness.memory.play()
-    assert harness.memory.screenshot().shape == (20, 30, 4)
-    assert (harness.memory.screenshot() == colour_of(harness.session.state.scene)).all()
-
-
 def test_a_render_error_is_a_message_over_the_picture():
     harness = SessionHarness()
     harness.finish(0.001)

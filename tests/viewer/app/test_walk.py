@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from PIL import Image
 
 import minirt
@@ -22,11 +21,10 @@ from minirt.viewer.app.session import Session
 from minirt.viewer.display.painter import Painter
 from minirt.viewer.display.screen import help_pages
 from minirt.viewer.editing.state import State
-from tests.viewer.app.test_real_window import SIZE, Viewer, viewing
+from tests.viewer.app.test_real_window import SIZE, Viewer, still, viewing
 from tests.viewer.scenes import WITH_CYLINDER
 from tests.viewer.xdotool import do
 from tests.waiting import until
-from tests.windows import SCREEN
 
 pytestmark = pytest.mark.window
 
@@ -134,16 +132,6 @@ class Twin:
         assert len(changed) <= 2 or self.lines[-1] in ("press Ctrl+Z", "press Ctrl+Shift+Z"), changed
 
 
-def still(scene: Scene, size: tuple[int, int] = SIZE) -> NDArray[np.uint8]:
-    """Render a scene, refined as in a window in which nothing moves."""
-    renderer = minirt.renderer(None)
-    pixels = np.zeros((size[1], size[0], 4), np.uint8)
-    renderer.render(scene, pixels)
-    for samples in (4, 16):
-        renderer.refine(scene, pixels, samples)
-    return pixels[..., 2::-1]
-
-
 def test_a_walk(desktop, tmp_path):
     with viewing(desktop, tmp_path / "scene.rt", program=FROZEN_CLOCK) as viewer:
         twin = Twin(viewer, tmp_path / "twin")
@@ -179,14 +167,9 @@ def test_a_walk(desktop, tmp_path):
         until(lambda: desktop.screenshot(viewer.window).mean() < still(edited).mean() / 2, "the help")
         viewer.key(*["h"] * twin.help_pages)
         viewer.shows(still(edited))
-        resized = viewer
-        for size in (SCREEN, SIZE):
-            resized.key("F11")
-            resized = resized._replace(window=desktop.find("miniRT - scene.rt", size))
-        resized.shows(still(edited))
-        check_following(resized, edited)
-        resized.key("Escape")
-        assert resized.end() == (0, "", "")
+        check_following(viewer, edited)
+        viewer.key("Escape")
+        assert viewer.end() == (0, "", "")
 
 
 def check_following(viewer: Viewer, edited: Scene) -> None:

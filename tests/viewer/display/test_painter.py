@@ -116,12 +116,6 @@ def test_a_picture_that_made_room_for_the_next_wakes_nobody(harness, monkeypatch
     assert wakes_before_the_next(harness)
 
 
-def test_a_picture_of_another_size_is_cancelled(harness):
-    harness.start(replace(JOB, urgent=True))
-    harness.painter.request(replace(JOB, width=10, urgent=True))
-    assert harness.outcomes(1)[0].pixels is None
-
-
 def test_only_the_latest_untaken_picture_is_kept(harness):
     for width in range(60, 70):
         harness.painter.request(Job(scene(), width, 48))

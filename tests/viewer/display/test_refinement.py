@@ -56,27 +56,6 @@ def test_slow_pictures_are_coarse_only_while_a_key_is_held():
     assert harness.session.refinement.latest.job == Job(harness.session.state.scene, *SIZE)
 
 
-def test_a_key_press_is_shown_coarse_first_if_that_is_faster():
-    harness = SessionHarness()
-    harness.finish(FRAME_TIME * 3)
-    harness.tap(Key.D)
-    harness.finish(FRAME_TIME)
-    harness.finish(FRAME_TIME * 3)
-    assert harness.painter.divisors == [1, 2, 2, 1]  # a tap changes the scene with the press and with the release
-    assert not harness.painter.busy
-
-
-def test_fast_pictures_keep_full_resolution():
-    harness = SessionHarness()
-    harness.finish(FRAME_TIME / 2)
-    harness.memory.press(Key.D)
-    harness.memory.wait(0.5)
-    harness.memory.release(Key.D)
-    harness.memory.play()
-    harness.finish(FRAME_TIME / 2)
-    assert set(harness.painter.divisors) == {1}
-
-
 def test_a_still_picture_is_refined_pass_by_pass_until_it_is_final():
     harness = SessionHarness(samples=16)
     harness.hide_overlay()
