@@ -174,18 +174,6 @@ def test_what_is_compiled_is_imported_by_the_compiling_process_alone() -> None:
     assert {path.rpartition("/")[0] for path in found} == COMPILING
 
 
-def test_a_planted_import_of_the_compiler_is_found() -> None:
-    planted = {
-        "kernel/a.py": "def f():\n    import numba.core",
-        "kernel/b.py": "from llvmlite import binding",
-        "rendering/c.py": "import_module('minirt.kernel.compiler.pipeline')",
-        "rendering/d.py": "import numbat",
-    }
-    assert importers(planted, COMPILER) == {"kernel/a.py": {"numba"}, "kernel/b.py": {"llvmlite"}}
-    assert importers(planted, COMPILER, late=False) == {"kernel/b.py": {"llvmlite"}}
-    assert importers(planted, {"minirt.kernel.compiler"}) == {"rendering/c.py": {"minirt.kernel.compiler"}}
-
-
 def imported(*command: str, folder: Path) -> set[str]:
     """The top-level modules that a run of Python imports."""
     ended = run([sys.executable, "-X", "importtime", *command], cwd=folder, env=environment(), text=True)
@@ -308,9 +296,3 @@ def test_heavy_imports_are_late() -> None:
 )
 def test_a_wrong_import_is_found(where: str, source: str, found: set[str]) -> None:
     assert wrong(where, source) == found
-
-
-def test_what_is_late_is_told_from_what_is_not() -> None:
-    source = "import numba\ndef f():\n    import pyglet\nclass C:\n    import PIL"
-    assert imports(source, late=False) == {"numba", "PIL"}
-    assert imports(source) == {"numba", "pyglet", "PIL"}
