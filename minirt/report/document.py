@@ -10,11 +10,10 @@ from pathlib import Path
 from minirt.errors import RenderError
 from minirt.helpers import file_io
 from minirt.image import Image
-from minirt.report.chart import NARROW, WIDE, draw, on_page
 from minirt.report.findings import Findings, as_csv, as_json, choices, recommended, title
 from minirt.report.metrics import Picture as Light
 from minirt.report.metrics import error_image, to_8_bits
-from minirt.report.page import Column, Document, Picture
+from minirt.report.page import NARROW, WIDE, Column, Document, Picture, draw, on_page
 from minirt.report.pictures import Row
 from minirt.report.povray import ABOUT
 from minirt.report.settings import BOUNCES, KNOBS

@@ -20,10 +20,10 @@ from minirt.rendering.notes import kernel_notes
 from minirt.rendering.threads import usable_cores
 from minirt.report import povray
 from minirt.report.ablation import PAIRS, Ablation, Part
-from minirt.report.chart import require_matplotlib
 from minirt.report.document import PAGE, summary, write_files
 from minirt.report.findings import EIGHT_BITS, Findings, orders, subject
 from minirt.report.metrics import Picture
+from minirt.report.page import require_matplotlib
 from minirt.report.pictures import (
     RUNS,
     Budget,

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from minirt.errors import RenderError
-from minirt.report import chart
+from minirt.report import page
 from minirt.report.ablation import Part
-from minirt.report.chart import NARROW, WIDE, draw
 from minirt.report.document import advice, document, report_files
 from minirt.report.findings import Findings, Order
-from minirt.report.page import Column, Document
+from minirt.report.page import NARROW, WIDE, Column, Document, draw
 from minirt.report.pictures import Row
 from minirt.report.precision import SingleError
 from tests.paths import PACKAGE
@@ -94,9 +93,9 @@ def test_a_diagram_without_points_is_drawn() -> None:
 
 
 def test_matplotlib_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(chart, "find_spec", lambda name: None)
+    monkeypatch.setattr(page, "find_spec", lambda name: None)
     with pytest.raises(RenderError, match=r"pip install 'minirt\[report\]'"):
-        chart.require_matplotlib()
+        page.require_matplotlib()
 
 
 @pytest.mark.parametrize(
