@@ -243,9 +243,9 @@ def render(
         if not is_done:
             raise RenderError(CANCELLED)
     if light is None:
-        return Image.from_bgra(pixels[kept], None, reached, scene.camera.tone, in_place=True)
+        return Image.from_bgra(pixels[kept], None, reached, scene.camera.tone)
     light = np.ascontiguousarray(light[kept])
-    return LinearImage.from_bgra(pixels[kept], light, reached, scene.camera.tone, in_place=True)
+    return LinearImage.from_bgra(pixels[kept], light, reached, scene.camera.tone)
 
 
 def goal(error: float | None, time: float | None) -> tuple[float, float]:

@@ -47,15 +47,8 @@ class Image:
         linear: np.ndarray | None = None,
         reached: Outcome | None = None,
         tone: str = "plain",
-        *,
-        in_place: bool = False,
     ) -> Image:
-        """Make a picture of a frame buffer, (h, w, 4) in the order blue, green, red, alpha.
-
-        `in_place` overwrites a contiguous frame buffer, whose memory the picture then uses.
-        """
-        if in_place and pixels.flags.c_contiguous:
-            return cls(rgb_in_place(pixels), linear, reached, tone)
+        """Make a picture of a frame buffer, (h, w, 4) in the order blue, green, red, alpha."""
         return cls(np.ascontiguousarray(pixels[..., 2::-1]), linear, reached, tone)
 
     @cached_property
@@ -64,12 +57,6 @@ class Image:
         from PIL import Image as pillow  # noqa: N813
 
         return pillow.fromarray(self.array)
-
-    def pil_in_place(self) -> PillowImage:
-        """Return the picture as a Pillow image, which overwrites `array` where that saves a copy."""
-        from minirt.formats.in_frame import in_frame
-
-        return in_frame(self.array) or self.pil
 
     @property
     def deep(self) -> np.ndarray:
@@ -113,7 +100,6 @@ class Image:
         bits: int | None,
         quality: int | None,
         texts: Mapping[str, str],
-        in_place: bool = False,
     ) -> None:
         """Write the bytes of a file in a format, part by part where the format allows it; OSError when that fails, and
         RenderError when the format cannot hold the picture. The arguments are those of `save`."""
@@ -126,8 +112,7 @@ class Image:
                 file.write(self.encode_by_own(name))
             else:
                 options = {} if quality is None else {"quality": quality}
-                picture = self.pil_in_place() if in_place else self.pil
-                picture.save(cast("Any", PlainFile(file)), "PNG" if name == "APNG" else name, **options)
+                self.pil.save(cast("Any", PlainFile(file)), "PNG" if name == "APNG" else name, **options)
         except (OSError, ValueError, KeyError, OverflowError) as error:
             if isinstance(error, OSError) and error.errno:
                 raise
@@ -149,15 +134,14 @@ class Image:
         bits: int | None = None,
         quality: int | None = None,
         texts: Mapping[str, str] = NO_TEXTS,
-        in_place: bool = False,
     ) -> None:
         """Write a file in the format of its extension, as a whole or not at all; RenderError when that fails.
 
-        The arguments are those of `encode`. `in_place` may overwrite the picture, which saves 4 bytes a pixel.
+        The arguments are those of `encode`.
         """
         name = format_of(path)
         try:
-            file_io.write(path, lambda file: self.write(file, name, bits, quality, texts, in_place))
+            file_io.write(path, lambda file: self.write(file, name, bits, quality, texts))
         except OSError as error:
             raise RenderError(f"{os.fspath(path)}: cannot write: {error.strerror or error}") from None
 
@@ -182,19 +166,6 @@ class PlainFile:
     def __init__(self, file: BinaryIO) -> None:
         self.write, self.flush = file.write, file.flush
         self.seek, self.tell = file.seek, file.tell
-
-
-def rgb_in_place(pixels: np.ndarray) -> np.ndarray:
-    """Turn a contiguous frame buffer (h, w, 4), BGRA, into RGB (h, w, 3) in the first three quarters of its memory.
-
-    Block after block, each copied first, because a block's new place overlaps its old one, but no later block's.
-    """
-    height, width = pixels.shape[:2]
-    old = pixels.reshape(-1, 4)
-    new: np.ndarray = pixels.reshape(-1)[: 3 * len(old)].reshape(-1, 3)
-    for start in range(0, len(old), BLOCK):
-        new[start : start + BLOCK] = old[start : start + BLOCK, 2::-1].copy()
-    return new.reshape(height, width, 3)
 
 
 def blocks_of_rows(array: np.ndarray) -> Iterator[slice]:

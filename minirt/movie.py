@@ -6,7 +6,6 @@ import io
 import os
 from collections.abc import Callable, Iterable
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
@@ -15,19 +14,12 @@ from minirt.formats.table import FORMATS, check_quality, format_of
 from minirt.helpers import file_io
 
 if TYPE_CHECKING:
-    from minirt.formats.films.film import Film
+    from minirt.formats.films import Film
     from minirt.image import Image
 
 Recording: TypeAlias = Callable[[Callable[["Image"], None]], object]  # gives pictures to a function
 
 FPS = 25.0  # frames per second
-FILM_CLASSES = {
-    "GIF": ("gif", "GifFilm"),
-    "APNG": ("apng", "ApngFilm"),
-    "WEBP": ("webp", "WebpFilm"),
-    "MP4": ("video", "Mp4Film"),
-    "WEBM": ("video", "WebmFilm"),
-}
 
 
 def save_movie(
@@ -96,16 +88,18 @@ def encode_film(pictures: Iterable[Image], name: str, fps: float, quality: int |
 
 
 def write_film(record: Recording, out: BinaryIO, name: str, fps: float, quality: int | None = None) -> None:
-    """Write the pictures that `record` makes to a file that can seek; two of them are in memory at once.
+    """Write the pictures that `record` makes to a file that can seek; of a loop all are in memory at once.
 
     RenderError without pictures, or when the format cannot hold them; OSError when the file cannot be written.
     """
+    from minirt.formats.films import new_film
+
     film: Film | None = None
     sizes: set[tuple[int, int]] = set()
 
     def add(picture: Image) -> None:
         nonlocal film
-        film = film or film_class(name)(out, fps, quality)
+        film = film or new_film(out, name, fps, quality)
         sizes.add((picture.array.shape[1], picture.array.shape[0]))
         if len(sizes) > 1:
             different = " and ".join(f"{width}x{height}" for width, height in sorted(sizes))
@@ -123,10 +117,3 @@ def write_film(record: Recording, out: BinaryIO, name: str, fps: float, quality:
     finally:
         if film:
             film.close()
-
-
-def film_class(name: str) -> type[Film]:
-    """Return the class that writes films in a format."""
-    home, kind = FILM_CLASSES[name]
-    found: type[Film] = getattr(import_module(f"minirt.formats.films.{home}"), kind)
-    return found

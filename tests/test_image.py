@@ -24,24 +24,6 @@ def test_a_frame_buffer_is_copied_to_rgb() -> None:
     assert image.linear is None
 
 
-@pytest.mark.parametrize("block", [1, 3, 5, 100])
-def test_a_frame_buffer_becomes_rgb_in_its_own_memory(monkeypatch: pytest.MonkeyPatch, block: int) -> None:
-    monkeypatch.setattr("minirt.image.BLOCK", block)
-    pixels = np.random.default_rng(1).integers(256, size=(5, 7, 4), dtype=np.uint8)
-    expected = [[[red, green, blue] for blue, green, red, _ in row] for row in pixels.tolist()]
-    image = Image.from_bgra(pixels, in_place=True)
-    assert image.array.tolist() == expected
-    assert np.shares_memory(image.array, pixels)
-    assert image.array.flags.c_contiguous
-
-
-def test_a_part_of_a_frame_buffer_is_copied_even_in_place() -> None:
-    pixels = np.random.default_rng(2).integers(256, size=(5, 7, 4), dtype=np.uint8)
-    before = pixels.copy()
-    assert np.array_equal(Image.from_bgra(pixels[:, 1:4], in_place=True).array, before[:, 1:4, 2::-1])
-    assert np.array_equal(pixels, before)
-
-
 def test_the_pillow_image_has_the_same_pixels() -> None:
     image = Image(ARRAY)
     assert image.pil.size == (6, 4)

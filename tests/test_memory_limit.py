@@ -138,15 +138,3 @@ def test_too_large_a_texture_is_refused_with_its_place(tmp_path: Path) -> None:
     minirt.limit_memory(MIB)
     with pytest.raises(minirt.SceneError, match=r"x.rt:3:.*the textures need about 12 MiB of memory, allowed 0 MiB"):
         minirt.load(tmp_path / "x.rt")
-
-
-@pytest.mark.parametrize(("region", "told"), [([], 6), (["--region", "1,1,40,30"], 9)], ids=["whole", "region"])
-def test_a_region_is_counted_with_its_copy(
-    region: list[str], told: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "x.rt").write_text(SCENE)
-    needs: list[float] = []
-    monkeypatch.setattr(system, "check_picture", lambda height, width, each: needs.append(each))
-    output = str(tmp_path / "x.jpg")
-    assert main([str(tmp_path / "x.rt"), "-o", output, "--size", "64x48", *region]) == 0
-    assert needs[0] == told

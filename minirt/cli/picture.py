@@ -134,7 +134,7 @@ def write(image: Image, output: str, scene: Scene, options: argparse.Namespace) 
     if output == "-":
         say_bytes(image.encode(bits=options.bits, quality=options.quality, texts=texts))
         return
-    image.save(output, bits=options.bits, quality=options.quality, texts=texts, in_place=True)
+    image.save(output, bits=options.bits, quality=options.quality, texts=texts)
 
 
 def texts_for(output: str, scene: Scene, options: argparse.Namespace) -> dict[str, str]:

@@ -51,11 +51,10 @@ class Strips:
         import numpy as np
 
         import minirt
-        from minirt.formats.in_frame import levels_in_frame
         from minirt.image import Image
 
         shape = self.region.height, self.region.width, 3
-        levels = levels_in_frame(*shape[:2])
+        levels = np.empty(shape, np.uint8)
         light = np.empty(shape) if settings["linear"] else None
         for number, strip in enumerate(self.strips):
             at = slice(strip.x - self.region.x, strip.x - self.region.x + strip.width)

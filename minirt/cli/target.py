@@ -12,7 +12,6 @@ from minirt.errors import RenderError
 if TYPE_CHECKING:
     from minirt.scene import Scene
 
-COPY = 3  # bytes a pixel: a region that begins within a tile is copied out of its frame buffer
 PLACE = "{name}"  # stands for the name of the scene's file, without its extension
 
 
@@ -76,7 +75,7 @@ def check_memory(options: argparse.Namespace, output: str, size: tuple[int, int]
     name = "PNG" if output == "-" else format_of(output)
     *_, width, height = options.region or size
     is_light_extra = (options.dither or options.verbose) and not needs_light(options, output)
-    needed = memory_of(name, options.bits) + LIGHT * is_light_extra + COPY * bool(options.region)
+    needed = memory_of(name, options.bits) + LIGHT * is_light_extra
     system.check_picture(height, width, needed)
 
 

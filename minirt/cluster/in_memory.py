@@ -10,7 +10,6 @@ from minirt.cluster.bands import whole
 from minirt.cluster.still import Still
 from minirt.cluster.task import Region, Settings
 from minirt.cluster.workers import WorkerPool, Workers
-from minirt.formats.in_frame import levels_in_frame
 from minirt.image import Image, LinearImage
 from minirt.rendering.outcome import Outcome
 from minirt.scene import Scene
@@ -28,7 +27,7 @@ def render_in_bands(
     """Return the picture that `minirt.render` returns, made by the workers of an executor; see `render_to`."""
     still = Still(scene, settings, region, "light" if linear else "levels")
     _, top, width, height = still.region
-    levels = levels_in_frame(height, width)
+    levels = np.empty((height, width, 3), np.uint8)
     light = np.empty((height, width, 3)) if linear else None
     parts: list[tuple[int, Outcome | None]] = []
     for number, made in still.made(WorkerPool(executor, threads)):

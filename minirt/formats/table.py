@@ -15,7 +15,7 @@ from minirt.errors import RenderError, nearest
 ANY_SIDE = 2**31 - 1
 FLOAT = 32  # bits of a channel of floating-point numbers
 EXACT = (8,)
-DEEP_MEMORY = 46  # bytes a pixel of a picture with 16 bits while it is rendered and written
+DEEP_MEMORY = 49  # bytes a pixel of a picture with 16 bits while it is rendered and written
 
 
 class Format(NamedTuple):
@@ -27,29 +27,29 @@ class Format(NamedTuple):
     is_lossy: bool = False  # whether it has a quality from 1 to 100
     is_film: bool = False  # whether it can hold several pictures in one file
     is_still: bool = True  # whether it can hold a single picture
-    memory: int = 6  # bytes a pixel while a picture is rendered and written in place with the default bits, as measured
+    memory: int = 9  # bytes a pixel while a picture is rendered and written with the default bits, as measured
 
 
 FORMATS = {  # by Pillow's name, where Pillow writes the format
     "PNG": Format((".png",), bits=(8, 16)),
-    "APNG": Format((".apng",), is_film=True, memory=9),
+    "APNG": Format((".apng",), is_film=True),
     "JPEG": Format((".jpg", ".jpeg", ".jpe", ".jfif"), 65_500, is_lossy=True),
     "WEBP": Format((".webp",), 16_383, is_lossy=True, is_film=True, memory=18),
-    "AVIF": Format((".avif",), 65_536, is_lossy=True, memory=30),
+    "AVIF": Format((".avif",), 65_536, is_lossy=True, memory=33),
     "GIF": Format((".gif",), 65_535, is_film=True, memory=18),
     "TIFF": Format((".tif", ".tiff"), bits=(8, 16)),
     "BMP": Format((".bmp", ".dib")),
     "PPM": Format((".ppm", ".pnm")),
     "TGA": Format((".tga",), 65_535),
-    "JPEG2000": Format((".jp2", ".j2k", ".jpx"), memory=42),
+    "JPEG2000": Format((".jp2", ".j2k", ".jpx"), memory=45),
     "PCX": Format((".pcx",), 65_535),
-    "SGI": Format((".sgi", ".rgb"), 65_535, memory=10),
-    "QOI": Format((".qoi",)),
-    "EXR": Format((".exr",), bits=(FLOAT,), memory=53),
-    "HDR": Format((".hdr", ".pic"), 32_767, bits=(FLOAT,), memory=37),
-    "PFM": Format((".pfm",), bits=(FLOAT,), memory=53),
-    "MP4": Format((".mp4", ".m4v"), 16_384, is_lossy=True, is_film=True, is_still=False, memory=9),
-    "WEBM": Format((".webm",), 16_384, is_lossy=True, is_film=True, is_still=False, memory=9),
+    "SGI": Format((".sgi", ".rgb"), 65_535, memory=13),
+    "QOI": Format((".qoi",), memory=11),
+    "EXR": Format((".exr",), bits=(FLOAT,), memory=56),
+    "HDR": Format((".hdr", ".pic"), 32_767, bits=(FLOAT,), memory=40),
+    "PFM": Format((".pfm",), bits=(FLOAT,), memory=56),
+    "MP4": Format((".mp4", ".m4v"), 16_384, is_lossy=True, is_film=True, is_still=False),
+    "WEBM": Format((".webm",), 16_384, is_lossy=True, is_film=True, is_still=False),
 }
 BY_SUFFIX = {suffix: name for name, each in FORMATS.items() for suffix in each.suffixes}
 COMMON = (".png", ".jpg", ".jpeg", ".webp", ".tiff", ".exr", ".hdr", ".pfm", ".gif", ".webm")  # to suggest

@@ -125,18 +125,14 @@ def test_loops_hold_pictures_that_stay_or_change_little(tmp_path: Path, name: st
         assert durations == [200, 100, 100, 100]  # ms: the first picture stays
 
 
-def test_a_picture_that_stays_longer_than_a_format_can_say_is_written_again(tmp_path: Path) -> None:
-    first = film()[0]
-    save_movie([first, first, first], tmp_path / "a.gif", fps=0.002)
-    save_movie([first, first, first], tmp_path / "a.apng", fps=0.02)
-    for name, total in (("a.gif", 1_500_000), ("a.apng", 150_000)):
-        with pillow.open(tmp_path / name) as movie:
-            durations = []
-            for number in range(movie.n_frames):
-                movie.seek(number)
-                durations.append(movie.info["duration"])
-                assert np.array_equal(np.asarray(movie.convert("RGB"))[:, 30:], first.array[:, 30:]) or name == "a.gif"
-        assert (len(durations), sum(durations)) == (3, total)
+@pytest.mark.parametrize(("name", "fps", "longest"), [("a.gif", 0.002, 655_350), ("a.apng", 0.02, 65_535)])
+def test_a_picture_stays_at_most_as_long_as_a_format_can_say(
+    tmp_path: Path, name: str, fps: float, longest: int
+) -> None:
+    save_movie([film()[0]] * 3 + film()[1:2], tmp_path / name, fps=fps)
+    with pillow.open(tmp_path / name) as movie:
+        movie.load()
+        assert (movie.n_frames, movie.info["duration"]) == (2, longest)
 
 
 def most_alive(path: Path, save: Callable[[Iterator[Image]], object]) -> int:
@@ -157,10 +153,9 @@ def most_alive(path: Path, save: Callable[[Iterator[Image]], object]) -> int:
     return max(counts)
 
 
-@pytest.mark.parametrize("name", ["a.gif", "a.webp", "a.apng", "a.mp4", "a.webm"])
-def test_two_pictures_of_a_film_are_in_memory_at_once(tmp_path: Path, name: str) -> None:
-    if name.endswith((".mp4", ".webm")):
-        pytest.importorskip("av")
+@pytest.mark.parametrize("name", ["a.mp4", "a.webm"])
+def test_two_pictures_of_a_video_are_in_memory_at_once(tmp_path: Path, name: str) -> None:
+    pytest.importorskip("av")
     path = tmp_path / name
     assert most_alive(path, lambda pictures: save_movie(pictures, path)) <= 2
     assert most_alive(path, lambda pictures: save_movie(list(pictures), path)) == 12  # which would be noticed
