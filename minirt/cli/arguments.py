@@ -281,7 +281,7 @@ def argument_parser() -> Arguments:
         type=memory_size,
         metavar="SIZE",
         help="memory that the program may take, such as 512M or 4G: what needs more is refused (seven eighths of that "
-        "of the machine or control group)",
+        "of the machine or container)",
     )
     add(
         "--precision",

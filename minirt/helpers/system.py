@@ -1,6 +1,6 @@
 """The process and its machine: the limit of memory, forks, garbage collection and clocks.
 
-The limit is the user's, or that of the control group, process or machine. Large needs are compared with it before
+The limit of memory is the user's, or that of the container, process or machine. Large needs are compared with it before
 memory is allocated, since the system would end the program without a word.
 """
 
@@ -20,15 +20,13 @@ from weakref import WeakSet
 
 from minirt.errors import RenderError
 
-MARGIN = 1 / 8  # of a limit that nobody chose, for what nobody counts
+SHARE = 7 / 8  # of a limit that nobody chose; the rest is for what nobody counts
 SMALL = 256 * 2**20  # bytes: needs below are not compared
 SMALL_SHARE = 32  # nor is one part in so many of the limit
-UNLIMITED = 2**60  # bytes: control groups without a limit have such numbers
-GROUP = Path("/sys/fs/cgroup")
-GROUPS_OF_PROCESS = Path("/proc/self/cgroup")
+UNLIMITED = 2**60  # bytes: containers without a limit have such numbers
+CONTAINER = (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"))  # version 2, 1
 STATUS = Path("/proc/self/statm")
 MACHINE = Path("/proc/meminfo")
-AVAILABLE = "MemAvailable:"
 FEWER_PIXELS = "a smaller picture needs less, and a .tif file only bands of rows (in the library: render_to)"
 
 chosen: list[int] = []  # the limit that was set last, if any
@@ -37,7 +35,7 @@ chosen: list[int] = []  # the limit that was set last, if any
 def limit_memory(size: int | None) -> None:
     """Allow this process so many bytes of memory; None restores the default.
 
-    By default the process may take seven eighths of the memory of its control group, or of the machine. Pictures,
+    By default the process may take seven eighths of the memory of its container, or of the machine. Pictures,
     textures and lists of shapes that need more raise RenderError before they are made. RenderError for a size below 1.
     """
     if size is not None and size < 1:
@@ -52,48 +50,31 @@ def total() -> int:
 
 @cache
 def default_total() -> int:
-    """Return the memory of the machine, or the limit of the control group where that is less, less a margin."""
-    limits = [UNLIMITED, *group_limits()]
+    """Return the memory of the machine, or the limit of its container where that is less, less a margin."""
+    limits = [UNLIMITED]
     with suppress(AttributeError, ValueError, OSError):
         limits.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    return less_margin(min(limits))
-
-
-def less_margin(size: int) -> int:
-    """Return what is left of some memory without the margin."""
-    return int(size * (1 - MARGIN))
-
-
-def group_limits() -> list[int]:
-    """Return the limits of the control group (version 1 or 2) of this process and of the groups around it."""
-    found = []
-    with suppress(OSError):
-        for line in GROUPS_OF_PROCESS.read_text().splitlines():
-            _, controllers, name = line.split(":", 2)
-            if controllers not in ("", "memory"):
-                continue
-            root, file = (GROUP / "memory", "memory.limit_in_bytes") if controllers else (GROUP, "memory.max")
-            folder = root / name.lstrip("/")
-            for each in (folder, *folder.parents):
-                with suppress(OSError, ValueError):
-                    found.append(int((each / file).read_text()))
-                if each == root:
-                    break
-    return found
+    for file in CONTAINER:
+        with suppress(OSError, ValueError):
+            limits.append(int(file.read_text()))
+    return int(min(limits) * SHARE)
 
 
 def room() -> int:
     """Return the bytes that this process may still take."""
     address_space, resident = sizes()
     least = total() - resident
-    if not chosen:
-        least = min(least, less_margin(available()))
+    with suppress(OSError, ValueError, IndexError, StopIteration):  # not on Linux
+        if not chosen:
+            lines = MACHINE.read_text().splitlines()
+            free = next(int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:"))
+            least = min(least, int(free * SHARE))
     if sys.platform != "win32":
         import resource
 
         limit = resource.getrlimit(resource.RLIMIT_AS)[0]
         if limit != resource.RLIM_INFINITY:
-            least = min(least, less_margin(limit - address_space))
+            least = min(least, int((limit - address_space) * SHARE))
     return max(0, least)
 
 
@@ -103,14 +84,6 @@ def sizes() -> tuple[int, int]:
         address_space, resident = (int(each) * os.sysconf("SC_PAGE_SIZE") for each in STATUS.read_text().split()[:2])
         return address_space, resident
     return 0, 0
-
-
-def available() -> int:
-    """Return the bytes of the machine that no process has taken; `UNLIMITED` where nobody knows."""
-    with suppress(OSError, ValueError, IndexError):
-        lines = MACHINE.read_text().splitlines()
-        return next((int(line.split()[1]) * 1024 for line in lines if line.startswith(AVAILABLE)), UNLIMITED)
-    return UNLIMITED
 
 
 def is_small_need(needed: int) -> bool:
